@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/flags/restoration_flags.h"
-#include "ident/formations/formation_pictures.h"
+#include "ident/formations/formation_files.h"
 #include "ident/formations/formation_run.h"
 #include "models/generators/diffusion_generator.h"
 

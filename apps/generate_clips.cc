@@ -10,7 +10,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/forecasts/forecast_spread.h"
-#include "ident/forecasts/path_search.h"
+#include "ident/forecasts/most_probable_path.h"
 #include "ident/parameters/option_names.h"
 #include "ident/problem/parallel.h"
 

@@ -27,8 +27,7 @@
 #include "ident/problem/folds.h"
 #include "ident/validation/held_out_spread.h"
 #include "ident/validation/predictors.h"
-#include "ident/validation/scores_json.h"
-#include "ident/validation/scores_text.h"
+#include "ident/validation/scores_report.h"
 
 DEFINE_choice(scheme, pushid::FoldScheme::kStratified,
               "what is held out: stratified (folds by setting, strength and subject), interleaved "

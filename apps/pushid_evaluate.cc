@@ -20,8 +20,7 @@
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/score_groups.h"
 #include "ident/validation/held_out_spread.h"
-#include "ident/validation/scores_json.h"
-#include "ident/validation/scores_text.h"
+#include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
 #include "models/learned_terms.h"
 

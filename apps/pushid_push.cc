@@ -9,7 +9,7 @@
 #include "apps/flags/push_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/push_csv.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/inspection/plausibility.h"
 #include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"

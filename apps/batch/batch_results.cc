@@ -9,7 +9,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/model/model_json.h"
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {

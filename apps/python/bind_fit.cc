@@ -17,7 +17,7 @@
 #include "ident/report/page/document.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/predictors.h"
-#include "ident/validation/scores_json.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {

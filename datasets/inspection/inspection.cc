@@ -10,11 +10,10 @@
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/c3d.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
-#include "datasets/formats/push_csv.h"
 #include "datasets/manifest/joint_choice.h"
-#include "datasets/sensors/sensor_csv.h"
 
 namespace pushid {
 namespace {

@@ -9,9 +9,9 @@
 #include "datasets/files/name_pattern.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
-#include "datasets/formats/push_csv.h"
 #include "datasets/formats/units.h"
 #include "datasets/manifest/column_mapping.h"
 

@@ -9,7 +9,6 @@
 #include "datasets/loading/file_motion.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/motion_preparation.h"
-#include "datasets/loading/tracks.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/joint_choice.h"
 

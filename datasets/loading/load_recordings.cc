@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "datasets/files/number_text.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
-#include "datasets/formats/push_csv.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {

@@ -6,7 +6,6 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
-#include "datasets/loading/tracks.h"
 #include "datasets/manifest/joint_choice.h"
 
 namespace pushid {

@@ -1,6 +1,10 @@
-// datasets: what is done to a motion between the file and the fit, and whether it can be a
-// person at all.
+// datasets: what is done to a motion between the file and the fit (gaps, low-pass, frame rate), and
+// whether it can be a person at all.
 #pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/formats/units.h"
@@ -11,7 +15,7 @@ namespace pushid {
 struct PreparationOptions {
   // Gaps of up to this long are interpolated; frames of longer ones get weight 0. 0: none is.
   double max_gap_s = 0.1;
-  // Zero-phase low-pass of all positions (tracks.h), Hz; 0: none. 6 to 10 Hz is usual for trunk
+  // Zero-phase low-pass of all positions (LowPass), Hz; 0: none. 6 to 10 Hz is usual for trunk
   // and ankles; it also rounds off the first frames of the reaction to a push.
   double lowpass_hz = 0.0;
   // The rate at which the motion is rolled out and compared, frames per second; 0: the recording's.
@@ -27,12 +31,58 @@ MaybeError CheckPreparation(const PreparationOptions& options);
 // left.
 MaybeError PrepareMotion(const PreparationOptions& options, Recording* recording);
 
-// Whether positions read from a file can be a person at all. Wrong units and wrong axes
-// fit happily and give nonsense, so they are caught here.
-
-// Looks at the distance from the ankles' midpoint to the hip at frame 0 (in people about 0.7 to 1.1
-// m; accepted are 0.12 to 3 m), at its direction (within 1 rad of up) and at every position (within
-// 100 km of the origin, three frames at least). `unit` is what the file was read in.
+// Whether positions read from a file can be a person at all: a fit to wrong units or axes succeeds,
+// and is wrong. Looks at the distance from the ankles' midpoint to the hip at frame 0 (in people
+// about 0.7 to 1.1 m; accepted are 0.12 to 3 m), at its direction (within 1 rad of up) and at every
+// position (within 100 km of the origin, three frames at least). `unit` is what the file was read
+// in.
 MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit);
+
+// Single tracks of positions.
+
+struct GapCount {
+  int gaps = 0;
+  int filled_frames = 0;    // in gaps that are short enough
+  int excluded_frames = 0;  // in longer ones, and before the first and after the last frame seen
+  int longest = 0;          // frames
+};
+
+// Fills every gap (positions that are not finite) of `track`: gaps of up to max_gap frames inside
+// by a cubic through the two frames on either side (Hermite, slopes by differences); longer ones by
+// a straight line, and the ends by the nearest position, where `weight` (one per frame) becomes 0.
+// A track that was never seen stays as it is, with all weights 0.
+GapCount FillGaps(int max_gap, std::vector<Eigen::Vector3d>* track, std::vector<double>* weight);
+
+// Zero-phase low-pass filtering, as gait laboratories do it: a second-order Butterworth
+// filter over the track and back again, which cancels its delay and makes it of fourth order.
+//
+// Bilinear transform with pre-warping; `cutoff` is where the two passes together have lost 3 dB, so
+// the single pass is designed for cutoff / (sqrt(2) - 1)^(1/4) (Winter's correction). Before both
+// passes the track is continued at either end by its point reflection, and the filter starts from
+// its steady state, so that ends do not ring.
+
+// cutoff in (0, rate / 2) after the correction, see HighestCutoff; leaves tracks of fewer than
+// three frames alone. Every position must be finite.
+void LowPass(double cutoff_hz, double rate_hz, std::vector<Eigen::Vector3d>* track);
+
+// The highest cut-off that LowPass can make at this rate, Hz.
+double HighestCutoff(double rate_hz);
+
+// Recordings at another frame rate.
+
+// The frames of a track of `frames` frames that fit between its first and last at the other rate.
+int ResampledFrames(int frames, double from_hz, double to_hz);
+
+// The track at to_hz: cubic through the four nearest frames (Lagrange), the first frame as it is.
+// Nothing is low-passed: that comes first where the rate goes down.
+std::vector<Eigen::Vector3d> ResampleTrack(const std::vector<Eigen::Vector3d>& track,
+                                           double from_hz, double to_hz);
+
+// 1 where all frames that a new one leans on count, else the least of their weights.
+std::vector<double> ResampleWeights(const std::vector<double>& weight, double from_hz,
+                                    double to_hz);
+
+// Rows are means over their frame, and so are the new ones: the impulse stays.
+Push ResamplePush(const Push& push, double from_hz, double to_hz);
 
 }  // namespace pushid

@@ -8,7 +8,6 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
 #include "datasets/loading/motion_preparation.h"
-#include "datasets/loading/tracks.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {

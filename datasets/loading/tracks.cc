@@ -1,8 +1,8 @@
 // datasets: gaps, filter and frame rate of tracks.
-#include "datasets/loading/tracks.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "datasets/loading/motion_preparation.h"
 
 namespace pushid {
 namespace {

@@ -1,4 +1,4 @@
-// datasets: force sensors in any file: CSV of the two forms in sensor_csv.h, a column or three of
+// datasets: force sensors in any file: CSV of the two forms in force_csv.h, a column or three of
 // another CSV or an OpenSim storage file, a channel or three of a Motion-BIDS file, an analog
 // channel or a force platform of a C3D file.
 #pragma once
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/manifest/recording.h"
-#include "datasets/sensors/sensor_csv.h"
 
 namespace pushid {
 

@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/formats/push_csv.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 

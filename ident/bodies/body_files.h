@@ -1,6 +1,6 @@
 // ident: moving bodies as files: BVH and glTF for animation programs, CSV and JSON of the joints.
 //
-// Every person moves in the skeleton that they came with (body_skeleton.h), joint by joint.
+// Every person moves in the skeleton that they came with (body_recording.h), joint by joint.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "datasets/files/names.h"
+#include "datasets/formats/bvh.h"
 #include "ident/prediction/predicted_steps.h"
 
 namespace pushid {
@@ -116,6 +117,119 @@ std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, int
     for (const auto& state : recording.pendulum.states[n]) people[n].q.push_back(state.q);
   }
   return people;
+}
+
+namespace {
+
+// Toes and head that were filled, as further joints behind those that play the role before them.
+void AddFilledEnds(const BodyRoles& roles, const Pose& first, BodySkeleton* skeleton) {
+  for (int role :
+       {static_cast<int>(kBodyHead), static_cast<int>(kRightToe), static_cast<int>(kLeftToe)}) {
+    const int parent = roles.Single(kBodyParents[role]);
+    if (roles.Has(role) || parent < 0) continue;
+    skeleton->tree.parents.push_back(parent);
+    skeleton->wanted_roles.push_back(role);
+    skeleton->rest.conservativeResize(3, skeleton->rest.cols() + 1);
+    skeleton->rest.rightCols<1>() = first.col(role);
+  }
+}
+
+// Names, parents, roles and rest are set: every joint that a place is wanted of is an aim of the
+// next one towards the root that turns.
+void SetTree(BodySkeleton* skeleton) {
+  const std::vector<int>& wanted = skeleton->wanted_roles;
+  const std::vector<int>& parents = skeleton->tree.parents;
+  const int columns = static_cast<int>(wanted.size());
+  const bool hip_is_one = std::count(skeleton->roles.begin(), skeleton->roles.end(), kBodyHip) > 0;
+  std::vector<int> turning(columns, -1);  // the joint itself, or the next one above that turns
+  skeleton->tree.aims.assign(columns, {});
+  for (int j = 0; j < columns; ++j) {
+    const int above = parents[j] < 0 ? -1 : turning[parents[j]];
+    // Where the hip is a mean of several joints, the root turns for it.
+    const bool turns = wanted[j] >= 0 || (parents[j] < 0 && !hip_is_one);
+    turning[j] = turns ? j : above;
+    if (wanted[j] >= 0 && above >= 0) skeleton->tree.aims[above].push_back(j);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> DefaultJointNames() {
+  return {"Hips",         "Spine",         "Spine1",        "Spine2",     "Neck",
+          "Head",         "RightClavicle", "RightShoulder", "RightElbow", "RightWrist",
+          "LeftClavicle", "LeftShoulder",  "LeftElbow",     "LeftWrist",  "RightHip",
+          "RightKnee",    "RightAnkle",    "RightToe",      "LeftHip",    "LeftKnee",
+          "LeftAnkle",    "LeftToe"};
+}
+
+BodySkeleton RoleSkeleton(const Pose& first, const std::vector<std::string>& names) {
+  BodySkeleton skeleton;
+  skeleton.names = names;
+  skeleton.parents.assign(kBodyParents.begin(), kBodyParents.end());
+  for (int role = 0; role < kBodyJoints; ++role) skeleton.roles.push_back(role);
+  skeleton.rest = first;
+  skeleton.hip = first.col(kBodyHip);
+  skeleton.tree.parents = skeleton.parents;
+  skeleton.wanted_roles = skeleton.roles;
+  SetTree(&skeleton);
+  return skeleton;
+}
+
+BodySkeleton SkeletonOf(const RecordedPerson& person) {
+  if (!person.skeleton) {
+    return RoleSkeleton(PoseOf(person.roles, person.joints.front()), DefaultJointNames());
+  }
+  const FileSkeleton& file = *person.skeleton;
+  BodySkeleton skeleton;
+  skeleton.file = file;
+  skeleton.names = person.joint_names;
+  skeleton.parents = person.joint_parents;
+  const int joints = skeleton.num_joints();
+  skeleton.roles.assign(joints, -1);
+  for (int role = kBodyJoints - 1; role >= 0; --role) {
+    if (person.roles.Single(role) >= 0) skeleton.roles[person.roles.Single(role)] = role;
+  }
+  // As the file has it, and not as it was filtered: its bones are what is kept.
+  std::vector<int> all(joints);
+  for (int j = 0; j < joints; ++j) all[j] = j;
+  std::vector<Eigen::Vector3d> rest(joints);
+  BvhKinematics(file.bvh, file.metres_per_unit, all).Positions(file.values.data(), rest.data());
+  skeleton.rest.resize(3, joints);
+  for (int j = 0; j < joints; ++j) {
+    rest[j] = file.world_from_file * rest[j];
+    skeleton.rest.col(j) = rest[j];
+  }
+  skeleton.tree.parents = skeleton.parents;
+  skeleton.wanted_roles = skeleton.roles;
+  const Pose first = PoseOf(person.roles, rest);
+  skeleton.hip = first.col(kBodyHip);
+  AddFilledEnds(person.roles, first, &skeleton);
+  SetTree(&skeleton);
+  return skeleton;
+}
+
+PosedJoints Retarget(const BodySkeleton& skeleton, const Pose& pose) {
+  // A root that is not the hip is carried along with it.
+  const Eigen::Vector3d move = pose.col(kBodyHip) - skeleton.hip;
+  Eigen::Matrix3Xd wanted = skeleton.rest.colwise() + move;
+  for (size_t j = 0; j < skeleton.wanted_roles.size(); ++j) {
+    if (skeleton.wanted_roles[j] >= 0) wanted.col(j) = pose.col(skeleton.wanted_roles[j]);
+  }
+  const FittedTree fitted = FitTree(skeleton.tree, skeleton.rest, wanted);
+  const int joints = skeleton.num_joints();
+  PosedJoints posed{Eigen::Matrix3Xd(3, joints),
+                    {fitted.rotations.begin(), fitted.rotations.begin() + joints}};
+  for (int j = 0; j < joints; ++j) {
+    const int parent = skeleton.parents[j];
+    if (skeleton.roles[j] >= 0 || parent < 0) {
+      posed.positions.col(j) = wanted.col(j);
+    } else {
+      posed.positions.col(j) =
+          posed.positions.col(parent) +
+          posed.rotations[parent] * (skeleton.rest.col(j) - skeleton.rest.col(parent));
+    }
+  }
+  return posed;
 }
 
 }  // namespace pushid

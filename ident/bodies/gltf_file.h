@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "ident/bodies/body_skeleton.h"
+#include "ident/bodies/body_recording.h"
 
 namespace pushid {
 

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
@@ -43,5 +44,12 @@ MaybeError WriteTensorFolder(const TensorFolderKind& kind, const std::string& fo
 Result<TensorFolder> ReadTensorFolder(const TensorFolderKind& kind, const std::string& folder,
                                       const std::string& kinds,
                                       bool (*is_kind)(const std::string& name));
+
+// Numbers in NumPy's .npy format (version 1.0, little-endian float32, one dimension), so that any
+// language can read weights: numpy.load("weights.npy"). Writes atomically.
+MaybeError WriteNpy(const std::string& path, const std::vector<float>& values);
+
+// Errors: no .npy file, another type, order or number of dimensions, cut off.
+Result<std::vector<float>> ReadNpy(const std::string& path);
 
 }  // namespace pushid

@@ -1,6 +1,4 @@
 // ident: a path to a pose.
-#include "ident/forecasts/path_search.h"
-
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -9,6 +7,7 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/forecasts/most_probable_path.h"
 #include "models/generators/particle_network.h"
 
 namespace pushid {

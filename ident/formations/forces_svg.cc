@@ -4,7 +4,7 @@
 #include <map>
 
 #include "ident/figures/svg.h"
-#include "ident/formations/formation_pictures.h"
+#include "ident/formations/formation_files.h"
 
 namespace pushid {
 namespace {

@@ -10,7 +10,7 @@
 #include "datasets/exchange/crowd.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/formats/push_csv.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {

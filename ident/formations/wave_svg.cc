@@ -5,7 +5,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
-#include "ident/formations/formation_pictures.h"
+#include "ident/formations/formation_files.h"
 
 namespace pushid {
 namespace {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "datasets/files/number_text.h"
-#include "ident/push/sensor_offset.h"
 
 namespace pushid {
 namespace {

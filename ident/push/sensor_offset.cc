@@ -1,11 +1,10 @@
 // ident: the offset between the clocks of force and motion.
-#include "ident/push/sensor_offset.h"
-
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/push/push_from_sensor.h"
 
 namespace pushid {
 namespace {

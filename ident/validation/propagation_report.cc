@@ -3,8 +3,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/validation/scores_json.h"
-#include "ident/validation/scores_text.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {

@@ -1,6 +1,4 @@
 // ident: scores to JSON and back.
-#include "ident/validation/scores_json.h"
-
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
@@ -8,6 +6,7 @@
 #include "ident/parameters/fit_options.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/parameters/option_names.h"
+#include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
 
 namespace pushid {

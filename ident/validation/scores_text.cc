@@ -1,11 +1,10 @@
 // ident: evaluations and cross-validations in words and tables.
-#include "ident/validation/scores_text.h"
-
 #include <cmath>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/uncertainty/uncertainty.h"
+#include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
 
 namespace pushid {

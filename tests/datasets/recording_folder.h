@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "datasets/formats/bvh.h"
-#include "datasets/formats/push_csv.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/loading/load_recordings.h"
 #include "tests/test_support.h"
 

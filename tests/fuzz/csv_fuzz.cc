@@ -1,9 +1,8 @@
 // CSV: pushes, sensors, masses and tables with points.
 #include "datasets/files/numeric_table.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/formats/motion_formats.h"
-#include "datasets/formats/push_csv.h"
 #include "datasets/inspection/manifest_maker.h"
-#include "datasets/sensors/sensor_csv.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -9,7 +9,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/formats/push_csv.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/formats/trajectories.h"
 #include "datasets/formats/trc.h"
 #include "datasets/manifest/manifest.h"

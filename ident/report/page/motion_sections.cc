@@ -5,7 +5,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
-#include "ident/formations/formation_pictures.h"
+#include "ident/formations/formation_files.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/force_story.h"
 #include "ident/report/page/sections.h"

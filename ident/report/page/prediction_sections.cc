@@ -8,7 +8,7 @@
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/visual_check.h"
 #include "ident/report/page/sections.h"
-#include "ident/validation/scores_text.h"
+#include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
 
 namespace pushid {

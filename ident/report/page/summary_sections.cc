@@ -14,7 +14,7 @@
 #include "ident/report/report_tables.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/clusters.h"
-#include "ident/validation/scores_text.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {

@@ -1,10 +1,9 @@
-#include "datasets/formats/push_csv.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "datasets/formats/force_csv.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -7,7 +7,6 @@
 
 #include "datasets/files/random.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "datasets/loading/tracks.h"
 #include "tests/datasets/points_folder.h"
 #include "tests/test_support.h"
 

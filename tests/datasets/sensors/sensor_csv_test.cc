@@ -1,6 +1,5 @@
 // Sensor records: both forms, and clear errors with file and line.
-#include "datasets/sensors/sensor_csv.h"
-
+#include "datasets/formats/force_csv.h"
 #include "tests/test_support.h"
 
 namespace pushid {

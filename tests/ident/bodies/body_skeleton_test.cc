@@ -1,6 +1,4 @@
 // Bodies taken back to the skeletons they came from, and written in them.
-#include "ident/bodies/body_skeleton.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -8,6 +6,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "ident/bodies/body_files.h"
+#include "ident/bodies/body_recording.h"
 #include "models/restoration/restoration.h"
 #include "tests/datasets/named_skeletons.h"
 #include "tests/datasets/recording_folder.h"

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ident/forecasts/path_search.h"
+#include "ident/forecasts/most_probable_path.h"
 #include "tests/models/generators/generator_samples.h"
 #include "tests/test_support.h"
 

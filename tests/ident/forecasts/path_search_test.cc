@@ -1,10 +1,9 @@
 // The most probable path to a pose, against its closed form.
-#include "ident/forecasts/path_search.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "ident/forecasts/most_probable_path.h"
 #include "tests/models/generators/generator_samples.h"
 
 namespace pushid {

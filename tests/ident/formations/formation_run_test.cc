@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "ident/formations/formation_pictures.h"
+#include "ident/formations/formation_files.h"
 #include "tests/ident/formation_samples.h"
 
 namespace pushid {

@@ -1,12 +1,11 @@
 // The offset between force and motion: recovered from rollouts of the model with a known shift.
-#include "ident/push/sensor_offset.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "datasets/files/random.h"
 #include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/push/push_from_sensor.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "ident/validation/predictors.h"
-#include "ident/validation/scores_text.h"
+#include "ident/validation/scores_report.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
