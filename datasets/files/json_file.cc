@@ -151,7 +151,7 @@ Error SyntaxError(const std::string& path, const std::string& text) {
   ErrorFinder finder;
   nlohmann::json::sax_parse(text, &finder);
   // "[json.exception.parse_error.101] parse error at line 3, column 5: syntax error while ...": the
-  // place is told by the Error itself.
+  // Error has the place itself.
   std::string message = finder.message;
   if (const std::size_t end = message.find("] "); end != std::string::npos) {
     message = message.substr(end + 2);

@@ -29,11 +29,11 @@ Result<PointMotion> ReadTrajectorySqlite(const std::string& path,
                                          const PointReadOptions& options = {});
 
 // Atomically; positions in m. Names that are whole numbers are the ids, otherwise people count from
-// 1 and comments of the text say who is who. A frame in which somebody was not seen has no row.
+// 1 and comments of the text give their names. A person has no row for a frame without them.
 MaybeError WriteTrajectoryText(const std::string& path, const PointMotion& motion);
 
-// Version 2. Everybody faces forward, +x; the walkable area is a rectangle 1 m around all that
-// anybody walked.
+// Version 2. Everybody faces forward, +x; the walkable area is a rectangle with a margin
+// of 1 m around all positions.
 MaybeError WriteTrajectorySqlite(const std::string& path, const PointMotion& motion);
 
 // The ids that are written for the points.

@@ -234,7 +234,7 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
 }  // namespace
 
 Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping) {
-  InputFile file;  // what cannot be opened is said first
+  InputFile file;  // errors of opening come first
   if (MaybeError failed = file.Open(path)) return *std::move(failed);
   Inspection found;
   found.path = path;

@@ -39,7 +39,7 @@ struct LoadOptions {
 };
 
 // Reads and checks the selected recordings of a manifest, or of several ("a.json,b.json"), in their
-// order. Things that look unusual but can be lived with (a BVH frame time that differs from fps by
+// order. Unusual things that are no error (a BVH frame time that differs from fps by
 // more than 0.1 %) are appended to `warnings`.
 //
 // Besides what the readers of the single files refuse: no frame rate in manifest, mapping or file,

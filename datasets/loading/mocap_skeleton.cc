@@ -1,4 +1,4 @@
-// datasets: skeleton.json: which joints are particles, and how they hang together.
+// datasets: skeleton.json: which joints are particles, and how they are connected.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <regex>

@@ -78,7 +78,7 @@ int ResampledFrames(int frames, double from_hz, double to_hz);
 std::vector<Eigen::Vector3d> ResampleTrack(const std::vector<Eigen::Vector3d>& track,
                                            double from_hz, double to_hz);
 
-// 1 where all frames that a new one leans on count, else the least of their weights.
+// Per new frame, the least weight of the frames that it is interpolated from.
 std::vector<double> ResampleWeights(const std::vector<double>& weight, double from_hz,
                                     double to_hz);
 

@@ -24,7 +24,7 @@ struct PendulumRecording {
   std::vector<std::vector<double>> rod_length;    // m
   std::vector<std::vector<Vector3<double>>> hip;  // m
   // How much each frame counts, in [0, 1]; [person] is empty where all of them count fully. That of
-  // a frame is the least of its own and the one before, which its velocity leans on.
+  // a frame is the least of its own and the one before, which its velocity needs.
   std::vector<std::vector<double>> weight;
   // One per person, from the feet; empty where a recording was not made from one.
   std::vector<PersonSteps> steps;

@@ -68,7 +68,7 @@ Error SeveralError(const Source& source, const std::string& key, const std::vect
 }
 
 // The first set of candidates that are all there; an empty list when there is none. Points of
-// several people that answer to the same name are an Error, joints are taken in file order.
+// several people that match the same name are an Error, joints are taken in file order.
 Result<std::vector<int>> FindDefault(const Source& source, const std::string& key,
                                      const std::vector<std::vector<std::string>>& candidates) {
   for (const std::vector<std::string>& set : candidates) {

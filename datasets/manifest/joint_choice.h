@@ -58,7 +58,7 @@ Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSk
 //           L.Ankle.Lat, LMAL, ...
 //   toes, heels  the names above, LTOE, L.Toe.Tip, LMT2, LHEE, LCAL, ...: with the ankle's prefix
 //           ("Anna:") where several people have them
-// Errors besides the above: a default or a short name that several people's points answer to.
+// Errors besides the above: a default or a short name that several people's points match.
 Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
                                             const std::vector<std::string>& names,
                                             const JointMapping& mapping);

@@ -125,7 +125,8 @@ struct SyntheticOptions {
   // Frame 0 sets rod length, start and posture of a fit; false keeps it exact, for studies that
   // must not mix errors in the motion with errors in these.
   bool noise_at_first_frame = true;
-  // Not zero: the noise is drawn from this seed, so that one set of motions can be had with many.
+  // Not zero: the noise is drawn from this seed, so that one set of motions can have several
+  // draws of noise.
   uint64_t noise_seed = 0;
 };
 

@@ -227,7 +227,7 @@ nlohmann::json Millimetres(const std::vector<Vector3<double>>& points) {
 }
 
 // Of people, or of what-ifs; more people than there are colours take them from a scale, so that
-// neighbours look alike and nobody twice the same.
+// neighbours look alike and no two are the same.
 std::vector<std::string> ColoursOf(const Animation& animation,
                                    const std::vector<std::string>& whats) {
   std::set<std::string> names;

@@ -8,7 +8,7 @@
 //                      hip's last velocity
 //   recorded           the recording against itself: its own FSE
 //
-// observed: frames that were seen first (prediction/online_predictor.h), 0 where nobody asked; the
+// observed: frames that were seen first (prediction/online_predictor.h), 0: none; the
 // baselines then go on from the last of them, and restorations begin with them. Then there is also
 // restoration_after_given, the restoration over the frames that were not seen.
 #pragma once

@@ -57,9 +57,8 @@ Result<bool> LearnedAlone(const std::string& folder);
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder,
                                                      const char* flag = "--restoration");
 
-// What a fit with bodies (FitOptions::body_weight) is told of them.
-
-// Errors: a restoration that is no `window` of the pendulum alone, whose Jacobian is not known.
+// The bodies of a fit with body_weight (FitOptions). Errors: a restoration that is no `window` of
+// the pendulum alone, whose Jacobian is not known.
 Result<std::shared_ptr<const BodyData>> MakeBodyData(const Restoration& restoration,
                                                      const std::vector<BodyRecording>& recordings);
 

@@ -52,14 +52,15 @@ struct Whiteness {
   double ljung_box_p = 0.0;
 };
 
-// What leaving a recording out would move, by one step (covariance.h).
+// What leaving a recording out would move, by one step (covariance.h). Checked against real refits
+// in tests/ident/diagnostics/diagnostics_test.cc.
 struct Leverage {
   std::vector<std::string> recordings, parameters, units;
   std::vector<std::vector<double>> change;     // [recording][parameter], natural units
   std::vector<std::vector<double>> in_errors;  // the same over the clustered standard error
 };
 
-// Whether the recordings need a term that is held at zero (TestTerms).
+// Whether the recordings need a term that is held at zero (residual_diagnostics.cc).
 struct TermTest {
   std::string parameter;
   double t = 0.0;
@@ -96,23 +97,6 @@ MaybeError CheckEffects(const FitProblem& problem);
 
 // Masses, rods, pushes and motions that no person has: what looks wrong, by recording.
 std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& recordings);
-
-std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
-                                                     const FitPoint& point);
-std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem, const FitPoint& point);
-
-// Checked against real refits in tests/ident/diagnostics/diagnostics_test.cc.
-Leverage ComputeLeverage(const FitProblem& problem, const FitPoint& point,
-                         const Uncertainty& uncertainty);
-
-// Whether the recordings need a term that the model leaves out: a score (Lagrange multiplier) test
-// of each linear self force that is held at zero, clustered as the standard errors are: with J_n
-// the term's column at the estimate, freed of what the fitted parameters explain of it, s_g = J_n'
-// r over cluster g and t = sum s_g / sqrt(G / (G - 1) sum (s_g
-// - mean)^2), G - 1 degrees of freedom (Wooldridge 2010, section 12.6). It costs one evaluation of
-// the Jacobian and needs no fit with the term. Empty for networks and many columns, and with fewer
-// than three clusters.
-std::vector<TermTest> TestTerms(const FitProblem& problem, const FitPoint& estimate);
 
 // Everything but the advice, which also looks at profiles and bootstrap (advice.h).
 Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,

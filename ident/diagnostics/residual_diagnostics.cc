@@ -112,8 +112,6 @@ double Statistic(const Eigen::VectorXd& scores) {
   return scatter > 0.0 ? scores.sum() / std::sqrt(groups / (groups - 1.0) * scatter) : 0.0;
 }
 
-}  // namespace
-
 std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
                                                      const FitPoint& point) {
   std::vector<RecordingDiagnostics> diagnostics;
@@ -218,6 +216,13 @@ Leverage ComputeLeverage(const FitProblem& problem, const FitPoint& point,
   return l;
 }
 
+// Whether the recordings need a term that the model leaves out: a score (Lagrange multiplier) test
+// of each linear self force that is held at zero, clustered as the standard errors are. With J_n
+// the term's column at the estimate, less what the fitted parameters explain of it,
+//   s_g = J_n' r over cluster g,   t = sum s_g / sqrt(G / (G - 1) sum (s_g - mean)^2),
+// with G - 1 degrees of freedom (Wooldridge 2010, section 12.6). It costs one evaluation of the
+// Jacobian and needs no fit with the term. Empty for networks and many columns, and with fewer than
+// three clusters.
 std::vector<TermTest> TestTerms(const FitProblem& problem, const FitPoint& estimate) {
   std::vector<Parameter> terms;
   const FitOptions options = WithTerms(problem.options(), &terms);
@@ -257,6 +262,8 @@ std::vector<TermTest> TestTerms(const FitProblem& problem, const FitPoint& estim
   }
   return tests;
 }
+
+}  // namespace
 
 Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
                      const Uncertainty& uncertainty) {

@@ -16,7 +16,7 @@ struct ForecastScene {
   double dt = 0.04;  // s
   ParticleLayout layout;
   Trajectories observed;
-  Trajectories recorded;  // what came after; empty where nobody knows
+  Trajectories recorded;  // what came after; empty where it is not known
   Trajectories forecast;
   std::vector<SampledFuture> futures;
 

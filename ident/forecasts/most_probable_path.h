@@ -60,8 +60,8 @@ MaybeError WritePathCsv(const std::string& file, const ProbablePath& path, doubl
 //
 // Minimized: the action -log p of a path under the learned drift and noise (residuals/
 // cost_functions/path_residual.h has that of the physics), with the end held. What was learned
-// remembers all of the path, so that nodes of a path would all hang together; the noise that drives
-// it is as good a coordinate, and the action is then
+// remembers all of the path, so that all nodes of a path would depend on each other. The
+// coordinates are therefore the noise that drives it, and the action is
 //   sum |e|^2 / 2 + sum log g(e),   rows e and sqrt(2 (sum log g + c)), and (S_T(e) - target) / w
 // one residual block for Ceres, its derivatives by differences of futures rolled out side by side.
 struct PathChoice {

@@ -52,7 +52,7 @@ inline constexpr HipMetric kBandMetrics[] = {
 
 using ShownMetrics = std::vector<HipMetric>;
 
-// What there is to show: observed: frames that were seen, 0 where nobody asked; bands: of models,
+// The metrics to show. observed: frames that were seen, 0: none; bands: of models,
 // not of baselines.
 ShownMetrics MetricsOf(int observed, bool bands);
 inline ShownMetrics AllHipMetrics() { return MetricsOf(1, true); }
@@ -103,7 +103,7 @@ std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
                                             const Prediction& prediction);
 
 // Scores in the order of recordings; a failed rollout is a named failure.
-// observed: frames seen first, 0 where nobody asked; the model must say how recordings differ.
+// observed: frames seen first, 0: none; the model must say how recordings differ.
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
                           int observed = 0);
 RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,

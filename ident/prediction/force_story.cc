@@ -36,7 +36,7 @@ Cause CauseOf(const std::array<double, 4>& forces) {
   return forces[kOthers] > 0.0 ? Cause::kFromBehind : Cause::kFromInFront;
 }
 
-// The series that a cause is told by.
+// The series that shows a cause.
 Series SeriesOf(Cause cause) {
   return cause == Cause::kPush ? kPushed : cause == Cause::kOwn ? kAnswer : kOthers;
 }

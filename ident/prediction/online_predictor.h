@@ -89,7 +89,7 @@ class OnlinePredictor {
 };
 
 // From the first `observed` frames of a recording, with bands. num_frames: 0 means as many as the
-// recording has, otherwise more than observed. observed 0: nobody asked, Predict.
+// recording has, otherwise more than observed. observed 0: as Predict.
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed, int num_frames = 0);
 

@@ -161,14 +161,6 @@ LiftOffError LiftOffErrorOf(const std::vector<StepPrediction>& predictions) {
 
 }  // namespace
 
-double StepScore::WorstCalibration() const {
-  double worst = 0.0;
-  for (const StepFifth& fifth : fifths) {
-    worst = std::max(worst, std::abs(fifth.predicted - fifth.observed));
-  }
-  return worst;
-}
-
 StepScore ScoreSteps(const std::vector<StepPrediction>& predictions) {
   StepScore score;
   score.tracks = static_cast<int>(predictions.size());

@@ -79,8 +79,6 @@ struct StepScore {
   LiftOffError lift_off;
 
   bool known() const { return tracks > 0; }
-  // The largest |predicted - observed| of the fifths.
-  double WorstCalibration() const;
 };
 
 StepScore ScoreSteps(const std::vector<StepPrediction>& predictions);

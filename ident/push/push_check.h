@@ -35,7 +35,7 @@ std::vector<PushError> PushErrors(const RefitTable& check);
 // recordings to fit again.
 //
 // A push made by inverse dynamics (`net`, `net_without_friction`) depends on where its window ends
-// and on how the motion was smoothed, which nobody measured: it is made anew from its published
+// and on how the motion was smoothed, and neither is measured: it is made anew from its published
 // start over windows 2 frames shorter to 4 frames longer, without smoothing and with the cubic
 // smoother over kSmoothingFrames. Its kind stays; so does the friction that is taken out of a
 // net_without_friction push. The window of the published length without smoothing shows how far the

@@ -1,5 +1,5 @@
-// ident: a picture of what pushid-inspect found: the hip's way, steps, when each point was seen,
-// forces.
+// ident: a picture of what pushid-inspect found: the path of the hip, steps, when each point was
+// seen, forces.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace pushid {
 
-// SVG text; panels for what there is: the hip's three coordinates less those of its first frame,
-// with the onset marked; when each foot is off the ground; a bar per point with its gaps (at most
-// 60 points, those with gaps first); forces.
+// SVG text; a panel for each of these that was found: the hip's three coordinates less those of its
+// first frame, with the onset marked; when each foot is off the ground; a bar per point with its
+// gaps (at most 60 points, those with gaps first); forces.
 std::string InspectionSvg(const Inspection& inspection);
 
 }  // namespace pushid

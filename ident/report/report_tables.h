@@ -22,7 +22,7 @@ std::string SharesNote();
 
 std::string HowSure(const FitResult& result);
 
-// c_x, c_y and gains per mass, and by which convention mu is told from Kp.
+// c_x, c_y and gains per mass, and the convention that separates mu from Kp.
 TextTable DerivedTable(const FitResult& result);
 std::string ConventionText(const FitResult& result);
 

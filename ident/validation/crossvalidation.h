@@ -32,7 +32,7 @@ class Predictor {
                                      const std::vector<int>& train,
                                      const std::vector<int>& test) const = 0;
   std::string name;
-  int observed = 0;    // frames that predictions see first; 0: nobody asked
+  int observed = 0;    // frames that predictions see first; 0: none
   bool bands = false;  // whether they come with bands
 };
 

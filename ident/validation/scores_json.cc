@@ -1,7 +1,6 @@
 // ident: scores to JSON and back.
 #include <nlohmann/json.hpp>
 
-#include "datasets/files/json_file.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/parameters/json_archive.h"
@@ -222,12 +221,6 @@ Result<ScoreSummary> ScoresFromJson(const Json& json, const std::string& file) {
             std::string(error.what()) + "; evaluate again",
         file};
   }
-}
-
-Result<ScoreSummary> ReadScores(const std::string& path) {
-  const Result<JsonDocument> document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  return ScoresFromJson(document.value().content, path);
 }
 
 }  // namespace pushid

@@ -20,7 +20,6 @@ nlohmann::ordered_json ToJson(const PairedDifference& difference);
 // The model's scores of an Evaluation's JSON (or of one summary with its recordings), without each
 // person's propagation. Errors: keys that are missing or of another type.
 Result<ScoreSummary> ScoresFromJson(const nlohmann::ordered_json& json, const std::string& file);
-Result<ScoreSummary> ReadScores(const std::string& path);
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording);
 // One column per summary: all recordings, one setting, one candidate.

@@ -6,27 +6,6 @@
 #include "ident/report/page/sections.h"
 
 namespace pushid {
-Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
-                   const BuildReportOptions& options) {
-  const FitResult& result = model.fit;
-  Report report;
-  report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
-                 model.provenance.setting + "), preset " + result.options.preset;
-  report.subtitle =
-      "friction, gains and push tails, their uncertainty and their predictions; pushid " +
-      model.provenance.version;
-  ReportSource source{model};
-  source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
-  source.propagation = PropagationOf(result, source.views);
-  for (const SectionRow& row : kSections) {
-    ReportSection section = row.render(source);
-    section.id = row.id;
-    if (section.title.empty()) section.title = row.title;
-    report.sections.push_back(std::move(section));
-  }
-  return report;
-}
-
 namespace {
 
 constexpr int kBandSamples = 100;
@@ -48,8 +27,7 @@ std::string NoteOf(const FitResult& result, const PendulumRecording& recording,
          " leaves the model's domain at frame " + std::to_string(prediction.status.frame);
 }
 
-}  // namespace
-
+// In the order given. The recordings must outlive the views.
 std::vector<RecordingView> ViewRecordings(const FitResult& result,
                                           const std::vector<Recording>& recordings, int num_threads,
                                           const JobProgress& progress) {
@@ -80,6 +58,7 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
   return views;
 }
 
+// Of those of several people that the model predicts.
 PropagationSummary PropagationOf(const FitResult& result, const std::vector<RecordingView>& views) {
   const IdentifiedModel model = ModelOf(result);
   std::vector<PropagationScore> scores;
@@ -92,6 +71,29 @@ PropagationSummary PropagationOf(const FitResult& result, const std::vector<Reco
   std::vector<const PropagationScore*> all;
   for (const PropagationScore& score : scores) all.push_back(&score);
   return SummarizePropagation(all);
+}
+
+}  // namespace
+
+Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
+                   const BuildReportOptions& options) {
+  const FitResult& result = model.fit;
+  Report report;
+  report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
+                 model.provenance.setting + "), preset " + result.options.preset;
+  report.subtitle =
+      "friction, gains and push tails, their uncertainty and their predictions; pushid " +
+      model.provenance.version;
+  ReportSource source{model};
+  source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
+  source.propagation = PropagationOf(result, source.views);
+  for (const SectionRow& row : kSections) {
+    ReportSection section = row.render(source);
+    section.id = row.id;
+    if (section.title.empty()) section.title = row.title;
+    report.sections.push_back(std::move(section));
+  }
+  return report;
 }
 
 }  // namespace pushid

@@ -27,22 +27,13 @@ struct BuildReportOptions {
 Report BuildReport(const FittedModel& model, const std::vector<Recording>& recordings,
                    const BuildReportOptions& options);
 
-// Recordings seen through a model: what was measured, what is predicted from the first frame
-// and the push alone, how sure that is, and which forces do it.
-
+// A recording seen through a model: what was measured, what is predicted from the first frame and
+// the push alone, with its bands and forces.
 struct RecordingView {
   const Recording* recording = nullptr;  // with all joints where they were read
   FormationRun run;                      // pendulums and prediction
   PredictiveBands bands;                 // empty when the rollouts failed
   std::string note;  // "not among those fitted", "its files have changed since", or a failure
 };
-
-// In the order given. The recordings must outlive the views.
-std::vector<RecordingView> ViewRecordings(const FitResult& result,
-                                          const std::vector<Recording>& recordings, int num_threads,
-                                          const JobProgress& progress = nullptr);
-
-// Of those of several people that the model predicts.
-PropagationSummary PropagationOf(const FitResult& result, const std::vector<RecordingView>& views);
 
 }  // namespace pushid

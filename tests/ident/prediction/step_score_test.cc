@@ -39,7 +39,6 @@ TEST(StepScore, FifthsAreByProbabilityAndOfOneSize) {
   EXPECT_NEAR(score.fifths[0].predicted, 0.09, 1e-12);
   EXPECT_EQ(score.fifths[0].observed, 0.0);
   EXPECT_EQ(score.fifths[2].observed, 0.5);
-  EXPECT_NEAR(score.WorstCalibration(), 0.31, 1e-12);
 }
 
 // The jackknife by person: a person more with the same tracks changes nothing but the count.
