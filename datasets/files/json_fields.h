@@ -24,15 +24,6 @@ inline std::string Shown(const nlohmann::ordered_json& value) {
   return Quoted(value.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-// A required key that an object lacks.
-struct MissingKey {
-  std::string label, pointer;  // of the object: "recording 'a'", "/recordings/0"
-  std::string key, what;       // "fps", "the frames per second"
-};
-
-// "recording 'a': fps and id are missing; fps must be ...; id must be ...; recording 'b': ..."
-std::string MissingText(const std::vector<MissingKey>& missing);
-
 // Takes typed values out of one JSON object and remembers every required key that is missing and
 // the first other thing that is wrong, so that a reader lists its keys one after the other and asks
 // once at the end.

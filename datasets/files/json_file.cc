@@ -2,11 +2,14 @@
 #include "datasets/files/json_file.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 namespace {
@@ -170,6 +173,27 @@ MaybeError Write(const std::string& path, const Json& content, int indent) {
   return WriteFileAtomically(path, text);
 }
 
+using ObjectKeys = std::vector<const MissingKey*>;  // of one object
+
+// In the order in which objects first lack something.
+std::vector<ObjectKeys> ByObject(const std::vector<MissingKey>& missing) {
+  std::vector<ObjectKeys> objects;
+  std::map<std::string, std::size_t> index;  // by label
+  for (const MissingKey& key : missing) {
+    const auto [at, is_new] = index.emplace(key.label, objects.size());
+    if (is_new) objects.emplace_back();
+    objects[at->second].push_back(&key);
+  }
+  return objects;
+}
+
+// "a, b and c are missing"
+std::string KeysText(const ObjectKeys& keys) {
+  std::vector<std::string> names;
+  for (const MissingKey* key : keys) names.push_back(key->key);
+  return Listed(names, "and") + (keys.size() == 1 ? " is missing" : " are missing");
+}
+
 }  // namespace
 
 Error JsonDocument::ErrorAt(const std::string& pointer, std::string message) const {
@@ -244,5 +268,24 @@ KeptJson& KeptJson::operator=(const KeptJson& other) {
 }
 KeptJson& KeptJson::operator=(KeptJson&& other) noexcept = default;
 KeptJson::~KeptJson() = default;
+
+std::string MissingText(const std::vector<MissingKey>& missing) {
+  constexpr std::size_t kMostObjects = 8;
+  const std::vector<ObjectKeys> objects = ByObject(missing);
+  std::string text;
+  std::set<std::string> explained;  // each key once
+  for (std::size_t i = 0; i < objects.size() && i < kMostObjects; ++i) {
+    const ObjectKeys& keys = objects[i];
+    text += (i == 0 ? "" : "; ") + keys[0]->label + ": " + KeysText(keys);
+    for (const MissingKey* key : keys) {
+      if (!explained.insert(key->key).second) continue;
+      text += "; " + (keys.size() == 1 ? "it" : key->key) + " must be " + key->what;
+    }
+  }
+  if (objects.size() > kMostObjects) {
+    text += "; and " + std::to_string(objects.size() - kMostObjects) + " more lack keys";
+  }
+  return text;
+}
 
 }  // namespace pushid

@@ -25,6 +25,15 @@ struct JsonDocument {
   std::vector<int> ElementLines(const std::string& pointer) const;
 };
 
+// A required key that an object lacks.
+struct MissingKey {
+  std::string label, pointer;  // of the object: "recording 'a'", "/recordings/0"
+  std::string key, what;       // "fps", "the frames per second"
+};
+
+// "recording 'a': fps and id are missing; fps must be ...; id must be ...; recording 'b': ..."
+std::string MissingText(const std::vector<MissingKey>& missing);
+
 // Errors: unreadable file, JSON syntax (line, column), nesting deeper than 200.
 Result<JsonDocument> ReadJsonDocument(const std::string& path);
 
@@ -38,9 +47,8 @@ MaybeError WriteJson(const std::string& path, const nlohmann::json& content, int
 MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& content,
                      int indent = 2);
 
-// A JSON object that is kept and handed on by those who do not look into it.
-
-// A value like nlohmann::ordered_json itself, {} at first, whose holder need not include all of
+// A JSON object that its holder keeps and passes on without reading it: a value like
+// nlohmann::ordered_json itself, {} at first, whose holder need not include all of
 // nlohmann/json.hpp. One that was moved from can only be assigned to.
 class KeptJson {
  public:
