@@ -25,8 +25,8 @@
 #include "ident/prediction/predictive_bands.h"
 #include "ident/prediction/score_groups.h"
 #include "ident/problem/folds.h"
+#include "ident/validation/crossvalidation.h"
 #include "ident/validation/held_out_spread.h"
-#include "ident/validation/predictors.h"
 #include "ident/validation/scores_report.h"
 
 DEFINE_choice(scheme, pushid::FoldScheme::kStratified,

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "datasets/loading/forecast_windows.h"
+#include "datasets/loading/mocap_folder.h"
 #include "ident/generators/generator_files.h"
 
 namespace pushid {

@@ -16,7 +16,6 @@
 #include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
 #include "ident/validation/crossvalidation.h"
-#include "ident/validation/predictors.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {

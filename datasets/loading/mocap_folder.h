@@ -1,4 +1,5 @@
-// datasets: a folder of motion-capture clips by action, as particles.
+// datasets: a folder of motion-capture clips by action, as particles, and the windows of the clips
+// that forecasts are made from.
 //
 //   FOLDER/skeleton.json               joints, parents, offsets_mm, used, duplicates, mirror
 //   FOLDER/train/walking/walking_1.txt  clips to learn from; FOLDER/test/... those kept apart
@@ -8,10 +9,14 @@
 // one and count in means over all joints, the others never move and only count as right.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "models/enum_names.h"
 #include "models/particles.h"
 
 namespace pushid {
@@ -38,5 +43,54 @@ Result<MocapSkeleton> ReadMocapSkeleton(const std::string& path);
 
 // Errors: no skeleton, no clips, a clip that is malformed (file, line, column).
 Result<MocapFolder> ReadMocapFolder(const std::string& folder);
+
+// What forecasts of motion capture are made from and judged by: the eight-action protocol
+// of CMU's clips.
+//
+// Every second frame of a clip, 25 a second: 25 frames are observed, the next 25 forecast. The test
+// windows are eight per clip, drawn as the literature does; the validation split is our own, the
+// last clip of every action, from which no model learns.
+inline constexpr int kObservedFrames = 25, kForecastFrames = 25;
+inline constexpr double kForecastRate = 25.0;  // Hz
+// Output frames, counted from 0, at which errors are given: 80, 160, 320, 400 and 1000 ms.
+inline constexpr std::array<int, 5> kHorizonFrames = {1, 3, 7, 9, 24};
+inline int HorizonMs(int frame) { return static_cast<int>((frame + 1) * 1000 / kForecastRate); }
+
+enum class ForecastProtocol { kTest, kValidation, kAll };
+constexpr EnumNames<ForecastProtocol, 3> Names(ForecastProtocol) {
+  return {{{"test", ForecastProtocol::kTest},
+           {"validation", ForecastProtocol::kValidation},
+           {"all", ForecastProtocol::kAll}}};
+}
+
+struct ForecastWindow {
+  std::string action;
+  Trajectories observed, future;
+};
+
+// Every second frame, from `phase` (0 or 1) on.
+Trajectories EverySecond(const Trajectories& motion, int phase);
+
+// Starts i of the protocol's eight test windows in a clip of `frames` (after taking every second):
+// observed are the frames from i + 25 on. MT19937 of seed 1234567890, words masked to the smallest
+// 2^b - 1 >= frames - 76 and rejected above it.
+std::vector<int> TestWindowStarts(int frames);
+
+// Whether a clip is the last of its action, and thus of the validation split.
+bool IsValidationClip(const MocapFolder& mocap, const MocapClip& clip);
+
+// test: eight windows of every clip below test/, or of every clip where there is no such folder;
+// validation: of the validation clips every start that is a multiple of `stride`; all: the same of
+// every clip. stride 0: 8 in clips of more than a thousand windows, otherwise 2.
+std::vector<ForecastWindow> MakeForecastWindows(const MocapFolder& mocap, ForecastProtocol protocol,
+                                                int stride = 0);
+
+// Both phases of all clips to learn from, as motions at the protocol's rate.
+struct LearntMotion {
+  std::string action;
+  Trajectories motion;
+  int phase = 0;  // 1: the lines that the protocol leaves out
+};
+std::vector<LearntMotion> LearntMotions(const MocapFolder& mocap, bool with_validation);
 
 }  // namespace pushid

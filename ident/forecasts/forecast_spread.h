@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/loading/forecast_windows.h"
+#include "datasets/loading/mocap_folder.h"
 #include "models/generators/motion_generator.h"
 
 namespace pushid {

@@ -7,7 +7,7 @@
 
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/forecast_windows.h"
+#include "datasets/loading/mocap_folder.h"
 #include "ident/generators/generator_files.h"
 #include "ident/generators/push_particles.h"
 #include "ident/training/restoration_training.h"

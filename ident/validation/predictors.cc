@@ -1,11 +1,10 @@
 // ident: the model, the baselines and the ridge baseline.
-#include "ident/validation/predictors.h"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "ident/fit/fit.h"
+#include "ident/validation/crossvalidation.h"
 
 namespace pushid {
 

@@ -1,7 +1,6 @@
 // Clips of exponential maps: read, refused with line and column, cut into the protocol's windows.
 #include "datasets/loading/mocap_folder.h"
 
-#include "datasets/loading/forecast_windows.h"
 #include "tests/mocap_support.h"
 #include "tests/test_support.h"
 

@@ -8,7 +8,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "ident/prediction/evaluation.h"
-#include "ident/validation/predictors.h"
+#include "ident/validation/crossvalidation.h"
 #include "ident/validation/scores_report.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

@@ -7,7 +7,6 @@
 #include <map>
 #include <set>
 
-#include "ident/validation/predictors.h"
 #include "ident/validation/scores_report.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

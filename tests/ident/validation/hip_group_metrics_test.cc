@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ident/validation/crossvalidation.h"
 #include "ident/validation/group_metrics.h"
-#include "ident/validation/predictors.h"
 #include "ident/validation/scores_report.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"
