@@ -28,7 +28,7 @@ Result<std::optional<IdentifiedModel>> LoadPhysics(const std::string& file);
 MaybeError TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded);
 
 // A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
-// physics that see as many frames are told to the generator.
+// the generator gets physics that see as many frames.
 Result<std::vector<BodyMotion>> GenerateWith(const LoadedGenerator& loaded,
                                              const BodyRecording& recording,
                                              const std::optional<IdentifiedModel>& physics,

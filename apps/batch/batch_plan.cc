@@ -65,7 +65,7 @@ class PlanReader {
   }
 
  private:
-  // The first error is the one that is told.
+  // The first error is the one reported.
   void Fail(const toml::node& at, const std::string& message) {
     if (!error_) error_ = Error{message, path_, LineOf(at)};
   }
@@ -171,7 +171,7 @@ class PlanReader {
   void TimeLimit(const toml::table& jobs) {
     const toml::node* limit = jobs.get("time_limit_s");
     if (limit == nullptr) return;
-    const auto seconds = limit->value<double>();  // 60 is as good as 60.0
+    const auto seconds = limit->value<double>();  // 60 or 60.0
     if (!limit->is_number() || !seconds || !(*seconds >= 0.0)) {
       return Fail(*limit, "time_limit_s must be a number of seconds, 0 for none");
     }

@@ -34,8 +34,8 @@ std::string LastLine(const std::string& path) {
   return last.size() <= kMost ? last : last.substr(0, kMost) + "...";
 }
 
-// How a program under a limit ends that gets no more memory: by its own words, by those of the
-// loader, or without any.
+// How a program ends that gets no more memory under a limit: with a message of its own, with one of
+// the loader, or with none.
 bool LooksOutOfMemory(const ChildEnd& end, const std::string& last) {
   for (int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGKILL}) {
     if (end.signal == signal) return true;

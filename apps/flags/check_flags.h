@@ -18,7 +18,7 @@ Result<ModelChecks> ModelChecksFromCommandLine(uint64_t seed, int num_threads);
 // Those that moved from pushid-fit to pushid-check.
 MovedFlags MovedCheckFlags();
 
-// AddChecks with a progress line, and with what Ctrl-C is told of --bootstrap_file.
+// AddChecks with a progress line, and the message that Ctrl-C prints about --bootstrap_file.
 MaybeError AddFlaggedChecks(const std::vector<PendulumRecording>& recordings,
                             const ModelChecks& checks, FittedModel* model);
 

@@ -84,8 +84,7 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   SetProgramName(argv[0]);
   gflags::SetUsageMessage(usage);
   gflags::SetVersionString(Version());
-  // What goes wrong inside the solver is told in our own words; --minloglevel=0 brings its log
-  // back.
+  // Failures of the solver are reported by our own messages; --minloglevel=0 shows its log.
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;
   if (argc == 2 && std::strcmp(argv[1], kListFlags) == 0) {

@@ -11,7 +11,7 @@
 namespace pushid {
 namespace {
 
-// gflags keeps pointers to names, helps and values for good.
+// gflags keeps pointers to names, helps and values until the program ends.
 template <typename T>
 void Register(const FitOptionRow& row, const std::string& help, const T& value) {
   static std::list<std::string> words;

@@ -9,7 +9,7 @@
 
 namespace pushid {
 
-// How many first frames are seen; 0 where nobody asked.
+// How many first frames are seen; 0: none.
 int ObservedFrames();
 
 // What is wrong with it, by itself.

@@ -113,7 +113,7 @@ py::tuple Simulate(int people, int recordings_per_person, int people_in_row, dou
   return py::make_tuple(recordings, values);
 }
 
-// What Read and Simulate do unless they are told otherwise.
+// The defaults of Read and Simulate.
 py::dict Defaults() {
   const LoadOptions read;
   const SyntheticOptions made;

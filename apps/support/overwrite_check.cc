@@ -39,7 +39,7 @@ Error BothName(const std::string& a, const std::string& b, const std::string& pa
   return Error{a + " and " + b + " both name " + path + "; give each a file of its own"};
 }
 
-// What a flag writes is told by its name or, of pages and pictures, by its help in brackets.
+// The name of a flag says what it writes or, of pages and pictures, its help in brackets.
 struct OutputKind {
   const char *flag, *help, *ending;
 };

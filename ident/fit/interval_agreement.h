@@ -26,9 +26,9 @@ struct Agreement {
   double ratio = 1.0;
 };
 
-inline constexpr double kDisagreement = 1.5;  // a ratio that is worth a word
+inline constexpr double kDisagreement = 1.5;  // a ratio from which on it is reported
 
-// Every free parameter and moving combination that a profile or the bootstrap speaks of.
+// Every free parameter and moving combination that a profile or the bootstrap covers.
 std::vector<Agreement> CompareIntervals(const FittedModel& model);
 
 }  // namespace pushid

@@ -57,8 +57,8 @@ std::vector<std::string> WarningsBefore(const std::vector<PendulumRecording>& re
   return warnings;
 }
 
-// Where all share one unit, its deviation and the shared value would be one number. That is worth
-// a word only where it was asked for.
+// Where all share one unit, its deviation and the shared value would be one number. It is
+// a warning only where pooling was asked for.
 void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                    std::vector<std::string>* warnings) {
   if (!AnyPooled(options->table)) return;

@@ -11,7 +11,7 @@ namespace pushid {
 namespace {
 
 constexpr double kReferenceSpeed = 0.2;  // m/s
-constexpr double kLeastUnit = 0.05;      // of a push that moves nobody: errors are not nothing
+constexpr double kLeastUnit = 0.05;      // of a push that moves nobody: errors are not zero
 const Vector3<double> kAxisScale(1.0, 0.3, 0.3);
 constexpr double kFailed = std::numeric_limits<double>::infinity();
 

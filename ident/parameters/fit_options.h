@@ -21,7 +21,7 @@ namespace pushid {
 // How much a recording counts.
 enum class RecordingWeight {
   kEffective,  // as many frames as are independent (uncertainty/data_weight.h)
-  kFrame,      // every frame counts as one: errors that last are taken for many
+  kFrame,      // every frame counts as one: lasting errors count many times
   kRecording   // every recording counts as one frame
 };
 constexpr EnumNames<RecordingWeight, 3> Names(RecordingWeight) {
@@ -85,14 +85,14 @@ struct FitOptions {
   // Where they are estimated: where the estimation starts, and in a result what it found.
   ResidualSigmas sigmas;
   SigmaSource sigma_source = SigmaSource::kEstimate;
-  double marker_noise = 0.001;  // m, of hip and ankles: no residual is taken for more exact
+  double marker_noise = 0.001;  // m, of hip and ankles: no residual counts as more exact
   RecordingWeight recording_weight = RecordingWeight::kEffective;
   // Independent frames per frame, where recording_weight is effective: found by the fit; 0: not
   // yet, every recording counts as one frame.
   double effective_weight = 0.0;
   ClusterBy cluster = ClusterBy::kAuto;  // of standard errors and of resampling
   // Weight of the demand that people settle (cost_functions/rest_residual.h), which the data may
-  // contradict (fit/weighted_solve.h): 0 where nobody need settle.
+  // contradict (fit/weighted_solve.h): 0: none.
   double settling_weight = 0.0;
   // Weight of the hinge that makes the free modes at rest decay by at least `mode_margin` 1/s; 0
   // for models with no term that could feed a mode.

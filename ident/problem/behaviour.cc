@@ -48,7 +48,8 @@ SettlingSimulation SimulateSettling(const ModelOptions& options,
   return result;
 }
 
-// How long after the push until everybody stands still for good; infinite as in SettlingSeconds.
+// How long after the push until everybody stands still and stays so; infinite as in
+// SettlingSeconds.
 double SecondsUntilStill(const Scene& scene, const ModelOptions& options,
                          const ParameterSet<double>& parameters) {
   constexpr double kLongest = 10.0;  // s

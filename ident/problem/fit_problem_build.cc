@@ -79,8 +79,8 @@ void FitProblem::AddPriors(FitPoint* point, Built* built) const {
   }
 }
 
-// A stage of few frames says nothing of some parameters: what has no prior of its own is kept from
-// wandering off to its bounds, whence later stages need not come back.
+// A stage of few frames says nothing of some parameters: what has no prior gets one, so that
+// it does not move to its bounds, from which later stages may not return.
 void FitProblem::AddStagePriors(FitPoint* point, Built* built) const {
   const int size = static_cast<int>(point->shared.size());
   for (int i = 0; i < size; ++i) {
