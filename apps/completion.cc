@@ -1,6 +1,8 @@
 // apps: completion scripts.
 #include "apps/completion.h"
 
+#include <algorithm>
+#include <iterator>
 #include <sstream>
 
 #include "apps/flags/command_line.h"
@@ -40,15 +42,19 @@ std::vector<CompletedFlag> FlagsOf(const std::string& list) {
   return flags;
 }
 
-// Without what ends a quoted word in one of the shells, or a part of one of zsh's.
-std::string Plain(const std::string& help) {
+// Inside single quotes, with a backslash before each of `special`.
+std::string Escaped(const std::string& help, const std::string& special, const char* quote) {
   std::string text;
   for (const char c : help) {
-    if (c == '[' || c == ']' || c == ':' || c == '\'' || c == '\\' || c == '`') continue;
-    text += c;
+    if (special.find(c) != std::string::npos) text += '\\';
+    text += c == '\'' ? std::string(quote) : std::string(1, c);
   }
   return text;
 }
+
+// A colon or a bracket ends a part of a zsh description.
+std::string ZshText(const std::string& help) { return Escaped(help, "\\:[]", "'\\''"); }
+std::string FishText(const std::string& help) { return Escaped(help, "\\", "\\'"); }
 
 std::string Names(const std::vector<CompletedProgram>& programs, const std::string& before) {
   std::string text;
@@ -107,30 +113,26 @@ std::string BashScript(const std::vector<CompletedProgram>& programs) {
     }
     flags += "    " + name + ") echo '" + all + "' ;;\n";
   }
-  return "# Completion of pushid for bash. In ~/.bashrc: source <(pushid completion bash)\n"
-         "_pushid_commands='" +
-         Names(programs, "") + "'\n_pushid_flags() {\n  case $1 in\n" + flags +
-         "  esac\n}\n_pushid_words() {\n  case \"$1 $2\" in\n" + words + "  esac\n}" + kBashEnd +
-         "complete -F _pushid pushid " + Names(programs, "pushid-") + "\n";
+  return "_pushid_commands='" + Names(programs, "") + "'\n_pushid_flags() {\n  case $1 in\n" +
+         flags + "  esac\n}\n_pushid_words() {\n  case \"$1 $2\" in\n" + words + "  esac\n}" +
+         kBashEnd + "complete -F _pushid pushid " + Names(programs, "pushid-") + "\n";
 }
 
 std::string ZshScript(const std::vector<CompletedProgram>& programs) {
   std::string described, cases;
   for (const CompletedProgram& program : programs) {
-    described += "      '" + program.command.name + ":" + Plain(program.command.line) + "'\n";
+    described += "      '" + program.command.name + ":" + ZshText(program.command.line) + "'\n";
     cases += "    pushid-" + program.command.name + ") _arguments";
     for (const CompletedFlag& flag : program.flags) {
       cases +=
-          " \\\n      '--" + flag.name + (flag.is_bool ? "" : "=") + "[" + Plain(flag.help) + "]";
+          " \\\n      '--" + flag.name + (flag.is_bool ? "" : "=") + "[" + ZshText(flag.help) + "]";
       if (!flag.is_bool) cases += flag.words.empty() ? ":value:_files" : ": :(" + flag.words + ")";
       cases += "'";
     }
     cases += " ;;\n";
   }
   return "#compdef pushid " + Names(programs, "pushid-") +
-         "\n# Completion of pushid for zsh. In ~/.zshrc, after compinit: "
-         "source <(pushid completion zsh)\n"
-         "_pushid() {\n"
+         "\n_pushid() {\n"
          "  local program=$service commands\n"
          "  if [[ $program == pushid ]]; then\n"
          "    commands=(\n" +
@@ -151,8 +153,6 @@ std::string ZshScript(const std::vector<CompletedProgram>& programs) {
 
 std::string FishScript(const std::vector<CompletedProgram>& programs) {
   std::string text =
-      "# Completion of pushid for fish: pushid completion fish "
-      ">~/.config/fish/completions/pushid.fish\n"
       "complete -c pushid -f\n"
       "complete -c pushid -n __fish_use_subcommand -a help -d 'list the commands'\n"
       "complete -c pushid -n __fish_use_subcommand -a completion -d 'a script for a shell'\n"
@@ -162,12 +162,12 @@ std::string FishScript(const std::vector<CompletedProgram>& programs) {
   for (const CompletedProgram& program : programs) {
     const std::string& name = program.command.name;
     text += "complete -c pushid -n __fish_use_subcommand -a " + name + " -d '" +
-            Plain(program.command.line) + "'\n";
+            FishText(program.command.line) + "'\n";
     for (const CompletedFlag& flag : program.flags) {
       const std::string takes = flag.is_bool         ? ""
                                 : flag.words.empty() ? " -r -F"
                                                      : " -x -a '" + flag.words + "'";
-      const std::string rest = " -l " + flag.name + takes + " -d '" + Plain(flag.help) + "'\n";
+      const std::string rest = " -l " + flag.name + takes + " -d '" + FishText(flag.help) + "'\n";
       text += "complete -c pushid-" + name + rest;
       text += "complete -c pushid -n '__fish_seen_subcommand_from " + name + "'" + rest;
     }
@@ -175,10 +175,34 @@ std::string FishScript(const std::vector<CompletedProgram>& programs) {
   return text;
 }
 
+struct Shell {
+  const char* name;
+  const char* install;
+  std::string (*script)(const std::vector<CompletedProgram>& programs);
+};
+constexpr Shell kShells[] = {
+    {"bash", "in ~/.bashrc: source <(pushid completion bash)", BashScript},
+    {"zsh", "in ~/.zshrc, after compinit: source <(pushid completion zsh)", ZshScript},
+    {"fish", "pushid completion fish >~/.config/fish/completions/pushid.fish", FishScript}};
+
 }  // namespace
+
+std::string CompletionHelp() {
+  std::string text =
+      "pushid completion SHELL prints a script that completes commands and flags.\n\n";
+  for (const Shell& shell : kShells) {
+    text += std::string("  ") + shell.name + ": " + shell.install + "\n";
+  }
+  return text;
+}
 
 Result<std::string> CompletionScript(const std::string& shell,
                                      const std::vector<Command>& commands) {
+  const auto chosen = std::find_if(std::begin(kShells), std::end(kShells),
+                                   [&](const Shell& one) { return shell == one.name; });
+  if (chosen == std::end(kShells)) {
+    return Error{"there is completion for bash, zsh and fish, not for '" + shell + "'"};
+  }
   std::vector<CompletedProgram> programs;
   for (const Command& command : commands) {
     const std::string file = FindProgram("pushid-" + command.name);
@@ -187,10 +211,8 @@ Result<std::string> CompletionScript(const std::string& shell,
     if (!list.ok()) return list.error();
     programs.push_back({command, FlagsOf(list.value())});
   }
-  if (shell == "bash") return BashScript(programs);
-  if (shell == "zsh") return ZshScript(programs);
-  if (shell == "fish") return FishScript(programs);
-  return Error{"there is completion for bash, zsh and fish, not for '" + shell + "'"};
+  // zsh looks for #compdef in the first line of a file.
+  return chosen->script(programs) + "# Completion of pushid: " + chosen->install + "\n";
 }
 
 }  // namespace pushid

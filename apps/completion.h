@@ -14,6 +14,9 @@ struct Command {
   std::string line;  // what it does
 };
 
+// What `pushid help completion` prints: how each shell takes its script.
+std::string CompletionHelp();
+
 // A script for bash, zsh or fish that completes commands, flags and the words that flags take.
 // Programs that are not installed are left out. Errors: another shell; a program that cannot be
 // asked.

@@ -1,4 +1,5 @@
 // apps: pushid: one command in front of all programs: `pushid fit ...` runs `pushid-fit ...`.
+#include <algorithm>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -66,7 +67,9 @@ int Help() {
   return kDone;
 }
 
-int Run(const std::string& command, const std::vector<std::string>& arguments) {
+// word: a command, or its program's name.
+int Run(const std::string& word, const std::vector<std::string>& arguments) {
+  const std::string command = word.rfind("pushid-", 0) == 0 ? word.substr(7) : word;
   std::vector<std::string> known = {"help", "completion"};
   bool found = false;
   for (const Command& one : AllCommands()) {
@@ -79,11 +82,21 @@ int Run(const std::string& command, const std::vector<std::string>& arguments) {
     const bool begins = command.rfind(one, 0) == 0 || one.rfind(command, 0) == 0;
     if (meant.empty() && begins && !command.empty()) meant = one;
   }
-  return Fail("there is no command '" + command + "'" +
+  return Fail("there is no command '" + word + "'" +
               (meant.empty() ? "" : "; did you mean '" + meant + "'?") + "; see pushid help");
 }
 
+int HelpOn(const std::string& command) {
+  if (command == "help") return Help();
+  if (command != "completion") return Run(command, {"--help"});
+  std::printf("%s", CompletionHelp().c_str());
+  return kDone;
+}
+
 int Complete(const std::vector<std::string>& arguments) {
+  if (!arguments.empty() && (arguments[0] == "--help" || arguments[0] == "-h")) {
+    return HelpOn("completion");
+  }
   if (arguments.size() != 1) return Fail("name the shell: pushid completion bash, zsh or fish");
   const Result<std::string> script = CompletionScript(arguments[0], AllCommands());
   if (!script.ok()) return Fail(script.error());
@@ -102,7 +115,7 @@ int main(int argc, char** argv) {
     return kDone;
   }
   if (command == "help" || command == "--help" || command == "-h") {
-    return arguments.empty() ? Help() : Run(arguments[0], {"--help"});
+    return arguments.empty() ? Help() : HelpOn(arguments[0]);
   }
   return command == "completion" ? Complete(arguments) : Run(command, arguments);
 }

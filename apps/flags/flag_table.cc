@@ -248,7 +248,7 @@ std::string FlagList(const MovedFlags& moved) {
     if (moved.Has(flag.name)) continue;
     std::string words;
     for (const std::string& word : ChoicesOf(flag)) words += (words.empty() ? "" : " ") + word;
-    const std::string help = flag.description.substr(0, flag.description.find_first_of(";:("));
+    const std::string help = flag.description.substr(0, flag.description.find_first_of(";("));
     text += flag.name + "\t" + (flag.type == "bool" ? "bool" : "value") + "\t" + words + "\t" +
             std::string(Trimmed(help)) + "\n";
   }

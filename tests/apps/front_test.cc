@@ -20,6 +20,12 @@ TEST_F(FrontTest, ACommandIsTheProgramWithItsExitCode) {
   EXPECT_TRUE(Contains(fit.out, "model written to"));
   EXPECT_TRUE(Refused(RunApp("pushid", {"fit"}), {"pushid-fit: error: --recordings is missing"}));
   EXPECT_TRUE(Contains(RunApp("pushid", {"--version"}).out, "pushid 0."));
+  EXPECT_EQ(RunApp("pushid", {"pushid-fit", "--version"}).out,
+            RunApp("pushid-fit", {"--version"}).out);
+  EXPECT_EQ(RunApp("pushid", {"help", "help"}).out, RunApp("pushid", {"help"}).out);
+  const AppRun shells = RunApp("pushid", {"help", "completion"});
+  EXPECT_EQ(shells.exit_code, 0);
+  EXPECT_TRUE(Contains(shells.out, "in ~/.bashrc: source <(pushid completion bash)"));
 }
 
 TEST_F(FrontTest, MisspeltCommands) {
@@ -50,6 +56,16 @@ TEST_F(FrontTest, CompletionKnowsFlagsAndTheirWords) {
     EXPECT_TRUE(Contains(run.out, "slide threshold"));  // --stance
     EXPECT_EQ(run.out.find("minloglevel"), std::string::npos);
   }
+}
+
+// In zsh a colon or a bracket would end a description.
+TEST_F(FrontTest, DescriptionsAreWhole) {
+  const std::string zsh = RunApp("pushid", {"completion", "zsh"}).out;
+  EXPECT_TRUE(Contains(zsh, "'check:question a fitted model\\: profiles, bootstrap, "));
+  EXPECT_TRUE(Contains(zsh, "--setting=[recordings to use\\: settings of the manifest, comma-"));
+  const std::string fish = RunApp("pushid", {"completion", "fish"}).out;
+  EXPECT_TRUE(Contains(fish, "-d 'question a fitted model: profiles, bootstrap, "));
+  EXPECT_TRUE(Contains(fish, "each recording\\'s effect'"));
 }
 
 // What bash itself makes of the script.
