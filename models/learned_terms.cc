@@ -1,7 +1,15 @@
-// models: sizes, names and derivatives of rod laws.
+// models: sizes and names of what is learned, and derivatives of rod laws.
 #include "models/learned_terms.h"
 
 namespace pushid {
+
+std::string NetworkName(const NetworkShape& shape) {
+  std::string name = NameOf(shape.kind);
+  if (!shape.any()) return name;
+  name += ":" + std::to_string(shape.hidden);
+  if (shape.embedding > 0) name += ":" + std::to_string(shape.embedding);
+  return name;
+}
 
 int RodShape::num_weights() const {
   if (!moves()) return 0;

@@ -200,6 +200,9 @@ void AddLearnedPair(const PairShape& shape, const T* weights, const Pair& pair,
   force->acts = true;
 }
 
+// "none", "mlp:4", "gru:8", "lstm:256:32" (hidden size, embedding).
+std::string NetworkName(const NetworkShape& shape);
+
 struct LearnedTerms {
   NetworkShape shape;           // of the self force
   std::vector<double> weights;  // of the self force, then of the rod's law, then of the interaction

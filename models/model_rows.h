@@ -1,6 +1,6 @@
-// models: what a model may be made of, one row for each: laws of friction, terms between people,
-// and parameters. Names, flags, defaults, bounds, the glossary and what acts where are made from
-// the rows (options.h, interaction.h, parameters.h).
+// models: what a model may be made of, one row for each: laws of friction, self forces, terms
+// between people, and parameters. Names, flags, defaults, bounds, the glossary and what acts where
+// are made from the rows (options.h, interaction.h, parameters.h).
 #pragma once
 
 // X(id, name, along_y, Law): a law of friction.
@@ -10,6 +10,28 @@
 #define PUSHID_FRICTION_LAWS(X)               \
   X(kIsotropic, "isotropic", kMu, LinearDrag) \
   X(kAnisotropic, "anisotropic", kMuY, LinearDrag)
+
+// What --self_force names: at most one law and at most one network.
+//
+// Law(id, name, first, last, mode_weight, note): a law of closed form (self_terms.h).
+//   first, last  its parameters, which are zero where it does not act and are freed where it does
+//   mode_weight  default of --mode_weight with it
+//   note         for the help
+// Network(id, name, gates, recurrent, cell, Kind): a kind of network (self_network.h).
+//   gates      rows [W U C] per hidden unit
+//   recurrent  whether it remembers its hidden units; then it may have an embedding
+//   cell       whether it has cells besides
+//   Kind       its formula (MlpCell in self_network.h) and, by hand, its derivatives (AdvanceMlp in
+//              residuals/sensitivities/network_sensitivities.cc, ActivateMlp and DeactivateMlp in
+//              residuals/packed/packed_network.cc)
+// clang-format off
+#define PUSHID_SELF_FORCES(Law, Network) \
+  Law(kLinear, "linear", kAx, kDq, 30.0, "cross terms, quadratic") \
+  Network(kMlp, "mlp", 1, false, false, Mlp) \
+  Network(kGru, "gru", 2, true, false, Gru) \
+  Network(kLstm, "lstm", 3, true, true, Lstm)
+// clang-format on
+#define PUSHID_NO_SELF_FORCE(...)  // for tables of the other kind alone
 
 // X(member, near, Term, note): a term between two people.
 //   member  its switch (InteractionTerms), by whose name flags call it

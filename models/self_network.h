@@ -29,11 +29,11 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "models/enum_names.h"
 #include "models/ipm.h"
+#include "models/model_rows.h"
 
 namespace pushid {
 
@@ -75,23 +75,36 @@ inline Eigen::Matrix<double, kMotionInputs, 1> MotionInputScales() {
   return scales.cwiseInverse();
 }
 
-enum class NetworkKind { kNone, kMlp, kGru, kLstm };
-constexpr EnumNames<NetworkKind, 4> Names(NetworkKind) {
-  return {{{"none", NetworkKind::kNone},
-           {"mlp", NetworkKind::kMlp},
-           {"gru", NetworkKind::kGru},
-           {"lstm", NetworkKind::kLstm}}};
-}
+#define PUSHID_NETWORK(id, ...) id,
+enum class NetworkKind { kNone, PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK) };
+#undef PUSHID_NETWORK
+
+struct NetworkKindRow {
+  const char* name;
+  NetworkKind value;
+  int gates;  // for each hidden unit
+  bool recurrent, cell;
+};
+inline constexpr NetworkKindRow kNetworkKinds[] = {
+    {"none", NetworkKind::kNone, 0, false, false},
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
+  {name, NetworkKind::id, gates, recurrent, cell},
+    PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
+#undef PUSHID_NETWORK
+};
+static_assert(RowsAreInOrder(kNetworkKinds));
+constexpr const auto& Names(NetworkKind) { return kNetworkKinds; }
 
 struct NetworkShape {
   NetworkKind kind = NetworkKind::kNone;
   int hidden = 0;
-  int embedding = 0;  // 0: none; of a GRU or an LSTM
+  int embedding = 0;  // 0: none; of a recurrent network
 
   bool any() const { return kind != NetworkKind::kNone; }
-  bool recurrent() const { return kind == NetworkKind::kGru || kind == NetworkKind::kLstm; }
+  bool recurrent() const { return RowOf(kind).recurrent; }
+  int cells() const { return RowOf(kind).cell ? hidden : 0; }
   int num_features() const { return embedding > 0 ? embedding : kMotionInputs; }
-  int gate_rows() const;
+  int gate_rows() const { return RowOf(kind).gates * hidden; }
   int candidate_rows() const { return recurrent() ? hidden : 0; }
   int candidate_width() const { return num_features() + (recurrent() ? hidden : 0); }
   int gate_width() const { return candidate_width() + 2; }
@@ -101,9 +114,6 @@ struct NetworkShape {
   int output_at() const { return candidates_at() + candidate_rows() * candidate_width(); }
   int num_weights() const { return any() ? output_at() + 4 * hidden : 0; }
 };
-
-// "none", "mlp:4", "gru:8", "lstm:256:32" (hidden size, embedding).
-std::string NetworkName(const NetworkShape& shape);
 
 // The matrices in a flat array.
 template <typename T>
@@ -136,9 +146,8 @@ struct NetworkState {
   NetworkState(const NetworkShape& shape, const Body& body)
       : inputs(VectorX<T>::Zero(kMotionInputs)),
         hidden(VectorX<T>::Zero(shape.hidden)),
-        context((body.mass - kReferenceMass) / kNetworkMass, 1.0) {
-    if (shape.kind == NetworkKind::kLstm) cell = VectorX<T>::Zero(shape.hidden);
-  }
+        cell(VectorX<T>::Zero(shape.cells())),
+        context((body.mass - kReferenceMass) / kNetworkMass, 1.0) {}
 };
 
 // e: (theta, phi) less the posture.
@@ -148,47 +157,86 @@ void SetNetworkInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd,
   SetMotionInputs(e_theta, e_phi, qd, &state->inputs);
 }
 
+template <typename T>
+VectorX<T> Squashed(const VectorX<T>& sum) {
+  using std::tanh;
+  return sum.unaryExpr([](const T& a) { return tanh(a); });
+}
+template <typename T>
+VectorX<T> Logistic(const VectorX<T>& sum) {
+  using std::exp;
+  return sum.unaryExpr([](const T& a) { return T(1.0) / (T(1.0) + exp(-a)); });
+}
+
+// From the sums of a step to the hidden units. sum: of the gates, with the context's part C k.
+// Of a recurrent network state holds the candidates' sum over the features, and over h.
+struct MlpCell {
+  template <typename T>
+  static void Step(const VectorX<T>& sum, const VectorX<T>& context, NetworkState<T>* state) {
+    state->gates = Squashed(sum);
+    state->rest = Squashed(context);
+    state->hidden = state->gates - state->rest;
+  }
+};
+
+struct GruCell {
+  template <typename T>
+  static void Step(const VectorX<T>& sum, const VectorX<T>&, NetworkState<T>* state) {
+    NetworkState<T>& s = *state;
+    const Eigen::Index h = s.hidden.size();
+    s.gates = Logistic(sum);
+    s.candidates += s.gates.tail(h).cwiseProduct(s.recurrent);
+    s.candidates = Squashed(s.candidates);
+    s.hidden = s.candidates + s.gates.head(h).cwiseProduct(s.hidden_before - s.candidates);
+  }
+};
+
+struct LstmCell {
+  template <typename T>
+  static void Step(const VectorX<T>& sum, const VectorX<T>&, NetworkState<T>* state) {
+    NetworkState<T>& s = *state;
+    const Eigen::Index h = s.hidden.size();
+    s.gates = Logistic(sum);
+    s.candidates += s.recurrent;
+    s.candidates = Squashed(s.candidates);
+    s.cell_before = s.cell;
+    s.cell = s.gates.segment(h, h).cwiseProduct(s.cell_before) +
+             s.gates.head(h).cwiseProduct(s.candidates);
+    s.cell_tanh = Squashed(s.cell);
+    s.hidden = s.gates.tail(h).cwiseProduct(s.cell_tanh);
+  }
+};
+
 // One step of the network, its inputs set: the memory goes on, and the force is what it answers.
 template <typename T>
 Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, double mass,
                        NetworkState<T>* state) {
-  using std::exp, std::tanh;
   if (!shape.any()) return Vector4<T>::Zero();
-  const auto logistic = [](const T& a) { return T(1.0) / (T(1.0) + exp(-a)); };
-  const auto squash = [](const T& a) { return tanh(a); };
   const NetworkWeights<T> w(shape, weights);
   NetworkState<T>& s = *state;
   if (shape.embedding > 0) {
-    s.features = (w.embed * s.inputs).unaryExpr(squash);
+    s.features = Squashed<T>(w.embed * s.inputs);
   } else {
     s.features = s.inputs;
   }
   const int nf = shape.num_features(), h = shape.hidden;
   const VectorX<T> context = w.context * s.context.template cast<T>();
   VectorX<T> sum = w.gates.leftCols(nf) * s.features + context;
-  if (shape.kind == NetworkKind::kMlp) {
-    s.gates = sum.unaryExpr(squash);
-    s.rest = context.unaryExpr(squash);
-    s.hidden = s.gates - s.rest;
-  } else {
+  if (shape.recurrent()) {
     s.hidden_before = s.hidden;
     sum += w.gates.rightCols(h) * s.hidden;
-    s.gates = sum.unaryExpr(logistic);
-    VectorX<T> candidate = w.candidates.leftCols(nf) * s.features;
+    s.candidates = w.candidates.leftCols(nf) * s.features;
     s.recurrent = w.candidates.rightCols(h) * s.hidden;
-    if (shape.kind == NetworkKind::kGru) {
-      candidate += s.gates.tail(h).cwiseProduct(s.recurrent);
-      s.candidates = candidate.unaryExpr(squash);
-      s.hidden = s.candidates + s.gates.head(h).cwiseProduct(s.hidden_before - s.candidates);
-    } else {
-      candidate += s.recurrent;
-      s.candidates = candidate.unaryExpr(squash);
-      s.cell_before = s.cell;
-      s.cell = s.gates.segment(h, h).cwiseProduct(s.cell_before) +
-               s.gates.head(h).cwiseProduct(s.candidates);
-      s.cell_tanh = s.cell.unaryExpr(squash);
-      s.hidden = s.gates.tail(h).cwiseProduct(s.cell_tanh);
-    }
+  }
+  switch (shape.kind) {
+    case NetworkKind::kNone:
+      break;
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
+  case NetworkKind::id:                                        \
+    Kind##Cell::Step(sum, context, &s);                        \
+    break;
+      PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
+#undef PUSHID_NETWORK
   }
   return T(kNetworkAcceleration * mass) * (w.output * s.hidden);
 }

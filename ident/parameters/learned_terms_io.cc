@@ -51,6 +51,17 @@ std::vector<int> HiddenSizes(const std::string& text) {
   return sound ? hidden : std::vector<int>();
 }
 
+// "mlp:4", with what follows the name.
+std::vector<std::string> NetworksWith(const std::string& sizes, bool recurrent_alone = false) {
+  std::vector<std::string> words;
+  for (const NetworkKindRow& row : kNetworkKinds) {
+    if (row.value == NetworkKind::kNone || (recurrent_alone && !row.recurrent)) continue;
+    words.push_back(row.name + sizes);
+  }
+  return words;
+}
+std::string WithEmbedding() { return NetworksWith(":256:32", true).back(); }
+
 Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
   const std::vector<std::string> parts = Split(text, ':');
   NetworkShape shape;
@@ -62,10 +73,12 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
   if (parts.size() > 1) shape.hidden = Size(parts[1]);
   if (parts.size() > 2) shape.embedding = Size(parts[2]);
   if (known && shape.hidden > 0 && (parts.size() < 3 || shape.embedding > 0)) return shape;
-  return Error{flag + " is '" + text +
-               "'; it must be none, linear, mlp:4, gru:4, lstm:4 or lstm:256:32 (hidden size, "
-               "embedding; 1 to " +
-               std::to_string(kLargestSize) + "), or linear and a network, as linear,gru:4"};
+  std::vector<std::string> words = AllNames<SelfForceKind>();
+  for (const std::string& word : NetworksWith(":4")) words.push_back(word);
+  words.push_back(WithEmbedding());
+  return Error{flag + " is '" + text + "'; it must be " + Listed(words, "or") +
+               " (hidden size, embedding; 1 to " + std::to_string(kLargestSize) +
+               "), or linear and a network, as linear,gru:4"};
 }
 
 }  // namespace
@@ -73,9 +86,10 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
 Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text) {
   SelfForceChoice choice;
   for (const std::string& part : Split(text, ',')) {
-    if (part == "none") continue;
-    if (part == "linear") {
-      choice.kind = SelfForceKind::kLinear;
+    if (const auto law = FromName<SelfForceKind>(part)) {
+      if (*law == SelfForceKind::kNone || *law == choice.kind) continue;
+      if (choice.kind != SelfForceKind::kNone) return Error{flag + " names more than one law"};
+      choice.kind = *law;
       continue;
     }
     if (choice.network.any()) return Error{flag + " names more than one network"};
@@ -87,9 +101,22 @@ Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::strin
 }
 
 std::string SelfForceText(SelfForceKind kind, const LearnedTerms* network) {
-  const bool linear = kind == SelfForceKind::kLinear;
-  if (network == nullptr || !network->shape.any()) return linear ? "linear" : "none";
-  return (linear ? "linear," : "") + NetworkName(network->shape);
+  if (network == nullptr || !network->shape.any()) return NameOf(kind);
+  return (kind == SelfForceKind::kNone ? "" : NameOf(kind) + ",") + NetworkName(network->shape);
+}
+
+std::string SelfForceHelp() {
+  std::string text = "additional self force: none, ";
+  for (const SelfForceLaw& row : kSelfForces) {
+    if (row.value == SelfForceKind::kNone) continue;
+    text += std::string(row.name) + " (" + row.note + "), ";
+  }
+  text += "a network by kind and hidden size (";
+  for (const std::string& word : NetworksWith(":4")) {
+    text += (text.back() == '(' ? "" : ", ") + word;
+  }
+  return text + "; " + WithEmbedding() +
+         " with an embedding), or linear and a network, comma-separated";
 }
 
 Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
@@ -158,7 +185,7 @@ std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
   fill(0, shape.gates_at(), kMotionInputs);
   fill(shape.gates_at(), shape.candidates_at(), shape.gate_width());
   fill(shape.candidates_at(), shape.output_at(), std::max(1, shape.candidate_width()));
-  if (shape.kind == NetworkKind::kLstm) {
+  if (shape.cells() > 0) {
     for (int row = shape.hidden; row < 2 * shape.hidden; ++row) {
       weights[shape.gates_at() + (row + 1) * shape.gate_width() - 1] += kOpenForgetGate;
     }
@@ -250,7 +277,9 @@ std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
   if (const std::optional<NetworkKind> known = FromName<NetworkKind>(kind)) {
     s.kind = *known;
   } else {
-    throw std::runtime_error("network: '" + kind + "' is not a kind (none, mlp, gru, lstm)");
+    std::string kinds = "none";
+    for (const std::string& name : NetworksWith("")) kinds += ", " + name;
+    throw std::runtime_error("network: '" + kind + "' is not a kind (" + kinds + ")");
   }
   if (json.contains("rod")) network.rod = RodFromJson(json.at("rod"));
   if (json.contains("interaction")) network.pair = PairFromJson(json.at("interaction"));

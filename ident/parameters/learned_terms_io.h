@@ -30,6 +30,7 @@ struct SelfForceChoice {
 };
 Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text);
 std::string SelfForceText(SelfForceKind kind, const LearnedTerms* network);
+std::string SelfForceHelp();
 
 // The value of --rod.
 Result<RodShape> ParseRod(const std::string& flag, const std::string& text);

@@ -70,10 +70,8 @@ Row LikelihoodRow() {
 }
 
 Row SelfForceRow() {
-  Row row = Decided(WordsRow("self_force", OptionStage::kModel,
-                             "additional self force: none, linear (cross terms, quadratic), a "
-                             "network by kind and hidden size (mlp:4, gru:4, lstm:4; lstm:256:32 "
-                             "with an embedding), or linear and a network, comma-separated",
+  const std::string help = SelfForceHelp();
+  Row row = Decided(WordsRow("self_force", OptionStage::kModel, help.c_str(),
                              [](const std::string& text, FitOptions* o) -> MaybeError {
                                const Result<SelfForceChoice> choice =
                                    ParseSelfForce("--self_force", text);

@@ -40,14 +40,26 @@ struct ParameterSpec {
   std::string meaning;  // one line for people
 };
 
-// Which self-force terms are fitted beyond balance, friction and the preset's own.
-enum class SelfForceKind {
-  kNone,
-  kLinear  // cross terms and quadratic damping
+// Which law of self forces is fitted beyond balance, friction and the preset's own
+// (PUSHID_SELF_FORCES).
+#define PUSHID_LAW(id, ...) id,
+enum class SelfForceKind { kNone, PUSHID_SELF_FORCES(PUSHID_LAW, PUSHID_NO_SELF_FORCE) };
+#undef PUSHID_LAW
+
+struct SelfForceLaw {
+  const char* name;
+  SelfForceKind value;
+  int first, last;     // its parameters; none where last is less
+  double mode_weight;  // default with it
+  const char* note;
 };
-constexpr EnumNames<SelfForceKind, 2> Names(SelfForceKind) {
-  return {{{"none", SelfForceKind::kNone}, {"linear", SelfForceKind::kLinear}}};
-}
+inline constexpr SelfForceLaw kSelfForces[] = {{"none", SelfForceKind::kNone, 0, -1, 0.0, ""},
+#define PUSHID_LAW(id, name, ...) {name, SelfForceKind::id, __VA_ARGS__},
+                                               PUSHID_SELF_FORCES(PUSHID_LAW, PUSHID_NO_SELF_FORCE)
+#undef PUSHID_LAW
+};
+static_assert(RowsAreInOrder(kSelfForces));
+constexpr const auto& Names(SelfForceKind) { return kSelfForces; }
 
 struct ParameterTable {
   std::vector<ParameterSpec> specs;  // indexed by Parameter, a user's own at the end

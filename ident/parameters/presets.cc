@@ -12,8 +12,6 @@
 namespace pushid {
 namespace {
 
-constexpr double kLinearModeWeight = 30.0;
-
 struct Start {
   Parameter id;
   double value, sigma;  // of a weak prior
@@ -106,8 +104,7 @@ constexpr NamedPreset kPresets[] = {{"tail", TailPreset},
                                     {"group", GroupPreset}};
 
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
-  if (kind != SelfForceKind::kLinear) return;
-  for (int id = kAx; id <= kDq; ++id) {
+  for (int id = RowOf(kind).first; id <= RowOf(kind).last; ++id) {
     ParameterSpec& spec = table->specs[id];
     spec.free = true;
     // As weak as the preset's own priors: without them these terms drive the person instead.
@@ -129,9 +126,7 @@ void FreeByTerm(const ModelOptions& model, ParameterTable* table) {
 
 }  // namespace
 
-double DefaultModeWeight(SelfForceKind self_force) {
-  return self_force == SelfForceKind::kLinear ? kLinearModeWeight : 0.0;
-}
+double DefaultModeWeight(SelfForceKind self_force) { return RowOf(self_force).mode_weight; }
 
 void SetSelfForce(SelfForceKind self_force, FitOptions* options) {
   options->self_force = self_force;

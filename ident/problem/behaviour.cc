@@ -83,7 +83,7 @@ Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
   constexpr double kDifference = 1e-5;
   const NetworkShape& shape = network.shape;
   const int hidden = shape.recurrent() ? shape.hidden : 0;
-  const int cells = shape.kind == NetworkKind::kLstm ? shape.hidden : 0;
+  const int cells = shape.cells();
   const auto step = [&](const Eigen::VectorXd& from) {
     const Vector4<double> qd = from.segment<4>(2);
     Eigen::VectorXd to = Eigen::VectorXd::Zero(5 + hidden + cells);

@@ -9,8 +9,33 @@ namespace {
 using Columns = PackedNetwork::Columns;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+// The candidates' rows [W U] in the stacked matrix, below those of the gates: of a network with
+// cells in one piece, of the others W above U, because a gate scales what U makes of h.
+// visit(row, first column, columns)
+template <typename Visit>
+void ForCandidates(const NetworkShape& s, Visit visit) {
+  if (!s.recurrent()) return;
+  if (s.cells() > 0) {
+    visit(s.gate_rows(), 0, s.candidate_width());
+  } else {
+    visit(s.gate_rows(), 0, s.num_features());
+    visit(s.gate_rows() + s.hidden, s.num_features(), s.hidden);
+  }
+}
+
 int StackedRows(const NetworkShape& shape) {
-  return shape.recurrent() ? 4 * shape.hidden : shape.gate_rows();
+  int rows = shape.gate_rows();
+  ForCandidates(shape, [&](int, int, int) { rows += shape.hidden; });
+  return rows;
+}
+
+template <typename A>
+auto TanhSlopes(const A& a) {
+  return 1.0 - a * a;
+}
+template <typename A>
+auto LogisticSlopes(const A& a) {
+  return a * (1.0 - a);
 }
 
 }  // namespace
@@ -38,25 +63,20 @@ PackedNetwork::PackedNetwork(const NetworkShape& shape, const VectorKernels& ker
   outputs_.resize(4, total);
   embedded_.resize(shape.embedding, total);
   hidden_carry_.resize(shape.hidden, people);
-  if (shape.kind == NetworkKind::kLstm) {
-    cells_.resize(shape.hidden, total);
-    cell_tanh_.resize(shape.hidden, total);
-    cell_carry_.resize(shape.hidden, people);
-  }
+  cells_.resize(shape.cells(), total);
+  cell_tanh_.resize(shape.cells(), total);
+  cell_carry_.resize(shape.cells(), people);
 }
 
 void PackedNetwork::PackWeights() {
-  const int h = shape_.hidden, nf = shape_.num_features(), width = shape_.gate_width();
+  const int width = shape_.gate_width();
   const NetworkWeights<double> w = Weights();
   RowMajor stacked = RowMajor::Zero(rows_, width);
   stacked.topLeftCorner(shape_.gate_rows(), w.gates.cols()) = w.gates;
   stacked.topRightCorner(shape_.gate_rows(), 2) = w.context;
-  if (shape_.kind == NetworkKind::kLstm) {
-    stacked.bottomLeftCorner(h, nf + h) = w.candidates;
-  } else if (shape_.kind == NetworkKind::kGru) {
-    stacked.block(2 * h, 0, h, nf) = w.candidates.leftCols(nf);
-    stacked.block(3 * h, nf, h, h) = w.candidates.rightCols(h);
-  }
+  ForCandidates(shape_, [&](int row, int first, int columns) {
+    stacked.block(row, first, shape_.hidden, columns) = w.candidates.middleCols(first, columns);
+  });
   stacked_.Pack(stacked.data(), rows_, width, width, 1);
   transposed_.Pack(stacked.data(), width, rows_, 1, width);
 }
@@ -66,7 +86,7 @@ void PackedNetwork::Start(const double* weights) {
   PackWeights();
   hidden_carry_.setZero();
   cell_carry_.setZero();
-  if (shape_.kind != NetworkKind::kMlp) return;
+  if (shape_.recurrent()) return;
   // By the same product as every step's: a person at rest must feel no force, not even by rounding.
   Columns z = Columns::Zero(shape_.gate_width(), context_.cols());
   z.bottomRows<2>() = context_;
@@ -104,44 +124,37 @@ void PackedNetwork::Forward(int step, const Columns& inputs, Columns* forces) {
   *forces *= scale_.head(n).asDiagonal();
 }
 
-void PackedNetwork::Activate(int step) {
-  const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
-  auto hidden = At(hidden_, step).array();
-  for (int column = 0; column < n; ++column) {
-    auto sum = At(activations_, step).col(column);
-    double* a = sum.data();
-    switch (shape_.kind) {
-      case NetworkKind::kNone:
-        break;
-      case NetworkKind::kMlp:
-        kernels_.tanh(a, h);
-        hidden.col(column) = (sum - rest_.col(column)).array();
-        break;
-      case NetworkKind::kGru: {
-        kernels_.logistic(a, 2 * h);
-        sum.segment(2 * h, h) += sum.segment(h, h).cwiseProduct(sum.tail(h));
-        kernels_.tanh(a + 2 * h, h);
-        const auto candidate = sum.segment(2 * h, h).array();
-        const auto before = At(z_, step).col(column).segment(nf, h).array();
-        hidden.col(column) = candidate + sum.head(h).array() * (before - candidate);
-        break;
-      }
-      case NetworkKind::kLstm: {
-        kernels_.logistic(a, 3 * h);
-        kernels_.tanh(a + 3 * h, h);
-        auto cell = At(cells_, step).col(column).array();
-        cell = sum.head(h).cwiseProduct(sum.tail(h)).array();
-        if (step > 0) {
-          cell += sum.segment(h, h).array() * At(cells_, step - 1).col(column).array();
-        }
-        auto squashed = At(cell_tanh_, step).col(column);
-        squashed = cell.matrix();
-        kernels_.tanh(squashed.data(), h);
-        hidden.col(column) = sum.segment(2 * h, h).array() * squashed.array();
-        break;
-      }
-    }
+void PackedNetwork::ActivateMlp(int step, int column) {
+  auto sum = At(activations_, step).col(column);
+  kernels_.tanh(sum.data(), shape_.hidden);
+  At(hidden_, step).col(column) = sum - rest_.col(column);
+}
+
+void PackedNetwork::ActivateGru(int step, int column) {
+  const int h = shape_.hidden;
+  auto sum = At(activations_, step).col(column);
+  kernels_.logistic(sum.data(), 2 * h);
+  sum.segment(2 * h, h) += sum.segment(h, h).cwiseProduct(sum.tail(h));
+  kernels_.tanh(sum.data() + 2 * h, h);
+  const auto candidate = sum.segment(2 * h, h).array();
+  const auto before = At(z_, step).col(column).segment(shape_.num_features(), h).array();
+  At(hidden_, step).col(column).array() = candidate + sum.head(h).array() * (before - candidate);
+}
+
+void PackedNetwork::ActivateLstm(int step, int column) {
+  const int h = shape_.hidden;
+  auto sum = At(activations_, step).col(column);
+  kernels_.logistic(sum.data(), 3 * h);
+  kernels_.tanh(sum.data() + 3 * h, h);
+  auto cell = At(cells_, step).col(column).array();
+  cell = sum.head(h).cwiseProduct(sum.tail(h)).array();
+  if (step > 0) {
+    cell += sum.segment(h, h).array() * At(cells_, step - 1).col(column).array();
   }
+  auto squashed = At(cell_tanh_, step).col(column);
+  squashed = cell.matrix();
+  kernels_.tanh(squashed.data(), h);
+  At(hidden_, step).col(column).array() = sum.segment(2 * h, h).array() * squashed.array();
 }
 
 void PackedNetwork::Forget(int step, int column) {
@@ -150,53 +163,78 @@ void PackedNetwork::Forget(int step, int column) {
   }
 }
 
-void PackedNetwork::Deactivate(int step, const Columns& adjoint) {
-  const int n = columns_.active(step), h = shape_.hidden, nf = shape_.num_features();
-  const auto tanh_slope = [](const auto& a) { return 1.0 - a * a; };
-  const auto logistic_slope = [](const auto& a) { return a * (1.0 - a); };
-  for (int column = 0; column < n; ++column) {
-    const auto hidden = adjoint.col(column).array();
-    auto a = At(activations_, step).col(column).array();
+void PackedNetwork::DeactivateMlp(int step, int column, const Columns& adjoint) {
+  const auto hidden = adjoint.col(column).array();
+  auto a = At(activations_, step).col(column).array();
+  // tanh' less tanh' at rest, without the difference of what is nearly the same.
+  context_sum_.col(column).array() -=
+      hidden * At(hidden_, step).col(column).array() * (a + rest_.col(column).array());
+  a = hidden * TanhSlopes(a);
+}
+
+void PackedNetwork::DeactivateGru(int step, int column, const Columns& adjoint) {
+  const int h = shape_.hidden;
+  const auto hidden = adjoint.col(column).array();
+  auto a = At(activations_, step).col(column).array();
+  auto keep = a.head(h), reset = a.segment(h, h), candidate = a.segment(2 * h, h);
+  auto recurrent = a.tail(h);
+  const auto before = At(z_, step).col(column).segment(shape_.num_features(), h).array();
+  hidden_carry_.col(column).array() = hidden * keep;
+  const Eigen::ArrayXd by_keep = hidden * (before - candidate) * LogisticSlopes(keep);
+  candidate = hidden * (1.0 - keep) * TanhSlopes(candidate);
+  keep = by_keep;
+  const Eigen::ArrayXd by_recurrent = candidate * reset;
+  reset = candidate * recurrent * LogisticSlopes(reset);
+  recurrent = by_recurrent;
+}
+
+void PackedNetwork::DeactivateLstm(int step, int column, const Columns& adjoint) {
+  const int h = shape_.hidden;
+  const auto hidden = adjoint.col(column).array();
+  auto a = At(activations_, step).col(column).array();
+  auto input = a.head(h), forget = a.segment(h, h), output = a.segment(2 * h, h);
+  auto candidate = a.tail(h);
+  auto carry = cell_carry_.col(column).array();
+  const auto squashed = At(cell_tanh_, step).col(column).array();
+  const Eigen::ArrayXd cell = carry + hidden * output * TanhSlopes(squashed);
+  output = hidden * squashed * LogisticSlopes(output);
+  carry = cell * forget;
+  if (step > 0) {
+    forget = cell * At(cells_, step - 1).col(column).array() * LogisticSlopes(forget);
+  } else {
+    forget = 0.0;
+  }
+  const Eigen::ArrayXd by_input = cell * candidate * LogisticSlopes(input);
+  candidate = cell * input * TanhSlopes(candidate);
+  input = by_input;
+}
+
+void PackedNetwork::Activate(int step) {
+  for (int column = 0; column < columns_.active(step); ++column) {
     switch (shape_.kind) {
       case NetworkKind::kNone:
         break;
-      case NetworkKind::kMlp:
-        // tanh' less tanh' at rest, without the difference of what is nearly the same.
-        context_sum_.col(column).array() -=
-            hidden * At(hidden_, step).col(column).array() * (a + rest_.col(column).array());
-        a = hidden * tanh_slope(a);
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
+  case NetworkKind::id:                                        \
+    Activate##Kind(step, column);                              \
+    break;
+        PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
+#undef PUSHID_NETWORK
+    }
+  }
+}
+
+void PackedNetwork::Deactivate(int step, const Columns& hidden) {
+  for (int column = 0; column < columns_.active(step); ++column) {
+    switch (shape_.kind) {
+      case NetworkKind::kNone:
         break;
-      case NetworkKind::kGru: {
-        auto keep = a.head(h), reset = a.segment(h, h), candidate = a.segment(2 * h, h);
-        auto recurrent = a.tail(h);
-        const auto before = At(z_, step).col(column).segment(nf, h).array();
-        hidden_carry_.col(column).array() = hidden * keep;
-        const Eigen::ArrayXd by_keep = hidden * (before - candidate) * logistic_slope(keep);
-        candidate = hidden * (1.0 - keep) * tanh_slope(candidate);
-        keep = by_keep;
-        const Eigen::ArrayXd by_recurrent = candidate * reset;
-        reset = candidate * recurrent * logistic_slope(reset);
-        recurrent = by_recurrent;
-        break;
-      }
-      case NetworkKind::kLstm: {
-        auto input = a.head(h), forget = a.segment(h, h), output = a.segment(2 * h, h);
-        auto candidate = a.tail(h);
-        auto carry = cell_carry_.col(column).array();
-        const auto squashed = At(cell_tanh_, step).col(column).array();
-        const Eigen::ArrayXd cell = carry + hidden * output * tanh_slope(squashed);
-        output = hidden * squashed * logistic_slope(output);
-        carry = cell * forget;
-        if (step > 0) {
-          forget = cell * At(cells_, step - 1).col(column).array() * logistic_slope(forget);
-        } else {
-          forget = 0.0;
-        }
-        const Eigen::ArrayXd by_input = cell * candidate * logistic_slope(input);
-        candidate = cell * input * tanh_slope(candidate);
-        input = by_input;
-        break;
-      }
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
+  case NetworkKind::id:                                        \
+    Deactivate##Kind(step, column, hidden);                    \
+    break;
+        PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
+#undef PUSHID_NETWORK
     }
   }
 }
@@ -226,26 +264,23 @@ void PackedNetwork::Backward(int step, const Columns& forces, Columns* inputs) {
 }
 
 void PackedNetwork::AddWeightGradient(double* gradient) {
-  const int h = shape_.hidden, nf = shape_.num_features(), width = shape_.gate_width();
+  const int h = shape_.hidden, width = shape_.gate_width();
   const int total = columns_.total(), gate_rows = shape_.gate_rows();
   PackedMatrix left(kernels_, PackedMatrix::kLeft);
   left.Pack(z_.data(), width, total, 1, width);
   right_.Pack(activations_.data(), rows_, total, 1, rows_);
   RowMajor stacked = RowMajor::Zero(rows_, width);
   AddProduct(left, right_, stacked.data(), width);
-  if (shape_.kind == NetworkKind::kMlp) {
+  if (!shape_.recurrent()) {
     stacked.rightCols<2>() = context_sum_ * context_.transpose();
   }
   Eigen::Map<RowMajor>(gradient + shape_.gates_at(), gate_rows, width) +=
       stacked.topRows(gate_rows);
   Eigen::Map<RowMajor> candidates(gradient + shape_.candidates_at(), shape_.candidate_rows(),
                                   shape_.candidate_width());
-  if (shape_.kind == NetworkKind::kLstm) {
-    candidates += stacked.bottomLeftCorner(h, nf + h);
-  } else if (shape_.kind == NetworkKind::kGru) {
-    candidates.leftCols(nf) += stacked.block(2 * h, 0, h, nf);
-    candidates.rightCols(h) += stacked.block(3 * h, nf, h, h);
-  }
+  ForCandidates(shape_, [&](int row, int first, int columns) {
+    candidates.middleCols(first, columns) += stacked.block(row, first, h, columns);
+  });
   Eigen::Map<RowMajor>(gradient, shape_.embedding, kMotionInputs) +=
       embedded_ * inputs_.transpose();
   Eigen::Map<RowMajor>(gradient + shape_.output_at(), 4, h) += outputs_ * hidden_.transpose();

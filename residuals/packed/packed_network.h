@@ -71,8 +71,14 @@ class PackedNetwork {
   auto At(Columns& of, int step) const { return columns_.At(of, step); }
   NetworkWeights<double> Weights() const { return {shape_, weights_}; }
   void PackWeights();
+  // From a person's sums of a step, in activations_, to the hidden units; and from d(cost)/dh to D
+  // in activations_ and to the carried adjoint's direct part.
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
+  void Activate##Kind(int step, int column);                   \
+  void Deactivate##Kind(int step, int column, const Columns& hidden);
+  PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
+#undef PUSHID_NETWORK
   void Activate(int step);
-  // From d(cost)/dh of a step to D in activations_, and to the carried adjoint's direct part.
   void Deactivate(int step, const Columns& hidden);
 
   NetworkShape shape_;

@@ -23,9 +23,8 @@ NetworkSensitivities::NetworkSensitivities(const NetworkShape& shape, const doub
       embedding_(shape.embedding, num_columns),
       now_(shape.hidden, num_columns),
       next_(Columns::Zero(shape.hidden, num_columns)),
-      hidden_(VectorXd::Zero(shape.hidden)) {
-  if (shape.kind == NetworkKind::kLstm) cell_ = Columns::Zero(shape.hidden, num_columns);
-}
+      cell_(Columns::Zero(shape.cells(), num_columns)),
+      hidden_(VectorXd::Zero(shape.hidden)) {}
 
 template <typename Rows>
 void NetworkSensitivities::AddOwn(int first, int width, int offset, const VectorXd& gain,
@@ -133,15 +132,12 @@ void NetworkSensitivities::Advance(const NetworkState<double>& state, const Stat
   switch (shape_.kind) {
     case NetworkKind::kNone:
       return;
-    case NetworkKind::kMlp:
-      AdvanceMlp(state, by_state);
-      break;
-    case NetworkKind::kGru:
-      AdvanceGru(state, by_state);
-      break;
-    case NetworkKind::kLstm:
-      AdvanceLstm(state, by_state);
-      break;
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
+  case NetworkKind::id:                                        \
+    Advance##Kind(state, by_state);                            \
+    break;
+      PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
+#undef PUSHID_NETWORK
   }
   hidden_ = state.hidden;
 }

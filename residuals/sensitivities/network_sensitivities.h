@@ -50,9 +50,10 @@ class NetworkSensitivities {
   template <typename Rows>
   void AddOwnGates(const NetworkState<double>& state, int block, const Eigen::VectorXd& gain,
                    Rows rows) const;
-  void AdvanceMlp(const NetworkState<double>& state, const States& by_state);
-  void AdvanceGru(const NetworkState<double>& state, const States& by_state);
-  void AdvanceLstm(const NetworkState<double>& state, const States& by_state);
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
+  void Advance##Kind(const NetworkState<double>& state, const States& by_state);
+  PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
+#undef PUSHID_NETWORK
 
   NetworkShape shape_;
   NetworkWeights<double> weights_;

@@ -19,12 +19,25 @@ TEST(SelfNetworkIo, NamesAreReadAndWritten) {
               text);
   }
   EXPECT_EQ(ParseSelfForce("f", "mlp").value().network.hidden, 4);
+  EXPECT_EQ(ParseSelfForce("f", "gru:4,none,linear,linear").value().kind, SelfForceKind::kLinear);
   for (const char* text : {"rnn", "mlp:", "mlp:0", "mlp:x", "mlp:4:2", "gru:4:0", "mlp:99999",
                            "mlp:4,gru:4", "gru:4:2:1", "mlp:-1"}) {
     const auto choice = ParseSelfForce("--self_force", text);
     ASSERT_FALSE(choice.ok()) << text;
     EXPECT_NE(choice.error().ToString().find("--self_force"), std::string::npos);
   }
+}
+
+// Help and message are made of the rows of model_rows.h.
+TEST(SelfNetworkIo, HelpAndMessageNameEveryKind) {
+  EXPECT_EQ(SelfForceHelp(),
+            "additional self force: none, linear (cross terms, quadratic), a network by kind and "
+            "hidden size (mlp:4, gru:4, lstm:4; lstm:256:32 with an embedding), or linear and a "
+            "network, comma-separated");
+  EXPECT_EQ(
+      ParseSelfForce("f", "rnn").error().ToString(),
+      "f is 'rnn'; it must be none, linear, mlp:4, gru:4, lstm:4 or lstm:256:32 (hidden size, "
+      "embedding; 1 to 4096), or linear and a network, as linear,gru:4");
 }
 
 TEST(SelfNetworkIo, StartsWithoutForceAndFromItsSeed) {
