@@ -20,6 +20,12 @@
 
 namespace pushid {
 
+// What is minimized at a time.
+struct FitStage {
+  int horizon = 0;              // frames of each rollout; 0: all
+  bool equation_error = false;  // of single frames, instead of rollouts
+};
+
 class FitProblem {
  public:
   // recordings and options must outlive the problem. counts: how often each recording counts (a
@@ -82,6 +88,11 @@ class FitProblem {
   // (residuals/cost_functions/likelihood_residual.h): kFisherShift, where J'J is the Fisher
   // information, or more far from the optimum.
   void set_fall_of_noise(double logarithm) { fall_of_noise_ = logarithm; }
+  double fall_of_noise() const { return fall_of_noise_; }
+
+  // The parameter blocks of a recording's residuals.
+  std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
+  LikelihoodProblem LikelihoodOf(int recording, double weight) const;
 
   // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
   // to the frames before their failure; `shortened` names them.
@@ -121,20 +132,19 @@ class FitProblem {
   };
 
   // hold_network: its weights are constant. num_threads: of the evaluations; the same bits for any.
-  Built Build(FitPoint* point, int horizon, bool hold_network = false, int num_threads = 1) const;
+  Built Build(FitPoint* point, int horizon, bool hold_network = false, int num_threads = 1) const {
+    return BuildStage({horizon, false}, point, hold_network, num_threads);
+  }
 
   // The same blocks with equation-error residuals instead of rollouts.
-  Built BuildEquationError(FitPoint* point) const;
+  Built BuildEquationError(FitPoint* point) const { return BuildStage({0, true}, point, true, 1); }
 
  private:
-  std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
   void AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const;
-  void AddPriors(FitPoint* point, Built* built) const;
-  void AddRollouts(FitPoint* point, int horizon, Built* built) const;
-  void AddLikelihoods(FitPoint* point, Built* built) const;
-  LikelihoodProblem LikelihoodOf(int recording, double weight) const;
-  void AddStagePriors(FitPoint* point, Built* built) const;
-  void AddRest(FitPoint* point, Built* built) const;
+  std::shared_ptr<const RolloutProblem> StageRollout(int recording, int horizon,
+                                                     const Built& built) const;
+  Built BuildStage(const FitStage& stage, FitPoint* point, bool hold_network,
+                   int num_threads) const;
 
   const std::vector<PendulumRecording>& recordings_;
   const FitOptions& options_;

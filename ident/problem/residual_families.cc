@@ -1,0 +1,192 @@
+// ident: the table of residual families and how each adds its blocks.
+#include "ident/problem/residual_families.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "residuals/cost_functions/body_residual.h"
+#include "residuals/cost_functions/condensed_rollout.h"
+#include "residuals/cost_functions/equation_error_residual.h"
+#include "residuals/cost_functions/prior_residual.h"
+#include "residuals/cost_functions/rest_residual.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
+
+using Family = ResidualFamily;
+using Place = FamilyPlace;
+using Options = FitOptions;
+using Stage = FitStage;
+
+bool Rolls(const Options& o, const Stage& stage) {
+  return !stage.equation_error && o.likelihood == Likelihood::kTrajectory;
+}
+// Long rollouts join once the horizon is as long.
+bool AllFrames(const Stage& stage) { return !stage.equation_error && stage.horizon == 0; }
+
+void AddTrajectory(const Family&, const Place& at) {
+  if (at.rollout == nullptr) return;
+  at.built->AddRollout(
+      std::make_unique<CondensedRollout>(at.rollout, at.problem.options().jacobian),
+      at.problem.RecordingBlocks(at.point, at.recording), at.recording);
+}
+
+// Bodies join once the path is there: their joints follow the path before and after a frame. A fit
+// has those of all recordings (PrepareFit); what was read from a file, and a design's recordings
+// that are still to be made, have none, and are seen by their pendulums alone.
+void AddBodies(const Family&, const Place& at) {
+  const Options& o = at.problem.options();
+  const std::string& id = at.problem.recordings()[at.recording].id;
+  if (at.rollout == nullptr || o.body->motions.count(id) == 0) return;
+  at.built->AddRollout(std::make_unique<BodyResidual>(at.rollout, o.body, o.body_weight),
+                       at.problem.RecordingBlocks(at.point, at.recording), at.recording);
+}
+
+void AddLikelihood(const Family&, const Place& at) {
+  const FitProblem& problem = at.problem;
+  const int i = at.recording;
+  const std::vector<double*> blocks = problem.RecordingBlocks(at.point, i);
+  auto residual = std::make_unique<LikelihoodResidual>(
+      problem.LikelihoodOf(i, problem.Weight(i, 0)), blocks.data(),
+      problem.options().jacobian == JacobianMethod::kAutodiff, problem.fall_of_noise());
+  if (!residual->status().ok) {
+    at.built->shortened.push_back({i, residual->status()});
+    return;
+  }
+  at.built->offsets[i] = problem.Count(i) * residual->offset();
+  at.built->AddRollout(std::move(residual), blocks, i);
+}
+
+void AddEquationError(const Family&, const Place& at) {
+  const FitProblem& problem = at.problem;
+  at.built->AddRollout(
+      std::make_unique<EquationErrorResidual>(problem.recordings()[at.recording],
+                                              problem.options().model, problem.map()),
+      problem.RecordingBlocks(at.point, at.recording), at.recording);
+}
+
+// On the i-th shared value, natural mean and sigma on the fitted scale.
+void AddPrior(const Family& family, const Place& at, int i, double mean, double sigma) {
+  const Transform transform = at.problem.map().fitted[i].transform;
+  at.built->Add(std::make_unique<PriorResidual>(static_cast<int>(at.point->shared.size()), i,
+                                                ToFitted(transform, mean), sigma),
+                {at.point->shared.data()}, family.cluster);
+}
+
+void AddPriors(const Family& family, const Place& at) {
+  for (int i = 0; i < static_cast<int>(at.point->shared.size()); ++i) {
+    const ParameterSpec& spec = at.problem.options().table[at.problem.map().fitted[i].parameter];
+    if (!spec.prior) continue;
+    AddPrior(family, at, i, spec.prior->mean,
+             spec.prior->sigma / TransformSlope(spec.transform, spec.prior->mean));
+  }
+}
+
+void AddPooling(const Family& family, const Place& at) {
+  const ParameterMap& map = at.problem.map();
+  for (auto& [name, values] : at.point->unit) {
+    for (const FittedParameter& f : map.fitted) {
+      if (f.deviation < 0) continue;
+      at.built->Add(
+          std::make_unique<PriorResidual>(map.num_deviations, f.deviation, 0.0,
+                                          PoolingSigma(at.problem.options().table[f.parameter])),
+          {values.data()}, family.cluster);
+    }
+  }
+}
+
+void AddNetworkPrior(const Family& family, const Place& at) {
+  const int weights = at.problem.map().num_weights;
+  if (weights == 0) return;
+  at.built->Add(std::make_unique<RidgeResidual>(weights, at.problem.options().network_prior),
+                {at.point->weights.data()}, family.cluster);
+}
+
+// A stage of few frames says nothing of some parameters: what has no prior of its own is kept from
+// wandering off to its bounds, whence later stages need not come back.
+void AddStagePriors(const Family& family, const Place& at) {
+  for (int i = 0; i < static_cast<int>(at.point->shared.size()); ++i) {
+    const ParameterSpec& spec = at.problem.options().table[at.problem.map().fitted[i].parameter];
+    if (spec.prior) continue;
+    AddPrior(family, at, i, spec.nominal,
+             spec.transform == Transform::kIdentity
+                 ? kStagePrior * std::max(std::abs(spec.nominal), spec.scale)
+                 : std::log(kStagePrior));
+  }
+}
+
+std::vector<double*> UnitBlocks(const Place& at) {
+  std::vector<double*> blocks = {at.point->shared.data()};
+  if (!at.unit.empty()) blocks.push_back(at.point->unit[at.unit].data());
+  return blocks;
+}
+
+void AddSettling(const Family& family, const Place& at) {
+  const Options& o = at.problem.options();
+  std::vector<double*> blocks = UnitBlocks(at);
+  if (at.problem.map().num_weights > 0) blocks.push_back(at.point->weights.data());
+  const auto settle = [&](double mass, double impulse, int people) {
+    auto residual = std::make_unique<SettlingResidual>(
+        MakeSettlingProblem(SettlingScene(mass, impulse, people), o.model, at.problem.map(),
+                            o.settling_weight, at.unit));
+    std::vector<double> values(residual->num_residuals());
+    if (!residual->Evaluate(blocks.data(), values.data(), nullptr)) {
+      ++at.built->rests_left_out;  // Ceres cannot start from a block that fails
+      return;
+    }
+    at.built->AddRollout(std::move(residual), blocks, family.cluster);
+  };
+  for (double impulse : kSettlingImpulses) settle(kSettlingMasses[0], impulse, 1);
+  if (!o.model.interaction.Any()) return;
+  for (double impulse : kLineImpulses) settle(kSettlingMass, impulse, kLinePeople);
+}
+
+void AddModes(const Family& family, const Place& at) {
+  const Options& o = at.problem.options();
+  const Body body = SettlingScene(kSettlingMass, 0.0).people[0].body;
+  at.built->Add(
+      std::make_unique<ModalStabilityResidual>(o.model, body, at.problem.map(), o.mode_margin,
+                                               o.mode_weight, !at.unit.empty()),
+      UnitBlocks(at), family.cluster);
+}
+
+}  // namespace
+
+const std::vector<ResidualFamily>& ResidualFamilies() {
+  constexpr int kOwn = 0;  // the recording's
+  static const std::vector<ResidualFamily> families = {
+      {"trajectory", Family::kRecording, kOwn,
+       [](const Options& o, const Stage& s) { return Rolls(o, s); }, AddTrajectory},
+      {"bodies", Family::kRecording, kOwn,
+       [](const Options& o, const Stage& s) {
+         return Rolls(o, s) && AllFrames(s) && o.body_weight > 0.0 && o.body != nullptr;
+       },
+       AddBodies},
+      {"likelihood", Family::kRecording, kOwn,
+       [](const Options& o, const Stage& s) {
+         return !s.equation_error && o.likelihood != Likelihood::kTrajectory;
+       },
+       AddLikelihood},
+      {"equation error", Family::kRecording, kOwn,
+       [](const Options&, const Stage& s) { return s.equation_error; }, AddEquationError},
+      {"priors", Family::kPoint, FitProblem::kPriorCluster,
+       [](const Options&, const Stage&) { return true; }, AddPriors},
+      {"pooling", Family::kPoint, FitProblem::kPoolingCluster,
+       [](const Options&, const Stage&) { return true; }, AddPooling},
+      {"network prior", Family::kPoint, FitProblem::kNetworkCluster,
+       [](const Options& o, const Stage&) { return o.network_prior > 0.0; }, AddNetworkPrior},
+      {"stage priors", Family::kPoint, FitProblem::kPriorCluster,
+       [](const Options&, const Stage& s) { return s.horizon != 0; }, AddStagePriors},
+      {"settling", Family::kUnit, FitProblem::kSettlingCluster,
+       [](const Options& o, const Stage& s) { return AllFrames(s) && o.settling_weight > 0.0; },
+       AddSettling},
+      {"modes", Family::kUnit, FitProblem::kSettlingCluster,
+       [](const Options& o, const Stage& s) { return AllFrames(s) && o.mode_weight > 0.0; },
+       AddModes},
+  };
+  return families;
+}
+
+}  // namespace pushid
