@@ -47,11 +47,12 @@ std::optional<E> FromName(std::string_view name) {
   return std::nullopt;
 }
 
-// "a, b or c"; last_word: "or", "and".
+// "a, b or c"; last_word: "or", "and"; "," for "a, b, c".
 inline std::string Listed(const std::vector<std::string>& names, const std::string& last_word) {
+  const std::string last = last_word == "," ? ", " : " " + last_word + " ";
   std::string list;
   for (size_t i = 0; i < names.size(); ++i) {
-    list += (i == 0 ? "" : i + 1 == names.size() ? " " + last_word + " " : ", ") + names[i];
+    list += (i == 0 ? "" : i + 1 == names.size() ? last : ", ") + names[i];
   }
   return list;
 }

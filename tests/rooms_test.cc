@@ -31,9 +31,28 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
      {"files", "formats", "manifest", "sensors", "loading", "synthetic", "exchange", "inspection"}},
     {"residuals", {"packed", "", "sensitivities", "lanes", "cost_functions", "adjoint"}},
     {"ident",
-     {"figures",   "parameters", "problem",    "solver", "uncertainty", "diagnostics", "model",
-      "fit",       "prediction", "validation", "push",   "bodies",      "peers",       "generators",
-      "forecasts", "training",   "formations", "report", "report/page", "checks",      ""}},
+     {"figures",
+      "parameters",
+      "problem",
+      "solver",
+      "large_networks",
+      "uncertainty",
+      "diagnostics",
+      "model",
+      "fit",
+      "prediction",
+      "validation",
+      "push",
+      "bodies",
+      "peers",
+      "generators",
+      "forecasts",
+      "training",
+      "formations",
+      "report",
+      "report/page",
+      "checks",
+      ""}},
     {"apps", {"support", "flags", "batch", "", "python"}},
 };
 
@@ -148,6 +167,34 @@ TEST(RoomsTest, NamedFilesExist) {
     }
   }
   EXPECT_GT(found, 50) << "the comments were not read";
+}
+
+// What the core does without: nothing but itself, what builds on it, and programs includes it.
+TEST(RoomsTest, TheCoreIncludesNoOptionalLibrary) {
+  const std::map<std::string, std::set<std::string>> may_include = {
+      {"residuals/adjoint", {"ident/large_networks"}},
+      {"ident/large_networks", {}},
+      {"models/peers", {"ident/peers", "ident/training"}},
+      {"ident/peers", {"ident/training"}},
+      {"ident/forecasts", {"ident/training"}},
+      {"ident/training", {}},
+  };
+  const auto folder_of = [](const std::string& file) { return file.substr(0, file.rfind('/')); };
+  std::set<std::string> found;
+  for (const auto& [room, allowed] : kMayInclude) {
+    if (room == "apps") continue;
+    for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / room)) {
+      const std::string here = folder_of(fs::relative(file, PUSHID_SOURCE_DIR).generic_string());
+      found.insert(here);
+      ForEachInclude(file, [&](int line, const std::string& included) {
+        const auto optional = may_include.find(folder_of(included));
+        if (optional == may_include.end() || optional->first == here) return;
+        EXPECT_EQ(optional->second.count(here), 1u)
+            << file << ":" << line << ": must do without " << included;
+      });
+    }
+  }
+  for (const auto& [folder, by] : may_include) EXPECT_EQ(found.count(folder), 1u) << folder;
 }
 
 // The maths stays free of the solver, the log, JSON and files.

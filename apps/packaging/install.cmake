@@ -4,7 +4,7 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(pushid_libraries models restoration peers datasets residuals adjoint ident peer_files forecasts)
+set(pushid_libraries models restoration peers datasets residuals adjoint ident large_networks peer_files forecasts)
 install(TARGETS pushid_options EXPORT pushid_targets)
 set_target_properties(pushid_options PROPERTIES EXPORT_NAME options)
 foreach(library ${pushid_libraries})

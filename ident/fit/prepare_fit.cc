@@ -8,7 +8,7 @@
 #include "ident/fit/fit.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/solver/large_network_stage.h"
+#include "ident/solver/network_training.h"
 #include "ident/uncertainty/statistics.h"
 #include "residuals/cost_functions/body_residual.h"
 

@@ -43,7 +43,7 @@ WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
 WeightedSolution SolveAsAsked(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                               const SolveProgress& progress = nullptr);
 
-// Where a network is too large for Gauss-Newton (solver/large_network_stage.h): the physical model
+// Where a network is too large for Gauss-Newton (solver/network_training.h): the physical model
 // solved alone as above, and then the network trained. Returns the options with the network held,
 // to be solved as above; for any other network the options as they are.
 Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>& recordings,

@@ -51,17 +51,6 @@ std::vector<int> HiddenSizes(const std::string& text) {
   return sound ? hidden : std::vector<int>();
 }
 
-// "mlp:4", with what follows the name.
-std::vector<std::string> NetworksWith(const std::string& sizes, bool recurrent_alone = false) {
-  std::vector<std::string> words;
-  for (const NetworkKindRow& row : kNetworkKinds) {
-    if (row.value == NetworkKind::kNone || (recurrent_alone && !row.recurrent)) continue;
-    words.push_back(row.name + sizes);
-  }
-  return words;
-}
-std::string WithEmbedding() { return NetworksWith(":256:32", true).back(); }
-
 Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
   const std::vector<std::string> parts = Split(text, ':');
   NetworkShape shape;
@@ -74,14 +63,25 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
   if (parts.size() > 2) shape.embedding = Size(parts[2]);
   if (known && shape.hidden > 0 && (parts.size() < 3 || shape.embedding > 0)) return shape;
   std::vector<std::string> words = AllNames<SelfForceKind>();
-  for (const std::string& word : NetworksWith(":4")) words.push_back(word);
-  words.push_back(WithEmbedding());
+  for (const std::string& example : NetworkExamples()) words.push_back(example);
   return Error{flag + " is '" + text + "'; it must be " + Listed(words, "or") +
                " (hidden size, embedding; 1 to " + std::to_string(kLargestSize) +
                "), or linear and a network, as linear,gru:4"};
 }
 
 }  // namespace
+
+std::vector<std::string> NetworkExamples() {
+  std::vector<std::string> examples;
+  std::string recurrent;
+  for (const NetworkKindRow& row : kNetworkKinds) {
+    if (row.value == NetworkKind::kNone) continue;
+    examples.push_back(row.name + std::string(":4"));
+    if (row.recurrent) recurrent = row.name;
+  }
+  examples.push_back(recurrent + ":256:32");
+  return examples;
+}
 
 Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text) {
   SelfForceChoice choice;
@@ -103,20 +103,6 @@ Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::strin
 std::string SelfForceText(SelfForceKind kind, const LearnedTerms* network) {
   if (network == nullptr || !network->shape.any()) return NameOf(kind);
   return (kind == SelfForceKind::kNone ? "" : NameOf(kind) + ",") + NetworkName(network->shape);
-}
-
-std::string SelfForceHelp() {
-  std::string text = "additional self force: none, ";
-  for (const SelfForceLaw& row : kSelfForces) {
-    if (row.value == SelfForceKind::kNone) continue;
-    text += std::string(row.name) + " (" + row.note + "), ";
-  }
-  text += "a network by kind and hidden size (";
-  for (const std::string& word : NetworksWith(":4")) {
-    text += (text.back() == '(' ? "" : ", ") + word;
-  }
-  return text + "; " + WithEmbedding() +
-         " with an embedding), or linear and a network, comma-separated";
 }
 
 Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
@@ -277,9 +263,8 @@ std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
   if (const std::optional<NetworkKind> known = FromName<NetworkKind>(kind)) {
     s.kind = *known;
   } else {
-    std::string kinds = "none";
-    for (const std::string& name : NetworksWith("")) kinds += ", " + name;
-    throw std::runtime_error("network: '" + kind + "' is not a kind (" + kinds + ")");
+    throw std::runtime_error("network: '" + kind + "' is not a kind (" +
+                             Listed(AllNames<NetworkKind>(), ",") + ")");
   }
   if (json.contains("rod")) network.rod = RodFromJson(json.at("rod"));
   if (json.contains("interaction")) network.pair = PairFromJson(json.at("interaction"));

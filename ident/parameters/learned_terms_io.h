@@ -30,7 +30,8 @@ struct SelfForceChoice {
 };
 Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text);
 std::string SelfForceText(SelfForceKind kind, const LearnedTerms* network);
-std::string SelfForceHelp();
+// One of each kind of network, and one with an embedding at the end, for help and messages.
+std::vector<std::string> NetworkExamples();
 
 // The value of --rod.
 Result<RodShape> ParseRod(const std::string& flag, const std::string& text);

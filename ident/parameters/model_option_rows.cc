@@ -69,6 +69,19 @@ Row LikelihoodRow() {
   return MayBeAbsent(row);
 }
 
+std::string SelfForceHelp() {
+  std::string text = "additional self force: none, ";
+  for (const SelfForceLaw& law : kSelfForces) {
+    if (law.value != SelfForceKind::kNone)
+      text += law.name + (" (" + std::string(law.note)) + "), ";
+  }
+  std::vector<std::string> examples = NetworkExamples();
+  const std::string embedding = examples.back();
+  examples.pop_back();
+  return text + "a network by kind and hidden size (" + Listed(examples, ",") + "; " + embedding +
+         " with an embedding), or linear and a network, comma-separated";
+}
+
 Row SelfForceRow() {
   const std::string help = SelfForceHelp();
   Row row = Decided(WordsRow("self_force", OptionStage::kModel, help.c_str(),

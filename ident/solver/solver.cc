@@ -10,7 +10,7 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "ident/solver/early_stopping.h"
+#include "ident/solver/network_training.h"
 #include "ident/solver/whitened_bfgs.h"
 
 namespace pushid {

@@ -14,7 +14,7 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
-#include "ident/solver/large_network_stage.h"
+#include "ident/solver/network_training.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

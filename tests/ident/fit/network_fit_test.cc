@@ -10,7 +10,7 @@
 #include "ident/fit/recording_effect.h"
 #include "ident/model/model_json.h"
 #include "ident/report/report_text.h"
-#include "ident/solver/early_stopping.h"
+#include "ident/solver/network_training.h"
 #include "tests/ident/network_samples.h"
 
 namespace pushid {

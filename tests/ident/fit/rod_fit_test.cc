@@ -11,7 +11,7 @@
 #include "ident/prediction/prediction.h"
 #include "ident/problem/behaviour.h"
 #include "ident/report/report_text.h"
-#include "ident/solver/large_network_stage.h"
+#include "ident/solver/network_training.h"
 #include "tests/ident/network_samples.h"
 
 namespace pushid {

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/option_table.h"
 
 namespace pushid {
 namespace {
@@ -30,7 +31,7 @@ TEST(SelfNetworkIo, NamesAreReadAndWritten) {
 
 // Help and message are made of the rows of model_rows.h.
 TEST(SelfNetworkIo, HelpAndMessageNameEveryKind) {
-  EXPECT_EQ(SelfForceHelp(),
+  EXPECT_EQ(FindFitOption("self_force")->help,
             "additional self force: none, linear (cross terms, quadratic), a network by kind and "
             "hidden size (mlp:4, gru:4, lstm:4; lstm:256:32 with an embedding), or linear and a "
             "network, comma-separated");

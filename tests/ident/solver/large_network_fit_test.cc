@@ -1,10 +1,13 @@
 // Training by the adjoint gradient: a planted network is recovered in what it predicts, the best
 // point is kept, and the same start gives the same bits.
-#include "ident/solver/large_network_fit.h"
+#include "ident/large_networks/large_network_fit.h"
+
+#include <utility>
 
 #include "ident/fit/fit.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"
+#include "ident/solver/network_training.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -220,6 +223,17 @@ TEST(LargeNetworkFit, SaysWhatIsMissing) {
   EXPECT_NE(complaint().find("but 3 are given"), std::string::npos);
   fit.model.learned = nullptr;
   EXPECT_NE(complaint().find("no network"), std::string::npos);
+}
+
+// The core calls what a program links, and says so where it links nothing.
+TEST(LargeNetworkFit, IsLinkedByProgramsThatNeedIt) {
+  LargeNetworkTrainer& hook = LargeNetworkTraining();
+  ASSERT_NE(hook, nullptr) << "ident_tests links pushid_large_networks";
+  const LargeNetworkTrainer linked = std::exchange(hook, nullptr);
+  const auto without = TrainLargeNetwork({}, {}, {}, nullptr);
+  hook = linked;
+  ASSERT_FALSE(without.ok());
+  EXPECT_NE(without.error().ToString().find("pushid_large_networks"), std::string::npos);
 }
 
 }  // namespace

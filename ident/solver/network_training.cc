@@ -1,5 +1,5 @@
-// ident: the cost of what was held out, iteration by iteration.
-#include "ident/solver/early_stopping.h"
+// ident: the cost of what was held out, iteration by iteration, and the way to large networks.
+#include "ident/solver/network_training.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +51,32 @@ ceres::CallbackReturnType EarlyStopping::operator()(const ceres::IterationSummar
   }
   stopped_ = ++since_best_ >= kPatience;
   return stopped_ ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+}
+
+FitOptions PhysicsAlone(FitOptions options) {
+  const ModelOptions whole = options.model;
+  options.model.learned = nullptr;
+  options.model.interaction.learned = false;
+  options.early_stopping = 0.0;  // physics does not learn by heart
+  for (ParameterSpec& spec : options.table.specs) {
+    const bool of_network = Acts(spec.id, whole) && !Acts(spec.id, options.model);
+    if (of_network) spec.free = spec.pooled = false;
+  }
+  return options;
+}
+
+LargeNetworkTrainer& LargeNetworkTraining() {
+  static LargeNetworkTrainer trainer = nullptr;
+  return trainer;
+}
+
+Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recordings,
+                                     const FitOptions& options, const FittedPhysics& physics,
+                                     const SolveProgress& progress) {
+  if (LargeNetworkTraining() != nullptr) {
+    return LargeNetworkTraining()(recordings, options, physics, progress);
+  }
+  return Error{"this program trains no large networks: it is built without pushid_large_networks"};
 }
 
 }  // namespace pushid

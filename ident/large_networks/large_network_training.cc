@@ -1,8 +1,7 @@
-// ident: the three steps of a fit with a large network.
-#include "ident/solver/large_network_stage.h"
-
-#include "ident/solver/early_stopping.h"
-#include "ident/solver/large_network_fit.h"
+// ident: a large network's training inside a fit. Programs that link this library have it as
+// LargeNetworkTraining() (solver/network_training.h).
+#include "ident/large_networks/large_network_fit.h"
+#include "ident/solver/network_training.h"
 
 namespace pushid {
 namespace {
@@ -54,23 +53,9 @@ std::map<std::string, std::vector<double>> DeviationsOf(const FitPoint& point,
   return deviations;
 }
 
-}  // namespace
-
-FitOptions PhysicsAlone(FitOptions options) {
-  const ModelOptions whole = options.model;
-  options.model.learned = nullptr;
-  options.model.interaction.learned = false;
-  options.early_stopping = 0.0;  // physics does not learn by heart
-  for (ParameterSpec& spec : options.table.specs) {
-    const bool of_network = Acts(spec.id, whole) && !Acts(spec.id, options.model);
-    if (of_network) spec.free = spec.pooled = false;
-  }
-  return options;
-}
-
-Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recordings,
-                                     const FitOptions& options, const FittedPhysics& physics,
-                                     const SolveProgress& progress) {
+Result<FitOptions> TrainByGradient(const std::vector<PendulumRecording>& recordings,
+                                   const FitOptions& options, const FittedPhysics& physics,
+                                   const SolveProgress& progress) {
   const FitProblem problem(recordings, physics.options);
   LargeNetworkFit fit;
   EarlyStoppingSplit split{std::vector<int>(recordings.size(), 1), {}};
@@ -115,4 +100,10 @@ Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recor
   return held;
 }
 
+}  // namespace
 }  // namespace pushid
+
+// The linker keeps this object for the sake of the name (ident/CMakeLists.txt).
+extern "C" {
+bool pushid_large_networks = (pushid::LargeNetworkTraining() = pushid::TrainByGradient, true);
+}

@@ -1,5 +1,5 @@
 // ident: L-BFGS over the weights of a large network.
-#include "ident/solver/large_network_fit.h"
+#include "ident/large_networks/large_network_fit.h"
 
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
