@@ -2,7 +2,10 @@
 #include "models/crowd.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <thread>
+#include <tuple>
 
 namespace pushid {
 namespace {
@@ -60,6 +63,95 @@ RolloutStatus Crowd::Advance() {
   std::swap(now_, next_);
   ++frame_;
   return {};
+}
+
+namespace {
+
+struct LatticePoint {
+  int i = 0, j = 0;  // along x and y, in spacings
+};
+
+// The lattice points nearest to the centre by |i| + |j|, rings from the inside out.
+std::vector<LatticePoint> DiamondPoints(int people) {
+  int radius = 0;
+  while (2 * radius * (radius + 1) + 1 < people) ++radius;
+  std::vector<LatticePoint> points;
+  for (int i = -radius; i <= radius; ++i) {
+    const int reach = radius - std::abs(i);
+    for (int j = -reach; j <= reach; ++j) points.push_back({i, j});
+  }
+  const auto key = [](const LatticePoint& p) {
+    return std::tuple(std::abs(p.i) + std::abs(p.j), std::abs(p.j), p.i, p.j);
+  };
+  std::sort(points.begin(), points.end(),
+            [&key](const LatticePoint& a, const LatticePoint& b) { return key(a) < key(b); });
+  points.resize(people);
+  return points;
+}
+
+std::vector<LatticePoint> GridPoints(int people) {
+  const int width = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(people))));
+  std::vector<LatticePoint> points;
+  for (int n = 0; n < people; ++n) points.push_back({n / width, n % width});
+  return points;
+}
+
+std::vector<LatticePoint> LinePoints(int people) {
+  std::vector<LatticePoint> points;
+  for (int n = 0; n < people; ++n) points.push_back({n, 0});
+  return points;
+}
+
+std::vector<LatticePoint> Points(FormationShape shape, int people) {
+  switch (shape) {
+    case FormationShape::kLine:
+      return LinePoints(people);
+    case FormationShape::kDiamond:
+      return DiamondPoints(people);
+    case FormationShape::kGrid:
+      return GridPoints(people);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2d> FormationPositions(FormationShape shape, int people, double spacing) {
+  std::vector<LatticePoint> points = Points(shape, people);
+  std::sort(points.begin(), points.end(), [](const LatticePoint& a, const LatticePoint& b) {
+    return std::tie(a.i, a.j) < std::tie(b.i, b.j);
+  });
+  int right = 0, left = 0;
+  for (const LatticePoint& point : points) {
+    right = std::min(right, point.j);
+    left = std::max(left, point.j);
+  }
+  const double middle = 0.5 * (right + left);
+  std::vector<Eigen::Vector2d> positions;
+  for (const LatticePoint& point : points) {
+    positions.emplace_back(spacing * (point.i - points.front().i), spacing * (point.j - middle));
+  }
+  return positions;
+}
+
+Scene FormationScene(const std::vector<Eigen::Vector2d>& positions, const Body& body, double dt) {
+  Scene scene;
+  scene.dt = dt;
+  for (const Eigen::Vector2d& position : positions) {
+    ScenePerson person;
+    person.body = body;
+    person.start.q.head<2>() = position;
+    scene.people.push_back(person);
+  }
+  return scene;
+}
+
+void AddHipPush(int person, const HipPush& push, Scene* scene) {
+  const int frames = std::max(1, static_cast<int>(std::lround(push.duration / scene->dt)));
+  const int start = static_cast<int>(std::lround(push.start / scene->dt));
+  scene->pushes.push_back(
+      MakeScenePush(person, start, PushKind::kExternal,
+                    HalfSinePush(scene->people[person].body, push.impulse, frames, scene->dt)));
 }
 
 }  // namespace pushid

@@ -25,7 +25,7 @@
 #include "apps/support/overwrite_check.h"
 #include "datasets/manifest/manifest.h"
 #include "models/enum_names.h"
-#include "models/restoration/restoration_kind.h"
+#include "models/restoration/restoration.h"
 
 namespace pushid {
 namespace {

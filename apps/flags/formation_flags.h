@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "models/formation.h"
+#include "models/crowd.h"
 
 namespace pushid {
 

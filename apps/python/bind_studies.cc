@@ -12,7 +12,7 @@
 #include "ident/push/push_check.h"
 #include "ident/report/advice.h"
 #include "ident/report/design_text.h"
-#include "models/formation.h"
+#include "models/crowd.h"
 
 namespace pushid {
 namespace {

@@ -8,8 +8,8 @@
 #include "ident/fit/fit.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/statistics.h"
 #include "ident/solver/network_training.h"
-#include "ident/uncertainty/statistics.h"
 #include "residuals/cost_functions/body_residual.h"
 
 namespace pushid {

@@ -20,9 +20,8 @@
 #include "datasets/files/error.h"
 #include "ident/parameters/option_names.h"
 #include "models/generators/diffusion_generator.h"
-#include "models/generators/diffusion_trainer.h"
+#include "models/generators/generator_trainers.h"
 #include "models/generators/particle_generator.h"
-#include "models/generators/particle_trainer.h"
 #include "models/restoration/trainer.h"
 
 namespace pushid {

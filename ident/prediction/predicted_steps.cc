@@ -9,7 +9,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/fit/step_probability.h"
 #include "ident/problem/behaviour.h"
-#include "ident/uncertainty/statistics.h"
+#include "ident/problem/statistics.h"
 
 namespace pushid {
 namespace {

@@ -10,7 +10,7 @@
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/push_range.h"
 #include "ident/fit/step_probability.h"
-#include "ident/uncertainty/statistics.h"
+#include "ident/problem/statistics.h"
 #include "models/learned_terms.h"
 #include "models/scene_forces.h"
 

@@ -17,7 +17,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
-#include "ident/problem/time_series.h"
+#include "ident/problem/statistics.h"
 
 namespace pushid {
 

@@ -1,6 +1,7 @@
 // ident: a point in the space of a fit, and what can go wrong there.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -22,6 +23,27 @@ struct FitPoint {
   std::vector<double> Flat() const;
   void SetFlat(const std::vector<double>& flat);
 };
+
+inline std::vector<double> FitPoint::Flat() const {
+  std::vector<double> flat = shared;
+  for (const auto& [name, values] : unit) flat.insert(flat.end(), values.begin(), values.end());
+  for (const auto& [index, values] : velocity)
+    flat.insert(flat.end(), values.begin(), values.end());
+  flat.insert(flat.end(), weights.begin(), weights.end());
+  return flat;
+}
+
+inline void FitPoint::SetFlat(const std::vector<double>& flat) {
+  auto next = flat.begin();
+  auto take = [&next](std::vector<double>* values) {
+    std::copy_n(next, values->size(), values->begin());
+    next += static_cast<std::ptrdiff_t>(values->size());
+  };
+  take(&shared);
+  for (auto& [name, values] : unit) take(&values);
+  for (auto& [index, values] : velocity) take(&values);
+  take(&weights);
+}
 
 // A rollout that left the model's domain, by recording.
 struct FailedRollout {

@@ -104,8 +104,8 @@ void AddNetworkPrior(const Family& family, const Place& at) {
                 {at.point->weights.data()}, family.cluster);
 }
 
-// A stage of few frames says nothing of some parameters: what has no prior of its own is kept from
-// wandering off to its bounds, whence later stages need not come back.
+// A stage of few frames says nothing of some parameters: what has no prior gets one, so that it
+// does not move to its bounds, from which later stages may not return.
 void AddStagePriors(const Family& family, const Place& at) {
   for (int i = 0; i < static_cast<int>(at.point->shared.size()); ++i) {
     const ParameterSpec& spec = at.problem.options().table[at.problem.map().fitted[i].parameter];

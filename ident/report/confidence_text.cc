@@ -11,7 +11,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/fit/interval_agreement.h"
 #include "ident/parameters/option_names.h"
-#include "ident/problem/time_series.h"
+#include "ident/problem/statistics.h"
 #include "ident/report/fit_command.h"
 
 namespace pushid {

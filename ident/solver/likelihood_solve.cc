@@ -8,7 +8,6 @@
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/pooling_spread.h"
-#include "ident/solver/whitened_bfgs.h"
 #include "models/parameters.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 

@@ -10,8 +10,8 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
+#include "ident/solver/likelihood_solve.h"
 #include "ident/solver/network_training.h"
-#include "ident/solver/whitened_bfgs.h"
 
 namespace pushid {
 namespace {

@@ -1,6 +1,4 @@
 // ident: the cost and its gradient in whitened coordinates, and Ceres' line search over them.
-#include "ident/solver/whitened_bfgs.h"
-
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
@@ -10,6 +8,7 @@
 #include <string>
 
 #include "ident/problem/jacobian_blocks.h"
+#include "ident/solver/likelihood_solve.h"
 
 namespace pushid {
 namespace {

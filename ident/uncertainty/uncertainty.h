@@ -21,7 +21,7 @@
 
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/fit_point.h"
-#include "ident/uncertainty/statistics.h"
+#include "ident/problem/statistics.h"
 #include "models/enum_names.h"
 #include "models/options.h"
 #include "models/parameters.h"

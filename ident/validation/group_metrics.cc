@@ -10,7 +10,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/parameters/json_archive.h"
 #include "models/restoration/cvae_features.h"
-#include "models/restoration/motion_words.h"
+#include "models/restoration/group_motion.h"
 
 namespace pushid {
 namespace {

@@ -10,7 +10,7 @@
 #include "ident/prediction/predictive_bands.h"
 #include "ident/problem/folds.h"
 #include "ident/problem/parallel.h"
-#include "ident/problem/time_series.h"
+#include "ident/problem/statistics.h"
 
 namespace pushid {
 

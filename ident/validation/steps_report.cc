@@ -7,7 +7,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/uncertainty/statistics.h"
+#include "ident/problem/statistics.h"
 
 namespace pushid {
 namespace {

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "models/generators/diffusion_network.h"
-#include "models/generators/diffusion_trainer.h"
+#include "models/generators/generator_trainers.h"
 #include "models/restoration/support_torch.h"
 
 namespace pushid {

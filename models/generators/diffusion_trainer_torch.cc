@@ -3,7 +3,7 @@
 
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/diffusion_module_torch.h"
-#include "models/generators/diffusion_trainer.h"
+#include "models/generators/generator_trainers.h"
 
 namespace pushid {
 namespace {

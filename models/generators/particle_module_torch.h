@@ -3,7 +3,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "models/generators/particle_trainer.h"
+#include "models/generators/generator_trainers.h"
 #include "models/restoration/support_torch.h"
 
 namespace pushid {

@@ -5,21 +5,70 @@
 //   Finish(person, PostprocessOptions(), &bodies[0]);           // postprocess.h
 //
 // All that a restoration knows of a person is the pose at frame 0, mass, rod length and what its
-// view names (restoration_kind.h): the pendulum's path, those of the neighbours too, or, to compare
+// view names (RestorationView): the pendulum's path, those of the neighbours too, or, to compare
 // with, no pendulum at all. The order of people changes nothing. Every kind turns a person to the
 // heading at frame 0 first and back at the end.
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "models/enum_names.h"
 #include "models/restoration/body.h"
-#include "models/restoration/restoration_kind.h"
 #include "models/scene.h"
 
 namespace pushid {
+
+// The kinds of restoration, one row each, and what they may be told of the motion.
+//
+// A new kind is a value and a row here, and a row in ident/bodies/restoration_kinds.h, which names
+// the functions that make it from a file and train it.
+
+enum class RestorationKind { kRigid, kWindow, kCvae, kSimlpe, kMrt };
+
+struct RestorationKindRow {
+  const char* name;  // in files and on the command line
+  RestorationKind value;
+  const char* what;       // for the list of kinds on the command line
+  bool trained;           // it has weights, and stands in a folder
+  bool follows_pendulum;  // otherwise it is a peer (peers/peer.h), which continues recorded bodies
+  bool sees_neighbours;   // it has RestorationView::kNeighbours
+  bool differentiable;    // by the pendulum (window_tangent.h), for training as a whole
+};
+
+inline constexpr RestorationKindRow kRestorationKinds[] = {
+    {"rigid", RestorationKind::kRigid, "the first pose carried by the rod's tip", false, true,
+     false, false},
+    {"window", RestorationKind::kWindow, "fast, default", true, true, true, true},
+    {"cvae", RestorationKind::kCvae, "LDP's chain", true, true, false, false},
+    {"simlpe", RestorationKind::kSimlpe, "siMLPe, which continues 12 given frames", true, false,
+     false, false},
+    {"mrt", RestorationKind::kMrt, "MRT, which continues 20 given frames of a whole group", true,
+     false, false, false},
+};
+constexpr const auto& Names(RestorationKind) { return kRestorationKinds; }
+static_assert(RowsAreInOrder(kRestorationKinds), "RowOf finds a row by its value");
+
+// Of those that can be trained, for messages: "window, cvae, simlpe or mrt".
+inline std::string TrainedRestorationKinds() {
+  return AnyName<RestorationKind>([](const RestorationKindRow& row) { return row.trained; });
+}
+
+// What a restoration is told of the motion, besides the first pose, mass and size.
+enum class RestorationView {
+  kPendulum,    // the person's own pendulum
+  kNeighbours,  // those of the neighbours too, where the kind sees them
+  kPose  // no pendulum, to see what it is worth: `window` has the first pose and the push, `cvae`
+         // the pose before
+};
+constexpr EnumNames<RestorationView, 3> Names(RestorationView) {
+  return {{{"pendulum", RestorationView::kPendulum},
+           {"neighbours", RestorationView::kNeighbours},
+           {"pose", RestorationView::kPose}}};
+}
 
 // What is pushed from outside: all that a restoration without pendulums is told of the motion.
 struct SeenPush {

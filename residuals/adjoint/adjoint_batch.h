@@ -7,8 +7,8 @@
 #include "models/rollout.h"
 #include "residuals/adjoint/adjoint_gradient.h"
 #include "residuals/adjoint/touching_people.h"
+#include "residuals/packed/packed_layers.h"
 #include "residuals/packed/packed_network.h"
-#include "residuals/packed/packed_rod.h"
 
 namespace pushid {
 

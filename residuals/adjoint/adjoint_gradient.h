@@ -8,8 +8,8 @@
 //   f = dt M^-1 g                          d(cost)/dF
 //   L_q <- L_q + J_q' f,  L_qd <- g + J_qd' f,   J = dF/ds - d(M a + C + G)/ds at fixed a
 // and d(cost)/dp += (dF/dp)' f; the network's part of dF/ds: packed_network.h. Where the rod
-// moves, l' = l + dt v(s, F_self, l), its adjoint goes back through v (packed_rod.h) to s, F_self
-// and p:
+// moves, l' = l + dt v(s, F_self, l), its adjoint goes back through v (packed_layers.h) to s,
+// F_self and p:
 //   L_l <- L_l + dt v_l L_l - (d(M a + C + G)/dl)' f
 // What people do to each other: touching_people.h.
 // One gradient costs about as much as three rollouts, whatever the number of weights.

@@ -3,7 +3,7 @@
 // With f the adjoint of what each of two people gets from the other, F = F_terms + 2 M g y of both,
 //   L_s <- L_s + (dF_terms/ds)' f + (dg/ds)' (2 M y . f) + (du/ds)' u^,   s: the states of both
 //   L_p <- L_p + (dF_terms/dp)' f + (dg/dp)' (2 M y . f)
-// where u^ comes back through the network from y^ = 2 M g f (packed_pairs.h). A person's step so
+// where u^ comes back through the network from y^ = 2 M g f (packed_layers.h). A person's step so
 // hands parts to the neighbours' states. Derivatives of terms and gate are those that sensitivities
 // are chained from (pair_jacobian.h, learned_pair_jacobian.h).
 //
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "models/neighbours.h"
-#include "residuals/packed/packed_pairs.h"
+#include "residuals/packed/packed_layers.h"
 #include "residuals/packed/vector_kernels.h"
 
 namespace pushid {

@@ -7,7 +7,7 @@
 // over both places and the contact's parameters.
 //
 // A network that is held needs no dy/dw: all pairs of a frame are then asked in one product a layer
-// (packed_pairs.h), four outputs of each back. One of 512-512 has its weights read once a frame
+// (packed_layers.h), four outputs of each back. One of 512-512 has its weights read once a frame
 // so, and not once a pair and output.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 #include "models/learned_terms.h"
 #include "models/scene_forces.h"
-#include "residuals/packed/packed_pairs.h"
+#include "residuals/packed/packed_layers.h"
 #include "residuals/sensitivities/pair_jacobian.h"
 
 namespace pushid {

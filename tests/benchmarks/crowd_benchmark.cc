@@ -11,7 +11,6 @@
 #include "datasets/files/random.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "models/crowd.h"
-#include "models/formation.h"
 
 namespace pushid {
 namespace {

@@ -1,9 +1,8 @@
 // The trainer of the diffusion network: it learns, repeats itself, goes on where it was broken off,
 // and what it returns is the network that LibTorch trained, to 1e-5.
-#include "models/generators/diffusion_trainer.h"
-
 #include <gtest/gtest.h>
 
+#include "models/generators/generator_trainers.h"
 #include "tests/models/generators/diffusion_samples.h"
 
 namespace pushid {

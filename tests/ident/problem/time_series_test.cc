@@ -1,10 +1,9 @@
-#include "ident/problem/time_series.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "datasets/files/random.h"
+#include "ident/problem/statistics.h"
 
 namespace pushid {
 namespace {

@@ -9,7 +9,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "ident/bodies/body_recording.h"
 #include "models/restoration/cvae_features.h"
-#include "models/restoration/motion_words.h"
+#include "models/restoration/group_motion.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"
 

@@ -1,8 +1,7 @@
 // Words of motion: scores by hand, and the exact nearest.
-#include "models/restoration/motion_words.h"
-
 #include <gtest/gtest.h>
 
+#include "models/restoration/group_motion.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

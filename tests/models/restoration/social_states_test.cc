@@ -1,8 +1,7 @@
 // Symbols of people who are made to do one thing at a time.
-#include "models/restoration/social_states.h"
-
 #include <gtest/gtest.h>
 
+#include "models/restoration/group_motion.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

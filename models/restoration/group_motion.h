@@ -1,4 +1,41 @@
-// models: how natural motions look: normalized directional motion similarity (NDMS, Tanke et al.,
+// models: how bodies of a group move, for metrics: what people do as symbols, and how natural their
+// motions look.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "models/particles.h"
+#include "models/restoration/body.h"
+
+namespace pushid {
+
+// What people in a crowd do, frame by frame, as one of six symbols:
+//
+//   3 * push + posture
+//   posture  2 step: an ankle's horizontal speed is above 0.35 m/s; else
+//            1 lean: the line from between the ankles to the hip has turned by more than 5 degrees
+//              since frame 0; else
+//            0 stand
+//   push     1: a wrist is within 0.35 m of the upper spine of the person in front, and the
+//            own hip goes forwards (+x) faster than 0.08 m/s
+//
+// Speeds are backward differences; frame 0 has the symbol of frame 1. In front stands the nearest
+// at frame 0 with dx > 0 and |dy| < dx, hip from hip; people without anybody in front push nobody.
+
+// Symbols of a group, [person]; another set of symbols may be put in its place.
+struct StateFunction {
+  int num_symbols = 0;
+  std::function<std::vector<Symbols>(const std::vector<BodyMotion>& people, double dt)> of;
+};
+
+enum SocialState { kStand, kLean, kStep, kPushStanding, kPushLeaning, kPushStepping };
+inline constexpr int kSocialStates = 6;
+
+std::vector<Symbols> SocialStates(const std::vector<BodyMotion>& people, double dt);
+inline StateFunction SocialStateFunction() { return {kSocialStates, SocialStates}; }
+
+// How natural motions look: normalized directional motion similarity (NDMS, Tanke et al.,
 // "Intention-based long-term human motion anticipation", 3DV 2021; as SDM uses it).
 //
 // A word is 20 frames (at 60 Hz) of 17 joints, seen from the floor below the middle of the hip
@@ -10,13 +47,6 @@
 //
 // The nearest are exact: sum over frames of |a - b|^2 >= frames * |mean a - mean b|^2, so that
 // means rule most words out, and of these the principal axes of the recorded means come first.
-#pragma once
-
-#include <vector>
-
-#include "models/restoration/body.h"
-
-namespace pushid {
 
 inline constexpr int kWordFrames = 20;
 inline constexpr double kWordRate = 60.0;  // Hz

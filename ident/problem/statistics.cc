@@ -1,5 +1,5 @@
 // ident: correlations over time.
-#include "ident/problem/time_series.h"
+#include "ident/problem/statistics.h"
 
 #include <cmath>
 #include <unsupported/Eigen/SpecialFunctions>
@@ -71,6 +71,20 @@ MeanAndError MeanOf(const std::vector<double>& values) {
   for (double value : values) squares += (value - result.mean) * (value - result.mean);
   if (values.size() > 1) result.error = std::sqrt(squares / (n - 1.0) / n);
   return result;
+}
+
+// P(|T| > t) = I_{v / (v + t^2)}(v / 2, 1 / 2).
+double StudentTail(double t, double v) {
+  return Eigen::numext::betainc(0.5 * v, 0.5, v / (v + t * t));
+}
+
+double StudentQuantile95(double v) {
+  double low = 0.0, high = 1000.0;
+  for (int i = 0; i < 100; ++i) {
+    const double t = 0.5 * (low + high);
+    (StudentTail(t, v) > 0.05 ? low : high) = t;
+  }
+  return 0.5 * (low + high);
 }
 
 }  // namespace pushid

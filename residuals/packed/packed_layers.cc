@@ -1,9 +1,86 @@
-// residuals: packed learned interactions, forwards and backwards.
-#include "residuals/packed/packed_pairs.h"
+// residuals: packed laws of the rod, forwards and backwards.
+#include "residuals/packed/packed_layers.h"
 
 #include <algorithm>
 
 namespace pushid {
+
+PackedRod::PackedRod(const RodShape& shape, const VectorKernels& kernels,
+                     const PackedColumns& columns)
+    : columns_(columns), kernels_(kernels), right_(kernels, PackedMatrix::kRight) {
+  for (int rows : shape.hidden) {
+    layers_.push_back({PackedLayer(kernels, rows, top_, output_at_), Eigen::VectorXd(rows),
+                       Eigen::VectorXd(rows), Columns(rows, columns_.total()),
+                       Columns(rows, columns_.total())});
+    output_at_ += layers_.back().num_weights();
+    top_ = rows;
+  }
+  inputs_.resize(RodShape::kInputs, columns_.total());
+  outputs_.resize(1, columns_.total());
+}
+
+void PackedRod::Start(const double* weights) {
+  weights_ = weights;
+  for (Layer& layer : layers_) {
+    layer.Pack(weights);
+    layer.rest = Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>(
+        weights + layer.at + layer.width, layer.rows, 1, Eigen::OuterStride<>(layer.stride()));
+    kernels_.tanh(layer.rest.data(), layer.rows);
+    layer.bias.setZero();
+  }
+}
+
+void PackedRod::Forward(int step, const Columns& inputs, Eigen::RowVectorXd* velocities) {
+  const int n = columns_.active(step);
+  columns_.At(inputs_, step) = inputs;
+  for (size_t i = 0; i < layers_.size(); ++i) {
+    Layer& layer = layers_[i];
+    auto below = columns_.At(Below(i), step), active = columns_.At(layer.active, step);
+    for (int row = 0; row < layer.rows; ++row) {
+      active.row(row).setConstant(weights_[layer.at + (row + 1) * layer.stride() - 1]);
+    }
+    right_.Pack(below.data(), n, layer.width, layer.width, 1);
+    AddProduct(layer.weights, right_, active.data(), layer.rows);
+    kernels_.tanh(active.data(), active.size());
+    columns_.At(layer.hidden, step) = active.colwise() - layer.rest;
+  }
+  *velocities = kRodSpeed * (Output().transpose() * columns_.At(Below(layers_.size()), step));
+}
+
+void PackedRod::Backward(int step, const Eigen::RowVectorXd& velocities, Columns* inputs) {
+  const int n = columns_.active(step);
+  columns_.At(outputs_, step) = kRodSpeed * velocities;
+  *inputs = Output() * columns_.At(outputs_, step);
+  for (size_t i = layers_.size(); i-- > 0;) {
+    Layer& layer = layers_[i];
+    auto active = columns_.At(layer.active, step), hidden = columns_.At(layer.hidden, step);
+    layer.bias -= (inputs->array() * hidden.array() * (active.colwise() + layer.rest).array())
+                      .rowwise()
+                      .sum()
+                      .matrix();
+    active = inputs->array() * (1.0 - active.array().square());
+    inputs->setZero(layer.width, n);
+    right_.Pack(active.data(), n, layer.rows, layer.rows, 1);
+    AddProduct(layer.transposed, right_, inputs->data(), layer.width);
+  }
+}
+
+void PackedRod::AddWeightGradient(double* gradient) {
+  for (size_t i = 0; i < layers_.size(); ++i) {
+    const Layer& layer = layers_[i];
+    PackedMatrix left(kernels_, PackedMatrix::kLeft);
+    left.Pack(Below(i).data(), layer.width, columns_.total(), 1, layer.width);
+    right_.Pack(layer.active.data(), layer.rows, columns_.total(), 1, layer.rows);
+    RowMajor own = RowMajor::Zero(layer.rows, layer.width);
+    AddProduct(left, right_, own.data(), layer.width);
+    Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.stride());
+    by_weight.leftCols(layer.width) += own;
+    by_weight.col(layer.width) += layer.bias;
+  }
+  Eigen::Map<Eigen::VectorXd>(gradient + output_at_, top_) +=
+      Below(layers_.size()) * outputs_.transpose();
+}
+
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

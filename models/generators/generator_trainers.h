@@ -1,0 +1,118 @@
+// models: training of generators, one trainer for each kind (*_trainer_torch.cc).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "models/generators/diffusion_network.h"
+#include "models/generators/particle_network.h"
+#include "models/restoration/trainer.h"
+
+namespace pushid {
+
+// Training of particles.
+//
+// The drift first: windows of observed and forecast frames, own output fed back in the forecast,
+// mean distance of joints with frame t weighing 1/t. Then the noise, with the drift as it is: the
+// Gaussian likelihood of the true displacements, and at last its correlations. What the network is
+// told of the pose is jittered, one draw a window and coordinate: poses are few, and displacements
+// say more. Adam, a warm-up, the rate down to nothing by a cosine, gradients clipped.
+
+// How the noise is learned. likelihood: -log N(p; f, g^2) with its determinant, the meaning of
+// SDE's Eq. 6. squared: the squared error of the sampled transition, |p - f|^2 + g^2 in the mean,
+// what is left of it without the determinant; its minimum is g = 0.
+enum class NoiseLoss { kLikelihood, kSquared };
+constexpr EnumNames<NoiseLoss, 2> Names(NoiseLoss) {
+  return {{{"likelihood", NoiseLoss::kLikelihood}, {"squared", NoiseLoss::kSquared}}};
+}
+
+struct LearntParticles {
+  int group = 0;  // an action; groups are drawn by the root of their number of windows
+  Trajectories motion;
+  Eigen::MatrixXf controls = {};
+};
+
+struct ParticleTrainingOptions : TrainerOptions {
+  ParticleStructure structure;
+  int observed = 25, predicted = 25;  // frames of a window
+  bool from_start = false;   // windows begin where the motion does, and may be longer than it
+  bool even_frames = false;  // of the loss; otherwise frame t weighs 1/t
+  int steps = 1200, noise_steps = 300;
+  int batch = 64;
+  int warm_up = 100;
+  double learning_rate = 1e-3;
+  double clip = 1.0;      // largest norm of the gradient
+  double jitter = 0.7;    // of the pose, in its spreads
+  double mirrored = 0.5;  // share of windows
+  double squared = 0.0;   // weight of squared distances (SDE's Eq. 10)
+  double bones = 0.0;     // of bone lengths (Eq. 11)
+  double critic = 0.0;    // of a Wasserstein critic with gradient penalty (Eq. 12)
+  NoiseLoss noise_loss = NoiseLoss::kLikelihood;
+  std::vector<float> mirrored_controls;  // the sign of each control in the mirror
+};
+
+inline constexpr int kParticleRound = 50;   // steps of a point of the curve
+inline constexpr int kFirstNoiseStep = 10;  // displacements before are not judged by the noise
+
+class ParticleTrainer : public Trainer {
+ public:
+  ParticleTrainer(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
+                  const std::vector<LearntParticles>& held, const ParticleTrainingOptions& options);
+
+  // Mean losses of some steps; of the held windows (fixed, not jittered) at the end.
+  ParticleNetwork Network() const;
+  // What LibTorch forecasts without noise; for comparison with ParticleRollout.
+  Trajectories Forecast(const ObservedMotion& person, int frames) const;
+
+ private:
+  struct Torch;
+};
+
+// Training of the diffusion network.
+//
+// A step takes some groups, each in the mirror or not, a little turned, larger or smaller, shows
+// some of the first frames or none, adds noise of a random time t, and charges the estimate of x_0:
+//
+//   |x - x_0| + 2 |joint - joint_0| in m + 2 |the same differences of frames|, in means
+//
+// where observed frames weigh 0.1 and those after the recording's end nothing. Into some groups
+// people are put who stand far from all others and do nothing: from groups alone the network cannot
+// know that a push does not reach everybody. AdamW, a warm-up, the rate down to a fiftieth by a
+// cosine, gradients clipped; what is used is the exponential mean of the weights.
+
+using ObservedGroup = std::vector<ObservedMotion>;  // all frames of everybody
+
+struct DiffusionTrainingOptions : TrainerOptions {
+  DiffusionStructure structure;
+  int steps = 1500;
+  int groups = 8;         // of a step
+  int people_alone = 24;  // of every fifth step, where there are recordings of one person
+  int warm_up = 100;      // steps
+  double learning_rate = 2e-3;
+  double weight_decay = 0.01;
+  double clip = 1.0;         // largest norm of the gradient
+  double averaging = 0.998;  // of the weights, from step to step
+  double dropout = 0.1;      // of the statics
+  double bystanders = 0.3;   // share of groups that get one or two
+  double turn = 0.12;        // rad, largest
+  double size = 0.05;        // share, largest
+  double dt = 1.0 / 60.0;    // s
+};
+
+inline constexpr int kDiffusionRound = 50;  // steps of a point of the curve
+
+class DiffusionTrainer : public Trainer {
+ public:
+  DiffusionTrainer(const std::vector<ObservedGroup>& learnt, const std::vector<ObservedGroup>& held,
+                   const DiffusionTrainingOptions& options);
+
+  // Mean losses of some steps; of the held groups, always in the same noise, at the end.
+  DiffusionNetwork Network() const;  // of the mean weights
+  // What LibTorch estimates from this noisy motion; for comparison with GroupDenoiser.
+  Eigen::MatrixXf Estimate(const GroupFeatures& features, const Eigen::MatrixXf& noisy, double t);
+
+ private:
+  struct Torch;
+};
+
+}  // namespace pushid
