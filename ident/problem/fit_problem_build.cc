@@ -156,14 +156,14 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
 
 void FitProblem::AddRollouts(FitPoint* point, int horizon, Built* built) const {
   built->shortened = Failures(*point, horizon);
-  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
     int frames = horizon;
     for (const FailedRollout& failed : built->shortened) {
       if (failed.recording == i) frames = failed.status.frame;
     }
     if (Count(i) == 0) continue;
     if (frames == 1) continue;  // fails in its very first step: nothing left to compare
-    const auto rollout = MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas,
+    const auto rollout = MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas,
                                             Weight(i, horizon), frames);
     built->AddRollout(std::make_unique<CondensedRollout>(rollout, options_.jacobian),
                       RecordingBlocks(point, i), i);
@@ -171,14 +171,14 @@ void FitProblem::AddRollouts(FitPoint* point, int horizon, Built* built) const {
     // A fit has those of all recordings (PrepareFit); what was read from a file, and a design's
     // recordings that are still to be made, have none, and are seen by their pendulums alone.
     if (horizon != 0 || options_.body_weight <= 0.0 || options_.body == nullptr) continue;
-    if (options_.body->motions.count(recordings_[i].id) == 0) continue;
+    if (options_.body->motions.count(recordings()[i].id) == 0) continue;
     built->AddRollout(std::make_unique<BodyResidual>(rollout, options_.body, options_.body_weight),
                       RecordingBlocks(point, i), i);
   }
 }
 
 void FitProblem::AddLikelihoods(FitPoint* point, Built* built) const {
-  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
     if (Count(i) == 0) continue;
     const std::vector<double*> blocks = RecordingBlocks(point, i);
     auto residual = std::make_unique<LikelihoodResidual>(
@@ -196,9 +196,9 @@ void FitProblem::AddLikelihoods(FitPoint* point, Built* built) const {
 FitProblem::Built FitProblem::BuildEquationError(FitPoint* point) const {
   Built built;
   AddParameterBlocks(point, 1, &built);
-  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
     if (Count(i) == 0) continue;
-    auto residual = std::make_unique<EquationErrorResidual>(recordings_[i], options_.model, map_);
+    auto residual = std::make_unique<EquationErrorResidual>(recordings()[i], options_.model, map_);
     built.AddRollout(std::move(residual), RecordingBlocks(point, i), i);
   }
   AddPriors(point, &built);
