@@ -189,6 +189,24 @@ TEST(ResultJson, DamageIsNamed) {
   json = good;
   json["uncertainty"]["covariance_fitted_scale"][1] = Json::array({1.0});
   EXPECT_TRUE(Contains(message(json), "damaged"));
+  // What parts of the file say together is wrong at an entry, not at the part that was read last.
+  json = good;
+  json["fit"]["best_start"] = 7;
+  EXPECT_TRUE(Contains(message(json), "at 'fit/best_start'"));
+  json = good;
+  json["values"]["tail_time"] = 0.0;
+  EXPECT_TRUE(Contains(message(json), "at 'values/tail_time'"));
+  json = good;
+  json["uncertainty"]["correlation"].erase(0);
+  EXPECT_TRUE(Contains(message(json), "at 'uncertainty/correlation'"));
+  json = good;
+  json["subjects"].front()["pooled"]["nu"] = json["parameters"][0];
+  EXPECT_TRUE(Contains(message(json), "/pooled/nu': subject"));
+  json = good;
+  json["ensemble"] = Json::array({{{"values", good["values"]}}});
+  EXPECT_TRUE(Contains(message(json), "at 'ensemble/0/self_network'"));
+  json["ensemble"][0]["values"].erase("mu");
+  EXPECT_TRUE(Contains(message(json), "at 'ensemble/0/values/mu'"));
   // Any entry of the top gone is an error, never a crash.
   for (const auto& [key, value] : good.items()) {
     // Older models have none.
