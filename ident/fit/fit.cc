@@ -94,11 +94,11 @@ void AddFittedTo(const std::vector<PendulumRecording>& recordings, FitResult* re
 }
 
 void AddWarnings(const SolvedFit& fit, FitResult* result) {
-  std::vector<std::string>& warnings = result->warnings;
+  Warnings& warnings = result->warnings;
   warnings = FitWarnings(fit.problem, *result);
-  if (!fit.no_noise.empty()) warnings.push_back(fit.no_noise);
+  if (!fit.no_noise.empty()) warnings.emplace_back(fit.no_noise);
   if (fit.solved.weights_settled) return;
-  warnings.push_back(
+  warnings.emplace_back(
       result->options.likelihood == Likelihood::kTrajectory
           ? "the weight of the data still changed by more than 1 % in the last round of "
             "reweighting: priors may have too much or too little weight"

@@ -54,7 +54,7 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
       g("advice", model.advice);
     });
   }
-  a("warnings", fit.warnings);
+  WarningFields(a, "warnings", fit.warnings);
   a.Group("fit", [&](auto& g) {
     g("converged", fit.converged);
     g("cost", fit.cost);
