@@ -68,7 +68,7 @@ int Run() {
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
   }
-  std::vector<std::string> file_warnings;  // a result says what it was made of
+  Warnings file_warnings;  // a result says what it was made of
   const Result<std::vector<Recording>> recordings =
       LoadFlaggedRecordings({}, options.value().body_weight > 0.0, &file_warnings);
   if (!recordings.ok()) return Fail(recordings.error());
@@ -92,7 +92,7 @@ int Run() {
           CheckAgainst(checks, options.value(), static_cast<int>(pendulums.size()))) {
     return Fail(*error);
   }
-  std::vector<std::string> unit_warnings;
+  Warnings unit_warnings;
   const MaybeError unprepared = PrepareFit(pendulums, &options.value(), &unit_warnings);
   WarnGrouped(unit_warnings);
   if (unprepared) return Fail(*unprepared);

@@ -23,7 +23,7 @@ void AddModel(const FitResult& fit, JobResult* result) {
     result->data_shares[estimate.name] = estimate.shares.data;
   }
   result->cost = fit.cost;
-  result->warnings = fit.warnings;
+  for (const Warning& warning : fit.warnings) result->warnings.push_back(warning.text);
   result->settles = fit.behaviour.settles;
   result->solve_s = fit.solve_seconds;
 }

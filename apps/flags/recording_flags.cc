@@ -85,8 +85,7 @@ MaybeError CheckRecordingFlags() {
 }
 
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
-                                                     bool keep_all_joints,
-                                                     std::vector<std::string>* warnings) {
+                                                     bool keep_all_joints, Warnings* warnings) {
   if (MaybeError missing =
           Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
     return *missing;
@@ -100,13 +99,13 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   }
   const Result<Manifest> manifest = ReadManifests(FLAGS_recordings);
   if (!manifest.ok()) return manifest.error();
-  std::vector<std::string> found;
+  Warnings found;
   Result<std::vector<Recording>> recordings =
       LoadRecordings(manifest.value(), options.value(), &found);
   if (recordings.ok()) {
     PlausibilityCheck ankles;
     for (const Recording& recording : recordings.value()) ankles.LookAtFacing(recording);
-    for (const std::string& warning : ankles.Warnings()) found.push_back(warning);
+    for (const std::string& warning : ankles.Warnings()) found.emplace_back(warning);
   }
   WarnGrouped(found);
   if (warnings != nullptr) *warnings = found;

@@ -29,7 +29,7 @@ RecordingFlags RecordingFlagsFromCommandLine();
 // ankles.
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
                                                      bool keep_all_joints = false,
-                                                     std::vector<std::string>* warnings = nullptr);
+                                                     Warnings* warnings = nullptr);
 
 // How files are read: the flags of that by name.
 inline constexpr const char* kLoadFlags[] = {"length_unit", "length_scale", "max_gap_s",

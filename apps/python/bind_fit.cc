@@ -71,18 +71,23 @@ void CheckRecordings(const std::vector<SharedRecording>& recordings) {
   }
 }
 
+// Warnings of files, as the package keeps them: text, recording, of_many.
+using Told = std::vector<std::tuple<std::string, std::string, std::string>>;
+
 std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
                                 const GivenOptions& given, const py::object& progress,
-                                const std::vector<std::string>& file_warnings) {
+                                const Told& file_warnings) {
   CheckRecordings(recordings);
   const FitOptions roughly = Unwrapped(MakeFitOptions(given), Fault::kUsage);
   auto model = std::make_shared<Model>();
   model->to = Data(recordings, roughly.mapping);
   const std::vector<PendulumRecording>& pendulums = model->to->pendulums;
   FitOptions options = Options(given, pendulums);
-  std::vector<std::string> warnings = OptionWarnings(given, options);
+  const std::vector<std::string> ignored = OptionWarnings(given, options);
+  Warnings warnings;
   Check(PrepareFit(pendulums, &options, &warnings), Fault::kUsage);
-  for (const std::string& warning : warnings) Warn(warning);
+  warnings.insert(warnings.begin(), ignored.begin(), ignored.end());
+  for (const Warning& warning : warnings) Warn(warning.text);
   FittedModel fitted;
   {
     const SolveProgress told = ProgressOf(progress);
@@ -91,7 +96,11 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
   }
   FitResult& fit = fitted.fit;
   if (!fit.ok()) Raise(Fault::kFit, Error{"the fit failed: " + fit.message});
-  fit.warnings.insert(fit.warnings.begin(), file_warnings.begin(), file_warnings.end());
+  Warnings of_files;
+  for (const auto& [text, recording, of_many] : file_warnings) {
+    of_files.emplace_back(text, recording, of_many);
+  }
+  fit.warnings.insert(fit.warnings.begin(), of_files.begin(), of_files.end());
   fitted.provenance = From(given, options);
   fitted.advice = Advise(fitted);
   model->fitted = std::make_shared<const FittedModel>(std::move(fitted));
@@ -216,8 +225,8 @@ void BindFits(py::module_* module) {
       .def_property_readonly("warnings",
                              [](const Model& m) {
                                std::vector<std::string> told;
-                               for (const std::string& warning : m.fitted->fit.warnings) {
-                                 told.push_back(InPython(warning));
+                               for (const Warning& warning : m.fitted->fit.warnings) {
+                                 told.push_back(InPython(warning.text));
                                }
                                return told;
                              })

@@ -45,7 +45,7 @@ IdentifiedModel With(const Model& model, const std::string& set) {
 }
 
 void WarnOfInputs(const IdentifiedModel& model, const PendulumRecording& recording) {
-  for (const std::string& warning : InputWarnings(model, {recording})) Warn(warning);
+  for (const Warning& warning : InputWarnings(model, {recording})) Warn(warning.text);
 }
 
 namespace {

@@ -71,7 +71,7 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
     options.length_scale = length_scale;
   }
   Check(CheckPreparation(options.preparation), Fault::kUsage);
-  std::vector<std::string> warnings;
+  Warnings warnings;
   Result<std::vector<Recording>> read = [&] {
     const py::gil_scoped_release no_gil;
     return LoadRecordings(manifest, options, &warnings);
@@ -80,7 +80,11 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
   for (Recording& one : Unwrapped(std::move(read), Fault::kData)) {
     recordings.push_back(std::make_shared<const Recording>(std::move(one)));
   }
-  return py::make_tuple(recordings, warnings);
+  py::list told;
+  for (const Warning& warning : warnings) {
+    told.append(py::make_tuple(warning.text, warning.recording, warning.of_many));
+  }
+  return py::make_tuple(recordings, told);
 }
 
 py::tuple Simulate(int people, int recordings_per_person, int people_in_row, double fps, int frames,

@@ -41,8 +41,8 @@ void Warn(const std::string& message) {
   std::fprintf(stderr, "%s: warning: %s\n", g_program.c_str(), message.c_str());
 }
 
-void WarnGrouped(const std::vector<std::string>& messages) {
-  for (const std::string& message : GroupedWarnings(messages)) Warn(message);
+void WarnGrouped(const Warnings& warnings) {
+  for (const std::string& message : GroupedWarnings(warnings)) Warn(message);
 }
 
 std::string Version() { return PUSHID_VERSION; }

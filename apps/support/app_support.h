@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/loading/warning.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {
@@ -26,7 +27,7 @@ int Fail(const Error& error);
 int Fail(const std::string& message);
 void Warn(const std::string& message);
 // Those that differ only in the recording as one.
-void WarnGrouped(const std::vector<std::string>& messages);
+void WarnGrouped(const Warnings& warnings);
 
 std::string Version();
 

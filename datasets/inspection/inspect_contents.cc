@@ -153,8 +153,9 @@ MaybeError InspectManifest(Inspection* found) {
     ++formats[Title(entry.motion_format)];
     for (const ManifestSubject& subject : entry.subjects) subjects.insert(subject.id);
     pushed += entry.push_csv.empty() && entry.pushes.empty() ? 0 : 1;
-    const Result<Recording> recording =
-        LoadRecording(manifest.value(), entry, {}, &found->warnings);
+    Warnings warnings;
+    const Result<Recording> recording = LoadRecording(manifest.value(), entry, {}, &warnings);
+    for (const Warning& warning : warnings) found->Warn(warning.text);
     if (recording.ok()) ++read;
     if (recording.ok()) plausible.Look(recording.value());
     if (!recording.ok()) found->Warn(recording.error().ToString());

@@ -23,7 +23,7 @@ constexpr double kFrameTimeTolerance = 1e-3;
 class PersonLoader {
  public:
   PersonLoader(const Manifest& manifest, const ManifestRecording& entry, std::size_t index,
-               const LoadOptions& options, std::vector<std::string>* warnings)
+               const LoadOptions& options, Warnings* warnings)
       : manifest_(manifest), entry_(entry), index_(index), options_(options), warnings_(warnings) {
     path_ = ResolvePath(entry.manifest, entry.motion[index]);
   }
@@ -80,10 +80,11 @@ class PersonLoader {
   }
 
   void Warn(const std::string& warning) const {
-    if (warnings_ != nullptr) {
-      // As the manifest names it: results keep warnings, and not where the data lay.
-      warnings_->push_back(RecordingWarning(entry_.id, entry_.motion[index_] + " " + warning));
-    }
+    if (warnings_ == nullptr) return;
+    // As the manifest names it: results keep warnings, and not where the data lay.
+    const std::string& file = entry_.motion[index_];
+    warnings_->emplace_back("recording " + Quoted(entry_.id) + ": " + file + " " + warning,
+                            entry_.id, "the file " + warning);
   }
 
   // The manifest's rate; where it gives none, that of the file.
@@ -254,7 +255,7 @@ class PersonLoader {
   const ManifestRecording& entry_;
   const std::size_t index_;
   const LoadOptions& options_;
-  std::vector<std::string>* const warnings_;
+  Warnings* const warnings_;
   std::string path_;
   ColumnMapping mapping_;
   std::string mapping_hash_;
@@ -264,8 +265,7 @@ class PersonLoader {
 }  // namespace
 
 Result<LoadedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
-                                std::size_t index, const LoadOptions& options,
-                                std::vector<std::string>* warnings) {
+                                std::size_t index, const LoadOptions& options, Warnings* warnings) {
   return PersonLoader(manifest, entry, index, options, warnings).Load();
 }
 

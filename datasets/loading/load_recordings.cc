@@ -68,7 +68,7 @@ MaybeError LoadPushes(const std::string& manifest, const ManifestPush& entry, Co
 }  // namespace
 
 Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
-                                const LoadOptions& options, std::vector<std::string>* warnings) {
+                                const LoadOptions& options, Warnings* warnings) {
   Recording recording;
   recording.id = entry.id;
   recording.labels = entry.labels;
@@ -77,7 +77,8 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   recording.initial_velocity = entry.initial_velocity;
 
   for (const std::string& misspelt : MisspeltKeys(entry)) {
-    if (warnings != nullptr) warnings->push_back("recording " + Quoted(entry.id) + " " + misspelt);
+    if (warnings == nullptr) continue;
+    warnings->emplace_back("recording " + Quoted(entry.id) + " " + misspelt, entry.id, misspelt);
   }
 
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
@@ -121,8 +122,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
 }
 
 Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
-                                              const LoadOptions& options,
-                                              std::vector<std::string>* warnings) {
+                                              const LoadOptions& options, Warnings* warnings) {
   if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
   const Result<Manifest> manifest = ReadManifests(manifests);
   if (!manifest.ok()) return manifest.error();
@@ -130,7 +130,7 @@ Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
 }
 
 Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const LoadOptions& options,
-                                              std::vector<std::string>* warnings) {
+                                              Warnings* warnings) {
   if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
   const Result<std::vector<int>> selected =
       SelectRecordings(manifest, options.setting, options.ids, options.leave_out);
@@ -143,85 +143,6 @@ Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const Lo
     recordings.push_back(std::move(recording.value()));
   }
   return recordings;
-}
-
-namespace {
-
-constexpr size_t kNamed = 3;  // recordings of a group that it names
-constexpr char kRecording[] = "recording ";
-
-struct Group {
-  std::string key, first;        // what is the same; the first warning, whole
-  std::vector<std::string> ids;  // empty: of no recording
-  int count = 0;
-};
-
-// "a.bvh", "walks/a.c3d"
-bool IsFileName(const std::string& word) {
-  const size_t dot = word.rfind('.');
-  if (dot == std::string::npos || dot == 0 || dot + 1 == word.size()) return false;
-  return std::all_of(word.begin() + static_cast<long>(dot) + 1, word.end(),
-                     [](unsigned char c) { return std::isalnum(c) != 0; });
-}
-
-// "recording 'a b': a.bvh has" and "recording a: it has".
-Group Read(const std::string& warning) {
-  Group read{warning, warning, {}, 1};
-  if (warning.rfind(kRecording, 0) != 0) return read;
-  size_t begin = sizeof kRecording - 1;
-  const bool quoted = warning[begin] == '\'';
-  begin += quoted ? 1 : 0;
-  const size_t end = warning.find(quoted ? '\'' : ':', begin);
-  if (end == std::string::npos) return read;
-  read.ids = {warning.substr(begin, end - begin)};
-  read.key = warning.substr(end + (quoted ? 1 : 0));
-  if (read.key.rfind(": ", 0) != 0) return read;
-  const std::string word = read.key.substr(2, read.key.find(' ', 2) - 2);
-  if (IsFileName(word)) read.key.replace(2, word.size(), "the file");
-  return read;
-}
-
-std::string Text(const Group& group) {
-  const std::string count = std::to_string(group.count);
-  if (group.count == 1) return group.first;
-  if (group.ids.size() < 2) return group.first + " (" + count + " times)";
-  std::string names;
-  for (size_t i = 0; i < std::min(kNamed, group.ids.size()); ++i) {
-    names += (i > 0 ? ", " : "") + group.ids[i];
-  }
-  const std::string more = group.ids.size() > kNamed ? ", ..." : "";
-  const std::string colon = group.key.rfind(':', 0) == 0 ? "" : ":";
-  return "in " + std::to_string(group.ids.size()) + " recordings (" + names + more + ")" + colon +
-         group.key;
-}
-
-}  // namespace
-
-std::string RecordingWarning(const std::string& id, const std::string& what) {
-  return kRecording + Quoted(id) + ": " + what;
-}
-
-std::vector<std::string> GroupedWarnings(const std::vector<std::string>& warnings) {
-  std::vector<Group> groups;
-  for (const std::string& warning : warnings) {
-    const Group read = Read(warning);
-    const auto same = std::find_if(groups.begin(), groups.end(), [&read](const Group& group) {
-      return group.key == read.key && group.ids.empty() == read.ids.empty();
-    });
-    if (same == groups.end()) {
-      groups.push_back(read);
-      continue;
-    }
-    ++same->count;
-    // One recording may say it of several people.
-    for (const std::string& id : read.ids) {
-      const bool known = std::find(same->ids.begin(), same->ids.end(), id) != same->ids.end();
-      if (!known) same->ids.push_back(id);
-    }
-  }
-  std::vector<std::string> texts;
-  for (const Group& group : groups) texts.push_back(Text(group));
-  return texts;
 }
 
 }  // namespace pushid

@@ -1,6 +1,6 @@
 // datasets: from a manifest to recordings in SI units, checked.
 //
-//   std::vector<std::string> warnings;
+//   Warnings warnings;
 //   LoadOptions options;
 //   options.setting = "single";
 //   const auto recordings = LoadRecordings("M/manifest.json", options, &warnings);
@@ -14,6 +14,7 @@
 #include "datasets/files/input_file.h"  // HashFile
 #include "datasets/formats/units.h"
 #include "datasets/loading/motion_preparation.h"
+#include "datasets/loading/warning.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
 
@@ -48,23 +49,13 @@ struct LoadOptions {
 // show wrong units, joints not found.
 Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
                                               const LoadOptions& options = {},
-                                              std::vector<std::string>* warnings = nullptr);
+                                              Warnings* warnings = nullptr);
 
 // Those of a manifest that was read already, or one of them.
 Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const LoadOptions& options,
-                                              std::vector<std::string>* warnings = nullptr);
+                                              Warnings* warnings = nullptr);
 Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
-                                const LoadOptions& options = {},
-                                std::vector<std::string>* warnings = nullptr);
-
-// A warning about one recording, in the form that GroupedWarnings knows: "recording 'a': a.bvh has
-// ...". what: begins with the file it is about, if any.
-std::string RecordingWarning(const std::string& id, const std::string& what);
-
-// Warnings that differ only in the recording, "recording 'a': a.bvh has ...", become one: "in 32
-// recordings (a, b, c, ...): the file has ...". Equal ones become one with how often. In the order
-// of their first.
-std::vector<std::string> GroupedWarnings(const std::vector<std::string>& warnings);
+                                const LoadOptions& options = {}, Warnings* warnings = nullptr);
 
 // One person of a recording from the file that holds their motion.
 
@@ -77,7 +68,6 @@ struct LoadedPerson {
 // Reads the file of subject `index`, cuts it to the manifest's frames, closes gaps, turns it to the
 // project's units and axes and checks that it can be a person.
 Result<LoadedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
-                                std::size_t index, const LoadOptions& options,
-                                std::vector<std::string>* warnings);
+                                std::size_t index, const LoadOptions& options, Warnings* warnings);
 
 }  // namespace pushid

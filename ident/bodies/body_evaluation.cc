@@ -193,6 +193,7 @@ Json ToJson(const BodySummary& summary, bool with_recordings) {
     Json& rows = json["by_" + key] = Json::object();
     for (const auto& [name, mean] : groups) rows[name] = MeanJson(mean);
   }
+  if (!summary.without_label.empty()) json["without_label"] = summary.without_label;
   if (summary.groups) json["group_metrics"] = ToJson(*summary.groups);
   return json;
 }
@@ -245,7 +246,7 @@ std::string BodyText(const BodyEvaluation& evaluation) {
   for (const auto& [key, means] : by_key) {
     for (const auto& [name, mean] : means) groups.Add(Row(name, mean));
   }
-  text += groups.ToString();
+  text += groups.ToString() + WithoutLabelText(restored.without_label);
   for (const BodyScore& score : restored.recordings) {
     if (!score.failure.empty()) text += score.id + ": " + score.failure + "\n";
   }

@@ -123,6 +123,7 @@ BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
   summary.frame_weighted = Mean(all, true);
   summary.by = GroupScores(pendulums, summary.recordings, group_by,
                            [](const Scores& group) { return Mean(group, false); });
+  summary.without_label = CountWithoutLabel(pendulums, summary.recordings, group_by);
   return summary;
 }
 

@@ -76,6 +76,7 @@ struct BodySummary {
   std::vector<BodyScore> recordings;
   BodyMean mean, frame_weighted;
   ByLabel<BodyMean> by;
+  WithoutLabel without_label;          // in no group of `by`
   std::optional<GroupMetrics> groups;  // of all recordings of more than one person, if any
 };
 

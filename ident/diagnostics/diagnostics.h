@@ -7,6 +7,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
+#include "datasets/loading/warning.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/uncertainty.h"
@@ -19,7 +20,7 @@ struct StartDiagnostics {
   std::vector<NullDirection> null_directions;  // of the recordings alone, without priors
   std::vector<std::string> without_effect;     // free parameters whose column is zero
   std::vector<std::string> notes;              // starts moved off a bound
-  std::vector<std::string> unit_warnings;      // inputs that look like another unit
+  Warnings unit_warnings;                      // inputs that look like another unit
 };
 
 // A frame that the robust loss gives less than half its weight.
@@ -96,7 +97,7 @@ void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions
 MaybeError CheckEffects(const FitProblem& problem);
 
 // Masses, rods, pushes and motions that no person has: what looks wrong, by recording.
-std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& recordings);
+Warnings UnitWarnings(const std::vector<PendulumRecording>& recordings);
 
 // Everything but the advice, which also looks at profiles and bootstrap (advice.h).
 Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,

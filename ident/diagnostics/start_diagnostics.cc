@@ -110,22 +110,24 @@ std::string AgainstThePush(const PendulumRecording& r, const ScenePush& push) {
   }
   const double along = farthest.dot(impulse.normalized());
   if (farthest.norm() < kSeenToMove || along >= kAlong * farthest.norm()) return "";
-  return "recording " + r.id + ": pushed, the hip of person " + std::to_string(push.person) +
-         " goes " + Rounded(farthest.norm(), 2) + " m, but " +
+  return "pushed, the hip of person " + std::to_string(push.person) + " goes " +
+         Rounded(farthest.norm(), 2) + " m, but " +
          (along < 0.0 ? "against the push" : "not along the push") +
          "; are up, forward and the push's sign and start right?";
 }
 
 }  // namespace
 
-std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& recordings) {
-  std::vector<std::string> warnings;
+Warnings UnitWarnings(const std::vector<PendulumRecording>& recordings) {
+  Warnings warnings;
   for (const PendulumRecording& r : recordings) {
+    const auto tell = [&](const std::string& what) {
+      warnings.emplace_back("recording " + r.id + ": " + what, r.id, what);
+    };
     const auto warn = [&](double value, double lower, double upper, const std::string& what,
                           const std::string& hint) {
       if (value >= lower && value <= upper) return;
-      warnings.push_back("recording " + r.id + ": " + what + " is " + Rounded(value, 3) + "; " +
-                         hint);
+      tell(what + " is " + Rounded(value, 3) + "; " + hint);
     };
     const double fps = 1.0 / r.scene.dt;
     warn(fps, kMinFps, kMaxFps, "the frame rate in 1/s", "is fps really frames per second?");
@@ -151,7 +153,7 @@ std::vector<std::string> UnitWarnings(const std::vector<PendulumRecording>& reco
       warn(peak / r.scene.people[push.person].body.mass, kMinPush, kMaxPush,
            "the push's peak over the mass in m/s^2", "is the push in N?");
       const std::string against = AgainstThePush(r, push);
-      if (!against.empty()) warnings.push_back(against);
+      if (!against.empty()) tell(against);
     }
   }
   return warnings;

@@ -15,43 +15,28 @@ std::string Describe(const RolloutStatus& status) {
          " leaves the model's domain at frame " + std::to_string(status.frame);
 }
 
-// The pooled parameters of every unit: shared value and deviation together.
-std::map<std::string, std::map<std::string, Estimate>> PooledByUnit(const FitProblem& problem,
-                                                                    const FitPoint& point,
-                                                                    const Uncertainty& u) {
-  std::map<std::string, std::map<std::string, Estimate>> pooled;
-  const auto& fitted = problem.map().fitted;
-  int first = static_cast<int>(point.shared.size());
-  for (const auto& [unit, deviations] : point.unit) {
-    const ParameterSet<double> values = problem.Parameters(point, unit);
-    for (size_t i = 0; i < fitted.size(); ++i) {
-      if (fitted[i].deviation < 0) continue;
-      const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
-      const int a = static_cast<int>(i), b = first + fitted[i].deviation;
-      const double variance = u.covariance(a, a) + u.covariance(b, b) + 2.0 * u.covariance(a, b);
-      const double error = std::sqrt(std::max(0.0, variance));
-      Estimate e;
-      e.freedom = std::min(u.estimates[i].freedom, u.estimates[b].freedom);
-      e.standard_error_naive = std::numeric_limits<double>::quiet_NaN();  // not computed for sums
-      // No better known than the shared value and its own deviation.
-      const Estimate& worse =
-          u.estimates[i].shares.data < u.estimates[b].shares.data ? u.estimates[i] : u.estimates[b];
-      e.status = std::max(u.estimates[i].status, u.estimates[b].status);
-      e.shares = worse.shares;
-      e.shares.prior_pull = e.shares.settling_pull = 0.0;
-      const double quantile = StudentQuantile95(e.freedom);
-      e.name = spec.name;
-      e.unit = spec.unit;
-      e.value = values[spec.id];
-      const double center = ToFitted(spec.transform, e.value);
-      e.standard_error = error * TransformSlope(spec.transform, e.value);
-      e.lower95 = ToNatural(spec.transform, center - quantile * error);
-      e.upper95 = ToNatural(spec.transform, center + quantile * error);
-      pooled[unit][spec.name] = e;
-    }
-    first += static_cast<int>(deviations.size());
-  }
-  return pooled;
+std::map<std::string, Estimate>& PooledOf(const std::string& unit, const FitProblem& problem,
+                                          FitResult* result) {
+  const bool settings = HoldsForRecording(problem.options().pool_by);
+  return settings ? result->settings[unit] : result->subjects[unit].pooled;
+}
+
+// Of the sum of estimates a and b, which are a shared value and a deviation from it.
+void AddErrors(const Uncertainty& u, int a, int b, const ParameterSpec& spec, Estimate* sum) {
+  const Estimate &shared = u.estimates[a], &deviation = u.estimates[b];
+  const double variance = u.covariance(a, a) + u.covariance(b, b) + 2.0 * u.covariance(a, b);
+  const double error = std::sqrt(std::max(0.0, variance));
+  sum->freedom = std::min(shared.freedom, deviation.freedom);
+  sum->standard_error_naive = std::numeric_limits<double>::quiet_NaN();  // not computed for sums
+  // No better known than the shared value and its own deviation.
+  sum->status = std::max(shared.status, deviation.status);
+  sum->shares = shared.shares.data < deviation.shares.data ? shared.shares : deviation.shares;
+  sum->shares.prior_pull = sum->shares.settling_pull = 0.0;
+  const double quantile = StudentQuantile95(sum->freedom);
+  const double center = ToFitted(spec.transform, sum->value);
+  sum->standard_error = error * TransformSlope(spec.transform, sum->value);
+  sum->lower95 = ToNatural(spec.transform, center - quantile * error);
+  sum->upper95 = ToNatural(spec.transform, center + quantile * error);
 }
 
 }  // namespace
@@ -100,11 +85,32 @@ void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* resul
       result->subjects[recording.subject_ids[n]].mass_kg = recording.scene.people[n].body.mass;
     }
   }
-  const auto pooled = PooledByUnit(problem, point, result->uncertainty);
-  if (HoldsForRecording(problem.options().pool_by)) {
-    result->settings = pooled;
-  } else {
-    for (const auto& [unit, estimates] : pooled) result->subjects[unit].pooled = estimates;
+  for (const auto& [unit, deviations] : point.unit) {
+    const ParameterSet<double> values = problem.Parameters(point, unit);
+    std::map<std::string, Estimate>& pooled = PooledOf(unit, problem, result);
+    for (const FittedParameter& f : problem.map().fitted) {
+      if (f.deviation < 0) continue;
+      const ParameterSpec& spec = problem.options().table[f.parameter];
+      Estimate& e = pooled[spec.name];
+      e.name = spec.name;
+      e.unit = spec.unit;
+      e.value = values[spec.id];
+    }
+  }
+}
+
+void AddUnitErrors(const FitProblem& problem, const FitPoint& point, FitResult* result) {
+  const auto& fitted = problem.map().fitted;
+  int first = static_cast<int>(point.shared.size());
+  for (const auto& [unit, deviations] : point.unit) {
+    std::map<std::string, Estimate>& pooled = PooledOf(unit, problem, result);
+    for (size_t i = 0; i < fitted.size(); ++i) {
+      if (fitted[i].deviation < 0) continue;
+      const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
+      AddErrors(result->uncertainty, static_cast<int>(i), first + fitted[i].deviation, spec,
+                &pooled[spec.name]);
+    }
+    first += static_cast<int>(deviations.size());
   }
 }
 

@@ -16,9 +16,9 @@
 namespace pushid {
 namespace {
 
-// A solve, with the options as they were estimated on the way.
+// A solved problem, as it was weighed last.
 struct SolvedFit {
-  FitOptions options;
+  FitProblem problem;
   WeightedSolution solved;
   std::vector<EnsembleMember> others;
   std::string no_noise;  // a warning
@@ -33,26 +33,37 @@ Result<SolvedFit> SolveFit(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options, const SolveProgress& progress) {
   const Result<FitOptions> trained = WithLargeNetworkTrained(recordings, options, progress);
   if (!trained.ok()) return trained.error();
-  SolvedFit fit;
-  fit.options = trained.value();
-  fit.solved = SolveAsAsked(recordings, &fit.options, progress);
+  SolvedFit fit{FitProblem(recordings, trained.value()), {}, {}, ""};
+  fit.solved = SolveAsAsked(&fit.problem, progress);
   if (!fit.ok()) return fit;
-  fit.no_noise = EstimateNoise(recordings, fit.Best().to, &fit.options);
+  fit.no_noise = EstimateNoise(fit.Best().to, &fit.problem);
   if (options.ensemble > 1) fit.others = FitOtherSeeds(recordings, trained.value());
   return fit;
 }
 
-void TakeSolution(const Solution& solution, FitResult* result) {
-  result->starts = solution.starts;
-  result->best_start = solution.best;
-  result->solve_seconds = solution.seconds;
-  if (!result->ok()) {
-    result->message = "no start could be solved: " + solution.starts[0].message;
-    return;
+// What the solve alone says, before any judgement: the parameters as they act, and what the fitted
+// people do after a push.
+FitResult ResultOf(const SolvedFit& fit) {
+  const Solution& solution = fit.solved.solution;
+  FitResult result;
+  result.options = fit.problem.options();
+  result.starts = solution.starts;
+  result.best_start = solution.best;
+  result.solve_seconds = solution.seconds;
+  if (!result.ok()) {
+    result.message = "no start could be solved: " + solution.starts[0].message;
+    return result;
   }
-  result->converged = solution.Best().converged;
-  result->cost = solution.Best().cost;
-  result->message = solution.Best().message;
+  const SolveStart& best = solution.Best();
+  result.converged = best.converged;
+  result.cost = best.cost;
+  result.message = best.message;
+  result.options.model = fit.problem.ModelAt(best.to);
+  result.parameters = fit.problem.Parameters(best.to, "");
+  result.others = fit.others;
+  result.behaviour = fit.problem.BehaviourAt(best.to);
+  AddUnits(fit.problem, best.to, &result);
+  return result;
 }
 
 // One that compares models; the printed formula of transitions does not.
@@ -61,8 +72,8 @@ bool ScoresSingleSteps(Likelihood likelihood) {
 }
 
 // What learned forces do of the work of physical ones.
-void AddTakeover(const std::vector<PendulumRecording>& recordings, const ModelOptions& fitted,
-                 FitResult* result) {
+void AddTakeover(const std::vector<PendulumRecording>& recordings, FitResult* result) {
+  const ModelOptions& fitted = result->options.model;
   if (fitted.learned && fitted.learned->shape.any()) {
     result->takeover = TakeoverOf(recordings, fitted);
   }
@@ -82,13 +93,13 @@ void AddFittedTo(const std::vector<PendulumRecording>& recordings, FitResult* re
       FitRecordingEffect(ModelOf(*result), recordings, result->options.num_threads);
 }
 
-void AddWarnings(const FitProblem& problem, const SolvedFit& fit, FitResult* result) {
-  std::vector<std::string>& warnings = result->warnings;
-  warnings = FitWarnings(problem, *result);
-  if (!fit.no_noise.empty()) warnings.push_back(fit.no_noise);
+void AddWarnings(const SolvedFit& fit, FitResult* result) {
+  Warnings& warnings = result->warnings;
+  warnings = FitWarnings(fit.problem, *result);
+  if (!fit.no_noise.empty()) warnings.emplace_back(fit.no_noise);
   if (fit.solved.weights_settled) return;
-  warnings.push_back(
-      fit.options.likelihood == Likelihood::kTrajectory
+  warnings.emplace_back(
+      result->options.likelihood == Likelihood::kTrajectory
           ? "the weight of the data still changed by more than 1 % in the last round of "
             "reweighting: priors may have too much or too little weight"
           : "the likelihood still increased in the last round of solving");
@@ -107,84 +118,61 @@ void ForgetWeights(Eigen::Index weights, FitResult* result) {
   result->nuisance.resize(result->nuisance.size() - weights);
 }
 
-}  // namespace
-
-FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
-              const SolveProgress& progress) {
-  FitResult result;
-  result.options = options;
-
-  // 1. Solve: parameters, the weight of the data and the spread of units in turn, and whether
-  //    people must be held to settle (weighted_solve.h).
-  const Result<SolvedFit> made = SolveFit(recordings, options, progress);
-  if (!made.ok()) {
-    result.message = made.error().ToString();
-    return result;
-  }
-  const SolvedFit& fit = made.value();
-  result.options = fit.options;
-  TakeSolution(fit.solved.solution, &result);
+FitResult Judge(const SolvedFit& fit) {
+  FitResult result = ResultOf(fit);
   if (!result.ok()) return result;
-
-  // 2. The parameters as they act, at the optimum of the problem as it was weighed last.
-  const FitProblem problem(recordings, result.options);
+  const FitProblem& problem = fit.problem;
   const FitPoint& optimum = fit.Best().to;
-  result.options.model = problem.ModelAt(optimum);
-  result.parameters = problem.Parameters(optimum, "");
-  result.others = fit.others;
-  AddTakeover(recordings, result.options.model, &result);
-
-  // 3. Errors clustered by person, and the shares of data and priors (uncertainty.h).
   const std::optional<FitPoint>& free = fit.solved.free;
+
+  // Errors clustered by person, and the shares of data and priors (uncertainty.h).
   result.uncertainty = ComputeUncertainty(problem, optimum, free ? &*free : nullptr);
   result.uncertainty.settling = fit.solved.settling;
 
-  // 4. Tables: parameters, what ties units together, combinations, values of every unit.
+  // Tables: parameters, what ties units together, combinations, values of every unit.
   result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);
   result.nuisance.assign(result.uncertainty.estimates.begin() + problem.map().num_shared(),
                          result.uncertainty.estimates.end());
   result.derived = TableOfCombinations(problem, optimum, result.uncertainty);
-  AddUnits(problem, optimum, &result);
+  AddUnitErrors(problem, optimum, &result);
 
-  // 5. The recordings that it was fitted to: their pushes, steps and effects.
-  AddFittedTo(recordings, &result);
+  // The recordings that it was fitted to: their pushes, steps and effects.
+  AddTakeover(problem.recordings(), &result);
+  AddFittedTo(problem.recordings(), &result);
 
-  // 6. Residuals: what the model leaves unexplained, recording by recording.
+  // Residuals: what the model leaves unexplained, recording by recording.
   result.diagnostics = Diagnose(problem, fit.Best(), result.uncertainty);
   result.recordings = FittedRecordings(problem, fit.Best());
-
-  // 7. Behaviour: what the fitted people do after a push, and how likely single steps are.
-  result.behaviour = problem.BehaviourAt(optimum);
-  if (ScoresSingleSteps(options.likelihood))
+  if (ScoresSingleSteps(result.options.likelihood)) {
     result.likelihood = ScoreByLikelihood(problem, optimum);
+  }
 
-  // 8. Warnings; and what a model keeps of its covariance.
-  AddWarnings(problem, fit, &result);
+  // Warnings; and what a model keeps of its covariance.
+  AddWarnings(fit, &result);
   ForgetWeights(static_cast<Eigen::Index>(optimum.weights.size()), &result);
   return result;
+}
+
+}  // namespace
+
+FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+              const SolveProgress& progress) {
+  const Result<SolvedFit> fit = SolveFit(recordings, options, progress);
+  if (fit.ok()) return Judge(fit.value());
+  FitResult none;
+  none.options = options;
+  none.message = fit.error().ToString();
+  return none;
 }
 
 Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
                                    FitOptions options) {
   if (MaybeError error = PrepareFit(recordings, &options)) return *error;
-  const Result<SolvedFit> made = SolveFit(recordings, options, nullptr);
-  if (!made.ok()) return made.error();
-  const SolvedFit& fit = made.value();
-  if (!fit.ok()) return Error{"no usable optimum was found"};
-  const FitProblem problem(recordings, fit.options);
-  const FitPoint& optimum = fit.Best().to;
-  IdentifiedModel model;
-  model.options = problem.ModelAt(optimum);
-  model.mapping = fit.options.mapping;
-  model.table = fit.options.table;
-  model.parameters = problem.Parameters(optimum, "");
-  model.others = fit.others;
-  model.pool_by = fit.options.pool_by;
-  for (const auto& [unit, deviations] : optimum.unit) {
-    model.by_unit[unit] = problem.Parameters(optimum, unit);
-  }
+  const Result<SolvedFit> fit = SolveFit(recordings, options, nullptr);
+  if (!fit.ok()) return fit.error();
+  if (!fit.value().ok()) return Error{"no usable optimum was found"};
+  IdentifiedModel model = ModelOf(ResultOf(fit.value()));
   model.step_probability = FitStepProbability(model, recordings);
-  model.behaviour = problem.BehaviourAt(optimum);
   return model;
 }
 

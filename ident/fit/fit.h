@@ -19,7 +19,7 @@ namespace pushid {
 // people who touch without any term between them; masses, rods, pushes and motions that no person
 // has. Every fit begins with it: of the programs, of cross-validation, of users of the library.
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-                      std::vector<std::string>* warnings = nullptr);
+                      Warnings* warnings = nullptr);
 
 // Fits and judges prepared options. A fit without a usable optimum is not ok(), and its message
 // says why.

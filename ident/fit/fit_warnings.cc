@@ -12,32 +12,32 @@ namespace {
 
 constexpr double kPullToTell = 0.5;  // standard errors
 
-void AddVerdict(const FitResult& result, std::vector<std::string>* warnings) {
+void AddVerdict(const FitResult& result, Warnings* warnings) {
   const ModelOptions& model = result.options.model;
   const Verdict verdict = VerdictOf(result.behaviour, model);
   if (verdict == Verdict::kSettles) return;
   const bool slow = verdict == Verdict::kSlowToSettle;
   // Holding it harder was tried, and dropped.
   const bool tried = slow && result.uncertainty.settling.dropped();
-  warnings->push_back(
+  warnings->emplace_back(
       VerdictName(verdict) + ": " + VerdictSentence(verdict, result.behaviour) +
       (slow ? "" : "; such a fit may score well but cannot be trusted beyond the data") +
       (tried ? "" : " (" + VerdictRemedy(verdict, model) + ")"));
 }
 
-void AddClusterWarning(const Uncertainty& u, std::vector<std::string>* warnings) {
+void AddClusterWarning(const Uncertainty& u, Warnings* warnings) {
   const std::string unit = u.clustered_by == ClusterBy::kSubject ? "person" : "recording";
   if (!u.clustered) {
-    warnings->push_back("a single " + unit + ": errors cannot be clustered and are too small");
+    warnings->emplace_back("a single " + unit + ": errors cannot be clustered and are too small");
   } else if (u.num_clusters < kFewClusters) {
     const std::string many = unit == "person" ? "people" : "recordings";
-    warnings->push_back("the independent units are " + std::to_string(u.num_clusters) + " " + many +
-                        ", fewer than ten: the standard errors are themselves uncertain");
+    warnings->emplace_back("the independent units are " + std::to_string(u.num_clusters) + " " +
+                           many + ", fewer than ten: the standard errors are themselves uncertain");
   }
 }
 
 // What the demand to settle did, if anything.
-void AddSettlingWarning(const Uncertainty& u, size_t shared, std::vector<std::string>* warnings) {
+void AddSettlingWarning(const Uncertainty& u, size_t shared, Warnings* warnings) {
   const SettlingDemand& s = u.settling;
   if (!s.binds) return;
   const std::string wanted =
@@ -45,14 +45,14 @@ void AddSettlingWarning(const Uncertainty& u, size_t shared, std::vector<std::st
       (std::isfinite(s.free_seconds) ? "settles after " + Rounded(s.free_seconds, 2) + " s"
                                      : std::string("does not settle within 10 s"));
   if (s.unmet) {
-    warnings->push_back(wanted + ", and no fit that settles within " + Rounded(kWaitSeconds, 2) +
-                        " s was found: the constraint was dropped");
+    warnings->emplace_back(wanted + ", and no fit that settles within " + Rounded(kWaitSeconds, 2) +
+                           " s was found: the constraint was dropped");
     return;
   }
   if (s.contradicted) {
-    warnings->push_back(wanted + "; settling within " + Rounded(kWaitSeconds, 2) +
-                        " s contradicts the data (twice the log likelihood would fall by " +
-                        Rounded(s.rise, 2) + "), and the constraint was dropped");
+    warnings->emplace_back(wanted + "; settling within " + Rounded(kWaitSeconds, 2) +
+                           " s contradicts the data (twice the log likelihood would fall by " +
+                           Rounded(s.rise, 2) + "), and the constraint was dropped");
     return;
   }
   std::string moved;
@@ -63,37 +63,37 @@ void AddSettlingWarning(const Uncertainty& u, size_t shared, std::vector<std::st
     moved +=
         (moved.empty() ? "" : ", ") + e.name + " by " + (pull > 0.0 ? "+" : "") + Rounded(pull, 2);
   }
-  warnings->push_back(
+  warnings->emplace_back(
       wanted + "; the constraint to settle within " + Rounded(kWaitSeconds, 2) + " s moved " +
       (moved.empty() ? "no parameter by half a standard error" : moved + " standard errors"));
 }
 
 }  // namespace
 
-std::vector<std::string> FitWarnings(const FitProblem& problem, const FitResult& result) {
-  std::vector<std::string> warnings;
+Warnings FitWarnings(const FitProblem& problem, const FitResult& result) {
+  Warnings warnings;
   for (const FittedRecording& recording : result.recordings) {
     if (!recording.failure.empty()) {
-      warnings.push_back("recording " + recording.id + ": " + recording.failure +
-                         "; only the frames before it were fitted");
+      const std::string what = recording.failure + "; only the frames before it were fitted";
+      warnings.emplace_back("recording " + recording.id + ": " + what, recording.id, what);
     }
   }
-  if (!result.converged) warnings.push_back("the solver stopped before it converged");
+  if (!result.converged) warnings.emplace_back("the solver stopped before it converged");
   AddVerdict(result, &warnings);
   if (const SettlingSimulation* d = result.behaviour.FarthestBehind()) {
-    warnings.push_back("pushed forwards by " + Rounded(d->impulse, 4) + " N s, the pushed person" +
-                       (d->people > 1 ? " of the line" : "") + " ends " +
-                       Rounded(-d->pushed_advance, 2) + " m behind the start (" +
-                       SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
+    warnings.emplace_back("pushed forwards by " + Rounded(d->impulse, 4) +
+                          " N s, the pushed person" + (d->people > 1 ? " of the line" : "") +
+                          " ends " + Rounded(-d->pushed_advance, 2) + " m behind the start (" +
+                          SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
   AddClusterWarning(result.uncertainty, &warnings);
   AddSettlingWarning(result.uncertainty, problem.map().fitted.size(), &warnings);
   for (const Estimate& e : result.estimates) {
-    if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " is at its bound");
+    if (e.status == EstimateStatus::kAtBound) warnings.emplace_back(e.name + " is at its bound");
   }
   const bool has_tail = problem.options().model.push_tail != PushTail::kNone;
   if (has_tail && TailCannotAct(problem.recordings())) {
-    warnings.push_back(
+    warnings.emplace_back(
         "every push is external (measured completely): the push tail has no effect; set push_kind "
         "to net in the manifest for pushes that were measured only in part");
   }

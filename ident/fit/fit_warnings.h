@@ -11,6 +11,6 @@ namespace pushid {
 
 // Failed rollouts, a solver that stopped early, a verdict other than that people settle, few
 // clusters, what the demand to settle did, parameters at bounds, a tail that cannot act.
-std::vector<std::string> FitWarnings(const FitProblem& problem, const FitResult& result);
+Warnings FitWarnings(const FitProblem& problem, const FitResult& result);
 
 }  // namespace pushid

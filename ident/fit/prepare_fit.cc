@@ -23,8 +23,8 @@ bool SameMotion(const PendulumRecording& a, const PendulumRecording& b) {
 }
 
 // A copy adds nothing that was not known, and narrows every interval as if it did.
-std::vector<std::string> DuplicateWarnings(const std::vector<PendulumRecording>& recordings) {
-  std::vector<std::string> warnings;
+Warnings DuplicateWarnings(const std::vector<PendulumRecording>& recordings) {
+  Warnings warnings;
   std::vector<bool> told(recordings.size(), false);
   for (size_t i = 0; i < recordings.size(); ++i) {
     std::string copies;
@@ -34,33 +34,33 @@ std::vector<std::string> DuplicateWarnings(const std::vector<PendulumRecording>&
       copies += (copies.empty() ? "" : ",") + recordings[j].id;
     }
     if (copies.empty()) continue;
-    warnings.push_back("the motion of '" + recordings[i].id + "' is repeated in " + copies +
-                       ": copies count as independent data, so intervals are too narrow; leave "
-                       "them out (--leave_out=" +
-                       copies + ")");
+    warnings.emplace_back("the motion of '" + recordings[i].id + "' is repeated in " + copies +
+                          ": copies count as independent data, so intervals are too narrow; leave "
+                          "them out (--leave_out=" +
+                          copies + ")");
   }
   return warnings;
 }
 
-std::vector<std::string> WarningsBefore(const std::vector<PendulumRecording>& recordings,
-                                        const FitOptions& options) {
-  std::vector<std::string> warnings = UnitWarnings(recordings);
+Warnings WarningsBefore(const std::vector<PendulumRecording>& recordings,
+                        const FitOptions& options) {
+  Warnings warnings = UnitWarnings(recordings);
   const bool groups =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const PendulumRecording& recording) { return recording.num_people() > 1; });
   if (groups && !options.model.interaction.Any()) {
-    warnings.push_back(
+    warnings.emplace_back(
         "recordings contain several people, but the model has no interaction between them "
         "(--preset=group or --interaction=contact adds one)");
   }
-  for (const std::string& warning : DuplicateWarnings(recordings)) warnings.push_back(warning);
+  for (const Warning& warning : DuplicateWarnings(recordings)) warnings.push_back(warning);
   return warnings;
 }
 
 // Where all share one unit, its deviation and the shared value would be one number. It is
 // a warning only where pooling was asked for.
 void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-                   std::vector<std::string>* warnings) {
+                   Warnings* warnings) {
   if (!AnyPooled(options->table)) return;
   std::set<std::string> units;
   for (const PendulumRecording& recording : recordings) {
@@ -73,8 +73,8 @@ void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions*
   const bool asked =
       preset.value().pool != options->pool || preset.value().pool_by != options->pool_by;
   if (!asked) return;
-  warnings->push_back("--pool=" + options->pool + " does nothing: all recordings share one " +
-                      options->pool_by + ", '" + *units.begin() + "'");
+  warnings->emplace_back("--pool=" + options->pool + " does nothing: all recordings share one " +
+                         options->pool_by + ", '" + *units.begin() + "'");
 }
 
 // A label that no recording has pools by nothing; that of the presets may be absent.
@@ -155,7 +155,7 @@ MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
 
 // Holds the support at what the recorded feet have.
 MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
-                               FitOptions* options, std::vector<std::string>* told) {
+                               FitOptions* options, Warnings* told) {
   if (options->support != SupportSource::kFromFeet) return std::nullopt;
   if (options->model.stance != Stance::kThreshold) {
     return Error{"--support=feet is for feet that hold; add --stance=threshold"};
@@ -186,25 +186,25 @@ MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
   hold(kSupportBack, back);
   hold(kSupportSide, side);
   options->table[kAnkleReach].nominal = 1.0;
-  told->push_back("--support=feet: held at the medians of " + std::to_string(forward.size()) +
-                  " people with toes: support_front " +
-                  DoubleText(std::round(1e3 * options->table[kSupportFront].nominal) / 1e3) +
-                  " m, support_side " +
-                  DoubleText(std::round(1e3 * options->table[kSupportSide].nominal) / 1e3) + " m" +
-                  (back.empty() ? "; no heels: support_back as in the table" : ""));
+  told->emplace_back("--support=feet: held at the medians of " + std::to_string(forward.size()) +
+                     " people with toes: support_front " +
+                     DoubleText(std::round(1e3 * options->table[kSupportFront].nominal) / 1e3) +
+                     " m, support_side " +
+                     DoubleText(std::round(1e3 * options->table[kSupportSide].nominal) / 1e3) +
+                     " m" + (back.empty() ? "; no heels: support_back as in the table" : ""));
   return std::nullopt;
 }
 
 }  // namespace
 
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-                      std::vector<std::string>* warnings) {
+                      Warnings* warnings) {
   if (recordings.empty()) return Error{"there are no recordings to fit"};
   if (MaybeError error = CheckPoolingLabel(recordings, *options)) return error;
   if (MaybeError error = CheckBodies(recordings, *options)) return error;
   if (MaybeError error = CheckFrameRates(recordings, *options)) return error;
   if (MaybeError error = CheckLikelihood(recordings, *options)) return error;
-  std::vector<std::string> told;
+  Warnings told;
   if (MaybeError error = TakeSupportFromFeet(recordings, options, &told)) return error;
   UnpoolOneUnit(recordings, options, &told);
   std::string invalid;

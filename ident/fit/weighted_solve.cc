@@ -30,13 +30,13 @@ double Change(double from, double to) {
   return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;
 }
 
-// Estimates anew; the largest relative change.
-double Reweigh(const FitProblem& problem, const FitPoint& point, FitOptions* options) {
+// What the problem's parts weigh by what is known at a point; the largest relative change.
+double Reweigh(const FitProblem& problem, const FitPoint& point, CostWeights* weights) {
+  const FitOptions& options = problem.options();
   double change = 0.0;
-  const ResidualSigmas before = options->sigmas;
-  if (options->sigma_source == SigmaSource::kEstimate) {
-    options->sigmas = EstimateSigmas(problem, point);
-    const ResidualSigmas& now = options->sigmas;
+  if (options.sigma_source == SigmaSource::kEstimate) {
+    const ResidualSigmas& before = options.sigmas;
+    const ResidualSigmas now = weights->sigmas = EstimateSigmas(problem, point);
     for (const auto& [a, b] : {std::pair(before.hip, now.hip),
                                {before.velocity, now.velocity},
                                {before.angle, now.angle},
@@ -44,26 +44,25 @@ double Reweigh(const FitProblem& problem, const FitPoint& point, FitOptions* opt
       change = std::max(change, Change(a, b));
     }
   }
-  if (options->recording_weight == RecordingWeight::kEffective) {
-    const double weight = options->effective_weight;
-    options->effective_weight = EstimateEffectiveWeight(problem, point);
-    change = std::max(change, Change(weight, options->effective_weight));
+  if (options.recording_weight == RecordingWeight::kEffective) {
+    weights->effective_weight = EstimateEffectiveWeight(problem, point);
+    change = std::max(change, Change(options.effective_weight, weights->effective_weight));
   }
-  return std::max(change, UpdatePoolingSpread(problem, point, &options->table));
+  return std::max(change, UpdatePoolingSpread(problem, point, weights));
 }
 
 // On the way an optimum need not be exact; a network that stops learning in time must not be
 // stopped before.
-FitOptions Roughly(FitOptions options) {
-  if (options.early_stopping > 0.0 && !options.hold_network) return options;
-  options.function_tolerance = std::max(kRough, options.function_tolerance);
-  return options;
+FitProblem Roughly(FitProblem problem) {
+  const FitOptions& options = problem.options();
+  if (options.early_stopping > 0.0 && !options.hold_network) return problem;
+  problem.set_function_tolerance(std::max(kRough, options.function_tolerance));
+  return problem;
 }
 
 // From the optimum under other weights to that under these.
-void SolveOn(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
-             SolveStart* start) {
-  const FitProblem problem(recordings, options);
+void SolveOn(const FitProblem& problem, SolveStart* start) {
+  const FitOptions& options = problem.options();
   const bool hold_network = options.early_stopping > 0.0;
   SolveStart again = Refit(problem, start->to, hold_network, options.num_threads);
   start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
@@ -77,18 +76,17 @@ void SolveOn(const std::vector<PendulumRecording>& recordings, const FitOptions&
 
 // Weighs and solves in turns, roughly until the weights stay, then exactly until they stay again.
 // False where they do not stay.
-bool Weigh(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-           SolveStart* start) {
+bool Weigh(FitProblem* problem, SolveStart* start) {
   bool exact = false;
   for (int round = 0; round < kMostRounds; ++round) {
-    FitOptions now = *options;
-    const bool settled = Reweigh(FitProblem(recordings, *options), start->to, &now) < kSettled;
+    CostWeights now = problem->weights();
+    const bool settled = Reweigh(*problem, start->to, &now) < kSettled;
     if (settled && exact) return true;
     exact = exact || settled;
-    if (!settled) *options = now;
-    SolveOn(recordings, exact ? *options : Roughly(*options), start);
+    if (!settled) problem->Weigh(now);
+    SolveOn(exact ? *problem : Roughly(*problem), start);
   }
-  if (!exact) SolveOn(recordings, *options, start);
+  if (!exact) SolveOn(*problem, start);
   return false;
 }
 
@@ -104,36 +102,32 @@ double SlowestSeconds(const FitProblem& problem, const FitPoint& point) {
 
 // A fit that meets the demand, from one that does not. Where simulated people fall or run out of
 // the domain there, Ceres cannot see them: then on the way from the start, where they need not.
-SolveStart SolveHeld(const std::vector<PendulumRecording>& recordings, const FitOptions& demanding,
-                     const SolveStart& free) {
-  FitOptions first = Roughly(demanding);
-  first.settling_weight = kFirstStep * demanding.settling_weight;
+SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
+  FitProblem first = Roughly(demanding);
+  first.set_settling_weight(kFirstStep * demanding.options().settling_weight);
   SolveStart held = free;
-  const FitProblem with(recordings, first);
-  if (std::isinf(CostAt(with, free.to))) {
-    held = SolveFrom(with, with.NominalPoint(), "nominal", "", nullptr);
+  if (std::isinf(CostAt(first, free.to))) {
+    held = SolveFrom(first, first.NominalPoint(), "nominal", "", nullptr);
   } else {
-    SolveOn(recordings, first, &held);
+    SolveOn(first, &held);
   }
-  SolveOn(recordings, demanding, &held);
+  SolveOn(demanding, &held);
   return held;
 }
 
 // Step 2 of the header, from the optimum without the demand.
-void Demand(const std::vector<PendulumRecording>& recordings, double weight, FitOptions* options,
-            WeightedSolution* solved) {
+void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
   SolveStart& best = solved->solution.starts[solved->solution.best];
-  const FitOptions freed = *options;
-  options->settling_weight = weight;
-  const FitProblem with(recordings, *options), without(recordings, freed);
-  if (CostAt(with, best.to) == CostAt(without, best.to)) return;
-  SolveStart held = SolveHeld(recordings, *options, best);
+  const FitProblem without = *problem;
+  problem->set_settling_weight(weight);
+  if (CostAt(*problem, best.to) == CostAt(without, best.to)) return;
+  SolveStart held = SolveHeld(*problem, best);
 
   SettlingDemand& settling = solved->settling;
   settling.binds = true;
   settling.free_seconds = SlowestSeconds(without, best.to);
   settling.unmet = !held.converged || held.failed.size() > best.failed.size() ||
-                   !std::isfinite(CostAt(with, held.to));
+                   !std::isfinite(CostAt(*problem, held.to));
   if (!settling.unmet) {
     settling.rise = std::max(0.0, 2.0 * (CostAt(without, held.to) - best.cost));
     const double units = static_cast<double>(without.SettlingUnits(best.to).size());
@@ -141,7 +135,7 @@ void Demand(const std::vector<PendulumRecording>& recordings, double weight, Fit
         Eigen::numext::igammac(0.5 * units, 0.5 * settling.rise) < kContradicted;
   }
   if (!settling.holds()) {
-    *options = freed;
+    problem->set_settling_weight(0.0);
     return;
   }
   solved->free = best.to;
@@ -150,13 +144,12 @@ void Demand(const std::vector<PendulumRecording>& recordings, double weight, Fit
 
 // The other starts, by the weights and demands of the best, so that their costs compare. Whether
 // one of them is better, which is then the best.
-bool SolveOthers(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
-                 Solution* solution) {
+bool SolveOthers(const FitProblem& problem, Solution* solution) {
   const int found = solution->best;
   for (int i = 0; i < static_cast<int>(solution->starts.size()); ++i) {
     SolveStart& start = solution->starts[i];
     if (i == found || !start.usable) continue;
-    SolveOn(recordings, options, &start);
+    SolveOn(problem, &start);
     const SolveStart& best = solution->Best();
     const bool better = start.converged && start.failed.size() <= best.failed.size() &&
                         start.cost < best.cost - kSameCost * std::abs(best.cost);
@@ -167,37 +160,34 @@ bool SolveOthers(const std::vector<PendulumRecording>& recordings, const FitOpti
 
 }  // namespace
 
-WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
-                               FitOptions* options, const SolveProgress& progress) {
+WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  const double weight = options->settling_weight;
-  options->settling_weight = 0.0;
-  const FitOptions roughly = Roughly(*options);
+  const double weight = problem->options().settling_weight;
+  problem->set_settling_weight(0.0);
   WeightedSolution solved;
   Solution& solution = solved.solution;
-  solution = Solve(FitProblem(recordings, roughly), progress);
+  solution = Solve(Roughly(*problem), progress);
   bool again = solution.best >= 0;
   for (int change = 0; again && change <= kMostChanges; ++change) {
-    options->settling_weight = 0.0;
+    problem->set_settling_weight(0.0);
     solved.settling = {};
     solved.free.reset();
-    solved.weights_settled = Weigh(recordings, options, &solution.starts[solution.best]);
-    Demand(recordings, weight, options, &solved);
-    again = SolveOthers(recordings, *options, &solution);
+    solved.weights_settled = Weigh(problem, &solution.starts[solution.best]);
+    Demand(weight, problem, &solved);
+    again = SolveOthers(*problem, &solution);
   }
   if (again) solved.free.reset();  // that of another start
-  if (solution.best < 0) options->settling_weight = weight;
+  if (solution.best < 0) problem->set_settling_weight(weight);
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solved;
 }
 
-WeightedSolution SolveAsAsked(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-                              const SolveProgress& progress) {
-  if (options->likelihood == Likelihood::kTrajectory) {
-    return SolveWeighted(recordings, options, progress);
+WeightedSolution SolveAsAsked(FitProblem* problem, const SolveProgress& progress) {
+  if (problem->options().likelihood == Likelihood::kTrajectory) {
+    return SolveWeighted(problem, progress);
   }
-  LikelihoodSolution by_steps = SolveByLikelihood(recordings, options, progress);
+  LikelihoodSolution by_steps = SolveByLikelihood(problem, progress);
   WeightedSolution solved;
   solved.solution = std::move(by_steps.solution);
   solved.weights_settled = by_steps.stays;
@@ -208,11 +198,10 @@ Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>&
                                            const FitOptions& options,
                                            const SolveProgress& progress) {
   if (!NeedsGradientTraining(options)) return options;
-  FittedPhysics physics{PhysicsAlone(options), {}};
-  const Solution solution = SolveAsAsked(recordings, &physics.options, progress).solution;
+  FitProblem physics(recordings, PhysicsAlone(options));
+  const Solution solution = SolveAsAsked(&physics, progress).solution;
   if (solution.best < 0) return Error{"the physical model alone has no usable optimum"};
-  physics.point = solution.Best().to;
-  return TrainLargeNetwork(recordings, options, physics, progress);
+  return TrainLargeNetwork(recordings, options, {physics.options(), solution.Best().to}, progress);
 }
 
 std::vector<EnsembleMember> FitOtherSeeds(const std::vector<PendulumRecording>& recordings,

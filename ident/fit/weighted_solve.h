@@ -34,14 +34,12 @@ struct WeightedSolution {
   std::optional<FitPoint> free;  // the optimum without the demand, where that binds and holds
 };
 
-// options: on return with what was estimated, and without a demand that was dropped.
-WeightedSolution SolveWeighted(const std::vector<PendulumRecording>& recordings,
-                               FitOptions* options, const SolveProgress& progress = nullptr);
+// problem: on return as it was weighed last, without a demand that was dropped.
+WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progress = nullptr);
 
-// By rollouts as above, or by a likelihood of single steps (solver/likelihood_solve.h), as options
-// say.
-WeightedSolution SolveAsAsked(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-                              const SolveProgress& progress = nullptr);
+// By rollouts as above, or by a likelihood of single steps (solver/likelihood_solve.h), as the
+// problem's options say.
+WeightedSolution SolveAsAsked(FitProblem* problem, const SolveProgress& progress = nullptr);
 
 // Where a network is too large for Gauss-Newton (solver/network_training.h): the physical model
 // solved alone as above, and then the network trained. Returns the options with the network held,

@@ -16,7 +16,7 @@ void Fields(Archive& a, StartDiagnostics& s) {
   a("null_directions", s.null_directions);
   a("without_effect", s.without_effect);
   a("notes", s.notes);
-  a("unit_warnings", s.unit_warnings);
+  WarningFields(a, "unit_warnings", s.unit_warnings);
 }
 
 template <class Archive>

@@ -63,7 +63,7 @@ struct FitResult {
   std::vector<SolveStart> starts;
   int best_start = -1;
   std::string message;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   double solve_seconds = 0.0;
 
   bool ok() const { return best_start >= 0; }

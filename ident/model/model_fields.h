@@ -12,6 +12,39 @@
 
 namespace pushid {
 
+// The sentences, and beside them, under KEY_of_recordings, those that are of one recording.
+template <class Archive>
+void WarningFields(Archive& a, const std::string& key, Warnings& warnings) {
+  a.Via(
+      key.c_str(),
+      [&warnings] {
+        std::vector<std::string> texts;
+        for (const Warning& warning : warnings) texts.push_back(warning.text);
+        return texts;
+      },
+      [&warnings](const std::vector<std::string>& texts) {
+        warnings.assign(texts.begin(), texts.end());
+      });
+  std::vector<int> at;
+  std::vector<std::string> recording, of_many;
+  for (size_t i = 0; i < warnings.size(); ++i) {
+    if (warnings[i].recording.empty()) continue;
+    at.push_back(static_cast<int>(i));
+    recording.push_back(warnings[i].recording);
+    of_many.push_back(warnings[i].of_many);
+  }
+  const std::string of_recordings = key + "_of_recordings";
+  if (!a.Has(of_recordings.c_str(), !at.empty())) return;
+  a.Rows(of_recordings.c_str(), std::tie(at, recording, of_many), [&](auto& row, size_t i) {
+    row("warning", at[i]);
+    row("recording", recording[i]);
+    row("of_many", of_many[i]);
+    row.Check(0 <= at[i] && at[i] < static_cast<int>(warnings.size()), "there is no such warning");
+    warnings[at[i]].recording = recording[i];
+    warnings[at[i]].of_many = of_many[i];
+  });
+}
+
 // Estimates.
 
 template <class Archive>

@@ -54,7 +54,7 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
       g("advice", model.advice);
     });
   }
-  a("warnings", fit.warnings);
+  WarningFields(a, "warnings", fit.warnings);
   a.Group("fit", [&](auto& g) {
     g("converged", fit.converged);
     g("cost", fit.cost);
@@ -105,28 +105,32 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
 // What the types alone do not ensure and readers of a result rely on.
 void CheckConsistent(const FitResult& result) {
   if (result.best_start < 0 || result.best_start >= static_cast<int>(result.starts.size())) {
-    throw std::runtime_error("best_start is not one of the starts");
+    throw WrongEntry("fit/best_start", "best_start is not one of the starts");
   }
   const Uncertainty& u = result.uncertainty;
-  const auto fits = [&u](const Eigen::MatrixXd& matrix) {
+  for (const auto& [key, matrix] :
+       {std::pair("covariance_fitted_scale", &u.covariance), {"correlation", &u.correlation}}) {
     const int size = static_cast<int>(u.estimates.size());
-    return matrix.rows() == size && matrix.cols() == size;
-  };
-  if (!fits(u.covariance) || !fits(u.correlation)) {
-    throw std::runtime_error("sizes of covariance, correlation and parameters do not match");
+    if (matrix->rows() == size && matrix->cols() == size) continue;
+    throw WrongEntry(std::string("uncertainty/") + key,
+                     "sizes of covariance, correlation and parameters do not match");
   }
   if (!(result.parameters[kTailTime] > 0.0)) {
-    throw std::runtime_error("tail_time must be positive");
+    throw WrongEntry("values/tail_time", "tail_time must be positive");
   }
-  const auto check = [&result](const std::string& unit, const auto& pooled) {
+  const auto check = [&result](const std::string& path, const std::string& unit,
+                               const std::map<std::string, Estimate>& pooled) {
     for (const auto& [name, estimate] : pooled) {
-      if (result.options.table.Find(name) == nullptr) {
-        throw std::runtime_error(unit + " has an unknown parameter '" + name + "'");
-      }
+      if (result.options.table.Find(name) != nullptr) continue;
+      throw WrongEntry(path + "/" + name, unit + " has an unknown parameter '" + name + "'");
     }
   };
-  for (const auto& [id, subject] : result.subjects) check("subject " + id, subject.pooled);
-  for (const auto& [setting, pooled] : result.settings) check("setting " + setting, pooled);
+  for (const auto& [id, subject] : result.subjects) {
+    check("subjects/" + id + "/pooled", "subject " + id, subject.pooled);
+  }
+  for (const auto& [setting, pooled] : result.settings) {
+    check("settings/" + setting, "setting " + setting, pooled);
+  }
 }
 
 // Reads a model part by part, and knows which one it is at.
@@ -149,7 +153,7 @@ class ModelReader {
     return std::nullopt;
   }
 
-  std::string part() const { return parameter_.empty() ? reader_.part() : "values/" + parameter_; }
+  const std::string& part() const { return reader_.part(); }
   FittedModel& model() { return model_; }
 
  private:
@@ -176,13 +180,15 @@ class ModelReader {
     }
     const std::string learned = At("model").at("self_force");
     if (SelfForceText(result_.options.self_force, options.learned.get()) != learned) {
-      throw std::runtime_error("self_force is " + learned + ", which self_network is not");
+      throw WrongEntry("model/self_force",
+                       "self_force is " + learned + ", which self_network is not");
     }
     const std::string interaction = At("model").at("interaction");
     const auto named = ParseInteraction("interaction", interaction);
     const PairShape pair = options.learned != nullptr ? options.learned->pair : PairShape{};
     if (!named.ok() || named.value().pair.hidden != pair.hidden) {
-      throw std::runtime_error("interaction is " + interaction + ", which self_network is not");
+      throw WrongEntry("model/interaction",
+                       "interaction is " + interaction + ", which self_network is not");
     }
     if (json_.contains("interaction_network")) {
       options.interaction_network = InteractionNetworkFromJson(At("interaction_network"));
@@ -191,47 +197,47 @@ class ModelReader {
 
   // A model written before there was such a parameter, which its table does not name then, has its
   // nominal value: nothing it did used it.
-  ParameterSet<double> ValuesFrom(const Json& values) {
+  ParameterSet<double> ValuesFrom(const Json& values, const std::string& path) {
     const Json& rows = json_.at("table");
     ParameterSet<double> set{};
     for (const ParameterSpec& spec : result_.options.table.specs) {
-      parameter_ = spec.name;
       const bool known = std::any_of(rows.begin(), rows.end(), [&spec](const Json& row) {
         return row.at("name") == spec.name;
       });
-      set[spec.id] = known ? values.at(spec.name).get<double>() : spec.nominal;
+      set[spec.id] =
+          known ? ReadAt(path + "/" + spec.name, [&] { return values.at(spec.name).get<double>(); })
+                : spec.nominal;
     }
-    parameter_.clear();
     return set;
   }
 
-  void ReadValues() {
-    result_.parameters = ValuesFrom(At("values"));
-    if (!json_.contains("ensemble")) return;
+  EnsembleMember MemberFrom(const Json& json, const std::string& path) {
+    EnsembleMember member;
+    const Json& values = ReadAt(path, [&]() -> const Json& { return json.at("values"); });
+    member.parameters = ValuesFrom(values, path + "/values");
+    const std::string at = path + "/self_network";
+    member.network = ReadAt(at, [&] { return LearnedFromJson(json.at("self_network")); });
     const auto& network = result_.options.model.learned;
-    for (const Json& one : At("ensemble")) {
-      result_.others.push_back(
-          {ValuesFrom(one.at("values")), LearnedFromJson(one.at("self_network"))});
-      if (network == nullptr ||
-          LearnedName(*result_.others.back().network) != LearnedName(*network)) {
-        throw std::runtime_error("a member's network is not that of self_network");
-      }
+    if (network == nullptr || LearnedName(*member.network) != LearnedName(*network)) {
+      throw WrongEntry(at, "a member's network is not that of self_network");
+    }
+    return member;
+  }
+
+  void ReadValues() {
+    result_.parameters = ValuesFrom(At("values"), "values");
+    if (!json_.contains("ensemble")) return;
+    const Json& members = At("ensemble");
+    for (size_t i = 0; i < members.size(); ++i) {
+      result_.others.push_back(MemberFrom(members.at(i), "ensemble/" + std::to_string(i)));
     }
   }
 
   const Json& json_;
   JsonReader reader_;
-  std::string parameter_;  // of `values`, while they are read
   FittedModel model_;
   FitResult& result_ = model_.fit;
 };
-
-// "[json.exception.type_error.302] type must be number, but is string": the end is for people.
-std::string Reason(const std::exception& exception) {
-  const std::string text = exception.what();
-  const size_t end = text.rfind("[json.exception", 0) == 0 ? text.find("] ") : std::string::npos;
-  return end == std::string::npos ? text : text.substr(end + 2);
-}
 
 }  // namespace
 
@@ -253,6 +259,11 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
   if (json["format_version"] > kModelFormat) {
     return Error{"written by a newer pushid; update pushid to read it", file};
   }
+  const auto damaged = [&file](const std::string& part, const std::exception& exception) {
+    return Error{"incomplete or damaged model, at '" + part + "': " + ReasonOf(exception) +
+                     "; use another copy or fit again",
+                 file};
+  };
   ModelReader reader(json);
   try {
     if (MaybeError error = reader.Read(laws)) {
@@ -260,10 +271,10 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
       return *error;
     }
     return std::move(reader.model());
+  } catch (const WrongEntry& wrong) {
+    return damaged(wrong.path(), wrong);
   } catch (const std::exception& exception) {
-    return Error{"incomplete or damaged model, at '" + reader.part() + "': " + Reason(exception) +
-                     "; use another copy or fit again",
-                 file};
+    return damaged(reader.part(), exception);
   }
 }
 

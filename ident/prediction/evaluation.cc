@@ -248,6 +248,9 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
   summary.frame_weighted = Mean(all, true);
   summary.by = GroupScores(recordings, summary.recordings, group_by,
                            [](const Group& group) { return Mean(group, false); });
+  LabelKeys keys = group_by;
+  if (!summary.propagation_by_setting.empty()) keys.push_back(kSettingLabel);
+  summary.without_label = CountWithoutLabel(recordings, summary.recordings, keys);
   return summary;
 }
 

@@ -85,6 +85,7 @@ struct ScoreSummary {
   std::vector<RecordingScore> recordings;
   MeanScore mean, frame_weighted;
   ByLabel<MeanScore> by;
+  WithoutLabel without_label;      // in no group of `by`, or of the propagation by setting
   PropagationSummary propagation;  // over recordings of more than one person
   std::map<std::string, PropagationSummary> propagation_by_setting;  // none for single people
   StepScore steps;     // unknown where the model says nothing of them

@@ -238,20 +238,20 @@ Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecordi
   return prediction;
 }
 
-std::vector<std::string> InputWarnings(const IdentifiedModel& model,
-                                       const std::vector<PendulumRecording>& recordings) {
-  std::vector<std::string> warnings = UnitWarnings(recordings);
+Warnings InputWarnings(const IdentifiedModel& model,
+                       const std::vector<PendulumRecording>& recordings) {
+  Warnings warnings = UnitWarnings(recordings);
   const bool together =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const PendulumRecording& r) { return r.scene.num_people() > 1; });
   if (together && !model.options.interaction.Any()) {
-    warnings.push_back(
+    warnings.emplace_back(
         (model.source.empty() ? "the model" : model.source) +
         " was fitted without interaction: people will not affect each other; fit recordings of "
         "groups with an interaction (pushid-fit --setting=groups --interaction=contact)");
   }
   for (const std::string& warning : ExtrapolationWarnings(model, recordings)) {
-    warnings.push_back(warning);
+    warnings.emplace_back(warning);
   }
   return warnings;
 }

@@ -76,7 +76,7 @@ Prediction MedianPrediction(const PendulumRecording& recording,
 // What is odd about recordings that a model is to predict: recordings in other units than they say,
 // people who stand together under a model without contact, pushes beyond those of the fit.
 // Sentences for GroupedWarnings.
-std::vector<std::string> InputWarnings(const IdentifiedModel& model,
-                                       const std::vector<PendulumRecording>& recordings);
+Warnings InputWarnings(const IdentifiedModel& model,
+                       const std::vector<PendulumRecording>& recordings);
 
 }  // namespace pushid

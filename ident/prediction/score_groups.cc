@@ -80,6 +80,15 @@ MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const L
   return std::nullopt;
 }
 
+std::string WithoutLabelText(const WithoutLabel& counts) {
+  std::string text;
+  for (const auto& [key, count] : counts) {
+    text += std::to_string(count) + " recording" + (count == 1 ? " has" : "s have") + " no " + key +
+            ": " + (count == 1 ? "it is" : "they are") + " in no group by " + key + "\n";
+  }
+  return text;
+}
+
 std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
                                     const std::string& key) {
   std::vector<std::string> names;

@@ -76,4 +76,26 @@ auto GroupScores(const std::vector<PendulumRecording>& recordings, const std::ve
   return by;
 }
 
+// By key: how many scores are in none of its groups, for want of the label; only where others have
+// it. Scores that failed do not count.
+using WithoutLabel = std::map<std::string, int>;
+
+template <typename Score>
+WithoutLabel CountWithoutLabel(const std::vector<PendulumRecording>& recordings,
+                               const std::vector<Score>& scores, const LabelKeys& keys) {
+  WithoutLabel counts;
+  for (const std::string& key : keys) {
+    const std::vector<std::string> names = GroupNames(recordings, key);
+    int with = 0, without = 0;
+    for (size_t i = 0; i < scores.size(); ++i) {
+      if (scores[i].failure.empty()) ++(names[i].empty() ? without : with);
+    }
+    if (with > 0 && without > 0) counts[key] = without;
+  }
+  return counts;
+}
+
+// A line for each key: "2 recordings have no setting: they are in no group by setting"
+std::string WithoutLabelText(const WithoutLabel& counts);
+
 }  // namespace pushid

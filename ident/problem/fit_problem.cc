@@ -10,15 +10,32 @@
 
 namespace pushid {
 
-FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, FitOptions options,
                        std::vector<int> counts)
-    : recordings_(recordings),
-      options_(options),
+    : recordings_(&recordings),
+      options_(std::move(options)),
       counts_(std::move(counts)),
-      map_(options.table.Map()) {
-  map_.pool_by = options.pool_by;
-  if (options.model.learned != nullptr && !options.hold_network) {
-    map_.num_weights = static_cast<int>(options.model.learned->weights.size());
+      map_(options_.table.Map()) {
+  map_.pool_by = options_.pool_by;
+  if (options_.model.learned != nullptr && !options_.hold_network) {
+    map_.num_weights = static_cast<int>(options_.model.learned->weights.size());
+  }
+}
+
+CostWeights FitProblem::weights() const {
+  CostWeights weights{options_.sigmas, options_.effective_weight, options_.settling_weight, {}};
+  for (const ParameterSpec& spec : options_.table.specs) {
+    weights.pooling_sigma.push_back(spec.pooling_sigma);
+  }
+  return weights;
+}
+
+void FitProblem::Weigh(const CostWeights& weights) {
+  options_.sigmas = weights.sigmas;
+  options_.effective_weight = weights.effective_weight;
+  options_.settling_weight = weights.settling_weight;
+  for (size_t i = 0; i < options_.table.specs.size(); ++i) {
+    options_.table.specs[i].pooling_sigma = weights.pooling_sigma[i];
   }
 }
 
@@ -27,8 +44,8 @@ FitPoint FitProblem::NominalPoint() const {
   for (const FittedParameter& f : map_.fitted) {
     point.shared.push_back(ToFitted(f.transform, options_.table[f.parameter].nominal));
   }
-  for (size_t i = 0; i < recordings_.size(); ++i) {
-    const PendulumRecording& recording = recordings_[i];
+  for (size_t i = 0; i < recordings().size(); ++i) {
+    const PendulumRecording& recording = recordings()[i];
     if (map_.num_deviations > 0) {
       for (const std::string& unit : PoolingUnits(recording, map_.pool_by)) {
         const auto start = options_.start_deviations.find(unit);
@@ -102,14 +119,14 @@ std::vector<std::string> FitProblem::SettlingUnits(const FitPoint& point) const 
 }
 
 LikelihoodProblem FitProblem::LikelihoodOf(int recording, double weight) const {
-  return MakeLikelihoodProblem(options_.likelihood, recordings_[recording], options_.model, map_,
+  return MakeLikelihoodProblem(options_.likelihood, recordings()[recording], options_.model, map_,
                                weight, options_.seed);
 }
 
 Deviance FitProblem::DevianceAt(const FitPoint& point) const {
   Deviance sum;
   FitPoint copy = point;
-  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
     const LikelihoodProblem problem = LikelihoodOf(i, 1.0);
     const std::vector<double*> blocks = RecordingBlocks(&copy, i);
     const Deviance one =
@@ -124,10 +141,10 @@ double FitProblem::DataCost(const FitPoint& point) const {
   if (options_.likelihood != Likelihood::kTrajectory) return 0.5 * DevianceAt(point).value;
   FitPoint copy = point;
   double cost = 0.0;
-  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
     if (Count(i) == 0) continue;
     const auto rollout =
-        MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, Weight(i, 0), 0);
+        MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas, Weight(i, 0), 0);
     Eigen::VectorXd values(rollout->num_residuals());
     if (!RolloutResiduals(*rollout, RecordingBlocks(&copy, i).data(), values.data())) {
       return std::numeric_limits<double>::infinity();
@@ -141,14 +158,14 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
   std::vector<FailedRollout> failures;
   if (options_.likelihood != Likelihood::kTrajectory) return failures;  // rolls nothing out
   FitPoint copy = point;
-  const int total = static_cast<int>(recordings_.size());
+  const int total = static_cast<int>(recordings().size());
   std::vector<std::shared_ptr<const RolloutProblem>> problems(total);
   std::vector<const RolloutProblem*> in_lanes(total, nullptr);
   std::vector<std::vector<double*>> blocks(total);
   for (int i = 0; i < total; ++i) {
     if (Count(i) == 0) continue;
     problems[i] =
-        MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, 1.0, horizon);
+        MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas, 1.0, horizon);
     blocks[i] = RecordingBlocks(&copy, i);
     if (HasLanes(*problems[i])) in_lanes[i] = problems[i].get();
   }
@@ -175,7 +192,7 @@ std::vector<double> FitProblem::RawResiduals(const FitPoint& point, int recordin
   ResidualSigmas plain = options_.sigmas;
   plain.robust = 0.0;
   const auto rollout =
-      MakeRolloutProblem(recordings_[recording], options_.model, map_, plain, 1.0, 0);
+      MakeRolloutProblem(recordings()[recording], options_.model, map_, plain, 1.0, 0);
   std::vector<double> values(rollout->num_residuals());
   if (!RolloutResiduals(*rollout, RecordingBlocks(&copy, recording).data(), values.data())) {
     values.clear();
@@ -185,7 +202,7 @@ std::vector<double> FitProblem::RawResiduals(const FitPoint& point, int recordin
 
 std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording) const {
   std::vector<double*> blocks = {point->shared.data()};
-  const BlockLayout layout(map_, PoolingUnits(recordings_[recording], map_.pool_by), false);
+  const BlockLayout layout(map_, PoolingUnits(recordings()[recording], map_.pool_by), false);
   if (map_.num_deviations > 0) {
     for (const std::string& unit : layout.units) blocks.push_back(point->unit[unit].data());
   }
@@ -203,7 +220,7 @@ double FitProblem::Weight(int recording, int horizon) const {
     return counted * std::sqrt(options_.effective_weight);
   }
   // A recording's frames are far from independent: together they count as one.
-  const PendulumRecording& r = recordings_[recording];
+  const PendulumRecording& r = recordings()[recording];
   const int frames = horizon > 0 ? std::min(horizon, r.num_frames()) : r.num_frames();
   return counted / std::sqrt(std::max(1, frames - 1));
 }
@@ -255,7 +272,7 @@ std::shared_ptr<const RolloutProblem> FitProblem::StageRollout(int recording, in
     if (failed.recording == recording) frames = failed.status.frame;
   }
   if (frames == 1) return nullptr;
-  return MakeRolloutProblem(recordings_[recording], options_.model, map_, options_.sigmas,
+  return MakeRolloutProblem(recordings()[recording], options_.model, map_, options_.sigmas,
                             Weight(recording, horizon), frames);
 }
 
@@ -272,7 +289,7 @@ FitProblem::Built FitProblem::BuildStage(const FitStage& stage, FitPoint* point,
       if (family.per == per && family.on(options_, stage)) family.add(family, place);
     }
   };
-  for (int i = 0; i < static_cast<int>(recordings_.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
     if (Count(i) == 0) continue;
     place.recording = i;
     if (rolls) place.rollout = StageRollout(i, stage.horizon, built);

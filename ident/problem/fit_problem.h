@@ -26,15 +26,30 @@ struct FitStage {
   bool equation_error = false;  // of single frames, instead of rollouts
 };
 
+// How much each part of a problem's cost weighs: what a fit estimates between two solves. Fields as
+// those of FitOptions and ParameterSpec.
+struct CostWeights {
+  ResidualSigmas sigmas;
+  double effective_weight = 0.0;
+  double settling_weight = 0.0;
+  std::vector<double> pooling_sigma;  // of every row of the table
+};
+
 class FitProblem {
  public:
-  // recordings and options must outlive the problem. counts: how often each recording counts (a
-  // bootstrap replica; 0 leaves it out); empty: each once.
-  FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+  // recordings must outlive the problem. counts: how often each recording counts (a bootstrap
+  // replica; 0 leaves it out); empty: each once.
+  FitProblem(const std::vector<PendulumRecording>& recordings, FitOptions options,
              std::vector<int> counts = {});
 
+  CostWeights weights() const;
+  // Points of the problem stay points of it.
+  void Weigh(const CostWeights& weights);
+  void set_settling_weight(double weight) { options_.settling_weight = weight; }
+  void set_function_tolerance(double tolerance) { options_.function_tolerance = tolerance; }
+
   const ParameterMap& map() const { return map_; }
-  const std::vector<PendulumRecording>& recordings() const { return recordings_; }
+  const std::vector<PendulumRecording>& recordings() const { return *recordings_; }
   const FitOptions& options() const { return options_; }
   // Of a recording's residuals in the cost, rolled out over `horizon` frames (0: all).
   double Weight(int recording, int horizon) const;
@@ -146,8 +161,8 @@ class FitProblem {
   Built BuildStage(const FitStage& stage, FitPoint* point, bool hold_network,
                    int num_threads) const;
 
-  const std::vector<PendulumRecording>& recordings_;
-  const FitOptions& options_;
+  const std::vector<PendulumRecording>* recordings_;
+  FitOptions options_;
   std::vector<int> counts_;
   ParameterMap map_;
   double fall_of_noise_ = kFisherShift;

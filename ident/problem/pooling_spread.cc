@@ -55,18 +55,18 @@ DeviationPosterior IntegrateOut(const FitProblem& problem, const FitPoint& point
 
 }  // namespace
 
-double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point,
-                           ParameterTable* table) {
+double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, CostWeights* weights) {
   const ParameterMap& map = problem.map();
   if (map.num_deviations == 0 || problem.options().pooling_sigma) return 0.0;
   const Eigen::Index parameters = map.num_deviations;
   const Eigen::Index units = static_cast<Eigen::Index>(point.unit.size());
   Eigen::VectorXd typical(parameters), sigma(parameters);  // in PoolingSigma's units; fitted scale
-  std::vector<ParameterSpec*> specs(parameters);
+  std::vector<Parameter> ids(parameters);
   for (const FittedParameter& f : map.fitted) {
     if (f.deviation < 0) continue;
-    ParameterSpec& spec = *(specs[f.deviation] = &(*table)[f.parameter]);
-    sigma[f.deviation] = PoolingSigma(problem.options().table[f.parameter]);
+    ids[f.deviation] = f.parameter;
+    const ParameterSpec& spec = problem.options().table[f.parameter];
+    sigma[f.deviation] = PoolingSigma(spec);
     typical[f.deviation] = PoolingSigma(spec) / spec.pooling_sigma;
   }
   const Eigen::VectorXd before = sigma;
@@ -96,7 +96,9 @@ double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point,
     }
     change = (sigma.cwiseQuotient(last).array() - 1.0).abs().maxCoeff();
   }
-  for (Eigen::Index k = 0; k < parameters; ++k) specs[k]->pooling_sigma = sigma[k] / typical[k];
+  for (Eigen::Index k = 0; k < parameters; ++k) {
+    weights->pooling_sigma[ids[k]] = sigma[k] / typical[k];
+  }
   return (sigma.cwiseQuotient(before).array() - 1.0).abs().maxCoeff();
 }
 

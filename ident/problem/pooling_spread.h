@@ -13,19 +13,19 @@
 // to a factor of about two either way; it says how much a unit may differ, no more.
 #pragma once
 
-#include "ident/parameters/parameter_table.h"
 #include "ident/problem/fit_point.h"
 
 namespace pushid {
 
 class FitProblem;
+struct CostWeights;
 
 // Bounds of s, in ParameterSpec::pooling_sigma's units: 1 % and a factor of twenty.
 inline constexpr double kLeastPoolingSigma = 0.01, kLargestPoolingSigma = 3.0;
 
-// Sets pooling_sigma of every pooled parameter of the table to the s that the units tell of at a
-// point (best the optimum of the cost with the table's own). Returns the largest relative change:
-// solve and update until it is small.
-double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, ParameterTable* table);
+// Sets the weights' pooling_sigma of every pooled parameter to the s that the units tell of at a
+// point (best the optimum of the cost as the problem weighs it). Returns the largest relative
+// change: solve and update until it is small.
+double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, CostWeights* weights);
 
 }  // namespace pushid

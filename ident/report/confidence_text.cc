@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "datasets/files/number_text.h"
-#include "datasets/loading/load_recordings.h"
+#include "datasets/loading/warning.h"
 #include "ident/figures/text_table.h"
 #include "ident/fit/interval_agreement.h"
 #include "ident/parameters/option_names.h"

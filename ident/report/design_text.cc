@@ -129,15 +129,20 @@ std::string StudySizesNote(const StudyPlan& plan) {
          " %; the same holds for these standard errors.";
 }
 
+std::string NoSensorText(const StudyPlan& plan) {
+  return plan.no_sensor.empty() ? "" : "No force sensor is proposed: " + plan.no_sensor + ".";
+}
+
+std::string NoSizesText(const StudyPlan& plan) {
+  return plan.no_sizes.empty() ? "" : "More people, more pushes: " + plan.no_sizes + ".";
+}
+
 std::string StudiesText(const StudyPlan& plan, const std::string& parameter) {
-  std::string text;
-  if (plan.no_sensor.empty()) {
-    text += "effect of a force sensor in the same study, with the whole push known\n" +
-            SensorTable(plan, parameter).ToString();
-  } else {
-    text += "no force sensor is proposed: " + plan.no_sensor + "\n";
-  }
-  if (!plan.no_sizes.empty()) return text + "\nmore people, more pushes: " + plan.no_sizes + "\n";
+  std::string text = NoSensorText(plan);
+  text += text.empty() ? "effect of a force sensor in the same study, with the whole push known\n" +
+                             SensorTable(plan, parameter).ToString()
+                       : "\n";
+  if (!plan.no_sizes.empty()) return text + "\n" + NoSizesText(plan) + "\n";
   text += "\nstandard errors with more people and more pushes of each\n" +
           StudySizesTable(plan, parameter).ToString();
   TextTable spread = TextTable::OfNumbers(

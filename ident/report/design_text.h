@@ -25,6 +25,10 @@ Result<std::string> DesignText(const ExperimentDesign& design, const std::string
 TextTable SensorTable(const StudyPlan& plan, const std::string& parameter);
 TextTable StudySizesTable(const StudyPlan& plan, const std::string& parameter);
 
+// Why there is none of them; empty where there is.
+std::string NoSensorText(const StudyPlan& plan);
+std::string NoSizesText(const StudyPlan& plan);
+
 // Both with headings, or why there is none.
 std::string StudiesText(const StudyPlan& plan, const std::string& parameter);
 

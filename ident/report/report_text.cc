@@ -7,7 +7,7 @@
 
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/load_recordings.h"
+#include "datasets/loading/warning.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_names.h"

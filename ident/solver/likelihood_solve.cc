@@ -80,13 +80,12 @@ void TakeNoise(const FitProblem& problem, FitPoint* point) {
 }
 
 // BFGS, and the units' spread anew, in turns. Whether the likelihood stays.
-bool SolveOn(const std::vector<PendulumRecording>& recordings, FitOptions* options,
-             SolveStart* start) {
+bool SolveOn(FitProblem* problem, SolveStart* start) {
   for (int round = 0; round < kMostRounds; ++round) {
-    const double spread =
-        UpdatePoolingSpread(FitProblem(recordings, *options), start->to, &options->table);
-    const FitProblem problem(recordings, *options);
-    const SolveStage stage = SolveByBfgs(problem, {}, &start->to, &start->message);
+    CostWeights weights = problem->weights();
+    const double spread = UpdatePoolingSpread(*problem, start->to, &weights);
+    problem->Weigh(weights);
+    const SolveStage stage = SolveByBfgs(*problem, {}, &start->to, &start->message);
     const double before = start->cost;
     start->stages.push_back(stage);
     start->iterations += stage.iterations;
@@ -119,28 +118,27 @@ NoiseFit FitNoise(const FitProblem& problem, const std::vector<int>& held, const
 
 }  // namespace
 
-LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recordings,
-                                     FitOptions* options, const SolveProgress& progress) {
+LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   LikelihoodSolution solved;
   std::vector<SolveStart>& starts = solved.solution.starts;
-  const FitOptions asked = *options;
+  const FitProblem as_asked = *problem;
+  const FitOptions& asked = as_asked.options();
   for (int s = 0; s < asked.num_starts; ++s) {
+    const bool first = s == 0, by_equation = asked.start == FitStart::kEquationError;
+    FitPoint from = !first ? RandomStart(as_asked, asked.start_spread, RandomStartSeed(asked, s))
+                    : by_equation ? EquationErrorStart(as_asked)
+                                  : as_asked.NominalPoint();
     FitOptions own = asked;
-    const FitProblem problem(recordings, own);
-    const bool first = s == 0, by_equation = own.start == FitStart::kEquationError;
-    FitPoint from = !first        ? RandomStart(problem, own.start_spread, RandomStartSeed(own, s))
-                    : by_equation ? EquationErrorStart(problem)
-                                  : problem.NominalPoint();
-    StartNoise(problem, from, &own);
-    const FitProblem with_noise(recordings, own);
+    StartNoise(as_asked, from, &own);
+    FitProblem with_noise(as_asked.recordings(), own, as_asked.counts());
     TakeNoise(with_noise, &from);
     const std::string label = asked.num_starts > 1 ? "start " + std::to_string(s + 1) + "/" +
                                                          std::to_string(asked.num_starts) + ", "
                                                    : "";
     own.horizons = {0};
     own.max_iterations = kScoringSteps;
-    const FitProblem whole(recordings, own);
+    const FitProblem whole(as_asked.recordings(), own, as_asked.counts());
     SolveStart start = SolveFrom(whole, from,
                                  !first        ? "random"
                                  : by_equation ? "equation_error"
@@ -149,16 +147,14 @@ LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recor
     for (int round = 1; round < kScoringRounds; ++round) {
       start.to = SolveFrom(whole, start.to, start.kind, label, progress).to;
     }
-    own.max_iterations = asked.max_iterations;
     start.failed.clear();
-    const bool stays = SolveOn(recordings, &own, &start);
+    const bool stays = SolveOn(&with_noise, &start);
     start.usable = std::isfinite(start.cost) && start.failed.empty();
     const SolveStart* best = solved.solution.best < 0 ? nullptr : &solved.solution.Best();
     if (start.usable && (best == nullptr || start.cost < best->cost)) {
       solved.solution.best = s;
       solved.stays = stays;
-      own.horizons = asked.horizons;
-      *options = own;
+      *problem = std::move(with_noise);
     }
     starts.push_back(std::move(start));
   }
@@ -167,23 +163,24 @@ LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recor
   return solved;
 }
 
-std::string EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPoint& point,
-                          FitOptions* options) {
-  if (!options->model.process_noise.Any() || options->likelihood != Likelihood::kTrajectory) {
+std::string EstimateNoise(const FitPoint& point, FitProblem* problem) {
+  FitOptions options = problem->options();
+  if (!options.model.process_noise.Any() || options.likelihood != Likelihood::kTrajectory) {
     return "";
   }
-  FitOptions own = *options;
+  const std::vector<PendulumRecording>& recordings = problem->recordings();
+  FitOptions own = options;
   SetLikelihood(Likelihood::kInnovation, &own);
   FreeNoise(&own);
   for (ParameterSpec& spec : own.table.specs) {
     if (IsNoiseParameter(spec.id) && GivenByUser(spec)) spec.free = false;
   }
-  StartNoise(FitProblem(recordings, *options), point, &own);
-  const FitProblem problem(recordings, own);
-  FitPoint noise = problem.NominalPoint();
+  StartNoise(*problem, point, &own);
+  const FitProblem steps(recordings, own);
+  FitPoint noise = steps.NominalPoint();
   noise.unit = point.unit;
   std::vector<int> held;
-  const auto& fitted = problem.map().fitted;
+  const auto& fitted = steps.map().fitted;
   for (size_t i = 0; i < fitted.size(); ++i) {
     if (IsNoiseParameter(fitted[i].parameter)) continue;
     held.push_back(static_cast<int>(i));
@@ -199,16 +196,17 @@ std::string EstimateNoise(const std::vector<PendulumRecording>& recordings, cons
         from.shared[i] = ToFitted(spec.transform, error);
       }
     }
-    const NoiseFit fit = FitNoise(problem, held, from);
+    const NoiseFit fit = FitNoise(steps, held, from);
     if (std::isfinite(fit.cost) ? fit.cost < best.cost : best.message.empty()) best = fit;
   }
   if (!std::isfinite(best.cost)) return "the process noise is not estimated: " + best.message;
   noise = best.at;
-  const ParameterSet<double> found = problem.Parameters(noise, "");
+  const ParameterSet<double> found = steps.Parameters(noise, "");
   for (const FittedParameter& f : fitted) {
     if (!IsNoiseParameter(f.parameter)) continue;
-    options->table[f.parameter].nominal = found[f.parameter];
+    options.table[f.parameter].nominal = found[f.parameter];
   }
+  *problem = FitProblem(recordings, std::move(options), problem->counts());
   return "";
 }
 

@@ -18,17 +18,16 @@ struct LikelihoodSolution {
   bool stays = false;  // the best one's likelihood, from round to round
 };
 
-// The best of the starts, each on its own. options: on return with the best one's start of the
+// The best of the starts, each on its own. problem: on return with the best one's start of the
 // noise and its units' spread.
-LikelihoodSolution SolveByLikelihood(const std::vector<PendulumRecording>& recordings,
-                                     FitOptions* options, const SolveProgress& progress = nullptr);
+LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress = nullptr);
 
 // The process noise, and the errors of measurement, under which a fit of whole rollouts explains
-// single steps best (innovation likelihood), everything else held at `point`: the table's fixed
-// values on return. What the user has set stays. Nothing changes where the model has no noise, or a
-// likelihood of steps has found it already. Returns a warning where it cannot be estimated.
-std::string EstimateNoise(const std::vector<PendulumRecording>& recordings, const FitPoint& point,
-                          FitOptions* options);
+// single steps best (innovation likelihood), everything else held at `point`: the fixed values of
+// the problem's table on return. What the user has set stays. Nothing changes where the model has
+// no noise, or a likelihood of steps has found it already. Returns a warning where it cannot be
+// estimated.
+std::string EstimateNoise(const FitPoint& point, FitProblem* problem);
 
 // At a point of a problem.
 LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point);

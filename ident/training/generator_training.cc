@@ -153,7 +153,7 @@ Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
       if (progress) progress(*point, (index + trainer->ShareDone()) / options.seeds);
     };
     const CheckpointOptions checkpoint = {SeedsCheckpoint(options.checkpoint, index),
-                                          options.checkpoint_seconds};
+                                          options.checkpoint_seconds, index + 1 < options.seeds};
     const MaybeError error = RunToEnd(trainer, key, checkpoint, told, &trained);
     ++index;
     return error;

@@ -82,8 +82,9 @@ MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOp
   while (!trainer->Done()) {
     curve.push_back(trainer->RunRound());
     told(&curve.back());
-    if (options.checkpoint.empty()) continue;
-    if (!trainer->Done() && Now() - last < options.checkpoint_seconds) continue;
+    const bool due =
+        trainer->Done() ? options.keep_finished : Now() - last >= options.checkpoint_seconds;
+    if (options.checkpoint.empty() || !due) continue;
     last = Now();
     if (MaybeError error = Save(options.checkpoint, key, trainer->State(), curve)) return error;
   }

@@ -15,6 +15,7 @@ namespace pushid {
 struct CheckpointOptions {
   std::string checkpoint;            // file; empty: none
   double checkpoint_seconds = 20.0;  // between two
+  bool keep_finished = false;        // one more at the end: where further trainings follow
 };
 
 // How a training went.
@@ -24,7 +25,8 @@ struct TrainingCourse {
 };
 
 // Until the trainer is done, from a checkpoint of this key on if there is one; the last stays until
-// it is removed. key: what the training depends on, data included. told: about every new point,
+// it is removed. A finished training needs none, so that one that cannot be written does not lose
+// its result. key: what the training depends on, data included. told: about every new point,
 // whose stage it may name. The points are added to the course. Errors: a checkpoint that cannot be
 // written.
 MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOptions& options,

@@ -90,14 +90,14 @@ RefitRow FitOneStep(const FitProblem& whole) {
   options.num_threads = options.num_starts = 1;
   SetLikelihood(Likelihood::kInnovation, &options);
   FreeNoise(&options);
-  const LikelihoodSolution found = SolveByLikelihood(whole.recordings(), &options);
+  FitProblem problem(whole.recordings(), options);
+  const LikelihoodSolution found = SolveByLikelihood(&problem);
   if (found.solution.best < 0 || !found.stays) {
     row.failure = found.solution.best < 0
                       ? found.solution.starts.front().message
                       : "the likelihood still increased in the last round of solving";
     return row;
   }
-  const FitProblem problem(whole.recordings(), options);
   const FitPoint& best = found.solution.Best().to;
   const ParameterSet<double> values = problem.Parameters(best, "");
   const Uncertainty uncertainty = ComputeUncertainty(problem, best);

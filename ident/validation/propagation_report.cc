@@ -1,24 +1,10 @@
-// ident: propagation as JSON and as tables.
-#include <nlohmann/json.hpp>
-
+// ident: propagation as tables.
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json FigureJson(const PropagationMean& mean) {
-  if (!mean.known()) return nullptr;
-  return {{"value", mean.value}, {"standard_error", mean.error}, {"of", mean.weight}};
-}
-
-Json SpeedJson(const PropagationMean& slowness) {
-  const std::optional<PropagationMean> speed = Speed(slowness);
-  return speed ? FigureJson(*speed) : Json(nullptr);
-}
 
 std::string FigureText(const PropagationMean& mean) {
   if (!mean.known()) return "-";
@@ -40,36 +26,6 @@ std::string CountsText(double part, double whole) {
 std::string OnsetText(int frame) { return frame < 0 ? "-" : std::to_string(frame); }
 
 }  // namespace
-
-Json ToJson(const PropagationSummary& summary) {
-  Json json = {{"recordings", summary.recordings},
-               {"onset_distance_m", kOnsetDistance},
-               {"movers", summary.movers},
-               {"bystanders", summary.bystanders},
-               {"missed_movers", summary.missed_movers},
-               {"false_movers", summary.false_movers}};
-  for (int i = 0; i < kNumPropagationFigures; ++i) {
-    json[Info(static_cast<PropagationFigure>(i)).key] = FigureJson(summary.figures[i]);
-  }
-  json["speed_measured_m_per_s"] = SpeedJson(summary.figures[kSlownessMeasured]);
-  json["speed_predicted_m_per_s"] = SpeedJson(summary.figures[kSlownessPredicted]);
-  return json;
-}
-
-Json PeopleJson(const PropagationScore& score) {
-  Json json = Json::array();
-  for (const PersonPropagation& person : score.people) {
-    json.push_back({{"rank", person.rank},
-                    {"distance_m", person.distance},
-                    {"onset_measured_frame", person.onset_measured},
-                    {"onset_predicted_frame", person.onset_predicted},
-                    {"peak_momentum_measured_N_s", person.peak_momentum_measured},
-                    {"peak_momentum_predicted_N_s", person.peak_momentum_predicted},
-                    {"impulse_passed_on_N_s", person.impulse_on},
-                    {"contact_work_J", person.contact_work}});
-  }
-  return json;
-}
 
 std::string SpeedText(const PropagationMean& slowness) {
   const std::optional<PropagationMean> speed = Speed(slowness);

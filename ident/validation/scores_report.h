@@ -12,8 +12,6 @@ namespace pushid {
 
 nlohmann::ordered_json ToJson(const Evaluation& evaluation);
 nlohmann::ordered_json ToJson(const ScoreSummary& summary, bool with_recordings);
-nlohmann::ordered_json ToJson(const PropagationSummary& summary);
-nlohmann::ordered_json PeopleJson(const PropagationScore& score);  // one row per person
 nlohmann::ordered_json ToJson(const CrossValidation& validation);
 nlohmann::ordered_json ToJson(const PairedDifference& difference);
 

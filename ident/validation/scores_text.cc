@@ -173,7 +173,7 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
           [&](const ScoreSummary& of) { return MeanOfGroup(of.by.at(of_key), name); });
     }
   }
-  text += table.ToString() + ErrorsText(m) + ObservedText(m);
+  text += table.ToString() + WithoutLabelText(m.without_label) + ErrorsText(m) + ObservedText(m);
   if (m.steps.known()) text += "\n" + StepScoresText({{"model", &m.steps}});
   if (m.propagation.recordings == 0) return text;
   std::vector<PropagationColumn> columns = {{"model", &m.propagation}};

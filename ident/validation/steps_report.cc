@@ -184,43 +184,6 @@ std::string StepScoresText(const NamedStepScores& scores) {
          " people\n";
 }
 
-Json ToJson(const StepScore& score) {
-  Json json = {{"tracks", score.tracks},           {"stepped", score.stepped},
-               {"people", score.people},           {"brier", score.brier},
-               {"brier_error", score.brier_error}, {"auc", score.auc},
-               {"auc_error", score.auc_error},     {"fifths", Json::array()}};
-  for (const StepFifth& fifth : score.fifths) {
-    json["fifths"].push_back(
-        {{"tracks", fifth.tracks}, {"predicted", fifth.predicted}, {"observed", fifth.observed}});
-  }
-  if (score.lift_off.people > 0) {
-    json["lift_off"] = {{"people", score.lift_off.people},
-                        {"median_error_s", score.lift_off.median},
-                        {"mean_absolute_error_s", score.lift_off.mean_absolute}};
-  }
-  return json;
-}
-
-StepScore StepScoreFromJson(const Json& json) {
-  StepScore score;
-  score.tracks = json.at("tracks");
-  score.stepped = json.at("stepped");
-  score.people = json.at("people");
-  score.brier = json.at("brier");
-  score.brier_error = json.at("brier_error");
-  score.auc = json.at("auc");
-  score.auc_error = json.at("auc_error");
-  if (json.contains("lift_off")) {
-    const Json& error = json.at("lift_off");
-    score.lift_off = {error.at("people"), error.at("median_error_s"),
-                      error.at("mean_absolute_error_s")};
-  }
-  for (const Json& fifth : json.at("fifths")) {
-    score.fifths.push_back({fifth.at("tracks"), fifth.at("predicted"), fifth.at("observed")});
-  }
-  return score;
-}
-
 Chart ReliabilityChart(const StepScore& score) {
   Chart chart;
   chart.title = "who steps: share over probability";

@@ -26,7 +26,7 @@ std::string StepsReport(const std::vector<PendulumRecording>& recordings, bool p
 //   steps: {people, people_who_step, first_lift_off_median_s, first_length_median_m}
 void AddStepsJson(const std::vector<PendulumRecording>& recordings, nlohmann::ordered_json* json);
 
-// How well it is predicted who steps, in words, as JSON and as a picture.
+// How well it is predicted who steps, in words and as a picture.
 
 // "P(step) = ...", its errors, and at which margin half of all people step.
 std::string StepProbabilityText(const StepProbability& probability);
@@ -36,12 +36,6 @@ using NamedStepScores = std::vector<std::pair<std::string, const StepScore*>>;
 TextTable StepScoresTable(const NamedStepScores& scores);
 // The same with what the errors are; empty where no score is known.
 std::string StepScoresText(const NamedStepScores& scores);
-
-// {tracks, stepped, people, brier, brier_error, auc, auc_error,
-//  fifths: [{tracks, predicted, observed}, ...]}, and for models with step states
-// lift_off: {people, median_error_s, mean_absolute_error_s}
-nlohmann::ordered_json ToJson(const StepScore& score);
-StepScore StepScoreFromJson(const nlohmann::ordered_json& json);
 
 // The fifths' observed share over the predicted probability, beside the diagonal.
 Chart ReliabilityChart(const StepScore& score);

@@ -36,8 +36,8 @@ void SolveOnly(benchmark::State& state, const char* preset) {
   const FitOptions options = OptionsOf(preset);
   Solution solution;
   for (auto _ : state) {
-    FitOptions weighed = options;
-    solution = SolveWeighted(SinglePeople().recordings, &weighed).solution;
+    FitProblem problem(SinglePeople().recordings, options);
+    solution = SolveWeighted(&problem).solution;
   }
   Report(state, solution);
 }
@@ -54,8 +54,8 @@ void SolveByInnovations(benchmark::State& state) {
   }
   Solution solution;
   for (auto _ : state) {
-    FitOptions own = options;
-    solution = SolveAsAsked(SinglePeople().recordings, &own).solution;
+    FitProblem problem(SinglePeople().recordings, options);
+    solution = SolveAsAsked(&problem).solution;
   }
   Report(state, solution);
 }

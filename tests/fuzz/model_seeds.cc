@@ -40,7 +40,7 @@ FittedModel OfPreset(const std::string& name) {
   start.stages = {{8, 12, 9.0, 1.5, true, {}}};
   result.starts = {start};
   result.best_start = 0;
-  result.warnings = {"a warning"};
+  result.warnings = {Warning("a warning")};
   result.step_probability = StepProbability{{0.5, 30.0}, Eigen::Matrix2d::Identity(), 20, 12, 5};
   result.recording_effect = RecordingEffect{};
   result.recording_effect->recordings = {{"r0", "S0", "p", 0.1, 0.2, 0.15}};

@@ -7,6 +7,18 @@ from . import _pushid
 from ._options import text_of
 
 
+class FileWarning(str):
+    """A warning about a file: a sentence; of which recording, and what it says of several, is kept beside it."""
+
+    def __new__(cls, text, recording="", of_many=""):
+        warning = super().__new__(cls, text)
+        warning.recording, warning.of_many = recording, of_many
+        return warning
+
+    def __getnewargs__(self):
+        return str(self), self.recording, self.of_many
+
+
 class Recordings(list):
     """A list of recordings, with the warnings about their files (`warnings`)."""
 
@@ -41,7 +53,7 @@ def read(manifest, setting=_DEFAULT["setting"], *, ids=(), leave_out=(), all_joi
     found, told = _pushid.read(",".join(os.fspath(path) for path in paths), setting, _listed(ids),
                                _listed(leave_out), all_joints, max_gap_s, lowpass_hz, resample_fps, length_unit,
                                length_scale)
-    return Recordings(found, told)
+    return Recordings(found, [FileWarning(*one) for one in told])
 
 
 def _positions(name, values, metres):

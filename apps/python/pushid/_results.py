@@ -221,7 +221,8 @@ def fit(recordings, *, progress=None, **asked):
     fix={"mu": 30} (or fix=["mu"]: held at the default), free={"Kp_x": 50}, prior={"mu": (30, 10)}, ...
     progress: called with (phase, iteration, cost). Ctrl-C ends a fit. Raises DataError, UsageError, FitError.
     """
-    told = list(getattr(recordings, "warnings", ()))
+    told = [(str(one), getattr(one, "recording", ""), getattr(one, "of_many", ""))
+            for one in getattr(recordings, "warnings", ())]
     return Result(_pushid.fit(checked(recordings), given(asked), progress, told))
 
 

@@ -157,13 +157,10 @@ void AddStudies(const StudyPlan& plan, ReportSection* section) {
   if (plan.no_sensor.empty()) {
     section->tables.push_back(
         {"a force sensor: the same study with the whole push known", SensorTable(plan, "all")});
-  } else {
-    section->Say("No force sensor is proposed: " + plan.no_sensor + ".");
   }
-  if (plan.sizes.empty()) {
-    section->Say("More people, more pushes: " + plan.no_sizes + ".");
-    return;
-  }
+  section->Say(NoSensorText(plan));
+  section->Say(NoSizesText(plan));
+  if (plan.sizes.empty()) return;
   section->Say(StudySizesNote(plan));
   section->tables.push_back(
       {"standard errors with more people and more pushes of each (first row: this study)",

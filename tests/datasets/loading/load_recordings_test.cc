@@ -41,7 +41,7 @@ TEST_F(LoadRecordingsTest, EverythingInSiUnits) {
   EXPECT_EQ(recording.pushes[0].start_frame, 0);
   EXPECT_EQ(recording.pushes[0].file, Path("a.csv"));
   EXPECT_EQ(recording.content_hash.size(), 32u);
-  EXPECT_TRUE(warnings_.empty()) << warnings_[0];
+  EXPECT_TRUE(warnings_.empty()) << warnings_[0].text;
 }
 
 TEST_F(LoadRecordingsTest, AllJointsWhenAsked) {
@@ -114,8 +114,8 @@ TEST_F(LoadRecordingsTest, KeysNearToKnownOnesAreWarnedAbout) {
                                    {"push_scv", "push_csv"}}) {
     ASSERT_TRUE(with_key(key));
     ASSERT_EQ(warnings_.size(), 1u) << key;
-    EXPECT_TRUE(Contains(warnings_[0], std::string("has the key '") + key + "'"));
-    EXPECT_TRUE(Contains(warnings_[0], std::string("is ") + meant + " meant?"));
+    EXPECT_TRUE(Contains(warnings_[0].text, std::string("has the key '") + key + "'"));
+    EXPECT_TRUE(Contains(warnings_[0].text, std::string("is ") + meant + " meant?"));
   }
   ASSERT_TRUE(with_key("anomalies"));
   EXPECT_TRUE(warnings_.empty());
@@ -237,9 +237,9 @@ TEST_F(LoadRecordingsTest, FrameTimes) {
   entry().fps = 59.9;  // 0.17 % off
   EXPECT_TRUE(Load().ok());
   ASSERT_EQ(warnings_.size(), 1u);
-  EXPECT_TRUE(Contains(warnings_[0], "recording 'a': a.bvh has"));
-  EXPECT_TRUE(Contains(warnings_[0], "0.016667 s (59.9988 frames per second)"));
-  EXPECT_TRUE(Contains(warnings_[0], "59.9 frames per second; the manifest's value is used"));
+  EXPECT_TRUE(Contains(warnings_[0].text, "recording 'a': a.bvh has"));
+  EXPECT_TRUE(Contains(warnings_[0].text, "0.016667 s (59.9988 frames per second)"));
+  EXPECT_TRUE(Contains(warnings_[0].text, "59.9 frames per second; the manifest's value is used"));
 }
 
 // 0.016667 s is 1/60 s, rounded.

@@ -13,11 +13,11 @@ namespace {
 
 TEST(RealRecordings, AllOfThemLoad) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", {}, &warnings);
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
   EXPECT_EQ(loaded.value().size(), 81u);
-  EXPECT_TRUE(warnings.empty()) << warnings[0];
+  EXPECT_TRUE(warnings.empty()) << warnings[0].text;
   int people = 0;
   for (const Recording& recording : loaded.value()) {
     people += static_cast<int>(recording.people.size());
@@ -54,10 +54,10 @@ TEST(RealRecordings, TheirJointsAreTheBodys) {
   LoadOptions options;
   options.keep_all_joints = true;
   options.setting = "single,row_1";
-  std::vector<std::string> warnings;
+  Warnings warnings;
   const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", options, &warnings);
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_TRUE(warnings.empty()) << warnings[0];
+  EXPECT_TRUE(warnings.empty()) << warnings[0].text;
   for (const Recording& recording : loaded.value()) {
     for (const RecordedPerson& person : recording.people) {
       EXPECT_TRUE(UnfilledRoles(person.roles).empty() && FilledRoles(person.roles).empty());

@@ -28,10 +28,10 @@ class SyntheticRecordings : public TempDirTest {
                                       const std::vector<SyntheticRecording>& made) {
     const MaybeError failed = WriteSyntheticRecordings(folder_.string(), options, made);
     EXPECT_FALSE(failed) << failed->ToString();
-    std::vector<std::string> warnings;
+    Warnings warnings;
     Result<std::vector<Recording>> loaded = LoadRecordings(Path("manifest.json"), {}, &warnings);
     EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
-    for (const std::string& warning : warnings) ADD_FAILURE() << warning;
+    for (const Warning& warning : warnings) ADD_FAILURE() << warning.text;
     return loaded.ok() ? loaded.value() : std::vector<Recording>();
   }
 

@@ -284,7 +284,7 @@ TEST(PrepareFit, HoldsWhatHasNoEffectAndSaysWhatIsLeft) {
   for (PendulumRecording& r : recordings) {
     for (ScenePush& push : r.scene.pushes) push.kind = PushKind::kExternal;
   }
-  std::vector<std::string> warnings;
+  Warnings warnings;
   ASSERT_FALSE(PrepareFit(recordings, &options, &warnings));
   EXPECT_FALSE(options.table[kTailTime].free);
   for (Parameter id : {kMu, kKpTheta, kAx}) options.table[id].free = false;
@@ -298,10 +298,10 @@ TEST(PrepareFit, WarnsOfIdenticalRecordings) {
   std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
   const auto warnings = [&recordings] {
     FitOptions options = MakePreset("tail").value();
-    std::vector<std::string> told;
+    Warnings told;
     EXPECT_FALSE(PrepareFit(recordings, &options, &told));
     std::string text;
-    for (const std::string& warning : told) text += warning + "\n";
+    for (const Warning& warning : told) text += warning.text + "\n";
     return text;
   };
   EXPECT_FALSE(Contains(warnings(), "is repeated in"));

@@ -115,8 +115,8 @@ TEST(Identifiability, NoEffectIsNamed) {
   }
   EXPECT_EQ(named, tail);
   bool warned = false;
-  for (const std::string& warning : result.warnings) {
-    warned = warned || warning.find("the push tail has no effect") != std::string::npos;
+  for (const Warning& warning : result.warnings) {
+    warned = warned || warning.text.find("the push tail has no effect") != std::string::npos;
   }
   EXPECT_TRUE(warned);
 }

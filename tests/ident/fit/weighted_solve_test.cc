@@ -44,8 +44,8 @@ TEST(WeightedSolve, DataThatContradictTheDemandAreFollowed) {
   EXPECT_EQ(result.options.settling_weight, 0.0);
   EXPECT_NEAR(result.parameters[kMu], study.parameters[kMu], 2.0);
   const bool told =
-      std::any_of(result.warnings.begin(), result.warnings.end(), [](const std::string& warning) {
-        return warning.find("contradicts the data") != std::string::npos;
+      std::any_of(result.warnings.begin(), result.warnings.end(), [](const Warning& warning) {
+        return warning.text.find("contradicts the data") != std::string::npos;
       });
   EXPECT_TRUE(told);
 }

@@ -146,6 +146,30 @@ TEST(ResultJson, PredictionsNeedTheJsonAlone) {
   EXPECT_EQ(a.by_unit.size(), 2u);
 }
 
+// Reports say once what several recordings share: files keep which they are, beside the sentences.
+TEST(ResultJson, WarningsKeepTheirRecordings) {
+  FittedModel model = SampleModel();
+  model.fit.warnings = {Warning("mu is at its bound")};
+  EXPECT_FALSE(ToJson(model, kRun).contains("warnings_of_recordings"));
+  for (const char* id : {"a", "b"}) {
+    const std::string what = "the mass is 7; is mass_kg in kg?";
+    model.fit.warnings.emplace_back(std::string("recording ") + id + ": " + what, id, what);
+  }
+  model.fit.diagnostics.start.unit_warnings = model.fit.warnings;
+  const Json json = ToJson(model, kRun);
+  EXPECT_EQ(json["warnings"][2], "recording b: the mass is 7; is mass_kg in kg?");
+  EXPECT_EQ(json["warnings_of_recordings"][1]["recording"], "b");
+  const Result<FittedModel> read = FittedModelFromJson(json, "some.json");
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  const std::vector<std::string> once = {
+      "mu is at its bound", "in 2 recordings (a, b): the mass is 7; is mass_kg in kg?"};
+  EXPECT_EQ(GroupedWarnings(read.value().fit.warnings), once);
+  EXPECT_EQ(GroupedWarnings(read.value().fit.diagnostics.start.unit_warnings), once);
+  Json damaged = json;
+  damaged["warnings_of_recordings"][1]["warning"] = 3;
+  EXPECT_FALSE(FittedModelFromJson(damaged, "some.json").ok());
+}
+
 TEST(ResultJson, SameSeedSameBytes) {
   Json a = ToJson(SampleModel(), kRun), b = ToJson(SampleModel(), kRun);
   a.erase("run");
@@ -189,6 +213,24 @@ TEST(ResultJson, DamageIsNamed) {
   json = good;
   json["uncertainty"]["covariance_fitted_scale"][1] = Json::array({1.0});
   EXPECT_TRUE(Contains(message(json), "damaged"));
+  // What parts of the file say together is wrong at an entry, not at the part that was read last.
+  json = good;
+  json["fit"]["best_start"] = 7;
+  EXPECT_TRUE(Contains(message(json), "at 'fit/best_start'"));
+  json = good;
+  json["values"]["tail_time"] = 0.0;
+  EXPECT_TRUE(Contains(message(json), "at 'values/tail_time'"));
+  json = good;
+  json["uncertainty"]["correlation"].erase(0);
+  EXPECT_TRUE(Contains(message(json), "at 'uncertainty/correlation'"));
+  json = good;
+  json["subjects"].front()["pooled"]["nu"] = json["parameters"][0];
+  EXPECT_TRUE(Contains(message(json), "/pooled/nu': subject"));
+  json = good;
+  json["ensemble"] = Json::array({{{"values", good["values"]}}});
+  EXPECT_TRUE(Contains(message(json), "at 'ensemble/0/self_network'"));
+  json["ensemble"][0]["values"].erase("mu");
+  EXPECT_TRUE(Contains(message(json), "at 'ensemble/0/values/mu'"));
   // Any entry of the top gone is an error, never a crash.
   for (const auto& [key, value] : good.items()) {
     // Older models have none.

@@ -137,6 +137,7 @@ TEST(Evaluation, BothMeansByHand) {
   EXPECT_EQ(s.by.at("subject").count("Sc"), 0u);
   EXPECT_NEAR(s.by.at("subject").at("Sa").hip_fde, 0.2, 1e-15);
   EXPECT_EQ(s.by.at("setting").at("single").recordings, 2);
+  EXPECT_TRUE(s.without_label.empty());
 }
 
 // A label that no program knows groups as the usual ones do.
@@ -151,6 +152,9 @@ TEST(Evaluation, AnyLabelGroupsScores) {
   EXPECT_EQ(s.by.size(), 2u);
   EXPECT_EQ(s.by.at("footwear").size(), 1u);  // c has none
   EXPECT_NEAR(s.by.at("footwear").at("boots").hip_ade, 0.25, 1e-15);
+  EXPECT_EQ(s.without_label, (WithoutLabel{{"footwear", 1}}));
+  EXPECT_EQ(WithoutLabelText(s.without_label),
+            "1 recording has no footwear: it is in no group by footwear\n");
   EXPECT_EQ(s.by.at("subject").size(), 3u);
   EXPECT_FALSE(CheckGroups(recordings, {"footwear", "subject"}));
   const MaybeError error = CheckGroups(recordings, {"subject", "shoes"});

@@ -9,6 +9,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/validation/crossvalidation.h"
+#include "ident/validation/score_fields.h"
 #include "ident/validation/scores_report.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -100,7 +101,7 @@ TEST(Propagation, NobodyMoves) {
   }
   EXPECT_EQ(summary.figures[kFalseMovers].value, 0.0);
   EXPECT_FALSE(Speed(summary.figures[kSlownessMeasured]));
-  EXPECT_TRUE(ToJson(summary)["onset_error_frames"].is_null());
+  EXPECT_TRUE(JsonOf(summary)["onset_error_frames"].is_null());
   EXPECT_TRUE(Contains(PropagationText({{"model", &summary}}), "0 of 3"));
 }
 

@@ -299,8 +299,8 @@ TEST(Behaviour, AFitThatIsNotHeldToSettleSaysSo) {
   ASSERT_TRUE(walking.ok());
   EXPECT_TRUE(walking.behaviour.self_propelling);
   bool warned = false;
-  for (const std::string& w : walking.warnings) {
-    warned = warned || w.find("self-propelling") == 0;
+  for (const Warning& w : walking.warnings) {
+    warned = warned || w.text.find("self-propelling") == 0;
   }
   EXPECT_TRUE(warned);
 }

@@ -65,10 +65,12 @@ TEST(PoolingSpread, OfUnitsThatDifferComesBack) {
   for (double spread : {0.1, 0.3}) {
     FitOptions options = WeighedFit(study);
     const auto recordings = People(study, spread);
-    const Solution solution = SolveWeighted(recordings, &options).solution;
+    FitProblem problem(recordings, options);
+    const Solution solution = SolveWeighted(&problem).solution;
     ASSERT_GE(solution.best, 0);
     EXPECT_TRUE(solution.Best().converged);
-    EXPECT_NEAR(options.table[kKpTheta].pooling_sigma / SampleDeviation(spread), 1.0, 0.1);
+    EXPECT_NEAR(problem.options().table[kKpTheta].pooling_sigma / SampleDeviation(spread), 1.0,
+                0.1);
   }
 }
 
@@ -78,9 +80,9 @@ TEST(PoolingSpread, EndsWhereEmStandsStill) {
   const SyntheticOptions study = Study();
   FitOptions options = WeighedFit(study);
   const auto recordings = People(study, 0.1);
-  FitPoint point = SolveWeighted(recordings, &options).solution.Best().to;
-  const FitProblem problem(recordings, options);
-  const double sigma = options.table[kKpTheta].pooling_sigma;
+  FitProblem problem(recordings, options);
+  FitPoint point = SolveWeighted(&problem).solution.Best().to;
+  const double sigma = problem.options().table[kKpTheta].pooling_sigma;
   const JacobianBlocks blocks = EvaluateJacobianBlocks(problem.Build(&point, 0));
   const Eigen::MatrixXd covariance = (blocks.jacobian.transpose() * blocks.jacobian).inverse();
   double mean = 0.0;
@@ -91,16 +93,19 @@ TEST(PoolingSpread, EndsWhereEmStandsStill) {
   }
   mean /= static_cast<double>(point.unit.size());
   EXPECT_NEAR(std::sqrt(mean) / sigma, 1.0, 0.01);
-  EXPECT_LT(UpdatePoolingSpread(problem, point, &options.table), 0.01);
+  CostWeights weights = problem.weights();
+  EXPECT_LT(UpdatePoolingSpread(problem, point, &weights), 0.01);
 }
 
 TEST(PoolingSpread, IsSmallWhereUnitsAreAlike) {
   const SyntheticOptions study = Study();
   FitOptions options = WeighedFit(study);
   const auto recordings = People(study, 0.0);
-  ASSERT_GE(SolveWeighted(recordings, &options).solution.best, 0);
-  EXPECT_LT(options.table[kKpTheta].pooling_sigma, 0.04);
-  EXPECT_GE(options.table[kKpTheta].pooling_sigma, kLeastPoolingSigma);
+  FitProblem problem(recordings, options);
+  ASSERT_GE(SolveWeighted(&problem).solution.best, 0);
+  const double sigma = problem.options().table[kKpTheta].pooling_sigma;
+  EXPECT_LT(sigma, 0.04);
+  EXPECT_GE(sigma, kLeastPoolingSigma);
 }
 
 TEST(PoolingSpread, ThatWasGivenStays) {

@@ -114,8 +114,8 @@ TEST(Starts, AFailingRecordingLeavesTheOthersAlone) {
   EXPECT_EQ(result.starts[result.best_start].failed.size(), 1u);
   EXPECT_TRUE(Contains(result.recordings[2].failure, "leaves the model's domain at frame"));
   bool warned = false;
-  for (const std::string& w : result.warnings) {
-    warned = warned || w.find("recording " + recordings[2].id + ": ") == 0;
+  for (const Warning& w : result.warnings) {
+    warned = warned || w.text.find("recording " + recordings[2].id + ": ") == 0;
   }
   EXPECT_TRUE(warned);
   for (size_t i = 0; i < recordings.size(); ++i) {

@@ -28,10 +28,12 @@ TEST(DataWeight, SigmasAreThoseOfTheNoise) {
     const SyntheticOptions study = Noisy(noise);
     const auto recordings = MakePendulums(study);
     FitOptions options = Estimated(study);
-    ASSERT_GE(SolveWeighted(recordings, &options).solution.best, 0);
-    EXPECT_NEAR(options.sigmas.hip / noise, 1.0, 0.1);
+    FitProblem problem(recordings, options);
+    ASSERT_GE(SolveWeighted(&problem).solution.best, 0);
+    const ResidualSigmas sigmas = problem.options().sigmas;
+    EXPECT_NEAR(sigmas.hip / noise, 1.0, 0.1);
     // The cart is the mean of two ankles, its velocity a difference of two frames.
-    EXPECT_NEAR(options.sigmas.velocity * kRateWeight / (noise * study.fps), 1.0, 0.1);
+    EXPECT_NEAR(sigmas.velocity * kRateWeight / (noise * study.fps), 1.0, 0.1);
   }
 }
 
@@ -40,9 +42,10 @@ TEST(DataWeight, NoResidualIsMoreExactThanAMarker) {
   const auto recordings = MakePendulums(study);
   FitOptions options = Estimated(study);
   options.marker_noise = 0.003;
-  ASSERT_GE(SolveWeighted(recordings, &options).solution.best, 0);
-  EXPECT_DOUBLE_EQ(options.sigmas.hip, 0.003);
-  EXPECT_DOUBLE_EQ(options.sigmas.velocity, 0.003 * study.fps / kRateWeight);
+  FitProblem problem(recordings, options);
+  ASSERT_GE(SolveWeighted(&problem).solution.best, 0);
+  EXPECT_DOUBLE_EQ(problem.options().sigmas.hip, 0.003);
+  EXPECT_DOUBLE_EQ(problem.options().sigmas.velocity, 0.003 * study.fps / kRateWeight);
 }
 
 // What counts is weight over sigma squared: told that errors are twice as large, a frame counts
@@ -52,15 +55,16 @@ TEST(DataWeight, MakesUpForSigmas) {
   const auto recordings = MakePendulums(study);
   FitOptions options = UnbiasedFit(study);
   options.recording_weight = RecordingWeight::kEffective;
-  const Solution solution = SolveWeighted(recordings, &options).solution;
+  FitProblem problem(recordings, options);
+  const Solution solution = SolveWeighted(&problem).solution;
   ASSERT_GE(solution.best, 0);
   const FitPoint& point = solution.Best().to;
-  const double weight = EstimateEffectiveWeight(FitProblem(recordings, options), point);
-  for (double* sigma : {&options.sigmas.hip, &options.sigmas.velocity, &options.sigmas.angle,
-                        &options.sigmas.rate}) {
-    *sigma *= 2.0;
-  }
-  const double doubled = EstimateEffectiveWeight(FitProblem(recordings, options), point);
+  const double weight = EstimateEffectiveWeight(problem, point);
+  CostWeights weights = problem.weights();
+  ResidualSigmas& sigmas = weights.sigmas;
+  for (double* sigma : {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate}) *sigma *= 2.0;
+  problem.Weigh(weights);
+  const double doubled = EstimateEffectiveWeight(problem, point);
   EXPECT_NEAR(doubled / weight, 4.0, 1e-6);
 }
 
@@ -73,10 +77,11 @@ TEST(DataWeight, LeavesAnUnpenalizedOptimumWhereItWas) {
   by_frame.recording_weight = RecordingWeight::kFrame;
   effective.recording_weight = RecordingWeight::kEffective;
   by_frame.function_tolerance = effective.function_tolerance = 1e-12;
-  const Solution a = SolveWeighted(recordings, &by_frame).solution;
-  const Solution b = SolveWeighted(recordings, &effective).solution;
+  FitProblem frames(recordings, by_frame), independent(recordings, effective);
+  const Solution a = SolveWeighted(&frames).solution;
+  const Solution b = SolveWeighted(&independent).solution;
   ASSERT_TRUE(a.best >= 0 && b.best >= 0);
-  EXPECT_GT(std::abs(std::log(effective.effective_weight)), 0.5);
+  EXPECT_GT(std::abs(std::log(independent.options().effective_weight)), 0.5);
   for (size_t i = 0; i < a.Best().to.shared.size(); ++i) {
     EXPECT_NEAR(a.Best().to.shared[i], b.Best().to.shared[i],
                 1e-3 * std::max(1.0, std::abs(a.Best().to.shared[i])));
@@ -90,8 +95,8 @@ TEST(DataWeight, ExactDataOutweighAPrior) {
   const auto recordings = MakePendulums(study);
   FitOptions options = Estimated(study);
   options.table[kMu].prior = Prior{20.0, 10.0};
-  ASSERT_FALSE(SolveWeighted(recordings, &options).solution.best < 0);
-  const FitProblem problem(recordings, options);
+  FitProblem problem(recordings, options);
+  ASSERT_FALSE(SolveWeighted(&problem).solution.best < 0);
   const SolveStart refit = Refit(problem, problem.NominalPoint());
   const Uncertainty u = ComputeUncertainty(problem, refit.to);
   const Estimate* mu = FindEstimate(u.estimates, "mu");
@@ -108,9 +113,10 @@ TEST(DataWeight, WhatThePriorsHoldIsCalledSo) {
   study.frames = 6;
   const auto recordings = MakePendulums(study);
   FitOptions options = Estimated(study);
-  const Solution solution = SolveWeighted(recordings, &options).solution;
+  FitProblem problem(recordings, options);
+  const Solution solution = SolveWeighted(&problem).solution;
   ASSERT_GE(solution.best, 0);
-  const Uncertainty u = ComputeUncertainty(FitProblem(recordings, options), solution.Best().to);
+  const Uncertainty u = ComputeUncertainty(problem, solution.Best().to);
   const Estimate* stiffness = FindEstimate(u.estimates, "Kp_theta");
   ASSERT_NE(stiffness, nullptr);
   EXPECT_LT(stiffness->shares.data, 0.5);

@@ -205,8 +205,8 @@ TEST(Uncertainty, ASingleRecordingIsNotClustered) {
   }
   const FitResult result = Fit(s->recordings, s->options);
   bool warned = false;
-  for (const std::string& w : result.warnings) {
-    warned = warned || w.find("a single recording") != std::string::npos;
+  for (const Warning& w : result.warnings) {
+    warned = warned || w.text.find("a single recording") != std::string::npos;
   }
   EXPECT_TRUE(warned);
 }
@@ -225,8 +225,8 @@ TEST(Uncertainty, AtABoundHasNoErrorAndSaysSo) {
   EXPECT_EQ(e.standard_error, 0.0);
   EXPECT_TRUE(result.uncertainty.null_directions.empty());
   bool warned = false;
-  for (const std::string& w : result.warnings) {
-    warned = warned || w.find("tail_gain is at its bound") != std::string::npos;
+  for (const Warning& w : result.warnings) {
+    warned = warned || w.text.find("tail_gain is at its bound") != std::string::npos;
   }
   EXPECT_TRUE(warned);
 }

@@ -37,6 +37,7 @@ ScoreSummary SampleScores() {
   s.propagation.movers = 2.5;
   s.propagation.figures[kOnsetError] = {3.0, 0.5, 4.0};
   s.propagation_by_setting["row_1"] = s.propagation;
+  s.without_label["setting"] = 1;
   return s;
 }
 
@@ -50,6 +51,7 @@ TEST(ScoresJsonTest, ThereAndBack) {
   EXPECT_EQ(read.value().recordings[2].failure, SampleScores().recordings[2].failure);
   EXPECT_EQ(read.value().propagation.figures[kOnsetError].error, 0.5);
   EXPECT_FALSE(read.value().propagation.figures[kOnsetBias].known());
+  EXPECT_EQ(json["without_label"]["setting"], 1);
 }
 
 TEST(ScoresJsonTest, WhenPeopleStep) {
@@ -121,7 +123,8 @@ TEST(ScoresJsonTest, DamageIsNamed) {
   };
   EXPECT_TRUE(Contains(message("hipADE_m", nullptr), "scores.json: "));
   EXPECT_TRUE(Contains(message("hipADE_m", nullptr), "hipADE_m"));
-  EXPECT_TRUE(Contains(message("hipADE_m", "0.1"), "must be number"));
+  EXPECT_TRUE(Contains(message("hipADE_m", "0.1"), "'0.1' is not a number"));
+  EXPECT_TRUE(Contains(message("clustered_by", "shoes"), "clustered_by is 'shoes'"));
   EXPECT_TRUE(Contains(message("recordings", nullptr), "evaluate again"));
   EXPECT_FALSE(ScoresFromJson(nlohmann::ordered_json::array(), "x").ok());
 }

@@ -1,0 +1,81 @@
+// A training run to its end, its checkpoints, and its curve: stages apart, the best point marked.
+#include "ident/training/training_run.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+// Counts to three.
+class CountingTrainer : public Trainer {
+ public:
+  CountingTrainer() : Trainer(std::make_unique<Counting>()) {}
+
+ private:
+  struct Counting : Run {
+    bool Done() const override { return rounds == 3; }
+    TrainingPoint RunRound() override { return {++rounds, 1.0 / rounds, 1.0 / rounds}; }
+    double ShareDone() const override { return rounds / 3.0; }
+    std::string State() override { return std::to_string(rounds); }
+    bool Resume(const std::string& state) override {
+      rounds = std::stoi(state);
+      return true;
+    }
+    int rounds = 0;
+  };
+};
+
+class TrainingRunTest : public TempDirTest {
+ protected:
+  MaybeError Run(const CheckpointOptions& options) {
+    CountingTrainer trainer;
+    course_ = {};
+    return RunToEnd(
+        &trainer, "counting", options, [](TrainingPoint*) {}, &course_);
+  }
+
+  TrainingCourse course_;
+};
+
+// A folder that is a file cannot take a checkpoint: that breaks a training off, but takes nothing
+// from one that is done.
+TEST_F(TrainingRunTest, AFinishedTrainingKeepsItsResult) {
+  const std::string unwritable = WriteText("file", "") + "/checkpoint.bin";
+  EXPECT_TRUE(Run({unwritable, 0.0}));
+  const MaybeError error = Run({unwritable, 1e6});
+  EXPECT_FALSE(error) << error->ToString();
+  EXPECT_EQ(course_.curve.size(), 3u);
+}
+
+TEST_F(TrainingRunTest, FinishedStatesAreKeptWhereTrainingsFollow) {
+  const std::string file = Path("checkpoint.bin");
+  ASSERT_FALSE(Run({file, 1e6}));
+  EXPECT_FALSE(std::filesystem::exists(file));
+  ASSERT_FALSE(Run({file, 1e6, true}));
+  EXPECT_FALSE(course_.resumed);
+  ASSERT_FALSE(Run({file, 1e6}));
+  EXPECT_TRUE(course_.resumed);
+  EXPECT_EQ(course_.curve.size(), 3u);
+}
+
+TEST(CurveSvgTest, StagesHavePanelsAndTheBestPointIsNamed) {
+  std::vector<TrainingPoint> curve;
+  for (int i = 1; i <= 6; ++i) {
+    curve.push_back({i, 1.0 / i, i == 5 ? 0.02 : 0.1, i <= 3 ? "first" : "second"});
+  }
+  const std::string svg = TrainingCurveSvg(curve, "a & b");
+  EXPECT_TRUE(Contains(svg, ">first<"));
+  EXPECT_TRUE(Contains(svg, ">second<"));
+  EXPECT_TRUE(Contains(svg, "best 0.02 at 5"));
+  EXPECT_TRUE(Contains(svg, "a &amp; b"));
+  size_t lines = 0;
+  for (size_t at = 0; (at = svg.find("<path", at)) != std::string::npos; ++at) ++lines;
+  EXPECT_EQ(lines, 4u);
+}
+
+}  // namespace
+}  // namespace pushid
