@@ -87,8 +87,7 @@ int Run() {
   }
   const Result<std::vector<PendulumRecording>> recordings = LoadFitted(&model);
   if (!recordings.ok()) return Fail(recordings.error());
-  MaybeError failed =
-      CheckAgainst(checks.value(), model.fit.options, static_cast<int>(recordings.value().size()));
+  MaybeError failed = CheckAgainst(checks.value(), model.fit.options, recordings.value());
   if (!failed) failed = ResumeFit(recordings.value(), &model.fit);
   AddToProvenance(&model.provenance);
   model.provenance.model_file = out;

@@ -52,22 +52,51 @@ DEFINE_string(json_out, "", "write the scores here (JSON)");
 namespace {
 
 using namespace pushid;
-using NamedOptions = std::vector<std::pair<std::string, GivenOptions>>;
+using Setups = std::vector<std::pair<std::string, FitSetup>>;
+using Candidates = std::vector<std::pair<std::string, FitOptions>>;
 
-// Those of --compare, with the options that they have over the given ones.
-Result<NamedOptions> CandidatesFrom(const std::string& text) {
-  NamedOptions candidates;
-  for (const std::string& item : SplitList(text, ';')) {
+// A candidate of --compare, with the options that it has over the given ones.
+Result<std::pair<std::string, GivenOptions>> CandidateFrom(const std::string& text) {
+  const size_t colon = text.find(':');
+  const std::string name(Trimmed(text.substr(0, colon)));
+  if (colon == std::string::npos || name.empty()) {
+    return Error{"--compare: '" + text + "' is not 'name: --flag=value ...'"};
+  }
+  const Result<GivenOptions> options = ParseOptionWords(text.substr(colon + 1));
+  if (!options.ok()) return Error{"--compare, '" + name + "': " + options.error().message};
+  return std::make_pair(name, options.value());
+}
+
+// The flags' own model, whose name is its preset's, and those of --compare.
+Result<Setups> SetupsFromFlags() {
+  const Result<FitSetup> own = FitSetupFromFlags();
+  if (!own.ok()) return own.error();
+  Setups setups = {{"", own.value()}};
+  for (const std::string& item : SplitList(FLAGS_compare, ';')) {
     const std::string trimmed(Trimmed(item));
     if (trimmed.empty()) continue;
-    const size_t colon = trimmed.find(':');
-    const std::string name(Trimmed(trimmed.substr(0, colon)));
-    if (colon == std::string::npos || name.empty()) {
-      return Error{"--compare: '" + trimmed + "' is not 'name: --flag=value ...'"};
+    const auto candidate = CandidateFrom(trimmed);
+    if (!candidate.ok()) return candidate.error();
+    const auto& [name, more] = candidate.value();
+    const Result<FitSetup> setup = FitSetup::Make(Merged(GivenFitFlags(), more), more);
+    if (!setup.ok()) return Error{"--compare, '" + name + "': " + setup.error().message};
+    setups.emplace_back(name, setup.value());
+  }
+  return setups;
+}
+
+// Their options: what is known without recordings, or with them.
+Result<Candidates> CandidatesOf(const Setups& setups,
+                                const std::vector<PendulumRecording>* recordings = nullptr) {
+  Candidates candidates;
+  for (const auto& [name, setup] : setups) {
+    const Result<FitOptions> options =
+        recordings == nullptr ? Result<FitOptions>(setup.roughly()) : setup.For(*recordings);
+    if (!options.ok()) {
+      return name.empty() ? options.error()
+                          : Error{"--compare, '" + name + "': " + options.error().message};
     }
-    const Result<GivenOptions> options = ParseOptionWords(trimmed.substr(colon + 1));
-    if (!options.ok()) return Error{"--compare, '" + name + "': " + options.error().message};
-    candidates.emplace_back(name, options.value());
+    candidates.emplace_back(name.empty() ? options.value().preset : name, options.value());
   }
   return candidates;
 }
@@ -81,28 +110,10 @@ MaybeError ReadScheme(FoldScheme* scheme) {
 }
 using Predictors = std::vector<std::unique_ptr<Predictor>>;
 
-using Candidates = std::vector<std::pair<std::string, FitOptions>>;
-
-// The flags' own model and those of --compare. recordings: as in FitOptionsFromFlags.
-Result<Candidates> ModelCandidates(const NamedOptions& further, const FitOptions& options,
-                                   const std::vector<PendulumRecording>* recordings) {
-  Candidates candidates = {{options.preset, options}};
-  for (const auto& [name, more] : further) {
-    const Result<FitOptions> candidate =
-        MakeFitOptions(Merged(GivenFitFlags(), more), recordings, more);
-    if (!candidate.ok()) return Error{"--compare, '" + name + "': " + candidate.error().message};
-    candidates.emplace_back(name, candidate.value());
-  }
-  return candidates;
-}
-
 // Those that futures can be drawn from.
-Result<Candidates> NoisyModels(const NamedOptions& further, const FitOptions& options,
-                               const std::vector<PendulumRecording>* recordings) {
-  Result<Candidates> all = ModelCandidates(further, options, recordings);
-  if (!all.ok()) return all;
+Result<Candidates> NoisyModels(const Candidates& candidates) {
   Candidates noisy;
-  for (auto& [name, candidate] : all.value()) {
+  for (const auto& [name, candidate] : candidates) {
     if (candidate.model.process_noise.Any()) noisy.emplace_back(name, candidate);
   }
   if (Given("observed")) {
@@ -144,14 +155,10 @@ MaybeError CheckNames(const Predictors& predictors) {
   return std::nullopt;
 }
 
-// All of them. recordings: as in FitOptionsFromFlags.
-Result<Predictors> MakePredictors(const NamedOptions& further, const FitOptions& options,
-                                  const std::vector<PendulumRecording>* recordings) {
+Result<Predictors> MakePredictors(const Candidates& candidates) {
   Predictors predictors;
   const int observed = ObservedFrames();
-  const Result<Candidates> candidates = ModelCandidates(further, options, recordings);
-  if (!candidates.ok()) return candidates.error();
-  for (const auto& [name, candidate] : candidates.value()) {
+  for (const auto& [name, candidate] : candidates) {
     if (candidate.body_weight > 0.0) {
       return Error{
           "--body_weight: '" + name +
@@ -165,18 +172,13 @@ Result<Predictors> MakePredictors(const NamedOptions& further, const FitOptions&
     }
     predictors.push_back(std::make_unique<ModelPredictor>(name, candidate, observed));
   }
-  if (FLAGS_yardsticks) AddBaselines(options, &predictors);
-  // What the preset auto is called is known with the recordings.
-  if (recordings == nullptr) return predictors;
-  if (MaybeError error = CheckNames(predictors)) return *error;
+  if (FLAGS_yardsticks) AddBaselines(candidates[0].second, &predictors);
   return predictors;
 }
 
 // What is wrong with the flags, before any recording is read.
-MaybeError CheckFlags(const NamedOptions& further) {
-  const Result<FitOptions> options = FitOptionsFromFlags();
-  if (!options.ok()) return options.error();
-  const Result<Predictors> predictors = MakePredictors(further, options.value(), nullptr);
+MaybeError CheckFlags(const Setups& setups) {
+  const Result<Predictors> predictors = MakePredictors(CandidatesOf(setups).value());
   if (!predictors.ok()) return predictors.error();
   if (MaybeError error = CheckObservedFlag()) return error;
   return CheckOutputFiles({FLAGS_json_out});
@@ -196,28 +198,28 @@ nlohmann::ordered_json ScoresJson(const std::vector<CrossValidation>& validation
 int Run() {
   FoldScheme scheme;
   if (MaybeError error = ReadScheme(&scheme)) return Fail(*error);
-  const Result<NamedOptions> read = CandidatesFrom(FLAGS_compare);
-  if (!read.ok()) return Fail(read.error());
-  const NamedOptions& further = read.value();
+  const Result<Setups> setups = SetupsFromFlags();
+  if (!setups.ok()) return Fail(setups.error());
   const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(false);
   if (!drawn.ok()) return Fail(drawn.error());
-  if (MaybeError error = CheckFlags(further)) return Fail(*error);
+  if (MaybeError error = CheckFlags(setups.value())) return Fail(*error);
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const std::vector<PendulumRecording> pendulums =
-      MakePendulumRecordings(recordings.value(), FitOptionsFromFlags().value().mapping);
+      MakePendulumRecordings(recordings.value(), setups.value()[0].second.roughly().mapping);
   if (MaybeError error = CheckObservedFlag(pendulums)) return Fail(*error);
   if (MaybeError error = CheckGroups(pendulums, ParseLabelKeys(FLAGS_group_by)))
     return Fail(*error);
-  const Result<FitOptions> options = FitOptionsFromFlags(&pendulums);
-  if (!options.ok()) return Fail(options.error());
-  for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);
-  const Result<Predictors> predictors = MakePredictors(further, options.value(), &pendulums);
+  const Result<Candidates> candidates = CandidatesOf(setups.value(), &pendulums);
+  if (!candidates.ok()) return Fail(candidates.error());
+  const FitOptions& options = candidates.value()[0].second;
+  for (const std::string& warning : OptionWarnings(GivenFitFlags(), options)) Warn(warning);
+  const Result<Predictors> predictors = MakePredictors(candidates.value());
   if (!predictors.ok()) return Fail(predictors.error());
-  const Result<Candidates> noisy = drawn.value().samples > 0
-                                       ? NoisyModels(further, options.value(), &pendulums)
-                                       : Result<Candidates>(Candidates{});
+  if (MaybeError error = CheckNames(predictors.value())) return Fail(*error);
+  const Result<Candidates> noisy = drawn.value().samples > 0 ? NoisyModels(candidates.value())
+                                                             : Result<Candidates>(Candidates{});
   if (!noisy.ok()) return Fail(noisy.error());
   const Result<std::vector<Fold>> folds =
       FLAGS_folds_file.empty() ? MakeFolds(pendulums, scheme, FLAGS_folds, FLAGS_repeats, Seed())
@@ -242,7 +244,7 @@ int Run() {
   if (FLAGS_bands) {
     BandOptions asked;
     asked.seed = Seed();
-    bands = CrossValidateBands(pendulums, folds.value(), options.value(), asked, NumThreads(),
+    bands = CrossValidateBands(pendulums, folds.value(), options, asked, NumThreads(),
                                line.OfJobs("bands: fold"));
   }
   line.Finish();

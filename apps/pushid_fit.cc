@@ -55,31 +55,30 @@ int Run() {
     std::printf("%s", ParameterGlossaryMarkdown().c_str());
     return kDone;
   }
-  Result<FitOptions> options = FitOptionsFromFlags();
-  if (!options.ok()) return Fail(options.error());
+  const Result<FitSetup> setup = FitSetupFromFlags();
+  if (!setup.ok()) return Fail(setup.error());
+  const FitOptions& roughly = setup.value().roughly();
   const Result<ModelChecks> read = ModelChecksFromCommandLine(Seed(), NumThreads());
   if (!read.ok()) return Fail(read.error());
   const ModelChecks& checks = read.value();
   if (MaybeError error = CheckRecordingFlags()) return Fail(*error);
-  if (MaybeError error = CheckBodyFlags(options.value())) {
-    return Fail(*error);
-  }
+  if (MaybeError error = CheckBodyFlags(roughly)) return Fail(*error);
   if (FLAGS_check) return kDone;
   if (!FLAGS_model_out.empty()) {
     if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
   }
   Warnings file_warnings;  // a result says what it was made of
   const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({}, options.value().body_weight > 0.0, &file_warnings);
+      LoadFlaggedRecordings({}, roughly.body_weight > 0.0, &file_warnings);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const ClusterBy drawn_by =
-      checks.bootstrap.by == ClusterBy::kAuto ? options.value().cluster : checks.bootstrap.by;
+      checks.bootstrap.by == ClusterBy::kAuto ? roughly.cluster : checks.bootstrap.by;
   const std::vector<PendulumRecording> pendulums =
-      Resampled(MakePendulumRecordings(recordings.value(), options.value().mapping), drawn_by,
-                Seed(), FLAGS_resample);
+      Resampled(MakePendulumRecordings(recordings.value(), roughly.mapping), drawn_by, Seed(),
+                FLAGS_resample);
 
-  options = FitOptionsFromFlags(&pendulums);
+  Result<FitOptions> options = setup.value().For(pendulums);
   if (!options.ok()) return Fail(options.error());
   if (options.value().body_weight > 0.0) {
     const auto bodies = LoadBodyData(FLAGS_body_restoration, "--body_restoration",
@@ -88,8 +87,7 @@ int Run() {
     options.value().body = bodies.value();
   }
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);
-  if (MaybeError error =
-          CheckAgainst(checks, options.value(), static_cast<int>(pendulums.size()))) {
+  if (MaybeError error = CheckAgainst(checks, options.value(), pendulums)) {
     return Fail(*error);
   }
   Warnings unit_warnings;

@@ -81,9 +81,13 @@ std::string SpeedText(const WaveSpeed& wave, const WaveBands& bands) {
                      " m in " + Rounded(wave.seconds, 3) +
                      " s: " + Rounded(wave.MetresPerSecond(), 3) + " m/s";
   if (band.known()) {
-    text += " (90 % interval from the uncertainty of the parameters: " + Rounded(band.from, 3) +
-            " to " + Rounded(band.to, 3) + ", from the waves of " + std::to_string(band.moved) +
-            " of " + std::to_string(band.draws) + " draws)";
+    // Onsets are whole frames.
+    const std::string width = band.from == band.to
+                                  ? "less than a frame of the onsets"
+                                  : Rounded(band.from, 3) + " to " + Rounded(band.to, 3);
+    text += " (90 % interval from the uncertainty of the parameters: " + width +
+            ", from the waves of " + std::to_string(band.moved) + " of " +
+            std::to_string(band.draws) + " draws)";
   } else if (band.draws > 0) {
     text += " (no interval: the push propagates in only " + std::to_string(band.moved) + " of " +
             std::to_string(band.draws) + " draws of the parameters)";

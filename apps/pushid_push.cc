@@ -156,7 +156,7 @@ MaybeError SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* 
 }
 
 Result<Manifest> WithPushes(const std::vector<RecordingsPush>& pushes, bool overwrite) {
-  Result<Manifest> manifest = ReadManifest(RecordingFlagsFromCommandLine().manifest);
+  Result<Manifest> manifest = FlaggedManifest();
   if (!manifest.ok()) return manifest;
   for (ManifestRecording& entry : manifest.value().recordings) {
     for (const RecordingsPush& push : pushes) {

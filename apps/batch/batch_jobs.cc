@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/input_file.h"
 #include "datasets/manifest/manifest.h"
@@ -136,7 +137,7 @@ std::string JoinIds(const std::vector<std::string>& ids) {
 }
 
 std::vector<std::string> Those(const std::vector<std::string>& flags,
-                               std::initializer_list<const char*> names) {
+                               const std::vector<const char*>& names) {
   std::vector<std::string> those;
   for (const std::string& flag : flags) {
     for (const char* name : names) {
@@ -157,9 +158,7 @@ Command AfterFit(const std::string& program, const BatchJob& job, const BatchPla
                  const std::vector<std::string>& ids, const std::string& model) {
   Command command = {program, "--model=" + model, "--recordings=" + plan.manifest,
                      "--ids=" + JoinIds(ids), "--quiet"};
-  Append(Those(job.fit_flags,
-               {"length_unit", "length_scale", "max_gap_s", "lowpass_hz", "resample_fps"}),
-         &command);
+  Append(Those(job.fit_flags, {std::begin(kLoadFlags), std::end(kLoadFlags)}), &command);
   return command;
 }
 

@@ -37,6 +37,13 @@ MaybeError CheckValue(const gflags::CommandLineFlagInfo& flag, const std::string
                                       : "a whole number that fits")};
 }
 
+// "--check" or "--check=true"
+bool NamesFlag(const std::string& word) {
+  if (word.rfind("--", 0) != 0) return false;
+  gflags::CommandLineFlagInfo flag;
+  return gflags::GetCommandLineFlagInfo(word.substr(2, word.find('=') - 2).c_str(), &flag);
+}
+
 // Names and values, before gflags sees them. `-h` becomes --help.
 MaybeError CheckFlags(int argc, char** argv) {
   static char help[] = "--help";
@@ -56,6 +63,10 @@ MaybeError CheckFlags(int argc, char** argv) {
         error = CheckValue(flag, word.substr(equals + 1));
       } else if (flag.type != "bool") {  // its value is the next word
         if (++i == argc) return Error{"--" + name + " has no value: --" + name + "=..."};
+        if (NamesFlag(argv[i])) {
+          return Error{"--" + name + " has no value, as " + argv[i] + " is a flag: --" + name +
+                       "=..."};
+        }
         error = CheckValue(flag, argv[i]);
       }
       if (error) return error;

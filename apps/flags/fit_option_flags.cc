@@ -53,9 +53,9 @@ GivenOptions GivenFitFlags() {
   return given;
 }
 
-Result<FitOptions> FitOptionsFromFlags(const std::vector<PendulumRecording>* recordings) {
+Result<FitSetup> FitSetupFromFlags() {
   const GivenOptions given = GivenFitFlags();
-  return MakeFitOptions(given, recordings, given);
+  return FitSetup::Make(given, given);
 }
 
 namespace {

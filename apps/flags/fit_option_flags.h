@@ -12,9 +12,9 @@ namespace pushid {
 // Those that the command line gave, even with their defaults' values.
 GivenOptions GivenFitFlags();
 
-// The given flags over the preset's settings. recordings: what --preset=auto looks at; null while
-// they are not known. Errors also where a given flag acts on nothing.
-Result<FitOptions> FitOptionsFromFlags(const std::vector<PendulumRecording>* recordings = nullptr);
+// The given flags over the preset's settings; once in a program. Errors also where a given flag
+// acts on nothing.
+Result<FitSetup> FitSetupFromFlags();
 
 int NumThreads();
 uint64_t Seed();

@@ -84,6 +84,11 @@ MaybeError CheckRecordingFlags() {
   return options.ok() ? std::nullopt : MaybeError(options.error());
 }
 
+const Result<Manifest>& FlaggedManifest() {
+  static const Result<Manifest> manifest = ReadManifests(FLAGS_recordings);
+  return manifest;
+}
+
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
                                                      bool keep_all_joints, Warnings* warnings) {
   if (MaybeError missing =
@@ -97,7 +102,7 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
     options.value().ids = ids;
     options.value().leave_out.clear();
   }
-  const Result<Manifest> manifest = ReadManifests(FLAGS_recordings);
+  const Result<Manifest>& manifest = FlaggedManifest();
   if (!manifest.ok()) return manifest.error();
   Warnings found;
   Result<std::vector<Recording>> recordings =

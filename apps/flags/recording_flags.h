@@ -24,6 +24,9 @@ struct RecordingFlags {
 };
 RecordingFlags RecordingFlagsFromCommandLine();
 
+// That of --recordings, merged where there are several; read once in a run.
+const Result<Manifest>& FlaggedManifest();
+
 // The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr, and to
 // `warnings` too. Other ids than the flags' may be asked for, and all joints instead of hip and
 // ankles.

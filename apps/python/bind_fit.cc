@@ -44,8 +44,8 @@ void Attach(Model* model, const std::vector<SharedRecording>& recordings) {
   model->to = std::move(to);
 }
 
-FitOptions Options(const GivenOptions& given, const std::vector<PendulumRecording>& pendulums) {
-  return Unwrapped(MakeFitOptions(given, &pendulums, given), Fault::kUsage);
+FitSetup Setup(const GivenOptions& given) {
+  return Unwrapped(FitSetup::Make(given, given), Fault::kUsage);
 }
 
 Provenance From(const GivenOptions& given, const FitOptions& options) {
@@ -78,11 +78,11 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
                                 const GivenOptions& given, const py::object& progress,
                                 const Told& file_warnings) {
   CheckRecordings(recordings);
-  const FitOptions roughly = Unwrapped(MakeFitOptions(given), Fault::kUsage);
+  const FitSetup setup = Setup(given);
   auto model = std::make_shared<Model>();
-  model->to = Data(recordings, roughly.mapping);
+  model->to = Data(recordings, setup.roughly().mapping);
   const std::vector<PendulumRecording>& pendulums = model->to->pendulums;
-  FitOptions options = Options(given, pendulums);
+  FitOptions options = Unwrapped(setup.For(pendulums), Fault::kUsage);
   const std::vector<std::string> ignored = OptionWarnings(given, options);
   Warnings warnings;
   Check(PrepareFit(pendulums, &options, &warnings), Fault::kUsage);
@@ -170,11 +170,11 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
   std::vector<std::unique_ptr<Predictor>> predictors;
   SkeletonMapping mapping = SkeletonMapping::kExact;
   for (const auto& [name, given] : candidates) {
-    const FitOptions roughly = Unwrapped(MakeFitOptions(given), Fault::kUsage);
-    mapping = roughly.mapping;
+    const FitSetup setup = Setup(given);
+    mapping = setup.roughly().mapping;
     const auto pendulums = Pendulums(recordings, mapping);
-    predictors.push_back(
-        std::make_unique<ModelPredictor>(name, Options(given, pendulums), observed));
+    predictors.push_back(std::make_unique<ModelPredictor>(
+        name, Unwrapped(setup.For(pendulums), Fault::kUsage), observed));
   }
   if (baselines) {
     predictors.push_back(std::make_unique<BaselinePredictor>("static", StaticBaseline, observed));

@@ -5,6 +5,7 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "ident/fit/recording_effect.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/push/push_check.h"
 #include "ident/report/advice.h"
@@ -37,9 +38,10 @@ MaybeError CheckNumbers(const ModelChecks& checks) {
                "; it must be from 0 to 1, a fraction of the push's peak"};
 }
 
-MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options, int recordings) {
+MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
+                        const std::vector<PendulumRecording>& recordings) {
   const bool bootstrap = checks.bootstrap.replicas > 0;
-  if (bootstrap && recordings < 2) {
+  if (bootstrap && recordings.size() < 2) {
     return Error{"--bootstrap draws people or recordings with replacement; it needs at least two"};
   }
   // Whether it was trained by its gradient, or will be: a model's file holds its network.
@@ -64,6 +66,14 @@ MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options, in
     return Error{
         "--population estimates a factor on the push tail, and the model has none; add "
         "--push_tail=exponential (the presets tail and group have it)"};
+  }
+  if (checks.population &&
+      std::none_of(recordings.begin(), recordings.end(), [&](const PendulumRecording& recording) {
+        return EffectActs(options.model, recording);
+      })) {
+    return Error{
+        "--population compares people who are pushed alone, with net forces, and no recording is "
+        "of that kind; give others, or leave it out"};
   }
   if (checks.design.empty() || checks.design == "all") return std::nullopt;
   std::string known = "all";

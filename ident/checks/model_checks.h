@@ -32,7 +32,8 @@ struct ModelChecks {
 // What is wrong with them, before a long fit. Errors name the flag.
 MaybeError CheckNumbers(const ModelChecks& checks);
 // The same against what is, or was, fitted.
-MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options, int recordings);
+MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
+                        const std::vector<PendulumRecording>& recordings);
 
 // The recordings that the model was fitted to, in its order and as often, out of those given.
 // Errors: one is missing, differs from what was fitted, or was not fitted.

@@ -121,6 +121,11 @@ Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& giv
   return o;
 }
 
+std::string PresetIn(const GivenOptions& given) {
+  const std::string* named = Find(given, "preset");
+  return named != nullptr ? *named : kAutoPreset;
+}
+
 }  // namespace
 
 GivenOptions Merged(GivenOptions given, const GivenOptions& more) {
@@ -153,14 +158,24 @@ Result<GivenOptions> ParseOptionWords(const std::string& words) {
 Result<FitOptions> MakeFitOptions(const GivenOptions& given,
                                   const std::vector<PendulumRecording>* recordings,
                                   const GivenOptions& must_act) {
-  const std::string* named = Find(given, "preset");
-  const std::string preset = named != nullptr ? *named : kAutoPreset;
+  const std::string preset = PresetIn(given);
   if (recordings != nullptr) return OverPreset(PresetFor(preset, *recordings), given, must_act);
   if (preset != kAutoPreset) return OverPreset(preset, given, must_act);
   const Result<FitOptions> single = OverPreset("tail", given, must_act);
   if (single.ok()) return single;
   const Result<FitOptions> group = OverPreset("group", given, must_act);
   return group.ok() ? group : single;
+}
+
+Result<FitSetup> FitSetup::Make(GivenOptions given, GivenOptions must_act) {
+  Result<FitOptions> roughly = MakeFitOptions(given, nullptr, must_act);
+  if (!roughly.ok()) return roughly.error();
+  return FitSetup(std::move(given), std::move(must_act), std::move(roughly.value()));
+}
+
+Result<FitOptions> FitSetup::For(const std::vector<PendulumRecording>& recordings) const {
+  if (PresetFor(PresetIn(given_), recordings) == roughly_.preset) return roughly_;
+  return MakeFitOptions(given_, &recordings, must_act_);
 }
 
 std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options) {

@@ -30,6 +30,23 @@ Result<FitOptions> MakeFitOptions(const GivenOptions& given,
                                   const std::vector<PendulumRecording>* recordings = nullptr,
                                   const GivenOptions& must_act = {});
 
+// The same in two steps, of which the second builds again only where the recordings decide for
+// another preset than the first took.
+class FitSetup {
+ public:
+  static Result<FitSetup> Make(GivenOptions given, GivenOptions must_act = {});
+
+  // What does not depend on the recordings: how they are loaded, whether bodies are fitted.
+  const FitOptions& roughly() const { return roughly_; }
+  Result<FitOptions> For(const std::vector<PendulumRecording>& recordings) const;
+
+ private:
+  FitSetup(GivenOptions given, GivenOptions must_act, FitOptions roughly)
+      : given_(std::move(given)), must_act_(std::move(must_act)), roughly_(std::move(roughly)) {}
+  GivenOptions given_, must_act_;
+  FitOptions roughly_;
+};
+
 // Options that are taken but do nothing, or not what they seem to.
 std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options);
 

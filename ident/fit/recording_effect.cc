@@ -141,8 +141,8 @@ EffectEstimate MeanEffect(const std::vector<double>& weights) {
   return estimate;
 }
 
-bool EffectActs(const IdentifiedModel& model, const PendulumRecording& recording) {
-  return model.options.push_tail != PushTail::kNone && recording.scene.num_people() == 1 &&
+bool EffectActs(const ModelOptions& model, const PendulumRecording& recording) {
+  return model.push_tail != PushTail::kNone && recording.scene.num_people() == 1 &&
          std::any_of(recording.scene.pushes.begin(), recording.scene.pushes.end(),
                      [](const ScenePush& push) {
                        return push.kind != PushKind::kExternal && !push.force.empty();

@@ -51,7 +51,7 @@ struct EffectEstimate {
 EffectEstimate MeanEffect(const std::vector<double>& weights);
 
 // Whether b acts on a recording.
-bool EffectActs(const IdentifiedModel& model, const PendulumRecording& recording);
+bool EffectActs(const ModelOptions& model, const PendulumRecording& recording);
 
 // After the trajectories; nothing where the model has no tail, or no recording stays in its domain.
 std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,

@@ -50,7 +50,7 @@ RecordingFilter::RecordingFilter(const IdentifiedModel& model, const PendulumRec
       frames_(frames),
       axes_(AxesOf(recording)),
       process_(recording.scene.num_people(), ErrorProcess(recording.scene.dt)),
-      nodes_(EffectActs(model, recording) ? kEffectNodes : 1),
+      nodes_(EffectActs(model.options, recording) ? kEffectNodes : 1),
       misfit_(nodes_.size(), 0.0) {
   for (size_t j = 0; j < nodes_.size(); ++j) {
     Node& node = nodes_[j];

@@ -74,7 +74,11 @@ std::string LabelKeysText(const LabelKeys& keys) {
 
 MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const LabelKeys& keys) {
   if (keys == UsualGroups()) return std::nullopt;  // any of these may be absent
+  std::set<std::string> seen;
   for (const std::string& key : keys) {
+    const std::string list = "--group_by=" + LabelKeysText(keys);
+    if (key.empty()) return Error{list + " has an empty name; give labels with one comma between"};
+    if (!seen.insert(key).second) return Error{list + " names '" + key + "' twice"};
     if (MaybeError error = CheckLabel(recordings, "group_by", key, kSubjectUnit)) return error;
   }
   return std::nullopt;

@@ -55,6 +55,11 @@ class Adviser {
   FitCommand Bootstrap(int replicas) const {
     return Check().Set("bootstrap", std::to_string(replicas)).Set("num_threads", "2");
   }
+  // A design is printed and kept in no model, but its flag is.
+  bool DesignKnown() const {
+    const std::vector<std::string>& flags = model_.provenance.changed_flags;
+    return std::find(flags.begin(), flags.end(), "design") != flags.end();
+  }
   // More of it than the fit had.
   FitCommand SettleHarder(double weight) const;
   FitCommand DecayingModes() const;
@@ -104,7 +109,7 @@ void Adviser::Identifiability() {
     }
     if (e.status == EstimateStatus::kWeak && weak.empty()) weak = e.name;
   }
-  if (!weak.empty()) {
+  if (!weak.empty() && !DesignKnown()) {
     Add(weak +
             " is only weakly identified; find out which pushes, people or sensor would reduce its "
             "error most.",
@@ -207,7 +212,7 @@ void Adviser::Recordings() {
             " by " + Rounded(most, 2) + " standard errors; inspect it, and fit without it.",
         Same().Append("leave_out", l.recordings[recording]));
   }
-  if (result_.uncertainty.num_clusters < kFewRecordings) {
+  if (result_.uncertainty.num_clusters < kFewRecordings && !DesignKnown()) {
     const bool people = result_.uncertainty.clustered_by == ClusterBy::kSubject;
     Add("With " + std::to_string(result_.uncertainty.num_clusters) +
             (people ? " people" : " recordings") +

@@ -120,6 +120,22 @@ std::string GroupTitle(const std::string& key, const ScoreSummary& summary) {
   return (one_of_several ? "pushed person" : key) + " ";
 }
 
+// A row for each group of a label that tells recordings apart, a column for each summary.
+void AddGroups(const std::vector<const ScoreSummary*>& summaries, const ShownMetrics& shown,
+               TextTable* table) {
+  for (const auto& [key, groups] : summaries[0]->by) {
+    if (groups.size() < 2) continue;
+    for (const auto& [name, mean] : groups) {
+      std::vector<std::string> row = {GroupTitle(key, *summaries[0]) + name,
+                                      std::to_string(mean.recordings)};
+      for (const ScoreSummary* one : summaries) {
+        row.push_back(MeanText(MeanOfGroup(one->by.at(key), name), shown));
+      }
+      table->Add(row);
+    }
+  }
+}
+
 }  // namespace
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
@@ -165,14 +181,9 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   add("mean over recordings", [](const ScoreSummary& of) -> const MeanScore& { return of.mean; });
   add("frame-weighted",
       [](const ScoreSummary& of) -> const MeanScore& { return of.frame_weighted; });
-  for (const auto& [key, groups] : m.by) {
-    if (groups.size() < 2) continue;
-    for (const auto& group : groups) {
-      const std::string &of_key = key, &name = group.first;
-      add(GroupTitle(of_key, m) + name,
-          [&](const ScoreSummary& of) { return MeanOfGroup(of.by.at(of_key), name); });
-    }
-  }
+  std::vector<const ScoreSummary*> all = {&m};
+  all.insert(all.end(), baselines.begin(), baselines.end());
+  AddGroups(all, shown, &table);
   text += table.ToString() + WithoutLabelText(m.without_label) + ErrorsText(m) + ObservedText(m);
   if (m.steps.known()) text += "\n" + StepScoresText({{"model", &m.steps}});
   if (m.propagation.recordings == 0) return text;
@@ -205,6 +216,27 @@ std::string ConclusionText(const PairedDifference& d) {
   }
   return d.b + " predicts " + (change < 0.0 ? "better" : "worse") + " than " + d.a + " by " + by +
          " (" + interval + ").";
+}
+
+}  // namespace
+
+namespace {
+
+// Of --group_by; empty where no label tells recordings apart.
+std::string HeldOutGroupsText(const std::vector<CrossValidation>& candidates,
+                              const ShownMetrics& shown) {
+  std::vector<std::string> header = {
+      Together(MetricNames(shown)) + " in " + kHipMetrics[0].unit + ", held out", "recordings"};
+  std::vector<const ScoreSummary*> summaries;
+  for (const CrossValidation& candidate : candidates) {
+    header.push_back(candidate.predictor);
+    summaries.push_back(&candidate.summary);
+  }
+  std::vector<bool> left(header.size(), true);
+  left[1] = false;
+  TextTable table(header, left);
+  AddGroups(summaries, shown, &table);
+  return table.empty() ? "" : "\n" + table.ToString();
 }
 
 }  // namespace
@@ -261,6 +293,7 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   for (size_t i = 1; i < candidates.size(); ++i) {
     text += ConclusionText(Compare(candidates[0], candidates[i])) + "\n";
   }
+  text += HeldOutGroupsText(candidates, shown);
   std::vector<std::pair<std::string, const StepScore*>> steps;
   for (const CrossValidation& candidate : candidates) {
     steps.emplace_back(candidate.predictor, &candidate.summary.steps);

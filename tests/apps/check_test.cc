@@ -63,6 +63,7 @@ TEST_F(CheckTest, TheModelStaysWhereAnotherIsNamedOrNothingIsAdded) {
   ASSERT_EQ(printed.exit_code, 0) << printed.err;
   EXPECT_TRUE(Contains(printed.out, "error of mu"));
   EXPECT_TRUE(Contains(printed.out, "on tail_gain, b ~ N(0, w^2)"));
+  EXPECT_EQ(printed.out.find("--design="), std::string::npos) << "advised where it was done";
   EXPECT_EQ(ReadText(model), before);
   // Checks add up.
   ASSERT_EQ(Check(model, {"--prior_check", "--model_out=" + model}).exit_code, 0);

@@ -84,9 +84,18 @@ TEST_F(CommandLineTest, RepeatedCandidatesAreAllCompared) {
   const AppRun run =
       RunApp("pushid-crossvalidate",
              {Recordings(), "--folds=2", "--yardsticks=false", "--compare=one: --preset=ldp",
-              "--compare", "two: --self_force=linear; three: --fix=mu"});
+              "--group_by=subject", "--compare", "two: --self_force=linear; three: --fix=mu"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  for (const char* name : {"one", "two", "three"}) EXPECT_TRUE(Contains(run.out, name));
+  for (const char* name : {"one", "two", "three", "\nsubject S01 ", "\nsubject S02 "}) {
+    EXPECT_TRUE(Contains(run.out, name));
+  }
+  EXPECT_EQ(run.out.find("\nstrength "), std::string::npos);
+  for (const char* by : {"subject,,setting", "subject,subject", "shoes"}) {
+    EXPECT_TRUE(
+        Refused(RunApp("pushid-crossvalidate", {Recordings(), std::string("--group_by=") + by}),
+                {"--group_by"}))
+        << by;
+  }
 }
 
 TEST_F(CommandLineTest, AMisspeltFlagIsGuessed) {
@@ -103,6 +112,8 @@ TEST_F(CommandLineTest, AValueThatIsNoneIsAnOrdinaryError) {
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--quiet=maybe"}), {"'maybe' is not true or false"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--push_check_noise=x"}), {"'x' is not a number"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--bootstrap"}), {"--bootstrap has no value"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--design", "--check"}),
+                      {"--design has no value, as --check is a flag: --design=..."}));
 }
 
 TEST_F(CommandLineTest, WhatIsMissingIsNamed) {

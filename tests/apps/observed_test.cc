@@ -110,6 +110,11 @@ TEST_F(ObservedTest, WhatCannotBeIsRefused) {
               {"no push tail", "--push_tail=exponential"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--preset=ldp", "--population"}),
                       {"--population", "push tail, and the model has none"}));
+  const std::string external = ChangedManifest([](nlohmann::ordered_json& json) {
+    for (auto& recording : json["recordings"]) recording["push_kind"] = "external";
+  });
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {external, "--population", "--quiet"}),
+                      {"--population", "pushed alone", "no recording is of that kind"}));
   const std::string ldp = "--model=" + FitModel("ldp.json", {"--preset=ldp"});
   EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {ldp, Recordings(), "--observed=9"}),
                       {"ldp.json", "no push tail"}));

@@ -105,6 +105,18 @@ TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
                        "warning of the fit: in 2 recordings (a, b): the file has gaps\n"));
 }
 
+// Parameters that are known so well move no onset, and onsets are whole frames.
+TEST_F(SimulateFormationTest, AnIntervalWithoutWidthIsNone) {
+  nlohmann::ordered_json json = Json(Path("touching.json"));
+  for (auto& row : json["uncertainty"]["covariance_fitted_scale"]) {
+    for (auto& entry : row) entry = 1e-14 * entry.get<double>();
+  }
+  model_ = "--model=" + WriteText("known.json", json.dump(1));
+  const AppRun run = Simulate({"--formation=line", "--people=3"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "parameters: less than a frame of the onsets, from the waves of "));
+}
+
 TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
   const AppRun run =
       Simulate({"--formation=line", "--people=3", "--push=40, 40@1,56@2.5", "--fps=120",

@@ -153,6 +153,12 @@ TEST(FitSetup, AutoLooksAtTheRecordings) {
   groups.insert(groups.end(), single.begin(), single.end());
   EXPECT_EQ(MakeFitOptions({{"preset", "auto"}}, &groups).value().preset, "group");
   EXPECT_EQ(MakeFitOptions({{"preset", "tail"}}, &groups).value().preset, "tail");  // told so
+  const Result<FitSetup> setup = FitSetup::Make({{"fix", "mu=40"}});
+  ASSERT_TRUE(setup.ok());
+  for (const auto& recordings : {single, groups}) {
+    const FitOptions made = MakeFitOptions({{"fix", "mu=40"}}, &recordings).value();
+    EXPECT_EQ(SettingsJson(setup.value().For(recordings).value()), SettingsJson(made));
+  }
 }
 
 TEST(FitSetup, LdpsLossWeighsItsRowsAlikeUnlessToldOtherwise) {

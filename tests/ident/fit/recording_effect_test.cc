@@ -73,16 +73,16 @@ TEST(RecordingEffect, NeedsATailAndOnePersonAlone) {
   const SyntheticOptions study = TinyStudy();
   IdentifiedModel model = TrueModel(study);
   std::vector<PendulumRecording> recordings = MakePendulums(study);
-  EXPECT_TRUE(EffectActs(model, recordings[0]));
+  EXPECT_TRUE(EffectActs(model.options, recordings[0]));
   PendulumRecording measured = recordings[0];
   for (ScenePush& push : measured.scene.pushes) push.kind = PushKind::kExternal;
-  EXPECT_FALSE(EffectActs(model, measured));
+  EXPECT_FALSE(EffectActs(model.options, measured));
   const auto effect = FitRecordingEffect(model, {measured});
   ASSERT_TRUE(effect.has_value());
   EXPECT_EQ(effect->spread, 0.0);
   EXPECT_TRUE(effect->recordings.empty());
   model.options.push_tail = PushTail::kNone;
-  EXPECT_FALSE(EffectActs(model, recordings[0]));
+  EXPECT_FALSE(EffectActs(model.options, recordings[0]));
   EXPECT_FALSE(FitRecordingEffect(model, recordings).has_value());
 }
 
