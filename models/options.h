@@ -121,6 +121,15 @@ constexpr EnumNames<Posture, 2> Names(Posture) {
   return {{{"upright", Posture::kUpright}, {"initial", Posture::kInitial}}};
 }
 
+// In which axes a fit sees people, and whether they answer alike in all directions.
+enum class Directions {
+  kIsotropic,  // along the push; what acts sideways is what acts forwards
+  kAxes        // those of the file; sideways parameters are their own
+};
+constexpr EnumNames<Directions, 2> Names(Directions) {
+  return {{{"isotropic", Directions::kIsotropic}, {"axes", Directions::kAxes}}};
+}
+
 // How the gains, quoted for the reference person, carry over to another body.
 enum class GainScaling {
   kNone,  // the same newtons for everybody
@@ -185,6 +194,7 @@ struct LearnedTerms;
 struct ModelOptions {
   Posture posture = Posture::kInitial;
   GainScaling gain_scaling = GainScaling::kBody;
+  Directions directions = Directions::kAxes;
   FrictionKind friction = FrictionKind::kIsotropic;
   PushUse push = PushUse::kAdded;
   PushTail push_tail = PushTail::kExponential;

@@ -60,6 +60,14 @@ constexpr std::array<CartDamping, 2> CartDampings(FrictionKind kind) {
   return {CartDamping{"c_x", kMu, kKpX}, CartDamping{"c_y", FrictionAlongY(kind), kKpY}};
 }
 
+// What acts sideways, and what acts forwards as it does (Directions::kIsotropic).
+struct SidewaysParameter {
+  Parameter sideways, forward;
+};
+inline constexpr SidewaysParameter kSidewaysParameters[] = {
+    {kKpY, kKpX}, {kKpPhi, kKpTheta}, {kKdY, kKdX}, {kKdPhi, kKdTheta},
+    {kAy, kAx},   {kBy, kBx},         {kTy, kTx}};
+
 // Whether a parameter is one that the convention holds.
 constexpr bool HeldByConvention(Parameter id) { return id == kKpX || id == kKpY; }
 

@@ -11,6 +11,7 @@
 // the fitted scale makes a pooled positive parameter vary by factors and never change sign.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,7 +30,8 @@ inline bool HoldsForRecording(const std::string& pool_by) { return pool_by != kS
 struct FittedParameter {
   Parameter parameter;
   Transform transform;
-  int deviation = -1;  // index in a unit's block, -1 when not pooled
+  int deviation = -1;                            // index in a unit's block, -1 when not pooled
+  std::optional<Parameter> also = std::nullopt;  // another that has the same value
 };
 
 // d (a person's parameter) / d (a column of the recording's Jacobian).
@@ -57,6 +59,7 @@ struct ParameterMap {
       T value = shared[i];
       if (deviation != nullptr && fitted[i].deviation >= 0) value += deviation[fitted[i].deviation];
       set[fitted[i].parameter] = ToNatural(fitted[i].transform, value);
+      if (fitted[i].also) set[*fitted[i].also] = set[fitted[i].parameter];
     }
     return set;
   }
@@ -68,10 +71,14 @@ struct ParameterMap {
     for (size_t i = 0; i < fitted.size(); ++i) {
       const FittedParameter& f = fitted[i];
       const double slope = TransformSlope(f.transform, set[f.parameter]);
-      entries.push_back({static_cast<int>(i), f.parameter, slope});
-      if (deviation_column >= 0 && f.deviation >= 0) {
-        entries.push_back({deviation_column + f.deviation, f.parameter, slope});
-      }
+      const auto add = [&](Parameter parameter) {
+        entries.push_back({static_cast<int>(i), parameter, slope});
+        if (deviation_column >= 0 && f.deviation >= 0) {
+          entries.push_back({deviation_column + f.deviation, parameter, slope});
+        }
+      };
+      add(f.parameter);
+      if (f.also) add(*f.also);
     }
     return entries;
   }

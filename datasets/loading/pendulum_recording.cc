@@ -2,9 +2,11 @@
 #include "datasets/loading/pendulum_recording.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "datasets/files/input_file.h"
+#include "models/turn.h"
 
 namespace pushid {
 namespace {
@@ -85,6 +87,40 @@ std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recordin
     pendulums.push_back(MakePendulumRecording(recording, mapping));
   }
   return pendulums;
+}
+
+Eigen::Vector2d PushDirection(const PendulumRecording& recording) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const ScenePush& push : recording.scene.pushes) {
+    if (push.person != recording.pushed_person) continue;
+    sum += static_cast<double>(push.force.size()) * push.mean.head<2>();
+  }
+  return sum.norm() > 0.0 ? Eigen::Vector2d(sum.normalized()) : Eigen::Vector2d(1.0, 0.0);
+}
+
+PendulumRecording Turned(PendulumRecording recording, double angle) {
+  const TurnedAxes axes(angle);
+  for (ScenePush& push : recording.scene.pushes) {
+    const std::vector<PendulumState<double>>& states = recording.states[push.person];
+    for (size_t i = 0; i < push.force.size(); ++i) {
+      const size_t frame = std::min(states.size() - 1, push.start_frame + i);
+      push.force[i] = axes.Force(states[frame].q, push.force[i]);
+    }
+    push = MakeScenePush(push.person, push.start_frame, push.kind, std::move(push.force));
+  }
+  for (int n = 0; n < recording.num_people(); ++n) {
+    for (Vector3<double>& hip : recording.hip[n]) hip = axes.Point(hip);
+    PendulumState<double>& start = recording.scene.people[n].start;
+    start.qd = axes.PoseJacobian(start.q) * start.qd;
+    start.q = axes.Pose(start.q);
+    std::vector<PendulumState<double>>& states = recording.states[n];
+    for (size_t t = 0; t < states.size(); ++t) {
+      states[t].q = axes.Pose(states[t].q);
+      states[t].qd =
+          t == 0 ? start.qd : Vector4<double>((states[t].q - states[t - 1].q) / recording.scene.dt);
+    }
+  }
+  return recording;
 }
 
 MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const std::string& flag,

@@ -47,6 +47,13 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
 std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings,
                                                       SkeletonMapping mapping);
 
+// Horizontal and of length 1: of the impulse on the pushed person; x without one.
+Eigen::Vector2d PushDirection(const PendulumRecording& recording);
+
+// The recording in axes turned by so much about the vertical; the steps of its feet stay as they
+// are.
+PendulumRecording Turned(PendulumRecording recording, double angle);
+
 // Error: a key (of --flag) that is neither `other` nor a label of any recording; it names those.
 MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const std::string& flag,
                       const std::string& key, const std::string& other);

@@ -61,14 +61,6 @@ struct Leverage {
   std::vector<std::vector<double>> in_errors;  // the same over the clustered standard error
 };
 
-// Whether the recordings need a term that is held at zero (residual_diagnostics.cc).
-struct TermTest {
-  std::string parameter;
-  double t = 0.0;
-  int freedom = 1;
-  double p = 1.0;
-};
-
 struct Advice {
   std::string sentence;
   std::string command;  // the next one to try; may be empty
@@ -79,7 +71,6 @@ struct Diagnostics {
   std::vector<RecordingDiagnostics> recordings;
   std::vector<Whiteness> whiteness;
   Leverage leverage;
-  std::vector<TermTest> terms;
   std::vector<TracePoint> trace;  // of the best start
 };
 

@@ -10,7 +10,7 @@
 #include "ident/fit/step_probability.h"
 #include "ident/fit/weighted_solve.h"
 #include "ident/solver/likelihood_solve.h"
-#include "ident/uncertainty/uncertainty.h"
+#include "ident/uncertainty/model_verdict.h"
 #include "residuals/takeover.h"
 
 namespace pushid {
@@ -128,6 +128,10 @@ FitResult Judge(const SolvedFit& fit) {
   // Errors clustered by person, and the shares of data and priors (uncertainty.h).
   result.uncertainty = ComputeUncertainty(problem, optimum, free ? &*free : nullptr);
   result.uncertainty.settling = fit.solved.settling;
+
+  // The verdict: whether the model fits, what would change if what was taken as known were not,
+  // and which estimates may be called identified (model_verdict.h).
+  result.verdict = JudgeModel(problem, optimum, &result.uncertainty);
 
   // Tables: parameters, what ties units together, combinations, values of every unit.
   result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);

@@ -52,15 +52,6 @@ double PushSpeed(const PendulumRecording& recording) {
   return speed;
 }
 
-Eigen::Vector2d PushDirection(const PendulumRecording& recording) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (const ScenePush& push : recording.scene.pushes) {
-    if (push.person != recording.pushed_person) continue;
-    sum += static_cast<double>(push.force.size()) * push.mean.head<2>();
-  }
-  return sum.norm() > 0.0 ? Eigen::Vector2d(sum.normalized()) : Eigen::Vector2d(1.0, 0.0);
-}
-
 PushRange FittedPushRange(const IdentifiedModel& model,
                           const std::vector<PendulumRecording>& recordings) {
   PushRange range;

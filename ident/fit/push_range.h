@@ -16,9 +16,6 @@ namespace pushid {
 
 // What the recorded rows alone give people, m/s; tails not counted.
 double PushSpeed(const PendulumRecording& recording);
-// Horizontal direction of what the pushes on the pushed person add up to; +x where they cancel.
-Eigen::Vector2d PushDirection(const PendulumRecording& recording);
-
 PushRange FittedPushRange(const IdentifiedModel& model,
                           const std::vector<PendulumRecording>& recordings);
 

@@ -77,6 +77,37 @@ void Fields(Archive& a, TracePoint& t) {
 }
 
 template <class Archive>
+void Fields(Archive& a, AssumptionTest& t) {
+  a("name", t.name);
+  a("unit", t.unit);
+  a("stated", t.stated);
+  a("wanted", t.wanted);
+  a("error", t.error);
+  a("t", t.t);
+  a("p", t.p);
+  a("moves", t.moves);
+}
+
+template <class Archive>
+void Fields(Archive& a, HorizonTest& t) {
+  a("parameter", t.parameter);
+  a("frames", t.frames);
+  a("t", t.t);
+  a("p", t.p);
+}
+
+template <class Archive>
+void Fields(Archive& a, ModelVerdict& v) {
+  a.Written("fails", [&] { return v.fails(); });
+  a("not_checked", v.not_checked);
+  a("freedom", v.freedom);
+  a("p_assumptions", v.p_assumptions);
+  a("p_horizons", v.p_horizons);
+  a("assumptions", v.assumptions);
+  a("horizons", v.horizons);
+}
+
+template <class Archive>
 void Fields(Archive& a, Diagnostics& d) {
   a("start", d.start);
   a("recordings", d.recordings);

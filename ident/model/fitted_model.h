@@ -13,6 +13,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/bootstrap.h"
+#include "ident/uncertainty/model_verdict.h"
 #include "ident/uncertainty/profile.h"
 #include "ident/uncertainty/refit_checks.h"
 #include "ident/uncertainty/uncertainty.h"
@@ -54,6 +55,7 @@ struct FitResult {
   // None without a push tail, and in older files.
   std::optional<RecordingEffect> recording_effect;
   Uncertainty uncertainty;
+  ModelVerdict verdict;  // not checked in older files
   Diagnostics diagnostics;
   Behaviour behaviour;
   std::vector<FittedRecording> recordings;

@@ -48,6 +48,7 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
   a.Written("values", [&] { return ValuesJson(fit.options.table, fit.parameters); });
   a("behaviour", fit.behaviour);
   a("uncertainty", fit.uncertainty);
+  if (a.Has("verdict")) a("verdict", fit.verdict);
   if (a.Has("diagnostics")) {
     a.Group("diagnostics", [&](auto& g) {
       Fields(g, fit.diagnostics);

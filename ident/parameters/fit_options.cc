@@ -139,6 +139,7 @@ Json TableJson(const ParameterTable& table) {
                 {"free", spec.free},       {"pooled", spec.pooled},
                 {"meaning", spec.meaning}};
     if (spec.prior) row["prior"] = {{"mean", spec.prior->mean}, {"sigma", spec.prior->sigma}};
+    if (spec.tied_to) row["tied_to"] = table[*spec.tied_to].name;
     if (spec.pooled) row["pooling_sigma"] = spec.pooling_sigma;
     rows.push_back(row);
   }
@@ -183,6 +184,12 @@ ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
     spec->pooled = row.at("pooled");
     spec->pooling_sigma = row.value("pooling_sigma", kFirstPoolingSigma);
     spec->meaning = row.at("meaning");
+    spec->tied_to.reset();
+    if (row.contains("tied_to")) {
+      const ParameterSpec* to = table.Find(row.at("tied_to"));
+      if (to == nullptr) throw std::runtime_error(name + " is tied to an unknown parameter");
+      spec->tied_to = to->id;
+    }
     spec->prior.reset();
     if (row.contains("prior")) {
       spec->prior = Prior{row.at("prior").at("mean"), row.at("prior").at("sigma")};

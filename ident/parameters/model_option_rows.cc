@@ -217,6 +217,11 @@ std::vector<Row> ModelOptionRows() {
       Decided(NameRow<Posture>(
           "posture", "/posture", [](O & o) -> auto& { return o.model.posture; },
           "balance error measured from: upright or initial")),
+      MayBeAbsent(Decided(NameRow<Directions>(
+          "directions", "/directions", [](O & o) -> auto& { return o.model.directions; },
+          "isotropic (people answer alike in all directions; fitted along each push) or axes "
+          "(those "
+          "of the file, sideways parameters of their own)"))),
       Decided(NameRow<GainScaling>(
           "gain_scaling", "/gain_scaling", [](O & o) -> auto& { return o.model.gain_scaling; },
           "gains of other bodies: none, mass, or body (mass and rod length)")),

@@ -53,7 +53,9 @@ std::vector<Parameter> ParameterTable::Free() const {
 
 ParameterSet<double> ParameterTable::Values() const {
   ParameterSet<double> values{};
-  for (const ParameterSpec& spec : specs) values[spec.id] = spec.nominal;
+  for (const ParameterSpec& spec : specs) {
+    values[spec.id] = (spec.tied_to ? specs[*spec.tied_to] : spec).nominal;
+  }
   return values;
 }
 
@@ -63,6 +65,9 @@ ParameterMap ParameterTable::Map() const {
   for (Parameter id : Free()) {
     const int deviation = specs[id].pooled ? map.num_deviations++ : -1;
     map.fitted.push_back({id, specs[id].transform, deviation});
+    for (const ParameterSpec& spec : specs) {
+      if (spec.tied_to == id) map.fitted.back().also = spec.id;
+    }
   }
   return map;
 }
@@ -179,6 +184,8 @@ MaybeError Assign(const std::string& list, const std::string& flag, std::optiona
       spec->nominal = item.value().value;
     }
     if (make_free.has_value()) spec->free = *make_free;
+    spec->named = true;
+    spec->tied_to.reset();
   }
   return std::nullopt;
 }
@@ -196,6 +203,8 @@ MaybeError AddPriors(const std::string& list, ParameterTable* table) {
     if (spec == nullptr) return UnknownName(parts[0], "--prior", *table);
     if (MaybeError error = CheckInBounds(*spec, prior.mean, "--prior")) return error;
     spec->prior = prior;
+    spec->named = true;
+    spec->tied_to.reset();
   }
   return std::nullopt;
 }

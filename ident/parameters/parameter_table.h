@@ -37,6 +37,9 @@ struct ParameterSpec {
   // Of a pooled one: standard deviation of a unit's deviation, as PoolingSigma has it.
   double pooling_sigma = kFirstPoolingSigma;
   std::optional<Prior> prior;
+  // Whose value it has; none where a flag names the parameter itself.
+  std::optional<Parameter> tied_to;
+  bool named = false;   // by a flag
   std::string meaning;  // one line for people
 };
 

@@ -8,6 +8,7 @@
 #include "datasets/manifest/recording.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "models/parameters.h"
+#include "models/self_terms.h"
 
 namespace pushid {
 namespace {
@@ -39,6 +40,7 @@ FitOptions TailPreset() {
   }
   // Not by the push's duration (tail_exponent): in the published recordings that stands for the
   // condition, and it sends people away who are pushed weakly for long.
+  o.model.directions = Directions::kIsotropic;
   o.pool = "tail_time";
   o.pool_by = kConditionLabel;
   o.settling_weight = 30.0;
@@ -139,6 +141,7 @@ void SetStance(Stance stance, FitOptions* options) {
   ParameterTable& table = options->table;
   options->model.push = PushUse::kAsRecorded;
   options->start = FitStart::kNominal;
+  options->model.directions = Directions::kAxes;  // the feet's support has a front
   // Who stands gives way about the ankles, not at them: people push at the hip, or above.
   table[kContactHeight].nominal = 0.95;
   table[kAy].nominal = 15;
@@ -214,6 +217,17 @@ Result<FitOptions> MakePreset(const std::string& name) {
   return options;
 }
 
+// Sideways as forwards, but for what a flag names.
+void TieSideways(FitOptions* o) {
+  for (const SidewaysParameter& pair : kSidewaysParameters) {
+    ParameterSpec& spec = o->table[pair.sideways];
+    spec.tied_to.reset();
+    if (o->model.directions != Directions::kIsotropic || spec.named) continue;
+    spec.tied_to = pair.forward;
+    spec.free = spec.pooled = false;
+  }
+}
+
 void FreeTerms(FitOptions* o) {
   FreeSelfForce(o->self_force, &o->table);
   FreeByTerm(o->model, &o->table);
@@ -222,6 +236,7 @@ void FreeTerms(FitOptions* o) {
     if (!o->preset_priors) spec.prior.reset();
     if (!Acts(spec.id, o->model)) spec.free = spec.pooled = false;
   }
+  TieSideways(o);
   // These two cannot fail; names can.
   if (PoolsAllOrNone(o->pool)) (void)PoolParameters(o);
 }

@@ -10,9 +10,27 @@
 
 namespace pushid {
 
+namespace {
+
+// Along their pushes, where the model has no axes of its own.
+std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
+    const std::vector<PendulumRecording>& recordings, Directions directions) {
+  if (directions != Directions::kIsotropic) return nullptr;
+  auto turned = std::make_shared<std::vector<PendulumRecording>>();
+  turned->reserve(recordings.size());
+  for (const PendulumRecording& recording : recordings) {
+    const Eigen::Vector2d along = PushDirection(recording);
+    turned->push_back(Turned(recording, std::atan2(along[1], along[0])));
+  }
+  return turned;
+}
+
+}  // namespace
+
 FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, FitOptions options,
                        std::vector<int> counts)
-    : recordings_(&recordings),
+    : turned_(InOwnAxes(recordings, options.model.directions)),
+      recordings_(turned_ == nullptr ? &recordings : turned_.get()),
       options_(std::move(options)),
       counts_(std::move(counts)),
       map_(options_.table.Map()) {

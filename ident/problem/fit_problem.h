@@ -49,6 +49,7 @@ class FitProblem {
   void set_function_tolerance(double tolerance) { options_.function_tolerance = tolerance; }
 
   const ParameterMap& map() const { return map_; }
+  // As the model sees them: in axes along their pushes, where it is the same in all directions.
   const std::vector<PendulumRecording>& recordings() const { return *recordings_; }
   const FitOptions& options() const { return options_; }
   // Of a recording's residuals in the cost, rolled out over `horizon` frames (0: all).
@@ -161,6 +162,8 @@ class FitProblem {
   Built BuildStage(const FitStage& stage, FitPoint* point, bool hold_network,
                    int num_threads) const;
 
+  std::shared_ptr<const std::vector<PendulumRecording>>
+      turned_;  // null where the file's axes serve
   const std::vector<PendulumRecording>* recordings_;
   FitOptions options_;
   std::vector<int> counts_;

@@ -280,15 +280,18 @@ void Adviser::Terms() {
         return e.status != EstimateStatus::kIdentified && e.status != EstimateStatus::kFixed;
       });
   if (explained) return;
-  const TermTest* surest = nullptr;
-  for (const TermTest& test : result_.diagnostics.terms) {
-    if (test.p < kTermLevel && (surest == nullptr || test.p < surest->p)) surest = &test;
+  const AssumptionTest* surest = nullptr;  // of what is left out
+  for (const AssumptionTest& test : result_.verdict.assumptions) {
+    const bool left_out = test.stated <= 0.0 && test.error > 0.0;
+    if (left_out && test.p < kTermLevel && (surest == nullptr || test.p < surest->p)) {
+      surest = &test;
+    }
   }
   if (surest == nullptr) return;
   FitCommand compare("pushid-crossvalidate", model_.provenance);
-  compare.Set("compare", "more: --free=" + compare.Appended("free", surest->parameter));
-  Add("The residuals suggest freeing " + surest->parameter + " (score test: t = " +
-          Rounded(surest->t, 2) + " with " + std::to_string(surest->freedom) +
+  compare.Set("compare", "more: --free=" + compare.Appended("free", surest->name));
+  Add("The residuals suggest freeing " + surest->name + " (score test: t = " +
+          Rounded(surest->t, 2) + " with " + std::to_string(result_.verdict.freedom) +
           " degrees of freedom); check whether it improves predictions.",
       compare);
 }

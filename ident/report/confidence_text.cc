@@ -13,6 +13,7 @@
 #include "ident/parameters/option_names.h"
 #include "ident/problem/statistics.h"
 #include "ident/report/fit_command.h"
+#include "ident/report/verdict_text.h"
 
 namespace pushid {
 namespace {
@@ -91,7 +92,8 @@ std::string WhitenessText(const std::vector<Whiteness>& whiteness) {
 
 std::string DiagnosticsText(const FittedModel& model) {
   const Diagnostics& d = model.fit.diagnostics;
-  std::string text = StartText(d.start) + RecordingsText(d) + WhitenessText(d.whiteness);
+  std::string text = model.fit.verdict.checked() ? AssumptionTable(model.fit).ToString() : "";
+  text += StartText(d.start) + RecordingsText(d) + WhitenessText(d.whiteness);
   bool unkept = false;
   for (const Advice& advice : model.advice) {
     text += "advice: " + advice.sentence + "\n";

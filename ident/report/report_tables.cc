@@ -51,13 +51,13 @@ std::string PullText(const Estimate& e) {
 }
 
 TextTable EstimateTable(const FitResult& result) {
-  TextTable table({"parameter", "value", "std error", "95 % interval", "unit", "status",
-                   "data/prior/settling, %", "pull, errors", "prior"},
-                  {true, false, false, true, true, true, true, false, true});
+  TextTable table({"parameter", "value", "std error", "95 % interval", "total 95 %", "unit",
+                   "status", "data/prior/settling, %", "pull, errors", "prior"},
+                  {true, false, false, true, true, true, true, true, false, true});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed) {
-      table.Add({e.name, Rounded(e.value, 4), "-", "-", e.unit, "fixed", "-", "-", ""});
+      table.Add({e.name, Rounded(e.value, 4), "-", "-", "-", e.unit, "fixed", "-", "-", ""});
       continue;
     }
     const std::string prior =
@@ -69,8 +69,9 @@ TextTable EstimateTable(const FitResult& result) {
     const bool no_error = no_shares && e.standard_error <= 0.0;
     const std::string error = no_error ? "-" : Rounded(e.standard_error, 3);
     table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
-               unknown || no_error ? "-" : BracketText(e.lower95, e.upper95), e.unit,
-               NameOf(e.status), no_shares ? "-" : SharesText(e.shares),
+               unknown || no_error ? "-" : BracketText(e.lower95, e.upper95),
+               e.total && !no_shares ? BracketText(e.total->lower95, e.total->upper95) : "-",
+               e.unit, NameOf(e.status), no_shares ? "-" : SharesText(e.shares),
                no_shares ? "-" : PullText(e), prior});
   }
   return table;

@@ -14,6 +14,7 @@
 #include "ident/report/confidence_text.h"
 #include "ident/report/refits_text.h"
 #include "ident/report/report_tables.h"
+#include "ident/report/verdict_text.h"
 #include "ident/validation/steps_report.h"
 
 namespace pushid {
@@ -109,6 +110,7 @@ std::string ReportText(const FittedModel& model) {
       InteractionText(o.model) + PoolingText(o) +
       (o.body_weight > 0.0 ? ", bodies with weight " + Rounded(o.body_weight, 4) : "") +
       SelfFromText(model.provenance) + "\n\n";
+  text += ModelVerdictText(result.verdict) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
           DerivedTable(result).ToString() + ConventionText(result) + "\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {

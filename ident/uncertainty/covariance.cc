@@ -136,15 +136,15 @@ Eigen::MatrixXd InformationBeside(const JacobianBlocks& score) {
   return Information(score, rows);
 }
 
-double Directions::Condition() const {
+double SingularDirections::Condition() const {
   return rank > 0 ? singular[0] / singular[rank - 1] : std::numeric_limits<double>::infinity();
 }
 
-Directions Decompose(const Eigen::MatrixXd& jacobian, double null_value) {
+SingularDirections Decompose(const Eigen::MatrixXd& jacobian, double null_value) {
   // By the triangle of a QR decomposition: rows are many, columns few.
   const RightSingular svd =
       DecomposeRight(jacobian.rows() >= jacobian.cols() ? Triangle(jacobian) : jacobian);
-  Directions directions{svd.values, svd.vectors, 0};
+  SingularDirections directions{svd.values, svd.vectors, 0};
   const Eigen::VectorXd& singular = directions.singular;
   while (directions.rank < singular.size() &&
          singular[directions.rank] > null_value * singular[0]) {

@@ -27,19 +27,20 @@ namespace pushid {
 inline constexpr double kNullSingularValue = 1e-7;  // relative to the largest one
 
 // Right singular vectors of a Jacobian, those of the null space last.
-struct Directions {
+struct SingularDirections {
   Eigen::VectorXd singular;
   Eigen::MatrixXd v;
   int rank = 0;
 
   double Condition() const;  // of the first `rank`; infinite when there are none
 };
-Directions Decompose(const Eigen::MatrixXd& jacobian, double null_value = kNullSingularValue);
+SingularDirections Decompose(const Eigen::MatrixXd& jacobian,
+                             double null_value = kNullSingularValue);
 
 struct Covariance {
-  Directions directions;  // of the scaled Jacobian
-  int naive_freedom = 1;  // rows of data less the rank
-  double sigma = 0.0;     // residual standard deviation
+  SingularDirections directions;  // of the scaled Jacobian
+  int naive_freedom = 1;          // rows of data less the rank
+  double sigma = 0.0;             // residual standard deviation
   Eigen::MatrixXd inverse_hessian;
   bool full_hessian = false;  // with second derivatives; J'J alone where they leave no minimum
   Eigen::MatrixXd naive;

@@ -32,7 +32,7 @@ Eigen::MatrixXd DataNullSpace(const JacobianBlocks& score, const Eigen::MatrixXd
         cluster == FitProblem::kPriorCluster || cluster == FitProblem::kSettlingCluster;
     if (!put_in) rows.push_back(row);
   }
-  const Directions data = Decompose(scaled(rows, Eigen::all));
+  const SingularDirections data = Decompose(scaled(rows, Eigen::all));
   const int size = static_cast<int>(columns.size());
   Eigen::MatrixXd null_space(size, 0);
   for (int k = data.rank; k < size; ++k) {
@@ -54,15 +54,24 @@ constexpr double kIdentifiedShare = 0.8;
 constexpr double kMostPull = 0.5;       // standard errors
 constexpr double kMostHalfWidth = 0.5;  // of the value
 
+}  // namespace
+
+bool IsNarrow(Transform transform, double value, double lower95, double upper95) {
+  const bool sign = transform == Transform::kIdentity && lower95 * upper95 > 0.0;
+  return sign || 0.5 * (upper95 - lower95) < kMostHalfWidth * std::abs(value);
+}
+
+namespace {
+
 EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched) {
   if (c.at_bound) return EstimateStatus::kAtBound;
   if (touched) return EstimateStatus::kUnidentifiable;
   if (e.shares.data < kHeldShare) return EstimateStatus::kPriorHeld;
   const double pull = std::abs(e.shares.prior_pull + e.shares.settling_pull);
   const bool leads = e.shares.data > kIdentifiedShare && pull < kMostPull * e.standard_error;
-  const bool narrow = 0.5 * (e.upper95 - e.lower95) < kMostHalfWidth * std::abs(e.value);
-  const bool sign = c.transform == Transform::kIdentity && e.lower95 * e.upper95 > 0.0;
-  return leads && (narrow || sign) ? EstimateStatus::kIdentified : EstimateStatus::kWeak;
+  return leads && IsNarrow(c.transform, c.natural, e.lower95, e.upper95)
+             ? EstimateStatus::kIdentified
+             : EstimateStatus::kWeak;
 }
 
 Estimate MakeEstimate(const FittedColumn& c, double variance, double naive_variance, double freedom,

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,14 +37,16 @@ enum class EstimateStatus {
   // standard error, and the interval's half-width is below half the value (where the parameter may
   // take either sign: or the sign is certain).
   kIdentified,
-  kWeak,            // neither this nor anything below
+  kModelDependent,  // identified, if the model were right: its checks fail (model_verdict.h)
+  kWeak,            // neither of these nor anything below
   kPriorHeld,       // the data's share is below 50 %
   kUnidentifiable,  // a null direction of the data touches it
   kAtBound,
   kFixed
 };
-constexpr EnumNames<EstimateStatus, 6> Names(EstimateStatus) {
+constexpr EnumNames<EstimateStatus, 7> Names(EstimateStatus) {
   return {{{"identified", EstimateStatus::kIdentified},
+           {"model-dependent", EstimateStatus::kModelDependent},
            {"weak", EstimateStatus::kWeak},
            {"prior-held", EstimateStatus::kPriorHeld},
            {"unidentifiable", EstimateStatus::kUnidentifiable},
@@ -57,6 +60,12 @@ struct Shares {
   double prior_pull = 0.0, settling_pull = 0.0;
 };
 
+// What an estimate owes to what the fit takes as known as well, natural units (model_verdict.h).
+struct TotalError {
+  double error = 0.0, lower95 = 0.0, upper95 = 0.0;
+  bool narrow = false;  // IsNarrow
+};
+
 // One fitted number: a shared parameter, a subject's deviation or an initial velocity.
 struct Estimate {
   std::string name;
@@ -65,10 +74,15 @@ struct Estimate {
   double standard_error = 0.0;        // clustered, natural unit; infinity when unidentifiable
   double standard_error_naive = 0.0;  // natural unit
   double lower95 = 0.0, upper95 = 0.0;
-  double freedom = 1.0;  // of Student's t behind the interval
+  double freedom = 1.0;             // of Student's t behind the interval
+  std::optional<TotalError> total;  // of shared parameters, where it was computed
   Shares shares;
   EstimateStatus status = EstimateStatus::kIdentified;
 };
+
+// Whether an interval's half-width is below half the value; of a parameter that may take either
+// sign, whether the sign is certain.
+bool IsNarrow(Transform transform, double value, double lower95, double upper95);
 
 // A sum of parameters, by natural values.
 struct Combination {

@@ -69,6 +69,7 @@ inline FitOptions DefaultFit(const SyntheticOptions& study) {
   (void)PoolParameters(&options);
   options.model = study.model;
   for (ParameterSpec& spec : options.table.specs) {
+    spec.tied_to.reset();  // a truth of its own
     if (!spec.free) spec.nominal = study.parameters[spec.id];
   }
   return options;

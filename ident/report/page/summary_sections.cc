@@ -13,6 +13,7 @@
 #include "ident/report/page/sections.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/report_text.h"
+#include "ident/report/verdict_text.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/validation/scores_report.h"
 
@@ -66,6 +67,7 @@ std::string NotKnown(const FitResult& result) {
   add(EstimateStatus::kAtBound, "ended at a bound: ");
   add(EstimateStatus::kPriorHeld,
       "determined more by priors or constraints than by the recordings: ");
+  add(EstimateStatus::kModelDependent, "dependent on a model that does not fit: ");
   add(EstimateStatus::kWeak, "with wide intervals: ");
   const Uncertainty& u = result.uncertainty;
   if (u.clustered && u.num_clusters < kFewClusters) {
@@ -114,7 +116,7 @@ TextTable Legend(const FitResult& result) {
 
 ReportSection LeadSection(const ReportSource& source) {
   ReportSection section;
-  section.paragraphs = {Known(source.fit) + " In brackets: 95 % intervals.", NotKnown(source.fit)};
+  section.paragraphs = {ModelVerdictText(source.fit.verdict), Known(source.fit) + " In brackets: 95 % intervals.", NotKnown(source.fit)};
   section.Say(Travels(source.propagation));
   section.Say(Next(source.model));
   section.Show("the parameters that were fitted", Legend(source.fit));

@@ -219,7 +219,8 @@ TEST(Advice, RepeatsEveryChangedFlagOnceAndKeepsLists) {
 TEST(Advice, IsNotWhatIsOnAlready) {
   FitResult result;
   result.recordings.resize(3);
-  result.diagnostics.terms = {{"b_x", 2.0, 20, 0.06}, {"t_x", 6.0, 20, 1e-5}};
+  result.verdict.assumptions = {{"b_x", "m/s/rad", 0.0, 2.0, 1.0, 2.0, 0.06, {}},
+                                {"t_x", "m/s", 0.0, 6.0, 1.0, 6.0, 1e-5, {}}};
   result.behaviour.settles = false;
   EXPECT_TRUE(Contains(AllAdvice(result), "--free=t_x"));
   EXPECT_FALSE(Contains(AllAdvice(result), "--free=b_x"));

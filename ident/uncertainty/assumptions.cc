@@ -1,0 +1,150 @@
+// ident: how each assumption changes what a fit sees.
+#include "ident/uncertainty/assumptions.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "models/self_terms.h"
+
+namespace pushid {
+namespace {
+
+// Calls f(recording, push) for every measured push.
+template <typename F>
+void ForMeasured(ChangedProblem* p, const F& f) {
+  for (PendulumRecording& r : p->recordings) {
+    for (ScenePush& push : r.scene.pushes) {
+      if (push.kind == PushKind::kExternal && !push.force.empty()) f(r, &push);
+    }
+  }
+}
+
+void Renew(ScenePush* push) {
+  *push = MakeScenePush(push->person, push->start_frame, push->kind, std::move(push->force));
+}
+
+void ScaleMeasured(double eta, ChangedProblem* p) {
+  ForMeasured(p, [eta](const PendulumRecording&, ScenePush* push) {
+    for (Vector4<double>& row : push->force) row *= 1.0 + eta;
+    Renew(push);
+  });
+}
+
+// Later by eta frames, between rows by straight lines.
+void Delay(double eta, ChangedProblem* p) {
+  ForMeasured(p, [eta](const PendulumRecording&, ScenePush* push) {
+    const std::vector<Vector4<double>> old = push->force;
+    const int n = static_cast<int>(old.size());
+    const auto at = [&old, n](int i) -> Vector4<double> {
+      return i < 0 || i >= n ? Vector4<double>(Vector4<double>::Zero()) : old[i];
+    };
+    for (int i = 0; i < n; ++i) {
+      push->force[i] =
+          eta > 0.0 ? at(i) - eta * (at(i) - at(i - 1)) : at(i) - eta * (at(i + 1) - at(i));
+    }
+    if (eta > 0.0) push->force.push_back(eta * at(n - 1));
+    Renew(push);
+  });
+}
+
+// At the hands, eta metres higher.
+void Raise(double eta, ChangedProblem* p) {
+  ForMeasured(p, [eta](const PendulumRecording& r, ScenePush* push) {
+    const std::vector<PendulumState<double>>& states = r.states[push->person];
+    for (size_t i = 0; i < push->force.size(); ++i) {
+      const size_t frame = std::min(states.size() - 1, push->start_frame + i);
+      const Angles<double> angles(states[frame].q);
+      Body lever;
+      lever.rod_length = 1.0;
+      const Vector4<double>& row = push->force[i];
+      const Vector4<double> more =
+          GeneralizedForce<double>(lever, angles, {row[0], row[1], 0.0}, eta);
+      push->force[i].tail<2>() += more.tail<2>();
+    }
+    Renew(push);
+  });
+}
+
+// All people heavier by the share eta; pushes by inverse dynamics with them.
+void Weigh(double eta, ChangedProblem* p) {
+  for (PendulumRecording& r : p->recordings) {
+    for (ScenePerson& person : r.scene.people) person.body.mass *= 1.0 + eta;
+    for (ScenePush& push : r.scene.pushes) {
+      if (push.kind == PushKind::kExternal) continue;
+      for (Vector4<double>& row : push.force) row *= 1.0 + eta;
+      Renew(&push);
+    }
+  }
+}
+
+// More frames a second by the share eta.
+void Hasten(double eta, ChangedProblem* p) {
+  for (PendulumRecording& r : p->recordings) {
+    r.scene.dt /= 1.0 + eta;
+    for (ScenePerson& person : r.scene.people) person.start.qd *= 1.0 + eta;
+    for (auto& states : r.states) {
+      for (PendulumState<double>& state : states) state.qd *= 1.0 + eta;
+    }
+  }
+}
+
+// What cameras see moves along the push, by eta metres over a recording.
+void Drift(double eta, ChangedProblem* p) {
+  for (PendulumRecording& r : p->recordings) {
+    const Eigen::Vector2d along = eta * PushDirection(r);
+    const double last = std::max(1, r.num_frames() - 1);
+    for (int n = 0; n < r.num_people(); ++n) {
+      for (int t = 0; t < r.num_frames(); ++t) {
+        r.hip[n][t].head<2>() += t / last * along;
+        r.states[n][t].q.head<2>() += t / last * along;
+        if (t > 0) r.states[n][t].qd.head<2>() += along / (last * r.scene.dt);
+      }
+    }
+  }
+}
+
+constexpr double kFactorOfTwo = 0.6931471805599453;  // its logarithm
+
+// A parameter that is not fitted: the logarithm of a factor on it, or what is added.
+Assumption Held(const ParameterSpec& spec) {
+  const bool factor = spec.transform == Transform::kLog && spec.nominal > 0.0;
+  const double stated = factor ? kFactorOfTwo : 0.0;
+  const double step = factor ? 1e-4 : 1e-4 * spec.scale;
+  return {spec.name, factor ? "" : spec.unit, stated, step,
+          [id = spec.id, factor](double eta, ChangedProblem* p) {
+            double& value = p->options.table[id].nominal;
+            value = factor ? value * std::exp(eta) : value + eta;
+          }};
+}
+
+}  // namespace
+
+std::vector<Assumption> AssumptionsOf(const FitProblem& problem) {
+  std::vector<Assumption> all;
+  bool measured = false, only_measured = true;
+  for (const PendulumRecording& r : problem.recordings()) {
+    for (const ScenePush& push : r.scene.pushes) {
+      (push.kind == PushKind::kExternal ? measured : only_measured) =
+          push.kind == PushKind::kExternal;
+    }
+  }
+  if (measured) {
+    all.push_back({"scale of the pushes", "", kPushScaleError, 1e-4, ScaleMeasured});
+    all.push_back({"lag of the pushes", "frames", kPushLagError, 1e-3, Delay});
+    all.push_back({"height of the pushes", "m", kPushHeightError, 1e-4, Raise});
+  }
+  all.push_back({"masses", "", kMassError, 1e-4, Weigh});
+  all.push_back({"frame rate", "", kFrameRateError, 1e-4, Hasten});
+  all.push_back({"drift of the cameras", "m", kDriftError, 1e-4, Drift});
+  const FitOptions& options = problem.options();
+  for (const ParameterSpec& spec : options.table.specs) {
+    const bool of_tail = spec.id >= kTailGain && spec.id <= kTailExponent;
+    const bool tested = !spec.free && !spec.tied_to && !HeldByConvention(spec.id) &&
+                        !IsNoiseParameter(spec.id) && Acts(spec.id, options.model) &&
+                        !(of_tail && only_measured);
+    if (tested) all.push_back(Held(spec));
+  }
+  return all;
+}
+
+}  // namespace pushid

@@ -1,0 +1,203 @@
+// ident: score tests of what is taken as known, tests of horizons, and total errors.
+#include "ident/uncertainty/model_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/uncertainty/clusters.h"
+#include "ident/uncertainty/covariance.h"
+#include "ident/uncertainty/fitted_columns.h"
+#include "ident/uncertainty/rows_by_frame.h"
+#include "models/decompositions.h"
+
+namespace pushid {
+namespace {
+
+constexpr int kMostEstimates = 120;
+constexpr int kFewestClusters = 3;
+constexpr int kHorizons[] = {8, 16, 32, 64};  // frames
+constexpr double kLeastInformation = 1e-6;    // of an assumption, beside what estimates explain
+
+std::string WhyNot(const FitOptions& options, size_t estimates, int clusters) {
+  if (options.likelihood != Likelihood::kTrajectory) return "the likelihood is of single steps";
+  if (options.sigmas.loss != FrameLoss::kHip) return "the loss is LDP's";
+  if (options.model.learned != nullptr) return "a network is fitted";
+  if (estimates > kMostEstimates) return "there are more than 120 fitted numbers";
+  if (clusters < kFewestClusters) return "fewer than three people or recordings cannot tell";
+  return "";
+}
+
+// s_g, a column for each cluster, of the first frames.
+Eigen::MatrixXd Scores(const RowsByFrame& by_frame, const RowClusters& clusters, int frames) {
+  const JacobianBlocks& rows = by_frame.rows;
+  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(rows.jacobian.cols(), clusters.count);
+  for (size_t i = 0; i < clusters.of_row.size(); ++i) {
+    if (clusters.of_row[i] < 0 || by_frame.frame_of_row[i] > frames) continue;
+    const Eigen::Index row = static_cast<Eigen::Index>(i);
+    scores.col(clusters.of_row[i]) += rows.residuals[row] * rows.jacobian.row(row).transpose();
+  }
+  return scores;
+}
+constexpr int kAllFrames = 1 << 30;
+
+// The error of a sum over clusters.
+double ErrorOfSum(const Eigen::VectorXd& parts) {
+  const double n = static_cast<double>(parts.size());
+  return std::sqrt(n / (n - 1.0) * (parts.array() - parts.mean()).matrix().squaredNorm());
+}
+
+class ModelJudge {
+ public:
+  ModelJudge(const FitProblem& problem, const FitPoint& point)
+      : problem_(problem),
+        clusters_(MakeClusters(problem.recordings(), problem.options().cluster)),
+        columns_(FittedColumns(problem, point)) {
+    verdict_.not_checked = WhyNot(problem.options(), columns_.size(), clusters_.count());
+    if (!verdict_.checked()) return;
+    assumptions_ = AssumptionsOf(problem);
+    rows_ = EvaluateByFrame(problem, point, assumptions_);
+    if (rows_.num_estimates == 0) verdict_.not_checked = "a rollout fails at the optimum";
+  }
+
+  ModelVerdict Run(Uncertainty* uncertainty) {
+    if (!verdict_.checked()) return verdict_;
+    verdict_.freedom = clusters_.count() - 1;
+    clustering_ = ClusterRows(problem_, clusters_, rows_.rows);
+    const Eigen::Index n = rows_.num_estimates;
+    const Eigen::MatrixXd own = rows_.rows.robust_jacobian.leftCols(n);
+    JacobianBlocks beside = rows_.rows;
+    beside.jacobian = rows_.rows.jacobian.leftCols(n);
+    const Eigen::MatrixXd hessian = own.transpose() * own + InformationBeside(beside);
+    inverse_ = SolveSymmetric(hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
+    scores_ = Scores(rows_, clustering_.first, kAllFrames);
+    TestAssumptions(own);
+    TestHorizons(own);
+    AddTotals(uncertainty);
+    return verdict_;
+  }
+
+ private:
+  double Slope(Eigen::Index i) const {
+    return TransformSlope(columns_[i].transform, columns_[i].natural);
+  }
+
+  void TestAssumptions(const Eigen::MatrixXd& own) {
+    const Eigen::Index n = rows_.num_estimates, shared = problem_.map().num_shared();
+    for (size_t k = 0; k < assumptions_.size(); ++k) {
+      const Assumption& a = assumptions_[k];
+      const Eigen::Index column = n + static_cast<Eigen::Index>(k);
+      const auto by = rows_.rows.robust_jacobian.col(column);
+      const Eigen::VectorXd b = own.transpose() * by;
+      const Eigen::VectorXd moves = -inverse_ * b;
+      const double all = by.squaredNorm(), information = all + b.dot(moves);
+      AssumptionTest test{a.name, a.unit, a.sigma, 0.0, 0.0, 0.0, 1.0, {}};
+      if (a.sigma > 0.0) {
+        for (Eigen::Index i = 0; i < shared; ++i) {
+          test.moves.push_back(a.sigma * moves[i] * Slope(i));
+        }
+      }
+      if (information > kLeastInformation * all) {
+        const Eigen::VectorXd parts =
+            scores_.row(column).transpose() + scores_.topRows(n).transpose() * moves;
+        test.wanted = -scores_.row(column).sum() / information;
+        test.error = ErrorOfSum(parts) / information;
+        test.t = test.wanted / std::hypot(test.error, a.sigma);
+        test.p = StudentTail(test.t, verdict_.freedom);
+      }
+      verdict_.assumptions.push_back(std::move(test));
+    }
+    double least = 1.0;
+    for (const AssumptionTest& test : verdict_.assumptions) least = std::min(least, test.p);
+    verdict_.p_assumptions = std::min(1.0, least * static_cast<double>(assumptions_.size()));
+  }
+
+  void TestHorizons(const Eigen::MatrixXd& own) {
+    const Eigen::Index n = rows_.num_estimates, shared = problem_.map().num_shared();
+    // What priors and demands pull at the optimum is balanced by all frames, and by their share of
+    // the first ones.
+    Eigen::VectorXd pull = -scores_.topRows(n).rowwise().sum();
+    for (int frames : kHorizons) {
+      Eigen::MatrixXd first = Eigen::MatrixXd::Zero(n, n);
+      bool cuts = false;
+      for (size_t i = 0; i < rows_.frame_of_row.size(); ++i) {
+        cuts = cuts || rows_.frame_of_row[i] > frames;
+        if (rows_.frame_of_row[i] < 0 || rows_.frame_of_row[i] > frames) continue;
+        first.selfadjointView<Eigen::Lower>().rankUpdate(
+            own.row(static_cast<Eigen::Index>(i)).transpose());
+      }
+      if (!cuts) break;
+      const Eigen::MatrixXd share =
+          Eigen::MatrixXd(first.selfadjointView<Eigen::Lower>()) * inverse_;
+      const Eigen::MatrixXd some = Scores(rows_, clustering_.first, frames).topRows(n);
+      const Eigen::MatrixXd parts = some - share * scores_.topRows(n);
+      const Eigen::VectorXd sum = some.rowwise().sum() + share * pull;
+      for (Eigen::Index i = 0; i < shared; ++i) {
+        const double error = ErrorOfSum(parts.row(i).transpose());
+        if (error <= 0.0) continue;
+        const double t = sum[i] / error;
+        verdict_.horizons.push_back(
+            {columns_[i].name, frames, t, StudentTail(t, verdict_.freedom)});
+      }
+    }
+    double least = 1.0;
+    for (const HorizonTest& test : verdict_.horizons) least = std::min(least, test.p);
+    verdict_.p_horizons = std::min(1.0, least * static_cast<double>(verdict_.horizons.size()));
+  }
+
+  void AddTotals(Uncertainty* uncertainty) {
+    const int n = rows_.num_estimates;
+    std::vector<int> joint;
+    std::vector<double> unit;
+    const Eigen::VectorXd own = Units(columns_);
+    for (int i = 0; i < n; ++i) joint.push_back(i), unit.push_back(own[i]);
+    for (size_t k = 0; k < assumptions_.size(); ++k) {
+      if (assumptions_[k].sigma <= 0.0) continue;
+      joint.push_back(n + static_cast<int>(k));
+      unit.push_back(assumptions_[k].sigma);
+    }
+    JacobianBlocks rows = rows_.rows;
+    rows.jacobian = rows_.rows.jacobian(Eigen::all, joint);
+    rows.robust_jacobian = rows_.rows.robust_jacobian(Eigen::all, joint);
+    const Covariance c = ComputeCovariance(
+        rows, Eigen::Map<const Eigen::VectorXd>(unit.data(), unit.size()), clustering_);
+    const Eigen::VectorXd moves = -c.inverse_hessian * (rows.jacobian.transpose() * rows.residuals);
+    const double most = verdict_.freedom;
+    for (Eigen::Index i = 0; i < problem_.map().num_shared(); ++i) {
+      const FittedColumn& column = columns_[i];
+      const double error = std::sqrt(std::max(0.0, c.clustered(i, i)) + moves[i] * moves[i]);
+      const double width = StudentQuantile95(std::min(most, c.freedom[i])) * error;
+      TotalError& total = uncertainty->estimates[i].total.emplace();
+      total.error = Slope(i) * error;
+      total.lower95 = ToNatural(column.transform, column.fitted - width);
+      total.upper95 = ToNatural(column.transform, column.fitted + width);
+      total.narrow = IsNarrow(column.transform, column.natural, total.lower95, total.upper95);
+    }
+  }
+
+  const FitProblem& problem_;
+  Clusters clusters_;
+  std::vector<FittedColumn> columns_;
+  std::vector<Assumption> assumptions_;
+  RowsByFrame rows_;
+  Clustering clustering_;
+  Eigen::MatrixXd inverse_, scores_;
+  ModelVerdict verdict_;
+};
+
+}  // namespace
+
+ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point,
+                        Uncertainty* uncertainty) {
+  const ModelVerdict verdict = ModelJudge(problem, point).Run(uncertainty);
+  for (Estimate& e : uncertainty->estimates) {
+    if (e.status != EstimateStatus::kIdentified || !e.total) continue;
+    if (!e.total->narrow) {
+      e.status = EstimateStatus::kWeak;
+    } else if (verdict.fails()) {
+      e.status = EstimateStatus::kModelDependent;
+    }
+  }
+  return verdict;
+}
+
+}  // namespace pushid

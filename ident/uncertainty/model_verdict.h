@@ -1,0 +1,62 @@
+// ident: may the estimates be called identified? What the recordings say of everything that a fit
+// takes as known, and of the model itself; and what that adds to the errors.
+//
+// With s_g the scores of cluster g by the estimates, S_g by an assumption eta (assumptions.h), H
+// the Hessian of the cost, b = d2(cost)/d(estimates)d(eta) and m = -H^-1 b what eta moves the
+// estimates by:
+//   wanted   the value the recordings would give eta, one Newton step of it and of the estimates
+//            together: -(S + m's) / (H_eta,eta + b'm), with the error of the clusters' scatter. Its
+//            score test has t = wanted / sqrt(error^2 + sigma^2) with clusters - 1 degrees of
+//            freedom, sigma what is stated of eta (Wooldridge 2010, section 12.6)
+//   horizon  frames up to h must ask for the same estimates as all of them: the score of the first
+//   h
+//            frames, less the share H_h H^-1 of all, is zero on average whatever the noise,
+//            clustered likewise (Hausman 1978; Newey 1985)
+//   total    errors of a fit in which everything with a sigma is free, with that prior: CR2 as
+//            uncertainty.h has it. What that fit would move an estimate by counts as an error of
+//            the estimate as well: total^2 = joint^2 + move^2
+// The smallest p-values of both families are multiplied by the number of their tests (Bonferroni);
+// the model fails where one is below kVerdictLevel. The tests know what is linear about the optimum
+// and cannot see an error that looks like an estimate: those are what the total error is for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/uncertainty/uncertainty.h"
+
+namespace pushid {
+
+inline constexpr double kVerdictLevel = 0.025;  // of each family
+
+struct AssumptionTest {
+  std::string name, unit;
+  double stated = 0.0;  // sigma; 0: of a term left out
+  double wanted = 0.0, error = 0.0, t = 0.0, p = 1.0;
+  std::vector<double> moves;  // of the shared estimates by one sigma, natural units; empty without
+};
+
+struct HorizonTest {
+  std::string parameter;
+  int frames = 0;
+  double t = 0.0, p = 1.0;
+};
+
+struct ModelVerdict {
+  std::string not_checked = "an older version fitted";  // why nothing was; empty where it was
+  std::vector<AssumptionTest> assumptions;
+  std::vector<HorizonTest> horizons;
+  int freedom = 0;                               // of all tests
+  double p_assumptions = 1.0, p_horizons = 1.0;  // times the number of tests, at most 1
+
+  bool checked() const { return not_checked.empty(); }
+  bool fails() const {
+    return checked() && (p_assumptions < kVerdictLevel || p_horizons < kVerdictLevel);
+  }
+};
+
+// Adds the total errors to the estimates of `uncertainty`, which is of this point, and takes
+// "identified" back: weak where the total interval is wide, model-dependent where the model fails.
+ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point, Uncertainty* uncertainty);
+
+}  // namespace pushid
