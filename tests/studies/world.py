@@ -1,0 +1,207 @@
+"""Does "identified" hold outside the model's own world? Default fits of people that tests/studies/independent_people.py simulates.
+
+faults    something is wrong with the files, the people or the model; 10 minutes on two cores
+standing  people whose feet never move
+
+An interval that is called identified and does not hold the truth is wrong; so is any identified drag or lean term of feet that
+never moved. Needs NumPy. PUSHID_STUDIES is the number of sets of people per row (default 12).
+"""
+import concurrent.futures
+import dataclasses
+import hashlib
+import json
+import math
+import os
+import subprocess
+import tempfile
+
+import numpy as np
+
+import independent_people as people
+import studies
+
+SETS = int(os.environ.get("PUSHID_STUDIES", "12"))
+MASS, ROD = 85.0, 0.95  # the reference person, whom gains are quoted for
+STIFFNESS, DAMPING = 0.9 * MASS * people.G * ROD, 0.9 * MASS * ROD**2  # m g l; m l^2
+HELD_KD = 70.0 / DAMPING  # 1/s; what default fits hold
+FEET = ("mu", "mu_y", "a_x", "a_y")
+
+
+@dataclasses.dataclass
+class Study:
+    """A set of people, their pushes, and what is wrong with the files."""
+    seed: int
+    subjects: int = 6
+    pushes: int = 5  # of each
+    fps: int = 60
+    noise: float = 0.002  # m
+    spread: float = 0.1  # of gains between people, of the logarithm
+    factor: float = 1.5  # between the truth and the middle of what people are like
+    around: bool = False  # pushed from all sides
+    turn: float = 0.0  # rad, of everything about the vertical
+    kd: float = HELD_KD
+    links: int = 0  # of those who stand; 0: they slide
+    delay: float = 0.0  # s
+    scale: float = 1.0  # of the pushes in the files
+    mass: float = 1.0  # of the masses
+    height: float = 1.0  # of the sensor, of the rod
+    drift: float = 0.0  # m, of the cameras over a recording
+    rate: float = 1.0  # of the frames
+
+
+def truth_of(study, random):
+    """The gains of the mean person, per mass."""
+    def draw(middle):
+        return middle * math.exp(random.uniform(-1, 1) * math.log(study.factor))
+
+    if study.links:
+        return {"kp": random.uniform(1.25, 1.9), "kd": random.uniform(0.3, 0.5)}
+    return {"c": draw(0.5), "a": -draw(8.0), "k": draw(2.2), "d": study.kd}
+
+
+def in_names_of_pushid(study, truth):
+    if study.links:
+        body = MASS * people.G * ROD
+        return {name + axis: truth[name.lower()] * body for name in ("Kp", "Kd") for axis in ("_theta", "_phi")}
+    return {"mu": truth["c"] * MASS, "mu_y": truth["c"] * MASS, "a_x": truth["a"], "a_y": truth["a"],
+            "Kp_theta": truth["k"] * STIFFNESS, "Kp_phi": truth["k"] * STIFFNESS, "Kd_theta": truth["d"] * DAMPING,
+            "Kd_phi": truth["d"] * DAMPING}
+
+
+def draw_person(study, random, truth):
+    mass, rod = random.uniform(55, 95), random.uniform(0.86, 1.0)
+    own = {name: value * math.exp(study.spread * random.standard_normal()) for name, value in truth.items()}
+    if not study.links:
+        return people.Slider(mass, rod, own)
+    body = mass * people.G * rod
+    return people.Stander(mass, rod, own["kp"] * body, own["kd"] * body, study.delay, study.links)
+
+
+def draw_pushes(study, random, person):
+    """(direction, duration, force, motion) of each; FloatingPointError of who falls."""
+    made = []
+    for _ in range(study.pushes):
+        direction = random.uniform(-math.pi, math.pi) if study.around else random.uniform(-0.1, 0.1)
+        speed = random.uniform(0.05, 0.16) if study.links else random.uniform(0.1, 0.6)  # impulse over mass, m/s
+        duration = random.uniform(0.1, 0.4)
+        force = people.half_sine(speed * person.mass, duration)
+        made.append((direction, duration, force, person.run(force, direction, 1.5, study.fps)))
+    return made
+
+
+def write(folder, study):
+    """The files of a study; its truth."""
+    random = np.random.default_rng(study.seed)
+    truth, recordings = truth_of(study, random), []
+    turn = people.turned(study.turn)
+    for s in range(study.subjects):
+        while True:
+            person = draw_person(study, random, truth)
+            try:
+                pushes = draw_pushes(study, random, person)
+                break
+            except FloatingPointError:
+                continue
+        for k, (direction, duration, force, (times, hip, feet)) in enumerate(pushes):
+            name, hip, feet = f"s{s}_{k}", hip @ turn.T, feet @ turn[:2, :2].T
+            people.write_points(f"{folder}/{name}.csv", times / study.rate, people.points_of(hip, feet, turn), study.noise, random,
+                                study.drift)
+            people.write_push(f"{folder}/{name}_push.csv", force, direction + study.turn, hip, feet, study.fps, duration, study.scale,
+                              study.height)
+            recordings.append({"id": name, "setting": "single", "pushed_person": 0, "csv": [f"{name}.csv"], "length_unit": "m",
+                               "subjects": [{"id": f"s{s}", "mass_kg": round(person.mass * study.mass, 2)}],
+                               "push_csv": f"{name}_push.csv", "push_kind": "external"})
+    with open(f"{folder}/manifest.json", "w", encoding="utf-8") as file:
+        json.dump({"recordings": recordings}, file)
+    return in_names_of_pushid(study, truth)
+
+
+def files_of(study):
+    """The folder and the truth of a study's files, which are written once."""
+    key = hashlib.sha256(open(people.__file__, "rb").read() + repr(study).encode()).hexdigest()[:16]
+    folder = os.path.join(studies.KEPT, f"world-{key}")
+    if not os.path.exists(f"{folder}/truth.json"):
+        os.makedirs(folder, exist_ok=True)
+        truth = write(folder, study)
+        with open(f"{folder}/truth.json", "w", encoding="utf-8") as file:
+            json.dump(truth, file)
+    with open(f"{folder}/truth.json", encoding="utf-8") as file:
+        return folder, json.load(file)
+
+
+def fitted(study):
+    """The verdict and the free parameters of a default fit, with their truth; None where there is no fit."""
+    files, truth = files_of(study)
+    with tempfile.TemporaryDirectory() as folder:
+        path = f"{folder}/model.json"
+        command = [os.path.join(studies.BIN, "pushid-fit"), f"--recordings={files}/manifest.json", f"--model_out={path}", "--quiet",
+                   "--num_threads=1"]
+        subprocess.run(command, capture_output=True, env=dict(os.environ, OPENBLAS_NUM_THREADS="1"))
+        if not os.path.exists(path):
+            return None
+        with open(path, encoding="utf-8") as file:
+            model = json.load(file)
+    rows = [dict(e, truth=truth.get(e["name"])) for e in model["parameters"] if e["status"] != "fixed"]
+    return model["verdict"]["fails"], rows
+
+
+def holds(interval, truth):
+    return truth is not None and interval[0] <= truth <= interval[1]
+
+
+def total(estimate):
+    return estimate["total"]["interval_95"] if "total" in estimate else estimate["interval_95"]
+
+
+def row(name, change):
+    with concurrent.futures.ProcessPoolExecutor(2) as pool:
+        fits = [fit for fit in pool.map(fitted, [Study(seed, **change) for seed in range(1, SETS + 1)]) if fit is not None]
+    feet_stand = bool(change.get("links"))
+    judged = [e for _, rows in fits for e in rows if e["truth"] is not None or (feet_stand and e["name"] in FEET)]
+    before = [e for e in judged if e["status"] in ("identified", "model-dependent") or narrow_by_data(e)]
+    identified = [e for e in judged if e["status"] == "identified"]
+    wrong = [e for e in identified if not holds(total(e), e["truth"])]
+    known = [e for e in judged if e["truth"] is not None]
+    return [name, len(fits), sum(fails for fails, _ in fits), len(before), len(identified), len(wrong),
+            ", ".join(f"`{n}`" for n in sorted({e["name"] for e in wrong})),
+            f"{sum(holds(e['interval_95'], e['truth']) for e in known)} of {len(known)}",
+            f"{sum(holds(total(e), e['truth']) for e in known)} of {len(known)}"]
+
+
+def narrow_by_data(estimate):
+    """Whether the interval of the data alone would be called identified: so it was before there were total errors."""
+    low, high = estimate["interval_95"]
+    shares, error = estimate["shares"], estimate["standard_error"]
+    pull = abs(estimate["pull"]["prior"] + estimate["pull"]["settling"])
+    narrow = high - low < abs(estimate["value"]) or (not estimate["name"].startswith("K") and low * high > 0.0)
+    return shares["data"] > 0.8 and pull < 0.5 * error and narrow
+
+
+FAULTS = {
+    "nothing": {},
+    "pushes x 1.2": {"scale": 1.2},
+    "masses + 15 %": {"mass": 1.15},
+    "sensor 10 cm too high": {"height": 1.11},
+    "cameras drift by 3 cm": {"drift": 0.03},
+    "frame rate + 5 %": {"rate": 1.05},
+    "true `Kd_theta` 20, held 70": {"kd": 20.0 / DAMPING},
+    "true `Kd_theta` 200, held 70": {"kd": 200.0 / DAMPING},
+    "all turned by 30 degrees": {"turn": math.radians(30)},
+    "pushed from all sides": {"around": True},
+    "two people": {"subjects": 2, "pushes": 8},
+    "three people": {"subjects": 3, "pushes": 8},
+    "truths within a factor of 5": {"factor": 5.0},
+}
+STANDING = {f"{links} link{'s' * (links > 1)}, delay {delay:g} s": {"links": links, "delay": delay, "subjects": 3, "pushes": 8,
+                                                                   "spread": 0.05}
+            for links in (1, 2) for delay in (0.0, 0.12)}
+
+
+def table(what, rows):
+    header = [what, "fits", "model does not fit", "identified by the data alone", "called identified", "of these wrong", "which",
+              "95 % intervals that hold the truth", "total ones"]
+    return studies.table(header, [row(name, change) for name, change in rows.items()])
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"faults": lambda: table("what is wrong", FAULTS), "standing": lambda: table("who stands", STANDING)})
