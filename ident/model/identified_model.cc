@@ -39,6 +39,7 @@ IdentifiedModel ModelOf(const FitResult& result) {
     if (pooled.empty()) return;
     ParameterSet<double>& own = model.by_unit[unit] = result.parameters;
     for (const auto& [name, estimate] : pooled) own[model.table.Find(name)->id] = estimate.value;
+    model.table.SetTied(&own);
   };
   for (const auto& [id, subject] : result.subjects) add(id, subject.pooled);
   for (const auto& [setting, pooled] : result.settings) add(setting, pooled);
@@ -53,9 +54,13 @@ MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
   if (MaybeError error = EditTable(edits, &model->table)) return error;
   for (const NamedValue& named : values.value()) {
     const Parameter id = model->table.Find(named.name)->id;
-    model->parameters[id] = named.value;
-    for (auto& [unit, own] : model->by_unit) own[id] = named.value;
-    for (EnsembleMember& member : model->others) member.parameters[id] = named.value;
+    const auto set = [&](ParameterSet<double>* values) {
+      (*values)[id] = named.value;
+      model->table.SetTied(values);
+    };
+    set(&model->parameters);
+    for (auto& [unit, own] : model->by_unit) set(&own);
+    for (EnsembleMember& member : model->others) set(&member.parameters);
   }
   return std::nullopt;
 }

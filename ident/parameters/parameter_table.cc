@@ -53,10 +53,15 @@ std::vector<Parameter> ParameterTable::Free() const {
 
 ParameterSet<double> ParameterTable::Values() const {
   ParameterSet<double> values{};
-  for (const ParameterSpec& spec : specs) {
-    values[spec.id] = (spec.tied_to ? specs[*spec.tied_to] : spec).nominal;
-  }
+  for (const ParameterSpec& spec : specs) values[spec.id] = spec.nominal;
+  SetTied(&values);
   return values;
+}
+
+void ParameterTable::SetTied(ParameterSet<double>* values) const {
+  for (const ParameterSpec& spec : specs) {
+    if (spec.tied_to) (*values)[spec.id] = (*values)[*spec.tied_to];
+  }
 }
 
 ParameterMap ParameterTable::Map() const {

@@ -75,8 +75,9 @@ struct ParameterTable {
   ParameterSpec* Find(const std::string& name);
   const ParameterSpec* Find(const std::string& name) const;
   std::vector<Parameter> Free() const;
-  ParameterSet<double> Values() const;  // nominal values
-  ParameterMap Map() const;             // fitted = free, in table order
+  ParameterSet<double> Values() const;               // nominal values
+  ParameterMap Map() const;                          // fitted = free, in table order
+  void SetTied(ParameterSet<double>* values) const;  // to the values of what they are tied to
 };
 
 // Every parameter there is, fixed at a value that makes its term vanish, or at LDP's value.
