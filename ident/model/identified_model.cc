@@ -54,9 +54,9 @@ MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
   if (MaybeError error = EditTable(edits, &model->table)) return error;
   for (const NamedValue& named : values.value()) {
     const Parameter id = model->table.Find(named.name)->id;
-    const auto set = [&](ParameterSet<double>* values) {
-      (*values)[id] = named.value;
-      model->table.SetTied(values);
+    const auto set = [&](ParameterSet<double>* own) {
+      (*own)[id] = named.value;
+      model->table.SetTied(own);
     };
     set(&model->parameters);
     for (auto& [unit, own] : model->by_unit) set(&own);
