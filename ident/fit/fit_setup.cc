@@ -9,6 +9,7 @@
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/presets.h"
+#include "ident/parameters/pushed_feet.h"
 
 namespace pushid {
 namespace {
@@ -121,6 +122,35 @@ Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& giv
   return o;
 }
 
+// Whether a stance that was not asked for goes together with what was.
+bool GoesTogether(const FitOptions& o, const std::vector<PendulumRecording>& recordings) {
+  const bool states_alone = o.likelihood == Likelihood::kTrajectory &&
+                            !o.model.process_noise.Any() && o.model.learned == nullptr;
+  const bool all_act =
+      std::all_of(o.table.specs.begin(), o.table.specs.end(),
+                  [&o](const ParameterSpec& spec) { return !spec.free || Acts(spec.id, o.model); });
+  return states_alone && all_act &&
+         (o.model.stance != Stance::kThreshold ||
+          std::all_of(recordings.begin(), recordings.end(), [](const PendulumRecording& r) {
+            return r.scene.dt * kLeastSteppingRate <= 1.0;
+          }));
+}
+
+// Over the preset, with the stance that the feet tell where nothing says another.
+Result<FitOptions> OverPresetOf(const std::vector<PendulumRecording>& recordings,
+                                const std::string& preset, const GivenOptions& given,
+                                const GivenOptions& must_act) {
+  const std::string* asked = Find(given, "stance");
+  const Stance told = StanceOf(FeetOf(recordings));
+  const bool open = (asked == nullptr || *asked == kAutoStance) && TakesStanceFromFeet(preset);
+  if (open && told != Stance::kSlide) {
+    Result<FitOptions> made =
+        OverPreset(preset, Merged(given, {{"stance", NameOf(told)}}), must_act);
+    if (made.ok() && GoesTogether(made.value(), recordings)) return made;
+  }
+  return OverPreset(preset, given, must_act);
+}
+
 }  // namespace
 
 GivenOptions Merged(GivenOptions given, const GivenOptions& more) {
@@ -155,7 +185,9 @@ Result<FitOptions> MakeFitOptions(const GivenOptions& given,
                                   const GivenOptions& must_act) {
   const std::string* named = Find(given, "preset");
   const std::string preset = named != nullptr ? *named : kAutoPreset;
-  if (recordings != nullptr) return OverPreset(PresetFor(preset, *recordings), given, must_act);
+  if (recordings != nullptr) {
+    return OverPresetOf(*recordings, PresetFor(preset, *recordings), given, must_act);
+  }
   if (preset != kAutoPreset) return OverPreset(preset, given, must_act);
   const Result<FitOptions> single = OverPreset("tail", given, must_act);
   if (single.ok()) return single;

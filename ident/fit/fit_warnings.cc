@@ -78,6 +78,9 @@ std::vector<std::string> FitWarnings(const FitProblem& problem, const FitResult&
                          "; only the frames before it were fitted");
     }
   }
+  const ModelOptions& model = problem.options().model;
+  const std::string of_feet = FeetWarning(FeetOf(problem.recordings()), model.stance);
+  if (!of_feet.empty()) warnings.push_back(of_feet);
   if (!result.converged) warnings.push_back("the solver stopped before it converged");
   AddVerdict(result, &warnings);
   if (const SettlingSimulation* d = result.behaviour.FarthestBehind()) {
@@ -91,7 +94,7 @@ std::vector<std::string> FitWarnings(const FitProblem& problem, const FitResult&
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kAtBound) warnings.push_back(e.name + " is at its bound");
   }
-  const bool has_tail = problem.options().model.push_tail != PushTail::kNone;
+  const bool has_tail = model.push_tail != PushTail::kNone;
   if (has_tail && TailCannotAct(problem.recordings())) {
     warnings.push_back(
         "every push is external (measured completely): the push tail has no effect; set push_kind "
