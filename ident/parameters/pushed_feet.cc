@@ -10,8 +10,8 @@ namespace {
 // in those of groups 48 of the 49 who are pushed.
 constexpr double kEverybody = 0.75;
 
-std::string OfAll(int some, int all) {
-  return std::to_string(some) + " of " + std::to_string(all) + " pushed people";
+std::string OfAll(const PushedFeet& feet) {
+  return std::to_string(feet.moved) + " of " + std::to_string(feet.seen) + " pushes";
 }
 
 }  // namespace
@@ -42,10 +42,8 @@ std::string FeetText(const PushedFeet& feet, Stance stance) {
   const char* const feet_do = stance == Stance::kSlide   ? "feet move freely"
                               : stance == Stance::kFixed ? "feet hold"
                                                          : "feet hold, then step";
-  const std::string did =
-      feet.moved == 0 ? "none of " + std::to_string(feet.seen) + " pushed people moved theirs"
-                      : OfAll(feet.moved, feet.seen) + " moved theirs";
-  return std::string(feet_do) + " (--stance=" + NameOf(stance) + "; " + did + ")";
+  return std::string(feet_do) + " (--stance=" + NameOf(stance) + "; they moved in " + OfAll(feet) +
+         ")";
 }
 
 std::string FeetWarning(const PushedFeet& feet, Stance stance) {
@@ -55,8 +53,8 @@ std::string FeetWarning(const PushedFeet& feet, Stance stance) {
            "those of people who stand; fit with --stance=fixed";
   }
   if (stance == Stance::kFixed && feet.moved > 0) {
-    return OfAll(feet.moved, feet.seen) +
-           " moved their feet, which the model holds: leave these recordings out, or fit with "
+    return "feet moved in " + OfAll(feet) +
+           ", but those of the model hold: leave these recordings out, or fit with "
            "--stance=threshold";
   }
   return "";

@@ -2,7 +2,7 @@
 //
 //   PushedFeet feet = FeetOf(recordings);
 //   StanceOf(feet)            // kFixed: nobody's feet moved
-//   FeetText(feet, stance)    // "feet hold (--stance=fixed): nobody moved in 24 recordings"
+//   FeetText(feet, stance)    // "feet hold (--stance=fixed; they moved in 0 of 24 pushes)"
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace pushid {
 
-// Pushed people whose feet were recorded; one who is pushed in two recordings counts twice.
+// Pushed people whose feet were recorded; who is pushed in two recordings counts twice.
 struct PushedFeet {
   int seen = 0;
   int moved = 0;    // stepped, or were elsewhere at the end (PersonSteps::Moved)

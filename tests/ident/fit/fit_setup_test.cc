@@ -202,9 +202,9 @@ TEST(FitSetup, HeldFeetFreeBothGainsOfBothDirections) {
 TEST(PushedFeet, InWords) {
   const PushedFeet stand = FeetOf(WhereMoved(0)), some = FeetOf(WhereMoved(2));
   EXPECT_EQ(FeetText(stand, Stance::kFixed),
-            "feet hold (--stance=fixed; none of 6 pushed people moved theirs)");
+            "feet hold (--stance=fixed; they moved in 0 of 6 pushes)");
   EXPECT_EQ(FeetText(some, Stance::kThreshold),
-            "feet hold, then step (--stance=threshold; 2 of 6 pushed people moved theirs)");
+            "feet hold, then step (--stance=threshold; they moved in 2 of 6 pushes)");
   EXPECT_EQ(FeetText(PushedFeet(), Stance::kSlide), "");
   EXPECT_EQ(FeetWarning(stand, Stance::kFixed), "");
   EXPECT_TRUE(Contains(FeetWarning(stand, Stance::kSlide), "--stance=fixed"));
