@@ -10,8 +10,8 @@
 // limit of short steps. So d/dt [e, v, w] = A [e, v, w]; the cart's own place is a free mode of
 // rate zero and left out, and so are learned terms: of a rod that moves (learned_terms.h) the
 // length alone has no part in the first order, upright. A user's own law (force_law.h) that couples
-// the planes does so in behaviour.h, not here. Where feet stand (stance.h) rest is standing: the
-// ankles balance, and the ground resists the cart.
+// the planes does so in behaviour.h, not here. Where feet stand (stance.h) or hold (standing.h)
+// rest is standing: the ankles balance, and the ground resists the cart.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,6 +19,7 @@
 
 #include "models/dual.h"
 #include "models/stance.h"
+#include "models/standing.h"
 
 namespace pushid {
 
@@ -30,14 +31,26 @@ struct RestJacobian {
   T ground = T(0.0);  // N s/m, on the cart's velocity after a step, where feet stand
 };
 
+// The pendulum that a person is at rest.
+template <typename T>
+BodyOf<T> BodyAtRest(Stance stance, const Body& body, const ParameterSet<T>& p) {
+  if (stance == Stance::kFixed) return StandingBody<T>(body, p[kComHeight]);
+  return BodyNow<T>(body, T(0.0), T(0.0));
+}
+
 // The self force near rest: that of sliding feet, or of feet that stand.
 template <typename T>
 Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSet<T>& p,
                          const PendulumState<T>& state, const Vector4<T>& previous) {
   if (stance == Stance::kSlide) return self.Total(p, state, previous);
   Vector4<T> force = self.Own(p, state);
-  force.template tail<2>() +=
-      AnkleTorque(self, StanceParameters<T>([&p](Parameter id) { return p[id]; }), state);
+  const auto value = [&p](Parameter id) { return p[id]; };
+  if (stance == Stance::kThreshold) {
+    force.template tail<2>() += AnkleTorque(self, StanceParameters<T>(value), state);
+  } else {
+    force.template tail<2>() +=
+        StandingTorque(self, StandingParameters<T>(value), Angles<T>(state.q), state.qd);
+  }
   return force;
 }
 
@@ -53,9 +66,11 @@ RestJacobian<T> LinearizeAtRest(Stance stance, const SelfForce& self, const Para
     state.q[2 + i] = RestDual::Input(T(self.posture[i]), i);
     previous[i] = RestDual::Input(T(0.0), 6 + i);
   }
-  const Vector4<RestDual> force = ForceNearRest(stance, self, parameters, state, previous) -
-                                  Gravity<RestDual>(self.body, state.q);
+  const Vector4<RestDual> force =
+      ForceNearRest(stance, self, parameters, state, previous) -
+      Gravity<RestDual>(BodyAtRest(stance, self.body, parameters), state.q);
   RestJacobian<T> jacobian;
+  if (stance == Stance::kFixed) jacobian.ground = T(kHeldFast * self.body.mass);
   for (int row = 0; row < 4; ++row) {
     jacobian.by_state.row(row) = force[row].v.template head<6>().transpose();
   }
@@ -86,16 +101,16 @@ struct ModePolynomial {
 template <typename T>
 struct UprightRest {
   static constexpr double kStep = 1.0;  // s; any: what follows does not depend on it
-  Body body;
+  BodyOf<T> body;
   RestJacobian<T> jacobian;
 
   UprightRest(const ModelOptions& options, const Body& person, const ParameterSet<T>& p)
-      : body(person) {
+      : body(BodyAtRest(options.stance, person, p)) {
     // Quadratic damping vanishes at rest: the floor under its norm, there for the rollout's
     // derivatives, is nothing to rely on.
     ParameterSet<T> linear = p;
     linear[kCq] = linear[kDq] = T(0.0);
-    const SelfForce self(options, body, Vector4<double>::Zero(), kStep);
+    const SelfForce self(options, person, Vector4<double>::Zero(), kStep);
     jacobian = LinearizeAtRest(options.stance, self, linear);
   }
 };
@@ -103,9 +118,9 @@ struct UprightRest {
 // plane: 0 for (x, theta), 1 for (y, phi).
 template <typename T>
 ModePolynomial<T> FreeModes(const UprightRest<T>& upright, int plane) {
-  const Body& body = upright.body;
+  const BodyOf<T>& body = upright.body;
   const RestJacobian<T>& rest = upright.jacobian;
-  const Matrix4<double> mass = MassMatrix<double>(body, Vector4<double>::Zero());
+  const Matrix4<T> mass = MassMatrix<T>(body, Angles<T>());
   const int cart = plane, angle = 2 + plane;                   // rows
   const int at_e = plane, at_v = 2 + plane, at_w = 4 + plane;  // columns
   const T k = UprightRest<T>::kStep * rest.by_previous[plane];
@@ -113,7 +128,7 @@ ModePolynomial<T> FreeModes(const UprightRest<T>& upright, int plane) {
   const T f_v = rest.by_state(cart, at_v) + rest.by_previous[plane] - rest.ground;
   const T t_e = rest.by_state(angle, at_e), t_v = rest.by_state(angle, at_v);
   const T t_w = rest.by_state(angle, at_w);
-  const double m_xe = mass(cart, angle), m_ee = mass(angle, angle);
+  const T m_xe = mass(cart, angle), m_ee = mass(angle, angle);
   const T m_xx = mass(cart, cart) + k;
   const T det = m_xx * m_ee - m_xe * m_xe;
   const auto of_cart = [&](const T& f, const T& t) -> T { return (m_ee * f - m_xe * t) / det; };

@@ -67,19 +67,19 @@
 #define PUSHID_PARAMETERS(X) \
   /* friction and balance: the cart's gains may turn negative, the data must be able to say so */ \
   X(kMu, "mu", "mu", "N s/m", 100, -2000, 2000, 100, kIdentity, \
-    true, false, \
+    m.stance != Stance::kFixed, false, \
     "drag of the stepping feet (not floor friction)", \
     "always: with Kp_x and Kp_y held it is the whole drag of the stepping feet") \
   X(kMuY, "mu_y", "mu_y", "N s/m", 100, -2000, 2000, 100, kIdentity, \
-    m.friction == FrictionKind::kAnisotropic, false, \
+    m.friction == FrictionKind::kAnisotropic && m.stance != Stance::kFixed, false, \
     "drag of the stepping feet along y", \
     "with pushes to the side, and anisotropic friction") \
   X(kKpX, "Kp_x", "Kp_x", "N s/m", 0, -2000, 2000, 100, kIdentity, \
-    true, false, \
+    m.stance != Stance::kFixed, false, \
     "balance gain on the cart's velocity, x", \
     "never together with mu: only mu + Kp_x is identifiable") \
   X(kKpY, "Kp_y", "Kp_y", "N s/m", 0, -2000, 2000, 100, kIdentity, \
-    true, false, \
+    m.stance != Stance::kFixed, false, \
     "balance gain on the cart's velocity, y", \
     "never together with mu or mu_y: only the sum is identifiable") \
   X(kKpTheta, "Kp_theta", "Kp_theta", "N m/rad", 1500, 1, 1e5, 1500, kLog, \
@@ -108,19 +108,19 @@
     "with pushes to the side and well measured rates") \
   /* the linear self force */ \
   X(kAx, "a_x", "a_x", "m/s^2/rad", 0, -200, 200, 10, kIdentity, \
-    true, false, \
+    m.stance != Stance::kFixed, false, \
     "cart force from the lean, x", \
     "where the feet follow the lean, as they do after most pushes") \
   X(kAy, "a_y", "a_y", "m/s^2/rad", 0, -200, 200, 10, kIdentity, \
-    true, false, \
+    m.stance != Stance::kFixed, false, \
     "cart force from the lean, y", \
     "with pushes to the side") \
   X(kBx, "b_x", "b_x", "m/s/rad", 0, -50, 50, 2, kIdentity, \
-    true, false, \
+    m.stance != Stance::kFixed, false, \
     "cart force from the lean's rate, x", \
     "with many recordings: only fast motion separates it from a_x") \
   X(kBy, "b_y", "b_y", "m/s/rad", 0, -50, 50, 2, kIdentity, \
-    true, false, \
+    m.stance != Stance::kFixed, false, \
     "cart force from the lean's rate, y", \
     "with many pushes to the side") \
   X(kTx, "t_x", "t_x", "m/s", 0, -50, 50, 2, kIdentity, \
@@ -132,7 +132,7 @@
     "torque from the cart's velocity, y", \
     "with many pushes to the side") \
   X(kCq, "c_q", "c_q", "1/m", 0, -20, 20, 0.5, kIdentity, \
-    true, false, \
+    m.stance != Stance::kFixed, false, \
     "quadratic damping of the cart", \
     "with pushes of very different strength") \
   X(kDq, "d_q", "d_q", "1/rad", 0, -50, 50, 1, kIdentity, \
@@ -141,7 +141,7 @@
     "with pushes of very different strength") \
   /* the push tail */ \
   X(kTailGain, "tail_gain", "g", "1", 1, 1e-3, 50, 1, kLog, \
-    m.push_tail == PushTail::kExponential, false, \
+    m.push_tail == PushTail::kExponential && m.stance != Stance::kFixed, false, \
     "ratio of tail force to mean push force", \
     "where the pushes cover only their first part") \
   X(kTailTorque, "tail_torque", "r", "1", 0.3, -50, 50, 0.3, kIdentity, \
@@ -149,11 +149,11 @@
     "ratio of tail torque to mean push torque", \
     "where the pushes cover only their first part") \
   X(kTailTime, "tail_time", "t", "s", 0.2, 0.005, 5, 0.2, kLog, \
-    m.push_tail == PushTail::kExponential, false, \
+    m.push_tail == PushTail::kExponential && m.stance != Stance::kFixed, false, \
     "tail's decay time after a push of 0.1 s", \
     "where the pushes cover only their first part") \
   X(kTailExponent, "tail_exponent", "e", "1", 0, -5, 5, 1, kIdentity, \
-    m.push_tail == PushTail::kExponential, false, \
+    m.push_tail == PushTail::kExponential && m.stance != Stance::kFixed, false, \
     "growth of that time with the push's duration", \
     "with pushes of different duration") \
   /* between people: contact first, in one piece (residuals/sensitivities/pair_jacobian.cc) */ \
@@ -235,6 +235,11 @@
     m.stance == Stance::kThreshold, false, \
     "largest force of standing feet over the weight", \
     "never without slippery ground") \
+  /* feet that hold, whatever happens (standing.h) */ \
+  X(kComHeight, "com_height", "k", "1", 1.09, 0.5, 2, 0.1, kLog, \
+    m.stance == Stance::kFixed, false, \
+    "height of the body's centre of mass above the ankles over the hip's", \
+    "with known pushes on people who stand: it tells where their mass is") \
   /* process noise, and the noise of what is measured (process_noise.h); freed by a likelihood */ \
   X(kSigmaX, "sigma_x", "sigma_x", "N s^0.5", 20, 1e-4, 1e5, 20, kLog, \
     m.process_noise.Any(), false, \

@@ -17,6 +17,7 @@
 #include "models/scene.h"
 #include "models/self_force.h"
 #include "models/stance.h"
+#include "models/standing.h"
 
 namespace pushid {
 
@@ -33,8 +34,8 @@ template <typename T>
 struct NetForce {
   std::array<Vector4<T>, kNumForceParts> parts;
   Angles<T> angles;  // of the state at which it acts
-  // Where feet stand and step: the ground's resistance (N s/m) to the cart's velocity after the
-  // step, a part of the friction once that is known (AddGround), and the next step state.
+  // Where feet hold: the ground's resistance (N s/m) to the cart's velocity after the step, a part
+  // of the friction once that is known (AddGround); where they step as well, the next step state.
   T ground = T(0.0), next_step = T(0.0);
 
   NetForce() { parts.fill(Vector4<T>::Zero()); }
@@ -68,12 +69,20 @@ void AddSlidingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveFor
   (*force)[ForcePart::kLinear] = self.Linear(p, state);
 }
 
+// What was taken out of a `net_without_friction` push.
+template <typename T>
+void AddPublishedFriction(const PendulumState<T>& state, NetForce<T>* force) {
+  for (int i = 0; i < 2; ++i) {
+    (*force)[ForcePart::kFriction][i] = -kPublishedFriction * state.qd[i];
+  }
+}
+
 // The same of feet that stand and step.
 template <typename T>
 void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
                      const PendulumState<T>& state, NetForce<T>* force) {
   using Cart = Eigen::Matrix<T, 2, 1>;
-  const T &vx = state.qd[0], &vy = state.qd[1], &s = state.step;
+  const T& s = state.step;
   const Cart friction = self.Friction(p, state.qd).template head<2>();
   const Cart balance = self.Balance(p, state, state.qd).template head<2>();
   const Cart linear = self.LinearOnCart(p, state), cart_force = friction + balance + linear;
@@ -81,16 +90,25 @@ void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForc
   const StanceForces<T> of_stance = StanceAt(self, stance, force->angles, state, cart_force);
   force->next_step = of_stance.next_step;
   if (active == ActiveForces::kPushOnly) return;
-  Vector4<T>& ground = (*force)[ForcePart::kFriction];
-  if (active == ActiveForces::kPushAndFriction) {
-    ground = {-kPublishedFriction * vx, -kPublishedFriction * vy, T(0.0), T(0.0)};
-    return;
-  }
+  if (active == ActiveForces::kPushAndFriction) return AddPublishedFriction(state, force);
   force->ground = of_stance.ground;
-  ground = {s * friction[0], s * friction[1], T(0.0), T(0.0)};
+  (*force)[ForcePart::kFriction] = {s * friction[0], s * friction[1], T(0.0), T(0.0)};
   (*force)[ForcePart::kBalance] = {s * balance[0], s * balance[1], of_stance.torque[0],
                                    of_stance.torque[1]};
   (*force)[ForcePart::kLinear] = {s * linear[0], s * linear[1], T(0.0), T(0.0)};
+}
+
+// The same of feet that hold, whatever happens. While a push is the whole force, its rows hold the
+// feet's reaction.
+template <typename T>
+void AddStandingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
+                       const PendulumState<T>& state, NetForce<T>* force) {
+  if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(state, force);
+  if (active != ActiveForces::kAll) return;
+  const StandingParameters<T> standing([&p](Parameter id) { return p[id]; });
+  force->ground = T(kHeldFast * self.body.mass);
+  (*force)[ForcePart::kBalance].template tail<2>() =
+      StandingTorque(self, standing, force->angles, state.qd);
 }
 
 // received: from others; network: what the person's own network answers.
@@ -104,15 +122,21 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   force.angles = state.angles;
   force[ForcePart::kPush] = PushForceAt(scene, person, frame).template cast<T>();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
-  const bool stands = options.stance == Stance::kThreshold;
-  if (stands) {
-    AddStanceForces(self, p, active, state, &force);
-  } else {
-    AddSlidingForces(self, p, active, state, qd_previous, &force);
+  switch (options.stance) {
+    case Stance::kSlide:
+      AddSlidingForces(self, p, active, state, qd_previous, &force);
+      break;
+    case Stance::kThreshold:
+      AddStanceForces(self, p, active, state, &force);
+      break;
+    case Stance::kFixed:
+      AddStandingForces(self, p, active, state, &force);
+      break;
   }
   if (active != ActiveForces::kAll) return force;
   // Only here: a push that is the whole force includes the tail of an earlier one.
-  if (options.push_tail == PushTail::kExponential) {
+  if (options.push_tail == PushTail::kExponential && options.stance != Stance::kFixed) {
+    const bool stands = options.stance == Stance::kThreshold;
     for (const ScenePush& push : scene.pushes) {
       if (push.person != person) continue;
       force[ForcePart::kTail] +=

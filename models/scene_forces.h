@@ -78,6 +78,10 @@ class SceneForces {
   Vector4<T> AccelerationOf(int person, const NetForce<T>& force) const {
     const Body& body = self_[person].body;
     const PendulumState<T>& state = states_[person];
+    if (HoldsFast(force)) {
+      return AccelerationOnGround(StandingBody<T>(body, Parameters(person)[kComHeight]),
+                                  force.angles, state.qd, force.Total(), force.ground, scene_->dt);
+    }
     if (options_->stance == Stance::kThreshold) {
       return AccelerationOnGround(body, force.angles, state.qd, force.Total(), force.ground,
                                   scene_->dt);
@@ -85,6 +89,11 @@ class SceneForces {
     const Vector4<T> total = force.Total();
     if (rods_.empty()) return Acceleration(body, force.angles, state.qd, total);
     return Acceleration(BodyNow(body, state.rod, T(0.0)), force.angles, state.qd, total);
+  }
+
+  // Whether the person is a body that turns about its ankles in this step (standing.h).
+  bool HoldsFast(const NetForce<T>& force) const {
+    return options_->stance == Stance::kFixed && RealPart(force.ground) > 0.0;
   }
 
   // One step on: the pendulum under qdd, the step state and, where the model has a law for it, the

@@ -65,7 +65,8 @@ DEFINE_double(sensor_start, 0.0,
 DEFINE_double(idle_force, pushid::SensorChoice{}.idle_force,
               "force sensor: forces up to this value, N, do not count as a push");
 DEFINE_bool(estimate_offset, pushid::SensorSetup{}.estimate_offset,
-            "force sensors: estimate the offset of their clocks from the motion's");
+            "force sensors: estimate the offset of their clocks from the motion's, of people "
+            "whose feet move; offsets within their error are zero");
 DEFINE_double(max_offset_s, pushid::SensorSetup{}.max_offset_s,
               "search range of --estimate_offset on either side, s");
 

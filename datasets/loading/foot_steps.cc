@@ -14,6 +14,7 @@ namespace {
 using Track = std::vector<Eigen::Vector3d>;
 
 constexpr double kSlopeWindow = 0.05;  // s on either side
+constexpr double kPlace = 0.1;         // s at either end of a recording
 constexpr double kFlatFoot = 0.01;     // m above the ankle's lowest place in a stance
 
 struct Span {
@@ -39,6 +40,12 @@ Track WithoutGaps(Track track, const std::vector<double>& weight) {
   if (last < 0) return {};
   std::fill(track.begin() + last + 1, track.end(), track[last]);
   return track;
+}
+
+Eigen::Vector3d MeanOf(const Track& track, int begin, int end) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int t = begin; t < end; ++t) sum += track[t];
+  return sum / (end - begin);
 }
 
 // Horizontal, m/s, by least squares.
@@ -82,6 +89,16 @@ class StepFinder {
       steps.push_back(step);
     }
     return steps;
+  }
+
+  double Travel() const {
+    const int wing = std::min(frames_, std::max(1, static_cast<int>(std::lround(kPlace * fps_))));
+    double least = points_.empty() ? 0.0 : std::numeric_limits<double>::infinity();
+    for (const Track& point : points_) {
+      const Eigen::Vector3d way = MeanOf(point, frames_ - wing, frames_) - MeanOf(point, 0, wing);
+      least = std::min(least, way.head<2>().norm());
+    }
+    return least;
   }
 
  private:
@@ -194,6 +211,8 @@ std::vector<FootStep> FindSteps(Foot foot, const FootTracks& tracks, double fps)
   return StepFinder(tracks, fps).Find(foot);
 }
 
+double Travel(const FootTracks& tracks, double fps) { return StepFinder(tracks, fps).Travel(); }
+
 PersonSteps FindSteps(const RecordedPerson& person, double fps) {
   PersonSteps found;
   for (Foot foot : kFeet) {
@@ -202,6 +221,7 @@ PersonSteps FindSteps(const RecordedPerson& person, double fps) {
                             left ? person.left_toe : person.right_toe,
                             left ? person.left_heel : person.right_heel, person.weight};
     const std::vector<FootStep> steps = FindSteps(foot, tracks, fps);
+    found.travel = std::max(found.travel, Travel(tracks, fps));
     found.steps.insert(found.steps.end(), steps.begin(), steps.end());
   }
   std::stable_sort(found.steps.begin(), found.steps.end(),

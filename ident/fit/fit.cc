@@ -84,6 +84,7 @@ void AddTakeover(const std::vector<PendulumRecording>& recordings, FitResult* re
 
 // What predictions need to know of the recordings.
 void AddFittedTo(const std::vector<PendulumRecording>& recordings, FitResult* result) {
+  if (const PushedFeet feet = FeetOf(recordings); feet.seen > 0) result->feet = feet;
   result->push_range = FittedPushRange(ModelOf(*result), recordings);
   const auto steps = FitStepProbability(ModelOf(*result), recordings);
   if (steps && steps->stepped > 0 && steps->stepped < steps->tracks) {

@@ -9,6 +9,7 @@
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/presets.h"
+#include "ident/parameters/pushed_feet.h"
 
 namespace pushid {
 namespace {
@@ -126,6 +127,35 @@ std::string PresetIn(const GivenOptions& given) {
   return named != nullptr ? *named : kAutoPreset;
 }
 
+// Whether a stance that was not asked for goes together with what was.
+bool GoesTogether(const FitOptions& o, const std::vector<PendulumRecording>& recordings) {
+  const bool states_alone = o.likelihood == Likelihood::kTrajectory &&
+                            !o.model.process_noise.Any() && o.model.learned == nullptr;
+  const bool all_act =
+      std::all_of(o.table.specs.begin(), o.table.specs.end(),
+                  [&o](const ParameterSpec& spec) { return !spec.free || Acts(spec.id, o.model); });
+  return states_alone && all_act &&
+         (o.model.stance != Stance::kThreshold ||
+          std::all_of(recordings.begin(), recordings.end(), [](const PendulumRecording& r) {
+            return r.scene.dt * kLeastSteppingRate <= 1.0;
+          }));
+}
+
+// Over the preset, with the stance that the feet tell where nothing says another.
+Result<FitOptions> OverPresetOf(const std::vector<PendulumRecording>& recordings,
+                                const std::string& preset, const GivenOptions& given,
+                                const GivenOptions& must_act) {
+  const std::string* asked = Find(given, "stance");
+  const Stance told = StanceOf(FeetOf(recordings));
+  const bool open = (asked == nullptr || *asked == kAutoStance) && TakesStanceFromFeet(preset);
+  if (open && told != Stance::kSlide) {
+    Result<FitOptions> made =
+        OverPreset(preset, Merged(given, {{"stance", NameOf(told)}}), must_act);
+    if (made.ok() && GoesTogether(made.value(), recordings)) return made;
+  }
+  return OverPreset(preset, given, must_act);
+}
+
 }  // namespace
 
 GivenOptions Merged(GivenOptions given, const GivenOptions& more) {
@@ -159,7 +189,9 @@ Result<FitOptions> MakeFitOptions(const GivenOptions& given,
                                   const std::vector<PendulumRecording>* recordings,
                                   const GivenOptions& must_act) {
   const std::string preset = PresetIn(given);
-  if (recordings != nullptr) return OverPreset(PresetFor(preset, *recordings), given, must_act);
+  if (recordings != nullptr) {
+    return OverPresetOf(*recordings, PresetFor(preset, *recordings), given, must_act);
+  }
   if (preset != kAutoPreset) return OverPreset(preset, given, must_act);
   const Result<FitOptions> single = OverPreset("tail", given, must_act);
   if (single.ok()) return single;
@@ -174,7 +206,10 @@ Result<FitSetup> FitSetup::Make(GivenOptions given, GivenOptions must_act) {
 }
 
 Result<FitOptions> FitSetup::For(const std::vector<PendulumRecording>& recordings) const {
-  if (PresetFor(PresetIn(given_), recordings) == roughly_.preset) return roughly_;
+  const std::string preset = PresetFor(PresetIn(given_), recordings);
+  const bool same_feet =
+      !TakesStanceFromFeet(preset) || StanceOf(FeetOf(recordings)) == roughly_.model.stance;
+  if (preset == roughly_.preset && same_feet) return roughly_;
   return MakeFitOptions(given_, &recordings, must_act_);
 }
 

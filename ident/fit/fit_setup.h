@@ -23,9 +23,10 @@ GivenOptions Merged(GivenOptions given, const GivenOptions& more);
 Result<GivenOptions> ParseOptionWords(const std::string& words);
 
 // The preset, the given options over it, the parameters that the model's terms free, and the edits
-// of the table. recordings: what `auto` looks at; null: none are known yet, and it is whichever of
-// tail and group can take the options. must_act: those of the given options that must act on
-// something. Errors name the option, its value and what it must be, or what is missing.
+// of the table. recordings: what `auto` of preset and stance looks at; null: none are known yet,
+// and the preset is whichever of tail and group can take the options. must_act: those of the given
+// options that must act on something. Errors name the option, its value and what it must be, or
+// what is missing.
 Result<FitOptions> MakeFitOptions(const GivenOptions& given,
                                   const std::vector<PendulumRecording>* recordings = nullptr,
                                   const GivenOptions& must_act = {});

@@ -78,6 +78,9 @@ Warnings FitWarnings(const FitProblem& problem, const FitResult& result) {
       warnings.emplace_back("recording " + recording.id + ": " + what, recording.id, what);
     }
   }
+  const ModelOptions& model = problem.options().model;
+  const std::string of_feet = FeetWarning(FeetOf(problem.recordings()), model.stance);
+  if (!of_feet.empty()) warnings.emplace_back(of_feet);
   if (!result.converged) warnings.emplace_back("the solver stopped before it converged");
   AddVerdict(result, &warnings);
   if (const SettlingSimulation* d = result.behaviour.FarthestBehind()) {
@@ -91,7 +94,7 @@ Warnings FitWarnings(const FitProblem& problem, const FitResult& result) {
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kAtBound) warnings.emplace_back(e.name + " is at its bound");
   }
-  const bool has_tail = problem.options().model.push_tail != PushTail::kNone;
+  const bool has_tail = model.push_tail != PushTail::kNone;
   if (has_tail && TailCannotAct(problem.recordings())) {
     warnings.emplace_back(
         "every push is external (measured completely): the push tail has no effect; set push_kind "

@@ -7,6 +7,7 @@
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/fit.h"
 #include "ident/parameters/presets.h"
+#include "ident/parameters/pushed_feet.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/statistics.h"
 #include "ident/solver/network_training.h"
@@ -100,14 +101,12 @@ MaybeError CheckBodies(const std::vector<PendulumRecording>& recordings,
   return std::nullopt;
 }
 
-// Stepping feet get their speed within 20 ms: longer steps of the rollout lag behind.
 MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options) {
-  constexpr double kLeastRate = 29.0;  // 1/s
-  if (options.model.stance == Stance::kSlide) return std::nullopt;
+  if (options.model.stance != Stance::kThreshold) return std::nullopt;
   for (const PendulumRecording& recording : recordings) {
     const double rate = 1.0 / recording.scene.dt;
-    if (rate >= kLeastRate) continue;
+    if (rate >= kLeastSteppingRate) continue;
     return Error{"recording " + recording.id + " has " + Rounded(rate, 3) +
                  " frames per second, too few for --stance=threshold; resample it "
                  "(--resample_fps=60), or let feet slide"};

@@ -10,6 +10,7 @@
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/model/identified_model.h"
 #include "ident/parameters/fit_options.h"
+#include "ident/parameters/pushed_feet.h"
 #include "ident/problem/behaviour.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/bootstrap.h"
@@ -48,6 +49,7 @@ struct FitResult {
   std::map<std::string, SubjectParameters> subjects;
   // Value of each pooled parameter in each setting or condition, where these differ.
   std::map<std::string, std::map<std::string, Estimate>> settings;
+  std::optional<PushedFeet> feet;       // none in older files
   std::optional<PushRange> push_range;  // none in files that are older than it
   // None where nobody stepped or everybody did, and in older files.
   std::optional<StepProbability> step_probability;

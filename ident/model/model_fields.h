@@ -217,6 +217,13 @@ void Fields(Archive& a, Behaviour& b) {
 }
 
 template <class Archive>
+void Fields(Archive& a, PushedFeet& f) {
+  a("pushed", f.seen);
+  a("moved", f.moved);
+  a("stepped", f.stepped);
+}
+
+template <class Archive>
 void Fields(Archive& a, PushRange& p) {
   const auto range = [&a](const char* key, ValueRange& r) {
     if (a.Has(key, !r.empty())) a.Pair(key, r.lower, r.upper);

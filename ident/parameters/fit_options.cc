@@ -50,7 +50,7 @@ std::string NetworkViolation(const FitOptions& o) {
   return "";
 }
 
-// What feet that stand and step cannot do together with the rest; empty: nothing.
+// What feet that hold cannot do together with the rest; empty: nothing.
 std::string StanceViolation(const FitOptions& o) {
   if (o.model.stance == Stance::kSlide) return "";
   const char* sliding = RodMoves(o.model)          ? "--rod"
@@ -60,9 +60,8 @@ std::string StanceViolation(const FitOptions& o) {
                         : o.model.cart_derivative != CartDerivative::kNone ? "--cart_derivative"
                                                                            : nullptr;
   if (sliding == nullptr) return "";
-  return std::string(sliding) +
-         " is for feet that slide and does not go together with --stance=threshold; drop one of "
-         "the two";
+  return std::string(sliding) + " is for feet that slide and does not go together with --stance=" +
+         NameOf(o.model.stance) + "; drop one of the two";
 }
 
 // What LDP's loss cannot go together with; empty: nothing.

@@ -42,9 +42,14 @@ void SetLearned(const LearnedTerms& network, FitOptions* o) {
 Row StanceRow() {
   Row row = NameRow<Stance>(
       "stance", "/stance", [](FitOptions & o) -> auto& { return o.model.stance; },
-      "behaviour of the feet: slide (the cart moves under any force), or threshold (they hold "
-      "until the capture point leaves their support, then step)");
+      "behaviour of the feet: slide (the cart moves under any force), threshold (they hold until "
+      "the capture point leaves their support, then step), fixed (they hold), or auto (fixed where "
+      "no pushed person's feet moved, threshold where fewer than three in four did, else slide; "
+      "ldp presets: slide)");
+  row.choices.insert(row.choices.begin(), kAutoStance);
+  row.text = [](const FitOptions&) { return std::string(kAutoStance); };
   row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
+    if (text == kAutoStance) return std::nullopt;
     Stance stance;
     if (MaybeError error = ParseName("--stance", text, &stance)) return error;
     SetStance(stance, o);

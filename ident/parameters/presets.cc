@@ -99,11 +99,12 @@ FitOptions LdpGroupsPreset() {
 struct NamedPreset {
   const char* name;
   FitOptions (*make)();
+  bool stance_from_feet;
 };
-constexpr NamedPreset kPresets[] = {{"tail", TailPreset},
-                                    {"ldp", LdpPreset},
-                                    {"ldp_groups", LdpGroupsPreset},
-                                    {"group", GroupPreset}};
+constexpr NamedPreset kPresets[] = {{"tail", TailPreset, true},
+                                    {"ldp", LdpPreset, false},
+                                    {"ldp_groups", LdpGroupsPreset, false},
+                                    {"group", GroupPreset, true}};
 
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   for (int id = RowOf(kind).first; id <= RowOf(kind).last; ++id) {
@@ -135,10 +136,29 @@ void SetSelfForce(SelfForceKind self_force, FitOptions* options) {
   options->mode_weight = DefaultModeWeight(self_force);
 }
 
+namespace {
+
+// Feet that hold: everything is told by the data, so priors are as wide as their centres, but for
+// where the body's mass is: men and women, and where the hip's marker is, differ by some 5 %.
+void SetFixed(FitOptions* options) {
+  options->model.push = PushUse::kAsRecorded;
+  options->model.push_tail = PushTail::kNone;
+  options->start = FitStart::kNominal;
+  options->settling_weight = options->mode_weight = 0.0;
+  for (const Start& start :
+       {Start{kKpTheta, 1250, 1250}, Start{kKpPhi, 1250, 1250}, Start{kKdTheta, 300, 300},
+        Start{kKdPhi, 300, 300}, Start{kComHeight, 1.09, 0.055}}) {
+    Free(start, &options->table);
+  }
+}
+
+}  // namespace
+
 void SetStance(Stance stance, FitOptions* options) {
   options->model.stance = stance;
   if (stance == Stance::kSlide) return;
   ParameterTable& table = options->table;
+  if (stance == Stance::kFixed) return SetFixed(options);
   options->model.push = PushUse::kAsRecorded;
   options->start = FitStart::kNominal;
   options->model.directions = Directions::kAxes;  // the feet's support has a front
@@ -187,6 +207,12 @@ std::vector<std::string> PresetNames() {
   std::vector<std::string> names = {kAutoPreset};
   for (const NamedPreset& preset : kPresets) names.push_back(preset.name);
   return names;
+}
+
+bool TakesStanceFromFeet(const std::string& preset) {
+  return std::any_of(std::begin(kPresets), std::end(kPresets), [&](const NamedPreset& known) {
+    return preset == known.name && known.stance_from_feet;
+  });
 }
 
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings) {

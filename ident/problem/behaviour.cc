@@ -122,8 +122,9 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const Body& body = scene.people[0].body;
   const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
   RestJacobian<double> rest = LinearizeAtRest(options.stance, self, parameters);
+  const Body at_rest = BodyAtRest(options.stance, body, parameters);
   const Eigen::Matrix4d inverse =
-      InverseMassMatrix<double>(body, Angles<double>(), body.mass + scene.dt * rest.ground);
+      InverseMassMatrix<double>(at_rest, Angles<double>(), at_rest.mass + scene.dt * rest.ground);
   for (int i = 0; i < 2; ++i) rest.by_state(i, 2 + i) -= rest.ground;
   Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kMemoryAt);
   if (options.learned != nullptr) {
@@ -151,14 +152,19 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
 
 }  // namespace
 
+std::vector<double> ImpulsesFor(Stance stance, const double (&impulses)[3]) {
+  const int held_to = stance == Stance::kFixed ? 1 : 3;
+  return {impulses, impulses + held_to};
+}
+
 double SettlingSeconds(const ModelOptions& options, const ParameterSet<double>& parameters) {
   double slowest = 0.0;
-  for (double impulse : kSettlingImpulses) {
+  for (double impulse : ImpulsesFor(options.stance, kSettlingImpulses)) {
     const Scene scene = SettlingScene(kSettlingMasses[0], impulse);
     slowest = std::max(slowest, SecondsUntilStill(scene, options, parameters));
   }
   if (!options.interaction.Any()) return slowest;
-  for (double impulse : kLineImpulses) {
+  for (double impulse : ImpulsesFor(options.stance, kLineImpulses)) {
     const Scene scene = SettlingScene(kSettlingMass, impulse, kLinePeople);
     slowest = std::max(slowest, SecondsUntilStill(scene, options, parameters));
   }
@@ -189,18 +195,18 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
   Behaviour behaviour;
   std::vector<SettlingSimulation>& all = behaviour.simulations;
   for (double mass : kSettlingMasses) {
-    for (double impulse : kSettlingImpulses) {
+    for (double impulse : ImpulsesFor(options.stance, kSettlingImpulses)) {
       all.push_back(SimulateSettling(options, parameters, mass, impulse, 1));
     }
   }
   if (options.interaction.Any()) {
     const size_t first = all.size();
-    for (double impulse : kLineImpulses) {
+    for (double impulse : ImpulsesFor(options.stance, kLineImpulses)) {
       all.push_back(SimulateSettling(options, parameters, kSettlingMass, impulse, kLinePeople));
     }
     for (size_t i = first + 1; i < all.size(); ++i) {
       // Of people who stay where they are, none moves farther.
-      const double least = options.stance == Stance::kThreshold ? -kOnTheSpot : 0.0;
+      const double least = options.stance == Stance::kSlide ? 0.0 : -kOnTheSpot;
       behaviour.harder_moves_farther =
           behaviour.harder_moves_farther && all[i].advance - all[i - 1].advance > least;
     }
@@ -208,7 +214,8 @@ Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<doubl
   behaviour.fastest_growth = FastestGrowth(options, parameters);
   behaviour.settles = true;
   behaviour.self_propelling =
-      behaviour.unstable() || CartDampings(options.friction)[0].Of(parameters) < 0.0;
+      behaviour.unstable() ||
+      (Acts(kMu, options) && CartDampings(options.friction)[0].Of(parameters) < 0.0);
   for (const SettlingSimulation& d : all) {
     behaviour.settles = behaviour.settles && d.settled;
     behaviour.self_propelling = behaviour.self_propelling || d.fell;

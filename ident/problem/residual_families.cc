@@ -138,9 +138,14 @@ void AddSettling(const Family& family, const Place& at) {
     }
     at.built->AddRollout(std::move(residual), blocks, family.cluster);
   };
-  for (double impulse : kSettlingImpulses) settle(kSettlingMasses[0], impulse, 1);
+  const Stance stance = o.model.stance;
+  for (double impulse : ImpulsesFor(stance, kSettlingImpulses)) {
+    settle(kSettlingMasses[0], impulse, 1);
+  }
   if (!o.model.interaction.Any()) return;
-  for (double impulse : kLineImpulses) settle(kSettlingMass, impulse, kLinePeople);
+  for (double impulse : ImpulsesFor(stance, kLineImpulses)) {
+    settle(kSettlingMass, impulse, kLinePeople);
+  }
 }
 
 void AddModes(const Family& family, const Place& at) {

@@ -215,7 +215,13 @@ std::string HowRead(const SensorSetup& setup, const ReadSensors& read) {
   return how;
 }
 
-// How far the sensors' clocks are off by the motion; zero unless that is asked for.
+// The error of an estimated offset: that of noise, and half a frame, which its fit cannot tell.
+double ClockError(const SensorOffset& offset, const PendulumRecording& recording) {
+  return 0.5 * recording.scene.dt + 2.0 * offset.standard_error_s;
+}
+
+// How far the sensors' clocks are off by the motion; zero unless that is asked for, and where the
+// motion does not contradict it.
 Result<SensorOffset> Offset(const SensorSetup& setup, const ReadSensors& read,
                             const PendulumRecording& recording, int person, SensorPush* result) {
   if (!setup.estimate_offset) return SensorOffset();
@@ -223,16 +229,21 @@ Result<SensorOffset> Offset(const SensorSetup& setup, const ReadSensors& read,
   for (std::size_t i = 0; i < read.records.size(); ++i) {
     timed.push_back(AsVectors(read.records[i], read.choices[i]));
   }
-  const Result<SensorOffset> offset =
-      EstimateSensorOffset(timed, recording, person, setup.max_offset_s);
+  Result<SensorOffset> offset = EstimateSensorOffset(timed, recording, person, setup.max_offset_s);
   if (!offset.ok()) return offset;
   const double gain = offset.value().gain;
   if (gain < 1.0 / kOddGain || gain > kOddGain) {
     result->warnings.push_back("the motion fits best with " + Rounded(gain, 2) +
                                " times the force: check its unit and gain, and the mass");
   }
-  result->how += "; clock at frame 0 moved by " + Rounded(offset.value().offset_s, 4) + " +- " +
-                 Rounded(offset.value().standard_error_s, 2) + " s (estimated)";
+  const std::string estimate = Rounded(offset.value().offset_s, 4) + " +- " +
+                               Rounded(offset.value().standard_error_s, 2) + " s";
+  if (std::abs(offset.value().offset_s) <= ClockError(offset.value(), recording)) {
+    result->how += "; the clocks agree (offset by the motion " + estimate + "): not moved";
+    offset.value().offset_s = 0.0;
+  } else {
+    result->how += "; clock at frame 0 moved by " + estimate + " (estimated)";
+  }
   return offset;
 }
 
@@ -249,7 +260,7 @@ Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& re
   SensorPushOptions options;
   options.person = person;
   if (setup.estimate_offset) {
-    options.clock_error_s = 0.5 * recording.scene.dt + 2.0 * offset.value().standard_error_s;
+    options.clock_error_s = ClockError(offset.value(), recording);
   }
   for (std::size_t i = 0; i < read.value().records.size(); ++i) {
     const SensorChoice& sensor = read.value().choices[i];

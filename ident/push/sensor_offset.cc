@@ -195,6 +195,13 @@ Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces
   if (frames < kFewestFrames) {
     return Error{"recording " + recording.id + ": the push ends too early to find its time"};
   }
+  if (recording.StepsKnown() && !recording.steps[person].Moved()) {
+    return Error{
+        "recording " + recording.id +
+        ": the feet do not move, and how a person who stands gives way does not tell the "
+        "sensor's time; give it (--sensor_start), or leave --estimate_offset out where the "
+        "clocks agree"};
+  }
   if (MovesAgainst(recording.hip[person], frames, direction)) {
     return Error{"recording " + recording.id +
                  ": the person moves against the force; its sign or its direction is wrong"};

@@ -126,6 +126,11 @@ std::string HowSure(const FitResult& result) {
          (u.too_few_clusters ? "; correlations are those of independent frames" : "") + "\n";
 }
 
+std::string FeetOfFit(const FitResult& result) {
+  const Stance stance = result.options.model.stance;
+  return result.feet ? FeetText(*result.feet, stance) : "stance " + NameOf(stance);
+}
+
 TextTable DerivedTable(const FitResult& result) {
   TextTable table({"derived", "value", "std error", "95 % interval", "unit"},
                   {true, false, false, true, true});
@@ -139,6 +144,10 @@ TextTable DerivedTable(const FitResult& result) {
 
 std::string ConventionText(const FitResult& result) {
   const ParameterTable& specs = result.options.table;
+  const std::string quoted =
+      "Gains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
+      NameOf(result.options.model.gain_scaling) + ").\n";
+  if (!Acts(kMu, result.options.model)) return quoted;
   bool fitted = false;
   std::string held;
   for (const CartDamping& c : CartDampings(result.options.model.friction)) {
@@ -149,8 +158,7 @@ std::string ConventionText(const FitResult& result) {
   return "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. " +
          (fitted ? std::string("Here Kp is fitted too.")
                  : "Convention: " + held + " N s/m held, mu = c - Kp.") +
-         "\nGains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
-         NameOf(result.options.model.gain_scaling) + ").\n";
+         "\n" + quoted;
 }
 
 std::string CorrelationText(const FitResult& result) {

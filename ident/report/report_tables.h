@@ -22,6 +22,9 @@ std::string SharesNote();
 
 std::string HowSure(const FitResult& result);
 
+// What the feet of the model do, and why.
+std::string FeetOfFit(const FitResult& result);
+
 // c_x, c_y and gains per mass, and the convention that separates mu from Kp.
 TextTable DerivedTable(const FitResult& result);
 std::string ConventionText(const FitResult& result);

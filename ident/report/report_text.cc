@@ -101,11 +101,10 @@ std::string ReportText(const FittedModel& model) {
   std::string text =
       (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " + o.preset + ": " +
       Count(static_cast<int>(result.recordings.size()), "recording") +
-      (from.setting.empty() ? "" : " (" + from.setting + ")") + ", posture " +
-      NameOf(o.model.posture) + ", push " + NameOf(o.model.push) + ", push tail " +
-      NameOf(o.model.push_tail) +
-      (o.model.stance == Stance::kSlide ? "" : ", stance " + NameOf(o.model.stance)) +
-      ", self force " + SelfForceText(o.self_force, o.model.learned.get()) +
+      (from.setting.empty() ? "" : " (" + from.setting + ")") + ", " + FeetOfFit(result) +
+      ", posture " + NameOf(o.model.posture) + ", push " + NameOf(o.model.push) + ", push tail " +
+      NameOf(o.model.push_tail) + ", self force " +
+      SelfForceText(o.self_force, o.model.learned.get()) +
       (RodMoves(o.model) ? ", rod " + RodName(o.model.learned->rod) : "") + ", interaction " +
       InteractionText(o.model) + PoolingText(o) +
       (o.body_weight > 0.0 ? ", bodies with weight " + Rounded(o.body_weight, 4) : "") +

@@ -112,7 +112,8 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
 }
 
 std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model) {
-  const double m = (1.0 - kCartShare) * kReferenceMass, l = kReferenceRod;
+  const bool slides = Acts(kMu, model);
+  const double m = (slides ? 1.0 - kCartShare : 1.0) * kReferenceMass, l = kReferenceRod;
   const double stiffness = 1.0 / (m * kGravity * l), damping = 1.0 / (m * l * l);
   const double by_mass = 1.0 / kReferenceMass;
   std::vector<CombinationSpec> combinations;
@@ -122,12 +123,17 @@ std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model) {
           {std::string(c.name) + over, unit, {{c.friction, factor}, {c.gain, factor}}});
     }
   };
-  cart("", "N s/m", 1.0);
-  cart("/M", "1/s", by_mass);
-  combinations.insert(combinations.end(), {{"Kp_theta/(m g l)", "1", {{kKpTheta, stiffness}}},
-                                           {"Kp_phi/(m g l)", "1", {{kKpPhi, stiffness}}},
-                                           {"Kd_theta/(m l^2)", "1/s", {{kKdTheta, damping}}},
-                                           {"Kd_phi/(m l^2)", "1/s", {{kKdPhi, damping}}}});
+  if (slides) {
+    cart("", "N s/m", 1.0);
+    cart("/M", "1/s", by_mass);
+  }
+  // Of the mass at the hip, or of the whole body's where it turns about its ankles.
+  const std::string mass = slides ? "m" : "M";
+  const std::string load = "/(" + mass + " g l)", inertia = "/(" + mass + " l^2)";
+  combinations.insert(combinations.end(), {{"Kp_theta" + load, "1", {{kKpTheta, stiffness}}},
+                                           {"Kp_phi" + load, "1", {{kKpPhi, stiffness}}},
+                                           {"Kd_theta" + inertia, "1/s", {{kKdTheta, damping}}},
+                                           {"Kd_phi" + inertia, "1/s", {{kKdPhi, damping}}}});
   return combinations;
 }
 

@@ -18,7 +18,7 @@ MaybeError WhatCannotBeDone(const std::vector<AdjointRecording>& recordings,
   if (options.learned == nullptr) return Error{"the adjoint gradient needs a network"};
   if (options.stance != Stance::kSlide) {
     return Error{
-        "the adjoint gradient is for feet that slide; leave --stance=threshold out, or use a "
+        "the adjoint gradient is for feet that slide; leave --stance out, or use a "
         "network small enough for Gauss-Newton"};
   }
   if (map.num_deviations > 0) {

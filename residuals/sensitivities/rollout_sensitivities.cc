@@ -230,10 +230,13 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
 
       if (stands) {
         NetForceJacobianOfStance(scene, options, self, p, n, t, state, a, &jacobian, &stance);
+      } else if (options.stance == Stance::kFixed) {
+        NetForceJacobianOfStanding(scene, options, self, p, n, t, state, a, &jacobian);
       } else {
         NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian);
       }
-      const Body now_body = BodyNow(body, state.rod, 0.0);
+      const Body now_body = forces.HoldsFast(force) ? StandingBody(body, p[kComHeight])
+                                                    : BodyNow(body, state.rod, 0.0);
       const Matrix4<double> rigid = InverseDynamicsJacobian(now_body, force.angles, state.qd, a);
       jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
       jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
@@ -265,7 +268,8 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       auto next = sensitivities->At(t + 1, n);
       next.bottomRows<4>() = now.bottomRows<4>();
       const Matrix4<double> inverse =
-          scene.dt * InverseMassMatrix(now_body, force.angles, body.mass + scene.dt * force.ground);
+          scene.dt *
+          InverseMassMatrix(now_body, force.angles, now_body.mass + scene.dt * force.ground);
       AddNarrowProduct(inverse, by_column, next.bottomRows<4>());
       next.topRows<4>() = now.topRows<4>() + scene.dt * next.bottomRows<4>();
       if (!rod_moves) continue;

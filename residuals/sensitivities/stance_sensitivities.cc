@@ -49,6 +49,39 @@ struct OutputJacobian {
   }
 };
 
+// Inputs of the jets of standing: theta, phi, their rates, then the parameters.
+using StandingIds = StandingParameters<double>;
+constexpr int kStandingAt = 4;
+using StandingJet = ceres::Jet<double, kStandingAt + StandingIds::kCount>;
+
+Eigen::Matrix<StandingJet, 2, 1> JetsOfStanding(const SelfForce& self,
+                                                const ParameterSet<double>& p,
+                                                const PendulumState<double>& state) {
+  Vector4<StandingJet> q, qd;
+  for (int i = 0; i < 2; ++i) {
+    q[i] = StandingJet(state.q[i]);
+    qd[i] = StandingJet(state.qd[i]);
+    q[2 + i] = StandingJet(state.q[2 + i], i);
+    qd[2 + i] = StandingJet(state.qd[2 + i], 2 + i);
+  }
+  int input = kStandingAt;
+  // In the order of kIds, which is that of the members.
+  const StandingParameters<StandingJet> parameters(
+      [&](Parameter id) { return StandingJet(p[id], input++); });
+  return StandingTorque(self, parameters, Angles<StandingJet>(q), qd);
+}
+
+// Of M a + C + G of the body that stands, by the height of its centre of mass.
+Vector4<double> InverseDynamicsByComHeight(const Body& body, double com_height,
+                                           const PendulumState<double>& state,
+                                           const Vector4<double>& a) {
+  using Jet = ceres::Jet<double, 1>;
+  const PendulumState<Jet> still{state.q.cast<Jet>(), state.qd.cast<Jet>()};
+  const Vector4<Jet> value =
+      InverseDynamics<Jet>(StandingBody(body, Jet(com_height, 0)), still, a.cast<Jet>());
+  return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
+}
+
 // By q and by the parameters of the tail.
 void AddTailJacobianAtHip(const ScenePush& push, const SelfForce& self,
                           const ParameterSet<double>& p, int frame, double dt,
@@ -67,7 +100,35 @@ void AddTailJacobianAtHip(const ScenePush& push, const SelfForce& self,
   }
 }
 
+void AddPublishedFriction(SelfForce::Jacobian* jacobian) {
+  for (int i = 0; i < 2; ++i) jacobian->by_state(i, 4 + i) = -kPublishedFriction;
+}
+
 }  // namespace
+
+void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
+                                const SelfForce& self, const ParameterSet<double>& p, int person,
+                                int frame, const PendulumState<double>& state,
+                                const Vector4<double>& a, SelfForce::Jacobian* jacobian) {
+  jacobian->by_state.setZero();
+  jacobian->by_previous.setZero();
+  jacobian->by_parameter.setZero();
+  const ActiveForces active = ForcesAt(scene, options.push, person, frame);
+  if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(jacobian);
+  if (active != ActiveForces::kAll) return;
+  const Eigen::Matrix<StandingJet, 2, 1> torque = JetsOfStanding(self, p, state);
+  for (int i = 0; i < 2; ++i) {
+    jacobian->by_state(i, 4 + i) = -kHeldFast * self.body.mass;
+    jacobian->by_state.row(2 + i).segment<2>(2) = torque[i].v.head<2>().transpose();
+    jacobian->by_state.row(2 + i).tail<2>() = torque[i].v.segment<2>(2).transpose();
+    for (int k = 0; k < StandingIds::kCount; ++k) {
+      jacobian->by_parameter(2 + i, StandingIds::kIds[k]) = torque[i].v[kStandingAt + k];
+    }
+  }
+  jacobian->by_parameter.col(kComHeight) -=
+      InverseDynamicsByComHeight(self.body, p[kComHeight], state, a);
+  self.AddOwnJacobian(p, state, jacobian);
+}
 
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
@@ -89,10 +150,7 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
   jacobian->by_parameter.setZero();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   if (active == ActiveForces::kPushOnly) return;
-  if (active == ActiveForces::kPushAndFriction) {
-    for (int i = 0; i < 2; ++i) jacobian->by_state(i, 4 + i) = -kPublishedFriction;
-    return;
-  }
+  if (active == ActiveForces::kPushAndFriction) return AddPublishedFriction(jacobian);
   const OutputJacobian ground(jets.ground, of_own);
   for (int i = 0; i < 2; ++i) {
     const double after = state.qd[i] + scene.dt * a[i];

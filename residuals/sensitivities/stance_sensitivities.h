@@ -1,5 +1,5 @@
-// residuals: derivatives of feet that stand and step (models/stance.h), beside those of the rollout
-// (rollout_sensitivities.h).
+// residuals: derivatives of feet that stand and step (models/stance.h), and of those that hold
+// (models/standing.h), beside those of the rollout (rollout_sensitivities.h).
 //
 // With v' = v + dt a the cart's velocity after a step and D the ground's resistance,
 //   (M + dt D E) da = d(F - C - G) at fixed a - D dv - v' dD,   E = diag(1, 1, 0, 0),
@@ -27,5 +27,12 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               int frame, const PendulumState<double>& state,
                               const Vector4<double>& a, SelfForce::Jacobian* jacobian,
                               StanceJacobian* stance);
+
+// The same where feet hold, whatever happens; jacobian: all of F - M a - C - G - D v' that the
+// parameters and the state decide by the ankles, the ground and the height of the centre of mass.
+void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
+                                const SelfForce& self, const ParameterSet<double>& p, int person,
+                                int frame, const PendulumState<double>& state,
+                                const Vector4<double>& a, SelfForce::Jacobian* jacobian);
 
 }  // namespace pushid

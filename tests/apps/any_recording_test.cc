@@ -332,6 +332,12 @@ TEST_F(AnyRecordingTest, PushesFromSensors) {
   ASSERT_NE(at, std::string::npos) << run.out;
   EXPECT_NEAR(std::stod(run.out.substr(at + 26)), 0.2, 0.6 / 60.0) << run.out;
 
+  // On clocks that agree nothing is moved.
+  run = with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50", "--estimate_offset"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "the clocks agree")) << run.out;
+  EXPECT_EQ(ReadText(Path("p.csv")), alone);
+
   // Every recording its own file, into a folder that is made; one that breaks off is told of.
   run = RunApp("pushid-push", {common[0], "--ids=" + recording.id, "--sensor_column=rod",
                                "--sensor=" + Path("{id}.c3d"), "--out=" + Path("made/{id}.csv")});

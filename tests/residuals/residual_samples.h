@@ -32,6 +32,7 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kRodLift] = 0.8;
   p[kSupportFront] = 0.1, p[kSupportBack] = 0.07, p[kSupportSide] = 0.09, p[kAnkleReach] = 1.3;
   p[kStepGain] = 1.1, p[kStepOnset] = 0.12, p[kStepRelease] = 0.35, p[kStaticFriction] = 0.8;
+  p[kComHeight] = 1.07;
   return p;
 }
 

@@ -152,7 +152,7 @@ ReportSection SummarySection(const ReportSource& source) {
   facts.Add({"preset", o.preset});
   facts.Add({"posture", NameOf(o.model.posture)});
   facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
-  facts.Add({"feet", NameOf(o.model.stance)});
+  facts.Add({"feet", FeetOfFit(source.fit)});
   facts.Add({"self force", SelfForceText(o.self_force, o.model.learned.get())});
   if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.learned->rod)});
   facts.Add({"interaction", InteractionText(o.model)});

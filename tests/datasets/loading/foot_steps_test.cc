@@ -132,6 +132,36 @@ TEST(FootSteps, AShuffleIsNoStep) {
   EXPECT_TRUE(Found({60.0, 3.0, {{0.5, 2.5, 0.2, 0.0}}}).empty());
 }
 
+// Feet that stay, in the noise of markers, under a camera that drifts, with a heel that goes up and
+// down; and feet that end elsewhere without a step.
+TEST(FootSteps, TravelIsOfFeetThatEndElsewhere) {
+  for (bool toe : {true, false}) {
+    for (double noise : {0.001, 0.008}) {
+      KnownFoot stays{60.0, 1.5, {}, noise, 0.02};
+      stays.toe = toe;
+      EXPECT_NEAR(Travel(stays.Tracks(), stays.fps), 0.028, 0.01);
+      stays.steps = {{0.6, 0.9, 0.0, 0.0}};
+      stays.heel_lift = 0.1;
+      EXPECT_LT(Travel(stays.Tracks(), stays.fps), 0.04);
+      KnownFoot slides{60.0, 3.0, {{0.5, 2.5, 0.2, 0.0}}, noise};
+      slides.toe = toe;
+      EXPECT_NEAR(Travel(slides.Tracks(), slides.fps), 0.2, 0.01);
+    }
+  }
+}
+
+// Nobody who stands still steps, whatever the noise of the ankles, the only points there are.
+TEST(FootSteps, NoiseDoesNotMoveFeet) {
+  for (double fps : {60.0, 100.0}) {
+    for (double noise : {0.001, 0.005, 0.008}) {
+      KnownFoot foot{fps, 1.5, {}, noise};
+      foot.toe = false;
+      EXPECT_TRUE(Found(foot).empty()) << noise << " m at " << fps;
+      EXPECT_LT(Travel(foot.Tracks(), foot.fps), 0.015) << noise << " m at " << fps;
+    }
+  }
+}
+
 TEST(FootSteps, ARestPartsStepsAndAShortOneDoesNot) {
   EXPECT_EQ(Found({60.0, 2.0, {{0.4, 0.7, 0.3, 0.0}, {0.9, 1.2, 0.3, 0.0}}}).size(), 2u);
   EXPECT_EQ(Found({60.0, 2.0, {{0.4, 0.7, 0.3, 0.0}, {0.7, 1.0, 0.3, 0.0}}}).size(), 1u);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/fit/fit.h"
+#include "ident/fit/fit_setup.h"
 #include "ident/fit/step_probability.h"
 #include "ident/model/identified_model.h"
 #include "ident/prediction/evaluation.h"
@@ -74,6 +75,55 @@ TEST(StanceFit, NoisyRecordingsHoldTheTruthWithinTheirErrors) {
             << e->name << " " << e->value << " +- " << e->standard_error << " at noise " << noise;
       }
     }
+  }
+}
+
+// Feet that hold: pushes from all sides, gains that differ by direction.
+SyntheticOptions HeldStudy(double noise) {
+  SyntheticOptions study = StandingStudy(PushKind::kExternal, noise);
+  study.model.stance = Stance::kFixed;
+  study.parameters[kKpTheta] = 1300.0, study.parameters[kKpPhi] = 1600.0;
+  study.parameters[kKdTheta] = 330.0, study.parameters[kKdPhi] = 250.0;
+  study.parameters[kComHeight] = 1.05;
+  study.strengths = {{"weak", 0.4}, {"medium", 0.8}, {"strong", 1.2}};
+  study.direction_sigma_rad = 1.0;
+  study.noise_at_first_frame = false;
+  return study;
+}
+
+constexpr Parameter kHeld[] = {kKpTheta, kKpPhi, kKdTheta, kKdPhi, kComHeight};
+
+TEST(StanceFit, WhoStandsIsFittedStandingByDefault) {
+  const SyntheticOptions study = HeldStudy(0.002);
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = MakeFitOptions({}, &recordings).value();
+  ASSERT_EQ(options.model.stance, Stance::kFixed);
+  ASSERT_FALSE(PrepareFit(recordings, &options).has_value());
+  const FitResult fit = Fit(recordings, options);
+  ASSERT_TRUE(fit.ok()) << fit.message;
+  EXPECT_TRUE(fit.behaviour.settles);
+  for (Parameter id : kHeld) {
+    const Estimate* e = FindEstimate(fit.estimates, options.table[id].name);
+    ASSERT_NE(e, nullptr);
+    EXPECT_LT(std::abs(e->value - study.parameters[id]), 4.0 * e->standard_error)
+        << e->name << " " << e->value << " +- " << e->standard_error;
+  }
+  EXPECT_EQ(FindEstimate(fit.estimates, "mu"), nullptr);
+  for (const Combination& c : fit.derived) EXPECT_EQ(c.name.rfind("c_", 0), std::string::npos);
+}
+
+TEST(StanceFit, ExactStandingGivesTheTruthFromAnotherStart) {
+  const SyntheticOptions study = HeldStudy(0.0);
+  FitOptions options = MakeFitOptions({{"preset", "tail"}, {"stance", "fixed"}}).value();
+  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
+  options.sigma_source = SigmaSource::kFixed;
+  options.recording_weight = RecordingWeight::kFrame;
+  options.function_tolerance = 1e-16;
+  const FitResult fit = Fit(MakePendulums(study), options);
+  ASSERT_TRUE(fit.ok()) << fit.message;
+  for (Parameter id : kHeld) {
+    EXPECT_NEAR(fit.parameters[id], study.parameters[id], 1e-4 * study.parameters[id])
+        << options.table[id].name;
   }
 }
 

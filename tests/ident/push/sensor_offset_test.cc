@@ -117,6 +117,11 @@ TEST(SensorOffsetTest, Errors) {
   EXPECT_NEAR(times(1.0).value().gain, 1.0, 0.02);
   EXPECT_TRUE(Contains(times(0.001).error().ToString(), "the sensor's time cannot be found"));
   EXPECT_TRUE(Contains(times(-1.0).error().ToString(), "against the force"));
+  PushedRecording stands = pushed;
+  stands.recording.steps.assign(1, PersonSteps());
+  EXPECT_TRUE(
+      Contains(EstimateSensorOffset({stands.force}, stands.recording, 0, 0.5).error().ToString(),
+               "the feet do not move"));
   for (Eigen::Vector3d& force : pushed.force.record.force) force = {0.0, 0.0, 700.0};
   EXPECT_TRUE(Contains(message(0, 0.5), "no horizontal force"));
 }

@@ -71,6 +71,28 @@ TEST(StanceSensitivities, EqualJetsThroughTheSwitch) {
   EXPECT_GE(stood, 4);
 }
 
+// Who holds, leans at the start and has gains that differ by direction; and a net push, whose rows
+// hold the feet's reaction.
+TEST(StanceSensitivities, EqualJetsWhereFeetHold) {
+  Random random(78);
+  ModelOptions options = Threshold();
+  options.stance = Stance::kFixed;
+  ParameterSet<double> p = SteppingParameters();
+  p[kKpPhi] = 1500.0, p[kKdPhi] = 250.0;
+  for (PushKind kind : {PushKind::kExternal, PushKind::kNet, PushKind::kNetWithoutFriction}) {
+    for (double direction : {0.0, 0.5 * M_PI, -0.7}) {
+      Scene scene = PushedAtTheHip(kind == PushKind::kExternal ? 8.0 : 2.0, direction, &random);
+      scene.pushes[0].kind = kind;
+      PendulumRecording recording = RecordRollout(scene, options, {p}, kStanceFrames);
+      AddNoise(0.01, &random, &recording);
+      const ParameterMap map = EveryParameterMap({});
+      const auto problem = MakeRolloutProblem(recording, options, map, ResidualSigmas{}, 1.0, 0);
+      ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem),
+                            {SharedBlock(map, p)}, {1e-8, 1e-10, 1e-10});
+    }
+  }
+}
+
 // Across the place where the support changes from b to b_back, and at rest.
 TEST(StanceSensitivities, AreFiniteAtTheEdges) {
   const ModelOptions options = Threshold();

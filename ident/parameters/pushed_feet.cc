@@ -1,0 +1,63 @@
+// ident: feet that move, counted.
+#include "ident/parameters/pushed_feet.h"
+
+#include <set>
+
+namespace pushid {
+namespace {
+
+// Of all: more of them are everybody. In the published recordings of single people 30 of 32 step,
+// in those of groups 48 of the 49 who are pushed.
+constexpr double kEverybody = 0.75;
+
+std::string OfAll(const PushedFeet& feet) {
+  return std::to_string(feet.moved) + " of " + std::to_string(feet.seen) + " pushes";
+}
+
+}  // namespace
+
+PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings) {
+  PushedFeet feet;
+  for (const PendulumRecording& recording : recordings) {
+    if (!recording.StepsKnown()) continue;
+    std::set<int> pushed;
+    for (const ScenePush& push : recording.scene.pushes) pushed.insert(push.person);
+    for (int person : pushed) {
+      const PersonSteps& steps = recording.steps[person];
+      ++feet.seen;
+      feet.moved += steps.Moved();
+      feet.stepped += steps.Stepped();
+    }
+  }
+  return feet;
+}
+
+Stance StanceOf(const PushedFeet& feet) {
+  if (feet.seen == 0 || feet.moved >= kEverybody * feet.seen) return Stance::kSlide;
+  return feet.moved == 0 ? Stance::kFixed : Stance::kThreshold;
+}
+
+std::string FeetText(const PushedFeet& feet, Stance stance) {
+  if (feet.seen == 0) return "";
+  const char* const feet_do = stance == Stance::kSlide   ? "feet move freely"
+                              : stance == Stance::kFixed ? "feet hold"
+                                                         : "feet hold, then step";
+  return std::string(feet_do) + " (--stance=" + NameOf(stance) + "; they moved in " + OfAll(feet) +
+         ")";
+}
+
+std::string FeetWarning(const PushedFeet& feet, Stance stance) {
+  if (feet.seen == 0) return "";
+  if (stance == Stance::kSlide && feet.moved == 0) {
+    return "no pushed person's feet moved, but those of the model slide: drag and gains are not "
+           "those of people who stand; fit with --stance=fixed";
+  }
+  if (stance == Stance::kFixed && feet.moved > 0) {
+    return "feet moved in " + OfAll(feet) +
+           ", but those of the model hold: leave these recordings out, or fit with "
+           "--stance=threshold";
+  }
+  return "";
+}
+
+}  // namespace pushid

@@ -1,0 +1,38 @@
+// ident: what the feet of pushed people did, and which stance a fit takes from that.
+//
+//   PushedFeet feet = FeetOf(recordings);
+//   StanceOf(feet)            // kFixed: nobody's feet moved
+//   FeetText(feet, stance)    // "feet hold (--stance=fixed; they moved in 0 of 24 pushes)"
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/loading/pendulum_recording.h"
+#include "models/options.h"
+
+namespace pushid {
+
+// Pushed people whose feet were recorded; who is pushed in two recordings counts twice.
+struct PushedFeet {
+  int seen = 0;
+  int moved = 0;    // stepped, or were elsewhere at the end (PersonSteps::Moved)
+  int stepped = 0;  // left the ground (foot_steps.h)
+};
+
+// 1/s: stepping feet (models/stance.h) get their speed within 20 ms, and longer steps of the
+// rollout lag behind.
+inline constexpr double kLeastSteppingRate = 29.0;
+
+PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings);
+
+// Nobody moved: fixed. Three in four moved, or nobody's feet were recorded: slide. Else: threshold.
+Stance StanceOf(const PushedFeet& feet);
+
+// What the feet of a model do and what those of the recordings did; empty: none were recorded.
+std::string FeetText(const PushedFeet& feet, Stance stance);
+
+// What to warn of where the two contradict each other; empty: nothing.
+std::string FeetWarning(const PushedFeet& feet, Stance stance);
+
+}  // namespace pushid

@@ -1,0 +1,85 @@
+// models: a person whose feet hold, whatever happens: a body that turns about its ankles.
+//
+// What is above the ankles has the mass 0.97 M, its centre of mass at the height h = k l (l: the
+// rod, from ankles to hip; k: com_height) and the moment of inertia 1.15 m h^2 about the ankles. It
+// moves like the pendulum of ipm.h that has the same first moment and the same inertia,
+//   rod 1.15 k l,   point mass 0.97 M / 1.15,
+// on a cart that the ground holds. Sources: mass and k, Winter, Biomechanics and Motor Control of
+// Human Movement, 2009, tables 4.1 (k 1.09; de Leva 1996: 1.12); 1.15, Peterka, J. Neurophysiol.
+// 2002 (66 kg m^2 / 76 kg (0.87 m)^2), and de Leva's segments.
+//
+// With u the unit vector along the rod, u0 that of the reference posture and a the angle between
+// them, the ankles' torque is, about each angle q_i,
+//   -K t du/dq_i - Kd_i |du/dq_i|^2 q_i' + hold_i,   t = (a / sin a) (u cos a - u0), |t| = a,
+//   K = diag(Kp_theta, Kp_phi, their mean),   hold_i: of a force that balances gravity at u0,
+// which is the same in all directions where the gains are.
+// Rejected: the mass at the hip (0.9 M, no inertia of its own): of one simulated rigid body whose
+// pushes are known Kp comes out 10 to 16 % too low, and Kd as much too high.
+#pragma once
+
+#include "models/self_force.h"
+
+namespace pushid {
+
+inline constexpr double kMassAboveAnkles = 0.97;  // of the body's
+inline constexpr double kInertiaRatio = 1.15;     // about the ankles, over m h^2
+inline constexpr double kHeldFast = 1e8;          // 1/s, times the mass: the ground on held feet
+
+// The parameters of standing, which derivatives are taken by.
+template <typename T>
+struct StandingParameters {
+  static constexpr Parameter kIds[] = {kKpTheta, kKpPhi, kKdTheta, kKdPhi, kComHeight};
+  static constexpr int kCount = sizeof(kIds) / sizeof(kIds[0]);
+  T Kp[2], Kd[2], com_height;
+
+  // value(id): of a parameter.
+  template <typename Value>
+  explicit StandingParameters(const Value& value)
+      : Kp{value(kKpTheta), value(kKpPhi)},
+        Kd{value(kKdTheta), value(kKdPhi)},
+        com_height(value(kComHeight)) {}
+};
+
+// The pendulum that moves like the body.
+template <typename T>
+BodyOf<T> StandingBody(const Body& body, const T& com_height) {
+  constexpr double kShare = kMassAboveAnkles / kInertiaRatio / (1.0 - kCartShare);
+  return {T(kShare * body.mass), kInertiaRatio * body.rod_length * com_height, T(body.cart_height)};
+}
+
+// asin(s) / s by s^2: within 1e-4 up to 0.6 rad.
+template <typename T>
+T AngleOverSine(const T& s2) {
+  return 1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0 + s2 * (5.0 / 112.0 + s2 * (35.0 / 1152.0))));
+}
+
+// About both axes, N m.
+template <typename T>
+Eigen::Matrix<T, 2, 1> StandingTorque(const SelfForce& self, const StandingParameters<T>& p,
+                                      const Angles<T>& angles, const Vector4<T>& qd) {
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  Vector4<double> q0 = Vector4<double>::Zero();
+  q0.tail<2>() = self.posture;
+  const Angles<double> rest(q0);
+  const Vector3<double> u0{rest.s_th, -rest.c_th * rest.s_ph, rest.c_th * rest.c_ph};
+  const Vector3<T> u{s_th, -c_th * s_ph, c_th * c_ph};
+  const Vector3<T> by[2] = {{c_th, s_th * s_ph, -s_th * c_ph},
+                            {T(0.0), -c_th * c_ph, -c_th * s_ph}};
+  const T cosine = u[0] * u0[0] + u[1] * u0[1] + u[2] * u0[2];
+  const T stretch = self.scale.stiffness * AngleOverSine<T>(1.0 - cosine * cosine);
+  const T gains[] = {stretch * p.Kp[0], stretch * p.Kp[1], stretch * 0.5 * (p.Kp[0] + p.Kp[1])};
+  const bool holds = !self.hold.isZero(0.0);
+  const T moment =
+      (holds ? kMassAboveAnkles * kGravity * self.body.mass * self.body.rod_length / u0[2] : 0.0) *
+      p.com_height;
+  Eigen::Matrix<T, 2, 1> torque;
+  for (int i = 0; i < 2; ++i) {
+    torque[i] = -moment * (u0[0] * by[i][0] + u0[1] * by[i][1]);
+    for (int k = 0; k < 3; ++k) torque[i] -= gains[k] * (u[k] * cosine - u0[k]) * by[i][k];
+  }
+  torque[0] -= self.scale.damping * p.Kd[0] * qd[2];
+  torque[1] -= self.scale.damping * p.Kd[1] * c_th * c_th * qd[3];
+  return torque;
+}
+
+}  // namespace pushid
