@@ -28,10 +28,12 @@ std::map<std::string, std::map<std::string, Estimate>> PooledByUnit(const FitPro
       if (fitted[i].deviation < 0) continue;
       const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
       const int a = static_cast<int>(i), b = first + fitted[i].deviation;
-      const double variance = u.covariance(a, a) + u.covariance(b, b) + 2.0 * u.covariance(a, b);
-      const double error = std::sqrt(std::max(0.0, variance));
+      const Eigen::Index size = u.covariance.rows();
+      const ScatterOf of =
+          u.scatter.Of(Eigen::VectorXd::Unit(size, a) + Eigen::VectorXd::Unit(size, b));
       Estimate e;
-      e.freedom = std::min(u.estimates[i].freedom, u.estimates[b].freedom);
+      e.freedom = of.freedom;
+      e.quantile = of.quantile;
       e.standard_error_naive = std::numeric_limits<double>::quiet_NaN();  // not computed for sums
       // No better known than the shared value and its own deviation.
       const Estimate& worse =
@@ -39,14 +41,13 @@ std::map<std::string, std::map<std::string, Estimate>> PooledByUnit(const FitPro
       e.status = std::max(u.estimates[i].status, u.estimates[b].status);
       e.shares = worse.shares;
       e.shares.prior_pull = e.shares.settling_pull = 0.0;
-      const double quantile = StudentQuantile95(e.freedom);
       e.name = spec.name;
       e.unit = spec.unit;
       e.value = values[spec.id];
       const double center = ToFitted(spec.transform, e.value);
-      e.standard_error = error * TransformSlope(spec.transform, e.value);
-      e.lower95 = ToNatural(spec.transform, center - quantile * error);
-      e.upper95 = ToNatural(spec.transform, center + quantile * error);
+      e.standard_error = of.standard_error * TransformSlope(spec.transform, e.value);
+      e.lower95 = ToNatural(spec.transform, center - of.HalfWidth());
+      e.upper95 = ToNatural(spec.transform, center + of.HalfWidth());
       pooled[unit][spec.name] = e;
     }
     first += static_cast<int>(deviations.size());
