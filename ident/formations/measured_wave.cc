@@ -11,7 +11,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "ident/figures/text_table.h"
 #include "ident/prediction/propagation.h"
-#include "ident/uncertainty/statistics.h"
+#include "ident/problem/statistics.h"
 
 namespace pushid {
 namespace {
