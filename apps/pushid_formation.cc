@@ -99,7 +99,9 @@ std::string SpeedText(const WaveSpeed& wave, const WaveBands& bands) {
   return text;
 }
 
-void PrintWave(const FormationRun& run, const WaveBands& bands, bool as_setting) {
+// held: what no draw moves.
+void PrintWave(const FormationRun& run, const WaveBands& bands, const std::string& held,
+               bool as_setting) {
   const auto moved =
       std::count_if(run.summaries.begin(), run.summaries.end(),
                     [](const PersonSummary& person) { return person.onset_frame >= 0; });
@@ -108,6 +110,9 @@ void PrintWave(const FormationRun& run, const WaveBands& bands, bool as_setting)
   if (moved > 1) text += WhyNoSpeed(run.recording.scene);
   if (const std::optional<WaveSpeed> wave = SpeedOfWave(run)) text += SpeedText(*wave, bands);
   std::printf("%s\n", text.c_str());
+  if (bands.speed.draws > 0 && !held.empty()) {
+    std::printf("held by hand or by the preset, and so not in these intervals: %s\n", held.c_str());
+  }
   if (as_setting) {
     std::printf("no intervals: a model has no covariance of the values of one setting\n");
   }
@@ -186,7 +191,7 @@ int Run() {
   if (error) return Fail(*error);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run, !flags.value().names.empty());
-  PrintWave(run, bands, as_setting);
+  PrintWave(run, bands, HeldInDraws(fitted.value(), named.set), as_setting);
   PrintFitWarnings(fitted.value());
   return PrintFutures(drawn.value(), model.value(), run.recording, run.num_frames());
 }

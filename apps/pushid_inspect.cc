@@ -10,10 +10,14 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/column_mapping.h"
+#include "ident/formations/measured_wave.h"
 #include "ident/report/inspection_svg.h"
 
 DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");
 DEFINE_string(svg_out, "", "draw hip, gaps and forces here (SVG); for one file");
+DEFINE_bool(wave, false,
+            "instead: how a push travels through the people of trajectories, of a table with a "
+            "point for each person, or of a manifest's groups; no model and no fit");
 
 namespace {
 
@@ -26,6 +30,7 @@ MaybeError CheckFlags() {
     return Error{"name one or more files to inspect; see pushid-inspect --help"};
   }
   if (FLAGS_svg_out.empty()) return std::nullopt;
+  if (FLAGS_wave) return Error{"--wave draws nothing; leave --svg_out out"};
   if (g_files.size() > 1) {
     return Error{"--svg_out draws one file, not " + std::to_string(g_files.size())};
   }
@@ -33,8 +38,27 @@ MaybeError CheckFlags() {
   return CheckOutputFiles({FLAGS_svg_out});
 }
 
+int RunWaves() {
+  std::vector<MeasuredWave> all;
+  int outcome = kDone;
+  for (const std::string& file : g_files) {
+    const Result<std::vector<MeasuredWave>> waves = MeasureWaves(file);
+    if (!waves.ok()) {
+      outcome = Fail(waves.error());
+      continue;
+    }
+    for (const MeasuredWave& wave : waves.value()) {
+      std::printf("%s\n", WaveText(wave).c_str());
+      all.push_back(wave);
+    }
+  }
+  std::printf("%s", WavesText(all).c_str());
+  return outcome;
+}
+
 int Run() {
   if (MaybeError error = CheckFlags()) return Fail(*error);
+  if (FLAGS_wave) return RunWaves();
   const Result<ColumnMapping> mapping =
       FLAGS_mapping.empty() ? ColumnMapping() : ReadColumnMapping(FLAGS_mapping);
   if (!mapping.ok()) return Fail(mapping.error());
@@ -70,6 +94,7 @@ int main(int argc, char** argv) {
       "warns about units, axes, rate, gaps, jumps, standing height, start and onset.\n\n"
       "  pushid-inspect trial.c3d other.trc\n"
       "  pushid-inspect table.csv --mapping=mapping.json\n"
-      "  pushid-inspect trial.c3d --svg_out=trial.svg",
+      "  pushid-inspect trial.c3d --svg_out=trial.svg\n"
+      "  pushid-inspect --wave crowd1.txt crowd2.txt",
       Run, &g_files);
 }

@@ -10,6 +10,10 @@
 
 namespace pushid {
 
+// Models that come with the programs, as --model=pushid:NAME: PREFIX/share/pushid/models/NAME.json
+// beside PREFIX/bin, where the programs are; in the build folder alike (apps/CMakeLists.txt).
+inline constexpr char kShippedPrefix[] = "pushid:";
+
 struct ModelFlags {
   std::string file;  // that pushid-fit --model_out wrote
   std::string set;   // what-if values, name=value comma-separated

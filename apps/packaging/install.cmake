@@ -38,6 +38,7 @@ foreach(program ${programs})
 endforeach()
 install(DIRECTORY apps/workflow DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs
         USE_SOURCE_PERMISSIONS)
+install(DIRECTORY ${PROJECT_BINARY_DIR}/share/pushid/models DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs)
 install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 
 set(CPACK_GENERATOR DEB)

@@ -77,6 +77,12 @@ static_assert(RowsAreInOrder(kMotionFormats), "RowOf finds a row by its value");
 inline bool HasSkeleton(MotionFormat format) { return RowOf(format).read == nullptr; }
 // Whether its points are people of a crowd.
 inline bool HoldsCrowd(MotionFormat format) { return RowOf(format).write_crowd != nullptr; }
+// Why recordings of people cannot be made of such a file.
+inline constexpr char kCrowdIsNoRecording[] =
+    "a file of trajectories holds one point for each person of a group: no recording of one "
+    "person, and nothing can be fitted to it without their ankles; pushid-inspect --wave measures "
+    "how a push travels through the group, pushid-formation --formation places people as they "
+    "stand; a tracker's numbered markers need \"joints\" (in a mapping file or the manifest)";
 // As people write it: "BVH", "C3D", ...
 inline std::string Title(MotionFormat format) { return RowOf(format).title; }
 

@@ -38,6 +38,10 @@ class Maker {
                    " must end like its files: " + MotionFileEndings()};
     }
     format_ = *format;
+    if (HoldsCrowd(format_) && options_.mapping.empty()) {
+      return Error{"the pattern " + Quoted(options_.pattern) + " names trajectories; " +
+                   kCrowdIsNoRecording};
+    }
     if (!options_.up.empty() || !options_.forward.empty()) {
       const Result<Eigen::Matrix3d> axes =
           AxesRotation(options_.up.empty() ? "z" : options_.up,

@@ -40,6 +40,9 @@ class PersonLoader {
     }
     const JointMapping joints =
         Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
+    if (HoldsCrowd(entry_.motion_format) && !joints.hip) {
+      return Error{kCrowdIsNoRecording, path_};
+    }
     Result<FileMotion> read = ReadFileMotion(
         {path_, entry_.motion_format, MetresGiven(), joints, mapping_, options_.keep_all_joints,
          entry_.first_frame, [this](const std::string& warning) { Warn(warning); }});

@@ -24,19 +24,20 @@ std::map<std::string, Estimate>& PooledOf(const std::string& unit, const FitProb
 // Of the sum of estimates a and b, which are a shared value and a deviation from it.
 void AddErrors(const Uncertainty& u, int a, int b, const ParameterSpec& spec, Estimate* sum) {
   const Estimate &shared = u.estimates[a], &deviation = u.estimates[b];
-  const double variance = u.covariance(a, a) + u.covariance(b, b) + 2.0 * u.covariance(a, b);
-  const double error = std::sqrt(std::max(0.0, variance));
-  sum->freedom = std::min(shared.freedom, deviation.freedom);
+  const Eigen::Index size = u.covariance.rows();
+  const ScatterOf of =
+      u.scatter.Of(Eigen::VectorXd::Unit(size, a) + Eigen::VectorXd::Unit(size, b));
+  sum->freedom = of.freedom;
+  sum->quantile = of.quantile;
   sum->standard_error_naive = std::numeric_limits<double>::quiet_NaN();  // not computed for sums
   // No better known than the shared value and its own deviation.
   sum->status = std::max(shared.status, deviation.status);
   sum->shares = shared.shares.data < deviation.shares.data ? shared.shares : deviation.shares;
   sum->shares.prior_pull = sum->shares.settling_pull = 0.0;
-  const double quantile = StudentQuantile95(sum->freedom);
   const double center = ToFitted(spec.transform, sum->value);
-  sum->standard_error = error * TransformSlope(spec.transform, sum->value);
-  sum->lower95 = ToNatural(spec.transform, center - quantile * error);
-  sum->upper95 = ToNatural(spec.transform, center + quantile * error);
+  sum->standard_error = of.standard_error * TransformSlope(spec.transform, sum->value);
+  sum->lower95 = ToNatural(spec.transform, center - of.HalfWidth());
+  sum->upper95 = ToNatural(spec.transform, center + of.HalfWidth());
 }
 
 }  // namespace

@@ -80,6 +80,13 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
     return Error{"--likelihood=" + NameOf(options.likelihood) +
                  " needs process noise, and --process_noise is none"};
   }
+  for (const char* name : {"fix", "free", "prior"}) {
+    const std::string* named = Find(given, name);
+    if (named == nullptr) continue;
+    const MaybeError error =
+        CheckTouching(*named, std::string("--") + name, options.table, options.model);
+    if (error) return error;
+  }
   for (const char* name : {"pool_by", "pooling_sigma"}) {
     if (AnyPooled(options.table) || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name +

@@ -15,7 +15,7 @@ std::vector<Agreement> ClusteredRows(const FitResult& result) {
     rows.push_back({e.name,
                     e.unit,
                     e.value,
-                    e.freedom,
+                    e.quantile,
                     {e.standard_error, e.lower95, e.upper95},
                     {},
                     {},
@@ -27,7 +27,7 @@ std::vector<Agreement> ClusteredRows(const FitResult& result) {
     rows.push_back({c.name,
                     c.unit,
                     c.value,
-                    c.freedom,
+                    c.quantile,
                     {c.standard_error, c.lower95, c.upper95},
                     {},
                     {},
@@ -55,8 +55,7 @@ std::vector<Agreement> CompareIntervals(const FittedModel& model) {
   for (Agreement& row : rows) {
     for (const Profile& p : model.profiles) {
       if (p.name != row.name) continue;
-      const double t = StudentQuantile95(row.freedom);
-      row.profile = Interval{(p.upper95 - p.lower95) / (2.0 * t), p.lower95, p.upper95};
+      row.profile = Interval{(p.upper95 - p.lower95) / (2.0 * row.quantile), p.lower95, p.upper95};
       row.classification = p.classification;
       row.by_data_alone = p.by_data_alone;
     }

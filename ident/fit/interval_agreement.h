@@ -9,16 +9,12 @@
 
 namespace pushid {
 
-struct Interval {
-  double standard_error = 0.0;  // a profile has none: half its width over Student's t
-  double lower = 0.0, upper = 0.0;
-};
-
 // One number as clustered covariance, profile and bootstrap see it.
 struct Agreement {
   std::string name, unit;
   double value = 0.0;
-  double freedom = 1.0;  // of the clustered interval's and the profile's Student's t
+  double quantile =
+      2.0;  // half-width over standard error, of the clustered interval and the profile
   Interval clustered;
   std::optional<Interval> profile, bootstrap;
   std::optional<ProfileClass> classification, by_data_alone;

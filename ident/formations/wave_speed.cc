@@ -3,8 +3,10 @@
 
 #include <algorithm>
 
+#include "datasets/files/number_text.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/prediction/propagation.h"
+#include "models/self_terms.h"
 
 namespace pushid {
 
@@ -82,6 +84,23 @@ SpeedBand BandOfSpeed(const std::vector<std::vector<int>>& draws, const Scene& s
 }
 
 }  // namespace
+
+std::string HeldInDraws(const FittedModel& model, const std::string& set) {
+  std::string held;
+  const auto add = [&held](const std::string& text) { held += (held.empty() ? "" : ", ") + text; };
+  const Result<std::vector<NamedValue>> values = ParseAssignments(set, "--set");
+  const std::vector<NamedValue> replaced = values.ok() ? values.value() : std::vector<NamedValue>();
+  for (const Estimate& e : model.fit.estimates) {
+    const ParameterSpec* spec = model.fit.options.table.Find(e.name);
+    const bool again = std::any_of(replaced.begin(), replaced.end(),
+                                   [&e](const NamedValue& one) { return one.name == e.name; });
+    const bool convention = spec != nullptr && HeldByConvention(spec->id);
+    if (e.status != EstimateStatus::kFixed || again || convention) continue;
+    add(e.name + " = " + Rounded(e.value, 4));
+  }
+  for (const NamedValue& one : replaced) add(one.name + " = " + Rounded(one.value, 4) + " (--set)");
+  return held;
+}
 
 WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run) {
   const std::vector<std::vector<int>> draws = DrawnOnsets(model, set, run);

@@ -50,6 +50,10 @@ struct WaveBands {
   int failed = 0;  // draws whose rollout left the model's domain; nobody moves in them
 };
 
+// "contact_height = 0.5, mu = 20 (--set)": what was held in the fit or is set, so that no draw
+// moves it; empty: nothing.
+std::string HeldInDraws(const FittedModel& model, const std::string& set);
+
 // Empty where the model has neither covariance nor bootstrap. set: what --set replaces in every
 // draw.
 WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run);

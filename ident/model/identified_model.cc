@@ -49,6 +49,9 @@ IdentifiedModel ModelOf(const FitResult& result) {
 MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
   const Result<std::vector<NamedValue>> values = ParseAssignments(assignments, "--set");
   if (!values.ok()) return values.error();
+  if (MaybeError error = CheckTouching(assignments, "--set", model->table, model->options)) {
+    return error;
+  }
   TableEdits edits;
   edits.set = assignments;
   if (MaybeError error = EditTable(edits, &model->table)) return error;

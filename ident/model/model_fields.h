@@ -48,6 +48,24 @@ void WarningFields(Archive& a, const std::string& key, Warnings& warnings) {
 // Estimates.
 
 template <class Archive>
+void Fields(Archive& a, Interval& i) {
+  a("standard_error", i.standard_error);
+  a.Pair("interval_95", i.lower, i.upper);
+}
+
+// Models of older versions have Student's quantile everywhere.
+template <class Archive>
+void QuantileField(Archive& a, double* quantile) {
+  if (a.Has("quantile")) {
+    a("quantile", *quantile);
+  } else if (a.Has("freedom")) {
+    double freedom = 1.0;
+    a("freedom", freedom);
+    *quantile = StudentQuantile95(freedom);
+  }
+}
+
+template <class Archive>
 void Fields(Archive& a, Estimate& e) {
   // Models written before shares were computed say nothing of them, nor of degrees of freedom.
   const bool shares = a.Has("shares");
@@ -58,6 +76,7 @@ void Fields(Archive& a, Estimate& e) {
   a.Pair("interval_95", e.lower95, e.upper95);
   if (shares) {
     a("freedom", e.freedom);
+    QuantileField(a, &e.quantile);
     a.Group("shares", [&](auto& g) {
       g("data", e.shares.data);
       g("prior", e.shares.prior);
@@ -75,6 +94,7 @@ void Fields(Archive& a, Estimate& e) {
       g.Pair("interval_95", total.lower95, total.upper95);
     });
   }
+  a.Optional("these_people", e.these);
   a("unit", e.unit);
   a("status", e.status);
 }
@@ -85,7 +105,8 @@ void Fields(Archive& a, Combination& c) {
   a("value", c.value);
   a("standard_error", c.standard_error);
   a.Pair("interval_95", c.lower95, c.upper95);
-  if (a.Has("freedom")) a("freedom", c.freedom);
+  QuantileField(a, &c.quantile);
+  a.Optional("these_people", c.these);
   a("unit", c.unit);
 }
 
@@ -117,6 +138,10 @@ void Fields(Archive& a, Uncertainty& u) {
       });
   if (a.Has("two_way")) a("two_way", u.two_way);
   a("clusters", u.num_clusters);
+  if (a.Has("people")) {
+    a("people", u.num_people);
+    a("about_people_like_them", u.about_people_like_them);
+  }
   a("residuals", u.num_residuals);
   if (a.Has("full_hessian")) a("full_hessian", u.full_hessian);
   a("sigma", u.sigma);

@@ -229,6 +229,18 @@ Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const 
   return values;
 }
 
+MaybeError CheckTouching(const std::string& assignments, const std::string& flag,
+                         const ParameterTable& table, const ModelOptions& model) {
+  for (const std::string& part : NonEmptyParts(assignments, ',')) {
+    const ParameterSpec* spec = table.Find(part.substr(0, part.find('=')));
+    if (spec == nullptr || !IsPairParameter(spec->id) || Acts(spec->id, model)) continue;
+    return Error{flag + " names " + spec->name +
+                 ", which acts only between people who touch, and this model has no contact; leave "
+                 "it out, or fit with --preset=group or --interaction=spring,damping"};
+  }
+  return std::nullopt;
+}
+
 bool PoolsAllOrNone(const std::string& pool) {
   return pool == "none" || pool.substr(0, pool.find(',')) == "all";
 }

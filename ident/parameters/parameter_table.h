@@ -100,6 +100,10 @@ struct TableEdits {
 };
 MaybeError EditTable(const TableEdits& edits, ParameterTable* table);
 
+// Names that act only between people who touch must not be given where nobody does.
+MaybeError CheckTouching(const std::string& assignments, const std::string& flag,
+                         const ParameterTable& table, const ModelOptions& model);
+
 // Whether what a pool lists holds for any table: no name in it need be free.
 bool PoolsAllOrNone(const std::string& pool);
 

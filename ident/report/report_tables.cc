@@ -3,22 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/parameters/option_names.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/problem/pooling_spread.h"
-#include "models/self_terms.h"
 
 namespace pushid {
 
 namespace {
-
-std::string BracketText(double lower, double upper) {
-  return "[" + Rounded(lower, 4) + ", " + Rounded(upper, 4) + "]";
-}
 
 // Settings in which a harder push does not move the line on farther.
 std::string NoFartherText(const Behaviour& b) {
@@ -38,128 +31,6 @@ std::string NoFartherText(const Behaviour& b) {
 }
 
 }  // namespace
-
-std::string SharesText(const Shares& s) {
-  const auto percent = [](double share) { return Rounded(std::round(100.0 * share), 3); };
-  return percent(s.data) + "/" + percent(s.prior) + "/" + percent(s.settling);
-}
-
-std::string PullText(const Estimate& e) {
-  if (e.standard_error <= 0.0) return "-";
-  const double pull = (e.shares.prior_pull + e.shares.settling_pull) / e.standard_error;
-  return (pull > 0.0 ? "+" : "") + Rounded(pull, 2);
-}
-
-TextTable EstimateTable(const FitResult& result) {
-  TextTable table({"parameter", "value", "std error", "95 % interval", "total 95 %", "unit",
-                   "status", "data/prior/settling, %", "pull, errors", "prior"},
-                  {true, false, false, true, true, true, true, true, false, true});
-  for (const Estimate& e : result.estimates) {
-    const ParameterSpec* spec = result.options.table.Find(e.name);
-    if (e.status == EstimateStatus::kFixed) {
-      table.Add({e.name, Rounded(e.value, 4), "-", "-", "-", e.unit, "fixed", "-", "-", ""});
-      continue;
-    }
-    const std::string prior =
-        spec != nullptr && spec->prior
-            ? Rounded(spec->prior->mean, 3) + " +- " + Rounded(spec->prior->sigma, 3)
-            : "";
-    const bool unknown = e.status == EstimateStatus::kUnidentifiable;
-    const bool no_shares = unknown || e.status == EstimateStatus::kAtBound;
-    const bool no_error = no_shares && e.standard_error <= 0.0;
-    const std::string error = no_error ? "-" : Rounded(e.standard_error, 3);
-    table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
-               unknown || no_error ? "-" : BracketText(e.lower95, e.upper95),
-               e.total && !no_shares ? BracketText(e.total->lower95, e.total->upper95) : "-",
-               e.unit, NameOf(e.status), no_shares ? "-" : SharesText(e.shares),
-               no_shares ? "-" : PullText(e), prior});
-  }
-  return table;
-}
-
-std::string IdentifiedText(const FitResult& result) {
-  int free = 0, identified = 0;
-  std::string others;
-  for (const EnumName<EstimateStatus>& status : Names(EstimateStatus())) {
-    if (status.value == EstimateStatus::kFixed) continue;
-    std::string names;
-    for (const Estimate& e : result.estimates) {
-      if (e.status != status.value) continue;
-      ++free;
-      names += (names.empty() ? "" : ", ") + e.name;
-      identified += e.status == EstimateStatus::kIdentified;
-    }
-    if (status.value == EstimateStatus::kIdentified || names.empty()) continue;
-    others += "; " + std::string(status.name) + ": " + names;
-  }
-  const std::string all = std::to_string(free);
-  if (free > 0 && identified == free) {
-    return free == 1 ? "The free parameter is identified by the data."
-                     : "All " + all + " free parameters are identified by the data.";
-  }
-  return std::to_string(identified) + " of " + all + " free parameters " +
-         (identified == 1 ? "is" : "are") + " identified" + others + ".";
-}
-
-std::string SharesNote() {
-  return "Shares: fractions of a value's variance due to the data, its prior and the settling "
-         "constraint. Pull: shift of the value by prior and constraint together, in standard "
-         "errors. Prior-held: the data account for less than half.";
-}
-
-std::string HowSure(const FitResult& result) {
-  const Uncertainty& u = result.uncertainty;
-  if (!u.clustered)
-    return "standard errors: naive (the scatter cannot be estimated from a single cluster)\n";
-  double least = std::numeric_limits<double>::infinity(), most = 0.0;
-  for (const Estimate& e : result.estimates) {
-    if (e.status == EstimateStatus::kFixed) continue;
-    least = std::min(least, e.freedom);
-    most = std::max(most, e.freedom);
-  }
-  const bool people = u.clustered_by == ClusterBy::kSubject;
-  return "standard errors: clustered by " +
-         std::string(people ? (u.two_way ? "person and by recording" : "person") : "recording") +
-         " (" + std::to_string(u.num_clusters) + (people ? " people" : " recordings") +
-         "; Student's t with " + Rounded(least, 2) + " to " + Rounded(most, 2) +
-         " degrees of freedom)" +
-         (u.too_few_clusters ? "; correlations are those of independent frames" : "") + "\n";
-}
-
-std::string FeetOfFit(const FitResult& result) {
-  const Stance stance = result.options.model.stance;
-  return result.feet ? FeetText(*result.feet, stance) : "stance " + NameOf(stance);
-}
-
-TextTable DerivedTable(const FitResult& result) {
-  TextTable table({"derived", "value", "std error", "95 % interval", "unit"},
-                  {true, false, false, true, true});
-  for (const Combination& c : result.derived) {
-    const bool fixed = c.standard_error == 0.0;
-    table.Add({c.name, Rounded(c.value, 4), fixed ? "-" : Rounded(c.standard_error, 3),
-               fixed ? "-" : BracketText(c.lower95, c.upper95), c.unit});
-  }
-  return table;
-}
-
-std::string ConventionText(const FitResult& result) {
-  const ParameterTable& specs = result.options.table;
-  const std::string quoted =
-      "Gains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
-      NameOf(result.options.model.gain_scaling) + ").\n";
-  if (!Acts(kMu, result.options.model)) return quoted;
-  bool fitted = false;
-  std::string held;
-  for (const CartDamping& c : CartDampings(result.options.model.friction)) {
-    fitted = fitted || specs[c.gain].free;
-    held += (held.empty() ? "" : ", ") + specs[c.gain].name + " = " +
-            Rounded(result.parameters[c.gain], 4);
-  }
-  return "mu and Kp act on the same velocity: only c = mu + Kp is identifiable. " +
-         (fitted ? std::string("Here Kp is fitted too.")
-                 : "Convention: " + held + " N s/m held, mu = c - Kp.") +
-         "\n" + quoted;
-}
 
 std::string CorrelationText(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;

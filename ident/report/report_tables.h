@@ -9,6 +9,8 @@
 
 namespace pushid {
 
+// "[1.2, 3.4]"
+std::string BracketText(double lower, double upper);
 // "97/3/0", and what priors and settling together moved the value by, in its standard errors.
 std::string SharesText(const Shares& shares);
 std::string PullText(const Estimate& estimate);
@@ -20,6 +22,9 @@ std::string IdentifiedText(const FitResult& result);
 // What the columns of shares and pulls mean.
 std::string SharesNote();
 
+// Whom errors and status are about: these people, or people like them.
+std::string TargetText(const FitResult& result);
+// How errors were estimated, and whom they are about.
 std::string HowSure(const FitResult& result);
 
 // What the feet of the model do, and why.

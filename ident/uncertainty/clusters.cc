@@ -28,6 +28,8 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
   }
   const bool people = clusters.by == ClusterBy::kSubject;
   clusters.two_way = people && shared;
+  clusters.people = static_cast<int>(times.size());
+  clusters.draws_people = times.size() > 1 && (people || (!repeated && !shared));
   for (size_t i = 0; i < recordings.size(); ++i) {
     const PendulumRecording& r = recordings[i];
     std::vector<int> of;
@@ -57,7 +59,8 @@ Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
     }
     rows.first.of_row.push_back(clusters.of[recording][score.person_of_row[row]]);
   }
-  if (clusters.two_way) rows.second = ClusterByRecording(score);
+  rows.two_way = clusters.two_way;
+  if (clusters.by == ClusterBy::kSubject) rows.recordings = ClusterByRecording(score);
   return rows;
 }
 
@@ -156,6 +159,7 @@ ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hess
     u.back() = v * u.back();
   }
   ClusteredCovariance result;
+  const double most = std::max(1.0, static_cast<double>(groups) - 1.0);
   const Eigen::MatrixXd centred = Centred(moves);
   result.covariance = centred * centred.transpose();
   result.freedom.resize(size);
@@ -165,7 +169,8 @@ ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hess
     Eigen::MatrixXd w = -at.transpose() * at;
     w.diagonal() += own.row(c).transpose();
     const double squares = w.squaredNorm();
-    result.freedom[c] = squares > 0.0 ? std::max(1.0, w.trace() * w.trace() / squares) : 1.0;
+    result.freedom[c] =
+        squares > 0.0 ? std::clamp(w.trace() * w.trace() / squares, 1.0, most) : 1.0;
   }
   return result;
 }

@@ -21,6 +21,8 @@ namespace pushid {
 struct Clusters {
   ClusterBy by = ClusterBy::kRecording;  // kAuto decided
   bool two_way = false;
+  int people = 0;                  // different ones
+  bool draws_people = false;       // every cluster is a person: errors are about people like them
   std::vector<std::string> names;  // of the clusters: people or recordings
   // Cluster of every [recording][person].
   std::vector<std::vector<int>> of;
@@ -35,6 +37,8 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
 
 // Of fewer clusters the standard errors are uncertain themselves.
 inline constexpr int kFewClusters = 10;
+// Of fewer people nothing is identified about people like them.
+inline constexpr int kFewestPeople = 4;
 
 // The covariance that clusters of rows leave, and how well it is itself known.
 //
@@ -43,7 +47,8 @@ inline constexpr int kFewClusters = 10;
 //   CR2     V = sum over g of D_g D_g', D_g centred,  D_g = H^-1/2 (1 - M_g)^-1/2 H^-1/2 s_g
 //           (Bell & McCaffrey 2002; Pustejovsky & Tipton 2018, with the identity as working model)
 //   df_c    Satterthwaite's degrees of freedom of c'Vc: with p_g = (1 - P_gg)^-1/2 J_g H^-1 c and
-//           W_gh = p_g' (1 - P)_gh p_h,  P = J H^-1 J':  df = (sum W_gg)^2 / sum W_gh^2
+//           W_gh = p_g' (1 - P)_gh p_h,  P = J H^-1 J':  df = (sum W_gg)^2 / sum W_gh^2, at most
+//           G - 1, as centred D_g have
 // It assumes that clusters are independent and the rest of the model right on average. A
 // coefficient that leans on few of the clusters has few degrees of freedom, however many clusters
 // there are.
@@ -60,11 +65,12 @@ struct RowClusters {
 };
 RowClusters ClusterByRecording(const JacobianBlocks& score);
 
-// How the rows of data are clustered: one way, or two.
+// How the rows of data are clustered: one way, or two. recordings: where `first` is people.
 struct Clustering {
-  RowClusters first, second;
+  RowClusters first, recordings;
   int pooled_units = 0;         // whose deviations are draws
   bool priors_scatter = false;  // centres of priors are draws too, by their own width
+  bool two_way = false;
 };
 
 // The rows of a problem's data by these clusters.
@@ -84,7 +90,7 @@ ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clust
 // hessian: of the cost, in the same coordinates. coefficients: rows c whose freedom is asked for.
 struct ClusteredCovariance {
   Eigen::MatrixXd covariance;
-  Eigen::VectorXd freedom;  // of each coefficient; at least 1
+  Eigen::VectorXd freedom;  // of each coefficient; 1 to G - 1
 };
 ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hessian,
                         const Eigen::MatrixXd& coefficients);

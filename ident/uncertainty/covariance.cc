@@ -45,12 +45,6 @@ RowClusters Crossed(const RowClusters& first, const RowClusters& second) {
   return both;
 }
 
-// Variances va and vb with their degrees of freedom, added up (Satterthwaite).
-double Freedom(double va, double fa, double vb, double fb) {
-  const double sum = va * va / fa + vb * vb / fb;
-  return sum > 0.0 ? (va + vb) * (va + vb) / sum : fa;
-}
-
 // The rows of one of FitProblem's clusters, or those of all recordings.
 std::vector<int> RowsWhere(const JacobianBlocks& score, bool data, int cluster) {
   std::vector<int> rows;
@@ -88,42 +82,45 @@ void SplitHessian(const JacobianBlocks& score, const Eigen::MatrixXd& back, Cova
   c->settling_gradient = Gradient(score, settling);
 }
 
-// What draws scatter, known with so many degrees of freedom.
-void AddScatter(const Eigen::MatrixXd& scatter, double freedom, Covariance* c) {
-  for (Eigen::Index i = 0; i < c->freedom.size(); ++i) {
-    c->freedom[i] = Freedom(c->clustered(i, i), c->freedom[i], scatter(i, i), freedom);
-  }
-  c->clustered += scatter;
-}
-
-void AddClustered(const JacobianBlocks& score, const Clustering& clustering,
-                  const Eigen::MatrixXd& back, const Eigen::MatrixXd& hessian, Covariance* c) {
-  const ClusterScores first = GatherScores(score, clustering.first, back);
-  if (first.scores.cols() < 2) return;
+// What the recordings scatter, one way or two.
+Scatter::Part DataScatter(const JacobianBlocks& score, const Clustering& clustering,
+                          const ClusterScores& first, const Eigen::MatrixXd& back,
+                          const Eigen::MatrixXd& hessian) {
   const ClusteredCovariance one = Cr2(first, hessian, back);
   Eigen::MatrixXd inner = one.covariance;
-  c->freedom = one.freedom;
-  if (clustering.second.count > 1) {
-    const ClusteredCovariance two =
-        Cr2(GatherScores(score, clustering.second, back), hessian, Eigen::MatrixXd(0, back.cols()));
+  if (clustering.two_way) {
+    const ClusteredCovariance two = Cr2(GatherScores(score, clustering.recordings, back), hessian,
+                                        Eigen::MatrixXd(0, back.cols()));
     const ClusterScores both =
-        GatherScores(score, Crossed(clustering.first, clustering.second), back);
+        GatherScores(score, Crossed(clustering.first, clustering.recordings), back);
     const Eigen::MatrixXd moves = SolveSymmetric(hessian, both.scores);
     inner = WithoutNegative(one.covariance + two.covariance - moves * moves.transpose());
   }
-  c->clustered = back * inner * back.transpose();
+  return {back * inner * back.transpose(), one.freedom};
+}
+
+// Empty with fewer than two clusters. inverse_hessian: in the columns as they came.
+Scatter ClusteredScatter(const JacobianBlocks& score, const Clustering& clustering,
+                         const Eigen::MatrixXd& back, const Eigen::MatrixXd& hessian,
+                         const Eigen::MatrixXd& inverse_hessian) {
+  Scatter scatter;
+  const ClusterScores first = GatherScores(score, clustering.first, back);
+  if (first.scores.cols() < 2) return scatter;
+  scatter.parts.push_back(DataScatter(score, clustering, first, back, hessian));
+  const auto add = [&](int cluster, double freedom) {
+    scatter.Add(
+        inverse_hessian * Information(score, RowsWhere(score, false, cluster)) * inverse_hessian,
+        freedom);
+  };
   constexpr double kCertain = std::numeric_limits<double>::infinity();
-  if (clustering.priors_scatter) {
-    AddScatter(c->inverse_hessian *
-                   Information(score, RowsWhere(score, false, FitProblem::kPriorCluster)) *
-                   c->inverse_hessian,
-               kCertain, c);
-  }
-  if (clustering.pooled_units < 2) return;
-  AddScatter(c->inverse_hessian *
-                 Information(score, RowsWhere(score, false, FitProblem::kPoolingCluster)) *
-                 c->inverse_hessian,
-             clustering.pooled_units - 1.0, c);
+  if (clustering.priors_scatter) add(FitProblem::kPriorCluster, kCertain);
+  if (clustering.pooled_units > 1) add(FitProblem::kPoolingCluster, clustering.pooled_units - 1.0);
+  return scatter;
+}
+
+// The same with recordings as clusters.
+Clustering ByRecordingAlone(const Clustering& clustering) {
+  return {clustering.recordings, {}, clustering.pooled_units, clustering.priors_scatter, false};
 }
 
 }  // namespace
@@ -182,7 +179,11 @@ Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd&
     if (c.full_hessian) hessian = full;
   }
   c.inverse_hessian = back * SolveSymmetricTransposed(hessian, back);
-  AddClustered(score, clustering, back, hessian, &c);
+  c.scatter = ClusteredScatter(score, clustering, back, hessian, c.inverse_hessian);
+  if (clustering.recordings.count > 1) {
+    c.these =
+        ClusteredScatter(score, ByRecordingAlone(clustering), back, hessian, c.inverse_hessian);
+  }
   if (score.clusters.size() < 2) return c;
   c.recordings = score.clusters;
   c.moves = LeftOutMoves(score, c.inverse_hessian);

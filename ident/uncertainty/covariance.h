@@ -6,10 +6,10 @@
 //   naive      sigma^2 (J'J)^-1, sigma^2 = |r|^2 / (N - rank): rows taken as independent
 //   clustered  CR2 over clusters of rows (clusters.h). Where rows are clustered two ways,
 //              V_first + V_second - V_both. Deviations of pooled units are draws, and what they
-//              scatter is added, by their own prior's spread: H^-1 J_p'J_p H^-1. So is what a
-//              prior's centre scatters: where data say little the error is the prior's width, where
-//              they say all it is the sandwich, and where the data's scores scatter as their weight
-//              says it is the posterior's, H^-1.
+//              scatter is a second part, by their own prior's spread: H^-1 J_p'J_p H^-1. So is what
+//              a prior's centre scatters: where data say little the error is the prior's width,
+//              where they say all it is the sandwich, and where the data's scores scatter as their
+//              weight says it is the posterior's, H^-1. How parts go together: scatter.h.
 // What leaving a recording out would move: H^-1 s_g G / (G - 1), one step with the mean Hessian of
 // the rest. Against refits of the 32 single-person recordings it is off by 15 % (root mean square
 // over all moves); by H less the recording's own J_g'J_g by 39 %, less its second derivatives too
@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "ident/uncertainty/clusters.h"
+#include "ident/uncertainty/scatter.h"
 
 namespace pushid {
 
@@ -44,8 +45,9 @@ struct Covariance {
   Eigen::MatrixXd inverse_hessian;
   bool full_hessian = false;  // with second derivatives; J'J alone where they leave no minimum
   Eigen::MatrixXd naive;
-  Eigen::MatrixXd clustered;  // empty with fewer than two clusters
-  Eigen::VectorXd freedom;    // of each column's clustered variance
+  // Clustered: recordings first, then priors, then pooled units. `these`: by recording, where
+  // people are the clusters. Empty with fewer than two clusters.
+  Scatter scatter, these;
   // One column for each of `recordings`: what leaving it out would move.
   Eigen::MatrixXd moves;
   std::vector<int> recordings;

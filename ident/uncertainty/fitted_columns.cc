@@ -2,8 +2,6 @@
 #include "ident/uncertainty/fitted_columns.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "ident/uncertainty/uncertainty.h"
 #include "models/self_terms.h"
@@ -77,7 +75,9 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
   const std::vector<Term>& terms = spec.terms;
   const ParameterSet<double> values = problem.Parameters(point, "");
   const auto& fitted = problem.map().fitted;
-  Combination result{spec.name, spec.unit};
+  Combination result;
+  result.name = spec.name;
+  result.unit = spec.unit;
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(uncertainty.covariance.rows());
   for (const Term& term : terms) {
     result.value += term.coefficient * values[term.parameter];
@@ -87,25 +87,29 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
           term.coefficient * TransformSlope(fitted[i].transform, values[term.parameter]);
     }
   }
-  // That of the term which is known least: a lower bound for the sum.
-  double freedom = std::numeric_limits<double>::infinity();
-  for (size_t i = 0; i < std::min(fitted.size(), uncertainty.estimates.size()); ++i) {
-    if (gradient[static_cast<Eigen::Index>(i)] == 0.0) continue;
-    freedom = std::min(freedom, uncertainty.estimates[i].freedom);
+  const ScatterOf of = uncertainty.scatter.Of(gradient);
+  result.standard_error = of.standard_error;
+  result.quantile = of.quantile;
+  result.lower95 = result.value - of.HalfWidth();
+  result.upper95 = result.value + of.HalfWidth();
+  if (!uncertainty.these.empty()) {
+    const ScatterOf these = uncertainty.these.Of(gradient);
+    result.these = Interval{these.standard_error, result.value - these.HalfWidth(),
+                            result.value + these.HalfWidth()};
   }
-  result.freedom = std::max(1.0, std::isfinite(freedom) ? freedom : uncertainty.freedom);
-  const double quantile = StudentQuantile95(result.freedom);
-  const double variance = gradient.dot(uncertainty.covariance * gradient);
-  result.standard_error = std::sqrt(std::max(0.0, variance));
-  result.lower95 = result.value - quantile * result.standard_error;
-  result.upper95 = result.value + quantile * result.standard_error;
   if (terms.size() == 1) {
     // A multiple of one parameter has that parameter's interval, asymmetric where it is fitted as a
     // log.
     for (size_t i = 0; i < fitted.size(); ++i) {
       if (fitted[i].parameter != terms[0].parameter) continue;
-      result.lower95 = terms[0].coefficient * uncertainty.estimates[i].lower95;
-      result.upper95 = terms[0].coefficient * uncertainty.estimates[i].upper95;
+      const double by = terms[0].coefficient;
+      const Estimate& e = uncertainty.estimates[i];
+      result.lower95 = by * e.lower95;
+      result.upper95 = by * e.upper95;
+      if (e.these) {
+        result.these =
+            Interval{by * e.these->standard_error, by * e.these->lower, by * e.these->upper};
+      }
     }
   }
   return result;

@@ -161,11 +161,11 @@ class ModelJudge {
     const Covariance c = ComputeCovariance(
         rows, Eigen::Map<const Eigen::VectorXd>(unit.data(), unit.size()), clustering_);
     const Eigen::VectorXd moves = -c.inverse_hessian * (rows.jacobian.transpose() * rows.residuals);
-    const double most = verdict_.freedom;
     for (Eigen::Index i = 0; i < problem_.map().num_shared(); ++i) {
       const FittedColumn& column = columns_[i];
-      const double error = std::sqrt(std::max(0.0, c.clustered(i, i)) + moves[i] * moves[i]);
-      const double width = StudentQuantile95(std::min(most, c.freedom[i])) * error;
+      const ScatterOf of = c.scatter.OfColumn(i);
+      const double error = std::hypot(of.standard_error, moves[i]);
+      const double width = of.quantile * error;
       TotalError& total = uncertainty->estimates[i].total.emplace();
       total.error = Slope(i) * error;
       total.lower95 = ToNatural(column.transform, column.fitted - width);

@@ -47,7 +47,7 @@ class Profiler {
   double Value(const ProfileTarget& target, const FitPoint& point) const;
   Eigen::VectorXd Gradient(const ProfileTarget& target) const;
   double MeanRatio() const;
-  double Freedom(const ProfileTarget& target) const;
+  double Quantile(const ProfileTarget& target) const;
   ProfilePoint Describe(const ProfileTarget& target, const HeldFit& fit) const;
 
   const FitProblem& problem_;
@@ -96,14 +96,14 @@ double Profiler::MeanRatio() const {
 }
 
 // Of a combination: that of the parameter in it which is known least.
-double Profiler::Freedom(const ProfileTarget& target) const {
+double Profiler::Quantile(const ProfileTarget& target) const {
   const std::vector<Estimate>& estimates = uncertainty_.estimates;
-  if (target.index >= 0) return estimates[target.index].freedom;
-  double freedom = std::max(1, uncertainty_.freedom);
+  if (target.index >= 0) return estimates[target.index].quantile;
+  double quantile = 0.0;
   for (size_t i = 0; i < target.coefficients.size(); ++i) {
-    if (target.coefficients[i] != 0.0) freedom = std::min(freedom, estimates[i].freedom);
+    if (target.coefficients[i] != 0.0) quantile = std::max(quantile, estimates[i].quantile);
   }
-  return freedom;
+  return quantile;
 }
 
 ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorXd& gradient) const {
@@ -129,7 +129,7 @@ ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorX
     search.naive_error =
         0.1 * (spec.transform == Transform::kIdentity ? spec.scale : 1.0);  // a careful first step
   }
-  const double t = StudentQuantile95(Freedom(target));
+  const double t = Quantile(target);
   search.threshold = 0.5 * t * t * (known ? clustered / naive : MeanRatio());
   if (target.index >= 0) {
     const ParameterSpec& spec =

@@ -63,22 +63,32 @@ bool IsNarrow(Transform transform, double value, double lower95, double upper95)
 
 namespace {
 
-EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched) {
+// few_people: too few to say anything of others.
+EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched, bool few_people) {
   if (c.at_bound) return EstimateStatus::kAtBound;
   if (touched) return EstimateStatus::kUnidentifiable;
   if (e.shares.data < kHeldShare) return EstimateStatus::kPriorHeld;
   const double pull = std::abs(e.shares.prior_pull + e.shares.settling_pull);
   const bool leads = e.shares.data > kIdentifiedShare && pull < kMostPull * e.standard_error;
-  return leads && IsNarrow(c.transform, c.natural, e.lower95, e.upper95)
+  return !few_people && leads && IsNarrow(c.transform, c.natural, e.lower95, e.upper95)
              ? EstimateStatus::kIdentified
              : EstimateStatus::kWeak;
 }
 
-Estimate MakeEstimate(const FittedColumn& c, double variance, double naive_variance, double freedom,
-                      const Shares& shares, bool touched) {
-  const double quantile = StudentQuantile95(freedom);
+// About one fitted number, natural unit.
+Interval IntervalOf(const FittedColumn& c, const ScatterOf& of) {
+  const double error = c.at_bound ? 0.0 : of.standard_error;
+  return {TransformSlope(c.transform, c.natural) * error,
+          ToNatural(c.transform, c.fitted - of.quantile * error),
+          ToNatural(c.transform, c.fitted + of.quantile * error)};
+}
+
+Estimate MakeEstimate(const FittedColumn& c, ScatterOf of, double naive_variance,
+                      const Shares& shares, bool touched, bool few_people) {
+  if (touched) of.standard_error = kInfinity;
   Estimate e;
-  e.freedom = freedom;
+  e.freedom = of.freedom;
+  e.quantile = of.quantile;
   e.shares = shares;
   e.name = c.name;
   e.unit = c.unit;
@@ -86,13 +96,13 @@ Estimate MakeEstimate(const FittedColumn& c, double variance, double naive_varia
   const double slope = TransformSlope(c.transform, c.natural);
   e.shares.prior_pull *= slope;
   e.shares.settling_pull *= slope;
-  double error = touched ? kInfinity : std::sqrt(std::max(0.0, variance));
-  e.standard_error = slope * error;
   e.standard_error_naive = touched ? kInfinity : slope * std::sqrt(std::max(0.0, naive_variance));
-  if (c.at_bound) e.standard_error = e.standard_error_naive = error = 0.0;
-  e.lower95 = ToNatural(c.transform, c.fitted - quantile * error);
-  e.upper95 = ToNatural(c.transform, c.fitted + quantile * error);
-  e.status = Judge(c, e, touched);
+  if (c.at_bound) e.standard_error_naive = 0.0;
+  const Interval interval = IntervalOf(c, of);
+  e.standard_error = interval.standard_error;
+  e.lower95 = interval.lower;
+  e.upper95 = interval.upper;
+  e.status = Judge(c, e, touched, few_people);
   return e;
 }
 
@@ -199,6 +209,7 @@ Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& poin
   const Covariance c = ComputeCovariance(e.score, e.unit, e.clustering);
   Uncertainty u;
   u.covariance = c.naive;
+  u.scatter.Add(c.naive, c.naive_freedom);
   u.freedom = c.naive_freedom;
   const Eigen::MatrixXd scaled = e.score.jacobian * e.unit.asDiagonal();
   return {c.directions.Condition(),
@@ -240,26 +251,35 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   u.num_clusters = clusters.count();
   u.clustered_by = clusters.by;
   u.two_way = clusters.two_way;
-  u.clustered = spread.clustered.size() > 0;
+  u.clustered = !spread.scatter.empty();
+  u.num_people = clusters.people;
+  u.about_people_like_them = u.clustered && clusters.draws_people;
   u.moves = c.moves;
   u.left_out = c.recordings;
   u.condition_number = c.directions.Condition();
   u.full_hessian = c.full_hessian;
   u.sigma = c.sigma;
   u.freedom = u.clustered ? u.num_clusters - 1 : spread.naive_freedom;
-  u.covariance = u.clustered ? spread.clustered : spread.naive;
+  u.scatter = spread.scatter;
+  u.these = spread.these;
+  if (!u.clustered) u.scatter.Add(spread.naive, spread.naive_freedom);
+  u.covariance = u.scatter.Covariance();
   u.too_few_clusters = u.clustered && u.num_clusters - 1 < problem.map().num_shared();
   u.correlation = Correlation(u.too_few_clusters ? spread.naive : u.covariance);
 
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   const Eigen::MatrixXd null_space = DataNullSpace(score, scaled, columns);
   const std::vector<Shares> shares = SharesOf(c, MovedBySettling(c, unit, point, free));
+  const bool few_people = u.about_people_like_them && u.num_people < kFewestPeople;
   for (int i = 0; i < size; ++i) {
     const bool touched =
         null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;
-    u.estimates.push_back(MakeEstimate(columns[i], u.covariance(i, i), spread.naive(i, i),
-                                       u.clustered ? spread.freedom[i] : spread.naive_freedom,
-                                       shares[i], touched && !columns[i].at_bound));
+    const bool free_of_data = touched && !columns[i].at_bound;
+    u.estimates.push_back(MakeEstimate(columns[i], u.scatter.OfColumn(i), spread.naive(i, i),
+                                       shares[i], free_of_data, few_people));
+    if (!u.these.empty() && !free_of_data) {
+      u.estimates.back().these = IntervalOf(columns[i], u.these.OfColumn(i));
+    }
   }
   u.null_directions = DescribeNullSpace(problem, point, null_space, u);
   std::vector<bool> at_bound;

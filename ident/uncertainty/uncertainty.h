@@ -2,9 +2,9 @@
 // number, null directions, correlations.
 //
 // Covariances as covariance.h defines them, with Student's t of Satterthwaite's degrees of freedom,
-// parameter by parameter. Naive errors are up to 20 times too small here. A null direction of the
-// scaled Jacobian has no finite error: every parameter it touches is unidentifiable, but
-// combinations orthogonal to it are reported.
+// parameter by parameter (scatter.h). Naive errors are up to 20 times too small here. A null
+// direction of the scaled Jacobian has no finite error: every parameter it touches is
+// unidentifiable, but combinations orthogonal to it are reported.
 //
 // With H = H_data + H_prior + H_settling the Hessian of the cost, H^-1 = H^-1 H H^-1 splits exactly
 // into what each of the three says: a parameter's shares are the three parts of its diagonal entry.
@@ -23,6 +23,7 @@
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/fit_point.h"
 #include "ident/problem/statistics.h"
+#include "ident/uncertainty/scatter.h"
 #include "models/enum_names.h"
 #include "models/options.h"
 #include "models/parameters.h"
@@ -36,6 +37,7 @@ enum class EstimateStatus {
   // The data's share is above 80 %, priors and settling together pull it by less than half a
   // standard error, and the interval's half-width is below half the value (where the parameter may
   // take either sign: or the sign is certain).
+  // Where the interval is about people like those recorded, they are four or more.
   kIdentified,
   kModelDependent,  // identified, if the model were right: its checks fail (model_verdict.h)
   kWeak,            // neither of these nor anything below
@@ -74,7 +76,10 @@ struct Estimate {
   double standard_error = 0.0;        // clustered, natural unit; infinity when unidentifiable
   double standard_error_naive = 0.0;  // natural unit
   double lower95 = 0.0, upper95 = 0.0;
-  double freedom = 1.0;             // of Student's t behind the interval
+  double freedom = 1.0;   // of what the recordings say
+  double quantile = 0.0;  // half-width over standard error, fitted scale
+  // About these people alone; none where the interval above is about them, or naive.
+  std::optional<Interval> these;
   std::optional<TotalError> total;  // of shared parameters, where it was computed
   Shares shares;
   EstimateStatus status = EstimateStatus::kIdentified;
@@ -89,7 +94,8 @@ struct Combination {
   std::string name;  // "mu + Kp_x"
   std::string unit;
   double value = 0.0, standard_error = 0.0, lower95 = 0.0, upper95 = 0.0;
-  double freedom = 1.0;  // of Student's t behind the interval
+  double quantile = 0.0;          // half-width over standard error
+  std::optional<Interval> these;  // as that of Estimate
 };
 
 struct NullDirection {
@@ -115,17 +121,21 @@ struct Uncertainty {
   int num_residuals = 0;  // of data
   int num_clusters = 0;
   ClusterBy clustered_by = ClusterBy::kRecording;
-  bool two_way = false;           // by people and by recordings
-  bool clustered = false;         // false with a single cluster: naive errors lead
-  double sigma = 0.0;             // residual standard deviation, in sigmas
-  int freedom = 1;                // of all numbers together: clusters less one
-  double condition_number = 0.0;  // of the scaled Jacobian, without null directions
+  bool two_way = false;    // by people and by recordings
+  bool clustered = false;  // false with a single cluster: naive errors lead
+  int num_people = 0;
+  bool about_people_like_them = false;  // not of these people alone
+  double sigma = 0.0;                   // residual standard deviation, in sigmas
+  int freedom = 1;                      // of all numbers together: clusters less one
+  double condition_number = 0.0;        // of the scaled Jacobian, without null directions
   // Fewer clusters than shared parameters and one: their clustered covariance has no full rank, so
   // correlations are the naive ones.
   bool too_few_clusters = false;
   bool full_hessian = false;        // whether the covariance knows second derivatives
   std::vector<Estimate> estimates;  // in the order of FitPoint::Flat
   Eigen::MatrixXd covariance;       // clustered (or naive), fitted scale, same order
+  Scatter scatter;                  // its parts, of a fresh fit alone
+  Scatter these;                    // about these people; empty where `scatter` is
   Eigen::MatrixXd correlation;      // of that covariance
   // One column for each of the recordings `left_out`: what leaving it out would move.
   Eigen::MatrixXd moves;

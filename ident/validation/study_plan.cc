@@ -236,7 +236,7 @@ JacobianBlocks Clustered(JacobianBlocks score, const std::vector<int>& cluster_o
 
 // By the clusters that the rows name.
 Covariance ByClusters(const JacobianBlocks& score, const Eigen::VectorXd& unit) {
-  return ComputeCovariance(score, unit, {ClusterByRecording(score), {}, 0, false});
+  return ComputeCovariance(score, unit, {ClusterByRecording(score), {}, 0, false, false});
 }
 
 }  // namespace
@@ -252,8 +252,8 @@ ErrorParts ErrorPartsAt(const FitProblem& problem, const FitPoint& estimate) {
   const Covariance by_recording = ByClusters(parts.score, fit.unit);
   parts.sigma = by_recording.sigma;
   parts.naive = by_recording.naive;
-  parts.by_recording = by_recording.clustered;
-  parts.by_person = by_person.clustered;
+  parts.by_recording = by_recording.scatter.Covariance();
+  parts.by_person = by_person.scatter.Covariance();
   return parts;
 }
 

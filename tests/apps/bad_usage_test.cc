@@ -228,6 +228,16 @@ TEST_F(BadUsageTest, Models) {
       Refused(RunApp("pushid-report", {"--model=" + Path("none")}), {"none", "no such file"}));
 }
 
+// Contact of people who touch nobody.
+TEST_F(BadUsageTest, ContactNeedsPeopleWhoTouch) {
+  const std::string model = "--model=" + FitModel("m.json", {"--quiet"});
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--fix=contact_stiffness=2000",
+                                            "--model_out=" + Path("n.json")}),
+                      {"--fix", "contact_stiffness", "no contact"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-formation", {model, "--set=contact_damping=10"}),
+                      {"--set", "contact_damping", "no contact"}));
+}
+
 TEST_F(BadUsageTest, WhatDoesNothingIsWarnedAbout) {
   FitModel("m.json", {"--fix=mu_y=10", "--quiet"});
   EXPECT_TRUE(Contains(fit_.err, "warning: --fix=mu_y=10 does nothing"));

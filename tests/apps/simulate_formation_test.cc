@@ -50,6 +50,25 @@ std::vector<std::string> Onsets(const std::string& out) {
   return onsets;
 }
 
+// The group model that comes with the programs says what it was fitted to; what its intervals leave
+// out stands beside them.
+TEST_F(SimulateFormationTest, TheShippedModelIsOfSyntheticPeople) {
+  const AppRun run = RunApp("pushid-formation",
+                            {"--model=pushid:synthetic_group", "--set=mu=60", "--people=4",
+                             "--spacing=0.42", "--trajectories_out=" + Path("line.txt")},
+                            60);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.err, "was fitted to synthetic people"));
+  EXPECT_TRUE(Contains(run.out, "not in these intervals: "));
+  EXPECT_TRUE(Contains(run.out, "contact_height = 0.5"));
+  EXPECT_TRUE(Contains(run.out, "mu = 60 (--set)"));
+  const AppRun wave = RunApp("pushid-inspect", {"--wave", Path("line.txt")});
+  EXPECT_EQ(wave.exit_code, 0) << wave.err;
+  EXPECT_TRUE(Contains(wave.out, "speed of the onset: "));
+  EXPECT_TRUE(Refused(RunApp("pushid-formation", {"--model=pushid:none"}),
+                      {"pushid:none", "pushid:synthetic_group"}));
+}
+
 TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   const AppRun run =
       Simulate({"--formation=line", "--people=4", "--spacing=0.42", "--duration=3",

@@ -14,6 +14,7 @@ namespace pushid {
 namespace {
 
 constexpr char kClusteredLook[] = "fill:none;stroke-width:3;stroke:#3b82f6";
+constexpr char kTheseLook[] = "fill:none;stroke-width:3;stroke:#93c5fd";
 constexpr char kProfileLook[] = "fill:none;stroke-width:3;stroke:#009e73";
 constexpr char kBootstrapLook[] = "fill:none;stroke-width:3;stroke:#cc79a7";
 constexpr char kNominalLook[] = "fill:none;stroke-width:2;stroke:#d55e00";
@@ -161,8 +162,10 @@ ReportSection ParameterSection(const ReportSource& source) {
   section.Show("derived", DerivedTable(source.fit));
   const std::vector<Agreement> agreements = CompareIntervals(source.model);
   std::vector<ForestRow> rows;
+  bool told_apart = false;
   TextTable numbers({"parameter", "unit", "value", "nominal", "clustered_lower95",
-                     "clustered_upper95", "profile_lower95", "profile_upper95", "bootstrap_lower95",
+                     "clustered_upper95", "these_people_lower95", "these_people_upper95",
+                     "profile_lower95", "profile_upper95", "bootstrap_lower95",
                      "bootstrap_upper95"});
   for (const Estimate& e : source.fit.estimates) {
     const ParameterSpec* spec = source.fit.options.table.Find(e.name);
@@ -179,6 +182,8 @@ ReportSection ParameterSection(const ReportSource& source) {
       cells.push_back(interval == nullptr ? "" : DoubleText(interval->upper));
     };
     add(&clustered, nullptr);
+    add(e.these ? &*e.these : nullptr, kTheseLook);
+    told_apart = told_apart || e.these;
     const bool known = agreement != nullptr;
     add(known && agreement->profile ? &*agreement->profile : nullptr, kProfileLook);
     add(known && agreement->bootstrap ? &*agreement->bootstrap : nullptr, kBootstrapLook);
@@ -186,6 +191,8 @@ ReportSection ParameterSection(const ReportSource& source) {
     numbers.Add(cells);
   }
   std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook}};
+  if (told_apart)
+    legend = {{"people like them, 95 %", kClusteredLook}, {"these people", kTheseLook}};
   if (!source.model.profiles.empty()) legend.push_back({"profile", kProfileLook});
   if (source.model.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
   legend.push_back({"nominal", kNominalLook});

@@ -70,8 +70,12 @@ std::string NotKnown(const FitResult& result) {
   add(EstimateStatus::kModelDependent, "dependent on a model that does not fit: ");
   add(EstimateStatus::kWeak, "with wide intervals: ");
   const Uncertainty& u = result.uncertainty;
-  if (u.clustered && u.num_clusters < kFewClusters) {
-    text += (text.empty() ? "" : "; ") + std::string("with ") + std::to_string(u.num_clusters) +
+  const std::string join = text.empty() ? "" : "; ";
+  if (u.about_people_like_them && u.num_people < kFewestPeople) {
+    text += join + "anything about people like these " + std::to_string(u.num_people) +
+            ", who are fewer than " + std::to_string(kFewestPeople);
+  } else if (u.clustered && u.num_clusters < kFewClusters) {
+    text += join + "with " + std::to_string(u.num_clusters) +
             (u.clustered_by == ClusterBy::kSubject ? " people" : " recordings") +
             " all intervals are rough";
   }

@@ -75,6 +75,13 @@ class ManifestMakerTest : public RecordingFolderTest {
   ManifestOptions options_;
 };
 
+// Positions of five people are one group, not a recording of one of them.
+TEST_F(ManifestMakerTest, TrajectoriesAreNoRecordings) {
+  WriteText("data/crowd_1.txt", "# framerate: 8\n1 0 0 0\n2 0 1 0\n");
+  options_.pattern = "crowd_{take}.txt";
+  EXPECT_TRUE(Contains(MakingMessage(), "one point for each person of a group"));
+}
+
 TEST_F(ManifestMakerTest, WhatIsMadeCanBeLoaded) {
   const Result<MadeManifest> made = MakeManifest(options_);
   ASSERT_TRUE(made.ok()) << made.error().ToString();

@@ -42,15 +42,32 @@ TEST(Clusters, BalancedMeanIsTheTextbooks) {
   const Covariance c = Of(MeanOf({{1.0, 1.2}, {2.0, 2.4}, {0.5, 0.1}, {1.5, 1.1}}));
   const Eigen::Vector4d means(1.1, 2.2, 0.3, 1.3);
   const double expected = (means.array() - means.mean()).square().sum() / (4.0 * 3.0);
-  EXPECT_NEAR(c.clustered(0, 0), expected, 1e-12);
-  EXPECT_NEAR(c.freedom[0], 3.0, 1e-9);
+  EXPECT_NEAR(c.scatter.Covariance()(0, 0), expected, 1e-12);
+  EXPECT_NEAR(c.scatter.parts[0].freedom[0], 3.0, 1e-9);
 }
 
 // One cluster holds most rows: the mean leans on it, and fewer degrees of freedom are left.
 TEST(Clusters, AnUnevenClusterCostsFreedom) {
   std::vector<std::vector<double>> clusters(4, {1.0});
   clusters[0].assign(20, 1.3);
-  EXPECT_LT(Of(MeanOf(clusters)).freedom[0], 1.6);
+  EXPECT_LT(Of(MeanOf(clusters)).scatter.parts[0].freedom[0], 1.6);
+}
+
+// Two clusters and a prior that settles most: what the two say still has one degree of freedom.
+TEST(Clusters, HaveOneFreedomLessThanTheirNumberBesideAPrior) {
+  JacobianBlocks score = MeanOf({{1.0, 1.1, 0.9}, {2.0}});
+  const Eigen::Index rows = score.residuals.size();
+  score.jacobian.conservativeResize(rows + 1, Eigen::NoChange);
+  score.residuals.conservativeResize(rows + 1);
+  score.jacobian(rows, 0) = -100.0;
+  score.residuals[rows] = 0.0;
+  score.cluster_of_row.push_back(FitProblem::kPriorCluster);
+  score.person_of_row.push_back(0);
+  const RowClusters clusters = ClusterByRecording(score);
+  const Covariance c =
+      ComputeCovariance(score, Eigen::VectorXd::Ones(1), {clusters, {}, 0, true, false});
+  EXPECT_EQ(c.scatter.OfColumn(0).freedom, 1.0);
+  EXPECT_NEAR(c.scatter.parts[1].covariance(0, 0), 1e-4, 1e-7);  // the prior's width
 }
 
 // Degrees of freedom by Pustejovsky and Tipton's formula, written out over rows.
@@ -89,7 +106,8 @@ TEST(Clusters, FreedomIsSatterthwaites) {
           j.middleRows(first, sizes[g]) * inverse.col(coefficient);
     }
     const Eigen::MatrixXd w = p.transpose() * rest * p;
-    EXPECT_NEAR(c.freedom[coefficient], w.trace() * w.trace() / w.squaredNorm(), 1e-6);
+    EXPECT_NEAR(c.scatter.parts[0].freedom[coefficient], w.trace() * w.trace() / w.squaredNorm(),
+                1e-6);
   }
 }
 
@@ -105,7 +123,19 @@ TEST(Clusters, ArePeopleWhereTheyRepeat) {
 TEST(Clusters, AreRecordingsWhereNobodyRepeats) {
   SyntheticOptions study = TinyStudy();
   study.recordings_per_subject = 1;
-  EXPECT_EQ(MakeClusters(MakePendulums(study), ClusterBy::kAuto).by, ClusterBy::kRecording);
+  const Clusters clusters = MakeClusters(MakePendulums(study), ClusterBy::kAuto);
+  EXPECT_EQ(clusters.by, ClusterBy::kRecording);
+  EXPECT_TRUE(clusters.draws_people);  // each is a person
+}
+
+// The recordings of people who repeat are draws from these people; so are those of one person.
+TEST(Clusters, OfRecordingsAreAboutThesePeople) {
+  const auto recordings = MakePendulums(TinyStudy());
+  EXPECT_TRUE(MakeClusters(recordings, ClusterBy::kAuto).draws_people);
+  EXPECT_FALSE(MakeClusters(recordings, ClusterBy::kRecording).draws_people);
+  const Clusters one = MakeClusters({recordings[0], recordings[1]}, ClusterBy::kAuto);
+  EXPECT_EQ(one.people, 1);
+  EXPECT_FALSE(one.draws_people);
 }
 
 // One id with two masses is two people.

@@ -175,13 +175,36 @@ TEST(Uncertainty, IntervalsAndCorrelation) {
     }
   }
   const Estimate& plain = *FindEstimate(u.estimates, "mu");
-  const double half = StudentQuantile95(plain.freedom) * plain.standard_error;
+  const double half = plain.quantile * plain.standard_error;
   EXPECT_LE(plain.freedom, 5.0 + 1e-9);
   EXPECT_NEAR(plain.upper95 - plain.value, half, 1e-9);
   EXPECT_NEAR(plain.value - plain.lower95, half, 1e-9);
   // Fitted as a log: by the same factor up and down.
   const Estimate& log = *FindEstimate(u.estimates, "Kp_theta");
   EXPECT_NEAR(log.upper95 / log.value, log.value / log.lower95, 1e-9);
+}
+
+// Two people, three pushes each: errors about people like them, and about these two.
+TEST(Uncertainty, TellsThesePeopleFromPeopleLikeThem) {
+  const auto s = SolveSmall(6, 0.5);
+  FitOptions options = s->options;
+  options.cluster = ClusterBy::kSubject;
+  const FitProblem problem(s->recordings, options);
+  const Uncertainty people = ComputeUncertainty(problem, s->point);
+  EXPECT_TRUE(people.about_people_like_them);
+  EXPECT_EQ(people.num_people, 2);
+  EXPECT_FALSE(s->uncertainty.about_people_like_them);
+  for (int i = 0; i < 3; ++i) {
+    const Estimate &like = people.estimates[i], &these = s->uncertainty.estimates[i];
+    EXPECT_LE(like.freedom, 1.0) << like.name;
+    EXPECT_GE(like.quantile, 1.95) << like.name;
+    EXPECT_NE(like.status, EstimateStatus::kIdentified) << like.name;  // of two people nothing is
+    EXPECT_EQ(these.status, EstimateStatus::kIdentified) << like.name;
+    ASSERT_TRUE(like.these) << like.name;
+    EXPECT_NEAR(like.these->standard_error / these.standard_error, 1.0, 1e-9) << like.name;
+    EXPECT_NEAR(like.these->upper / these.upper95, 1.0, 1e-9) << like.name;
+    EXPECT_FALSE(these.these) << like.name;  // said once
+  }
 }
 
 TEST(Uncertainty, CombineAddsByTheDeltaMethod) {
