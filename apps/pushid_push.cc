@@ -10,7 +10,7 @@
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
-#include "datasets/inspection/plausibility.h"
+#include "datasets/inspection/findings.h"
 #include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"
 
@@ -85,7 +85,7 @@ Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecordi
 }
 
 void WarnOfFirstRow(const std::string& id, const MadePush& made) {
-  if (!FirstRowStandsOut(made.push)) return;
+  if (!FirstRowStandsOut(made.push.force)) return;
   const std::string force = Rounded(made.push.force[0].head<2>().norm(), 3);
   Warn("recording " + id + ": the first row, " + force +
        " N, stands out: the person already moves when the window begins; begin earlier "

@@ -10,8 +10,8 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/inspection/findings.h"
 #include "datasets/inspection/inspection.h"
-#include "datasets/inspection/plausibility.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/sensors/force_platform.h"
 
@@ -147,7 +147,8 @@ MaybeError InspectManifest(Inspection* found) {
   std::map<std::string, int> settings, formats;
   std::set<std::string> subjects;
   int pushed = 0, read = 0;
-  PlausibilityCheck plausible;
+  std::vector<PendulumRecording> pendulums;
+  std::vector<Finding> facing;
   for (const ManifestRecording& entry : manifest.value().recordings) {
     ++settings[entry.labels.setting()];
     ++formats[Title(entry.motion_format)];
@@ -156,10 +157,16 @@ MaybeError InspectManifest(Inspection* found) {
     const Result<Recording> recording =
         LoadRecording(manifest.value(), entry, {}, &found->warnings);
     if (recording.ok()) ++read;
-    if (recording.ok()) plausible.Look(recording.value());
+    if (recording.ok()) {
+      pendulums.push_back(MakePendulumRecording(recording.value(), SkeletonMapping::kExact));
+      const std::vector<Finding> more = FacingFindings(recording.value());
+      facing.insert(facing.end(), more.begin(), more.end());
+    }
     if (!recording.ok()) found->Warn(recording.error().ToString());
   }
-  for (const std::string& warning : plausible.Warnings()) found->Warn(warning);
+  std::vector<Finding> findings = FindingsOf(pendulums);
+  findings.insert(findings.end(), facing.begin(), facing.end());
+  for (const std::string& text : FindingTexts(findings)) found->Warn(text);
   const auto counts = [](const std::map<std::string, int>& of) {
     std::vector<std::string> texts;
     for (const auto& [name, count] : of) texts.push_back(name + " " + std::to_string(count));

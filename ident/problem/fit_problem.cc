@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/inspection/findings.h"
 #include "ident/problem/residual_families.h"
 #include "residuals/cost_functions/lane_group.h"
 
@@ -16,6 +17,12 @@ FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, const F
       options_(options),
       counts_(std::move(counts)),
       map_(options.table.Map()) {
+  const std::vector<int> copy_of = CopyOf(recordings);
+  for (size_t i = 0; i < copy_of.size(); ++i) {
+    if (copy_of[i] < 0) continue;
+    counts_.resize(recordings.size(), 1);
+    counts_[i] = 0;
+  }
   map_.pool_by = options.pool_by;
   if (options.model.learned != nullptr && !options.hold_network) {
     map_.num_weights = static_cast<int>(options.model.learned->weights.size());

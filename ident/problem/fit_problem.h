@@ -29,7 +29,8 @@ struct FitStage {
 class FitProblem {
  public:
   // recordings and options must outlive the problem. counts: how often each recording counts (a
-  // bootstrap replica; 0 leaves it out); empty: each once.
+  // bootstrap replica; 0 leaves it out); empty: each once. Copies of a recording under other ids
+  // (datasets/inspection/findings.h) never count: they tell nothing new.
   FitProblem(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
              std::vector<int> counts = {});
 
