@@ -19,7 +19,6 @@ namespace pushid {
 namespace {
 
 constexpr std::size_t kMostSignals = 6;  // in the picture
-constexpr double kRest = 0.01;           // of the peak
 constexpr double kForceOnset = 20.0;     // N
 
 }  // namespace
@@ -41,21 +40,6 @@ void AddForce(const std::string& name, double rate_hz, std::vector<double> value
   if (found->forces.size() < kMostSignals) {
     found->forces.push_back({name, "N", rate_hz, std::move(values)});
   }
-}
-
-void TakeOffRest(std::vector<double>* force, Inspection* found) {
-  const std::size_t tenth = force->size() / 10;
-  if (tenth == 0) return;
-  std::vector<double> ends(force->begin(), force->begin() + tenth);
-  ends.insert(ends.end(), force->end() - tenth, force->end());
-  std::nth_element(ends.begin(), ends.begin() + tenth, ends.end());
-  const double rest = ends[tenth];
-  double peak = 0.0;
-  for (double value : *force) peak = std::max(peak, std::fabs(value - rest));
-  if (!(std::fabs(rest) > kRest * peak)) return;
-  found->Fact("at rest", Rounded(rest, 3) + " N, subtracted below; pushid-push --sensor_zero=" +
-                             Rounded(rest, 3) + " does the same");
-  for (double& value : *force) value -= rest;
 }
 
 void LookAtAnalog(const C3dFile& file, Inspection* found) {

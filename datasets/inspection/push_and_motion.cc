@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace pushid {
@@ -27,11 +28,10 @@ constexpr double kImpulseEnds = 0.01;                      // of the impulse, at
 
 // Standard deviation of white noise: of second differences, by their median.
 double NoiseOf(const Vectors& path, int axis) {
-  std::vector<double> size;
+  std::vector<double> size = {0.0};
   for (size_t t = 2; t < path.size(); ++t) {
     size.push_back(std::fabs(path[t][axis] - 2.0 * path[t - 1][axis] + path[t - 2][axis]));
   }
-  if (size.empty()) return 0.0;
   const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
   std::nth_element(size.begin(), middle, size.end());
   return *middle / 0.6745 / std::sqrt(6.0);
@@ -58,10 +58,8 @@ Force FirstPush(const PendulumRecording& recording, int person) {
   force.rows.assign(recording.num_frames(), Eigen::Vector2d::Zero());
   int end = pushes[0]->EndFrame();
   for (const ScenePush* push : pushes) {
-    if (push->start_frame >= end) {
-      force.next = push->start_frame;
-      break;
-    }
+    force.next = push->start_frame < end ? recording.num_frames() : push->start_frame;
+    if (push->start_frame >= end) break;
     end = std::max(end, push->EndFrame());
     const int rows = std::min(push->EndFrame(), recording.num_frames());
     for (int t = push->start_frame; t < rows; ++t) {
@@ -91,7 +89,6 @@ class Comparison {
 
  private:
   double Mass() const { return recording_.scene.people[person_].body.mass; }
-  bool Net() const { return force_.kind != PushKind::kExternal; }
 
   bool FindPush() {
     impulse_.setZero();
@@ -119,8 +116,7 @@ class Comparison {
     last_ = std::min(force_.next, end_ + static_cast<int>(kLookAfter / dt_));
     if (last_ - first_ < 2 * half_ + kSustained) return false;
     for (int t = 0; t < frames; ++t) {
-      const bool near = t >= first_ && t < last_;
-      if (near && !(recording_.Weight(person_, t) > 0.0)) return false;
+      if (t >= first_ && t < last_ && !(recording_.Weight(person_, t) > 0.0)) return false;
       path_.push_back(0.9 * recording_.hip[person_][t].head<2>() +
                       0.1 * recording_.states[person_][t].q.head<2>());
     }
@@ -157,7 +153,7 @@ class Comparison {
 
   void Gain(PushAndMotion* found) const {
     double gain = 0.0, error = 0.0;
-    if (Net()) {
+    if (force_.kind != PushKind::kExternal) {
       // Its rows are all that moves the person: the way it goes over theirs.
       double speed = 0.0, way = 0.0, squares = 0.0, product = 0.0;
       for (int t = start_; t <= std::min(end_, last_ - 1); ++t) {
@@ -179,9 +175,8 @@ class Comparison {
   }
 
   double Fastest(int from, int to) const {
-    double fastest = 0.0;
-    for (int t = from; t < to; ++t) fastest = std::max(fastest, velocity_[t].norm());
-    return fastest;
+    return std::accumulate(velocity_.begin() + from, velocity_.begin() + to, 0.0,
+                           [](double most, const auto& v) { return std::max(most, v.norm()); });
   }
 
   // The frame where the person sets off, -1: nowhere. Sets rest_, distance_ and before_.
@@ -199,8 +194,7 @@ class Comparison {
     for (int t = rests; t < rests + count; ++t) rest_ += path_[t] / count;
     const double error = noise_ * std::sqrt(1.0 / (2 * half_ + 1) + 1.0 / count);
     distance_ = std::max({kLeastMotion, kNoise * error, before_ ? 0.0 : kSwayTime * sway});
-    int moved = 0;
-    for (int t = from; t < last_; ++t) {
+    for (int t = from, moved = 0; t < last_; ++t) {
       const bool moves =
           (smooth_[t] - rest_).norm() > distance_ && velocity_[t].norm() > kShareOfSpeed * fastest;
       moved = moves ? moved + 1 : 0;
@@ -228,7 +222,7 @@ class Comparison {
       const double late = (start_ - onset) * dt_;
       if (late > kSurelyLate) found->push_late = late;
     }
-    if (Net() || found->push_late > 0.0) return;
+    if (force_.kind != PushKind::kExternal || found->push_late > 0.0) return;
     const double soonest = FrameOfWay(kMostGain * std::max(found->gain, kUsualGain));
     const double latest = FrameOfWay(kSlowToMove * std::clamp(found->gain, kLeastGain, kSlideGain));
     const double shift = dt_ * (onset - FrameOfWay(std::max(found->gain, kLeastGain)));
@@ -249,12 +243,11 @@ class Comparison {
   bool before_ = false;  // moved before the push began
 };
 
-constexpr double kRestTime = 0.2;   // s
-constexpr double kRestShare = 0.3;  // of the peak: more is a push
-constexpr double kLeastShare = 0.01;
-constexpr double kSteady = 0.3;      // of the mean: by how much its halves may differ
-constexpr double kStillOn = 0.5;     // of the peak
-constexpr double kSlowStart = 0.25;  // of the peak: who starts so does not stop at once
+constexpr double kRestTime = 0.2;                       // s
+constexpr double kLeastShare = 0.01, kRestShare = 0.3;  // of the peak, of what is a rest
+constexpr double kSteady = 0.3;                         // of it: by how much its halves may differ
+// Of the peak: a force still on; who starts more slowly does not stop so at once.
+constexpr double kStillOn = 0.5, kSlowStart = 0.25;
 constexpr int kFewestRows = 5;
 
 double Size(const Vector4<double>& row) { return row.head<2>().norm(); }
@@ -292,9 +285,8 @@ double RestingForce(const ScenePush& push, double dt) {
   const double error = std::sqrt(squares) / static_cast<double>(at_rest);
   const double drift = (MeanForce(push, from, middle) - MeanForce(push, middle, rows)).norm();
   const double rest = mean.norm();
-  const bool steady = drift <= kSteady * rest;
   const bool some = rest > kLeastShare * peak && rest > kNoise * error;
-  return steady && some && largest < kRestShare * peak ? rest : 0.0;
+  return some && drift <= kSteady * rest && largest < kRestShare * peak ? rest : 0.0;
 }
 
 bool HasNoEnd(const ScenePush& push, int num_frames) {

@@ -200,9 +200,10 @@ constexpr int kLeastPredicted = 10;
 HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed) {
   HipPaths paths;
   // A push may last as long as its recording: something must be left to predict.
-  const int latest = std::max(1, recording.num_frames() - 1 - kLeastPredicted);
+  const int frames = recording.num_frames();
+  const int latest = std::max(frames / 2, frames - 1 - kLeastPredicted);
   const int known = observed > 0 ? observed - 1 : std::min(recording.scene.LastPushEnd(), latest);
-  const int last = std::min(known, recording.num_frames() - 1);
+  const int last = std::min(known, frames - 1);
   for (const auto& hip : recording.hip) {
     std::vector<Vector3<double>> path(hip.begin(), hip.begin() + last + 1);
     const Vector3<double> step =

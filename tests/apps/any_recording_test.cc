@@ -264,7 +264,7 @@ TEST_F(AnyRecordingTest, InspectDoubtsWhatNobodyCanBe) {
   const auto id = [&json](int i) { return json["recordings"][i]["id"].get<std::string>(); };
   EXPECT_TRUE(Contains(run.out, "above 1 kN in 1 case (" + id(0) + ": 1500 N)"));
   EXPECT_TRUE(Contains(run.out, "first row stands out in 1 case (" + id(0)));
-  EXPECT_TRUE(Contains(run.out, "moves in another direction than the push in 1 case (" + id(1)));
+  EXPECT_TRUE(Contains(run.out, "moves against the push in 1 case (" + id(1)));
   EXPECT_TRUE(Contains(run.out, "moves before being pushed in 1 case (" + id(3)));
   EXPECT_TRUE(Contains(run.out, "people do not face forward in 1 case (" + id(1)));
   EXPECT_TRUE(
