@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 constexpr double kAside = 60.0 * kDegree, kAgainst = 120.0 * kDegree;
-constexpr double kMostGain = 3.0, kLeastGain = 0.25;          // of an external push
-constexpr double kMostNetGain = 3.0;                          // of a net one, either way
+constexpr double kTooMuch = 3.0, kTooLittle = 0.25;           // of an external push
+constexpr double kNetFactor = 3.0;                            // of a net one, either way
 constexpr double kStrongPush = 1000.0;                        // N
 constexpr double kStandsOut = 3.0;                            // times the largest of the other rows
 constexpr double kLightest = 25.0, kHeaviest = 130.0;         // kg
@@ -26,9 +26,9 @@ constexpr double kFastest = 10.0;                             // m/s
 constexpr double kSlowestRate = 10.0, kFastestRate = 2000.0;  // 1/s
 constexpr double kFacesElsewhere = 75.0 * kDegree;            // one foot may be ahead
 constexpr double kApart = 0.05;                               // m; closer ankles say nothing
-constexpr std::size_t kNamed = 4;                             // cases of a sentence
+constexpr std::size_t kNamedCases = 4;                        // cases of a sentence
 
-double Size(const Vector4<double>& row) { return row.head<2>().norm(); }
+double HorizontalForce(const Vector4<double>& row) { return row.head<2>().norm(); }
 
 bool SameMotion(const PendulumRecording& a, const PendulumRecording& b) {
   if (a.id == b.id) return false;
@@ -93,9 +93,9 @@ class Judge {
     } else if (angle > kAside) {
       Add(FindingKind::kAside, Who(n), degrees);
     } else if (net && !moving &&
-               (motion.least_gain > kMostNetGain || motion.largest_gain < 1.0 / kMostNetGain)) {
+               (motion.least_gain > kNetFactor || motion.largest_gain < 1.0 / kNetFactor)) {
       Add(FindingKind::kNetGain, Who(n), motion.gain);
-    } else if (!net && (motion.least_gain > kMostGain || motion.largest_gain < kLeastGain)) {
+    } else if (!net && (motion.least_gain > kTooMuch || motion.largest_gain < kTooLittle)) {
       Add(FindingKind::kGain, Who(n), motion.gain);
     } else if (motion.push_early > 0.0) {
       Add(FindingKind::kEarly, Who(n), motion.push_early);
@@ -104,14 +104,15 @@ class Judge {
 
   void LookAtRows(const ScenePush& push) {
     double peak = 0.0;
-    for (const Vector4<double>& row : push.force) peak = std::max(peak, Size(row));
+    for (const Vector4<double>& row : push.force) peak = std::max(peak, HorizontalForce(row));
     const std::string who = Who(push.person);
     if (peak > kStrongPush) Add(FindingKind::kStrong, who, peak);
-    if (FirstRowStandsOut(push.force)) Add(FindingKind::kFirstRow, who, Size(push.force[0]));
+    if (FirstRowStandsOut(push.force))
+      Add(FindingKind::kFirstRow, who, HorizontalForce(push.force[0]));
     const double rest = RestingForce(push, r_.scene.dt);
     if (rest > 0.0) Add(FindingKind::kZero, who, rest);
     if (rest == 0.0 && HasNoEnd(push, r_.num_frames())) {
-      Add(FindingKind::kNoEnd, who, Size(push.force.back()));
+      Add(FindingKind::kNoEnd, who, HorizontalForce(push.force.back()));
     }
   }
 
@@ -182,8 +183,8 @@ const std::vector<FindingRow>& Names(FindingKind) {
 bool FirstRowStandsOut(const std::vector<Vector4<double>>& force) {
   if (force.size() < 3) return false;
   double others = 0.0;
-  for (size_t t = 1; t < force.size(); ++t) others = std::max(others, Size(force[t]));
-  return Size(force[0]) > kStandsOut * others;
+  for (size_t t = 1; t < force.size(); ++t) others = std::max(others, HorizontalForce(force[t]));
+  return HorizontalForce(force[0]) > kStandsOut * others;
 }
 
 std::vector<Finding> FindingsOf(const PendulumRecording& recording) {
@@ -254,11 +255,11 @@ std::vector<std::string> FindingTexts(const std::vector<Finding>& findings) {
     const std::string count =
         std::to_string(cases.size()) + (cases.size() == 1 ? " case" : " cases");
     std::string list;
-    for (std::size_t i = 0; i < std::min(cases.size(), kNamed); ++i) {
+    for (std::size_t i = 0; i < std::min(cases.size(), kNamedCases); ++i) {
       list += (i > 0 ? "; " : "") + cases[i];
     }
     texts.push_back(row.what + (" in " + count) + " (" + list +
-                    (cases.size() > kNamed ? "; ..." : "") + "); " + row.advice);
+                    (cases.size() > kNamedCases ? "; ..." : "") + "); " + row.advice);
   }
   return texts;
 }

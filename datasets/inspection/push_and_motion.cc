@@ -250,11 +250,11 @@ constexpr double kSteady = 0.3;                         // of it: by how much it
 constexpr double kStillOn = 0.5, kSlowStart = 0.25;
 constexpr int kFewestRows = 5;
 
-double Size(const Vector4<double>& row) { return row.head<2>().norm(); }
+double Length(const Vector4<double>& row) { return row.head<2>().norm(); }
 
 double Peak(const ScenePush& push) {
   double peak = 0.0;
-  for (const Vector4<double>& row : push.force) peak = std::max(peak, Size(row));
+  for (const Vector4<double>& row : push.force) peak = std::max(peak, Length(row));
   return peak;
 }
 
@@ -279,7 +279,7 @@ double RestingForce(const ScenePush& push, double dt) {
   const double peak = Peak(push);
   double largest = 0.0, squares = 0.0;
   for (size_t t = from; t < rows; ++t) {
-    largest = std::max(largest, Size(push.force[t]));
+    largest = std::max(largest, Length(push.force[t]));
     squares += (push.force[t].head<2>() - mean).squaredNorm();
   }
   const double error = std::sqrt(squares) / static_cast<double>(at_rest);
@@ -292,8 +292,8 @@ double RestingForce(const ScenePush& push, double dt) {
 bool HasNoEnd(const ScenePush& push, int num_frames) {
   if (push.kind != PushKind::kExternal || push.force.size() < kFewestRows) return false;
   const double peak = Peak(push);
-  if (!(Size(push.force.back()) > kStillOn * peak)) return false;
-  return push.EndFrame() >= num_frames - 1 || Size(push.force.front()) < kSlowStart * peak;
+  if (!(Length(push.force.back()) > kStillOn * peak)) return false;
+  return push.EndFrame() >= num_frames - 1 || Length(push.force.front()) < kSlowStart * peak;
 }
 
 }  // namespace pushid
