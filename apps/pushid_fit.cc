@@ -22,7 +22,7 @@
 #include "ident/uncertainty/bootstrap.h"
 
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
-DEFINE_int32(resample, 0,
+DEFINE_int32(replica, 0,
              "fit bootstrap replica k: as many people or recordings (--bootstrap_by), drawn with "
              "replacement from --seed and k; 0: the recordings as they are");
 DEFINE_string(body_restoration, "",
@@ -50,7 +50,7 @@ MaybeError CheckBodyFlags(const FitOptions& options) {
 
 int Run() {
   const double begin = Now();
-  if (FLAGS_resample < 0) return Fail("--resample must not be negative");
+  if (FLAGS_replica < 0) return Fail("--replica must not be negative");
   if (FLAGS_list_parameters) {
     std::printf("%s", ParameterGlossaryMarkdown().c_str());
     return kDone;
@@ -76,7 +76,7 @@ int Run() {
       checks.bootstrap.by == ClusterBy::kAuto ? roughly.cluster : checks.bootstrap.by;
   const std::vector<PendulumRecording> pendulums =
       Resampled(MakePendulumRecordings(recordings.value(), roughly.mapping), drawn_by, Seed(),
-                FLAGS_resample);
+                FLAGS_replica);
 
   Result<FitOptions> options = setup.value().For(pendulums);
   if (!options.ok()) return Fail(options.error());

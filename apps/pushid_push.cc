@@ -10,7 +10,7 @@
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
-#include "datasets/inspection/plausibility.h"
+#include "datasets/inspection/findings.h"
 #include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"
 
@@ -85,7 +85,7 @@ Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecordi
 }
 
 void WarnOfFirstRow(const std::string& id, const MadePush& made) {
-  if (!FirstRowStandsOut(made.push)) return;
+  if (!FirstRowStandsOut(made.push.force)) return;
   const std::string force = Rounded(made.push.force[0].head<2>().norm(), 3);
   Warn("recording " + id + ": the first row, " + force +
        " N, stands out: the person already moves when the window begins; begin earlier "
@@ -174,6 +174,7 @@ int Run() {
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings(flags.ids);
   if (!recordings.ok()) return Fail(recordings.error());
   std::vector<RecordingsPush> pushes;
+  std::vector<Finding> findings;
   for (const Recording& recorded : recordings.value()) {
     const PendulumRecording recording = MakePendulumRecording(recorded, SkeletonMapping::kExact);
     const Result<MadePush> made = flags.sensor.sensors.empty()
@@ -181,8 +182,13 @@ int Run() {
                                       : FromSensor(flags, recorded, recording);
     if (!made.ok()) return Fail(made.error());
     WarnOfFirstRow(recorded.id, made.value());
+    Recording pushed = recorded;
+    pushed.pushes = {made.value().push};
+    pushed.push_kind = made.value().kind;
+    for (Finding& finding : FindingsOf(pushed)) findings.push_back(std::move(finding));
     pushes.push_back({recorded.id, flags.OutOf(recorded.id), made.value()});
   }
+  for (const std::string& warning : FindingTexts(FitFindings(std::move(findings)))) Warn(warning);
   // Every refusal comes before the first file is written.
   Manifest manifest;
   if (flags.into_manifest) {

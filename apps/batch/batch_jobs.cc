@@ -225,7 +225,7 @@ class Expander {
       for (int i : part.held_out) job.held_out.push_back(manifest_.recordings[i].id);
       job.fit_flags = variant.flags;
       job.fit_flags.push_back("--seed=" + std::to_string(plan_.seed));
-      if (replica > 0) job.fit_flags.push_back("--resample=" + std::to_string(replica));
+      if (replica > 0) job.fit_flags.push_back("--replica=" + std::to_string(replica));
       job.restoration_flags = variant.restoration;
       if (job.restoration_flags) {
         job.restoration_flags->push_back("--seed=" + std::to_string(plan_.seed));

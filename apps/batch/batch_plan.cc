@@ -42,7 +42,7 @@ const std::map<std::string, std::string> kOwnFlags = {
     {"seed", "set it in [jobs]"},
     {"crossvalidate", "set folds in [jobs]"},
     {"model", "each job uses the model of its own fit"},
-    {"resample", "set bootstrap in [jobs]"},
+    {"replica", "set bootstrap in [jobs]"},
     {"num_threads", "a job has one thread; pushid-batch --jobs runs several at a time"},
     {"model_out", "each job writes its own"},
     {"quiet", "jobs are always quiet"},

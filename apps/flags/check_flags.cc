@@ -16,7 +16,7 @@ DEFINE_string(profile, "",
 DEFINE_int32(bootstrap, 0,
              "number of refits to resampled people or recordings; 199 is usually enough");
 DEFINE_choice(bootstrap_by, pushid::BootstrapOptions{}.by,
-              "unit drawn by a bootstrap (and by pushid-fit --resample): subject (all recordings "
+              "unit drawn by a bootstrap (and by pushid-fit --replica): subject (all recordings "
               "of a person), recording, or auto (as --cluster of the fit, but recordings where "
               "people share them)");
 DEFINE_string(bootstrap_file, "",

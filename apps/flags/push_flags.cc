@@ -49,8 +49,9 @@ DEFINE_string(
     sensor_up, "",
     "force sensor: its axis that points up, for vectors; empty: that of the motion when it "
     "is the same file, otherwise z");
-DEFINE_double(sensor_zero, pushid::SensorChoice{}.zero_n,
-              "force sensor: offset (reading at rest), N, subtracted; for single-axis sensors");
+DEFINE_double(sensor_zero, 0.0,
+              "force sensor: its offset (reading at rest), N, subtracted; default: what it reads "
+              "before the pull; 0: keep that");
 DEFINE_string(sensor_forward, "",
               "force sensor: its axis that points forward, for vectors; empty: that of the motion, "
               "or x");
@@ -85,7 +86,7 @@ Result<std::vector<SensorChoice>> SensorsFromFlags() {
   sensor.file = FLAGS_sensor;
   sensor.column = FLAGS_sensor_column;
   sensor.gain = FLAGS_sensor_gain;
-  sensor.zero_n = FLAGS_sensor_zero;
+  if (Given("sensor_zero")) sensor.zero_n = FLAGS_sensor_zero;
   sensor.up = FLAGS_sensor_up;
   sensor.forward = FLAGS_sensor_forward;
   sensor.height_fraction = FLAGS_height;
@@ -130,7 +131,6 @@ Result<SensorSetup> SensorsFromCommandLine() {
     if (!sensors.ok()) return sensors.error();
     flags.sensors = std::move(sensors.value());
   }
-  flags.start_given = Given("sensor_start") || !FLAGS_sensors.empty();
   flags.estimate_offset = FLAGS_estimate_offset;
   flags.max_offset_s = FLAGS_max_offset_s;
   return flags;

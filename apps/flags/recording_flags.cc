@@ -7,7 +7,7 @@
 #include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/names.h"
-#include "datasets/inspection/plausibility.h"
+#include "datasets/inspection/findings.h"
 #include "datasets/manifest/manifest.h"
 
 const std::string kUnitHelp = "length unit of the files, " + pushid::AnyName<pushid::LengthUnit>() +
@@ -108,9 +108,11 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   Result<std::vector<Recording>> recordings =
       LoadRecordings(manifest.value(), options.value(), &found);
   if (recordings.ok()) {
-    PlausibilityCheck ankles;
-    for (const Recording& recording : recordings.value()) ankles.LookAtFacing(recording);
-    for (const std::string& warning : ankles.Warnings()) found.emplace_back(warning);
+    std::vector<Finding> facing;
+    for (const Recording& recording : recordings.value()) {
+      for (Finding& finding : FacingFindings(recording)) facing.push_back(std::move(finding));
+    }
+    for (const std::string& warning : FindingTexts(facing)) found.emplace_back(warning);
   }
   WarnGrouped(found);
   if (warnings != nullptr) *warnings = found;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "apps/python/bindings.h"
+#include "datasets/inspection/findings.h"
 #include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"
 #include "ident/validation/synthetic_truth.h"
@@ -158,6 +159,22 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
   return py::make_tuple(rows, window.start, NameOf(push.kind));
 }
 
+// What of recordings cannot be right, a dict each.
+py::list FindingsIn(const std::vector<SharedRecording>& recordings) {
+  py::list list;
+  std::vector<Finding> found = FindingsOf(Pendulums(recordings, SkeletonMapping::kExact));
+  for (const SharedRecording& one : recordings) {
+    for (Finding& finding : FacingFindings(*one)) found.push_back(std::move(finding));
+  }
+  for (const Finding& finding : found) {
+    const FindingRow& row = RowOf(finding.kind);
+    list.append(py::dict("kind"_a = row.name, "recording"_a = finding.recording,
+                         "about"_a = finding.about, "value"_a = finding.value, "unit"_a = row.unit,
+                         "what"_a = row.what, "advice"_a = row.advice));
+  }
+  return list;
+}
+
 }  // namespace
 
 void BindRecordings(py::module_* module) {
@@ -205,6 +222,7 @@ void BindRecordings(py::module_* module) {
   module->def("read", &Read);
   module->def("simulate", &Simulate);
   module->def("estimate_push", &EstimatePushOf);
+  module->def("findings", &FindingsIn);
 }
 
 }  // namespace pushid

@@ -42,6 +42,8 @@ struct SensorRecord {
   std::string file;                    // for messages
   // Where it pushed, m above the file's zero, where the sensor knows (a force platform on a wall).
   std::optional<double> height_m;
+  Eigen::Vector3d subtracted = Eigen::Vector3d::Zero();  // N, what it read at rest
+  double noise = 0.0;                                    // N, one standard deviation at rest
 
   int num_samples() const { return static_cast<int>(time_s.size()); }
 };

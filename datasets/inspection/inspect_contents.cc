@@ -10,8 +10,8 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/inspection/findings.h"
 #include "datasets/inspection/inspection.h"
-#include "datasets/inspection/plausibility.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/sensors/force_platform.h"
 
@@ -19,7 +19,6 @@ namespace pushid {
 namespace {
 
 constexpr std::size_t kMostSignals = 6;  // in the picture
-constexpr double kRest = 0.01;           // of the peak
 constexpr double kForceOnset = 20.0;     // N
 
 }  // namespace
@@ -41,21 +40,6 @@ void AddForce(const std::string& name, double rate_hz, std::vector<double> value
   if (found->forces.size() < kMostSignals) {
     found->forces.push_back({name, "N", rate_hz, std::move(values)});
   }
-}
-
-void TakeOffRest(std::vector<double>* force, Inspection* found) {
-  const std::size_t tenth = force->size() / 10;
-  if (tenth == 0) return;
-  std::vector<double> ends(force->begin(), force->begin() + tenth);
-  ends.insert(ends.end(), force->end() - tenth, force->end());
-  std::nth_element(ends.begin(), ends.begin() + tenth, ends.end());
-  const double rest = ends[tenth];
-  double peak = 0.0;
-  for (double value : *force) peak = std::max(peak, std::fabs(value - rest));
-  if (!(std::fabs(rest) > kRest * peak)) return;
-  found->Fact("at rest", Rounded(rest, 3) + " N, subtracted below; pushid-push --sensor_zero=" +
-                             Rounded(rest, 3) + " does the same");
-  for (double& value : *force) value -= rest;
 }
 
 void LookAtAnalog(const C3dFile& file, Inspection* found) {
@@ -147,7 +131,8 @@ MaybeError InspectManifest(Inspection* found) {
   std::map<std::string, int> settings, formats;
   std::set<std::string> subjects;
   int pushed = 0, read = 0;
-  PlausibilityCheck plausible;
+  std::vector<PendulumRecording> pendulums;
+  std::vector<Finding> facing;
   for (const ManifestRecording& entry : manifest.value().recordings) {
     ++settings[entry.labels.setting()];
     ++formats[Title(entry.motion_format)];
@@ -157,10 +142,16 @@ MaybeError InspectManifest(Inspection* found) {
     const Result<Recording> recording = LoadRecording(manifest.value(), entry, {}, &warnings);
     for (const Warning& warning : warnings) found->Warn(warning.text);
     if (recording.ok()) ++read;
-    if (recording.ok()) plausible.Look(recording.value());
+    if (recording.ok()) {
+      pendulums.push_back(MakePendulumRecording(recording.value(), SkeletonMapping::kExact));
+      const std::vector<Finding> more = FacingFindings(recording.value());
+      facing.insert(facing.end(), more.begin(), more.end());
+    }
     if (!recording.ok()) found->Warn(recording.error().ToString());
   }
-  for (const std::string& warning : plausible.Warnings()) found->Warn(warning);
+  std::vector<Finding> findings = FindingsOf(pendulums);
+  findings.insert(findings.end(), facing.begin(), facing.end());
+  for (const std::string& text : FindingTexts(findings)) found->Warn(text);
   const auto counts = [](const std::map<std::string, int>& of) {
     std::vector<std::string> texts;
     for (const auto& [name, count] : of) texts.push_back(name + " " + std::to_string(count));

@@ -14,6 +14,7 @@
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/manifest/joint_choice.h"
+#include "datasets/sensors/sensor_choice.h"
 
 namespace pushid {
 namespace {
@@ -143,17 +144,22 @@ MaybeError LookAtPush(Inspection* found) {
 }
 
 MaybeError LookAtSensor(Inspection* found) {
-  const Result<SensorRecord> record = ReadSensorCsv(found->path);
+  Result<SensorRecord> record = ReadSensorCsv(found->path);
   if (!record.ok()) return record.error();
   found->format = "sensor CSV";
   const std::vector<double>& time = record.value().time_s;
   const double rate = (time.size() - 1) / (time.back() - time.front());
   found->Fact("samples", std::to_string(time.size()) + " at " + Rounded(rate, 5) +
                              " per second, from " + Rounded(time.front()) + " s");
+  SubtractRest(&record.value());
+  if (const Eigen::Vector3d& rest = record.value().subtracted; rest.norm() > 0.0) {
+    found->Fact("at rest", Rounded(record.value().is_vector ? rest.norm() : rest.x(), 3) +
+                               " N before the pull, subtracted below and by pushid-push "
+                               "(--sensor_zero=0 keeps them)");
+  }
   for (int axis = 0; axis < (record.value().is_vector ? 3 : 1); ++axis) {
     std::vector<double> values;
     for (const Eigen::Vector3d& force : record.value().force) values.push_back(force[axis]);
-    if (!record.value().is_vector) TakeOffRest(&values, found);
     AddForce(record.value().is_vector ? std::string("f") + "xyz"[axis] : "force", rate,
              std::move(values), found);
   }

@@ -66,10 +66,6 @@ void InspectMotion(const PointMotion& motion, const std::optional<PendulumJoints
 void AddForce(const std::string& name, double rate_hz, std::vector<double> values,
               Inspection* found);
 
-// The reading at rest of a sensor of one number (the median of the first and last tenth of its
-// samples): reported and subtracted where it is more than a hundredth of the peak.
-void TakeOffRest(std::vector<double>* force, Inspection* found);
-
 // The analog channels of a C3D file, and what presses its force platforms.
 void LookAtAnalog(const C3dFile& file, Inspection* found);
 void LookAtPlatforms(const C3dFile& file, Inspection* found);

@@ -56,9 +56,9 @@ class PersonLoader {
     person.subject_id = entry_.subjects[index_].id;
     person.mass_kg = entry_.subjects[index_].mass_kg;
     person.file = path_;
-    person.file_clock_s =
-        motion.first_time_s +
+    person.skipped_s =
         entry_.first_frame * (motion.frame_time_s > 0.0 ? motion.frame_time_s : 1.0 / fps_);
+    person.file_clock_s = motion.first_time_s + person.skipped_s;
     if (MaybeError failed = Cut(&motion)) return *std::move(failed);
     if (MaybeError failed = CloseGaps(&motion, &person)) return *std::move(failed);
     if (MaybeError failed = Turn(&motion, &person)) return *std::move(failed);

@@ -14,6 +14,7 @@ namespace {
 using Track = std::vector<Eigen::Vector3d>;
 
 constexpr double kSlowestCutoff = 0.5;  // Hz
+constexpr double kNearlyAsFast = 0.95;  // of the old rate: there is next to nothing to alias
 
 // change(track) for hip, feet and, where they were kept, every joint.
 template <typename Change>
@@ -71,7 +72,7 @@ MaybeError PrepareMotion(const PreparationOptions& options, Recording* recording
     }
   }
   if (to == 0.0 || to == from) return std::nullopt;
-  if (to < from && !(options.lowpass_hz > 0.0 && options.lowpass_hz <= 0.5 * to)) {
+  if (to < kNearlyAsFast * from && !(options.lowpass_hz > 0.0 && options.lowpass_hz <= 0.5 * to)) {
     return Error{"--resample_fps=" + Rounded(to) + " is below its " + Rounded(from) +
                  " frames per second: faster movements would be aliased; pass --lowpass_hz=" +
                  Rounded(to / 4.0, 3) + " or another cut-off of at most half the new rate"};

@@ -27,8 +27,8 @@ struct PreparationOptions {
 MaybeError CheckPreparation(const PreparationOptions& options);
 
 // Filters and resamples a recording whose gaps are filled. Errors: a cut-off that the recording's
-// rate cannot have, a lower rate without a low-pass of at most half of it, fewer than three frames
-// left.
+// rate cannot have, a rate lower by more than a twentieth without a low-pass of at most half of it,
+// fewer than three frames left.
 MaybeError PrepareMotion(const PreparationOptions& options, Recording* recording);
 
 // Whether positions read from a file can be a person at all: a fit to wrong units or axes succeeds,

@@ -89,8 +89,9 @@ struct RecordedPerson {
   std::string subject_id;
   double mass_kg = 0.0;
   std::string file;  // of the motion
-  // That file's own clock at frame 0, s, and its axes: for forces that were recorded in it.
-  double file_clock_s = 0.0;
+  // That file's own clock at frame 0, s, how much of it is before frame 0 (first_frame), and its
+  // axes: for forces that were recorded in it or beside it.
+  double file_clock_s = 0.0, skipped_s = 0.0;
   std::string file_up = "z", file_forward = "x";
   // Joint positions, one entry per frame, metres.
   std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;

@@ -204,14 +204,15 @@ Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
                                                         : FromTable(choice, format);
   if (!record.ok()) return record;
   record.value().file = choice.file;
-  if (choice.zero_n != 0.0 && record.value().is_vector) {
+  if (choice.zero_n.value_or(0.0) != 0.0 && record.value().is_vector) {
     return Error{"an offset can only be subtracted from a sensor with a single axis", choice.file};
   }
   for (Eigen::Vector3d& force : record.value().force) {
     force *= choice.gain;
-    force.x() -= choice.zero_n;
+    force.x() -= choice.zero_n.value_or(0.0);
     if (record.value().is_vector) force = rotation.value() * force;
   }
+  if (!choice.zero_n) SubtractRest(&record.value());
   return record;
 }
 
@@ -258,7 +259,7 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
     }
     if (fields.Has("start")) sensor.start_s = fields.Number("start", "its clock at frame 0 in s");
     sensor.idle_force = fields.OptionalNumber("idle_force", "a force in N", 0.0);
-    sensor.zero_n = fields.OptionalNumber("zero", "what it reads at rest in N", 0.0);
+    if (fields.Has("zero")) sensor.zero_n = fields.Number("zero", "what it reads at rest in N");
     if (!fields.error() && !(sensor.idle_force >= 0.0)) {
       fields.Fail("idle_force", "must be a force of at least 0 N");
     }

@@ -21,8 +21,9 @@ struct SensorChoice {
   // part of three (ground_force_v for ground_force_vx, ..._vy, ..._vz); an analog channel; or
   // platform:1, counted from 1.
   std::string column;
-  double gain = 1.0;    // N per unit of the column; negative where it counts the other way
-  double zero_n = 0.0;  // what it reads at rest, N; of a sensor of one number
+  double gain = 1.0;  // N per unit of the column; negative where it counts the other way
+  // What it reads at rest, N, of a sensor of one number; unset: what it reads before the pull.
+  std::optional<double> zero_n;
   // Axes of the file that point up and forward, for forces that are vectors; empty: z and x.
   std::string up, forward;
   // The rest is what PushFromSensor needs.
@@ -40,6 +41,11 @@ void FillFromMotion(const RecordedPerson& person, SensorChoice* choice);
 // Errors besides those of the files' readers: no such column, channel or platform (some that exist
 // are listed), missing values, uneven times.
 Result<SensorRecord> ReadSensor(const SensorChoice& choice);
+
+// Subtracts what a sensor reads before the pull: the median of its samples there. Sets `subtracted`
+// (zero where the reading is as likely noise about zero) and `noise`. Nothing where the record
+// begins with the pull (within 0.1 s) or reads 0.3 of its peak before: that is a load, and no zero.
+void SubtractRest(SensorRecord* record);
 
 // Several sensors that push together:
 //   [{"file": "left.csv", "height": 0.8}, {"file": "trial.c3d", "column": "rod", "gain": -250,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/inspection/findings.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/loading/warning.h"
 #include "ident/parameters/fit_options.h"
@@ -20,7 +21,7 @@ struct StartDiagnostics {
   std::vector<NullDirection> null_directions;  // of the recordings alone, without priors
   std::vector<std::string> without_effect;     // free parameters whose column is zero
   std::vector<std::string> notes;              // starts moved off a bound
-  Warnings unit_warnings;                      // inputs that look like another unit
+  std::vector<Finding> findings;               // what of the recordings cannot be right
 };
 
 // A frame that the robust loss gives less than half its weight.
@@ -86,9 +87,6 @@ void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions
 // Free parameters that change no residual of the recordings, neither at the nominal values nor near
 // them: an error that names them. To be asked before a solve.
 MaybeError CheckEffects(const FitProblem& problem);
-
-// Masses, rods, pushes and motions that no person has: what looks wrong, by recording.
-Warnings UnitWarnings(const std::vector<PendulumRecording>& recordings);
 
 // Everything but the advice, which also looks at profiles and bootstrap (advice.h).
 Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/problem/jacobian_blocks.h"
@@ -12,17 +11,9 @@ namespace pushid {
 namespace {
 
 constexpr double kNearbyWeight = 0.1;
-constexpr double kNoEffect = 1e-12;                  // of the largest column, in typical sizes
-constexpr double kNearby = 2.0;                      // factor of the second look
-constexpr uint64_t kNearbySeed = 7;                  // fixed: the check is part of no random choice
-constexpr double kMinMass = 15.0, kMaxMass = 250.0;  // kg
-constexpr double kMinRod = 0.3, kMaxRod = 1.6;       // m
-constexpr double kMinPush = 0.01, kMaxPush = 100.0;  // m/s^2, peak force over mass
-constexpr double kSoonAfter = 0.25;                  // s
-constexpr double kSeenToMove = 0.05;                 // m
-constexpr double kAlong = 0.5;                       // of the way: within 60 degrees
-constexpr double kMaxSpeed = 10.0;                   // m/s, of the hip
-constexpr double kMinFps = 10.0, kMaxFps = 2000.0;
+constexpr double kNoEffect = 1e-12;  // of the largest column, in typical sizes
+constexpr double kNearby = 2.0;      // factor of the second look
+constexpr uint64_t kNearbySeed = 7;  // fixed: the check is part of no random choice
 
 // Norms of the shared columns over the rows of data, per typical size of each parameter.
 std::vector<double> ColumnNorms(const FitProblem& problem, FitPoint point) {
@@ -93,72 +84,6 @@ MaybeError CheckEffects(const FitProblem& problem) {
                " no effect on any of these recordings and cannot be fitted; use --fix=" + list};
 }
 
-namespace {
-
-// How far the hip of a pushed person has gone when it is farthest from where the push found it,
-// until shortly after the push, and along the push of that: where that is little, the axes, the
-// push's sign or its start are wrong.
-std::string AgainstThePush(const PendulumRecording& r, const ScenePush& push) {
-  Eigen::Vector2d impulse = Eigen::Vector2d::Zero(), farthest = Eigen::Vector2d::Zero();
-  for (const Vector4<double>& row : push.force) impulse += r.scene.dt * row.head<2>();
-  if (!(impulse.norm() > 0.0)) return "";
-  const int end = push.start_frame + static_cast<int>(push.force.size() + kSoonAfter / r.scene.dt);
-  for (int t = push.start_frame; t < std::min(end + 1, r.num_frames()); ++t) {
-    const Eigen::Vector2d way =
-        (r.hip[push.person][t] - r.hip[push.person][push.start_frame]).head<2>();
-    if (way.norm() > farthest.norm()) farthest = way;
-  }
-  const double along = farthest.dot(impulse.normalized());
-  if (farthest.norm() < kSeenToMove || along >= kAlong * farthest.norm()) return "";
-  return "pushed, the hip of person " + std::to_string(push.person) + " goes " +
-         Rounded(farthest.norm(), 2) + " m, but " +
-         (along < 0.0 ? "against the push" : "not along the push") +
-         "; are up, forward and the push's sign and start right?";
-}
-
-}  // namespace
-
-Warnings UnitWarnings(const std::vector<PendulumRecording>& recordings) {
-  Warnings warnings;
-  for (const PendulumRecording& r : recordings) {
-    const auto tell = [&](const std::string& what) {
-      warnings.emplace_back("recording " + r.id + ": " + what, r.id, what);
-    };
-    const auto warn = [&](double value, double lower, double upper, const std::string& what,
-                          const std::string& hint) {
-      if (value >= lower && value <= upper) return;
-      tell(what + " is " + Rounded(value, 3) + "; " + hint);
-    };
-    const double fps = 1.0 / r.scene.dt;
-    warn(fps, kMinFps, kMaxFps, "the frame rate in 1/s", "is fps really frames per second?");
-    for (int n = 0; n < r.num_people(); ++n) {
-      const std::string whose = " of person " + std::to_string(n);
-      const Body& body = r.scene.people[n].body;
-      warn(body.mass, kMinMass, kMaxMass, "the mass" + whose + " in kg", "is mass_kg in kg?");
-      warn(body.rod_length, kMinRod, kMaxRod, "the rod" + whose + " (ankles to hip) in m",
-           "is length_unit right?");
-      double speed = 0.0;
-      int fastest = 0;
-      for (int t = 1; t < r.num_frames(); ++t) {
-        const double now = (r.hip[n][t] - r.hip[n][t - 1]).norm() * fps;
-        if (now > speed) speed = now, fastest = t;
-      }
-      warn(speed, 0.0, kMaxSpeed,
-           "the hip's speed" + whose + " in m/s, at frame " + std::to_string(fastest) + ",",
-           "are length_unit and fps right, or does a marker jump there?");
-    }
-    for (const ScenePush& push : r.scene.pushes) {
-      double peak = 0.0;
-      for (const Vector4<double>& row : push.force) peak = std::max(peak, row.head<2>().norm());
-      warn(peak / r.scene.people[push.person].body.mass, kMinPush, kMaxPush,
-           "the push's peak over the mass in m/s^2", "is the push in N?");
-      const std::string against = AgainstThePush(r, push);
-      if (!against.empty()) tell(against);
-    }
-  }
-  return warnings;
-}
-
 StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start) {
   const Conditioning at_start = ComputeConditioning(problem, start.from);
   StartDiagnostics d;
@@ -166,7 +91,7 @@ StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& star
   d.null_directions = at_start.null_directions;
   d.without_effect = WithoutEffect(problem, start.from);
   d.notes = start.notes;
-  d.unit_warnings = UnitWarnings(problem.recordings());
+  d.findings = FitFindings(FindingsOf(problem.recordings()));
   return d;
 }
 

@@ -16,36 +16,9 @@
 namespace pushid {
 namespace {
 
-// A bootstrap's replica holds a recording several times, under one id.
-bool SameMotion(const PendulumRecording& a, const PendulumRecording& b) {
-  if (a.id == b.id) return false;
-  if (!a.content_hash.empty() && a.content_hash == b.content_hash) return true;
-  return a.num_frames() > 0 && a.hip == b.hip;
-}
-
-// A copy adds nothing that was not known, and narrows every interval as if it did.
-Warnings DuplicateWarnings(const std::vector<PendulumRecording>& recordings) {
-  Warnings warnings;
-  std::vector<bool> told(recordings.size(), false);
-  for (size_t i = 0; i < recordings.size(); ++i) {
-    std::string copies;
-    for (size_t j = i + 1; j < recordings.size(); ++j) {
-      if (told[i] || told[j] || !SameMotion(recordings[i], recordings[j])) continue;
-      told[j] = true;
-      copies += (copies.empty() ? "" : ",") + recordings[j].id;
-    }
-    if (copies.empty()) continue;
-    warnings.emplace_back("the motion of '" + recordings[i].id + "' is repeated in " + copies +
-                          ": copies count as independent data, so intervals are too narrow; leave "
-                          "them out (--leave_out=" +
-                          copies + ")");
-  }
-  return warnings;
-}
-
 Warnings WarningsBefore(const std::vector<PendulumRecording>& recordings,
                         const FitOptions& options) {
-  Warnings warnings = UnitWarnings(recordings);
+  Warnings warnings = FindingWarnings(FitFindings(FindingsOf(recordings)));
   const bool groups =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const PendulumRecording& recording) { return recording.num_people() > 1; });
@@ -54,7 +27,6 @@ Warnings WarningsBefore(const std::vector<PendulumRecording>& recordings,
         "recordings contain several people, but the model has no interaction between them "
         "(--preset=group or --interaction=contact adds one)");
   }
-  for (const Warning& warning : DuplicateWarnings(recordings)) warnings.push_back(warning);
   return warnings;
 }
 

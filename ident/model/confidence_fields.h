@@ -11,12 +11,20 @@
 namespace pushid {
 
 template <class Archive>
+void Fields(Archive& a, Finding& f) {
+  a("kind", f.kind);
+  a("recording", f.recording);
+  a("about", f.about);
+  a("value", f.value);
+}
+
+template <class Archive>
 void Fields(Archive& a, StartDiagnostics& s) {
   a("condition_number", s.condition_number);
   a("null_directions", s.null_directions);
   a("without_effect", s.without_effect);
   a("notes", s.notes);
-  WarningFields(a, "unit_warnings", s.unit_warnings);
+  if (a.Has("findings")) a("findings", s.findings);  // older files have none
 }
 
 template <class Archive>

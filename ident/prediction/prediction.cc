@@ -194,10 +194,16 @@ HipPaths StaticBaseline(const PendulumRecording& recording, int observed) {
   return paths;
 }
 
+// Frames.
+constexpr int kLeastPredicted = 10;
+
 HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed) {
   HipPaths paths;
-  const int known = observed > 0 ? observed - 1 : recording.scene.LastPushEnd();
-  const int last = std::min(known, recording.num_frames() - 1);
+  // A push may last as long as its recording: something must be left to predict.
+  const int frames = recording.num_frames();
+  const int latest = std::max(frames / 2, frames - 1 - kLeastPredicted);
+  const int known = observed > 0 ? observed - 1 : std::min(recording.scene.LastPushEnd(), latest);
+  const int last = std::min(known, frames - 1);
   for (const auto& hip : recording.hip) {
     std::vector<Vector3<double>> path(hip.begin(), hip.begin() + last + 1);
     const Vector3<double> step =
@@ -240,7 +246,7 @@ Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecordi
 
 Warnings InputWarnings(const IdentifiedModel& model,
                        const std::vector<PendulumRecording>& recordings) {
-  Warnings warnings = UnitWarnings(recordings);
+  Warnings warnings = FindingWarnings(FitFindings(FindingsOf(recordings)));
   const bool together =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const PendulumRecording& r) { return r.scene.num_people() > 1; });

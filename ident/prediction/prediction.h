@@ -60,8 +60,8 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
                               const Prediction& prediction);
 
-// Baselines. observed: frames seen first; 0: until the last push ends for constant velocity, frame
-// 0 for the static one.
+// Baselines. observed: frames seen first; 0: until the last push ends, or the last frame but ten
+// (half of a short recording), for constant velocity; frame 0 for the static one.
 HipPaths StaticBaseline(const PendulumRecording& recording, int observed = 0);
 HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed = 0);
 // The model on from the state of the last frame seen.

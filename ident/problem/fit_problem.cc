@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "datasets/inspection/findings.h"
 #include "ident/problem/residual_families.h"
 #include "residuals/cost_functions/lane_group.h"
 
@@ -34,6 +35,12 @@ FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, FitOpti
       options_(std::move(options)),
       counts_(std::move(counts)),
       map_(options_.table.Map()) {
+  const std::vector<int> copy_of = CopyOf(recordings);
+  for (size_t i = 0; i < copy_of.size(); ++i) {
+    if (copy_of[i] < 0) continue;
+    counts_.resize(recordings.size(), 1);
+    counts_[i] = 0;
+  }
   map_.pool_by = options_.pool_by;
   if (options_.model.learned != nullptr && !options_.hold_network) {
     map_.num_weights = static_cast<int>(options_.model.learned->weights.size());

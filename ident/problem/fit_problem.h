@@ -38,7 +38,8 @@ struct CostWeights {
 class FitProblem {
  public:
   // recordings must outlive the problem. counts: how often each recording counts (a bootstrap
-  // replica; 0 leaves it out); empty: each once.
+  // replica; 0 leaves it out); empty: each once. Copies of a recording under other ids
+  // (datasets/inspection/findings.h) never count: they tell nothing new.
   FitProblem(const std::vector<PendulumRecording>& recordings, FitOptions options,
              std::vector<int> counts = {});
 

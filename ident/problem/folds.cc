@@ -9,6 +9,7 @@
 
 #include "datasets/files/json_file.h"
 #include "datasets/files/random.h"
+#include "datasets/inspection/findings.h"
 
 namespace pushid {
 namespace {
@@ -70,9 +71,7 @@ Result<std::vector<Fold>> InterleavedFolds(const std::vector<PendulumRecording>&
   return folds;
 }
 
-}  // namespace
-
-Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
+Result<std::vector<Fold>> DrawFolds(const std::vector<PendulumRecording>& recordings,
                                     FoldScheme scheme, int num_folds, int repeats, uint64_t seed) {
   const int total = static_cast<int>(recordings.size());
   if (scheme == FoldScheme::kStratified || scheme == FoldScheme::kInterleaved) {
@@ -106,6 +105,30 @@ Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& record
                  "(subject), of two settings (setting), or recordings of magnitude 'strong' and "
                  "others (strong)"};
   }
+  return folds;
+}
+
+// Who fits a copy of what is held out has seen it.
+void HoldOutCopies(const std::vector<PendulumRecording>& recordings, std::vector<Fold>* folds) {
+  std::vector<int> root = CopyOf(recordings);
+  for (size_t i = 0; i < root.size(); ++i) root[i] = root[i] < 0 ? static_cast<int>(i) : root[i];
+  for (Fold& fold : *folds) {
+    std::set<int> roots;
+    for (int i : fold.held_out) roots.insert(root[i]);
+    std::vector<int> all;
+    for (size_t i = 0; i < root.size(); ++i) {
+      if (roots.count(root[i]) > 0) all.push_back(static_cast<int>(i));
+    }
+    if (all.size() < recordings.size()) fold.held_out = std::move(all);
+  }
+}
+
+}  // namespace
+
+Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
+                                    FoldScheme scheme, int num_folds, int repeats, uint64_t seed) {
+  Result<std::vector<Fold>> folds = DrawFolds(recordings, scheme, num_folds, repeats, seed);
+  if (folds.ok()) HoldOutCopies(recordings, &folds.value());
   return folds;
 }
 

@@ -31,7 +31,7 @@ struct Fold {
 };
 
 // For kStratified: num_folds folds, `repeats` times; for kInterleaved num_folds folds. For the
-// others the arguments are not used.
+// others the arguments are not used. Copies of a recording are held out together.
 // Errors: fewer recordings or subjects than the scheme needs, no strong push.
 Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& recordings,
                                     FoldScheme scheme, int num_folds, int repeats, uint64_t seed);

@@ -12,7 +12,6 @@ namespace pushid {
 namespace {
 
 constexpr double kNoise = 0.01;        // of the largest row: what no push ends with
-constexpr double kReadsAtRest = 0.02;  // of the peak: the median sample, where a sensor has no zero
 constexpr double kLostImpulse = 0.01;  // of the whole, tolerated outside the recording
 
 // Integral of the samples' broken line from `from` to `to` (s), by the trapezoids in between.
@@ -37,21 +36,6 @@ Error Wrong(const PendulumRecording& recording, const std::string& what) {
 // Fraction of the rod at which a horizontal plane `height` metres up crosses it.
 double HeightFraction(const Body& body, const Vector4<double>& q, double height) {
   return (height - body.cart_height) / (body.rod_length * std::cos(q[2]) * std::cos(q[3]));
-}
-
-// A scalar sensor that reads something most of the time has no zero of its own.
-std::string AtRest(const SensorRecord& record) {
-  if (record.is_vector) return "";
-  std::vector<double> force, size;
-  for (const Vector3<double>& sample : record.force) {
-    force.push_back(sample.x());
-    size.push_back(std::fabs(sample.x()));
-  }
-  const auto middle = force.begin() + force.size() / 2;
-  std::nth_element(force.begin(), middle, force.end());
-  const double peak = *std::max_element(size.begin(), size.end());
-  if (!(std::fabs(*middle) > kReadsAtRest * peak)) return "";
-  return ", or subtract its reading at rest, about " + Rounded(*middle, 3) + " N (--sensor_zero)";
 }
 
 MaybeError CheckSensorOptions(const SensorRecord& record, const PendulumRecording& recording,
@@ -84,10 +68,11 @@ MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& 
   const double span = record.time_s.back() - record.time_s.front();
   const double lost = before.norm() + after.norm() - options.idle_force * span;
   if (lost > kLostImpulse * inside.norm() || (empty && lost > 0.0)) {
-    return Error{Rounded(lost) + " N s of the push lie outside recording " + recording.id + " (" +
-                     Rounded(inside.norm()) + " N s inside), whose frame 0 is at " + Rounded(zero) +
-                     " s of the sensor's clock; check that time" + AtRest(record),
-                 record.file};
+    return Error{
+        Rounded(lost) + " N s of the push lie outside recording " + recording.id + " (" +
+            Rounded(inside.norm()) + " N s inside), whose frame 0 is at " + Rounded(zero) +
+            " s of the sensor's clock; check that time, and what it reads at rest (--sensor_zero)",
+        record.file};
   }
   if (!empty) return std::nullopt;
   return Error{"no force greater than " + Rounded(options.idle_force) + " N within recording " +
@@ -141,8 +126,9 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
 
 namespace {
 
-constexpr double kCutShort = 0.2;  // of the peak
-constexpr double kOddGain = 3.0;   // beyond what friction and recovery blur
+constexpr double kCutShort = 0.2;    // of the peak
+constexpr double kOddGain = 3.0;     // beyond what friction and recovery blur
+constexpr double kNoisePeaks = 4.0;  // standard deviations
 
 // Rows of several pushes on one person, added frame by frame.
 void AddPush(const Push& more, Push* sum) {
@@ -188,31 +174,57 @@ std::string CutShort(const SensorRecord& record) {
 struct ReadSensors {
   std::vector<SensorChoice> choices;  // with what the motion's file says of them
   std::vector<SensorRecord> records;
+  std::string how;
 };
 
-Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded) {
+// The clock at frame 0 of a sensor in a file of its own, when nothing is said of it: the motion's,
+// where the record holds at least half of the recording by it; otherwise both began at once. So a
+// motion that is cut (first_frame) keeps its push.
+double ClockBeside(const SensorRecord& record, const RecordedPerson& person, double seconds) {
+  const double begin = person.file_clock_s, end = begin + seconds;
+  const double shared =
+      std::min(end, record.time_s.back()) - std::max(begin, record.time_s.front());
+  return shared >= 0.5 * seconds ? begin : record.time_s.front() + person.skipped_s;
+}
+
+Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded, int person) {
   ReadSensors read;
+  const std::size_t count = setup.sensors.size();
+  read.how = count == 1
+                 ? "from the sensor, averaged over the frames"
+                 : "from " + std::to_string(count) + " sensors together, averaged over the frames";
   for (SensorChoice sensor : setup.sensors) {
-    for (const RecordedPerson& person : recorded.people) FillFromMotion(person, &sensor);
+    const bool said = sensor.start_s.has_value();
+    for (const RecordedPerson& one : recorded.people) FillFromMotion(one, &sensor);
     Result<SensorRecord> record = ReadSensor(sensor);
     if (!record.ok()) return record.error();
+    const bool together = sensor.start_s.has_value();
+    if (!together) {
+      sensor.start_s = ClockBeside(record.value(), recorded.people[person],
+                                   (recorded.num_frames() - 1) / recorded.fps);
+    }
+    if (!said && (together || *sensor.start_s != 0.0)) {
+      read.how += std::string(together ? "; recorded with the motion, its clock"
+                                       : "; by the motion's times, its clock") +
+                  " at frame 0 is " + Rounded(*sensor.start_s, 4) + " s" +
+                  (together ? "" : " (--sensor_start changes it)");
+    }
+    const Vector3<double>& rest = record.value().subtracted;
+    if (rest.norm() > 0.0) {
+      const double size = record.value().is_vector ? rest.norm() : rest.x();
+      read.how +=
+          "; " + Rounded(size, 3) + " N before the pull subtracted (--sensor_zero=0 keeps them)";
+    }
     read.choices.push_back(sensor);
     read.records.push_back(std::move(record.value()));
   }
   return read;
 }
 
-std::string HowRead(const SensorSetup& setup, const ReadSensors& read) {
-  const std::size_t count = read.records.size();
-  std::string how =
-      count == 1 ? "from the sensor, averaged over the frames"
-                 : "from " + std::to_string(count) + " sensors together, averaged over the frames";
-  for (const SensorChoice& sensor : read.choices) {
-    if (!sensor.start_s || setup.start_given) continue;
-    how +=
-        "; recorded with the motion, its clock at frame 0 is " + Rounded(*sensor.start_s, 4) + " s";
-  }
-  return how;
+// What the noise of a sensor at rest makes of the mean over a frame, N.
+double IdleForce(const SensorRecord& record, double dt) {
+  const double step = (record.time_s.back() - record.time_s.front()) / (record.num_samples() - 1);
+  return kNoisePeaks * record.noise * std::sqrt(std::min(1.0, step / dt));
 }
 
 // The error of an estimated offset: that of noise, and half a frame, which its fit cannot tell.
@@ -251,10 +263,13 @@ Result<SensorOffset> Offset(const SensorSetup& setup, const ReadSensors& read,
 
 Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& recorded,
                                    const PendulumRecording& recording, int person) {
-  const Result<ReadSensors> read = ReadAll(setup, recorded);
+  if (person < 0 || person >= recording.num_people()) {
+    return Wrong(recording, "there is no person " + std::to_string(person));
+  }
+  const Result<ReadSensors> read = ReadAll(setup, recorded, person);
   if (!read.ok()) return read.error();
   SensorPush result;
-  result.how = HowRead(setup, read.value());
+  result.how = read.value().how;
   const Result<SensorOffset> offset = Offset(setup, read.value(), recording, person, &result);
   if (!offset.ok()) return offset.error();
   SensorPushOptions options;
@@ -269,7 +284,8 @@ Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& re
     options.height_fraction = sensor.height_fraction;
     options.height_m = sensor.height_m ? sensor.height_m : record.height_m;
     options.frame_zero_time_s = sensor.start_s.value_or(0.0) + offset.value().offset_s;
-    options.idle_force = sensor.idle_force;
+    options.idle_force =
+        sensor.idle_force > 0.0 ? sensor.idle_force : IdleForce(record, recording.scene.dt);
     if (!options.height_m && options.height_fraction == SensorChoice{}.height_fraction) {
       result.how += "; contact at the hip's height (--height and --height_m change it)";
     }

@@ -42,7 +42,6 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
 
 struct SensorSetup {
   std::vector<SensorChoice> sensors;  // which push together
-  bool start_given = false;           // their clocks at frame 0 are not taken from the motion
   bool estimate_offset = false;       // of their clocks from the motion's
   double max_offset_s = 0.5;          // how far estimate_offset looks on either side
 };

@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "datasets/files/number_text.h"
-#include "datasets/loading/warning.h"
 #include "ident/figures/text_table.h"
 #include "ident/fit/interval_agreement.h"
 #include "ident/parameters/option_names.h"
@@ -42,8 +41,9 @@ std::string Disagreements(const std::vector<Agreement>& rows) {
 std::string StartText(const StartDiagnostics& start) {
   std::string text;
   for (const std::string& note : start.notes) text += "start: " + note + "\n";
-  for (const std::string& warning : GroupedWarnings(start.unit_warnings))
-    text += "units? " + warning + "\n";
+  for (const std::string& finding : FindingTexts(start.findings)) {
+    text += "warning: " + finding + "\n";
+  }
   return text;
 }
 

@@ -163,10 +163,10 @@ std::string PreparationText(const std::map<std::string, std::string>& configurat
             " frames per second";
   }
   if (!text.empty()) text = "motion: " + text + "\n";
-  const double replica = flag("resample");
+  const double replica = flag("replica");
   if (replica > 0.0) {
     text += "recordings: drawn with replacement, as replica " + Rounded(replica) +
-            " of a bootstrap (--resample; --resample_fps changes the frame rate)\n";
+            " of a bootstrap (--replica)\n";
   }
   return text;
 }

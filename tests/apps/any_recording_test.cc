@@ -264,7 +264,7 @@ TEST_F(AnyRecordingTest, InspectDoubtsWhatNobodyCanBe) {
   const auto id = [&json](int i) { return json["recordings"][i]["id"].get<std::string>(); };
   EXPECT_TRUE(Contains(run.out, "above 1 kN in 1 case (" + id(0) + ": 1500 N)"));
   EXPECT_TRUE(Contains(run.out, "first row stands out in 1 case (" + id(0)));
-  EXPECT_TRUE(Contains(run.out, "moves in another direction than the push in 1 case (" + id(1)));
+  EXPECT_TRUE(Contains(run.out, "moves against the push in 1 case (" + id(1)));
   EXPECT_TRUE(Contains(run.out, "moves before being pushed in 1 case (" + id(3)));
   EXPECT_TRUE(Contains(run.out, "people do not face forward in 1 case (" + id(1)));
   EXPECT_TRUE(
@@ -386,6 +386,21 @@ TEST_F(AnyRecordingTest, ASensorInTheFileOfTheMotion) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out, "5 rows from frame 15")) << run.out;
   EXPECT_TRUE(Contains(run.out, "its clock at frame 0 is 0.1667 s")) << run.out;
+
+  // The same in a file of its own that began with the motion's, with a load cell that reads 2.3 N.
+  std::string text = "time,force\n";
+  for (int i = 0; i < 20 * frames; ++i) {
+    const double force = c3d.value().analog[0].samples[i] + 2.3;
+    text += std::to_string(i / c3d.value().analog_rate_hz) + "," + std::to_string(force) + "\n";
+  }
+  WriteText("force.csv", text);
+  const AppRun beside = RunApp(
+      "pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(), "--overwrite",
+                      "--sensor=" + Path("force.csv"), "--idle_force=5", "--out=" + Path("p.csv")});
+  ASSERT_EQ(beside.exit_code, 0) << beside.err;
+  EXPECT_TRUE(Contains(beside.out, "5 rows from frame 15")) << beside.out;
+  EXPECT_TRUE(Contains(beside.out, "by the motion's times, its clock at frame 0 is 0.1667 s"));
+  EXPECT_TRUE(Contains(beside.out, "2.3 N before the pull subtracted")) << beside.out;
 }
 
 }  // namespace

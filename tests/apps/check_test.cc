@@ -37,7 +37,7 @@ TEST_F(CheckTest, AFileIsCheckedLikeAFitThatHasJustEnded) {
       {"--pool=mu", "--pool_by=subject", "--sigmas=fixed", "--seed=3"},
       {"--self_force=linear,mlp:2"},
       {"--stance=threshold"},
-      {"--resample=2", "--bootstrap_by=recording"}};
+      {"--replica=2", "--bootstrap_by=recording"}};
   for (const std::vector<std::string>& fit : fits) {
     SCOPED_TRACE(fit.empty() ? "default" : fit[0]);
     std::vector<std::string> all = fit;

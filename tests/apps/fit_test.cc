@@ -202,8 +202,10 @@ TEST_F(FitAppTest, WhatIsLeftOutIsNotRead) {
 }
 
 TEST_F(FitAppTest, AReplicaSaysSo) {
-  EXPECT_TRUE(Contains(RunApp("pushid-fit", {Recordings(), "--resample=60"}).out,
+  EXPECT_TRUE(Contains(RunApp("pushid-fit", {Recordings(), "--replica=60"}).out,
                        "drawn with replacement, as replica 60 of a bootstrap"));
+  // Which is no frame rate.
+  EXPECT_EQ(RunApp("pushid-fit", {Recordings(), "--resample=60"}).exit_code, 1);
 }
 
 TEST_F(FitAppTest, TheHeaderNamesPoolingAndTheSelfModel) {

@@ -185,6 +185,14 @@ def test_a_recording_without_push_is_told(made):
     assert rows.shape[1] == 4 and first >= 0 and kind == "net"
 
 
+def test_what_cannot_be_right_is_found(made):
+    assert pushid.findings(made[0]) == []
+    found = pushid.findings(from_arrays(made[0][0], mass=18.0, push=-made[0][0].push[:20, 0]))
+    kinds = {one["kind"]: one for one in found}
+    assert kinds["push against motion"]["value"] > 150 and kinds["mass"]["value"] == 18.0
+    assert kinds["mass"]["unit"] == "kg" and "mass_kg" in kinds["mass"]["advice"]
+
+
 def test_predictions(made, result):
     recording = made[0][1]
     predicted = result.predict(recording)

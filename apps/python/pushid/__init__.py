@@ -12,9 +12,9 @@ from ._pushid import DataError, FitError, UsageError
 from ._pushid import version as __version__
 from ._options import options
 from ._predictions import Formation, OnlinePredictor, Restoration, simulate_formation
-from ._recordings import Recording, Recordings, estimate_push, read, simulate
+from ._recordings import Recording, Recordings, estimate_push, findings, read, simulate
 from ._results import Design, Parameter, Result, Table, crossvalidate, fit, load
 
 __all__ = ["DataError", "FitError", "UsageError", "Design", "Formation", "OnlinePredictor", "Parameter", "Recording",
-           "Recordings", "Restoration", "Result", "Table", "crossvalidate", "estimate_push", "fit", "load", "options",
-           "read", "simulate", "simulate_formation"]
+           "Recordings", "Restoration", "Result", "Table", "crossvalidate", "estimate_push", "findings", "fit", "load",
+           "options", "read", "simulate", "simulate_formation"]

@@ -119,6 +119,14 @@ def estimate_push(recording, *, person=0, first_frame=-1, end_frame=-1, smoothin
     return _pushid.estimate_push(*checked(recording), person, first_frame, end_frame, smoothing, initial_velocity)
 
 
+def findings(recordings):
+    """What cannot be right in recordings: pushes against the motion they made, masses, copies, ...; a fit warns of them.
+
+    A list of dicts: kind, recording, about (a person, or the copies), value and its unit, what it means, and advice.
+    """
+    return _pushid.findings(checked(recordings))
+
+
 def _described(recording):
     return f"<{recording.id}: {recording.num_people} people, {recording.num_frames} frames at {recording.fps:g} Hz>"
 

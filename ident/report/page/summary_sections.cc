@@ -173,8 +173,8 @@ ReportSection SummarySection(const ReportSource& source) {
   for (const std::string& warning : GroupedWarnings(source.fit.warnings)) {
     section.Say("Warning: " + warning);
   }
-  for (const std::string& warning : GroupedWarnings(source.fit.diagnostics.start.unit_warnings)) {
-    section.Say("Units? " + warning);
+  for (const std::string& finding : FindingTexts(source.fit.diagnostics.start.findings)) {
+    section.Say("Warning: " + finding);
   }
   return section;
 }

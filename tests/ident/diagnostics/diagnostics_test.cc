@@ -43,29 +43,14 @@ TEST(StartDiagnostics, StartsOnABoundAreMovedOff) {
   EXPECT_TRUE(result.converged);
 }
 
-TEST(StartDiagnostics, WrongUnitsAreSuspected) {
+TEST(StartDiagnostics, FindingsAreKept) {
   std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
-  EXPECT_TRUE(UnitWarnings(recordings).empty());
-  recordings[0].scene.people[0].body.mass *= 1000.0;  // grams
-  recordings[1].scene.people[0].body.rod_length *= 10.0;
-  for (Vector3<double>& hip : recordings[2].hip[0]) hip *= 1000.0;  // mm
-  std::string all;
-  for (const Warning& warning : UnitWarnings(recordings)) all += warning.text;
-  EXPECT_TRUE(Contains(all, "is mass_kg in kg?"));
-  EXPECT_TRUE(Contains(all, "is length_unit right?"));
-  EXPECT_TRUE(Contains(all, "are length_unit and fps right, or does a marker jump there?"));
-  EXPECT_TRUE(Contains(all, recordings[2].id));
-}
-
-TEST(StartDiagnostics, MotionAgainstThePushIsSuspected) {
-  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
-  for (Vector3<double>& hip : recordings[0].hip[0]) hip.head<2>() *= -1.0;    // backwards
-  for (Vector3<double>& hip : recordings[1].hip[0]) hip.y() = 3.0 * hip.x();  // sideways
-  const Warnings warnings = UnitWarnings(recordings);
-  ASSERT_EQ(warnings.size(), 2u);
-  EXPECT_TRUE(Contains(warnings[0].text, recordings[0].id));
-  EXPECT_TRUE(Contains(warnings[0].text, "against the push"));
-  EXPECT_TRUE(Contains(warnings[1].text, "not along the push"));
+  recordings[1].scene.people[0].body.mass *= 2.5;
+  const FitResult result = Fit(recordings, UnbiasedFit(TinyStudy()));
+  const std::vector<Finding>& findings = result.diagnostics.start.findings;
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].kind, FindingKind::kMass);
+  EXPECT_EQ(findings[0].recording, recordings[1].id);
 }
 
 TEST(Diagnostics, TheStartKnowsItsNullDirections) {

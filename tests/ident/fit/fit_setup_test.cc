@@ -366,20 +366,37 @@ TEST(PrepareFit, WarnsOfIdenticalRecordings) {
     for (const Warning& warning : told) text += warning.text + "\n";
     return text;
   };
-  EXPECT_FALSE(Contains(warnings(), "is repeated in"));
+  EXPECT_FALSE(Contains(warnings(), "is repeated"));
   recordings.push_back(recordings[0]);
-  EXPECT_FALSE(Contains(warnings(), "is repeated in"));
+  EXPECT_FALSE(Contains(warnings(), "is repeated"));
   recordings.back().id = "copy";
   recordings.push_back(recordings[1]);
   recordings.back().id = "other";
   recordings.back().content_hash = "another file";  // and yet the same motion
-  EXPECT_TRUE(
-      Contains(warnings(), "the motion of '" + recordings[0].id + "' is repeated in copy:"));
-  EXPECT_TRUE(Contains(warnings(), "'" + recordings[1].id + "' is repeated in other:"));
-  EXPECT_TRUE(Contains(warnings(), "--leave_out=other"));
+  EXPECT_TRUE(Contains(warnings(), "is repeated in 2 cases (" + recordings[0].id + " in copy; " +
+                                       recordings[1].id + " in other)"));
   recordings[6].content_hash = recordings[0].content_hash = "same";
   for (auto& point : recordings[6].hip[0]) point[1] += 1e-9;
-  EXPECT_TRUE(Contains(warnings(), "is repeated in copy:"));
+  EXPECT_TRUE(Contains(warnings(), recordings[0].id + " in copy"));
+}
+
+// A copy, even under another person's name, changes nothing.
+TEST(FitProblem, CopiesCountOnce) {
+  const SyntheticOptions study = TinyStudy();
+  std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const FitOptions options = UnbiasedFit(study);
+  const FitResult alone = Fit(recordings, options);
+  recordings.push_back(recordings[0]);
+  recordings.back().id = "copy";
+  recordings.back().subject_ids = {"somebody"};
+  const FitResult with = Fit(recordings, options);
+  ASSERT_TRUE(alone.ok() && with.ok());
+  EXPECT_EQ(with.uncertainty.num_clusters, alone.uncertainty.num_clusters);
+  ASSERT_EQ(with.estimates.size(), alone.estimates.size());
+  for (size_t i = 0; i < alone.estimates.size(); ++i) {
+    EXPECT_DOUBLE_EQ(with.estimates[i].value, alone.estimates[i].value);
+    EXPECT_DOUBLE_EQ(with.estimates[i].standard_error, alone.estimates[i].standard_error);
+  }
 }
 
 TEST(PrepareFit, RefusesWhatCannotBeFitted) {

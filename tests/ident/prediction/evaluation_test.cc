@@ -49,8 +49,13 @@ TEST(Evaluation, ConstantVelocityByHand) {
 TEST(Evaluation, ConstantVelocityOfAPushBeyondTheEnd) {
   PendulumRecording r = Parabola("a", 4);
   r.scene.pushes[0].start_frame = 10;
-  const RecordingScore score = ScoreHip(r, ConstantVelocityBaseline(r));
-  EXPECT_EQ(score.hip_ade, 0.0);
+  // Something is left to predict: frame 3, 0.09 m, by 0.03 m a frame from frame 2 on.
+  EXPECT_NEAR(ScoreHip(r, ConstantVelocityBaseline(r)).hip_fde, 0.02, 1e-15);
+  r = Parabola("a", 30);
+  r.scene.pushes[0].start_frame = 28;
+  const HipPaths path = ConstantVelocityBaseline(r);
+  EXPECT_EQ(path[0][19], r.hip[0][19]);  // the last frame but ten
+  EXPECT_NE(path[0][20], r.hip[0][20]);
 }
 
 // Frames 0 to 2 are seen: 0, 0.01, 0.04 m, and the last step was 0.03 m.

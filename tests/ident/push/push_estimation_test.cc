@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "datasets/inspection/plausibility.h"
+#include "datasets/inspection/findings.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "models/rollout.h"
@@ -114,11 +114,11 @@ TEST(PushEstimation, AMovingPersonNeedsNoBlowToMove) {
     estimation.smoothing_frames = 9;
     const PushWindow inside{30, 50};
     const EstimatedPush usual = Estimated(recording, inside, estimation);
-    EXPECT_FALSE(FirstRowStandsOut(usual.push));
+    EXPECT_FALSE(FirstRowStandsOut(usual.push.force));
     EXPECT_GT(usual.start_speed, 0.1);
     estimation.initial_velocity = InitialVelocity::kZero;
     const EstimatedPush at_rest = Estimated(recording, inside, estimation);
-    EXPECT_TRUE(FirstRowStandsOut(at_rest.push));
+    EXPECT_TRUE(FirstRowStandsOut(at_rest.push.force));
     EXPECT_EQ(at_rest.start_speed, 0.0);
     EXPECT_GT(at_rest.peak_force, 1000.0);
     EXPECT_LT(usual.peak_force, 0.3 * at_rest.peak_force);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -80,6 +81,20 @@ TEST(Folds, SeedDecides) {
   };
   EXPECT_EQ(held(1), held(1));
   EXPECT_NE(held(1), held(2));
+}
+
+// A copy of what is held out is not fitted.
+TEST(Folds, CopiesAreHeldOutTogether) {
+  std::vector<PendulumRecording> recordings = Labels();
+  recordings[3].content_hash = recordings[8].content_hash = "same";
+  const auto folds = MakeFolds(recordings, FoldScheme::kStratified, 4, 2, 1);
+  ASSERT_TRUE(folds.ok());
+  for (const Fold& fold : folds.value()) {
+    const auto holds = [&fold](int i) {
+      return std::binary_search(fold.held_out.begin(), fold.held_out.end(), i);
+    };
+    EXPECT_EQ(holds(3), holds(8)) << fold.name;
+  }
 }
 
 // Two settings whose recordings take turns: the position counts within the setting.
