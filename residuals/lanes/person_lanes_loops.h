@@ -13,7 +13,7 @@
 #include PUSHID_LANE_SCALAR
 
 #include "models/push.h"
-#include "residuals/lanes/lane_scalar.h"
+#include "residuals/lanes/lane_storage.h"
 #include "residuals/lanes/person_lanes.h"
 
 namespace pushid {
