@@ -9,8 +9,8 @@
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/problem/behaviour.h"
 #include "ident/problem/pooling_spread.h"
-#include "ident/solver/network_training.h"
 #include "ident/solver/likelihood_solve.h"
+#include "ident/solver/network_training.h"
 #include "ident/uncertainty/data_weight.h"
 
 namespace pushid {
