@@ -5,8 +5,8 @@
 
 #include <functional>
 
+#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/diffusion_flags.h"
 #include "apps/flags/overwrite_flag.h"
 #include "datasets/exchange/crowd.h"
 #include "datasets/files/atomic_file.h"

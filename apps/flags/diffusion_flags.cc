@@ -1,8 +1,7 @@
 // apps: sampling of diffusion by flag.
-#include "apps/flags/diffusion_flags.h"
-
 #include <gflags/gflags.h>
 
+#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "datasets/files/names.h"
 #include "ident/parameters/option_names.h"

@@ -1,8 +1,8 @@
 // apps: flags of pushid-generate that say something to generators of diffusion alone.
 #include <gflags/gflags.h>
 
+#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/diffusion_flags.h"
 #include "apps/flags/generate_flags.h"
 #include "apps/flags/kind_flags.h"
 

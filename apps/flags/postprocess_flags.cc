@@ -1,7 +1,7 @@
 // apps: --postprocess.
-#include "apps/flags/postprocess_flags.h"
-
 #include <gflags/gflags.h>
+
+#include "apps/flags/body_flags.h"
 
 DEFINE_string(postprocess, "fade,bones,feet",
               "corrections of restored bodies: fade (start at the first pose), bones (constant "

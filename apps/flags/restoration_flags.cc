@@ -3,7 +3,7 @@
 
 #include <gflags/gflags.h>
 
-#include "apps/flags/postprocess_flags.h"
+#include "apps/flags/body_flags.h"
 #include "apps/support/app_support.h"
 #include "ident/bodies/restoration_files.h"
 

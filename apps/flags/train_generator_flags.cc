@@ -3,10 +3,10 @@
 
 #include <gflags/gflags.h>
 
+#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/kind_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/flags/scheme_flags.h"
 #include "datasets/files/names.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_names.h"

@@ -3,10 +3,9 @@
 
 #include <gflags/gflags.h>
 
+#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/observed_flags.h"
-#include "apps/flags/postprocess_flags.h"
-#include "apps/flags/scheme_flags.h"
 #include "datasets/files/names.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_names.h"

@@ -1,4 +1,5 @@
-// ident: the numbers of a solved fit as rows: parameters, combinations, units, recordings.
+// ident: the numbers of a solved fit as rows: parameters, combinations, units, recordings; and what
+// a reader must know before them.
 #pragma once
 
 #include <vector>
@@ -25,5 +26,10 @@ void AddUnitErrors(const FitProblem& problem, const FitPoint& point, FitResult* 
 
 // Cost of every recording at the optimum, and where its rollout failed.
 std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best);
+
+// fit_warnings.cc: failed rollouts, a solver that stopped early, a verdict other than that people
+// settle, few clusters, what the demand to settle did, parameters at bounds, a tail that cannot
+// act.
+Warnings FitWarnings(const FitProblem& problem, const FitResult& result);
 
 }  // namespace pushid

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "ident/fit/estimates_table.h"
-#include "ident/fit/fit_warnings.h"
 #include "ident/fit/push_range.h"
 #include "ident/fit/recording_effect.h"
 #include "ident/fit/step_probability.h"

@@ -1,9 +1,8 @@
 // ident: warnings of a fit, in words.
-#include "ident/fit/fit_warnings.h"
-
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/fit/estimates_table.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/uncertainty/clusters.h"
 

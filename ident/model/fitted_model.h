@@ -79,8 +79,8 @@ struct Provenance {
   std::map<std::string, std::string> configuration;  // effective flags
   std::vector<std::string> changed_flags;            // those of them that are not at their defaults
   std::string manifest, manifest_hash;
-  std::string model_file;  // where it was written or read; empty: nowhere; not in the JSON
-  std::string setting;     // as --setting
+  std::string setting;          // as --setting
+  std::string model_file = {};  // where it was written or read; empty: nowhere; not in the JSON
 };
 
 struct FittedModel {

@@ -2,9 +2,9 @@
 // checkpoints. Needs LibTorch (behind models/).
 //
 // They learn from recorded bodies with their true pendulums and with pendulums that a model
-// predicts without having seen the recording. A network in use gets predicted
-// pendulums, which have errors; so it is trained on both. The predictions are out of fold: a
-// model fitted to the very recording would err too little.
+// predicts without having seen the recording. A network in use gets predicted pendulums, which have
+// errors; so it is trained on both. The predictions are out of fold: a model fitted to the very
+// recording would err too little.
 #pragma once
 
 #include <functional>

@@ -116,6 +116,9 @@ TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
   nlohmann::ordered_json json = Json(alone_);
   json["warnings"] = {"ends behind the start", "recording 'a': a.bvh has gaps",
                       "recording 'b': b.bvh has gaps"};
+  json["warnings_of_recordings"] = {
+      {{"warning", 1}, {"recording", "a"}, {"of_many", "the file has gaps"}},
+      {{"warning", 2}, {"recording", "b"}, {"of_many", "the file has gaps"}}};
   const AppRun run = RunApp("pushid-formation", {"--model=" + WriteText("warned.json", json.dump()),
                                                  "--formation=line", "--people=1"});
   ASSERT_EQ(run.exit_code, 0) << run.err;

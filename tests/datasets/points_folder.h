@@ -77,7 +77,7 @@ class PointsFolderTest : public RecordingFolderTest {
   void ExpectTheWalker() {
     const auto loaded = Load();
     ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-    EXPECT_TRUE(warnings_.empty()) << warnings_[0];
+    EXPECT_TRUE(warnings_.empty()) << warnings_[0].text;
     const RecordedPerson& person = loaded.value()[0].people[0];
     ASSERT_EQ(person.hip.size(), 20u);
     EXPECT_LT((person.hip[7] - Eigen::Vector3d(0.07, 0.0, 0.95)).norm(), 1e-5);

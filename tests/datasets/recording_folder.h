@@ -82,7 +82,7 @@ class RecordingFolderTest : public TempDirTest {
   ManifestRecording& entry() { return manifest_.recordings[0]; }
 
   Manifest manifest_;
-  std::vector<std::string> warnings_;
+  Warnings warnings_;
 };
 
 }  // namespace pushid

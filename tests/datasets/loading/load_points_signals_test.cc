@@ -18,7 +18,7 @@ TEST_F(LoadPointSignalsTest, UnitsOfTheFile) {
   ExpectTheWalker();  // TRC says m
   manifest_.length_unit = LengthUnit::kMillimetre;
   EXPECT_TRUE(Contains(Message(), "looks like m, pass --length_unit=m"));
-  EXPECT_TRUE(Contains(warnings_[0], "gives lengths in m; they are read as mm"));
+  EXPECT_TRUE(Contains(warnings_[0].text, "gives lengths in m; they are read as mm"));
 }
 
 TEST_F(LoadPointSignalsTest, UnitsInOtherSpellings) {
@@ -51,8 +51,8 @@ TEST_F(LoadPointSignalsTest, ShortGapsAreFilledLongOnesLeftOut) {
   for (int t = 0; t < 20; ++t) EXPECT_EQ(person.weight[t], t >= 9 && t < 17 ? 0.0 : 1.0) << t;
   EXPECT_LT((person.hip[5] - Eigen::Vector3d(0.05, 0.0, 0.95)).norm(), 1e-5);
   ASSERT_EQ(warnings_.size(), 1u);
-  EXPECT_TRUE(Contains(warnings_[0], "has 2 gaps in hip and ankles"));
-  EXPECT_TRUE(Contains(warnings_[0], "8 of 20 frames are left out"));
+  EXPECT_TRUE(Contains(warnings_[0].text, "has 2 gaps in hip and ankles"));
+  EXPECT_TRUE(Contains(warnings_[0].text, "8 of 20 frames are left out"));
   LoadOptions options;
   options.preparation.max_gap_s = 0.2;
   const auto patient = Load(options);
@@ -85,7 +85,7 @@ TEST_F(LoadPointSignalsTest, RatesThatDiffer) {
   entry().fps = 50.0;
   ASSERT_TRUE(Load().ok());
   ASSERT_EQ(warnings_.size(), 1u);
-  EXPECT_TRUE(Contains(warnings_[0], "(60 frames per second), the manifest gives 50"));
+  EXPECT_TRUE(Contains(warnings_[0].text, "(60 frames per second), the manifest gives 50"));
 }
 
 // From TRC and C3D heads, a column of times, a mapping; without all of those there is none.

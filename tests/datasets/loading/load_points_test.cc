@@ -145,7 +145,7 @@ TEST_F(LoadPointsTest, ToesAndHeelsWhereThereAreSome) {
   EXPECT_TRUE(lost.left_toe.empty());
   EXPECT_EQ(lost.right_toe.size(), 20u);
   EXPECT_TRUE(lost.weight.empty());
-  EXPECT_TRUE(warnings_.empty()) << warnings_[0];
+  EXPECT_TRUE(warnings_.empty()) << warnings_[0].text;
 }
 
 // The middle of both malleoli, as the common marker sets name them.

@@ -171,7 +171,8 @@ TEST_F(BodySkeletonTest, AHipBetweenTwoJoints) {
 TEST_F(BodySkeletonTest, TheFilledIsSaidAndTheUnknownIsAnError) {
   Recorded(PlainSkeleton());
   ASSERT_EQ(warnings_.size(), 1u);
-  EXPECT_TRUE(Contains(warnings_[0], "a.bvh has no joints for lower_spine, middle_spine, neck, "));
+  EXPECT_TRUE(
+      Contains(warnings_[0].text, "a.bvh has no joints for lower_spine, middle_spine, neck, "));
   std::vector<NamedJoint> joints = PlainSkeleton();
   joints[11].name = "rig:left middle";
   WriteBvhFile("a.bvh",

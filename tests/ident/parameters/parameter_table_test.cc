@@ -189,19 +189,21 @@ TEST(Assignments, NamesAndValues) {
 template <typename E>
 void ExpectRoundTrip() {
   std::set<std::string> names;
-  for (const auto& [name, value] : Names(E{})) {
+  const auto& rows = Names(E{});
+  for (const auto& row : rows) {
     E parsed{};
-    EXPECT_FALSE(ParseName("--flag", name, &parsed));
-    EXPECT_EQ(parsed, value) << name;
-    EXPECT_EQ(NameOf(value), name);
-    EXPECT_TRUE(names.insert(name).second) << name;
+    EXPECT_FALSE(ParseName("--flag", row.name, &parsed));
+    EXPECT_EQ(parsed, row.value) << row.name;
+    EXPECT_EQ(NameOf(row.value), row.name);
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
   }
-  E untouched = Names(E{}).back().value;
+  const E last = std::prev(std::end(rows))->value;
+  E untouched = last;
   const MaybeError error = ParseName("--flag", "no such name", &untouched);
   ASSERT_TRUE(error);
   EXPECT_TRUE(Contains(error->ToString(), std::string("--flag is 'no such name'; it must be ") +
-                                              Names(E{}).front().name));
-  EXPECT_EQ(untouched, Names(E{}).back().value);
+                                              std::begin(rows)->name));
+  EXPECT_EQ(untouched, last);
 }
 
 TEST(OptionNames, RoundTrip) {
