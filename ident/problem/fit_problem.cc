@@ -147,8 +147,8 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
   std::vector<std::vector<double*>> blocks(total);
   for (int i = 0; i < total; ++i) {
     if (Count(i) == 0) continue;
-    problems[i] =
-        MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, 1.0, horizon);
+    problems[i] = MakeRolloutProblem(recordings_[i], options_.model, map_, options_.sigmas, 1.0,
+                                     Frames(i, horizon));
     blocks[i] = RecordingBlocks(&copy, i);
     if (HasLanes(*problems[i])) in_lanes[i] = problems[i].get();
   }
@@ -195,6 +195,12 @@ std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording)
   return blocks;
 }
 
+int PushFrame(const PendulumRecording& recording) {
+  int first = recording.num_frames();
+  for (const ScenePush& push : recording.scene.pushes) first = std::min(first, push.start_frame);
+  return recording.scene.pushes.empty() ? 0 : first;
+}
+
 double FitProblem::Weight(int recording, int horizon) const {
   const double counted = std::sqrt(static_cast<double>(Count(recording)));
   if (options_.likelihood != Likelihood::kTrajectory) return counted;
@@ -204,7 +210,8 @@ double FitProblem::Weight(int recording, int horizon) const {
   }
   // A recording's frames are far from independent: together they count as one.
   const PendulumRecording& r = recordings_[recording];
-  const int frames = horizon > 0 ? std::min(horizon, r.num_frames()) : r.num_frames();
+  const int all = r.num_frames(),
+            frames = horizon > 0 ? std::min(Frames(recording, horizon), all) : all;
   return counted / std::sqrt(std::max(1, frames - 1));
 }
 
@@ -250,7 +257,7 @@ void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* bui
 // Of a recording in a stage; null where it fails in its very first step: nothing left to compare.
 std::shared_ptr<const RolloutProblem> FitProblem::StageRollout(int recording, int horizon,
                                                                const Built& built) const {
-  int frames = horizon;
+  int frames = Frames(recording, horizon);
   for (const FailedRollout& failed : built.shortened) {
     if (failed.recording == recording) frames = failed.status.frame;
   }
