@@ -10,15 +10,12 @@
 #include "ident/parameters/option_names.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/problem/pooling_spread.h"
+#include "ident/report/value_text.h"
 #include "models/self_terms.h"
 
 namespace pushid {
 
 namespace {
-
-std::string BracketText(double lower, double upper) {
-  return "[" + Rounded(lower, 4) + ", " + Rounded(upper, 4) + "]";
-}
 
 // Settings in which a harder push does not move the line on farther.
 std::string NoFartherText(const Behaviour& b) {
@@ -52,7 +49,7 @@ std::string PullText(const Estimate& e) {
 
 TextTable EstimateTable(const FitResult& result) {
   TextTable table({"parameter", "value", "std error", "95 % interval", "unit", "status",
-                   "data/prior/settling, %", "pull, errors", "prior"},
+                   "data/prior/settling, %", "prior shift, std errors", "prior"},
                   {true, false, false, true, true, true, true, false, true});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
@@ -69,7 +66,7 @@ TextTable EstimateTable(const FitResult& result) {
     const bool no_error = no_shares && e.standard_error <= 0.0;
     const std::string error = no_error ? "-" : Rounded(e.standard_error, 3);
     table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
-               unknown || no_error ? "-" : BracketText(e.lower95, e.upper95), e.unit,
+               unknown || no_error ? "-" : IntervalText(e.value, e.lower95, e.upper95), e.unit,
                NameOf(e.status), no_shares ? "-" : SharesText(e.shares),
                no_shares ? "-" : PullText(e), prior});
   }
@@ -102,8 +99,8 @@ std::string IdentifiedText(const FitResult& result) {
 
 std::string SharesNote() {
   return "Shares: fractions of a value's variance due to the data, its prior and the settling "
-         "constraint. Pull: shift of the value by prior and constraint together, in standard "
-         "errors. Prior-held: the data account for less than half.";
+         "constraint. Prior shift: how far prior and constraint together move the value, in "
+         "standard errors. Prior-held: the data account for less than half.";
 }
 
 std::string HowSure(const FitResult& result) {
@@ -136,7 +133,7 @@ TextTable DerivedTable(const FitResult& result) {
   for (const Combination& c : result.derived) {
     const bool fixed = c.standard_error == 0.0;
     table.Add({c.name, Rounded(c.value, 4), fixed ? "-" : Rounded(c.standard_error, 3),
-               fixed ? "-" : BracketText(c.lower95, c.upper95), c.unit});
+               fixed ? "-" : IntervalText(c.value, c.lower95, c.upper95), c.unit});
   }
   return table;
 }
@@ -221,7 +218,7 @@ TextTable PooledTable(const FitResult& result) {
     for (const auto& [name, e] : pooled) {
       std::vector<std::string> row = unit;
       row.insert(row.end(), {name, Rounded(e.value, 4), Rounded(e.standard_error, 3),
-                             BracketText(e.lower95, e.upper95), e.unit});
+                             IntervalText(e.value, e.lower95, e.upper95), e.unit});
       table.Add(row);
     }
   };
