@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "apps/python/bindings.h"
 #include "datasets/files/atomic_file.h"
@@ -15,11 +16,26 @@
 #include "ident/report/fit_command.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
+#include "ident/report/value_text.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {
+
+using Advised = std::vector<std::pair<std::string, std::string>>;
+
+// The model with what it advises as calls.
+FittedModel InCalls(const Model& model, const Advised& calls) {
+  FittedModel fitted = *model.fitted;
+  fitted.advice.clear();
+  for (const auto& [sentence, call] : calls) fitted.advice.push_back({sentence, call});
+  return fitted;
+}
+
+std::string Text(const Model& model, const Advised& calls) {
+  return InPython(ReportText(InCalls(model, calls)));
+}
 
 std::string JsonText(const Model& model) { return ToJson(*model.fitted, RunInfo()).dump(); }
 
@@ -69,6 +85,13 @@ void CheckRecordings(const std::vector<SharedRecording>& recordings) {
                               " has no push: give one, or estimate it by "
                               "pushid.estimate_push"});
   }
+  std::set<std::string> ids;
+  for (const SharedRecording& one : recordings) {
+    if (ids.insert(one->id).second) continue;
+    Raise(Fault::kUsage, Error{"two recordings are called '" + one->id +
+                               "': warnings and results would mix them up; give each its own id "
+                               "(pushid.Recording(..., id=...)), and no recording twice"});
+  }
 }
 
 std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
@@ -82,7 +105,7 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
   FitOptions options = Options(given, pendulums);
   std::vector<std::string> warnings = OptionWarnings(given, options);
   Check(PrepareFit(pendulums, &options, &warnings), Fault::kUsage);
-  for (const std::string& warning : warnings) Warn(warning);
+  Warn(warnings);
   FittedModel fitted;
   {
     const SolveProgress told = ProgressOf(progress);
@@ -123,8 +146,13 @@ void Save(const Model& model, const std::string& path) {
   Check(WriteJson(path, ToJson(*model.fitted, run)), Fault::kData);
 }
 
-void WriteReport(const Model& model, const std::string& path) {
-  const std::shared_ptr<const FittedModel> fitted = model.fitted;
+// Of a model that pushid-fit made the page has commands, as the program's own.
+void WriteReport(const Model& model, const std::string& path, const Advised& calls) {
+  Check(CheckPageName("report", path), Fault::kUsage);
+  std::shared_ptr<const FittedModel> fitted = model.fitted;
+  if (fitted->provenance.manifest.empty()) {
+    fitted = std::make_shared<const FittedModel>(InCalls(model, calls));
+  }
   const std::shared_ptr<const FittedTo> to = model.to;
   BuildReportOptions options;
   options.progress = JobsOf(py::none());
@@ -211,21 +239,15 @@ IdentifiedModel IdentifiedOf(const Model& model) { return ModelOf(model.fitted->
 void BindFits(py::module_* module) {
   py::class_<Model, std::shared_ptr<Model>>(*module, "Model")
       .def("json", &JsonText)
-      .def("text", [](const Model& m) { return ReportText(*m.fitted); })
+      .def("text", &Text)
       .def_property_readonly("converged", [](const Model& m) { return m.fitted->fit.converged; })
       .def_property_readonly("warnings",
-                             [](const Model& m) {
-                               std::vector<std::string> told;
-                               for (const std::string& warning : m.fitted->fit.warnings) {
-                                 told.push_back(InPython(warning));
-                               }
-                               return told;
-                             })
+                             [](const Model& m) { return InPython(m.fitted->fit.warnings); })
       .def_property_readonly("advice",
                              [](const Model& m) {
-                               std::vector<std::pair<std::string, std::string>> advice;
+                               Advised advice;
                                for (const Advice& a : m.fitted->advice) {
-                                 advice.emplace_back(a.sentence,
+                                 advice.emplace_back(InPython(a.sentence),
                                                      CommandFor(m.fitted->provenance, a.command));
                                }
                                return advice;
@@ -239,6 +261,7 @@ void BindFits(py::module_* module) {
   module->def("from_json", &FromText);
   module->def("crossvalidate", &CrossValidateAll);
   module->def("options", &OptionList);
+  module->def("interval_text", &IntervalText);
 }
 
 }  // namespace pushid

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "apps/python/bindings.h"
+#include "datasets/inspection/plausibility.h"
 #include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"
 #include "ident/validation/synthetic_truth.h"
@@ -77,9 +78,13 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
     return LoadRecordings(manifest, options, &warnings);
   }();
   std::vector<SharedRecording> recordings;
+  PlausibilityCheck ankles;
   for (Recording& one : Unwrapped(std::move(read), Fault::kData)) {
+    ankles.LookAtFacing(one);
     recordings.push_back(std::make_shared<const Recording>(std::move(one)));
   }
+  for (const std::string& doubt : ankles.Warnings()) warnings.push_back(doubt);
+  Warn(warnings);
   return py::make_tuple(recordings, warnings);
 }
 

@@ -40,10 +40,14 @@ SolveProgress ProgressOf(const py::object& callable);
 // Progress of many jobs: the same, `callable` (done, total).
 JobProgress JobsOf(const py::object& callable);
 
-// Flags by the names of options: "--fix=mu" -> "fix=mu".
+// Flags and programs as options and calls: "--fix=mu=0" -> "fix={"mu": 0}", "pushid-push" ->
+// "pushid.estimate_push".
 std::string InPython(const std::string& text);
+// Equal ones, or those that differ only in the recording, once.
+std::vector<std::string> InPython(const std::vector<std::string>& texts);
 // As warnings.warn does.
 void Warn(const std::string& text);
+void Warn(const std::vector<std::string>& texts);
 
 // Recordings are shared, so that results and arrays outlive the list they came from.
 using SharedRecording = std::shared_ptr<const Recording>;
@@ -82,6 +86,7 @@ py::object FromJson(const nlohmann::ordered_json& json);
 
 void BindArrays(py::module_* module);
 void BindRecordings(py::module_* module);
+void BindPickle(py::module_* module);
 void BindFits(py::module_* module);
 void BindStudies(py::module_* module);
 void BindPredictions(py::module_* module);
