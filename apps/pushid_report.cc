@@ -56,7 +56,7 @@ int WriteWhole(const FittedModel& model) {
 int Run() {
   for (MaybeError error :
        {Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote"),
-        CheckOutputFiles({FLAGS_html_out})}) {
+        CheckPageName("--html_out", FLAGS_html_out), CheckOutputFiles({FLAGS_html_out})}) {
     if (error) return Fail(*error);
   }
   const Result<FittedModel> model = ReadFittedModel(FLAGS_model);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "apps/python/bindings.h"
 #include "datasets/files/atomic_file.h"
@@ -15,11 +16,26 @@
 #include "ident/report/fit_command.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
+#include "ident/report/value_text.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {
+
+using Advised = std::vector<std::pair<std::string, std::string>>;
+
+// The model with what it advises as calls.
+FittedModel InCalls(const Model& model, const Advised& calls) {
+  FittedModel fitted = *model.fitted;
+  fitted.advice.clear();
+  for (const auto& [sentence, call] : calls) fitted.advice.push_back({sentence, call});
+  return fitted;
+}
+
+std::string Text(const Model& model, const Advised& calls) {
+  return InPython(ReportText(InCalls(model, calls)));
+}
 
 std::string JsonText(const Model& model) { return ToJson(*model.fitted, RunInfo()).dump(); }
 
@@ -69,10 +85,14 @@ void CheckRecordings(const std::vector<SharedRecording>& recordings) {
                               " has no push: give one, or estimate it by "
                               "pushid.estimate_push"});
   }
+  std::set<std::string> ids;
+  for (const SharedRecording& one : recordings) {
+    if (ids.insert(one->id).second) continue;
+    Raise(Fault::kUsage, Error{"two recordings are called '" + one->id +
+                               "': warnings and results would mix them up; give each its own id "
+                               "(pushid.Recording(..., id=...)), and no recording twice"});
+  }
 }
-
-// Warnings of files, as the package keeps them: text, recording, of_many.
-using Told = std::vector<std::tuple<std::string, std::string, std::string>>;
 
 std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
                                 const GivenOptions& given, const py::object& progress,
@@ -87,7 +107,7 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
   Warnings warnings;
   Check(PrepareFit(pendulums, &options, &warnings), Fault::kUsage);
   warnings.insert(warnings.begin(), ignored.begin(), ignored.end());
-  for (const Warning& warning : warnings) Warn(warning.text);
+  Warn(warnings);
   FittedModel fitted;
   {
     const SolveProgress told = ProgressOf(progress);
@@ -96,10 +116,7 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
   }
   FitResult& fit = fitted.fit;
   if (!fit.ok()) Raise(Fault::kFit, Error{"the fit failed: " + fit.message});
-  Warnings of_files;
-  for (const auto& [text, recording, of_many] : file_warnings) {
-    of_files.emplace_back(text, recording, of_many);
-  }
+  const Warnings of_files = WarningsOf(file_warnings);
   fit.warnings.insert(fit.warnings.begin(), of_files.begin(), of_files.end());
   fitted.provenance = From(given, options);
   fitted.advice = Advise(fitted);
@@ -132,8 +149,13 @@ void Save(const Model& model, const std::string& path) {
   Check(WriteJson(path, ToJson(*model.fitted, run)), Fault::kData);
 }
 
-void WriteReport(const Model& model, const std::string& path) {
-  const std::shared_ptr<const FittedModel> fitted = model.fitted;
+// Of a model that pushid-fit made the page has commands, as the program's own.
+void WriteReport(const Model& model, const std::string& path, const Advised& calls) {
+  Check(CheckPageName("report", path), Fault::kUsage);
+  std::shared_ptr<const FittedModel> fitted = model.fitted;
+  if (fitted->provenance.manifest.empty()) {
+    fitted = std::make_shared<const FittedModel>(InCalls(model, calls));
+  }
   const std::shared_ptr<const FittedTo> to = model.to;
   BuildReportOptions options;
   options.progress = JobsOf(py::none());
@@ -220,21 +242,15 @@ IdentifiedModel IdentifiedOf(const Model& model) { return ModelOf(model.fitted->
 void BindFits(py::module_* module) {
   py::class_<Model, std::shared_ptr<Model>>(*module, "Model")
       .def("json", &JsonText)
-      .def("text", [](const Model& m) { return ReportText(*m.fitted); })
+      .def("text", &Text)
       .def_property_readonly("converged", [](const Model& m) { return m.fitted->fit.converged; })
       .def_property_readonly("warnings",
-                             [](const Model& m) {
-                               std::vector<std::string> told;
-                               for (const Warning& warning : m.fitted->fit.warnings) {
-                                 told.push_back(InPython(warning.text));
-                               }
-                               return told;
-                             })
+                             [](const Model& m) { return InPython(m.fitted->fit.warnings); })
       .def_property_readonly("advice",
                              [](const Model& m) {
-                               std::vector<std::pair<std::string, std::string>> advice;
+                               Advised advice;
                                for (const Advice& a : m.fitted->advice) {
-                                 advice.emplace_back(a.sentence,
+                                 advice.emplace_back(InPython(a.sentence),
                                                      CommandFor(m.fitted->provenance, a.command));
                                }
                                return advice;
@@ -248,6 +264,7 @@ void BindFits(py::module_* module) {
   module->def("from_json", &FromText);
   module->def("crossvalidate", &CrossValidateAll);
   module->def("options", &OptionList);
+  module->def("interval_text", &IntervalText);
 }
 
 }  // namespace pushid

@@ -78,9 +78,13 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
     return LoadRecordings(manifest, options, &warnings);
   }();
   std::vector<SharedRecording> recordings;
+  std::vector<Finding> facing;
   for (Recording& one : Unwrapped(std::move(read), Fault::kData)) {
+    for (Finding& finding : FacingFindings(one)) facing.push_back(std::move(finding));
     recordings.push_back(std::make_shared<const Recording>(std::move(one)));
   }
+  for (Warning& doubt : FindingWarnings(facing)) warnings.push_back(std::move(doubt));
+  Warn(warnings);
   py::list told;
   for (const Warning& warning : warnings) {
     told.append(py::make_tuple(warning.text, warning.recording, warning.of_many));

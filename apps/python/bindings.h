@@ -7,11 +7,13 @@
 
 #include <memory>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/files/names.h"
 #include "datasets/formats/units.h"
+#include "datasets/loading/warning.h"
 #include "ident/fit.h"
 #include "ident/prediction/prediction.h"
 
@@ -40,10 +42,18 @@ SolveProgress ProgressOf(const py::object& callable);
 // Progress of many jobs: the same, `callable` (done, total).
 JobProgress JobsOf(const py::object& callable);
 
-// Flags by the names of options: "--fix=mu" -> "fix=mu".
+// Flags and programs as options and calls: "--fix=mu=0" -> "fix={"mu": 0}", "pushid-push" ->
+// "pushid.estimate_push".
 std::string InPython(const std::string& text);
+// Equal ones, or those that differ only in the recording, once.
+std::vector<std::string> InPython(const Warnings& warnings);
 // As warnings.warn does.
 void Warn(const std::string& text);
+void Warn(const Warnings& warnings);
+
+// Warnings as the package keeps them: text, recording, of_many.
+using Told = std::vector<std::tuple<std::string, std::string, std::string>>;
+Warnings WarningsOf(const Told& told);
 
 // Recordings are shared, so that results and arrays outlive the list they came from.
 using SharedRecording = std::shared_ptr<const Recording>;
@@ -82,6 +92,7 @@ py::object FromJson(const nlohmann::ordered_json& json);
 
 void BindArrays(py::module_* module);
 void BindRecordings(py::module_* module);
+void BindPickle(py::module_* module);
 void BindFits(py::module_* module);
 void BindStudies(py::module_* module);
 void BindPredictions(py::module_* module);

@@ -2,11 +2,13 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "apps/python/bindings.h"
+#include "datasets/inspection/findings.h"
+#include "datasets/loading/load_recordings.h"
 #include "datasets/loading/recording_from_tracks.h"
 #include "datasets/manifest/recording.h"
+#include "ident/push/push_from_sensor.h"
 
 namespace pushid {
 namespace {
@@ -43,15 +45,22 @@ JobProgress JobsOf(const py::object& callable) {
   };
 }
 
-std::string InPython(const std::string& text) {
-  static const std::regex flag(R"((^|[^A-Za-z0-9_-])--([a-z]))");
-  return std::regex_replace(text, flag, "$1$2");
-}
-
 void Warn(const std::string& text) {
   if (PyErr_WarnEx(PyExc_UserWarning, InPython(text).c_str(), 2) != 0) {
     throw py::error_already_set();
   }
+}
+
+void Warn(const Warnings& warnings) {
+  for (const std::string& text : GroupedWarnings(warnings)) Warn(text);
+}
+
+Warnings WarningsOf(const Told& told) {
+  Warnings warnings;
+  for (const auto& [text, recording, of_many] : told) {
+    warnings.emplace_back(text, recording, of_many);
+  }
+  return warnings;
 }
 
 std::vector<Recording> Copies(const std::vector<SharedRecording>& recordings) {
@@ -104,6 +113,8 @@ PYBIND11_MODULE(_pushid, module) {
   using namespace pushid;
   module.doc() = "The C++ library behind pushid.";
   module.attr("version") = PUSHID_VERSION;
+  module.def("in_python", py::overload_cast<const std::string&>(&InPython));
+  module.def("in_python", [](const Told& told) { return InPython(WarningsOf(told)); });
   const std::pair<const char*, const char*> errors[] = {
       {"DataError", "Invalid data: the problem, its location and its remedy."},
       {"UsageError", "Invalid request: the option, and its valid values."},
@@ -116,6 +127,7 @@ PYBIND11_MODULE(_pushid, module) {
   }
   BindRecordings(&module);
   BindArrays(&module);
+  BindPickle(&module);
   BindFits(&module);
   BindStudies(&module);
   BindPredictions(&module);
@@ -153,8 +165,27 @@ std::vector<Track> TracksOf(const std::string& what, const Array& array) {
   return tracks;
 }
 
+// Where a push acts: a fraction of the way from the ankles to the hip, or metres.
+struct PushHeight {
+  double fraction = 1.0;
+  std::optional<double> metres;
+};
+
+void CheckHeight(const PushHeight& height) {
+  if (!height.metres && !(height.fraction >= 0.0 && height.fraction <= 1.0)) {
+    Raise(Fault::kUsage, Error{"push_height is " + Rounded(height.fraction) +
+                               "; it is a fraction of the way from the ankles (0) to the hip (1); "
+                               "give metres above the ground as push_height_m"});
+  }
+  if (height.metres && !(*height.metres >= 0.0 && *height.metres <= 3.0)) {
+    Raise(Fault::kUsage, Error{"push_height_m is " + Rounded(*height.metres) +
+                               "; it must be a height between 0 and 3 m"});
+  }
+}
+
 // Rows of a push as it was given: numbers forwards, (fx, fy), (fx, fy, fz), or generalized forces.
-void AddPush(const Array& rows, int person, int start, double height, Recording* recording) {
+void AddPush(const Array& rows, int person, int start, const PushHeight& height,
+             Recording* recording) {
   const bool one = rows.ndim() == 1;
   const py::ssize_t columns = one ? 1 : rows.ndim() == 2 ? rows.shape(1) : 0;
   if (columns < 1 || columns > 4) {
@@ -167,14 +198,19 @@ void AddPush(const Array& rows, int person, int start, double height, Recording*
   Push push;
   push.person = person;
   push.start_frame = start;
+  const Body& body = seen.scene.people[person].body;
+  const auto& states = seen.states[person];
+  const auto state = [&states](size_t frame) {
+    return states[std::min(frame, states.size() - 1)].q;
+  };
+  const double fraction =
+      height.metres ? HeightFraction(body, state(start), *height.metres) : height.fraction;
   for (py::ssize_t t = 0; t < rows.shape(0); ++t) {
     Eigen::Vector4d row = Eigen::Vector4d::Zero();
     for (py::ssize_t i = 0; i < columns; ++i) row[i] = one ? rows.at(t) : rows.at(t, i);
     if (columns < 4) {
-      const auto& states = seen.states[person];
-      const size_t frame = std::min<size_t>(start + t, states.size() - 1);
-      row = GeneralizedForce<double>(seen.scene.people[person].body, states[frame].q,
-                                     Vector3<double>(row.head<3>()), height);
+      row = GeneralizedForce<double>(body, state(start + t), Vector3<double>(row.head<3>()),
+                                     fraction);
     }
     push.force.push_back(row);
   }
@@ -185,9 +221,9 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
                            const std::vector<double>& mass, double fps, const py::object& push,
                            const std::string& id, const std::vector<std::string>& subjects,
                            int pushed_person, int push_start, double push_height,
-                           const std::string& push_kind, const std::string& initial_velocity,
-                           const std::string& setting, const std::string& magnitude,
-                           const std::string& condition) {
+                           std::optional<double> push_height_m, const std::string& push_kind,
+                           const std::string& initial_velocity, const std::string& setting,
+                           const std::string& magnitude, const std::string& condition) {
   TrackedRecording tracks;
   tracks.id = id;
   tracks.fps = fps;
@@ -212,11 +248,17 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
     tracks.people.push_back({subjects.empty() ? "person " + std::to_string(n) : subjects[n],
                              mass[n], hips[n], left[n], right[n]});
   }
+  const PushHeight height{push_height, push_height_m};
+  CheckHeight(height);
   // The rod and the angles, which turn forces into generalized ones, come with the motion.
-  Recording recording = Unwrapped(RecordingFromTracks(tracks), Fault::kData);
+  Warnings warnings;
+  Recording recording = Unwrapped(RecordingFromTracks(tracks, {}, &warnings), Fault::kData);
+  const Warnings ankles = FindingWarnings(FacingFindings(recording));
+  warnings.insert(warnings.end(), ankles.begin(), ankles.end());
+  Warn(warnings);
   if (push.is_none()) return std::make_shared<const Recording>(std::move(recording));
   if (push_start < 0) Raise(Fault::kUsage, Error{"push_start counts frames from 0"});
-  AddPush(py::cast<Array>(push), pushed_person, push_start, push_height, &recording);
+  AddPush(py::cast<Array>(push), pushed_person, push_start, height, &recording);
   tracks.pushes = recording.pushes;
   return std::make_shared<const Recording>(Unwrapped(RecordingFromTracks(tracks), Fault::kData));
 }

@@ -126,7 +126,7 @@ void InspectCrowd(const PointMotion& motion, Inspection* found) {
 }
 
 MaybeError InspectManifest(Inspection* found) {
-  const Result<Manifest> manifest = ReadManifest(found->path);
+  const Result<Manifest> manifest = ReadManifests(found->path);
   if (!manifest.ok()) return manifest.error();
   std::map<std::string, int> settings, formats;
   std::set<std::string> subjects;

@@ -15,6 +15,7 @@
 #include "datasets/formats/motion_formats.h"
 #include "datasets/manifest/joint_choice.h"
 #include "datasets/sensors/sensor_choice.h"
+#include "datasets/manifest/manifest.h"
 
 namespace pushid {
 namespace {
@@ -240,10 +241,20 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
 }  // namespace
 
 Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping) {
-  InputFile file;  // errors of opening come first
-  if (MaybeError failed = file.Open(path)) return *std::move(failed);
   Inspection found;
   found.path = path;
+  const std::vector<std::string> paths = ManifestPaths(path);
+  for (const std::string& each : paths) {
+    InputFile file;  // errors of opening come first
+    if (MaybeError failed = file.Open(each)) return *std::move(failed);
+    if (paths.size() == 1 || EndsWith(each, ".json")) continue;
+    return Error{"commas join manifests (.json) only; separate other files by spaces", each};
+  }
+  if (paths.size() > 1) {
+    found.format = "manifests";
+    if (MaybeError failed = InspectManifest(&found)) return *std::move(failed);
+    return found;
+  }
   if (MaybeError failed = Look(mapping, &found)) return *std::move(failed);
   return found;
 }

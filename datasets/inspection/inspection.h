@@ -47,8 +47,8 @@ struct Inspection {
 };
 
 // By the file's ending and its first line; joints, columns, times and rate as the mapping says. An
-// Error where it cannot be read at all; a C3D file cut short is read as far as it goes, with a
-// warning.
+// Error where it cannot be read at all; several manifests, "a.json,b.json", are one study; a C3D
+// file cut short is read as far as it goes, with a warning.
 Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping = {});
 
 // "file: format", the facts and the warnings, one a line.

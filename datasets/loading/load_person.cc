@@ -142,21 +142,26 @@ class PersonLoader {
   MaybeError CloseGaps(FileMotion* motion, RecordedPerson* person) const {
     const std::size_t frames = motion->tracks[0].size();
     const int max_gap = static_cast<int>(std::floor(options_.preparation.max_gap_s * fps_ + 1e-9));
-    std::vector<double> weight(frames, 1.0), unused(frames, 1.0);
-    int gaps = 0;
+    std::vector<double> unused(frames, 1.0);
+    std::vector<Track*> counting;
     for (std::size_t i = 0; i < motion->tracks.size(); ++i) {
-      const bool counts = IsPlace(motion->places, static_cast<int>(i));
-      const GapCount count = FillGaps(max_gap, &motion->tracks[i], counts ? &weight : &unused);
-      if (counts && count.excluded_frames == static_cast<int>(frames)) {
-        return Error{motion->names[i] + " is never seen; choose another by \"joints\"", path_};
+      Track& track = motion->tracks[i];
+      if (IsPlace(motion->places, static_cast<int>(i))) {
+        counting.push_back(&track);
+        if (std::none_of(track.begin(), track.end(), [](const auto& p) { return p.allFinite(); })) {
+          return Error{motion->names[i] + " is never seen; choose another by \"joints\"", path_};
+        }
+        continue;
       }
-      if (counts) gaps += count.gaps;
-      if (!counts && count.excluded_frames > 0) Forget(static_cast<int>(i), &motion->places);
-      if (!counts && count.excluded_frames == static_cast<int>(frames)) {
+      const GapCount count = FillGaps(max_gap, &track, &unused);
+      if (count.excluded_frames > 0) Forget(static_cast<int>(i), &motion->places);
+      if (count.excluded_frames == static_cast<int>(frames)) {
         ForgetRoles(static_cast<int>(i), &motion->roles);
       }
     }
-    if (gaps == 0) return std::nullopt;
+    FilledTracks filled = FillTracks(max_gap, counting);
+    std::vector<double>& weight = filled.weight;
+    if (filled.gaps == 0) return std::nullopt;
     if (weight[0] == 0.0) {
       const auto seen = std::find(weight.begin(), weight.end(), 1.0);
       return Error{"at frame " + std::to_string(entry_.first_frame) +
@@ -168,12 +173,8 @@ class PersonLoader {
                                   " or later in the manifest"),
                    path_};
     }
-    const auto excluded = std::count(weight.begin(), weight.end(), 0.0);
-    Warn("has " + std::to_string(gaps) + " gap" + (gaps == 1 ? "" : "s") +
-         " in hip and ankles; those of up to " + Rounded(options_.preparation.max_gap_s) +
-         " s are interpolated, " + std::to_string(excluded) + " of " + std::to_string(frames) +
-         " frames are left out");
-    if (excluded > 0) person->weight = std::move(weight);
+    Warn(filled.Warning(options_.preparation.max_gap_s));
+    if (!filled.AllCount()) person->weight = std::move(weight);
     return std::nullopt;
   }
 

@@ -53,6 +53,25 @@ struct GapCount {
 // A track that was never seen stays as it is, with all weights 0.
 GapCount FillGaps(int max_gap, std::vector<Eigen::Vector3d>* track, std::vector<double>* weight);
 
+// The tracks that say where a person is (hip, ankles), all with as many frames, with their gaps
+// filled.
+struct FilledTracks {
+  std::vector<double> weight;  // one per frame
+  int gaps = 0;
+  int interpolated_frames = 0;
+  int excluded_frames = 0;  // of weight 0
+  bool many = false;        // interpolated frames
+
+  bool AllCount() const { return excluded_frames == 0 && !many; }
+  // "has 3 gaps in hip and ankles; ..."; empty where nothing was missing.
+  std::string Warning(double max_gap_s) const;
+};
+
+// FillGaps of each. Where more than a tenth of the frames is interpolated, these count by the share
+// of those that were seen: they repeat what their neighbours say, and an interval that counted them
+// fully would be as narrow as if all had been measured.
+FilledTracks FillTracks(int max_gap, const std::vector<std::vector<Eigen::Vector3d>*>& tracks);
+
 // Zero-phase low-pass filtering, as gait laboratories do it: a second-order Butterworth
 // filter over the track and back again, which cancels its delay and makes it of fourth order.
 //

@@ -7,6 +7,7 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
+#include "datasets/loading/load_recordings.h"  // RecordingWarning
 #include "datasets/loading/motion_preparation.h"
 #include "datasets/manifest/manifest.h"
 
@@ -22,7 +23,8 @@ void AddRows(const Rows& rows, ContentHash* hash) {
   for (const auto& row : rows) hash->Add(row.data(), row.size());
 }
 
-Result<RecordedPerson> PersonFrom(TrackedPerson tracks, int max_gap, const std::string& id) {
+Result<RecordedPerson> PersonFrom(TrackedPerson tracks, int max_gap, const std::string& id,
+                                  FilledTracks* filled) {
   if (!(tracks.mass_kg > 0.0 && tracks.mass_kg <= kHeaviestPerson)) {
     return Of(id, "the mass of " + Quoted(tracks.id) + " is " + Rounded(tracks.mass_kg) +
                       " kg; it must be above 0 and at most " + Rounded(kHeaviestPerson));
@@ -36,18 +38,15 @@ Result<RecordedPerson> PersonFrom(TrackedPerson tracks, int max_gap, const std::
   RecordedPerson person;
   person.subject_id = tracks.id;
   person.mass_kg = tracks.mass_kg;
-  std::vector<double> weight(frames, 1.0);
-  for (auto* track : {&tracks.hip, &tracks.left_ankle, &tracks.right_ankle}) {
-    FillGaps(max_gap, track, &weight);
-  }
-  if (frames > 0 && weight[0] == 0.0) {
+  *filled = FillTracks(max_gap, {&tracks.hip, &tracks.left_ankle, &tracks.right_ankle});
+  if (frames > 0 && filled->weight[0] == 0.0) {
     return Of(id, "at frame 0, where the fit starts, hip or ankles of " + Quoted(tracks.id) +
                       " are missing; leave out the frames before they are visible");
   }
   person.hip = std::move(tracks.hip);
   person.left_ankle = std::move(tracks.left_ankle);
   person.right_ankle = std::move(tracks.right_ankle);
-  if (std::count(weight.begin(), weight.end(), 0.0) > 0) person.weight = std::move(weight);
+  if (!filled->AllCount()) person.weight = filled->weight;
   if (MaybeError wrong = CheckMotion(person, 1.0)) {
     return Of(id, tracks.id + ": " + wrong->message);
   }
@@ -76,7 +75,8 @@ MaybeError CheckPush(const TrackedRecording& tracks, const Push& push, int frame
 }  // namespace
 
 Result<Recording> RecordingFromTracks(TrackedRecording tracks,
-                                      const PreparationOptions& preparation) {
+                                      const PreparationOptions& preparation,
+                                      Warnings* warnings) {
   const std::string rate = FrameRateProblem(tracks.fps);
   if (!rate.empty()) return Of(tracks.id, "fps " + rate);
   if (tracks.people.empty()) return Of(tracks.id, "it contains no people");
@@ -92,8 +92,14 @@ Result<Recording> RecordingFromTracks(TrackedRecording tracks,
   const int max_gap = static_cast<int>(std::floor(preparation.max_gap_s * tracks.fps + 1e-9));
   for (TrackedPerson& one : tracks.people) {
     for (const auto* track : {&one.hip, &one.left_ankle, &one.right_ankle}) AddRows(*track, &hash);
-    Result<RecordedPerson> person = PersonFrom(std::move(one), max_gap, tracks.id);
+    const std::string who = one.id;
+    FilledTracks filled;
+    Result<RecordedPerson> person = PersonFrom(std::move(one), max_gap, tracks.id, &filled);
     if (!person.ok()) return person.error();
+    const std::string gaps = filled.Warning(preparation.max_gap_s);
+    if (!gaps.empty() && warnings != nullptr) {
+      warnings->push_back(RecordingWarning(tracks.id, who + " " + gaps));
+    }
     recording.people.push_back(std::move(person.value()));
     if (recording.people.back().hip.size() != recording.people[0].hip.size()) {
       return Of(tracks.id, "its people have different numbers of frames");

@@ -30,11 +30,13 @@ struct TrackedRecording {
   RecordingLabels labels;
 };
 
-// Gaps are filled as those of files are, and the motion filtered and resampled. Errors: a mass not
+// Gaps are filled as those of files are, and the motion filtered and resampled; what looks unusual
+// but can be lived with is appended to `warnings`. Errors: a mass not
 // in (0, 400] kg, a rate not in [1, 10000], people with different numbers of frames or fewer than
 // three, a first frame that is not seen, what CheckMotion says, pushes on nobody or beyond the
 // motion.
 Result<Recording> RecordingFromTracks(TrackedRecording tracks,
-                                      const PreparationOptions& preparation = {});
+                                      const PreparationOptions& preparation = {},
+                                      Warnings* warnings = nullptr);
 
 }  // namespace pushid

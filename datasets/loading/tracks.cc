@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "datasets/loading/motion_preparation.h"
 
 namespace pushid {
@@ -58,6 +59,58 @@ GapCount FillGaps(int max_gap, std::vector<Vector3d>* track, std::vector<double>
     begin = end;
   }
   return count;
+}
+
+namespace {
+
+constexpr double kManyInterpolated = 0.1;  // of the frames that count
+
+bool Many(int interpolated, int counting) {
+  return interpolated > kManyInterpolated * static_cast<double>(counting);
+}
+
+}  // namespace
+
+FilledTracks FillTracks(int max_gap, const std::vector<std::vector<Vector3d>*>& tracks) {
+  FilledTracks filled;
+  const size_t frames = tracks.empty() ? 0 : tracks[0]->size();
+  std::vector<bool> seen(frames, true);
+  filled.weight.assign(frames, 1.0);
+  for (std::vector<Vector3d>* track : tracks) {
+    for (size_t t = 0; t < frames; ++t) {
+      if (!(*track)[t].allFinite()) seen[t] = false;
+    }
+    filled.gaps += FillGaps(max_gap, track, &filled.weight).gaps;
+  }
+  int counting = 0;
+  for (size_t t = 0; t < frames; ++t) {
+    if (filled.weight[t] == 0.0) continue;
+    ++counting;
+    if (!seen[t]) ++filled.interpolated_frames;
+  }
+  filled.excluded_frames = static_cast<int>(frames) - counting;
+  filled.many = Many(filled.interpolated_frames, counting);
+  if (!filled.many) return filled;
+  const double share = static_cast<double>(counting - filled.interpolated_frames) / counting;
+  for (size_t t = 0; t < frames; ++t) {
+    if (filled.weight[t] > 0.0 && !seen[t]) filled.weight[t] = share;
+  }
+  return filled;
+}
+
+std::string FilledTracks::Warning(double max_gap_s) const {
+  if (gaps == 0) return "";
+  const std::string frames = std::to_string(weight.size());
+  std::string text = "has " + std::to_string(gaps) + " gap" + (gaps == 1 ? "" : "s") +
+                     " in hip and ankles; those of up to " + Rounded(max_gap_s) +
+                     " s are interpolated, " + std::to_string(excluded_frames) + " of " + frames +
+                     " frames are left out";
+  if (many) {
+    text += "; " + std::to_string(interpolated_frames) +
+            " of the others are interpolated, more than a tenth: these count "
+            "less; fill the gaps from other markers, or leave the recording out";
+  }
+  return text;
 }
 
 namespace {

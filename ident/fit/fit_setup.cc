@@ -89,8 +89,9 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   }
   for (const char* name : {"pool_by", "pooling_sigma"}) {
     if (AnyPooled(options.table) || Find(given, name) == nullptr) continue;
-    return Error{std::string("--") + name +
-                 " applies to pooled parameters, but there are none; name some with --pool"};
+    return Error{std::string("--") + name + " applies to pooled parameters, but the preset " +
+                 options.preset +
+                 " pools none; add --pool=all, or name some, as in --pool=Kp_theta"};
   }
   return std::nullopt;
 }
@@ -228,6 +229,12 @@ std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOpti
     if (spec == nullptr || Acts(spec->id, options.model)) continue;
     warnings.push_back("--fix=" + item + " does nothing: " + spec->name +
                        " does not act under this model");
+  }
+  const std::string* pool_by = Find(given, "pool_by");
+  if (pool_by != nullptr && Find(given, "pool") == nullptr && !PoolsAllOrNone(options.pool)) {
+    warnings.push_back("--pool_by=" + *pool_by + " without --pool lets only " + options.pool +
+                       " differ by " + *pool_by + ", which the preset " + options.preset +
+                       " pools; --pool=all lets all free parameters differ");
   }
   if (options.model.interaction.ldp_discrete) {
     warnings.push_back(

@@ -46,8 +46,10 @@ void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions*
   const bool asked =
       preset.value().pool != options->pool || preset.value().pool_by != options->pool_by;
   if (!asked) return;
-  warnings->emplace_back("--pool=" + options->pool + " does nothing: all recordings share one " +
-                         options->pool_by + ", '" + *units.begin() + "'");
+  const bool named = preset.value().pool != options->pool;
+  warnings->push_back((named ? "--pool=" + options->pool : "--pool_by=" + options->pool_by) +
+                      " does nothing: all recordings share one " + options->pool_by + ", '" +
+                      *units.begin() + "'");
 }
 
 // A label that no recording has pools by nothing; that of the presets may be absent.

@@ -31,8 +31,10 @@ MaybeError ReadHorizons(const std::string& text, FitOptions* o) {
 }
 
 Row HorizonsRow() {
-  Row row = WordsRow("horizons", OptionStage::kModel,
-                     "frames of the stages before all frames, comma-separated", ReadHorizons);
+  Row row =
+      WordsRow("horizons", OptionStage::kModel,
+               "frames of the stages before all frames, from the first push on, comma-separated",
+               ReadHorizons);
   row.text = [](const FitOptions& o) {
     std::string text;
     for (int frames : o.horizons) {

@@ -189,8 +189,8 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
   std::vector<std::vector<double*>> blocks(total);
   for (int i = 0; i < total; ++i) {
     if (Count(i) == 0) continue;
-    problems[i] =
-        MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas, 1.0, horizon);
+    problems[i] = MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas, 1.0,
+                                     Frames(i, horizon));
     blocks[i] = RecordingBlocks(&copy, i);
     if (HasLanes(*problems[i])) in_lanes[i] = problems[i].get();
   }
@@ -237,6 +237,12 @@ std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording)
   return blocks;
 }
 
+int PushFrame(const PendulumRecording& recording) {
+  int first = recording.num_frames();
+  for (const ScenePush& push : recording.scene.pushes) first = std::min(first, push.start_frame);
+  return recording.scene.pushes.empty() ? 0 : first;
+}
+
 double FitProblem::Weight(int recording, int horizon) const {
   const double counted = std::sqrt(static_cast<double>(Count(recording)));
   if (options_.likelihood != Likelihood::kTrajectory) return counted;
@@ -246,7 +252,8 @@ double FitProblem::Weight(int recording, int horizon) const {
   }
   // A recording's frames are far from independent: together they count as one.
   const PendulumRecording& r = recordings()[recording];
-  const int frames = horizon > 0 ? std::min(horizon, r.num_frames()) : r.num_frames();
+  const int all = r.num_frames(),
+            frames = horizon > 0 ? std::min(Frames(recording, horizon), all) : all;
   return counted / std::sqrt(std::max(1, frames - 1));
 }
 

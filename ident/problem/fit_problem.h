@@ -20,6 +20,9 @@
 
 namespace pushid {
 
+// The frame at which the first push begins; 0 where nobody is pushed.
+int PushFrame(const PendulumRecording& recording);
+
 // What is minimized at a time.
 struct FitStage {
   int horizon = 0;              // frames of each rollout; 0: all
@@ -53,6 +56,11 @@ class FitProblem {
   // As the model sees them: in axes along their pushes, where it is the same in all directions.
   const std::vector<PendulumRecording>& recordings() const { return *recordings_; }
   const FitOptions& options() const { return options_; }
+  // Frames of a recording that a horizon means: so many from its first push on, since before it
+  // nothing is learned; 0: all.
+  int Frames(int recording, int horizon) const {
+    return horizon == 0 ? 0 : horizon + PushFrame(recordings()[recording]);
+  }
   // Of a recording's residuals in the cost, rolled out over `horizon` frames (0: all).
   double Weight(int recording, int horizon) const;
   const std::vector<int>& counts() const { return counts_; }  // empty: each once

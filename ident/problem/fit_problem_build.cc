@@ -48,7 +48,7 @@ void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* bui
 // Of a recording in a stage; null where it fails in its very first step: nothing left to compare.
 std::shared_ptr<const RolloutProblem> FitProblem::StageRollout(int recording, int horizon,
                                                                const Built& built) const {
-  int frames = horizon;
+  int frames = Frames(recording, horizon);
   for (const FailedRollout& failed : built.shortened) {
     if (failed.recording == recording) frames = failed.status.frame;
   }

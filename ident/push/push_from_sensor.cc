@@ -33,11 +33,6 @@ Error Wrong(const PendulumRecording& recording, const std::string& what) {
   return Error{"recording " + recording.id + ": " + what};
 }
 
-// Fraction of the rod at which a horizontal plane `height` metres up crosses it.
-double HeightFraction(const Body& body, const Vector4<double>& q, double height) {
-  return (height - body.cart_height) / (body.rod_length * std::cos(q[2]) * std::cos(q[3]));
-}
-
 MaybeError CheckSensorOptions(const SensorRecord& record, const PendulumRecording& recording,
                               const SensorPushOptions& options) {
   if (options.person < 0 || options.person >= recording.num_people()) {
@@ -81,6 +76,10 @@ MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& 
 }
 
 }  // namespace
+
+double HeightFraction(const Body& body, const Vector4<double>& q, double height) {
+  return (height - body.cart_height) / (body.rod_length * std::cos(q[2]) * std::cos(q[3]));
+}
 
 Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,
                             const SensorPushOptions& options) {

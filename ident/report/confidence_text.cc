@@ -13,6 +13,7 @@
 #include "ident/problem/statistics.h"
 #include "ident/report/fit_command.h"
 #include "ident/report/verdict_text.h"
+#include "ident/report/value_text.h"
 
 namespace pushid {
 namespace {
@@ -20,12 +21,8 @@ namespace {
 constexpr size_t kWorstRecordings = 5;
 constexpr int kFewUnits = 5;  // of fewer a bootstrap has too few distinct resamples
 
-std::string IntervalText(const std::optional<Interval>& interval) {
-  if (!interval) return "-";
-  const auto side = [](double value) {
-    return std::isfinite(value) ? Rounded(value, 4) : std::string("open");
-  };
-  return "[" + side(interval->lower) + ", " + side(interval->upper) + "]";
+std::string OrDash(double value, const std::optional<Interval>& interval) {
+  return interval ? IntervalText(value, interval->lower, interval->upper) : "-";
 }
 
 std::string Disagreements(const std::vector<Agreement>& rows) {
@@ -110,8 +107,8 @@ TextTable AgreementTable(const FittedModel& model) {
                    "by the data alone"},
                   {true, false, true, true, true, true, true, true});
   for (const Agreement& row : CompareIntervals(model)) {
-    table.Add({row.name, Rounded(row.value, 4), IntervalText(row.clustered),
-               IntervalText(row.profile), IntervalText(row.bootstrap), row.unit,
+    table.Add({row.name, Rounded(row.value, 4), OrDash(row.value, row.clustered),
+               OrDash(row.value, row.profile), OrDash(row.value, row.bootstrap), row.unit,
                row.classification ? NameOf(*row.classification) : "",
                row.by_data_alone ? NameOf(*row.by_data_alone) : ""});
   }

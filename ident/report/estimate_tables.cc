@@ -7,6 +7,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/report/report_tables.h"
+#include "ident/report/value_text.h"
 #include "ident/uncertainty/clusters.h"
 #include "models/self_terms.h"
 
@@ -23,16 +24,12 @@ std::string TheirError(const std::optional<Interval>& these) {
   return !these ? "" : these->standard_error > 0.0 ? Rounded(these->standard_error, 3) : "-";
 }
 
-std::string TheirInterval(const std::optional<Interval>& these) {
+std::string TheirInterval(double value, const std::optional<Interval>& these) {
   if (!these) return "";
-  return these->standard_error > 0.0 ? BracketText(these->lower, these->upper) : "-";
+  return these->standard_error > 0.0 ? IntervalText(value, these->lower, these->upper) : "-";
 }
 
 }  // namespace
-
-std::string BracketText(double lower, double upper) {
-  return "[" + Rounded(lower, 4) + ", " + Rounded(upper, 4) + "]";
-}
 
 std::string SharesText(const Shares& s) {
   const auto percent = [](double share) { return Rounded(std::round(100.0 * share), 3); };
@@ -48,7 +45,7 @@ std::string PullText(const Estimate& e) {
 TextTable EstimateTable(const FitResult& result) {
   TextTable table(
       {"parameter", "value", "std error", "95 % interval", kTotalColumn, kTheseColumns[0],
-       kTheseColumns[1], "unit", "status", "data/prior/settling, %", "pull, errors", "prior"},
+       kTheseColumns[1], "unit", "status", "data/prior/settling, %", "prior shift, std errors", "prior"},
       {true, false, false, true, true, false, true, true, true, true, false, true});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
@@ -65,9 +62,9 @@ TextTable EstimateTable(const FitResult& result) {
     const bool no_error = no_shares && e.standard_error <= 0.0;
     const std::string error = no_error ? "-" : Rounded(e.standard_error, 3);
     table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
-               unknown || no_error ? "-" : BracketText(e.lower95, e.upper95),
-               e.total && !no_shares ? BracketText(e.total->lower95, e.total->upper95) : "",
-               TheirError(e.these), TheirInterval(e.these), e.unit, NameOf(e.status),
+               unknown || no_error ? "-" : IntervalText(e.value, e.lower95, e.upper95),
+               e.total && !no_shares ? IntervalText(e.value, e.total->lower95, e.total->upper95) : "",
+               TheirError(e.these), TheirInterval(e.value, e.these), e.unit, NameOf(e.status),
                no_shares ? "-" : SharesText(e.shares), no_shares ? "-" : PullText(e), prior});
   }
   table.DropIfEmpty({kTotalColumn});
@@ -101,8 +98,8 @@ std::string IdentifiedText(const FitResult& result) {
 
 std::string SharesNote() {
   return "Shares: fractions of a value's variance due to the data, its prior and the settling "
-         "constraint. Pull: shift of the value by prior and constraint together, in standard "
-         "errors. Prior-held: the data account for less than half.";
+         "constraint. Prior shift: how far prior and constraint together move the value, in "
+         "standard errors. Prior-held: the data account for less than half.";
 }
 
 std::string TargetText(const FitResult& result) {
@@ -161,8 +158,8 @@ TextTable DerivedTable(const FitResult& result) {
   for (const Combination& c : result.derived) {
     const bool fixed = c.standard_error == 0.0;
     table.Add({c.name, Rounded(c.value, 4), fixed ? "-" : Rounded(c.standard_error, 3),
-               fixed ? "-" : BracketText(c.lower95, c.upper95), TheirError(c.these),
-               TheirInterval(c.these), c.unit});
+               fixed ? "-" : IntervalText(c.value, c.lower95, c.upper95), TheirError(c.these),
+               TheirInterval(c.value, c.these), c.unit});
   }
   table.DropIfEmpty(kTheseColumns);
   return table;

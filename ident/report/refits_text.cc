@@ -117,7 +117,7 @@ TextTable MovesTable(const RefitTable& check) {
 }
 
 TextTable HorizonTable(const RefitTable& check) {
-  return SideBySide(check, "first frames", "all", true);
+  return SideBySide(check, "from the push on", "all", true);
 }
 
 TextTable PriorTable(const RefitTable& check) {
@@ -130,7 +130,8 @@ std::string DriftText(const RefitTable& check) {
     const RefitRow& row = check.rows[drift.row];
     text += check.parameters[drift.parameter] + " drifts: " +
             ValueText(row.value[drift.parameter], row.standard_error[drift.parameter]) +
-            (row.frames == kOneStep ? " in single steps, " : " in the first " + row.name + ", ") +
+            (row.frames == kOneStep ? " in single steps, "
+                                    : " in the first " + row.name + " of the push, ") +
             ValueText(check.value[drift.parameter], check.standard_error[drift.parameter]) +
             " in all, " + Rounded(drift.in_errors, 2) +
             " standard errors apart; it compensates for something that the model omits\n";
@@ -141,7 +142,7 @@ std::string DriftText(const RefitTable& check) {
 std::string HorizonClaims(const RefitTable& check) {
   if (check.rows.empty() || check.rows[0].frames != kOneStep) return "";
   return "one step: the response from one frame to the next, for controllers and filters\n"
-         "first frames: for predictions over that many frames\n"
+         "8 frames, 16 frames, ...: counted from the start of the push, for predictions that far\n"
          "all: the motion over whole recordings, for predictions from the push and for "
          "simulations\n";
 }
@@ -160,7 +161,8 @@ std::string PriorCheckText(const RefitTable& check) {
 }
 
 std::string HorizonCheckText(const RefitTable& check) {
-  if (check.rows.empty()) return "no recording is longer than the shortest horizon\n";
+  if (check.rows.empty())
+    return "no recording goes on for longer after its push than the shortest horizon\n";
   return HorizonTable(check).ToString() + DriftText(check) + HorizonClaims(check) +
          FailuresText(check);
 }

@@ -8,6 +8,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/problem/pooling_spread.h"
+#include "ident/report/value_text.h"
 
 namespace pushid {
 
@@ -93,7 +94,7 @@ TextTable PooledTable(const FitResult& result) {
     for (const auto& [name, e] : pooled) {
       std::vector<std::string> row = unit;
       row.insert(row.end(), {name, Rounded(e.value, 4), Rounded(e.standard_error, 3),
-                             BracketText(e.lower95, e.upper95), e.unit});
+                             IntervalText(e.value, e.lower95, e.upper95), e.unit});
       table.Add(row);
     }
   };

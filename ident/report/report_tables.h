@@ -9,8 +9,6 @@
 
 namespace pushid {
 
-// "[1.2, 3.4]"
-std::string BracketText(double lower, double upper);
 // "97/3/0", and what priors and settling together moved the value by, in its standard errors.
 std::string SharesText(const Shares& shares);
 std::string PullText(const Estimate& estimate);

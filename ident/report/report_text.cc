@@ -15,6 +15,7 @@
 #include "ident/report/refits_text.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/verdict_text.h"
+#include "ident/report/value_text.h"
 #include "ident/validation/steps_report.h"
 
 namespace pushid {
@@ -111,7 +112,7 @@ std::string ReportText(const FittedModel& model) {
       SelfFromText(model.provenance) + "\n\n";
   text += ModelVerdictText(result.verdict) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
-          DerivedTable(result).ToString() + ConventionText(result) + "\n";
+          DerivedTable(result).ToString() + ConventionText(result) + GainsText(result) + "\n\n";
   for (const NullDirection& n : result.uncertainty.null_directions) {
     text += "unidentifiable: " + n.sentence + "\n";
   }
@@ -215,8 +216,7 @@ std::string TruthTable(const FitResult& result, const std::map<std::string, doub
     ++compared;
     covered += inside;
     table.Add({e.name, Rounded(known->second, 4), Rounded(e.value, 4), Rounded(e.standard_error, 3),
-               "[" + Rounded(e.lower95, 4) + ", " + Rounded(e.upper95, 4) + "]", e.unit,
-               inside ? "covers" : "misses"});
+               IntervalText(e.value, e.lower95, e.upper95), e.unit, inside ? "covers" : "misses"});
   }
   return table.ToString() + std::to_string(covered) + " of " + std::to_string(compared) +
          " intervals cover the truth (on average one in 20 does not)\n";

@@ -51,13 +51,14 @@ void Cut(int frames, std::vector<std::vector<T>>* people) {
   }
 }
 
-// The pushes stay whole: a tail knows the mean of its push.
+// So many from the first push on. The pushes stay whole: a tail knows the mean of its push.
 std::vector<PendulumRecording> FirstFrames(std::vector<PendulumRecording> recordings, int frames) {
   for (PendulumRecording& r : recordings) {
-    Cut(frames, &r.states);
-    Cut(frames, &r.rod_length);
-    Cut(frames, &r.hip);
-    Cut(frames, &r.weight);
+    const int last = PushFrame(r) + frames;
+    Cut(last, &r.states);
+    Cut(last, &r.rod_length);
+    Cut(last, &r.hip);
+    Cut(last, &r.weight);
   }
   return recordings;
 }
@@ -127,7 +128,7 @@ RefitTable CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
                          const JobProgress& progress) {
   int longest = 0;
   for (const PendulumRecording& r : problem.recordings()) {
-    longest = std::max(longest, r.num_frames() - 1);
+    longest = std::max(longest, r.num_frames() - 1 - PushFrame(r));
   }
   std::vector<int> horizons;
   for (int horizon : problem.options().horizons) {

@@ -43,11 +43,11 @@ std::vector<double> SharedValues(const FitProblem& problem, const FitPoint& poin
 // How the estimates depend on the horizon.
 //
 // A parameter that means something keeps its value however long the rollouts are; one that drifts
-// stands for what the model leaves out. The fit is repeated on the first 8, 16, 32 and 64 frames of
-// every recording (the stages of the solver, FitOptions::horizons), each on its own from its own
-// start and with everything that the whole fit has: priors, settling, tolerances. Rejected: the
-// values at the ends of the solver's stages, which come for free but stop early (1e-4), lean on
-// priors of their own and know no settling.
+// stands for what the model leaves out. The fit is repeated on the motion up to 8, 16, 32 and 64
+// frames after the first push of every recording began (the stages of the solver,
+// FitOptions::horizons), each on its own from its own start and with everything that the whole fit
+// has: priors, settling, tolerances. Rejected: the values at the ends of the solver's stages, which
+// come for free but stop early (1e-4), lean on priors of their own and know no settling.
 //
 // Two fits of one study share their people, so their difference is known better than either value;
 // that it is larger than twice the larger of the two errors is called a drift.

@@ -160,6 +160,10 @@ TEST_F(AnyRecordingTest, Inspect) {
   EXPECT_TRUE(Contains(svg, "forces, N"));
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   // One bad file among good ones.
+  const AppRun twice = RunApp("pushid-inspect", {manifest_ + "," + manifest_});
+  EXPECT_TRUE(Refused(twice, {"this id is in"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-inspect", {Path("a.c3d") + "," + Path("a.c3d")}),
+                      {"commas join manifests"}));
   run = RunApp("pushid-inspect", {Path("none.trc"), manifest_});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_TRUE(Contains(run.err, "none.trc: there is no such file"));

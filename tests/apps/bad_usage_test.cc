@@ -68,7 +68,7 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--mode_margin=inf"}, {"--mode_margin"}},
       {{"--mode_weight=-1"}, {"--mode_weight"}},
       {{"--settling_weight=-2"}, {"--settling_weight"}},
-      {{"--preset=ldp", "--pool_by=subject"}, {"--pool_by", "--pool"}},
+      {{"--preset=ldp", "--pool_by=subject"}, {"--pool_by", "preset ldp pools none", "--pool=all"}},
       {{"--preset=group", "--pool=none", "--pooling_sigma=0.3"}, {"--pooling_sigma", "--pool"}},
       {{"--interaction=contact,contact"}, {"--interaction", "'contact' twice"}},
       {{"--interaction=contact,spring"}, {"--interaction", "'spring' twice"}},
@@ -241,6 +241,8 @@ TEST_F(BadUsageTest, ContactNeedsPeopleWhoTouch) {
 TEST_F(BadUsageTest, WhatDoesNothingIsWarnedAbout) {
   FitModel("m.json", {"--fix=mu_y=10", "--quiet"});
   EXPECT_TRUE(Contains(fit_.err, "warning: --fix=mu_y=10 does nothing"));
+  FitModel("m.json", {"--pool_by=subject", "--quiet"});
+  EXPECT_TRUE(Contains(fit_.err, "--pool_by=subject without --pool lets only tail_time differ"));
   FitModel("m.json", {"--interaction=ldp_discrete", "--quiet"});
   EXPECT_TRUE(Contains(fit_.err, "warning: --interaction=ldp_discrete"));
 }

@@ -53,7 +53,7 @@ TEST_F(FitAppTest, RefitsAreKeptAndReported) {
     EXPECT_TRUE(Contains(report.out, part)) << part;
   }
   EXPECT_TRUE(Contains(fit_.out, "total error"));
-  EXPECT_TRUE(Contains(fit_.out, "first frames"));
+  EXPECT_TRUE(Contains(fit_.out, "from the push on"));
 }
 
 TEST_F(FitAppTest, ModelHasItsParts) {

@@ -1,10 +1,12 @@
 """The Python module as its users call it (pytest, through ctest)."""
+import copy
 import gc
 import json
 import os
 import pickle
 import subprocess
 import sys
+import types
 
 import numpy as np
 import pytest
@@ -106,6 +108,9 @@ def test_arrays_of_any_layout(made, order, dtype):
     (dict(push=[np.nan, 1.0]), "not finite"),
     (dict(push_kind="hard"), "push_kind"),
     (dict(pushed_person=3), "pushed_person"),
+    (dict(push_height=1.2), r"push_height is 1.2; it is a fraction.*push_height_m"),
+    (dict(push_height=-0.1), "push_height"),
+    (dict(push_height_m=85.0), "push_height_m"),
 ])
 def test_bad_arrays_are_told(made, changed, says):
     with pytest.raises((pushid.DataError, pushid.UsageError), match=says):
@@ -115,7 +120,7 @@ def test_bad_arrays_are_told(made, changed, says):
 def test_units_masks_and_names(made):
     recording = made[0][0]
     mm = {name: 1000.0 * track for name, track in zip(("hip", "left_ankle", "right_ankle"), arrays(recording))}
-    with pytest.raises(pushid.DataError, match="looks like mm, pass length_unit=mm"):
+    with pytest.raises(pushid.DataError, match='looks like mm, pass length_unit="mm"'):
         from_arrays(recording, **mm)
     again = from_arrays(recording, **mm, length_unit="mm", id=7, subjects=3)
     assert np.allclose(again.hip, recording.hip) and again.id == "7" and again.subjects == ["3"]
@@ -137,6 +142,104 @@ def test_gaps_are_filled(made):
     hip[30:33] = np.nan
     filled = from_arrays(made[0][0], hip=hip)
     assert np.abs(filled.hip[30:33, 0] - made[0][0].hip[30:33, 0]).max() < 0.01
+
+
+def test_many_gaps_are_warned_of_and_count_less(made):
+    rng = np.random.default_rng(1)
+    found = []
+    for share in (0.0, 0.5):
+        some = []
+        for recording in made[0]:
+            hip = arrays(recording)[0].copy()
+            hip[1:][rng.random(len(hip) - 1) < share] = np.nan
+            if share:
+                with pytest.warns(UserWarning, match=f"recording '{recording.id}'.*these count less"):
+                    some.append(from_arrays(recording, hip=hip))
+            else:
+                some.append(from_arrays(recording))
+        found.append(pushid.fit(some))
+    whole, half = (next(row["standard_error_naive"] for row in one.table if row["name"] == "mu") for one in found)
+    assert half > 1.2 * whole
+
+
+def test_exchanged_ankles_are_doubted(made):
+    _, left, right = arrays(made[0][0])
+    with pytest.warns(UserWarning, match="ankles not exchanged"):
+        from_arrays(made[0][0], left_ankle=right, right_ankle=left)
+
+
+def test_recordings_need_ids_of_their_own(made, result):
+    twins = [from_arrays(recording, id="recording") for recording in made[0][:2]]
+    for call in (lambda: pushid.fit(twins), lambda: pushid.fit([made[0][0]] * 2), lambda: pushid.crossvalidate(twins)):
+        with pytest.raises(pushid.UsageError, match="two recordings are called"):
+            call()
+
+
+def test_recordings_are_pickled_and_copied(made, result):
+    for again in (pickle.loads(pickle.dumps(made[0])), copy.deepcopy(made[0])):
+        assert again.warnings == made[0].warnings and repr(again) == repr(made[0])
+        for one, other in zip(again, made[0]):
+            for name in ("id", "setting", "magnitude", "fps", "content_hash", "push_kind", "subjects", "mass"):
+                assert getattr(one, name) == getattr(other, name)
+            for name in ("hip", "left_ankle", "right_ankle", "states", "push"):
+                assert np.array_equal(getattr(one, name), getattr(other, name))
+        assert pushid.fit(again)["mu"] == result["mu"]
+
+
+def test_a_height_in_metres(made):
+    recording = made[0][0]
+    metres = recording.hip[0, 0, 2] - 1e-9
+    by_fraction = from_arrays(recording, push=np.full(10, 100.0))
+    by_metres = from_arrays(recording, push=np.full(10, 100.0), push_height_m=metres)
+    assert np.allclose(by_metres.push, by_fraction.push, rtol=1e-6)
+    lower = from_arrays(recording, push=np.full(10, 100.0), push_height_m=0.7 * metres)
+    assert 0 < lower.push[0, 0, 2] < by_fraction.push[0, 0, 2]
+
+
+def test_fixed_and_derived_values(result):
+    fixed = result["Kp_phi"]
+    assert fixed.fixed and fixed.interval is None and fixed.standard_error is None
+    c_x = result["c_x"]
+    assert c_x.status == "derived" and c_x.interval[0] < c_x.value < c_x.interval[1] and c_x.unit == "N s/m"
+    assert c_x.value == pytest.approx(result["mu"].value + result["Kp_x"].value)
+    assert result["Kp_phi/(m g l)"].interval is None
+    with pytest.raises(KeyError, match="c_x"):
+        result["cx"]
+
+
+def test_a_frame_is_flat(result, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", types.SimpleNamespace(DataFrame=list))
+    rows = {row["name"]: row for row in result.table.to_frame()}
+    mu = rows["mu"]
+    assert (mu["interval_95_lower"], mu["interval_95_upper"]) == result["mu"].interval
+    assert mu["shares_data"] == result["mu"].shares["data"]
+    assert not any(isinstance(cell, (dict, list)) for row in rows.values() for cell in row.values())
+    assert "interval_95_lower" not in rows["Kp_phi"]
+    designs = result.design("mu")["pushes"].to_frame()
+    assert "error_ratio_mu" in designs[0]
+
+
+def test_what_is_printed_names_calls(result):
+    for text in (str(result), *result.warnings, *(sentence for sentence, _ in result.advice)):
+        assert "--" not in text and "pushid-" not in text
+    assert "result.profile()" in str(result)
+
+
+def test_hints_are_calls():
+    said = pushid._pushid.in_python
+    for text, call in {
+            "leave them out (--leave_out=a,b)": 'leave them out (leave_out=["a", "b"])',
+            "--preset=group or --starts=8 adds one.": 'preset="group" or starts=8 adds one.',
+            "use --fix=mu=0, then see": 'use fix={"mu": 0}, then see',
+            "--fix: 'a' is unknown": "fix: 'a' is unknown",
+            "repeat it by pushid-check --bootstrap=199": "repeat it by result.bootstrap(199)",
+            "--push_check and --profile refit": "result.push_check() and result.profile() refit",
+            "see pushid-push --initial_velocity": "see pushid.estimate_push(recording, initial_velocity)",
+            "(pushid-fit --setting=groups --interaction=contact)":
+                '(pushid.fit(recordings, setting="groups", interaction="contact"))',
+            "pushid-fit --model_out writes one": "result.save writes one",
+            "pushid-train-restoration wrote": "pushid-train-restoration wrote"}.items():
+        assert said(text) == call
 
 
 def test_forces_become_generalized_ones(made):
@@ -239,6 +342,10 @@ def test_saved_loaded_and_pickled(made, result, tmp_path):
 def test_report_is_a_page(result, tmp_path):
     page = result.report(tmp_path / "report.html").read_text(encoding="utf-8")
     assert page.lstrip().startswith("<!DOCTYPE html>") and "mu" in page
+    assert "result.profile()" in page and "pushid-check" not in page
+    with pytest.raises(pushid.UsageError, match="let its name end in .html"):
+        result.report(tmp_path / "report.pdf")
+    assert not (tmp_path / "report.pdf").exists()
 
 
 @pytest.mark.skipif(not BIN, reason="PUSHID_BIN names no programs")

@@ -132,7 +132,16 @@ def test_whole_bodies(made, result):
 def test_pictures(made, result):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
+
+    def whole(axes):
+        """Whether all words lie within the saved figure."""
+        axes.figure.canvas.draw()
+        box = axes.figure.get_tightbbox(axes.figure.canvas.get_renderer())  # inches
+        width, height = axes.figure.get_size_inches()
+        return box.x0 > -0.02 and box.y0 > -0.02 and box.x1 < width + 0.02 and box.y1 < height + 0.02
+
     axes = result.plot()
+    assert whole(axes)
     assert any(label.get_text().startswith("mu ") for label in axes.get_yticklabels())
     axes = result.plot_motion(made[0][0], observed=20)
     assert len(axes.lines) == 2 and axes.collections  # measured, predicted, the band
@@ -142,4 +151,4 @@ def test_pictures(made, result):
     with pytest.raises(KeyError, match="profile"):
         result.plot_profile("a_x")
     axes = pushid.simulate_formation(result, "line", 4, push=60.0, onset_bands=True).plot()
-    assert axes.images[0].get_array().shape == (4, 241)
+    assert axes.images[0].get_array().shape == (4, 241) and whole(axes)

@@ -1,12 +1,17 @@
 """Matplotlib figures of results."""
 import html
 
+from . import _pushid
+
 
 def _axes(axes):
     if axes is not None:
         return axes
     import matplotlib.pyplot
-    return matplotlib.pyplot.subplots()[1]
+    return matplotlib.pyplot.subplots(layout="constrained")[1]  # labels of any length lie within the figure
+
+
+_FARTHEST = 10.0  # times the value; bars end there
 
 
 def _free(result):
@@ -18,10 +23,10 @@ def intervals(result, axes=None):
     axes = _axes(axes)
     shown = [p for p in _free(result) if p.interval and p.value != 0]
     for row, p in enumerate(shown):
-        low, high = sorted(end / p.value for end in p.interval)
+        low, high = sorted(max(-_FARTHEST, min(_FARTHEST, end / p.value)) for end in p.interval)
         axes.plot([low, high], [row, row], "-", color="C0" if p.status == "identified" else "C1")
         axes.plot([1], [row], "o", color="C0" if p.status == "identified" else "C1")
-    axes.set_yticks(range(len(shown)), [f"{p.name} {p.value:.4g} {p.unit}" for p in shown])
+    axes.set_yticks(range(len(shown)), [f"{p.name} {p.value:.4g} {p.unit if p.unit != '1' else ''}" for p in shown])
     axes.invert_yaxis()
     axes.set_xlabel("95 % interval over the value (orange: not identified by the data)")
     return axes
@@ -98,7 +103,7 @@ def _bar(p):
 def html_table(result):
     rows = []
     for p in _free(result):
-        cells = [p.name, f"{p.value:.4g}", f"{p.interval[0]:.4g} to {p.interval[1]:.4g}" if p.interval else "",
+        cells = [p.name, f"{p.value:.4g}", _pushid.interval_text(p.value, *p.interval) if p.interval else "",
                  p.unit, p.status or ""]
         rows.append("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in cells) +
                     f"<td>{_bar(p)}</td></tr>")

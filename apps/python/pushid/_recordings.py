@@ -7,24 +7,18 @@ from . import _pushid
 from ._options import text_of
 
 
-class FileWarning(str):
-    """A warning about a file: a sentence; of which recording, and what it says of several, is kept beside it."""
-
-    def __new__(cls, text, recording="", of_many=""):
-        warning = super().__new__(cls, text)
-        warning.recording, warning.of_many = recording, of_many
-        return warning
-
-    def __getnewargs__(self):
-        return str(self), self.recording, self.of_many
-
-
 class Recordings(list):
     """A list of recordings, with the warnings about their files (`warnings`)."""
+    # _told: of each warning the sentence, its recording, and what it says of several.
 
     def __init__(self, recordings=(), warnings=()):
         super().__init__(recordings)
-        self.warnings = list(warnings)
+        self._told = list(warnings)
+
+    @property
+    def warnings(self):
+        """Warnings about the files; equal ones once."""
+        return _pushid.in_python(self._told)
 
     def __repr__(self):
         people = {subject for recording in self for subject in recording.subjects}
@@ -53,7 +47,7 @@ def read(manifest, setting=_DEFAULT["setting"], *, ids=(), leave_out=(), all_joi
     found, told = _pushid.read(",".join(os.fspath(path) for path in paths), setting, _listed(ids),
                                _listed(leave_out), all_joints, max_gap_s, lowpass_hz, resample_fps, length_unit,
                                length_scale)
-    return Recordings(found, [FileWarning(*one) for one in told])
+    return Recordings(found, told)
 
 
 def _positions(name, values, metres):
@@ -66,24 +60,27 @@ def _positions(name, values, metres):
 
 
 def Recording(hip, left_ankle, right_ankle, mass, fps, push=None, *, id="recording", subjects=(), pushed_person=0,
-              push_start=0, push_height=1.0, push_kind="external", initial_velocity="zero", setting="single",
-              magnitude="unknown", condition="", length_unit="m"):
+              push_start=0, push_height=1.0, push_height_m=None, push_kind="external", initial_velocity="zero",
+              setting="single", magnitude="unknown", condition="", length_unit="m"):
     """A recording from arrays, with the same checks as one from files.
 
     hip, left_ankle, right_ankle: (frames, 3), or (frames, people, 3), in length_unit ("mm", "cm" or "m"), z up and x
     forward; NaN or masked where missing. mass: kg, a number or one for each person. fps: frames per second.
     push: from frame `push_start` on, on `pushed_person`: (rows,) forwards, (rows, 2) or (rows, 3) in N at the height
-    `push_height` (a fraction of the way from the ankles to the hip), or (rows, 4): generalized forces in N and N m.
-    push_kind: "external" (measured, the whole push), "net" or "net_without_friction". initial_velocity: "zero",
+    `push_height` (a fraction of the way from the ankles to the hip, 0 to 1) or `push_height_m` (m above the ground),
+    or (rows, 4): generalized forces in N and N m.
+    push_kind: what the push means: "external" (measured, the whole push), "net" (from inverse dynamics: the sum of all
+    forces on the person) or "net_without_friction" (that sum without the friction of the feet). initial_velocity: "zero",
     "estimated" or "free". subjects: ids of the people, by which errors are clustered. setting, magnitude, condition:
-    labels to group results by. Raises DataError.
+    labels to group results by. id: of this recording alone among those of a fit. Raises DataError; warns where much
+    of hip or ankles is missing, and where the ankles look exchanged.
     """
     rows = None if push is None else np.asarray(push, dtype=float)
     metres = _pushid.metres_per(length_unit)
     return _pushid.from_arrays(_positions("hip", hip, metres), _positions("left_ankle", left_ankle, metres),
                                _positions("right_ankle", right_ankle, metres), [float(m) for m in np.atleast_1d(mass)],
                                float(fps), rows, str(id), _listed(subjects), pushed_person, push_start, push_height,
-                               push_kind, initial_velocity, setting, magnitude, condition)
+                               push_height_m, push_kind, initial_velocity, setting, magnitude, condition)
 
 
 def simulate(*, people=_DEFAULT["people"], recordings_per_person=_DEFAULT["recordings_per_person"],
@@ -131,4 +128,9 @@ def _described(recording):
     return f"<{recording.id}: {recording.num_people} people, {recording.num_frames} frames at {recording.fps:g} Hz>"
 
 
+def _from_bytes(content):
+    return _pushid.from_bytes(content)
+
+
 _pushid.Recording.__repr__ = _described
+_pushid.Recording.__reduce__ = lambda recording: (_from_bytes, (_pushid.to_bytes(recording),))

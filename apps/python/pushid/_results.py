@@ -12,7 +12,8 @@ from ._recordings import checked
 
 Parameter = namedtuple("Parameter", "name value standard_error interval unit status shares fixed")
 Parameter.__doc__ = """A parameter of a result: value, standard error and 95 % interval (low, high) in `unit`; status
-("identified", "weak", "prior-held", "fixed", ...); shares: fractions due to data, priors and settling."""
+("identified", "weak", "prior-held", "fixed", "derived", ...); shares: fractions due to data, priors and settling. What is
+fixed, or derived from fixed values alone, has neither error nor interval: both are None."""
 
 
 def _numbers(found):
@@ -24,17 +25,39 @@ def _numbers(found):
     return float(found) if found in ("infinity", "-infinity", "nan") else found
 
 
+def _parameter(row, status):
+    interval = row.get("interval_95")
+    known = status != "fixed" and interval is not None and interval[0] < interval[1]
+    return Parameter(row["name"], row["value"], row.get("standard_error") if known else None,
+                     tuple(interval) if known else None, row.get("unit", ""), status, row.get("shares", {}),
+                     status == "fixed")
+
+
+def _flat(row, prefix=""):
+    """A row without parts: {"shares": {"data": 1.0}} as {"shares_data": 1.0}, a pair as its lower and upper end."""
+    cells = {}
+    for name, item in row.items():
+        if isinstance(item, (list, tuple)):
+            item = dict(zip(("lower", "upper") if len(item) == 2 else map(str, range(len(item))), item))
+        cells.update(_flat(item, f"{prefix}{name}_") if isinstance(item, dict) else {prefix + name: item})
+    return cells
+
+
 class Table(list):
     """A row (dict) for every parameter."""
 
     def to_frame(self):
-        """As a pandas DataFrame; raises ImportError without pandas."""
+        """As a pandas DataFrame with one column for each number: interval_95_lower, shares_data, ..., without those of
+        fixed parameters. Raises ImportError without pandas."""
         import pandas
-        return pandas.DataFrame(self)
+        held = ("standard_error", "interval_95", "shares")
+        return pandas.DataFrame([_flat({name: item for name, item in row.items()
+                                        if row.get("status") != "fixed" or name not in held}) for row in self])
 
 
 class Result:
-    """The result of a fit. result["mu"] is a Parameter; `json` holds everything, as the programs write it."""
+    """The result of a fit. result["mu"] is a Parameter, and so is what is derived of several, as result["c_x"]; `json`
+    holds everything, as the programs write it."""
 
     def __init__(self, model):
         self._model, self._json = model, None
@@ -59,11 +82,11 @@ class Result:
     def __getitem__(self, name):
         for row in self.table:
             if row["name"] == name:
-                interval = row.get("interval_95")
-                return Parameter(name, row["value"], row.get("standard_error"), tuple(interval) if interval else None,
-                                 row.get("unit", ""), row.get("status"), row.get("shares", {}),
-                                 row.get("status") == "fixed")
-        near = difflib.get_close_matches(name, self.names, 1)
+                return _parameter(row, row.get("status"))
+        derived = {row["name"]: row for row in _numbers(self.json["derived"])}
+        if name in derived:
+            return _parameter(derived[name], "derived")
+        near = difflib.get_close_matches(name, [*self.names, *derived], 1)
         raise KeyError(f"there is no parameter '{name}'" + (f"; is '{near[0]}' meant?" if near else ""))
 
     @property
@@ -167,8 +190,8 @@ class Result:
         return self._model.evaluate(checked(recordings), observed)
 
     def report(self, path):
-        """Writes the report as one page; returns its path."""
-        self._model.report(os.fspath(path))
+        """Writes the report as one page of HTML (path ends in .html); returns its path."""
+        self._model.report(os.fspath(path), self.advice)
         return path
 
     def save(self, path):
@@ -196,7 +219,7 @@ class Result:
         return _plots.profile(self, name, **options)
 
     def __str__(self):
-        return self._model.text()
+        return self._model.text(self.advice)
 
     def __repr__(self):
         free = [self[name] for name in self.names if not self[name].fixed]
@@ -221,8 +244,7 @@ def fit(recordings, *, progress=None, **asked):
     fix={"mu": 30} (or fix=["mu"]: held at the default), free={"Kp_x": 50}, prior={"mu": (30, 10)}, ...
     progress: called with (phase, iteration, cost). Ctrl-C ends a fit. Raises DataError, UsageError, FitError.
     """
-    told = [(str(one), getattr(one, "recording", ""), getattr(one, "of_many", ""))
-            for one in getattr(recordings, "warnings", ())]
+    told = list(getattr(recordings, "_told", ()))
     return Result(_pushid.fit(checked(recordings), given(asked), progress, told))
 
 

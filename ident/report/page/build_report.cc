@@ -87,6 +87,9 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   ReportSource source{model};
   source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
   source.propagation = PropagationOf(result, source.views);
+  std::vector<PendulumRecording> shown;
+  for (const RecordingView& view : source.views) shown.push_back(view.run.recording);
+  source.check = CheckVisually(ModelOf(result), shown);
   for (const SectionRow& row : kSections) {
     ReportSection section = row.render(source);
     section.id = row.id;

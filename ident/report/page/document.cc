@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
 #include "ident/report/page/page_parts.h"
@@ -198,6 +199,17 @@ std::string ToPage(const Report& report) {
          Element("p", report.subtitle) + "</header>\n<nav aria-label=\"sections\"><ul>\n" + nav +
          "</ul></nav>\n<main>\n" + body + "</main>\n" +
          (script.empty() ? "" : "<script>" + script + "</script>\n") + "</body>\n</html>\n";
+}
+
+MaybeError CheckPageName(const std::string& flag, const std::string& path) {
+  const std::string name = std::filesystem::path(path).filename().string();
+  if (path.empty() || name.find('.') == std::string::npos || EndsWith(name, ".html") ||
+      EndsWith(name, ".htm")) {
+    return std::nullopt;
+  }
+  return Error{flag + " is " + Quoted(path) +
+               ": the report is one page of HTML; let its name end in .html, and print it to PDF "
+               "from a browser"};
 }
 
 }  // namespace pushid

@@ -68,4 +68,7 @@ MaybeError WriteNumbers(const Report& report, const std::string& folder);
 
 std::string ToPage(const Report& report);
 
+// Error: the path (of --flag) names another kind of file than a page, as report.pdf does.
+MaybeError CheckPageName(const std::string& flag, const std::string& path);
+
 }  // namespace pushid

@@ -56,10 +56,10 @@ Chart HipChart(const RecordingView& view, int person, int axis, const std::strin
     chart.bands.push_back({shifted(band.lower90), shifted(band.upper90), kWideBandLook});
     chart.bands.push_back({shifted(band.lower50), shifted(band.upper50), kNarrowBandLook});
   }
-  // The line of a band is its median.
   if (!view.bands.people.empty()) {
-    chart.lines.push_back({line(MedianHip(view.bands)[person]), kPredictedLook, false});
-  } else if (view.run.prediction.status.ok) {
+    chart.lines.push_back({line(MedianHip(view.bands)[person]), kMedianLook, false});
+  }
+  if (run.prediction.status.ok) {
     chart.lines.push_back({line(run.prediction.hip[person]), kPredictedLook, false});
   }
   chart.lines.push_back({line(run.recording.hip[person]), kMeasuredLook, false});
@@ -83,17 +83,20 @@ Chart AngleChart(const RecordingView& view, int person, int row, const std::stri
     chart.bands.push_back({edge(band.lower90), edge(band.upper90), kWideBandLook});
     chart.bands.push_back({edge(band.lower50), edge(band.upper50), kNarrowBandLook});
   }
-  ChartLine measured{{}, kMeasuredLook, false}, predicted{{}, kPredictedLook, false};
+  ChartLine measured{{}, kMeasuredLook, false}, predicted{{}, kPredictedLook, false},
+      median{{}, kMedianLook, false};
   const int frames = run.recording.num_frames();
   const int valid = run.prediction.status.ok ? frames : run.prediction.status.frame;
   for (int t = 0; t < frames; ++t) {
     measured.points.emplace_back(run.Seconds(t), run.recording.states[person][t].q[row]);
     if (t >= valid) continue;
-    const double angle = view.bands.people.empty() ? run.prediction.path.At(t, person).q[row]
-                                                   : view.bands.people[person].median[t][row + 1];
-    predicted.points.emplace_back(run.Seconds(t), angle);
+    predicted.points.emplace_back(run.Seconds(t), run.prediction.path.At(t, person).q[row]);
+    if (view.bands.people.empty()) continue;
+    median.points.emplace_back(run.Seconds(t), view.bands.people[person].median[t][row + 1]);
   }
-  chart.lines = {predicted, measured};
+  if (!median.points.empty()) chart.lines.push_back(median);
+  chart.lines.push_back(predicted);
+  chart.lines.push_back(measured);
   return chart;
 }
 
@@ -176,12 +179,11 @@ TextTable ForceNumbers(const FormationRun& run) {
 // What this picture draws, and no more.
 std::vector<LegendEntry> LegendOf(const RecordingView& view) {
   std::vector<LegendEntry> legend = {{"measured", kMeasuredLook}};
+  if (view.run.prediction.status.ok) legend.push_back({"predicted", kPredictedLook});
   if (!view.bands.people.empty()) {
-    legend.push_back({"predicted (median)", kPredictedLook});
+    legend.push_back({"median of the bands", kMedianLook});
     legend.push_back({"50 %", kNarrowBandLook});
     legend.push_back({"90 %", kWideBandLook});
-  } else if (view.run.prediction.status.ok) {
-    legend.push_back({"predicted", kPredictedLook});
   }
   const auto& steps = view.run.recording.steps;
   if (std::any_of(steps.begin(), steps.end(), [](const auto& s) { return !s.steps.empty(); })) {
@@ -214,15 +216,15 @@ std::string FoldTitle(const RecordingView& view) {
   const PendulumRecording& r = view.run.recording;
   std::string title = r.id;
   if (view.run.prediction.status.ok) {
-    title += ": " + MetricsText(ScoreHip(r, view.run.prediction.hip), 2);
+    title += ": predicted " + MetricsText(ScoreHip(r, view.run.prediction.hip), 2);
     if (!view.bands.people.empty()) {
-      title += "; the median " + MetricsText(ScoreHip(r, MedianHip(view.bands)), 2);
+      title += "; median of the bands " + MetricsText(ScoreHip(r, MedianHip(view.bands)), 2);
     }
   }
   return title + (view.note.empty() ? "" : " (" + view.note + ")");
 }
 
-// How far the drawn medians lie from the rollouts at the estimate.
+// How far the medians of the bands lie from the rollouts at the estimate.
 std::string MedianText(const std::vector<RecordingView>& views) {
   double sum = 0.0, most = 0.0;
   int count = 0;
@@ -238,12 +240,11 @@ std::string MedianText(const std::vector<RecordingView>& views) {
     }
   }
   if (count == 0) return "";
-  return "The line is the median of the predictions that make up the bands. The rollout at the "
-         "estimate, which the forces, the moving figure and the first errors in the titles refer "
-         "to, lies " +
+  return "Predicted: the model at the estimated values, rolled out; the forces, the moving figure "
+         "and the errors called so refer to it. The median of the bands (dashed) lies " +
          Rounded(sum / count, 2) + " m from it on average, " + Rounded(most, 2) +
-         " m at most: the common part of other recordings' errors shifts the median, and a median "
-         "of paths does not satisfy the equations of motion.";
+         " m at most: the common part of other recordings' errors shifts it, and a median of paths "
+         "does not satisfy the equations of motion.";
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "ident/fit/interval_agreement.h"
 #include "ident/report/page/sections.h"
 #include "ident/report/report_tables.h"
+#include "ident/report/value_text.h"
 
 namespace pushid {
 namespace {
@@ -19,6 +20,14 @@ constexpr char kProfileLook[] = "fill:none;stroke-width:3;stroke:#009e73";
 constexpr char kBootstrapLook[] = "fill:none;stroke-width:3;stroke:#cc79a7";
 constexpr char kNominalLook[] = "fill:none;stroke-width:2;stroke:#d55e00";
 constexpr double kForestWidth = 900, kForestRow = 44, kForestLeft = 150, kForestRight = 820;
+
+// Ends that tell nothing go to the edge.
+Interval Shown(double value, Interval interval) {
+  const Interval known = interval;
+  interval.lower = ShownEnd(value, known.lower, known.upper);
+  interval.upper = ShownEnd(value, known.upper, known.lower);
+  return interval;
+}
 
 struct ForestRow {
   std::string name, unit;
@@ -158,6 +167,7 @@ ReportSection ParameterSection(const ReportSource& source) {
   ReportSection section;
   section.paragraphs = {IdentifiedText(source.fit), SharesNote(), HowSure(source.fit),
                         ConventionText(source.fit)};
+  section.Say(GainsText(source.fit));
   section.Show("fitted and held", EstimateTable(source.fit));
   section.Show("derived", DerivedTable(source.fit));
   const std::vector<Agreement> agreements = CompareIntervals(source.model);
@@ -173,11 +183,13 @@ ReportSection ParameterSection(const ReportSource& source) {
     const Agreement* agreement = Find(agreements, e.name);
     ForestRow row{e.name, e.unit, e.value, spec->nominal, true, {}};
     const Interval clustered{e.standard_error, e.lower95, e.upper95};
-    row.intervals.push_back({clustered, kClusteredLook});
+    row.intervals.push_back({Shown(e.value, clustered), kClusteredLook});
     std::vector<std::string> cells = {e.name, e.unit, DoubleText(e.value),
                                       DoubleText(spec->nominal)};
     const auto add = [&](const Interval* interval, const char* look) {
-      if (interval != nullptr && look != nullptr) row.intervals.push_back({*interval, look});
+      if (interval != nullptr && look != nullptr) {
+        row.intervals.push_back({Shown(e.value, *interval), look});
+      }
       cells.push_back(interval == nullptr ? "" : DoubleText(interval->lower));
       cells.push_back(interval == nullptr ? "" : DoubleText(interval->upper));
     };
@@ -223,7 +235,8 @@ ReportSection UnitSection(const ReportSource& source) {
     for (const auto& [name, e] : estimates) {
       const double shared = source.fit.parameters[source.fit.options.table.Find(name)->id];
       ForestRow row{unit, e.unit, e.value, shared, true, {}};
-      row.intervals.push_back({{e.standard_error, e.lower95, e.upper95}, kClusteredLook});
+      row.intervals.push_back(
+          {Shown(e.value, {e.standard_error, e.lower95, e.upper95}), kClusteredLook});
       by_parameter[name].push_back(row);
     }
   };

@@ -6,7 +6,6 @@
 #include "ident/figures/chart.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/predicted_steps.h"
-#include "ident/prediction/visual_check.h"
 #include "ident/report/page/sections.h"
 #include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
@@ -230,9 +229,7 @@ std::string TestText(const std::string& axis, const UniformityTest& test) {
 
 ReportSection VisualCheckSection(const ReportSource& source) {
   ReportSection section;
-  std::vector<PendulumRecording> recordings;
-  for (const RecordingView& view : source.views) recordings.push_back(view.run.recording);
-  const VisualCheck check = CheckVisually(ModelOf(source.fit), recordings);
+  const VisualCheck& check = source.check;
   if (check.strata.empty()) return section;
   section.paragraphs = {
       "Simulated recordings have their own recording effects and correlated errors; only the first "

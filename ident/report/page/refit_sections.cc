@@ -90,8 +90,9 @@ ReportSection HorizonCheckSection(const ReportSource& source) {
   if (!source.model.horizon_check || source.model.horizon_check->rows.empty()) return section;
   const RefitTable& check = *source.model.horizon_check;
   section.paragraphs = {
-      "The fit was repeated on only the first frames of every recording. A parameter with physical "
-      "meaning keeps its value; one that drifts compensates for something that the model omits.",
+      "The fit was repeated on only so many frames of every recording, counted from the start of "
+      "its push. A parameter with physical meaning keeps its value; one that drifts compensates "
+      "for something that the model omits.",
       DriftText(check)};
   section.Say(HorizonClaims(check));
   section.Show("values +- standard errors", HorizonTable(check));

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "ident/prediction/visual_check.h"
 #include "ident/report/page/build_report.h"
 
 namespace pushid {
@@ -14,6 +15,7 @@ struct ReportSource {
   const FitResult& fit = model.fit;
   std::vector<RecordingView> views = {};  // of the recordings that are shown; may be none
   PropagationSummary propagation = {};    // of those
+  VisualCheck check = {};                 // with those
 };
 
 using RenderSection = ReportSection(const ReportSource& source);

@@ -14,6 +14,7 @@
 #include "ident/report/report_tables.h"
 #include "ident/report/report_text.h"
 #include "ident/report/verdict_text.h"
+#include "ident/report/value_text.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/validation/scores_report.h"
 
@@ -22,11 +23,17 @@ namespace {
 
 constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has all
 
-// "mu = 31.3 N s/m (20 to 42)"; the interval where there is one.
+// "mu = 31.3 N s/m (20 to 42)"; the interval where there is one that tells something.
 std::string ValueText(const Estimate& e) {
   std::string text = e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
   if (e.lower95 < e.upper95) {
-    text += " (" + Rounded(e.lower95, 3) + " to " + Rounded(e.upper95, 3) + ")";
+    const double from = ShownEnd(e.value, e.lower95, e.upper95);
+    const double to = ShownEnd(e.value, e.upper95, e.lower95);
+    text += std::isfinite(from) && std::isfinite(to)
+                ? " (" + Rounded(from, 3) + " to " + Rounded(to, 3) + ")"
+            : std::isfinite(from) ? " (above " + Rounded(from, 3) + ")"
+            : std::isfinite(to)   ? " (below " + Rounded(to, 3) + ")"
+                                  : " (undetermined)";
   }
   return text;
 }
@@ -100,6 +107,22 @@ std::string Travels(const PropagationSummary& p) {
          Rounded(p.movers, 4) + " people who moved.";
 }
 
+constexpr double kBadFit = 0.01;  // a p-value that is told
+
+// Tests of the model that it fails.
+std::string DoesNotFit(const ReportSource& source) {
+  std::string text;
+  const auto add = [&text](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
+  const std::pair<const char*, const UniformityTest*> axes[] = {{"along", &source.check.along},
+                                                                {"across", &source.check.across}};
+  for (const auto& [axis, test] : axes) {
+    if (test->recordings == 0 || test->p >= kBadFit) continue;
+    add(std::string(axis) + " the push, the recorded hips are not distributed as predicted (p = " +
+        Rounded(test->p, 1) + ")");
+  }
+  return text.empty() ? "" : "What does not fit: " + text + ".";
+}
+
 std::string Next(const FittedModel& model) {
   if (model.advice.empty()) return "What to do next: predict a push that was not fitted.";
   return "What to do next: " + model.advice.front().sentence;
@@ -120,7 +143,10 @@ TextTable Legend(const FitResult& result) {
 
 ReportSection LeadSection(const ReportSource& source) {
   ReportSection section;
-  section.paragraphs = {ModelVerdictText(source.fit.verdict), Known(source.fit) + " In brackets: 95 % intervals.", NotKnown(source.fit)};
+  section.paragraphs = {ModelVerdictText(source.fit.verdict),
+                        Known(source.fit) + " In brackets: 95 % intervals.", NotKnown(source.fit)};
+  section.Say(GainsText(source.fit));
+  section.Say(DoesNotFit(source));
   section.Say(Travels(source.propagation));
   section.Say(Next(source.model));
   section.Show("the parameters that were fitted", Legend(source.fit));

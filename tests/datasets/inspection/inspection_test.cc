@@ -221,6 +221,12 @@ TEST_F(InspectionTest, OtherFiles) {
   EXPECT_TRUE(Contains(Of("g.mot"), "ground_force_vy peak 700 N"));
   ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest_));
   EXPECT_TRUE(Contains(Of("manifest.json"), "1, 1 can be read, 1 have a push"));
+  manifest_.recordings[0].id = "b";
+  ASSERT_FALSE(WriteManifest(Path("other.json"), manifest_));
+  const Result<Inspection> both = Inspect(Path("manifest.json") + "," + Path("other.json"));
+  ASSERT_TRUE(both.ok()) << both.error().ToString();
+  EXPECT_TRUE(Contains(InspectionText(both.value()), "other.json: manifests\n"));
+  EXPECT_TRUE(Contains(InspectionText(both.value()), "2, 2 can be read, 2 have a push"));
   EXPECT_TRUE(Contains(Of("none.bvh"), "there is no such file"));
   EXPECT_TRUE(Contains(Of(""), "this is a folder"));
   WriteText("x.dat", "hello");

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "tests/test_support.h"
@@ -41,6 +42,36 @@ TEST(RecordingFromTracks, GapsAreFilledAndLongOnesDoNotCount) {
   // The same tracks have the same hash, others another.
   EXPECT_EQ(RecordingFromTracks(tracks).value().content_hash, made.value().content_hash);
   EXPECT_NE(RecordingFromTracks(Standing(60)).value().content_hash, made.value().content_hash);
+}
+
+// Every third frame without a hip: interpolated frames count by the two thirds that were seen.
+TEST(RecordingFromTracks, ManyInterpolatedFramesCountLess) {
+  TrackedRecording tracks = Standing(60);
+  const Eigen::Vector3d hidden =
+      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+  for (int t = 1; t < 60; t += 10) tracks.people[0].hip[t] = hidden;
+  std::vector<std::string> warnings;
+  Result<Recording> made = RecordingFromTracks(tracks, {}, &warnings);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  EXPECT_TRUE(made.value().people[0].weight.empty()) << "six of 60 are few";
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(Contains(warnings[0], "recording 'trial': anna has 6 gaps in hip and ankles"));
+  EXPECT_FALSE(Contains(warnings[0], "count less"));
+
+  for (int t = 1; t < 59; t += 3) tracks.people[0].hip[t] = hidden;
+  tracks.people[0].hip[11] = tracks.people[0].hip[21] = hidden;
+  warnings.clear();
+  made = RecordingFromTracks(tracks, {}, &warnings);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  const RecordedPerson& person = made.value().people[0];
+  ASSERT_EQ(person.weight.size(), 60u);
+  const auto interpolated = std::count_if(person.weight.begin(), person.weight.end(),
+                                          [](double weight) { return weight < 1.0; });
+  EXPECT_EQ(person.weight[0], 1.0);
+  EXPECT_DOUBLE_EQ(person.weight[4], 1.0 - static_cast<double>(interpolated) / 60.0);
+  EXPECT_NEAR(person.hip[4].x(), 0.004, 1e-9);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(Contains(warnings[0], "these count less"));
 }
 
 TEST(RecordingFromTracks, WhatIsWrongIsTold) {

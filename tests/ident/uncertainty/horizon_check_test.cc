@@ -37,7 +37,8 @@ TEST(Drifts, AreJudgedByTheLargerError) {
   EXPECT_EQ(drifts[0].parameter, 0u);
   EXPECT_EQ(drifts[0].row, 0u);
   EXPECT_DOUBLE_EQ(drifts[0].in_errors, 3.0);
-  EXPECT_TRUE(Contains(DriftText(table), "mu drifts: 16 +- 2 in the first 8 frames, 10 +- 1"));
+  EXPECT_TRUE(
+      Contains(DriftText(table), "mu drifts: 16 +- 2 in the first 8 frames of the push, 10 +- 1"));
   EXPECT_FALSE(Contains(DriftText(table), "a_x"));
   EXPECT_TRUE(Contains(HorizonTable(table).ToString(), "-"));
 }
@@ -87,6 +88,43 @@ TEST(HorizonCheck, TheTruthDoesNotDrift) {
   later.rows.erase(later.rows.begin(), later.rows.begin() + 3);
   for (const Drift& drift : Drifts(later)) {
     EXPECT_LT(drift.in_errors, 4.0) << check.parameters[drift.parameter];
+  }
+}
+
+// The same recordings, with people who stand for `frames` frames before they are pushed.
+std::vector<PendulumRecording> Waiting(std::vector<PendulumRecording> recordings, int frames) {
+  for (PendulumRecording& r : recordings) {
+    for (int n = 0; n < r.num_people(); ++n) {
+      r.states[n].insert(r.states[n].begin(), frames, r.states[n][0]);
+      r.rod_length[n].insert(r.rod_length[n].begin(), frames, r.rod_length[n][0]);
+      r.hip[n].insert(r.hip[n].begin(), frames, r.hip[n][0]);
+    }
+    for (ScenePush& push : r.scene.pushes) push.start_frame += frames;
+  }
+  return recordings;
+}
+
+// Of frames before the push nothing is learned: they move neither stages nor horizons.
+TEST(HorizonCheck, HorizonsCountFromThePush) {
+  SyntheticOptions study = TinyStudy();
+  study.push_kind = PushKind::kExternal;
+  study.joint_noise_m = 0.0005;
+  const std::vector<PendulumRecording> at_once = MakePendulums(study);
+  const std::vector<PendulumRecording> later = Waiting(at_once, 50);
+  EXPECT_EQ(PushFrame(later[0]), PushFrame(at_once[0]) + 50);
+  FitOptions options = UnbiasedFit(study), same = options;
+  ASSERT_FALSE(PrepareFit(at_once, &options));
+  ASSERT_FALSE(PrepareFit(later, &same));
+  const FitProblem problem(later, same);
+  EXPECT_EQ(problem.Frames(0, 8), PushFrame(later[0]) + 8);
+  EXPECT_EQ(problem.Frames(0, 0), 0) << "all";
+  const FittedModel one = Checked(at_once, options), other = Checked(later, same);
+  ASSERT_EQ(one.horizon_check->rows.size(), other.horizon_check->rows.size());
+  for (size_t r = 0; r < one.horizon_check->rows.size(); ++r) {
+    const RefitRow &a = one.horizon_check->rows[r], &b = other.horizon_check->rows[r];
+    if (a.frames == kOneStep) continue;  // its noise is of all steps
+    ASSERT_EQ(a.value.size(), b.value.size()) << a.name;
+    EXPECT_NEAR(b.value[0], a.value[0], 0.01 * a.standard_error[0]) << a.name;
   }
 }
 

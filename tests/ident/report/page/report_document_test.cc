@@ -51,6 +51,15 @@ TEST(ReportDocument, TextHasTheSameContent) {
   EXPECT_EQ(text.find("Nothing"), std::string::npos);
 }
 
+TEST(ReportDocument, APageIsNoPdf) {
+  for (const char* page : {"a.html", "A.B/report.htm", "-", "report", ""}) {
+    EXPECT_FALSE(CheckPageName("--html_out", page)) << page;
+  }
+  const MaybeError pdf = CheckPageName("--html_out", "out/report.pdf");
+  ASSERT_TRUE(pdf);
+  EXPECT_TRUE(Contains(pdf->message, "--html_out is 'out/report.pdf'"));
+}
+
 class ReportNumbers : public TempDirTest {};
 
 TEST_F(ReportNumbers, StayInTheirFolderAndQuote) {

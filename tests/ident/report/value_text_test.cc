@@ -1,0 +1,40 @@
+// Intervals and gains as they are said.
+#include "ident/report/value_text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+TEST(ValueText, IntervalsSayWhatTheyTell) {
+  EXPECT_EQ(IntervalText(31.0, -17.3, 80.3), "[-17.3, 80.3]");
+  EXPECT_EQ(IntervalText(31.0, 0.07, 121.0), "[0.07, 121]");
+  EXPECT_EQ(IntervalText(2340.0, 1800.0, 8.3e13), "[1800, open]");
+  EXPECT_EQ(IntervalText(2340.0, 1e-8, 3000.0), "[open, 3000]");
+  EXPECT_EQ(IntervalText(2340.0, 6.6e-8, 8.3e13), "undetermined");
+  EXPECT_EQ(IntervalText(-10.0, -3e9, 3e9), "undetermined");
+  EXPECT_EQ(IntervalText(-10.0, -20.0, INFINITY), "[-20, open]");
+  EXPECT_EQ(IntervalText(0.0, -6.0, 6.0), "[-6, 6]");
+  EXPECT_EQ(IntervalText(0.001, -0.5, 0.5), "[-0.5, 0.5]");
+}
+
+TEST(ValueText, GainsAreSaidInWords) {
+  FitResult result;
+  EXPECT_EQ(GainsText(result), "");
+  result.derived = {{"c_x", "N s/m", 34.0, 2.0, 30.0, 38.0},
+                    {"c_x/M", "1/s", 0.4, 0.02, 0.36, 0.44},
+                    {"Kp_theta/(m g l)", "1", 1.6, 0.1, 1.4, 1.8},
+                    {"Kp_phi/(m g l)", "1", 2.0, 0.0, 2.0, 2.0},
+                    {"Kd_theta/(m l^2)", "1/s", 0.5, 100.0, 1e-9, 1e9}};
+  EXPECT_EQ(GainsText(result),
+            "Ankle stiffness 1.6 times m g l (1 is just enough to hold a pendulum upright), to the "
+            "side 2 times m g l (held), damping of the lean with a time constant of 2 s "
+            "(undetermined), friction of the feet with a time constant of 2.5 s.");
+}
+
+}  // namespace
+}  // namespace pushid
