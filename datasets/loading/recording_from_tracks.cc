@@ -7,7 +7,6 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
-#include "datasets/loading/load_recordings.h"  // RecordingWarning
 #include "datasets/loading/motion_preparation.h"
 #include "datasets/manifest/manifest.h"
 
@@ -75,8 +74,7 @@ MaybeError CheckPush(const TrackedRecording& tracks, const Push& push, int frame
 }  // namespace
 
 Result<Recording> RecordingFromTracks(TrackedRecording tracks,
-                                      const PreparationOptions& preparation,
-                                      Warnings* warnings) {
+                                      const PreparationOptions& preparation, Warnings* warnings) {
   const std::string rate = FrameRateProblem(tracks.fps);
   if (!rate.empty()) return Of(tracks.id, "fps " + rate);
   if (tracks.people.empty()) return Of(tracks.id, "it contains no people");
@@ -98,7 +96,8 @@ Result<Recording> RecordingFromTracks(TrackedRecording tracks,
     if (!person.ok()) return person.error();
     const std::string gaps = filled.Warning(preparation.max_gap_s);
     if (!gaps.empty() && warnings != nullptr) {
-      warnings->push_back(RecordingWarning(tracks.id, who + " " + gaps));
+      warnings->emplace_back("recording " + Quoted(tracks.id) + ": " + who + " " + gaps, tracks.id,
+                             "a person " + gaps);
     }
     recording.people.push_back(std::move(person.value()));
     if (recording.people.back().hip.size() != recording.people[0].hip.size()) {

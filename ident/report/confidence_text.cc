@@ -12,8 +12,8 @@
 #include "ident/parameters/option_names.h"
 #include "ident/problem/statistics.h"
 #include "ident/report/fit_command.h"
-#include "ident/report/verdict_text.h"
 #include "ident/report/value_text.h"
+#include "ident/report/verdict_text.h"
 
 namespace pushid {
 namespace {

@@ -43,10 +43,10 @@ std::string PullText(const Estimate& e) {
 }
 
 TextTable EstimateTable(const FitResult& result) {
-  TextTable table(
-      {"parameter", "value", "std error", "95 % interval", kTotalColumn, kTheseColumns[0],
-       kTheseColumns[1], "unit", "status", "data/prior/settling, %", "prior shift, std errors", "prior"},
-      {true, false, false, true, true, false, true, true, true, true, false, true});
+  TextTable table({"parameter", "value", "std error", "95 % interval", kTotalColumn,
+                   kTheseColumns[0], kTheseColumns[1], "unit", "status", "data/prior/settling, %",
+                   "prior shift, std errors", "prior"},
+                  {true, false, false, true, true, false, true, true, true, true, false, true});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed) {
@@ -61,11 +61,12 @@ TextTable EstimateTable(const FitResult& result) {
     const bool no_shares = unknown || e.status == EstimateStatus::kAtBound;
     const bool no_error = no_shares && e.standard_error <= 0.0;
     const std::string error = no_error ? "-" : Rounded(e.standard_error, 3);
-    table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
-               unknown || no_error ? "-" : IntervalText(e.value, e.lower95, e.upper95),
-               e.total && !no_shares ? IntervalText(e.value, e.total->lower95, e.total->upper95) : "",
-               TheirError(e.these), TheirInterval(e.value, e.these), e.unit, NameOf(e.status),
-               no_shares ? "-" : SharesText(e.shares), no_shares ? "-" : PullText(e), prior});
+    table.Add(
+        {e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
+         unknown || no_error ? "-" : IntervalText(e.value, e.lower95, e.upper95),
+         e.total && !no_shares ? IntervalText(e.value, e.total->lower95, e.total->upper95) : "",
+         TheirError(e.these), TheirInterval(e.value, e.these), e.unit, NameOf(e.status),
+         no_shares ? "-" : SharesText(e.shares), no_shares ? "-" : PullText(e), prior});
   }
   table.DropIfEmpty({kTotalColumn});
   table.DropIfEmpty(kTheseColumns);

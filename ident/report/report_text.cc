@@ -14,8 +14,8 @@
 #include "ident/report/confidence_text.h"
 #include "ident/report/refits_text.h"
 #include "ident/report/report_tables.h"
-#include "ident/report/verdict_text.h"
 #include "ident/report/value_text.h"
+#include "ident/report/verdict_text.h"
 #include "ident/validation/steps_report.h"
 
 namespace pushid {

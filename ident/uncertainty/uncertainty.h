@@ -94,8 +94,8 @@ struct Combination {
   std::string name;  // "mu + Kp_x"
   std::string unit;
   double value = 0.0, standard_error = 0.0, lower95 = 0.0, upper95 = 0.0;
-  double quantile = 0.0;          // half-width over standard error
-  std::optional<Interval> these;  // as that of Estimate
+  double quantile = 0.0;               // half-width over standard error
+  std::optional<Interval> these = {};  // as that of Estimate
 };
 
 struct NullDirection {

@@ -174,8 +174,8 @@ class Roller {
   // Derivatives of the forces that act.
   void Linearize(int t, Lanes acts, Lanes slides) {
     constexpr int kOwn = kKpX - kMu;  // of friction's own parameters
-    Eigen::Matrix<Lanes, 2, 2> by_velocity;
-    Eigen::Matrix<Lanes, 2, kOwn> by_friction;
+    Eigen::Matrix<Lanes, 2, 2> by_velocity = Eigen::Matrix<Lanes, 2, 2>::Zero();
+    Eigen::Matrix<Lanes, 2, kOwn> by_friction = Eigen::Matrix<Lanes, 2, kOwn>::Zero();
     if (in_.friction_alone) {
       self_.FrictionJacobian(p_, state_.qd, &jacobian_);
       by_velocity = (slides - acts) * jacobian_.by_state.block<2, 2>(0, 4);

@@ -6,7 +6,7 @@
 namespace pushid {
 namespace {
 
-ParameterSet<double> StandingParameters() {
+ParameterSet<double> UprightParameters() {
   ParameterSet<double> p{};
   p[kMu] = 40.0;
   p[kKpTheta] = 1700.0;
@@ -53,7 +53,7 @@ TEST(Rollout, StandingPersonStaysAtRest) {
   const Scene scene = PeopleScene(3);
   ModelOptions options;
   options.posture = Posture::kInitial;
-  const auto path = Roll(scene, options, std::vector(3, StandingParameters()), 300);
+  const auto path = Roll(scene, options, std::vector(3, UprightParameters()), 300);
   for (int n = 0; n < 3; ++n) {
     ExpectClose(path.At(299, n).q, scene.people[n].start.q, 1e-12);
     EXPECT_LT(path.At(299, n).qd.norm(), 1e-12);
@@ -76,7 +76,7 @@ TEST_P(PushSemantics, ForcesDuringAndAfterThePush) {
       MakeScenePush(1, 5, expected.kind, ConstantForce(4, {120.0, -30.0, 100.0, 20.0}))};
   ModelOptions options;
   options.push = expected.use;
-  const ParameterSet<double> p = StandingParameters();
+  const ParameterSet<double> p = UprightParameters();
   const PosedPendulum<double> state = RandomState(&random, 0.3);
   const std::vector<SelfForce> self = SelfForces(scene, options);
   const Vector4<double> push(120.0, -30.0, 100.0, 20.0), none = Vector4<double>::Zero();
@@ -118,7 +118,7 @@ TEST(Rollout, LaterNetPushReplacesTheTailOfAnEarlierOne) {
   Scene scene = PeopleScene(1);
   scene.pushes = {MakeScenePush(0, 0, PushKind::kNet, ConstantForce(4, {120, 0, 100, 0})),
                   MakeScenePush(0, 10, PushKind::kNet, ConstantForce(4, {50, 10, 0, 0}))};
-  const ParameterSet<double> p = StandingParameters();
+  const ParameterSet<double> p = UprightParameters();
   const PosedPendulum<double> state = scene.people[0].start;
   ModelOptions options;
   const std::vector<SelfForce> self = SelfForces(scene, options);
@@ -152,7 +152,7 @@ TEST(Rollout, OverlappingPushesAddUp) {
 // A push that starts late finds a person who has stood still until then, and moves them as an early
 // one would.
 TEST(Rollout, LatePushIsAnEarlyOneLater) {
-  const std::vector<ParameterSet<double>> p(1, StandingParameters());
+  const std::vector<ParameterSet<double>> p(1, UprightParameters());
   Scene early = PeopleScene(1), late = PeopleScene(1);
   const auto force = ConstantForce(8, {60.0, 15.0, 50.0, -10.0});
   early.pushes = {MakeScenePush(0, 0, PushKind::kExternal, force)};
@@ -169,7 +169,7 @@ TEST(Rollout, PermutingPeopleChangesNothing) {
   constexpr int kPeople = 3, kFrames = 90;
   const int order[kPeople] = {2, 0, 1};  // place in the permuted scene -> person
   Scene scene = PeopleScene(kPeople), permuted = scene;
-  std::vector<ParameterSet<double>> p(kPeople, StandingParameters()), permuted_p = p;
+  std::vector<ParameterSet<double>> p(kPeople, UprightParameters()), permuted_p = p;
   for (int n = 0; n < kPeople; ++n) {
     p[n][kMu] += 10.0 * n;
     scene.pushes.push_back(
@@ -218,7 +218,7 @@ TEST(Rollout, InfiniteStateIsNamed) {
   scene.pushes = {MakeScenePush(0, 7, PushKind::kExternal, ConstantForce(1, {1e308, 0, 0, 0}))};
   scene.people[0].start.qd = {1e307, 0, 0, 0};
   ModelOptions options;
-  std::vector<ParameterSet<double>> p(1, StandingParameters());
+  std::vector<ParameterSet<double>> p(1, UprightParameters());
   p[0][kMu] = -1e300;
   RolloutStatus status;
   Roll(scene, options, p, 20, &status);
@@ -232,7 +232,7 @@ TEST(Rollout, MatchesStepsByHand) {
   Scene scene = SettlingScene(80.0, 25.0);
   ModelOptions options;
   options.cart_derivative = CartDerivative::kBackward;
-  std::vector<ParameterSet<double>> p(1, StandingParameters());
+  std::vector<ParameterSet<double>> p(1, UprightParameters());
   p[0][kKdX] = 4.0;
   const auto path = Roll(scene, options, p, 40);
   PendulumState<double> state = scene.people[0].start, before = state;

@@ -217,8 +217,8 @@ inline std::vector<ModelOptions> EveryModelOptions() {
                   std::pair(Stance::kSlide, CartDerivative::kBackward),
                   std::pair(Stance::kThreshold, CartDerivative::kNone)})
               for (const InteractionTerms& interaction : SomeInteractions())
-                all.push_back({posture, scaling, friction, use, tail, stance, derivative,
-                               interaction, nullptr, nullptr});
+                all.push_back({posture, scaling, Directions::kAxes, friction, use, tail, stance,
+                               derivative, interaction, nullptr, nullptr});
   return all;
 }
 

@@ -89,19 +89,26 @@ def draw_pushes(study, random, person):
     return made
 
 
+def draw_people(study, random):
+    """The truth, and (person, pushes) of everybody; gains with which nearly everybody falls are drawn anew."""
+    while True:
+        truth, pushed = truth_of(study, random), []
+        for _ in range(20 * study.subjects):
+            person = draw_person(study, random, truth)
+            try:
+                pushed.append((person, draw_pushes(study, random, person)))
+            except FloatingPointError:
+                continue
+            if len(pushed) == study.subjects:
+                return truth, pushed
+
+
 def write(folder, study):
     """The files of a study; its truth."""
     random = np.random.default_rng(study.seed)
-    truth, recordings = truth_of(study, random), []
-    turn = people.turned(study.turn)
-    for s in range(study.subjects):
-        while True:
-            person = draw_person(study, random, truth)
-            try:
-                pushes = draw_pushes(study, random, person)
-                break
-            except FloatingPointError:
-                continue
+    truth, pushed = draw_people(study, random)
+    recordings, turn = [], people.turned(study.turn)
+    for s, (person, pushes) in enumerate(pushed):
         for k, (direction, duration, force, (times, hip, feet)) in enumerate(pushes):
             name, hip, feet = f"s{s}_{k}", hip @ turn.T, feet @ turn[:2, :2].T
             people.write_points(f"{folder}/{name}.csv", times / study.rate, people.points_of(hip, feet, turn), study.noise, random,

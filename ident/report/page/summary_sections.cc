@@ -13,8 +13,8 @@
 #include "ident/report/page/sections.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/report_text.h"
-#include "ident/report/verdict_text.h"
 #include "ident/report/value_text.h"
+#include "ident/report/verdict_text.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/validation/scores_report.h"
 
@@ -27,8 +27,9 @@ constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has a
 std::string ValueText(const Estimate& e) {
   std::string text = e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
   if (e.lower95 < e.upper95) {
-    const double from = ShownEnd(e.value, e.lower95, e.upper95);
-    const double to = ShownEnd(e.value, e.upper95, e.lower95);
+    const double lower = e.total ? e.total->lower95 : e.lower95;
+    const double upper = e.total ? e.total->upper95 : e.upper95;
+    const double from = ShownEnd(e.value, lower, upper), to = ShownEnd(e.value, upper, lower);
     text += std::isfinite(from) && std::isfinite(to)
                 ? " (" + Rounded(from, 3) + " to " + Rounded(to, 3) + ")"
             : std::isfinite(from) ? " (above " + Rounded(from, 3) + ")"
@@ -62,6 +63,13 @@ std::string Known(const FitResult& result) {
          (known.empty() ? "these recordings alone identify no parameter"
                         : "these recordings identify " + Listed(known)) +
          "; " + VerdictSentence(verdict, result.behaviour) + ".";
+}
+
+// Which intervals ValueText shows.
+std::string Brackets(const FitResult& result) {
+  const bool total = std::any_of(result.estimates.begin(), result.estimates.end(),
+                                 [](const Estimate& e) { return e.total.has_value(); });
+  return total ? "95 % intervals, with the errors of what is taken as known" : "95 % intervals";
 }
 
 std::string NotKnown(const FitResult& result) {
@@ -144,7 +152,8 @@ TextTable Legend(const FitResult& result) {
 ReportSection LeadSection(const ReportSource& source) {
   ReportSection section;
   section.paragraphs = {ModelVerdictText(source.fit.verdict),
-                        Known(source.fit) + " In brackets: 95 % intervals.", NotKnown(source.fit)};
+                        Known(source.fit) + " In brackets: " + Brackets(source.fit) + ".",
+                        NotKnown(source.fit)};
   section.Say(GainsText(source.fit));
   section.Say(DoesNotFit(source));
   section.Say(Travels(source.propagation));

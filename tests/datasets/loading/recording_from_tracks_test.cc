@@ -50,13 +50,13 @@ TEST(RecordingFromTracks, ManyInterpolatedFramesCountLess) {
   const Eigen::Vector3d hidden =
       Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   for (int t = 1; t < 60; t += 10) tracks.people[0].hip[t] = hidden;
-  std::vector<std::string> warnings;
+  Warnings warnings;
   Result<Recording> made = RecordingFromTracks(tracks, {}, &warnings);
   ASSERT_TRUE(made.ok()) << made.error().ToString();
   EXPECT_TRUE(made.value().people[0].weight.empty()) << "six of 60 are few";
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_TRUE(Contains(warnings[0], "recording 'trial': anna has 6 gaps in hip and ankles"));
-  EXPECT_FALSE(Contains(warnings[0], "count less"));
+  EXPECT_TRUE(Contains(warnings[0].text, "recording 'trial': anna has 6 gaps in hip and ankles"));
+  EXPECT_FALSE(Contains(warnings[0].text, "count less"));
 
   for (int t = 1; t < 59; t += 3) tracks.people[0].hip[t] = hidden;
   tracks.people[0].hip[11] = tracks.people[0].hip[21] = hidden;
@@ -71,7 +71,7 @@ TEST(RecordingFromTracks, ManyInterpolatedFramesCountLess) {
   EXPECT_DOUBLE_EQ(person.weight[4], 1.0 - static_cast<double>(interpolated) / 60.0);
   EXPECT_NEAR(person.hip[4].x(), 0.004, 1e-9);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_TRUE(Contains(warnings[0], "these count less"));
+  EXPECT_TRUE(Contains(warnings[0].text, "these count less"));
 }
 
 TEST(RecordingFromTracks, WhatIsWrongIsTold) {

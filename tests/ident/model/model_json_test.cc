@@ -72,7 +72,8 @@ FittedModel JudgedModel() {
   model.bootstrap->drawn_from = 4;
   model.bootstrap->people_shared = true;
   Diagnostics& d = model.fit.diagnostics;
-  d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {"masses look like grams"}};
+  d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {}};
+  d.start.findings = {{FindingKind::kMass, "one", "s1", 85000.0}};
   d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be separated"});
   d.recordings = {{"one", 97.3, 0.2, 0.9, 31.7, 1e-7, {{3, 0, 2.3, 0.1}}}};
   d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.1, 0.0}};
@@ -155,7 +156,6 @@ TEST(ResultJson, WarningsKeepTheirRecordings) {
     const std::string what = "the mass is 7; is mass_kg in kg?";
     model.fit.warnings.emplace_back(std::string("recording ") + id + ": " + what, id, what);
   }
-  model.fit.diagnostics.start.unit_warnings = model.fit.warnings;
   const Json json = ToJson(model, kRun);
   EXPECT_EQ(json["warnings"][2], "recording b: the mass is 7; is mass_kg in kg?");
   EXPECT_EQ(json["warnings_of_recordings"][1]["recording"], "b");
@@ -164,7 +164,6 @@ TEST(ResultJson, WarningsKeepTheirRecordings) {
   const std::vector<std::string> once = {
       "mu is at its bound", "in 2 recordings (a, b): the mass is 7; is mass_kg in kg?"};
   EXPECT_EQ(GroupedWarnings(read.value().fit.warnings), once);
-  EXPECT_EQ(GroupedWarnings(read.value().fit.diagnostics.start.unit_warnings), once);
   Json damaged = json;
   damaged["warnings_of_recordings"][1]["warning"] = 3;
   EXPECT_FALSE(FittedModelFromJson(damaged, "some.json").ok());
