@@ -124,10 +124,13 @@ constexpr EnumNames<Posture, 2> Names(Posture) {
 // In which axes a fit sees people, and whether they answer alike in all directions.
 enum class Directions {
   kIsotropic,  // along the push; what acts sideways is what acts forwards
+  kBody,       // along what the pushed person faces; sideways parameters are their own
   kAxes        // those of the file; sideways parameters are their own
 };
-constexpr EnumNames<Directions, 2> Names(Directions) {
-  return {{{"isotropic", Directions::kIsotropic}, {"axes", Directions::kAxes}}};
+constexpr EnumNames<Directions, 3> Names(Directions) {
+  return {{{"isotropic", Directions::kIsotropic},
+           {"body", Directions::kBody},
+           {"axes", Directions::kAxes}}};
 }
 
 // How the gains, quoted for the reference person, carry over to another body.

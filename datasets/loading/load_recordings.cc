@@ -75,6 +75,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   recording.pushed_person = entry.pushed_person;
   recording.push_kind = entry.push_kind;
   recording.initial_velocity = entry.initial_velocity;
+  recording.stated_errors = entry.stated_errors;
 
   for (const std::string& misspelt : MisspeltKeys(entry)) {
     if (warnings == nullptr) continue;

@@ -32,6 +32,19 @@ std::string HashOf(const PendulumRecording& recording, const std::string& files)
   return hash.Hex();
 }
 
+// Where the line between the ankles points forwards, over the frames before the push; 0 where the
+// ankles are one.
+double FacingBeforePush(const Recording& recording) {
+  const RecordedPerson& person = recording.people[recording.pushed_person];
+  int frames = static_cast<int>(person.hip.size());
+  for (const Push& push : recording.pushes) frames = std::min(frames, push.start_frame);
+  Eigen::Vector3d to_the_left = Eigen::Vector3d::Zero();
+  for (int t = 0; t < std::max(1, frames); ++t) {
+    to_the_left += person.left_ankle[t] - person.right_ankle[t];
+  }
+  return to_the_left.head<2>().norm() > 0.0 ? std::atan2(-to_the_left.x(), to_the_left.y()) : 0.0;
+}
+
 }  // namespace
 
 PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping) {
@@ -40,7 +53,9 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
   result.labels = recording.labels;
   result.pushed_person = recording.pushed_person;
   result.initial_velocity = recording.initial_velocity;
+  result.stated_errors = recording.stated_errors;
   result.scene.dt = 1.0 / recording.fps;
+  result.facing = FacingBeforePush(recording);
 
   for (const RecordedPerson& person : recording.people) {
     std::vector<PendulumState<double>> states(person.hip.size());
@@ -100,6 +115,7 @@ Eigen::Vector2d PushDirection(const PendulumRecording& recording) {
 
 PendulumRecording Turned(PendulumRecording recording, double angle) {
   const TurnedAxes axes(angle);
+  recording.facing -= angle;
   for (ScenePush& push : recording.scene.pushes) {
     const std::vector<PendulumState<double>>& states = recording.states[push.person];
     for (size_t i = 0; i < push.force.size(); ++i) {

@@ -15,6 +15,7 @@ struct PendulumRecording {
   std::string id;
   RecordingLabels labels;
   int pushed_person = 0;
+  double facing = 0.0;  // of the pushed person before the push, rad from x; by the ankles
   InitialVelocity initial_velocity = InitialVelocity::kZero;
   std::vector<std::string> subject_ids;  // one per person
   Scene scene;
@@ -29,6 +30,7 @@ struct PendulumRecording {
   // One per person, from the feet; empty where a recording was not made from one.
   std::vector<PersonSteps> steps;
   std::vector<FootSupport> foot_support;
+  StatedErrors stated_errors;
   std::string content_hash;  // of the files and of what the manifest makes of them
 
   int num_frames() const { return hip.empty() ? 0 : static_cast<int>(hip[0].size()); }

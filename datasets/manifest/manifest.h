@@ -80,6 +80,7 @@ struct ManifestRecording {
   std::optional<double> length_scale;  // m in one of the file's lengths, instead of a unit
   std::vector<ManifestPush> pushes;
   InitialVelocity initial_velocity = InitialVelocity::kZero;
+  StatedErrors stated_errors;
   std::optional<int> frames;     // checked against the file when given
   int first_frame = 0;           // of the file, from 0, that becomes frame 0
   std::optional<int> end_frame;  // of the file, behind the last one used
@@ -99,6 +100,7 @@ struct Manifest {
   // For recordings that do not give their own.
   std::optional<LengthUnit> length_unit;
   std::optional<double> length_scale;
+  StatedErrors stated_errors;
   std::vector<ManifestRecording> recordings;
   KeptJson json;  // the top level, without `recordings`
 };

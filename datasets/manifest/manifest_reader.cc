@@ -107,8 +107,9 @@ void AddLabels(const Json& object, const JsonFields& fields, RecordingLabels* la
   }
 }
 
-// of: the object's.
-ManifestRecording ReadRecording(const JsonDocument& document, const Json& object, JsonFields* of) {
+// of: the object's. stated: the errors that the manifest states for all.
+ManifestRecording ReadRecording(const JsonDocument& document, const Json& object,
+                                const StatedErrors& stated, JsonFields* of) {
   JsonFields& fields = *of;
   ManifestRecording recording;
   recording.id = fields.Text("id", "text that names the recording");
@@ -150,6 +151,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   recording.length_scale = ReadLengthScale(&fields);
   ReadPushes(document, &fields, &recording);
   recording.initial_velocity = fields.Choice("initial_velocity", InitialVelocity::kZero);
+  recording.stated_errors = ReadStatedErrors(document, &fields, stated);
   if (fields.Has("frames")) {
     recording.frames = fields.Whole("frames", "the number of frames", 0, kAnyFrame);
   }
@@ -173,7 +175,7 @@ const std::vector<std::string>& ManifestKeys() {
     JsonDocument empty;
     empty.content = Json::object();
     JsonFields fields(empty, empty.content, "", "");
-    ReadRecording(empty, empty.content, &fields);
+    ReadRecording(empty, empty.content, {}, &fields);
     return fields.asked();
   }();
   return keys;
@@ -212,6 +214,7 @@ Result<Manifest> ReadManifest(const std::string& path) {
   if (manifest.length_scale && manifest.length_unit && !top.failed()) {
     top.Fail("length_scale", "is given together with units.bvh_length; give one of them");
   }
+  manifest.stated_errors = ReadStatedErrors(document, &top, {});
   if (top.error()) return *top.error();
 
   const std::vector<int> lines = document.ElementLines("/recordings");
@@ -219,7 +222,8 @@ Result<Manifest> ReadManifest(const std::string& path) {
   for (std::size_t i = 0; i < recordings.size(); ++i) {
     JsonFields fields(document, recordings[i], "/recordings/" + std::to_string(i),
                       "recording " + std::to_string(i));
-    ManifestRecording recording = ReadRecording(document, recordings[i], &fields);
+    ManifestRecording recording =
+        ReadRecording(document, recordings[i], manifest.stated_errors, &fields);
     top.Add(fields);
     if (top.is_wrong()) return *top.error();
     recording.manifest = path;

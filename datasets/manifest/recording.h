@@ -11,6 +11,7 @@
 
 #include "datasets/formats/bvh.h"
 #include "datasets/manifest/body_roles.h"
+#include "datasets/manifest/stated_errors.h"
 #include "models/enum_names.h"
 #include "models/push.h"  // PushKind
 
@@ -119,6 +120,7 @@ struct Recording {
   InitialVelocity initial_velocity = InitialVelocity::kZero;
   std::vector<RecordedPerson> people;
   std::vector<Push> pushes;
+  StatedErrors stated_errors;
   std::string content_hash;  // of every file it was read from, for provenance
 
   int num_frames() const { return people.empty() ? 0 : static_cast<int>(people[0].hip.size()); }

@@ -59,7 +59,7 @@ std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
     // Self-force terms that are zero are left out too, but for the convention of mu and Kp.
     const bool convention = HeldByConvention(spec.id);
     const bool zero = spec.id < kTailGain && values[spec.id] == 0.0;
-    const bool acts = Acts(spec.id, options.model) && (!zero || convention);
+    const bool acts = Acts(spec.id, options.model) && !spec.tied_to && (!zero || convention);
     if (!acts) continue;
     Estimate fixed;
     fixed.name = spec.name;

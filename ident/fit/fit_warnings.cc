@@ -29,9 +29,10 @@ void AddClusterWarning(const Uncertainty& u, Warnings* warnings) {
   if (!u.clustered) {
     warnings->emplace_back("a single " + unit + ": errors cannot be clustered and are too small");
   } else if (u.about_people_like_them && u.num_people < kFewestPeople) {
-    warnings->emplace_back(std::to_string(u.num_people) +
-                        " people: nothing is identified about people like them; record at least " +
-                        std::to_string(kFewestPeople));
+    warnings->emplace_back(
+        std::to_string(u.num_people) +
+        " people: nothing is identified about people like them; record at least " +
+        std::to_string(kFewestPeople));
   } else if (u.num_clusters < kFewClusters) {
     const std::string many = unit == "person" ? "people" : "recordings";
     warnings->emplace_back("the independent units are " + std::to_string(u.num_clusters) + " " +

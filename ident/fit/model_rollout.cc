@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "ident/problem/own_axes.h"
 #include "models/learned_terms.h"
-#include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
 
@@ -25,7 +25,7 @@ HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& re
   const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording, effect);
   RolloutPath<double> path;
   HipPaths hips;
-  if (!Rollout(scene, model.options, parameters, InitialVelocities(scene), frames, &path).ok) {
+  if (!RolloutInOwnAxes(recording, model.options, parameters, frames, &path).ok) {
     return hips;
   }
   const bool moves = RodMoves(model.options);

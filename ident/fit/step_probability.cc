@@ -7,6 +7,7 @@
 #include <map>
 
 #include "ident/fit/model_rollout.h"
+#include "ident/problem/own_axes.h"
 #include "ident/uncertainty/clusters.h"
 #include "models/stance.h"
 
@@ -67,8 +68,7 @@ std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
   const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
   RolloutPath<double> path;
   const RolloutStatus status =
-      Rollout(recording.scene, model.options, parameters, InitialVelocities(recording.scene),
-              recording.num_frames(), &path);
+      RolloutInOwnAxes(recording, model.options, parameters, recording.num_frames(), &path);
   std::vector<StepOutcome> outcomes;
   if (!status.ok) return outcomes;
   for (int n = 0; n < recording.num_people(); ++n) {

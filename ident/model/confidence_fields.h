@@ -97,9 +97,19 @@ void Fields(Archive& a, AssumptionTest& t) {
 }
 
 template <class Archive>
-void Fields(Archive& a, HorizonTest& t) {
+void Fields(Archive& a, PartTest& t) {
   a("parameter", t.parameter);
-  a("frames", t.frames);
+  a("part", t.part);
+  a("t", t.t);
+  a("p", t.p);
+}
+
+template <class Archive>
+void Fields(Archive& a, MotionTest& t) {
+  a("quantity", t.quantity);
+  a("unit", t.unit);
+  a("difference", t.difference);
+  a("error", t.error);
   a("t", t.t);
   a("p", t.p);
 }
@@ -110,9 +120,12 @@ void Fields(Archive& a, ModelVerdict& v) {
   a("not_checked", v.not_checked);
   a("freedom", v.freedom);
   a("p_assumptions", v.p_assumptions);
-  a("p_horizons", v.p_horizons);
+  a("p_parts", v.p_parts);
+  a("p_motion", v.p_motion);
   a("assumptions", v.assumptions);
-  a("horizons", v.horizons);
+  a("parts", v.parts);
+  a("motion", v.motion.tests);
+  a("explained", v.motion.explained);
 }
 
 template <class Archive>

@@ -224,9 +224,10 @@ std::vector<Row> ModelOptionRows() {
           "balance error measured from: upright or initial")),
       MayBeAbsent(Decided(NameRow<Directions>(
           "directions", "/directions", [](O & o) -> auto& { return o.model.directions; },
-          "isotropic (people answer alike in all directions; fitted along each push) or axes "
-          "(those "
-          "of the file, sideways parameters of their own)"))),
+          "isotropic (people answer alike in all directions; fitted along each push), body (along "
+          "what the pushed person faces) or axes (those of the file), both with sideways "
+          "parameters "
+          "of their own"))),
       Decided(NameRow<GainScaling>(
           "gain_scaling", "/gain_scaling", [](O & o) -> auto& { return o.model.gain_scaling; },
           "gains of other bodies: none, mass, or body (mass and rod length)")),

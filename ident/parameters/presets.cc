@@ -143,6 +143,7 @@ namespace {
 void SetFixed(FitOptions* options) {
   options->model.push = PushUse::kAsRecorded;
   options->model.push_tail = PushTail::kNone;
+  options->model.directions = Directions::kBody;
   options->start = FitStart::kNominal;
   options->settling_weight = options->mode_weight = 0.0;
   for (const Start& start :
@@ -254,6 +255,19 @@ void TieSideways(FitOptions* o) {
   }
 }
 
+// Sideways free where forwards is, from the same start.
+void FreeSideways(FitOptions* o) {
+  if (o->model.directions != Directions::kBody) return;
+  for (const SidewaysParameter& pair : kSidewaysParameters) {
+    const ParameterSpec& forward = o->table[pair.forward];
+    ParameterSpec& sideways = o->table[pair.sideways];
+    if (!forward.free || sideways.free || sideways.named) continue;
+    sideways.free = true;
+    sideways.nominal = forward.nominal;
+    sideways.prior = forward.prior;
+  }
+}
+
 void FreeTerms(FitOptions* o) {
   FreeSelfForce(o->self_force, &o->table);
   FreeByTerm(o->model, &o->table);
@@ -262,6 +276,7 @@ void FreeTerms(FitOptions* o) {
     if (!o->preset_priors) spec.prior.reset();
     if (!Acts(spec.id, o->model)) spec.free = spec.pooled = false;
   }
+  FreeSideways(o);
   TieSideways(o);
   // These two cannot fail; names can.
   if (PoolsAllOrNone(o->pool)) (void)PoolParameters(o);

@@ -10,6 +10,7 @@
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/push_range.h"
 #include "ident/fit/step_probability.h"
+#include "ident/problem/own_axes.h"
 #include "ident/problem/statistics.h"
 #include "models/learned_terms.h"
 #include "models/scene_forces.h"
@@ -25,9 +26,8 @@ Prediction PredictOne(const ModelOptions& options,
   prediction.rod_moves = RodMoves(options);
   prediction.feet_step = options.stance == Stance::kThreshold;
   for (const ParameterSet<double>& own : parameters) prediction.rod_lift.push_back(own[kRodLift]);
-  prediction.status =
-      Rollout(recording.scene, options, parameters, InitialVelocities(recording.scene), frames,
-              &prediction.path, &prediction.forces);
+  prediction.status = RolloutInOwnAxes(recording, options, parameters, frames, &prediction.path,
+                                       &prediction.forces);
   if (!prediction.status.ok) return prediction;
   for (int n = 0; n < recording.scene.num_people(); ++n) {
     std::vector<Vector3<double>> hip;

@@ -6,27 +6,11 @@
 #include <limits>
 
 #include "datasets/inspection/findings.h"
+#include "ident/problem/own_axes.h"
 #include "ident/problem/residual_families.h"
 #include "residuals/cost_functions/lane_group.h"
 
 namespace pushid {
-
-namespace {
-
-// Along their pushes, where the model has no axes of its own.
-std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
-    const std::vector<PendulumRecording>& recordings, Directions directions) {
-  if (directions != Directions::kIsotropic) return nullptr;
-  auto turned = std::make_shared<std::vector<PendulumRecording>>();
-  turned->reserve(recordings.size());
-  for (const PendulumRecording& recording : recordings) {
-    const Eigen::Vector2d along = PushDirection(recording);
-    turned->push_back(Turned(recording, std::atan2(along[1], along[0])));
-  }
-  return turned;
-}
-
-}  // namespace
 
 FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, FitOptions options,
                        std::vector<int> counts)

@@ -261,31 +261,28 @@ void Adviser::Shares() {
 void Adviser::Pushes() {
   const bool measured = !result_.push_range || result_.push_range->net_s.empty();
   if (measured || model_.push_check) return;
-  Add("The pushes are net forces from inverse dynamics; check how much its window affects the "
-      "estimates.",
+  Add("The pushes are net forces from inverse dynamics; check how its window affects estimates.",
       Check().Set("push_check", "true"));
 }
 
 void Adviser::Horizons() {
-  if (model_.horizon_check || OfSteps()) return;
+  if (model_.horizon_check || OfSteps() || result_.verdict.checked()) return;
   Add("A parameter with physical meaning keeps its value when fewer frames are fitted; check which "
       "do.",
       Check().Set("horizon_check", "true"));
 }
 
 void Adviser::Terms() {
-  const bool explained =
-      result_.uncertainty.settling.holds() ||
-      std::any_of(result_.estimates.begin(), result_.estimates.end(), [](const Estimate& e) {
-        return e.status != EstimateStatus::kIdentified && e.status != EstimateStatus::kFixed;
-      });
-  if (explained) return;
+  const auto explained = [](const Estimate& e) {
+    return e.status != EstimateStatus::kIdentified && e.status != EstimateStatus::kFixed;
+  };
+  const std::vector<Estimate>& all = result_.estimates;
+  if (result_.uncertainty.settling.holds() || std::any_of(all.begin(), all.end(), explained))
+    return;
   const AssumptionTest* surest = nullptr;  // of what is left out
   for (const AssumptionTest& test : result_.verdict.assumptions) {
-    const bool left_out = test.stated <= 0.0 && test.error > 0.0;
-    if (left_out && test.p < kTermLevel && (surest == nullptr || test.p < surest->p)) {
-      surest = &test;
-    }
+    if (test.stated > 0.0 || test.error <= 0.0 || test.p >= kTermLevel) continue;
+    if (surest == nullptr || test.p < surest->p) surest = &test;
   }
   if (surest == nullptr) return;
   FitCommand compare("pushid-crossvalidate", model_.provenance);

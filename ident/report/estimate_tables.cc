@@ -166,11 +166,27 @@ TextTable DerivedTable(const FitResult& result) {
   return table;
 }
 
+namespace {
+
+// "Sideways as forwards: Kp_phi = Kp_theta, a_y = a_x (--directions=isotropic).\n"
+std::string TiedText(const FitResult& result) {
+  const ParameterTable& specs = result.options.table;
+  std::string tied;
+  for (const ParameterSpec& spec : specs.specs) {
+    if (!spec.tied_to || !Acts(spec.id, result.options.model)) continue;
+    if (result.parameters[spec.id] == 0.0) continue;
+    tied += (tied.empty() ? "" : ", ") + spec.name + " = " + specs[*spec.tied_to].name;
+  }
+  return tied.empty() ? "" : "Sideways as forwards: " + tied + " (--directions=isotropic).\n";
+}
+
+}  // namespace
+
 std::string ConventionText(const FitResult& result) {
   const ParameterTable& specs = result.options.table;
   const std::string quoted =
       "Gains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
-      NameOf(result.options.model.gain_scaling) + ").\n";
+      NameOf(result.options.model.gain_scaling) + ").\n" + TiedText(result);
   if (!Acts(kMu, result.options.model)) return quoted;
   bool fitted = false;
   std::string held;

@@ -17,6 +17,7 @@ constexpr Remedy kRemedies[] = {
     {"scale of the pushes", "check the unit and the calibration of the force, and the masses"},
     {"lag of the pushes", "check the clocks; pushid-push --estimate_offset estimates an offset"},
     {"height of the pushes", "check at which height the pushes act"},
+    {"zero of the pushes", "check what the sensor reads before the push"},
     {"masses", "check the masses, and the unit of the force"},
     {"frame rate", "check the frame rate"},
     {"drift of the cameras", "check whether positions drift, or people walk before the push"}};
@@ -45,22 +46,32 @@ const Test* Surest(const std::vector<Test>& tests) {
 
 std::string FailureText(const ModelVerdict& v) {
   std::string text;
+  const auto add = [&text](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
   const AssumptionTest* known = Surest(v.assumptions);
   if (known != nullptr && v.p_assumptions < kVerdictLevel) {
     text = "the recordings want " + WantedText(*known) +
            " than it was taken (p = " + Rounded(v.p_assumptions, 2) + " after " +
            std::to_string(v.assumptions.size()) + " tests); " + RemedyOf(known->name);
   }
-  const HorizonTest* horizon = Surest(v.horizons);
-  if (horizon != nullptr && v.p_horizons < kVerdictLevel) {
-    text += (text.empty() ? "" : "; ") + std::string("the first ") +
-            std::to_string(horizon->frames) + " frames ask for another " + horizon->parameter +
-            " than all of them (p = " + Rounded(v.p_horizons, 2) + " after " +
-            std::to_string(v.horizons.size()) + " tests)";
-    if (known != nullptr && v.p_assumptions >= kVerdictLevel) {
-      text +=
-          "; most likely of what was taken as known: " + known->name + ", " + RemedyOf(known->name);
-    }
+  const PartTest* part = Surest(v.parts);
+  if (part != nullptr && v.p_parts < kVerdictLevel) {
+    add(part->part + " ask for another " + part->parameter + " than all of them (p = " +
+        Rounded(v.p_parts, 2) + " after " + std::to_string(v.parts.size()) + " tests)");
+    if (part->part == kFromTheSide) text += "; try --directions=body";
+  }
+  const MotionTest* motion = Surest(v.motion.tests);
+  if (motion != nullptr && v.p_motion < kVerdictLevel) {
+    const std::string unit = motion->unit.empty() ? "" : " " + motion->unit;
+    add(std::string("the recorded ") + motion->quantity + " differs from the predicted one by " +
+        Rounded(motion->difference, 2) + " +- " + Rounded(motion->error, 2) + unit + " (p = " +
+        Rounded(v.p_motion, 2) + " after " + std::to_string(v.motion.tests.size()) + " tests)");
+  }
+  if (v.motion.explained < kLeastExplained) {
+    add("it explains " + Rounded(100.0 * v.motion.explained, 2) + " % of the hips' squared way");
+  }
+  if (known != nullptr && v.p_assumptions >= kVerdictLevel) {
+    text +=
+        "; most likely of what was taken as known: " + known->name + ", " + RemedyOf(known->name);
   }
   return text;
 }
@@ -74,10 +85,13 @@ std::string ModelVerdictText(const ModelVerdict& v) {
            ". Estimates are model-dependent.";
   }
   return "The model check found nothing: " + std::to_string(v.assumptions.size()) +
-         " quantities that are taken as known (p = " + Rounded(v.p_assumptions, 2) + ") and " +
-         std::to_string(v.horizons.size()) +
-         " scores of the first frames (p = " + Rounded(v.p_horizons, 2) +
-         "; both after all tests, " + std::to_string(v.freedom) + " degrees of freedom).";
+         " quantities that are taken as known (p = " + Rounded(v.p_assumptions, 2) + "), " +
+         std::to_string(v.parts.size()) +
+         " scores of parts of the data (p = " + Rounded(v.p_parts, 2) + ") and " +
+         std::to_string(v.motion.tests.size()) +
+         " measures of feet and hips (p = " + Rounded(v.p_motion, 2) + "; each after all tests, " +
+         std::to_string(v.freedom) + " degrees of freedom); it explains " +
+         Rounded(100.0 * v.motion.explained, 3) + " % of the hips' squared way.";
 }
 
 TextTable AssumptionTable(const FitResult& result) {

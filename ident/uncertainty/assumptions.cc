@@ -65,6 +65,16 @@ void Raise(double eta, ChangedProblem* p) {
   });
 }
 
+// The sensor reads eta newtons more, along the push and as high as it.
+void Shift(double eta, ChangedProblem* p) {
+  ForMeasured(p, [eta](const PendulumRecording&, ScenePush* push) {
+    const double mean = push->mean.head<2>().norm();
+    if (mean <= 0.0) return;
+    for (Vector4<double>& row : push->force) row += eta / mean * push->mean;
+    Renew(push);
+  });
+}
+
 // All people heavier by the share eta; pushes by inverse dynamics with them.
 void Weigh(double eta, ChangedProblem* p) {
   for (PendulumRecording& r : p->recordings) {
@@ -117,6 +127,17 @@ Assumption Held(const ParameterSpec& spec) {
           }};
 }
 
+StatedErrors Stated(const std::vector<PendulumRecording>& recordings) {
+  if (recordings.empty()) return {};
+  StatedErrors largest = recordings[0].stated_errors;
+  for (const PendulumRecording& r : recordings) {
+    for (const StatedErrorRow& row : kStatedErrors) {
+      largest.*row.value = std::max(largest.*row.value, r.stated_errors.*row.value);
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 std::vector<Assumption> AssumptionsOf(const FitProblem& problem) {
@@ -128,14 +149,16 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem) {
           push.kind == PushKind::kExternal;
     }
   }
+  const StatedErrors stated = Stated(problem.recordings());
   if (measured) {
-    all.push_back({"scale of the pushes", "", kPushScaleError, 1e-4, ScaleMeasured});
-    all.push_back({"lag of the pushes", "frames", kPushLagError, 1e-3, Delay});
-    all.push_back({"height of the pushes", "m", kPushHeightError, 1e-4, Raise});
+    all.push_back({"scale of the pushes", "", stated.push_scale, 1e-4, ScaleMeasured});
+    all.push_back({"lag of the pushes", "frames", stated.push_lag_frames, 1e-3, Delay});
+    all.push_back({"height of the pushes", "m", stated.push_height_m, 1e-4, Raise});
+    all.push_back({"zero of the pushes", "N", stated.push_zero_N, 1e-2, Shift});
   }
-  all.push_back({"masses", "", kMassError, 1e-4, Weigh});
-  all.push_back({"frame rate", "", kFrameRateError, 1e-4, Hasten});
-  all.push_back({"drift of the cameras", "m", kDriftError, 1e-4, Drift});
+  all.push_back({"masses", "", stated.mass, 1e-4, Weigh});
+  all.push_back({"frame rate", "", stated.frame_rate, 1e-4, Hasten});
+  all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, Drift});
   const FitOptions& options = problem.options();
   for (const ParameterSpec& spec : options.table.specs) {
     const bool of_tail = spec.id >= kTailGain && spec.id <= kTailExponent;

@@ -24,12 +24,9 @@ struct Assumption {
   std::function<void(double eta, ChangedProblem*)> change;
 };
 
-// Stated of what was measured: 5 % of a push's force, a frame between its clock and that of the
-// cameras, 5 cm of its height, 3 % of a mass, 1 % of the frame rate, 5 mm that cameras drift along
-// the push over a recording. Pushes by inverse dynamics have neither a clock nor a height of their
-// own, and follow the masses. Of a held gain, a factor of two; of a term left out, nothing.
-inline constexpr double kPushScaleError = 0.05, kPushLagError = 1.0, kPushHeightError = 0.05;
-inline constexpr double kMassError = 0.03, kFrameRateError = 0.01, kDriftError = 0.005;
+// Stated of what was measured: the largest of the recordings' (datasets/manifest/stated_errors.h).
+// Pushes by inverse dynamics have neither a clock, a height nor a zero of their own, and follow the
+// masses. Of a held gain, a factor of two; of a term left out, nothing.
 
 // Those of a problem that can have an effect.
 std::vector<Assumption> AssumptionsOf(const FitProblem& problem);

@@ -14,10 +14,14 @@ std::string PersonKey(const PendulumRecording& recording, int person) {
   return recording.subject_ids[person] + " " + DoubleText(mass);
 }
 
-Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by) {
+Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by,
+                      const std::vector<int>& counts) {
   std::map<std::string, int> times, index;
   bool repeated = false, shared = false;
-  for (const PendulumRecording& r : recordings) {
+  const auto counted = [&counts](size_t i) { return counts.empty() || counts[i] > 0; };
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const PendulumRecording& r = recordings[i];
+    if (!counted(i)) continue;
     shared = shared || r.num_people() > 1;
     for (int n = 0; n < r.num_people(); ++n) repeated = ++times[PersonKey(r, n)] > 1 || repeated;
   }
@@ -33,7 +37,7 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
   for (size_t i = 0; i < recordings.size(); ++i) {
     const PendulumRecording& r = recordings[i];
     std::vector<int> of;
-    for (int n = 0; n < r.num_people(); ++n) {
+    for (int n = 0; counted(i) && n < r.num_people(); ++n) {
       const std::string key = people ? PersonKey(r, n) : std::to_string(i);
       const auto [found, added] = index.emplace(key, clusters.count());
       if (added) clusters.names.push_back(people ? r.subject_ids[n] : r.id);

@@ -33,7 +33,9 @@ struct Clusters {
 // A person is an id and a mass: who goes by one id with two masses is two people.
 std::string PersonKey(const PendulumRecording& recording, int person);
 
-Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by);
+// counts: how often each recording counts; those that do not are of no cluster. Empty: all do.
+Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by,
+                      const std::vector<int>& counts = {});
 
 // Of fewer clusters the standard errors are uncertain themselves.
 inline constexpr int kFewClusters = 10;

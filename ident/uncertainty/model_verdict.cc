@@ -1,8 +1,9 @@
-// ident: score tests of what is taken as known, tests of horizons, and total errors.
+// ident: score tests of what is taken as known and of parts of the data, and total errors.
 #include "ident/uncertainty/model_verdict.h"
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
@@ -27,18 +28,37 @@ std::string WhyNot(const FitOptions& options, size_t estimates, int clusters) {
   return "";
 }
 
-// s_g, a column for each cluster, of the first frames.
-Eigen::MatrixXd Scores(const RowsByFrame& by_frame, const RowClusters& clusters, int frames) {
+// s_g, a column for each cluster, of the rows that are held.
+Eigen::MatrixXd Scores(const RowsByFrame& by_frame, const RowClusters& clusters,
+                       const std::vector<bool>& held) {
   const JacobianBlocks& rows = by_frame.rows;
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(rows.jacobian.cols(), clusters.count);
   for (size_t i = 0; i < clusters.of_row.size(); ++i) {
-    if (clusters.of_row[i] < 0 || by_frame.frame_of_row[i] > frames) continue;
+    if (clusters.of_row[i] < 0 || !held[i]) continue;
     const Eigen::Index row = static_cast<Eigen::Index>(i);
     scores.col(clusters.of_row[i]) += rows.residuals[row] * rows.jacobian.row(row).transpose();
   }
   return scores;
 }
-constexpr int kAllFrames = 1 << 30;
+
+// Whether a push comes more from the side than from ahead or behind.
+std::vector<bool> FromTheSide(const std::vector<PendulumRecording>& recordings) {
+  std::vector<bool> aside;
+  for (const PendulumRecording& r : recordings) {
+    const Eigen::Vector2d push = PushDirection(r);
+    const Eigen::Vector2d facing(std::cos(r.facing), std::sin(r.facing));
+    aside.push_back(std::abs(push.dot(facing)) < std::sqrt(0.5));
+  }
+  return aside;
+}
+
+// The smallest p-value after all tests of a family.
+template <typename Test>
+double Least(const std::vector<Test>& tests) {
+  double least = 1.0;
+  for (const Test& test : tests) least = std::min(least, test.p);
+  return std::min(1.0, least * static_cast<double>(tests.size()));
+}
 
 // The error of a sum over clusters.
 double ErrorOfSum(const Eigen::VectorXd& parts) {
@@ -50,7 +70,8 @@ class ModelJudge {
  public:
   ModelJudge(const FitProblem& problem, const FitPoint& point)
       : problem_(problem),
-        clusters_(MakeClusters(problem.recordings(), problem.options().cluster)),
+        point_(point),
+        clusters_(MakeClusters(problem.recordings(), problem.options().cluster, problem.counts())),
         columns_(FittedColumns(problem, point)) {
     verdict_.not_checked = WhyNot(problem.options(), columns_.size(), clusters_.count());
     if (!verdict_.checked()) return;
@@ -69,9 +90,10 @@ class ModelJudge {
     beside.jacobian = rows_.rows.jacobian.leftCols(n);
     const Eigen::MatrixXd hessian = own.transpose() * own + InformationBeside(beside);
     inverse_ = SolveSymmetric(hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
-    scores_ = Scores(rows_, clustering_.first, kAllFrames);
+    scores_ = Scores(rows_, clustering_.first, std::vector<bool>(rows_.frame_of_row.size(), true));
     TestAssumptions(own);
-    TestHorizons(own);
+    TestParts(own);
+    TestMotion();
     AddTotals(uncertainty);
     return verdict_;
   }
@@ -106,42 +128,55 @@ class ModelJudge {
       }
       verdict_.assumptions.push_back(std::move(test));
     }
-    double least = 1.0;
-    for (const AssumptionTest& test : verdict_.assumptions) least = std::min(least, test.p);
-    verdict_.p_assumptions = std::min(1.0, least * static_cast<double>(assumptions_.size()));
+    verdict_.p_assumptions = Least(verdict_.assumptions);
   }
 
-  void TestHorizons(const Eigen::MatrixXd& own) {
-    const Eigen::Index n = rows_.num_estimates, shared = problem_.map().num_shared();
-    // What priors and demands pull at the optimum is balanced by all frames, and by their share of
-    // the first ones.
-    Eigen::VectorXd pull = -scores_.topRows(n).rowwise().sum();
+  // The parts of the data that are asked, by the rows they hold.
+  void TestParts(const Eigen::MatrixXd& own) {
     for (int frames : kHorizons) {
-      Eigen::MatrixXd first = Eigen::MatrixXd::Zero(n, n);
-      bool cuts = false;
-      for (size_t i = 0; i < rows_.frame_of_row.size(); ++i) {
-        cuts = cuts || rows_.frame_of_row[i] > frames;
-        if (rows_.frame_of_row[i] < 0 || rows_.frame_of_row[i] > frames) continue;
-        first.selfadjointView<Eigen::Lower>().rankUpdate(
-            own.row(static_cast<Eigen::Index>(i)).transpose());
-      }
-      if (!cuts) break;
-      const Eigen::MatrixXd share =
-          Eigen::MatrixXd(first.selfadjointView<Eigen::Lower>()) * inverse_;
-      const Eigen::MatrixXd some = Scores(rows_, clustering_.first, frames).topRows(n);
-      const Eigen::MatrixXd parts = some - share * scores_.topRows(n);
-      const Eigen::VectorXd sum = some.rowwise().sum() + share * pull;
-      for (Eigen::Index i = 0; i < shared; ++i) {
-        const double error = ErrorOfSum(parts.row(i).transpose());
-        if (error <= 0.0) continue;
-        const double t = sum[i] / error;
-        verdict_.horizons.push_back(
-            {columns_[i].name, frames, t, StudentTail(t, verdict_.freedom)});
-      }
+      TestPart("the first " + std::to_string(frames) + " frames", own,
+               [&](size_t row) { return rows_.frame_of_row[row] <= frames; });
     }
-    double least = 1.0;
-    for (const HorizonTest& test : verdict_.horizons) least = std::min(least, test.p);
-    verdict_.p_horizons = std::min(1.0, least * static_cast<double>(verdict_.horizons.size()));
+    const std::vector<bool> aside = FromTheSide(problem_.recordings());
+    TestPart(kFromTheSide, own, [&](size_t row) {
+      return aside[static_cast<size_t>(rows_.rows.cluster_of_row[row])];
+    });
+    verdict_.p_parts = Least(verdict_.parts);
+  }
+
+  template <typename Holds>
+  void TestPart(const std::string& name, const Eigen::MatrixXd& own, const Holds& holds) {
+    const Eigen::Index n = rows_.num_estimates, shared = problem_.map().num_shared();
+    Eigen::MatrixXd first = Eigen::MatrixXd::Zero(n, n);
+    std::set<int> inside, outside;  // clusters
+    std::vector<bool> held(rows_.frame_of_row.size(), false);
+    for (size_t i = 0; i < held.size(); ++i) {
+      if (rows_.frame_of_row[i] < 0) continue;
+      held[i] = holds(i);
+      (held[i] ? inside : outside).insert(clustering_.first.of_row[i]);
+      if (!held[i]) continue;
+      first.selfadjointView<Eigen::Lower>().rankUpdate(
+          own.row(static_cast<Eigen::Index>(i)).transpose());
+    }
+    // Fewer know nothing of their own scatter.
+    if (static_cast<int>(std::min(inside.size(), outside.size())) < kFewestClusters) return;
+    const Eigen::MatrixXd share = Eigen::MatrixXd(first.selfadjointView<Eigen::Lower>()) * inverse_;
+    const Eigen::MatrixXd some = Scores(rows_, clustering_.first, held).topRows(n);
+    const Eigen::MatrixXd parts = some - share * scores_.topRows(n);
+    // What priors and demands pull at the optimum is balanced by all rows, and by their share of
+    // these.
+    const Eigen::VectorXd sum = some.rowwise().sum() - share * scores_.topRows(n).rowwise().sum();
+    for (Eigen::Index i = 0; i < shared; ++i) {
+      const double error = ErrorOfSum(parts.row(i).transpose());
+      if (error <= 0.0) continue;
+      const double t = sum[i] / error;
+      verdict_.parts.push_back({columns_[i].name, name, t, StudentTail(t, verdict_.freedom)});
+    }
+  }
+
+  void TestMotion() {
+    verdict_.motion = CompareMotion(problem_, point_, clusters_);
+    verdict_.p_motion = Least(verdict_.motion.tests);
   }
 
   void AddTotals(Uncertainty* uncertainty) {
@@ -175,6 +210,7 @@ class ModelJudge {
   }
 
   const FitProblem& problem_;
+  const FitPoint& point_;
   Clusters clusters_;
   std::vector<FittedColumn> columns_;
   std::vector<Assumption> assumptions_;

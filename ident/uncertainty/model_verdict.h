@@ -8,26 +8,30 @@
 //            together: -(S + m's) / (H_eta,eta + b'm), with the error of the clusters' scatter. Its
 //            score test has t = wanted / sqrt(error^2 + sigma^2) with clusters - 1 degrees of
 //            freedom, sigma what is stated of eta (Wooldridge 2010, section 12.6)
-//   horizon  frames up to h must ask for the same estimates as all of them: the score of the first
-//   h
-//            frames, less the share H_h H^-1 of all, is zero on average whatever the noise,
-//            clustered likewise (Hausman 1978; Newey 1985)
+//   part     a part of the data, the frames up to h or the pushes from the side, must ask for the
+//            same estimates as all of them: its score, less the share H_h H^-1 of all, is zero on
+//            average whatever the noise, clustered likewise (Hausman 1978; Newey 1985)
+//   motion   feet end, and hips turn, where and when the model has it (motion_check.h); and it
+//            explains most of their way
 //   total    errors of a fit in which everything with a sigma is free, with that prior: CR2 as
 //            uncertainty.h has it. What that fit would move an estimate by counts as an error of
 //            the estimate as well: total^2 = joint^2 + move^2
-// The smallest p-values of both families are multiplied by the number of their tests (Bonferroni);
-// the model fails where one is below kVerdictLevel. The tests know what is linear about the optimum
-// and cannot see an error that looks like an estimate: those are what the total error is for.
+// The smallest p-value of each of the three families is multiplied by the number of its tests
+// (Bonferroni); the model fails where one is below kVerdictLevel, which are 5 % in all. The tests
+// know what is linear about the optimum and cannot see an error that looks like an estimate: those
+// are what the total error is for.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "ident/uncertainty/motion_check.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
 
-inline constexpr double kVerdictLevel = 0.025;  // of each family
+inline constexpr double kVerdictLevel = 0.05 / 3.0;  // of each family
+inline constexpr double kLeastExplained = 0.5;       // of the hips' way
 
 struct AssumptionTest {
   std::string name, unit;
@@ -36,22 +40,26 @@ struct AssumptionTest {
   std::vector<double> moves;  // of the shared estimates by one sigma, natural units; empty without
 };
 
-struct HorizonTest {
-  std::string parameter;
-  int frames = 0;
+inline constexpr char kFromTheSide[] = "pushes from the side";
+
+struct PartTest {
+  std::string parameter, part;  // "the first 16 frames"
   double t = 0.0, p = 1.0;
 };
 
 struct ModelVerdict {
   std::string not_checked = "an older version fitted";  // why nothing was; empty where it was
   std::vector<AssumptionTest> assumptions;
-  std::vector<HorizonTest> horizons;
-  int freedom = 0;                               // of all tests
-  double p_assumptions = 1.0, p_horizons = 1.0;  // times the number of tests, at most 1
+  std::vector<PartTest> parts;
+  MotionComparison motion;
+  int freedom = 0;  // of all tests
+  // Times the number of tests, at most 1.
+  double p_assumptions = 1.0, p_parts = 1.0, p_motion = 1.0;
 
   bool checked() const { return not_checked.empty(); }
   bool fails() const {
-    return checked() && (p_assumptions < kVerdictLevel || p_horizons < kVerdictLevel);
+    return checked() && (p_assumptions < kVerdictLevel || p_parts < kVerdictLevel ||
+                         p_motion < kVerdictLevel || motion.explained < kLeastExplained);
   }
 };
 

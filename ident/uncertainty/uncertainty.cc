@@ -178,7 +178,7 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
   const FitProblem::Built built = problem.Build(&copy, 0);
   Evaluated e{EvaluateJacobianBlocks(built, true), FittedColumns(problem, point), {}, {}, {}};
   e.unit = Units(e.columns);
-  e.clusters = MakeClusters(problem.recordings(), problem.options().cluster);
+  e.clusters = MakeClusters(problem.recordings(), problem.options().cluster, problem.counts());
   e.clustering = ClusterRows(problem, e.clusters, e.score);
   if (curvature && e.unit.size() <= kMostColumnsWithCurvature) {
     AddCurvature(built, CurvatureStep(problem) * e.unit, &e.score);

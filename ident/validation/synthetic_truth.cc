@@ -25,6 +25,7 @@ Result<IdentifiedModel> SyntheticTruth(const SyntheticOptions& study, const std:
     // Standing people touch as the preset has it.
     if (!IsPairParameter(id) || slide) model.parameters[id] = published[id];
   }
+  model.table.SetTied(&model.parameters);
   if (MaybeError error = SetValues(set, &model)) return *error;
   return model;
 }

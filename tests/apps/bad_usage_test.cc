@@ -234,8 +234,9 @@ TEST_F(BadUsageTest, ContactNeedsPeopleWhoTouch) {
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--fix=contact_stiffness=2000",
                                             "--model_out=" + Path("n.json")}),
                       {"--fix", "contact_stiffness", "no contact"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-formation", {model, "--set=contact_damping=10"}),
-                      {"--set", "contact_damping", "no contact"}));
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-formation", {model, "--formation=line", "--set=contact_damping=10"}),
+              {"--set", "contact_damping", "no contact"}));
 }
 
 TEST_F(BadUsageTest, WhatDoesNothingIsWarnedAbout) {

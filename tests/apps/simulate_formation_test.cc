@@ -53,10 +53,11 @@ std::vector<std::string> Onsets(const std::string& out) {
 // The group model that comes with the programs says what it was fitted to; what its intervals leave
 // out stands beside them.
 TEST_F(SimulateFormationTest, TheShippedModelIsOfSyntheticPeople) {
-  const AppRun run = RunApp("pushid-formation",
-                            {"--model=pushid:synthetic_group", "--set=mu=60", "--people=4",
-                             "--spacing=0.42", "--trajectories_out=" + Path("line.txt")},
-                            60);
+  const AppRun run =
+      RunApp("pushid-formation",
+             {"--model=pushid:synthetic_group", "--formation=line", "--set=mu=60", "--people=4",
+              "--spacing=0.42", "--trajectories_out=" + Path("line.txt")},
+             60);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.err, "was fitted to synthetic people"));
   EXPECT_TRUE(Contains(run.out, "not in these intervals: "));

@@ -51,6 +51,26 @@ constexpr char kGood[] = R"({
 }
 )";
 
+// Of the manifest for all, of a recording on top of it.
+TEST_F(ManifestTest, StatedErrors) {
+  auto json = nlohmann::ordered_json::parse(kGood);
+  json["stated_errors"] = {{"mass", 0.01}, {"push_zero_N", 0.5}};
+  json["recordings"][0]["stated_errors"] = {{"mass", 0.02}};
+  const auto read = [&] { return ReadManifest(WriteText("stated.json", json.dump(1))); };
+  const Result<Manifest> manifest = read();
+  ASSERT_TRUE(manifest.ok()) << manifest.error().ToString();
+  const StatedErrors& own = manifest.value().recordings[0].stated_errors;
+  EXPECT_EQ(own.mass, 0.02);
+  EXPECT_EQ(own.push_zero_N, 0.5);
+  EXPECT_EQ(own.push_scale, StatedErrors().push_scale);
+  json["recordings"][0]["stated_errors"] = {{"mass", -0.02}};
+  EXPECT_TRUE(Contains(read().error().ToString(), "stated_errors: mass must be a standard"));
+  json["recordings"][0]["stated_errors"] = {{"weight", 0.02}};
+  EXPECT_TRUE(Contains(read().error().ToString(), "weight is not known; there may be push_scale"));
+  json["recordings"][0]["stated_errors"] = 0.02;
+  EXPECT_TRUE(Contains(read().error().ToString(), "must be an object"));
+}
+
 TEST_F(ManifestTest, ReadsEverything) {
   const Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGood));
   ASSERT_TRUE(read.ok()) << read.error().ToString();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "ident/fit/fit.h"
+#include "ident/prediction/prediction.h"
 #include "models/turn.h"
 #include "tests/ident/fit_samples.h"
 
@@ -84,6 +85,51 @@ TEST(Directions, SidewaysIsAsForwards) {
   EXPECT_EQ(result.parameters[kKpPhi], result.parameters[kKpTheta]);
   EXPECT_EQ(result.parameters[kAy], result.parameters[kAx]);
   for (const Estimate& e : result.estimates) EXPECT_NE(e.name, "Kp_phi");
+}
+
+// What a model predicts turns with the recording, whatever axes it sees it in.
+TEST(Directions, PredictionsTurnWithTheRecording) {
+  SyntheticOptions study = People();
+  study.joint_noise_m = 0.0;
+  const std::vector<Recording> recordings = MakeRecordings(study);
+  for (Directions directions : {Directions::kIsotropic, Directions::kBody}) {
+    IdentifiedModel model = TruthOf(study);
+    model.options.directions = directions;
+    model.parameters[kKpPhi] = 2.0 * model.parameters[kKpTheta];
+    for (double angle : {0.3, 2.7}) {
+      const Prediction straight = Predict(model, AsPendulums({recordings[0]})[0]);
+      const Prediction turned = Predict(model, AsPendulums(TurnedBy(angle, {recordings[0]}))[0]);
+      ASSERT_TRUE(straight.status.ok && turned.status.ok);
+      for (size_t t = 0; t < straight.hip[0].size(); ++t) {
+        const Vector3<double> there = TurnedBy(angle, straight.hip[0][t]);
+        EXPECT_LT((turned.hip[0][t] - there).norm(), 1e-9) << t;
+        EXPECT_NEAR(turned.forces.At(t, 0).Total().head<2>().norm(),
+                    straight.forces.At(t, 0).Total().head<2>().norm(), 1e-6)
+            << t;
+      }
+    }
+  }
+}
+
+// People who face along y and are pushed from behind and from the side.
+TEST(Directions, ABodyTellsForwardsFromSideways) {
+  SyntheticOptions study = People();
+  study.joint_noise_m = 0.0;
+  study.direction_sigma_rad = 1.0;
+  study.parameters[kKpPhi] = 1.4 * study.parameters[kKpTheta];
+  const std::vector<PendulumRecording> pendulums =
+      AsPendulums(TurnedBy(0.5 * M_PI, MakeRecordings(study)));
+  EXPECT_NEAR(pendulums[0].facing, 0.5 * M_PI, 1e-9);
+  FitOptions options = UnbiasedFit(study);
+  options.model.directions = Directions::kBody;
+  options.table[kKpPhi].free = true;
+  options.table[kKpPhi].nominal = 1500.0;
+  options.function_tolerance = 1e-16;
+  const FitResult fit = Fit(pendulums, options);
+  ASSERT_TRUE(fit.ok()) << fit.message;
+  for (Parameter id : {kKpTheta, kKpPhi}) {
+    EXPECT_NEAR(fit.parameters[id], study.parameters[id], 1e-3 * study.parameters[id]);
+  }
 }
 
 TEST(Directions, AParameterThatIsNamedIsItsOwn) {

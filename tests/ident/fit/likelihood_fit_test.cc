@@ -29,7 +29,9 @@ FitOptions ByLikelihood(const SyntheticOptions& study, const std::string& likeli
                                        {"process_noise", "diagonal"},
                                        {"likelihood", likelihood}})
                            .value();
+  options.model.directions = Directions::kAxes;  // those of the planted noise
   for (ParameterSpec& spec : options.table.specs) {
+    spec.tied_to.reset();
     if (!spec.free && !IsNoiseParameter(spec.id)) spec.nominal = study.parameters[spec.id];
   }
   options.model.gain_scaling = study.model.gain_scaling;

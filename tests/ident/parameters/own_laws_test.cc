@@ -106,6 +106,7 @@ class FittedLaw : public TempDirTest {
     options.table = given.table;
     for (ParameterSpec& spec : options.table.specs) {
       spec.prior.reset();
+      spec.tied_to.reset();
       if (!spec.free) spec.nominal = study.parameters[spec.id];
     }
     recordings_ = MakePendulums(study);

@@ -70,6 +70,9 @@ TEST(Presets, LinearSelfForceComesWithPriors) {
   EXPECT_EQ(FreeNames(table), FreeNames(Tail()));
   options.self_force = SelfForceKind::kLinear;
   FreeTerms(&options);
+  EXPECT_EQ(table[kAy].tied_to, kAx);  // alike in all directions
+  options.model.directions = Directions::kAxes;
+  FreeTerms(&options);
   for (Parameter id : {kAx, kAy, kBx, kBy, kTx, kTy, kCq, kDq}) {
     EXPECT_TRUE(table[id].free) << table[id].name;
     EXPECT_TRUE(table[id].prior.has_value()) << table[id].name;
@@ -90,7 +93,7 @@ TEST(ParameterTable, MapHoldsTheFreeOnesInOrder) {
     const int expected = f.parameter == kKpTheta ? 0 : f.parameter == kTailTime ? 1 : -1;
     EXPECT_EQ(f.deviation, expected) << kParameterNames[f.parameter];
   }
-  EXPECT_EQ(map.values[kKpPhi], table[kKpPhi].nominal);
+  EXPECT_EQ(map.values[kKpPhi], table[kKpTheta].nominal);  // tied to it
 }
 
 TEST(TableEdits, FixFreePriorSetPool) {

@@ -68,6 +68,7 @@ TEST(Prediction, WhatIf) {
   EXPECT_GT(Predict(model, recording).hip[0].back()[0], rough);
 
   // What differs by setting can be set too.
+  model.options.interaction.spring = true;
   model.table[kContactDistance].free = model.table[kContactDistance].pooled = true;
   EXPECT_FALSE(SetValues("mu=6,contact_distance=0.5", &model));
   EXPECT_EQ(model.by_unit["S01"][kContactDistance], 0.5);

@@ -96,6 +96,67 @@ TEST(ModelVerdict, TotalErrorsAreLargerThanThoseOfTheDataAlone) {
   }
 }
 
+// A laboratory that knows less of its pushes knows less of its people.
+TEST(ModelVerdict, TotalErrorsFollowWhatIsStated) {
+  std::vector<PendulumRecording> recordings = MakePendulums(Study(2));
+  const FitResult plain = FitOf(recordings);
+  for (PendulumRecording& r : recordings) r.stated_errors.push_scale = 0.3;
+  const FitResult rough = FitOf(recordings);
+  EXPECT_GT(FindEstimate(rough.estimates, "Kp_theta")->total->error,
+            1.5 * FindEstimate(plain.estimates, "Kp_theta")->total->error);
+}
+
+TEST(ModelVerdict, TurnsOfAPath) {
+  EXPECT_TRUE(TurnsOf({}, 0.1).empty());
+  EXPECT_TRUE(TurnsOf({0.0, 1.0, 0.95, 2.0, 1.95}, 0.1).empty()) << "too little";
+  EXPECT_EQ(TurnsOf({0.0, 1.0, 3.0, 2.0, 1.0, 4.0, 4.05, 4.0}, 0.1), (std::vector<int>{2, 4}));
+  EXPECT_TRUE(TurnsOf({0.0, -1.0, -2.0}, 0.1).empty()) << "a start is no turn";
+}
+
+// Feet that end elsewhere, hips that turn at another time and as often.
+TEST(ModelVerdict, MotionByHand) {
+  const FitResult result = FitOf(MakePendulums(Study(2)));
+  const MotionComparison& motion = result.verdict.motion;
+  EXPECT_GT(motion.explained, 0.9);
+  ASSERT_FALSE(motion.tests.empty());
+  EXPECT_EQ(motion.tests[0].quantity, "travel of the feet");
+  EXPECT_LT(std::abs(motion.tests[0].difference), 0.02);
+
+  std::vector<PendulumRecording> recordings = MakePendulums(Study(2));
+  FitOptions options = MakePreset("tail").value();
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  const auto compare = [&] {
+    const FitProblem problem(recordings, options);
+    const Clusters clusters = MakeClusters(recordings, ClusterBy::kSubject);
+    return CompareMotion(problem, problem.NominalPoint(), clusters).tests;
+  };
+  const std::vector<MotionTest> before = compare();
+  for (PendulumRecording& r : recordings) {  // 12 cm farther along the push, evenly
+    const Eigen::Vector2d along = 0.12 * PushDirection(r);
+    const double frames = r.num_frames() - 1;
+    for (int t = 0; t < r.num_frames(); ++t) {
+      r.states[0][t].q.head<2>() += t / frames * along;
+      if (t > 0) r.states[0][t].qd.head<2>() += along / (frames * r.scene.dt);
+    }
+  }
+  EXPECT_NEAR(compare()[0].difference - before[0].difference, 0.12, 1e-6);
+}
+
+// Stiffer to the side than forwards, fitted as one: pushes from the side say so.
+TEST(ModelVerdict, PushesFromTheSideAskForAnotherGain) {
+  SyntheticOptions study = Study(4);
+  study.direction_sigma_rad = 1.2;
+  study.parameters[kKpPhi] = 2.5 * study.parameters[kKpTheta];
+  const FitResult result = FitOf(MakePendulums(study));
+  const auto from_the_side = [](const PartTest& test) { return test.part == kFromTheSide; };
+  const std::vector<PartTest>& parts = result.verdict.parts;
+  EXPECT_TRUE(std::any_of(parts.begin(), parts.end(), from_the_side));
+  EXPECT_TRUE(result.verdict.fails());
+  const auto surest = std::min_element(parts.begin(), parts.end(),
+                                       [](const auto& a, const auto& b) { return a.p < b.p; });
+  EXPECT_TRUE(from_the_side(*surest)) << surest->part;
+}
+
 TEST(ModelVerdict, SaysWhyNothingWasChecked) {
   SyntheticOptions study = TinyStudy();
   const FitResult result = FitOf(MakePendulums(study));  // two people

@@ -20,7 +20,7 @@ struct Brake {  // the formula, for any scalar
 int main() {
   SyntheticOptions study;
   FitOptions options = MakePreset("tail").value();
-  options.model = study.model;
+  options.model = study.model;  // in the axes of the files
   options.settling_weight = 0.0;
   // Its row: name, symbol, unit, start, bounds, typical size.
   const auto law = MakeForceLaw("brake", {{"brake", "b", "m/s^2", 0.1, 0.0, 5.0, 0.1}}, Brake{});
@@ -38,6 +38,7 @@ int main() {
       Recordings(MakeSyntheticRecordings(study).value()), SkeletonMapping::kExact);
   for (ParameterSpec& spec : options.table.specs) {
     spec.prior.reset();
+    spec.tied_to.reset();
     if (!spec.free) spec.nominal = study.parameters[spec.id];
   }
   if (const MaybeError error = PrepareFit(recordings, &options)) return 1;

@@ -1,0 +1,60 @@
+// ident: recordings and rollouts turned into a model's axes, and back.
+#include "ident/problem/own_axes.h"
+
+#include <cmath>
+
+#include "models/turn.h"
+#include "residuals/cost_functions/rollout_problem.h"
+
+namespace pushid {
+namespace {
+
+void TurnBack(double angle, RolloutPath<double>* path, FrameTable<NetForce<double>>* trace,
+              int frames) {
+  const TurnedAxes axes(-angle);
+  for (int t = 0; t < frames; ++t) {
+    for (int n = 0; n < path->num_people(); ++n) {
+      PendulumState<double>& state = path->At(t, n);
+      if (trace != nullptr) {
+        for (Vector4<double>& part : trace->At(t, n).parts) part = axes.Force(state.q, part);
+      }
+      state.qd = axes.PoseJacobian(state.q) * state.qd;
+      state.q = axes.Pose(state.q);
+    }
+  }
+}
+
+}  // namespace
+
+double OwnAxes(const PendulumRecording& recording, Directions directions) {
+  if (directions == Directions::kAxes) return 0.0;
+  if (directions == Directions::kBody) return recording.facing;
+  const Eigen::Vector2d along = PushDirection(recording);
+  return std::atan2(along[1], along[0]);
+}
+
+std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
+    const std::vector<PendulumRecording>& recordings, Directions directions) {
+  if (directions == Directions::kAxes) return nullptr;
+  auto turned = std::make_shared<std::vector<PendulumRecording>>();
+  turned->reserve(recordings.size());
+  for (const PendulumRecording& recording : recordings) {
+    turned->push_back(Turned(recording, OwnAxes(recording, directions)));
+  }
+  return turned;
+}
+
+RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
+                               const std::vector<ParameterSet<double>>& parameters, int num_frames,
+                               RolloutPath<double>* path, FrameTable<NetForce<double>>* trace) {
+  const auto roll = [&](const Scene& scene) {
+    return Rollout(scene, options, parameters, InitialVelocities(scene), num_frames, path, trace);
+  };
+  const double angle = OwnAxes(recording, options.directions);
+  if (angle == 0.0) return roll(recording.scene);
+  const RolloutStatus status = roll(Turned(recording, angle).scene);
+  TurnBack(angle, path, trace, status.ok ? num_frames : status.frame);
+  return status;
+}
+
+}  // namespace pushid

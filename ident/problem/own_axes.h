@@ -1,0 +1,29 @@
+// ident: the axes in which a model sees a recording (Directions): turned about the vertical, along
+// its push or along what the pushed person faces.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "datasets/loading/pendulum_recording.h"
+#include "models/net_force.h"
+#include "models/options.h"
+#include "models/rollout.h"
+
+namespace pushid {
+
+// rad, from the file's x axis to the model's.
+double OwnAxes(const PendulumRecording& recording, Directions directions);
+
+// The recordings in a model's axes; null where those are the files'.
+std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
+    const std::vector<PendulumRecording>& recordings, Directions directions);
+
+// A rollout in a model's axes, seen in those of the file: what a fit that sees recordings in the
+// model's axes predicts. path and trace as those of Rollout.
+RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
+                               const std::vector<ParameterSet<double>>& parameters, int num_frames,
+                               RolloutPath<double>* path,
+                               FrameTable<NetForce<double>>* trace = nullptr);
+
+}  // namespace pushid
