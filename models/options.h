@@ -123,8 +123,8 @@ constexpr EnumNames<Posture, 2> Names(Posture) {
 
 // In which axes a fit sees people, and whether they answer alike in all directions.
 enum class Directions {
-  kIsotropic,  // along the push; what acts sideways is what acts forwards
-  kBody,       // along what the pushed person faces; sideways parameters are their own
+  kIsotropic,  // along the push on one person, what several face; sideways is as forwards
+  kBody,       // along what people face; sideways parameters are their own
   kAxes        // those of the file; sideways parameters are their own
 };
 constexpr EnumNames<Directions, 3> Names(Directions) {

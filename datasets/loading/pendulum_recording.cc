@@ -32,17 +32,19 @@ std::string HashOf(const PendulumRecording& recording, const std::string& files)
   return hash.Hex();
 }
 
-// Where the line between the ankles points forwards, over the frames before the push; 0 where the
-// ankles are one.
+// Where the lines between the ankles point forwards, on average over people and the frames before
+// the push; 0 where the ankles are one.
 double FacingBeforePush(const Recording& recording) {
-  const RecordedPerson& person = recording.people[recording.pushed_person];
-  int frames = static_cast<int>(person.hip.size());
+  int frames = recording.num_frames();
   for (const Push& push : recording.pushes) frames = std::min(frames, push.start_frame);
-  Eigen::Vector3d to_the_left = Eigen::Vector3d::Zero();
-  for (int t = 0; t < std::max(1, frames); ++t) {
-    to_the_left += person.left_ankle[t] - person.right_ankle[t];
+  Eigen::Vector2d to_the_left = Eigen::Vector2d::Zero();
+  for (const RecordedPerson& person : recording.people) {
+    Eigen::Vector3d own = Eigen::Vector3d::Zero();
+    for (int t = 0; t < std::max(1, frames); ++t)
+      own += person.left_ankle[t] - person.right_ankle[t];
+    if (own.head<2>().norm() > 0.0) to_the_left += own.head<2>().normalized();
   }
-  return to_the_left.head<2>().norm() > 0.0 ? std::atan2(-to_the_left.x(), to_the_left.y()) : 0.0;
+  return to_the_left.norm() > 0.0 ? std::atan2(-to_the_left.x(), to_the_left.y()) : 0.0;
 }
 
 }  // namespace
@@ -113,27 +115,39 @@ Eigen::Vector2d PushDirection(const PendulumRecording& recording) {
   return sum.norm() > 0.0 ? Eigen::Vector2d(sum.normalized()) : Eigen::Vector2d(1.0, 0.0);
 }
 
-PendulumRecording Turned(PendulumRecording recording, double angle) {
+Scene TurnedScene(const PendulumRecording& recording, double angle) {
   const TurnedAxes axes(angle);
-  recording.facing -= angle;
-  for (ScenePush& push : recording.scene.pushes) {
-    const std::vector<PendulumState<double>>& states = recording.states[push.person];
+  Scene scene = recording.scene;
+  for (ScenePush& push : scene.pushes) {
     for (size_t i = 0; i < push.force.size(); ++i) {
-      const size_t frame = std::min(states.size() - 1, push.start_frame + i);
-      push.force[i] = axes.Force(states[frame].q, push.force[i]);
+      // A scene alone has no poses but those of its start.
+      Vector4<double> pose = scene.people[push.person].start.q;
+      if (!recording.states.empty()) {
+        const std::vector<PendulumState<double>>& states = recording.states[push.person];
+        pose = states[std::min(states.size() - 1, push.start_frame + i)].q;
+      }
+      push.force[i] = axes.Force(pose, push.force[i]);
     }
     push = MakeScenePush(push.person, push.start_frame, push.kind, std::move(push.force));
   }
+  for (ScenePerson& person : scene.people) {
+    person.start.qd = axes.PoseJacobian(person.start.q) * person.start.qd;
+    person.start.q = axes.Pose(person.start.q);
+  }
+  return scene;
+}
+
+PendulumRecording Turned(PendulumRecording recording, double angle) {
+  const TurnedAxes axes(angle);
+  recording.scene = TurnedScene(recording, angle);
+  recording.facing -= angle;
   for (int n = 0; n < recording.num_people(); ++n) {
     for (Vector3<double>& hip : recording.hip[n]) hip = axes.Point(hip);
-    PendulumState<double>& start = recording.scene.people[n].start;
-    start.qd = axes.PoseJacobian(start.q) * start.qd;
-    start.q = axes.Pose(start.q);
     std::vector<PendulumState<double>>& states = recording.states[n];
     for (size_t t = 0; t < states.size(); ++t) {
       states[t].q = axes.Pose(states[t].q);
-      states[t].qd =
-          t == 0 ? start.qd : Vector4<double>((states[t].q - states[t - 1].q) / recording.scene.dt);
+      states[t].qd = t == 0 ? recording.scene.people[n].start.qd
+                            : Vector4<double>((states[t].q - states[t - 1].q) / recording.scene.dt);
     }
   }
   return recording;

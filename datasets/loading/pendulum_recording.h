@@ -15,7 +15,7 @@ struct PendulumRecording {
   std::string id;
   RecordingLabels labels;
   int pushed_person = 0;
-  double facing = 0.0;  // of the pushed person before the push, rad from x; by the ankles
+  double facing = 0.0;  // of its people before the push, rad from x; by the ankles
   InitialVelocity initial_velocity = InitialVelocity::kZero;
   std::vector<std::string> subject_ids;  // one per person
   Scene scene;
@@ -52,8 +52,9 @@ std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recordin
 // Horizontal and of length 1: of the impulse on the pushed person; x without one.
 Eigen::Vector2d PushDirection(const PendulumRecording& recording);
 
-// The recording in axes turned by so much about the vertical; the steps of its feet stay as they
-// are.
+// In axes turned by so much about the vertical; forces at the recorded poses. The steps of the feet
+// stay as they are.
+Scene TurnedScene(const PendulumRecording& recording, double angle);
 PendulumRecording Turned(PendulumRecording recording, double angle);
 
 // Error: a key (of --flag) that is neither `other` nor a label of any recording; it names those.

@@ -74,7 +74,17 @@ std::vector<Estimate> TableOfEstimates(const FitProblem& problem,
 std::vector<Combination> TableOfCombinations(const FitProblem& problem, const FitPoint& point,
                                              const Uncertainty& u) {
   std::vector<Combination> derived;
+  const ParameterTable& table = problem.options().table;
+  const auto tied = [&table](const Term& term) {
+    return table[term.parameter].tied_to.has_value();
+  };
+  const auto not_its_own = [&](const Term& term) { return tied(term) || term.parameter == kMu; };
   for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
+    // As another one is.
+    if (std::any_of(spec.terms.begin(), spec.terms.end(), tied) &&
+        std::all_of(spec.terms.begin(), spec.terms.end(), not_its_own)) {
+      continue;
+    }
     derived.push_back(Combine(problem, point, u, spec));
   }
   return derived;

@@ -225,7 +225,7 @@ std::vector<Row> ModelOptionRows() {
       MayBeAbsent(Decided(NameRow<Directions>(
           "directions", "/directions", [](O & o) -> auto& { return o.model.directions; },
           "isotropic (people answer alike in all directions; fitted along each push), body (along "
-          "what the pushed person faces) or axes (those of the file), both with sideways "
+          "what people face) or axes (those of the file), both with sideways "
           "parameters "
           "of their own"))),
       Decided(NameRow<GainScaling>(

@@ -28,7 +28,9 @@ void TurnBack(double angle, RolloutPath<double>* path, FrameTable<NetForce<doubl
 
 double OwnAxes(const PendulumRecording& recording, Directions directions) {
   if (directions == Directions::kAxes) return 0.0;
-  if (directions == Directions::kBody) return recording.facing;
+  // People who touch are deeper than wide.
+  const bool touch = recording.scene.num_people() > 1;
+  if (directions == Directions::kBody || touch) return recording.facing;
   const Eigen::Vector2d along = PushDirection(recording);
   return std::atan2(along[1], along[0]);
 }
@@ -52,7 +54,7 @@ RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOp
   };
   const double angle = OwnAxes(recording, options.directions);
   if (angle == 0.0) return roll(recording.scene);
-  const RolloutStatus status = roll(Turned(recording, angle).scene);
+  const RolloutStatus status = roll(TurnedScene(recording, angle));
   TurnBack(angle, path, trace, status.ok ? num_frames : status.frame);
   return status;
 }

@@ -1,5 +1,5 @@
 // ident: the axes in which a model sees a recording (Directions): turned about the vertical, along
-// its push or along what the pushed person faces.
+// the push on a person alone, or along what the people face.
 #pragma once
 
 #include <memory>

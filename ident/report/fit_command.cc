@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {
@@ -93,7 +94,25 @@ std::string FitCommand::Appended(const std::string& flag, const std::string& ite
   return item;
 }
 
+void FitCommand::TakeOut(const std::string& flag, const std::string& name, const char* without) {
+  std::string* const list = Find(flag);
+  if (list == nullptr) return;
+  std::string kept;
+  bool found = false;
+  for (const std::string& item : SplitList(*list)) {
+    const bool it = item.substr(0, item.find('=')) == name;
+    found = found || it;
+    if (!it) kept += (kept.empty() ? "" : ",") + item;
+  }
+  if (found) *list = kept.empty() ? without : kept;
+}
+
 FitCommand& FitCommand::Append(const std::string& flag, const std::string& item) {
+  if (flag == "fix") {
+    const std::string name = item.substr(0, item.find('='));
+    TakeOut("free", name, "");
+    TakeOut("pool", name, "none");
+  }
   return Set(flag, Appended(flag, item));
 }
 

@@ -24,7 +24,8 @@ class FitCommand {
 
   // In place of what the fit had.
   FitCommand& Set(const std::string& flag, const std::string& value);
-  // One more item of a comma-separated list: the flag given twice would lose the first list.
+  // One more item of a comma-separated list: the flag given twice would lose the first list. What
+  // is fixed is neither free nor pooled any more.
   FitCommand& Append(const std::string& flag, const std::string& item);
   // What Append would make of the list.
   std::string Appended(const std::string& flag, const std::string& item) const;
@@ -35,6 +36,8 @@ class FitCommand {
  private:
   explicit FitCommand(std::string program) : program_(std::move(program)) {}
   std::string* Find(const std::string& flag);
+  // Takes a parameter out of a list; without any left the list says none, or is gone.
+  void TakeOut(const std::string& flag, const std::string& name, const char* without);
   std::string program_;
   std::vector<std::pair<std::string, std::string>> flags_;  // in the order they are printed
 };

@@ -17,6 +17,7 @@ constexpr Remedy kRemedies[] = {
     {"scale of the pushes", "check the unit and the calibration of the force, and the masses"},
     {"lag of the pushes", "check the clocks; pushid-push --estimate_offset estimates an offset"},
     {"height of the pushes", "check at which height the pushes act"},
+    {"reaction delay", "see the delay that the literature gives, 0.1 to 0.2 s"},
     {"zero of the pushes", "check what the sensor reads before the push"},
     {"masses", "check the masses, and the unit of the force"},
     {"frame rate", "check the frame rate"},

@@ -127,6 +127,27 @@ Assumption Held(const ParameterSpec& spec) {
           }};
 }
 
+constexpr double kReactionDelay = 0.1;  // s
+
+// Of who stands: what is fitted as damping is less by the delay times the stiffness.
+Assumption Delayed(const FitProblem& problem, const FitPoint& point) {
+  const ParameterSet<double> values = problem.Parameters(point, "");
+  std::vector<std::pair<size_t, double>> shifts;  // of the shared values, per second of delay
+  for (const auto& [damping, stiffness] :
+       {std::pair(kKdTheta, kKpTheta), std::pair(kKdPhi, kKpPhi)}) {
+    for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
+      if (problem.map().fitted[i].parameter != damping) continue;
+      const Transform transform = problem.options().table[damping].transform;
+      shifts.emplace_back(i, -values[stiffness] / TransformSlope(transform, values[damping]));
+    }
+  }
+  Assumption delay{"reaction delay", "s", kReactionDelay, 1e-5, {}};
+  delay.move = [shifts](double eta, FitPoint* moved) {
+    for (const auto& [index, shift] : shifts) moved->shared[index] += eta * shift;
+  };
+  return delay;
+}
+
 StatedErrors Stated(const std::vector<PendulumRecording>& recordings) {
   if (recordings.empty()) return {};
   StatedErrors largest = recordings[0].stated_errors;
@@ -140,7 +161,7 @@ StatedErrors Stated(const std::vector<PendulumRecording>& recordings) {
 
 }  // namespace
 
-std::vector<Assumption> AssumptionsOf(const FitProblem& problem) {
+std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint& point) {
   std::vector<Assumption> all;
   bool measured = false, only_measured = true;
   for (const PendulumRecording& r : problem.recordings()) {
@@ -160,6 +181,7 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem) {
   all.push_back({"frame rate", "", stated.frame_rate, 1e-4, Hasten});
   all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, Drift});
   const FitOptions& options = problem.options();
+  if (options.model.stance == Stance::kFixed) all.push_back(Delayed(problem, point));
   for (const ParameterSpec& spec : options.table.specs) {
     const bool of_tail = spec.id >= kTailGain && spec.id <= kTailExponent;
     const bool tested = !spec.free && !spec.tied_to && !HeldByConvention(spec.id) &&

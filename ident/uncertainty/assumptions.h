@@ -22,13 +22,17 @@ struct Assumption {
   double sigma = 0.0;  // standard deviation that is stated of eta; 0: none, it is only tested
   double step = 0.0;   // of differences
   std::function<void(double eta, ChangedProblem*)> change;
+  // Instead: what looks like other estimates, and so is never told by the data alone.
+  std::function<void(double eta, FitPoint*)> move = {};
 };
 
 // Stated of what was measured: the largest of the recordings' (datasets/manifest/stated_errors.h).
 // Pushes by inverse dynamics have neither a clock, a height nor a zero of their own, and follow the
-// masses. Of a held gain, a factor of two; of a term left out, nothing.
+// masses. Of a held gain, a factor of two; of a term left out, nothing. Who stands reacts late,
+// by some 0.1 s: a torque Kp e(t - tau) is Kp e - tau Kp e' at first order, so that the damping
+// that is fitted is Kd - tau Kp.
 
 // Those of a problem that can have an effect.
-std::vector<Assumption> AssumptionsOf(const FitProblem& problem);
+std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint& point);
 
 }  // namespace pushid

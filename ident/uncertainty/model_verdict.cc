@@ -75,7 +75,7 @@ class ModelJudge {
         columns_(FittedColumns(problem, point)) {
     verdict_.not_checked = WhyNot(problem.options(), columns_.size(), clusters_.count());
     if (!verdict_.checked()) return;
-    assumptions_ = AssumptionsOf(problem);
+    assumptions_ = AssumptionsOf(problem, point);
     rows_ = EvaluateByFrame(problem, point, assumptions_);
     if (rows_.num_estimates == 0) verdict_.not_checked = "a rollout fails at the optimum";
   }
@@ -118,7 +118,7 @@ class ModelJudge {
           test.moves.push_back(a.sigma * moves[i] * Slope(i));
         }
       }
-      if (information > kLeastInformation * all) {
+      if (!a.move && information > kLeastInformation * all) {
         const Eigen::VectorXd parts =
             scores_.row(column).transpose() + scores_.topRows(n).transpose() * moves;
         test.wanted = -scores_.row(column).sum() / information;
@@ -205,7 +205,7 @@ class ModelJudge {
       total.error = Slope(i) * error;
       total.lower95 = ToNatural(column.transform, column.fitted - width);
       total.upper95 = ToNatural(column.transform, column.fitted + width);
-      total.narrow = IsNarrow(column.transform, column.natural, total.lower95, total.upper95);
+      total.narrow = IsNarrow(column.natural, total.lower95, total.upper95);
     }
   }
 

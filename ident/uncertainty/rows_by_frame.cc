@@ -33,6 +33,11 @@ FitPoint Moved(const FitPoint& point, int column, double step) {
 
 RawResiduals RawUnder(const Assumption& assumption, const FitProblem& problem,
                       const FitPoint& point) {
+  if (assumption.move) {
+    FitPoint moved = point;
+    assumption.move(assumption.step, &moved);
+    return RawOf(problem, moved);
+  }
   ChangedProblem changed{problem.recordings(), problem.options()};
   changed.options.model.directions = Directions::kAxes;  // the problem's own are turned already
   assumption.change(assumption.step, &changed);

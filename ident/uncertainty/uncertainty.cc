@@ -56,9 +56,8 @@ constexpr double kMostHalfWidth = 0.5;  // of the value
 
 }  // namespace
 
-bool IsNarrow(Transform transform, double value, double lower95, double upper95) {
-  const bool sign = transform == Transform::kIdentity && lower95 * upper95 > 0.0;
-  return sign || 0.5 * (upper95 - lower95) < kMostHalfWidth * std::abs(value);
+bool IsNarrow(double value, double lower95, double upper95) {
+  return 0.5 * (upper95 - lower95) < kMostHalfWidth * std::abs(value);
 }
 
 namespace {
@@ -70,7 +69,7 @@ EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched, boo
   if (e.shares.data < kHeldShare) return EstimateStatus::kPriorHeld;
   const double pull = std::abs(e.shares.prior_pull + e.shares.settling_pull);
   const bool leads = e.shares.data > kIdentifiedShare && pull < kMostPull * e.standard_error;
-  return !few_people && leads && IsNarrow(c.transform, c.natural, e.lower95, e.upper95)
+  return !few_people && leads && IsNarrow(c.natural, e.lower95, e.upper95)
              ? EstimateStatus::kIdentified
              : EstimateStatus::kWeak;
 }

@@ -35,8 +35,7 @@ class FitProblem;
 
 enum class EstimateStatus {
   // The data's share is above 80 %, priors and settling together pull it by less than half a
-  // standard error, and the interval's half-width is below half the value (where the parameter may
-  // take either sign: or the sign is certain).
+  // standard error, and the interval's half-width is below half the value.
   // Where the interval is about people like those recorded, they are four or more.
   kIdentified,
   kModelDependent,  // identified, if the model were right: its checks fail (model_verdict.h)
@@ -85,9 +84,8 @@ struct Estimate {
   EstimateStatus status = EstimateStatus::kIdentified;
 };
 
-// Whether an interval's half-width is below half the value; of a parameter that may take either
-// sign, whether the sign is certain.
-bool IsNarrow(Transform transform, double value, double lower95, double upper95);
+// Whether an interval's half-width is below half the value.
+bool IsNarrow(double value, double lower95, double upper95);
 
 // A sum of parameters, by natural values.
 struct Combination {

@@ -163,7 +163,7 @@ TEST_F(FitAppTest, AdviceRepeatsTheVeryFit) {
                                                     "--function_tolerance=1e-7",
                                                     "--leave_out=" + id_});
   const std::string out = fit_.out;
-  const size_t begin = out.find("\n  pushid-fit ");
+  const size_t begin = out.find("\n  pushid-fit ", out.find("a stronger settling constraint"));
   ASSERT_NE(begin, std::string::npos) << out;
   Words again = ShellWords(out.substr(begin, out.find('\n', begin + 1) - begin));
   again.erase(again.begin());

@@ -5,7 +5,9 @@
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
+#include "ident/report/fit_command.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -87,6 +89,18 @@ TEST(Advice, LooksAtSharesBeforeTerms) {
   AddPriorCheck(MakePendulums(study), &model);
   ASSERT_EQ(model.prior_check->rows.size(), 2u);
   EXPECT_FALSE(asks(model));
+}
+
+// A command that pools what it fixes would be refused.
+TEST(FitCommand, WhatIsFixedIsNeitherFreeNorPooled) {
+  Provenance from;
+  from.configuration = {{"free", "mu"}, {"pool", "mu,a_x"}, {"fix", "c_q"}};
+  from.changed_flags = {"free", "pool", "fix"};
+  EXPECT_EQ(FitCommand("pushid-fit", from).Append("fix", "mu=3").ToString(),
+            "pushid-fit --recordings=M/manifest.json --free='' --pool=a_x --fix=c_q,mu=3");
+  from.configuration["pool"] = "mu";
+  EXPECT_TRUE(
+      Contains(FitCommand("pushid-fit", from).Append("fix", "mu").ToString(), "--pool=none"));
 }
 
 }  // namespace
