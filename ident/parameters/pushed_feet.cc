@@ -34,7 +34,9 @@ PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings) {
 
 Stance StanceOf(const PushedFeet& feet) {
   if (feet.seen == 0 || feet.moved >= kEverybody * feet.seen) return Stance::kSlide;
-  return feet.moved == 0 ? Stance::kFixed : Stance::kThreshold;
+  if (feet.moved == 0) return Stance::kFixed;
+  // Feet that move and never leave the ground slide, if little.
+  return feet.stepped > 0 ? Stance::kThreshold : Stance::kSlide;
 }
 
 std::string FeetText(const PushedFeet& feet, Stance stance) {

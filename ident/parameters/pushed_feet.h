@@ -26,7 +26,8 @@ inline constexpr double kLeastSteppingRate = 29.0;
 
 PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings);
 
-// Nobody moved: fixed. Three in four moved, or nobody's feet were recorded: slide. Else: threshold.
+// Nobody moved: fixed. Three in four moved, none left the ground, or nobody's feet were recorded:
+// slide. Else: threshold.
 Stance StanceOf(const PushedFeet& feet);
 
 // What the feet of a model do and what those of the recordings did; empty: none were recorded.

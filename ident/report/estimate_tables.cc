@@ -127,6 +127,16 @@ std::string TargetText(const FitResult& result) {
               : "");
 }
 
+namespace {
+
+std::string Freedom(double least, double most) {
+  const std::string from = Rounded(least, 2), to = Rounded(most, 2);
+  return (from == to ? from : from + " to " + to) +
+         (to == "1" ? " degree of freedom" : " degrees of freedom");
+}
+
+}  // namespace
+
 std::string HowSure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   if (!u.clustered)
@@ -141,8 +151,7 @@ std::string HowSure(const FitResult& result) {
   return "standard errors: clustered by " +
          std::string(people ? (u.two_way ? "person and by recording" : "person") : "recording") +
          " (" + std::to_string(u.num_clusters) + (people ? " people" : " recordings") +
-         "; Student's t with " + Rounded(least, 2) + " to " + Rounded(most, 2) +
-         " degrees of freedom)" +
+         "; Student's t with " + Freedom(least, most) + ")" +
          (u.too_few_clusters ? "; correlations are those of independent frames" : "") + "\n" +
          TargetText(result);
 }

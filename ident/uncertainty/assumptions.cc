@@ -178,7 +178,7 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
     all.push_back({"zero of the pushes", "N", stated.push_zero_N, 1e-2, Shift});
   }
   all.push_back({"masses", "", stated.mass, 1e-4, Weigh});
-  all.push_back({"frame rate", "", stated.frame_rate, 1e-4, Hasten});
+  all.push_back({"frame rate", "", stated.frame_rate, 1e-4, Hasten, {}, true});
   all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, Drift});
   const FitOptions& options = problem.options();
   if (options.model.stance == Stance::kFixed) all.push_back(Delayed(problem, point));

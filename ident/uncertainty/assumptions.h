@@ -24,6 +24,8 @@ struct Assumption {
   std::function<void(double eta, ChangedProblem*)> change;
   // Instead: what looks like other estimates, and so is never told by the data alone.
   std::function<void(double eta, FitPoint*)> move = {};
+  // It scales measured rates, and what is compared with them instead: their noise would ask for less.
+  bool of_rates = false;
 };
 
 // Stated of what was measured: the largest of the recordings' (datasets/manifest/stated_errors.h).

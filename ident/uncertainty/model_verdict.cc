@@ -203,8 +203,10 @@ class ModelJudge {
       const double width = of.quantile * error;
       TotalError& total = uncertainty->estimates[i].total.emplace();
       total.error = Slope(i) * error;
-      total.lower95 = ToNatural(column.transform, column.fitted - width);
-      total.upper95 = ToNatural(column.transform, column.fitted + width);
+      // Never less than that of the data alone, which may have fewer degrees of freedom.
+      const Estimate& e = uncertainty->estimates[i];
+      total.lower95 = std::min(e.lower95, ToNatural(column.transform, column.fitted - width));
+      total.upper95 = std::max(e.upper95, ToNatural(column.transform, column.fitted + width));
       total.narrow = IsNarrow(column.natural, total.lower95, total.upper95);
     }
   }

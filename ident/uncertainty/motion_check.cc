@@ -118,15 +118,14 @@ std::vector<int> TurnsOf(const std::vector<double>& path, double drop) {
 MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
                                const Clusters& clusters) {
   Differences feet, time, turns;
-  double way = 0.0, error = 0.0;
+  std::vector<double> explained;
   for (size_t i = 0; i < problem.recordings().size(); ++i) {
     const PendulumRecording& r = problem.recordings()[i];
     if (problem.Count(static_cast<int>(i)) == 0) continue;
     const std::vector<double> raw = problem.RawResiduals(point, static_cast<int>(i));
     if (raw.empty()) return {};
     const Compared c = MotionOf(r, raw, problem.options().sigmas);
-    way += c.way;
-    error += c.error;
+    if (c.way > 0.0) explained.push_back(1.0 - c.error / c.way);
     const int cluster = clusters.of[i][r.pushed_person];
     feet.Add(cluster, c.recorded.feet.back() - c.predicted.feet.back());
     const std::vector<int> recorded = TurnsOf(Smoothed(c.recorded.hip, r.scene.dt), kDrop);
@@ -143,7 +142,7 @@ MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
         turns.Test("turns of the hip", "")}) {
     if (test) found.tests.push_back(*test);
   }
-  found.explained = way > 0.0 ? 1.0 - error / way : 1.0;
+  found.explained = explained.empty() ? 1.0 : Median(explained);
   return found;
 }
 

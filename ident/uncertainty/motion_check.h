@@ -19,7 +19,7 @@ struct MotionTest {
 
 struct MotionComparison {
   std::vector<MotionTest> tests;
-  double explained = 1.0;  // share of the hip's squared way from its first place; all recordings
+  double explained = 1.0;  // share of the hip's squared way from its first place; median recording
 };
 
 // Empty where a rollout fails.

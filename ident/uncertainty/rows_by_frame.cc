@@ -56,6 +56,20 @@ void SetDifferences(const RawResiduals& here, const RawResiduals& there, double 
   }
 }
 
+// With d(model - (1 + eta) measured) = d(model) - measured, the column holds the noise of what was
+// measured, which the residual holds as well: their product is no longer zero on average. The same
+// model, with d(model / (1 + eta) - measured) = d(model) - model: less by the residual.
+void LeaveOutNoiseOfRates(const RawResiduals& here, Eigen::Ref<Eigen::VectorXd> column) {
+  Eigen::Index row = 0;
+  for (const std::vector<double>& raw : here) {
+    for (size_t k = 0; k < raw.size(); ++k, ++row) {
+      const size_t channel = k % kFrameResiduals;
+      const bool rate = channel == 3 || channel == 4 || channel >= 7;
+      if (rate) column[row] -= raw[k];
+    }
+  }
+}
+
 // Raw rows become those of the cost: with c = sqrt(1 + |r|^2 / d^2), residual and Jacobian times
 // weight / sqrt(c); the loss's own Hessian has 1 / c of that along r (frame_residual.h).
 void WeighFrame(const double* raw, double weight, double robust, Eigen::Index row,
@@ -150,6 +164,9 @@ RowsByFrame EvaluateByFrame(const FitProblem& problem, const FitPoint& point,
         of_estimate ? RawOf(problem, Moved(point, column, step))
                     : RawUnder(assumptions[column - result.num_estimates], problem, point);
     SetDifferences(here, there, step, rows.jacobian.col(column).head(data));
+    if (!of_estimate && assumptions[column - result.num_estimates].of_rates) {
+      LeaveOutNoiseOfRates(here, rows.jacobian.col(column).head(data));
+    }
   });
   WeighFrames(problem, here, &result);
   AddBeside(score, assumptions, data, &result);

@@ -46,6 +46,7 @@ class Parameter(NamedTuple):
     value: float
     standard_error: float | None
     interval: tuple[float, float] | None
+    total: tuple[float, float] | None
     unit: str
     status: str
     shares: dict[str, float]
@@ -74,6 +75,7 @@ def findings(recordings: _Recording | Iterable[_Recording]) -> list[dict[str, An
 
 class Result:
     json: dict[str, Any]
+    verdict: dict[str, Any]
     table: Table
     names: list[str]
     covariance: tuple[list[str], ndarray]

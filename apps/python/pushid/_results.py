@@ -10,9 +10,10 @@ from . import _pushid
 from ._options import as_call, given, text_of
 from ._recordings import checked
 
-Parameter = namedtuple("Parameter", "name value standard_error interval unit status shares fixed")
+Parameter = namedtuple("Parameter", "name value standard_error interval total unit status shares fixed")
 Parameter.__doc__ = """A parameter of a result: value, standard error and 95 % interval (low, high) in `unit`; status
-("identified", "weak", "prior-held", "fixed", "derived", ...); shares: fractions due to data, priors and settling. What is
+("identified", "model-dependent", "weak", "prior-held", "fixed", "derived", ...); total: the interval with the errors of what is
+taken as known, by which the status is judged, None where there is none; shares: fractions due to data, priors and settling. What is
 fixed, or derived from fixed values alone, has neither error nor interval: both are None."""
 
 
@@ -29,7 +30,8 @@ def _parameter(row, status):
     interval = row.get("interval_95")
     known = status != "fixed" and interval is not None and interval[0] < interval[1]
     return Parameter(row["name"], row["value"], row.get("standard_error") if known else None,
-                     tuple(interval) if known else None, row.get("unit", ""), status, row.get("shares", {}),
+                     tuple(interval) if known else None,
+                     tuple(row["total"]["interval_95"]) if known and "total" in row else None, row.get("unit", ""), status, row.get("shares", {}),
                      status == "fixed")
 
 
@@ -61,6 +63,11 @@ class Result:
 
     def __init__(self, model):
         self._model, self._json = model, None
+
+    @property
+    def verdict(self):
+        """Whether the model fits these recordings: a dict; "fails", and the tests behind it."""
+        return _numbers(self.json["verdict"])
 
     @property
     def json(self):

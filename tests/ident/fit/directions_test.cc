@@ -120,11 +120,10 @@ TEST(Directions, ABodyTellsForwardsFromSideways) {
   const std::vector<PendulumRecording> pendulums =
       AsPendulums(TurnedBy(0.5 * M_PI, MakeRecordings(study)));
   EXPECT_NEAR(pendulums[0].facing, 0.5 * M_PI, 1e-9);
-  FitOptions options = UnbiasedFit(study);
+  FitOptions options = ExactFit(study);
   options.model.directions = Directions::kBody;
   options.table[kKpPhi].free = true;
   options.table[kKpPhi].nominal = 1500.0;
-  options.function_tolerance = 1e-16;
   const FitResult fit = Fit(pendulums, options);
   ASSERT_TRUE(fit.ok()) << fit.message;
   for (Parameter id : {kKpTheta, kKpPhi}) {

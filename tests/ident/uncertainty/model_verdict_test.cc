@@ -100,10 +100,22 @@ TEST(ModelVerdict, TotalErrorsAreLargerThanThoseOfTheDataAlone) {
 TEST(ModelVerdict, TotalErrorsFollowWhatIsStated) {
   std::vector<PendulumRecording> recordings = MakePendulums(Study(2));
   const FitResult plain = FitOf(recordings);
-  for (PendulumRecording& r : recordings) r.stated_errors.push_scale = 0.3;
+  for (PendulumRecording& r : recordings) r.stated_errors.push_lag_frames = 20.0;
   const FitResult rough = FitOf(recordings);
   EXPECT_GT(FindEstimate(rough.estimates, "Kp_theta")->total->error,
             1.5 * FindEstimate(plain.estimates, "Kp_theta")->total->error);
+}
+
+// Much noise on little motion: what is measured of rates is noise, and asks for nothing.
+TEST(ModelVerdict, NoiseAsksForNoOtherFrameRate) {
+  SyntheticOptions study = Study(1);
+  study.joint_noise_m = 0.01;
+  study.subject_spread = 0.02;
+  study.strengths = {{"weak", 0.4}};
+  const ModelVerdict verdict = FitOf(MakePendulums(study)).verdict;
+  const AssumptionTest* rate = Find(verdict, "frame rate");
+  ASSERT_NE(rate, nullptr);
+  EXPECT_LT(std::abs(rate->wanted), 4.0 * rate->error);
 }
 
 TEST(ModelVerdict, TurnsOfAPath) {
@@ -115,14 +127,16 @@ TEST(ModelVerdict, TurnsOfAPath) {
 
 // Feet that end elsewhere, hips that turn at another time and as often.
 TEST(ModelVerdict, MotionByHand) {
-  const FitResult result = FitOf(MakePendulums(Study(2)));
+  SyntheticOptions study = Study(2);
+  study.subject_spread = 0.03;
+  const FitResult result = FitOf(MakePendulums(study));
   const MotionComparison& motion = result.verdict.motion;
   EXPECT_GT(motion.explained, 0.9);
   ASSERT_FALSE(motion.tests.empty());
   EXPECT_EQ(motion.tests[0].quantity, "travel of the feet");
   EXPECT_LT(std::abs(motion.tests[0].difference), 0.02);
 
-  std::vector<PendulumRecording> recordings = MakePendulums(Study(2));
+  std::vector<PendulumRecording> recordings = MakePendulums(study);
   FitOptions options = MakePreset("tail").value();
   ASSERT_FALSE(PrepareFit(recordings, &options));
   const auto compare = [&] {
@@ -146,6 +160,7 @@ TEST(ModelVerdict, MotionByHand) {
 TEST(ModelVerdict, PushesFromTheSideAskForAnotherGain) {
   SyntheticOptions study = Study(4);
   study.direction_sigma_rad = 1.2;
+  study.subject_spread = 0.02;
   study.parameters[kKpPhi] = 2.5 * study.parameters[kKpTheta];
   const FitResult result = FitOf(MakePendulums(study));
   const auto from_the_side = [](const PartTest& test) { return test.part == kFromTheSide; };
