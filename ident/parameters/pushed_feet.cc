@@ -1,6 +1,7 @@
 // ident: feet that move, counted.
 #include "ident/parameters/pushed_feet.h"
 
+#include <algorithm>
 #include <set>
 
 namespace pushid {
@@ -12,6 +13,21 @@ constexpr double kEverybody = 0.75;
 
 std::string OfAll(const PushedFeet& feet) {
   return std::to_string(feet.moved) + " of " + std::to_string(feet.seen) + " pushes";
+}
+
+// Whether both feet go at once, over at least half of the longer step's time: they slide, as
+// nobody's who steps do.
+bool Glide(const FootStep& a, const FootStep& b) {
+  const int both = std::min(a.landing, b.landing) - std::max(a.lift_off, b.lift_off);
+  return a.foot != b.foot && 2 * both > std::max(a.landing - a.lift_off, b.landing - b.lift_off);
+}
+
+bool LiftsAFoot(const PersonSteps& person) {
+  const std::vector<FootStep>& steps = person.steps;
+  return std::any_of(steps.begin(), steps.end(), [&steps](const FootStep& one) {
+    return std::none_of(steps.begin(), steps.end(),
+                        [&one](const FootStep& other) { return Glide(one, other); });
+  });
 }
 
 }  // namespace
@@ -26,7 +42,7 @@ PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings) {
       const PersonSteps& steps = recording.steps[person];
       ++feet.seen;
       feet.moved += steps.Moved();
-      feet.stepped += steps.Stepped();
+      feet.stepped += LiftsAFoot(steps);
     }
   }
   return feet;

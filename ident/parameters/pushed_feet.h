@@ -17,7 +17,7 @@ namespace pushid {
 struct PushedFeet {
   int seen = 0;
   int moved = 0;    // stepped, or were elsewhere at the end (PersonSteps::Moved)
-  int stepped = 0;  // left the ground (foot_steps.h)
+  int stepped = 0;  // a foot left the ground (foot_steps.h) while the other did not
 };
 
 // 1/s: stepping feet (models/stance.h) get their speed within 20 ms, and longer steps of the

@@ -57,7 +57,8 @@ Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
   rows.first.count = clusters.count();
   for (size_t row = 0; row < score.cluster_of_row.size(); ++row) {
     const int recording = score.cluster_of_row[row];
-    if (recording < 0) {
+    // Of no recording, or of one that does not count.
+    if (recording < 0 || clusters.of[recording].empty()) {
       rows.first.of_row.push_back(-1);
       continue;
     }

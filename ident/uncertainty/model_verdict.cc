@@ -19,12 +19,11 @@ constexpr int kFewestClusters = 3;
 constexpr int kHorizons[] = {8, 16, 32, 64};  // frames
 constexpr double kLeastInformation = 1e-6;    // of an assumption, beside what estimates explain
 
-std::string WhyNot(const FitOptions& options, size_t estimates, int clusters) {
+std::string WhyNot(const FitOptions& options, size_t estimates) {
   if (options.likelihood != Likelihood::kTrajectory) return "the likelihood is of single steps";
   if (options.sigmas.loss != FrameLoss::kHip) return "the loss is LDP's";
   if (options.model.learned != nullptr) return "a network is fitted";
   if (estimates > kMostEstimates) return "there are more than 120 fitted numbers";
-  if (clusters < kFewestClusters) return "fewer than three people or recordings cannot tell";
   return "";
 }
 
@@ -73,7 +72,7 @@ class ModelJudge {
         point_(point),
         clusters_(MakeClusters(problem.recordings(), problem.options().cluster, problem.counts())),
         columns_(FittedColumns(problem, point)) {
-    verdict_.not_checked = WhyNot(problem.options(), columns_.size(), clusters_.count());
+    verdict_.not_checked = WhyNot(problem.options(), columns_.size());
     if (!verdict_.checked()) return;
     assumptions_ = AssumptionsOf(problem, point);
     rows_ = EvaluateByFrame(problem, point, assumptions_);
@@ -91,10 +90,14 @@ class ModelJudge {
     const Eigen::MatrixXd hessian = own.transpose() * own + InformationBeside(beside);
     inverse_ = SolveSymmetric(hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
     scores_ = Scores(rows_, clustering_.first, std::vector<bool>(rows_.frame_of_row.size(), true));
-    TestAssumptions(own);
-    TestParts(own);
-    TestMotion();
-    AddTotals(uncertainty);
+    if (clusters_.count() >= kFewestClusters) {
+      TestAssumptions(own);
+      TestParts(own);
+      TestMotion();
+    } else {
+      verdict_.not_checked = "fewer than three people or recordings cannot tell";
+    }
+    if (clusters_.count() > 1) AddTotals(uncertainty);
     return verdict_;
   }
 
@@ -151,7 +154,7 @@ class ModelJudge {
     std::set<int> inside, outside;  // clusters
     std::vector<bool> held(rows_.frame_of_row.size(), false);
     for (size_t i = 0; i < held.size(); ++i) {
-      if (rows_.frame_of_row[i] < 0) continue;
+      if (rows_.frame_of_row[i] < 0 || clustering_.first.of_row[i] < 0) continue;
       held[i] = holds(i);
       (held[i] ? inside : outside).insert(clustering_.first.of_row[i]);
       if (!held[i]) continue;
@@ -199,12 +202,13 @@ class ModelJudge {
     for (Eigen::Index i = 0; i < problem_.map().num_shared(); ++i) {
       const FittedColumn& column = columns_[i];
       const ScatterOf of = c.scatter.OfColumn(i);
-      const double error = std::hypot(of.standard_error, moves[i]);
+      Estimate& e = uncertainty->estimates[i];
+      const double pull = (e.shares.prior_pull + e.shares.settling_pull) / Slope(i);
+      const double error = std::hypot(std::hypot(of.standard_error, moves[i]), pull);
       const double width = of.quantile * error;
-      TotalError& total = uncertainty->estimates[i].total.emplace();
+      TotalError& total = e.total.emplace();
       total.error = Slope(i) * error;
       // Never less than that of the data alone, which may have fewer degrees of freedom.
-      const Estimate& e = uncertainty->estimates[i];
       total.lower95 = std::min(e.lower95, ToNatural(column.transform, column.fitted - width));
       total.upper95 = std::max(e.upper95, ToNatural(column.transform, column.fitted + width));
       total.narrow = IsNarrow(column.natural, total.lower95, total.upper95);

@@ -15,7 +15,8 @@
 //            explains most of their way
 //   total    errors of a fit in which everything with a sigma is free, with that prior: CR2 as
 //            uncertainty.h has it. What that fit would move an estimate by counts as an error of
-//            the estimate as well: total^2 = joint^2 + move^2
+//            the estimate as well, and so does what priors and settling pull it by:
+//            total^2 = joint^2 + move^2 + pull^2
 // The smallest p-value of each of the three families is multiplied by the number of its tests
 // (Bonferroni); the model fails where one is below kVerdictLevel, which are 5 % in all. The tests
 // know what is linear about the optimum and cannot see an error that looks like an estimate: those

@@ -116,6 +116,7 @@ TEST(Directions, ABodyTellsForwardsFromSideways) {
   SyntheticOptions study = People();
   study.joint_noise_m = 0.0;
   study.direction_sigma_rad = 1.0;
+  study.subject_spread = 0.0;
   study.parameters[kKpPhi] = 1.4 * study.parameters[kKpTheta];
   const std::vector<PendulumRecording> pendulums =
       AsPendulums(TurnedBy(0.5 * M_PI, MakeRecordings(study)));

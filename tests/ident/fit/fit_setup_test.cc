@@ -162,13 +162,14 @@ TEST(FitSetup, AutoLooksAtTheRecordings) {
   }
 }
 
-// Six pushed people, of whom so many moved their feet.
-std::vector<PendulumRecording> WhereMoved(int moved) {
+// Six pushed people, of whom so many moved their feet, the first by a step.
+std::vector<PendulumRecording> WhereMoved(int moved, bool by_steps = true) {
   std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
   for (size_t i = 0; i < recordings.size(); ++i) {
     recordings[i].steps.assign(1, PersonSteps());
     if (static_cast<int>(i) < moved) recordings[i].steps[0].travel = 0.3;
   }
+  if (moved > 0 && by_steps) recordings[0].steps[0].steps.resize(1);
   return recordings;
 }
 
@@ -181,6 +182,7 @@ TEST(FitSetup, FeetTellTheStance) {
   };
   EXPECT_EQ(stance(0, {}), Stance::kFixed);
   EXPECT_EQ(stance(3, {}), Stance::kThreshold);
+  EXPECT_EQ(StanceOf(FeetOf(WhereMoved(3, false))), Stance::kSlide) << "who slides a little";
   EXPECT_EQ(stance(5, {}), Stance::kSlide);
   EXPECT_EQ(stance(6, {}), Stance::kSlide);
   EXPECT_EQ(stance(0, {{"stance", "auto"}}), Stance::kFixed);
