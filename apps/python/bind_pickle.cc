@@ -22,6 +22,7 @@ void Fields(Archive& a, RecordedPerson& p) {
   a("mass_kg", p.mass_kg);
   a("file", p.file);
   a("file_clock_s", p.file_clock_s);
+  a("skipped_s", p.skipped_s);
   a("file_up", p.file_up);
   a("file_forward", p.file_forward);
   a("hip", p.hip);
@@ -44,6 +45,11 @@ void Fields(Archive& a, RecordedPerson& p) {
 }
 
 template <class Archive>
+void Fields(Archive& a, StatedErrors& s) {
+  for (const StatedErrorRow& row : kStatedErrors) a(row.key, s.*row.value);
+}
+
+template <class Archive>
 void Fields(Archive& a, Recording& r) {
   a("id", r.id);
   std::map<std::string, std::string> labels;
@@ -56,6 +62,7 @@ void Fields(Archive& a, Recording& r) {
   a("initial_velocity", r.initial_velocity);
   a("people", r.people);
   a("pushes", r.pushes);
+  a("stated_errors", r.stated_errors);
   a("content_hash", r.content_hash);
 }
 

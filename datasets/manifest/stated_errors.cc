@@ -23,6 +23,9 @@ StatedErrors ReadStatedErrors(const JsonDocument& document, JsonFields* fields,
     if (!given.failed() && !(value > 0.0 && std::isfinite(value))) {
       given.Fail(row.key, "must be a standard deviation above 0");
     }
+    if (!given.failed() && row.share && value > 1.0) {
+      given.Fail(row.key, "is a share: 0.05 means 5 %");
+    }
   }
   given.OnlyAsked();
   fields->Fail(given.error());

@@ -19,14 +19,15 @@ struct StatedErrors {
 struct StatedErrorRow {
   const char* key;
   double StatedErrors::*value;
+  bool share = false;  // of the quantity: at most 1
 };
 inline constexpr StatedErrorRow kStatedErrors[] = {
-    {"push_scale", &StatedErrors::push_scale},
+    {"push_scale", &StatedErrors::push_scale, true},
     {"push_lag_frames", &StatedErrors::push_lag_frames},
     {"push_height_m", &StatedErrors::push_height_m},
     {"push_zero_N", &StatedErrors::push_zero_N},
-    {"mass", &StatedErrors::mass},
-    {"frame_rate", &StatedErrors::frame_rate},
+    {"mass", &StatedErrors::mass, true},
+    {"frame_rate", &StatedErrors::frame_rate, true},
     {"drift_m", &StatedErrors::drift_m}};
 
 // The object under "stated_errors", on top of `stated`; Fails at keys that are none of these and at

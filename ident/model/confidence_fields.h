@@ -126,6 +126,7 @@ void Fields(Archive& a, ModelVerdict& v) {
   a("parts", v.parts);
   a("motion", v.motion.tests);
   a("explained", v.motion.explained);
+  a("of_pushes", v.of_pushes);
 }
 
 template <class Archive>

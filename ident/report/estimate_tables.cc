@@ -144,6 +144,7 @@ std::string HowSure(const FitResult& result) {
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kFixed) continue;
+    if (!std::isfinite(e.freedom)) continue;
     least = std::min(least, e.freedom);
     most = std::max(most, e.freedom);
   }

@@ -47,6 +47,10 @@ struct GainWords {
 constexpr GainWords kGainWords[] = {
     {"Kp_theta/(m g l)", "ankle stiffness",
      " times m g l (1 is just enough to hold a pendulum upright)", false},
+    {"Kp_theta/(M g l)", "ankle stiffness",
+     " times M g l (1.06 is just enough to hold a body upright)", false},
+    {"Kp_phi/(M g l)", "to the side", " times M g l", false},
+    {"Kd_theta/(M l^2)", "damping of the lean with a time constant of", " s", true},
     {"Kp_phi/(m g l)", "to the side", " times m g l", false},
     {"Kd_theta/(m l^2)", "damping of the lean with a time constant of", " s", true},
     {"c_x/M", "friction of the feet with a time constant of", " s", true},

@@ -9,15 +9,18 @@
 namespace pushid {
 namespace {
 
+constexpr double kFar = 0.5;  // shares beyond it are no more than a direction: tests are linear
+
+constexpr size_t kNamedSuspects = 3;
+
 struct Remedy {
   const char* name;  // of an assumption
   const char* text;
 };
 constexpr Remedy kRemedies[] = {
     {"scale of the pushes", "check the unit and the calibration of the force, and the masses"},
-    {"lag of the pushes", "check the clocks; pushid-push --estimate_offset estimates an offset"},
+    {"lag of the pushes", "check the clocks of forces and cameras"},
     {"height of the pushes", "check at which height the pushes act"},
-    {"reaction delay", "see the delay that the literature gives, 0.1 to 0.2 s"},
     {"zero of the pushes", "check what the sensor reads before the push"},
     {"masses", "check the masses, and the unit of the force"},
     {"frame rate", "check the frame rate"},
@@ -29,13 +32,24 @@ std::string RemedyOf(const std::string& name) {
   return found != std::end(kRemedies) ? found->text : "try --free=" + name;
 }
 
+// A quantity of the laboratory, and no parameter of the model.
+bool Measured(const AssumptionTest& test) {
+  return std::any_of(std::begin(kRemedies), std::end(kRemedies),
+                     [&test](const Remedy& r) { return r.name == test.name; });
+}
+
 // "the lag of the pushes 0.6 +- 0.2 frames larger", "Kd_theta 40 % smaller".
 std::string WantedText(const AssumptionTest& test) {
   const bool share = test.unit.empty();
-  // Of a held gain it is a logarithm, of the others a share: alike where they are small.
-  const double size = std::abs(test.wanted), factor = share ? 100.0 : 1.0;
-  return test.name + " " + Rounded(factor * size, 2) + " +- " + Rounded(factor * test.error, 2) +
-         (share ? " %" : " " + test.unit) + (test.wanted > 0.0 ? " larger" : " smaller");
+  // Of a held gain it is a logarithm, of the others a share.
+  const bool logarithm = share && !Measured(test);
+  const double size = std::abs(logarithm ? std::expm1(test.wanted) : test.wanted);
+  const double factor = share ? 100.0 : 1.0;
+  const std::string how_much = share && size > kFar ? "more than a half"
+                                                    : Rounded(factor * size, 2) + " +- " +
+                                                          Rounded(factor * test.error, 2) +
+                                                          (share ? " %" : " " + test.unit);
+  return test.name + " " + how_much + (test.wanted > 0.0 ? " larger" : " smaller");
 }
 
 template <typename Test>
@@ -45,14 +59,38 @@ const Test* Surest(const std::vector<Test>& tests) {
   return least == tests.end() ? nullptr : &*least;
 }
 
+// What the recordings want otherwise, the surest first: of what was measured; else of held gains;
+// else of terms that are left out, which can imitate any of the others.
+std::vector<const AssumptionTest*> Suspects(const ModelVerdict& v) {
+  if (v.p_assumptions >= kVerdictLevel) return {};
+  const double tests = static_cast<double>(v.NumTested());
+  std::vector<const AssumptionTest*> kinds[3];
+  for (const AssumptionTest& test : v.assumptions) {
+    if (test.p * tests >= kVerdictLevel) continue;
+    kinds[Measured(test) ? 0 : test.stated > 0.0 ? 1 : 2].push_back(&test);
+  }
+  for (auto& kind : kinds) {
+    if (kind.empty()) continue;
+    std::sort(kind.begin(), kind.end(),
+              [](const AssumptionTest* a, const AssumptionTest* b) { return a->p < b->p; });
+    kind.resize(std::min(kind.size(), kNamedSuspects));
+    return kind;
+  }
+  return {};
+}
+
 std::string FailureText(const ModelVerdict& v) {
   std::string text;
   const auto add = [&text](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
-  const AssumptionTest* known = Surest(v.assumptions);
-  if (known != nullptr && v.p_assumptions < kVerdictLevel) {
-    text = "the recordings want " + WantedText(*known) +
-           " than it was taken (p = " + Rounded(v.p_assumptions, 2) + " after " +
-           std::to_string(v.assumptions.size()) + " tests); " + RemedyOf(known->name);
+  for (const std::string& finding : v.of_pushes) add(finding);
+  const std::vector<const AssumptionTest*> wanted = Suspects(v);
+  if (!wanted.empty()) {
+    std::string all;
+    for (const AssumptionTest* test : wanted)
+      all += (all.empty() ? "" : ", or ") + WantedText(*test);
+    add("of what is taken as known, the recordings want " + all +
+        " (p = " + Rounded(v.p_assumptions, 2) + " after " + std::to_string(v.NumTested()) +
+        " tests); " + RemedyOf(wanted.front()->name));
   }
   const PartTest* part = Surest(v.parts);
   if (part != nullptr && v.p_parts < kVerdictLevel) {
@@ -68,11 +106,8 @@ std::string FailureText(const ModelVerdict& v) {
         Rounded(v.p_motion, 2) + " after " + std::to_string(v.motion.tests.size()) + " tests)");
   }
   if (v.motion.explained < kLeastExplained) {
-    add("it explains " + Rounded(100.0 * v.motion.explained, 2) + " % of the hips' squared way");
-  }
-  if (known != nullptr && v.p_assumptions >= kVerdictLevel) {
-    text +=
-        "; most likely of what was taken as known: " + known->name + ", " + RemedyOf(known->name);
+    add("it explains " + Rounded(100.0 * v.motion.explained, 2) +
+        " % of the hip's squared way in the median recording");
   }
   return text;
 }
@@ -83,20 +118,22 @@ std::string ModelVerdictText(const ModelVerdict& v) {
   if (!v.checked()) return "The model was not checked: " + v.not_checked + ".";
   if (v.fails()) {
     return "The model does not fit these recordings: " + FailureText(v) +
-           ". Estimates are model-dependent.";
+           ". Nothing is called identified.";
   }
-  return "The model check found nothing: " + std::to_string(v.assumptions.size()) +
+  return "The model check found nothing: " + std::to_string(v.NumTested()) +
          " quantities that are taken as known (p = " + Rounded(v.p_assumptions, 2) + "), " +
          std::to_string(v.parts.size()) +
          " scores of parts of the data (p = " + Rounded(v.p_parts, 2) + ") and " +
          std::to_string(v.motion.tests.size()) +
          " measures of feet and hips (p = " + Rounded(v.p_motion, 2) + "; each after all tests, " +
          std::to_string(v.freedom) + " degrees of freedom); it explains " +
-         Rounded(100.0 * v.motion.explained, 3) + " % of the hips' squared way.";
+         Rounded(100.0 * v.motion.explained, 3) +
+         " % of the hip's squared way in the median recording.";
 }
 
 TextTable AssumptionTable(const FitResult& result) {
-  TextTable table({"taken as known", "stated", "recordings want", "t", "p", "moves most"},
+  TextTable table({"taken as known", "stated", "recordings want", "t (stated in it)", "p",
+                   "by itself moves most"},
                   {true, false, false, false, false, true});
   for (const AssumptionTest& test : result.verdict.assumptions) {
     const std::string unit = test.unit.empty() ? "" : " " + test.unit;

@@ -87,11 +87,17 @@ void Weigh(double eta, ChangedProblem* p) {
   }
 }
 
-// More frames a second by the share eta.
+// More frames a second by the share eta; forces by inverse dynamics are masses times second
+// differences.
 void Hasten(double eta, ChangedProblem* p) {
   for (PendulumRecording& r : p->recordings) {
     r.scene.dt /= 1.0 + eta;
     for (ScenePerson& person : r.scene.people) person.start.qd *= 1.0 + eta;
+    for (ScenePush& push : r.scene.pushes) {
+      if (push.kind == PushKind::kExternal) continue;
+      for (Vector4<double>& row : push.force) row *= (1.0 + eta) * (1.0 + eta);
+      Renew(&push);
+    }
     for (auto& states : r.states) {
       for (PendulumState<double>& state : states) state.qd *= 1.0 + eta;
     }
@@ -119,7 +125,7 @@ constexpr double kFactorOfTwo = 0.6931471805599453;  // its logarithm
 Assumption Held(const ParameterSpec& spec) {
   const bool factor = spec.transform == Transform::kLog && spec.nominal > 0.0;
   const double stated = factor ? kFactorOfTwo : 0.0;
-  const double step = factor ? 1e-4 : 1e-4 * spec.scale;
+  const double step = factor ? kScaleStep : kScaleStep * spec.scale;
   return {spec.name, factor ? "" : spec.unit, stated, step,
           [id = spec.id, factor](double eta, ChangedProblem* p) {
             double& value = p->options.table[id].nominal;
@@ -148,6 +154,8 @@ Assumption Delayed(const FitProblem& problem, const FitPoint& point) {
   return delay;
 }
 
+}  // namespace
+
 StatedErrors Stated(const std::vector<PendulumRecording>& recordings) {
   if (recordings.empty()) return {};
   StatedErrors largest = recordings[0].stated_errors;
@@ -159,15 +167,14 @@ StatedErrors Stated(const std::vector<PendulumRecording>& recordings) {
   return largest;
 }
 
-}  // namespace
-
 std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint& point) {
   std::vector<Assumption> all;
   bool measured = false, only_measured = true;
   for (const PendulumRecording& r : problem.recordings()) {
     for (const ScenePush& push : r.scene.pushes) {
-      (push.kind == PushKind::kExternal ? measured : only_measured) =
-          push.kind == PushKind::kExternal;
+      const bool external = push.kind == PushKind::kExternal;
+      measured = measured || external;
+      only_measured = only_measured && external;
     }
   }
   const StatedErrors stated = Stated(problem.recordings());

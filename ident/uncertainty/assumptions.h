@@ -24,7 +24,8 @@ struct Assumption {
   std::function<void(double eta, ChangedProblem*)> change;
   // Instead: what looks like other estimates, and so is never told by the data alone.
   std::function<void(double eta, FitPoint*)> move = {};
-  // It scales measured rates, and what is compared with them instead: their noise would ask for less.
+  // It scales measured rates, and what is compared with them instead: their noise would ask for
+  // less.
   bool of_rates = false;
 };
 
@@ -33,6 +34,12 @@ struct Assumption {
 // masses. Of a held gain, a factor of two; of a term left out, nothing. Who stands reacts late,
 // by some 0.1 s: a torque Kp e(t - tau) is Kp e - tau Kp e' at first order, so that the damping
 // that is fitted is Kd - tau Kp.
+
+// The largest of the recordings.
+StatedErrors Stated(const std::vector<PendulumRecording>& recordings);
+
+// Steps of what has a typical size, in shares of that.
+inline constexpr double kScaleStep = 1e-4;
 
 // Those of a problem that can have an effect.
 std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint& point);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "datasets/inspection/findings.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/fitted_columns.h"
@@ -17,7 +18,9 @@ namespace {
 constexpr int kMostEstimates = 120;
 constexpr int kFewestClusters = 3;
 constexpr int kHorizons[] = {8, 16, 32, 64};  // frames
-constexpr double kLeastInformation = 1e-6;    // of an assumption, beside what estimates explain
+constexpr double kLeastShare = 0.5;         // of the data, of an estimate that parts are asked for
+constexpr double kReach = 30.0;             // errors of stated ones, beyond which nothing is told
+constexpr double kLeastInformation = 1e-6;  // of an assumption, beside what estimates explain
 
 std::string WhyNot(const FitOptions& options, size_t estimates) {
   if (options.likelihood != Likelihood::kTrajectory) return "the likelihood is of single steps";
@@ -41,22 +44,32 @@ Eigen::MatrixXd Scores(const RowsByFrame& by_frame, const RowClusters& clusters,
 }
 
 // Whether a push comes more from the side than from ahead or behind.
-std::vector<bool> FromTheSide(const std::vector<PendulumRecording>& recordings) {
-  std::vector<bool> aside;
-  for (const PendulumRecording& r : recordings) {
-    const Eigen::Vector2d push = PushDirection(r);
-    const Eigen::Vector2d facing(std::cos(r.facing), std::sin(r.facing));
-    aside.push_back(std::abs(push.dot(facing)) < std::sqrt(0.5));
-  }
-  return aside;
+bool FromTheSide(const PendulumRecording& r) {
+  const Eigen::Vector2d facing(std::cos(r.facing), std::sin(r.facing));
+  return std::abs(PushDirection(r).dot(facing)) < std::sqrt(0.5);
 }
 
-// The smallest p-value after all tests of a family.
+// Findings about how pushes and motion agree that at least half of the recordings have.
+std::vector<std::string> OfMostPushes(const std::vector<PendulumRecording>& recordings) {
+  std::vector<Finding> most;
+  const std::vector<Finding> all = FindingsOf(recordings);
+  for (FindingKind kind : {FindingKind::kAgainst, FindingKind::kAside, FindingKind::kGain,
+                           FindingKind::kNetGain, FindingKind::kLate, FindingKind::kEarly}) {
+    std::vector<Finding> same;
+    for (const Finding& finding : all) {
+      if (finding.kind == kind) same.push_back(finding);
+    }
+    if (2 * same.size() >= recordings.size()) most.insert(most.end(), same.begin(), same.end());
+  }
+  return FindingTexts(most);
+}
+
+// The smallest p-value after `num` tests of a family.
 template <typename Test>
-double Least(const std::vector<Test>& tests) {
+double Least(const std::vector<Test>& tests, size_t num) {
   double least = 1.0;
   for (const Test& test : tests) least = std::min(least, test.p);
-  return std::min(1.0, least * static_cast<double>(tests.size()));
+  return std::min(1.0, least * static_cast<double>(num));
 }
 
 // The error of a sum over clusters.
@@ -80,6 +93,7 @@ class ModelJudge {
   }
 
   ModelVerdict Run(Uncertainty* uncertainty) {
+    uncertainty_ = uncertainty;
     if (!verdict_.checked()) return verdict_;
     verdict_.freedom = clusters_.count() - 1;
     clustering_ = ClusterRows(problem_, clusters_, rows_.rows);
@@ -87,21 +101,30 @@ class ModelJudge {
     const Eigen::MatrixXd own = rows_.rows.robust_jacobian.leftCols(n);
     JacobianBlocks beside = rows_.rows;
     beside.jacobian = rows_.rows.jacobian.leftCols(n);
-    const Eigen::MatrixXd hessian = own.transpose() * own + InformationBeside(beside);
+    beside_ = InformationBeside(beside);
+    const Eigen::MatrixXd hessian = own.transpose() * own + beside_;
     inverse_ = SolveSymmetric(hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
     scores_ = Scores(rows_, clustering_.first, std::vector<bool>(rows_.frame_of_row.size(), true));
     if (clusters_.count() >= kFewestClusters) {
       TestAssumptions(own);
       TestParts(own);
       TestMotion();
+      verdict_.of_pushes = OfMostPushes(problem_.recordings());
     } else {
-      verdict_.not_checked = "fewer than three people or recordings cannot tell";
+      const bool people = clusters_.by == ClusterBy::kSubject;
+      verdict_.not_checked = std::to_string(clusters_.count()) +
+                             (people ? " people" : " recordings") +
+                             " cannot tell, three or more could";
     }
-    if (clusters_.count() > 1) AddTotals(uncertainty);
+    if (clusters_.count() > 1) AddTotals();
     return verdict_;
   }
 
  private:
+  const PendulumRecording& RecordingOf(size_t row) const {
+    return problem_.recordings()[static_cast<size_t>(rows_.rows.cluster_of_row[row])];
+  }
+
   double Slope(Eigen::Index i) const {
     return TransformSlope(columns_[i].transform, columns_[i].natural);
   }
@@ -125,26 +148,32 @@ class ModelJudge {
         const Eigen::VectorXd parts =
             scores_.row(column).transpose() + scores_.topRows(n).transpose() * moves;
         test.wanted = -scores_.row(column).sum() / information;
-        test.error = ErrorOfSum(parts) / information;
+        // Priors scatter about the truth as they say.
+        test.error =
+            std::hypot(ErrorOfSum(parts), std::sqrt(moves.dot(beside_ * moves))) / information;
         test.t = test.wanted / std::hypot(test.error, a.sigma);
         test.p = StudentTail(test.t, verdict_.freedom);
+        const double reach = a.sigma > 0.0 ? kReach * a.sigma : kReach * a.step / kScaleStep;
+        if (test.error > reach) test = {a.name, a.unit, a.sigma, 0.0, 0.0, 0.0, 1.0, test.moves};
       }
       verdict_.assumptions.push_back(std::move(test));
     }
-    verdict_.p_assumptions = Least(verdict_.assumptions);
+    verdict_.p_assumptions = Least(verdict_.assumptions, verdict_.NumTested());
   }
 
   // The parts of the data that are asked, by the rows they hold.
   void TestParts(const Eigen::MatrixXd& own) {
     for (int frames : kHorizons) {
-      TestPart("the first " + std::to_string(frames) + " frames", own,
-               [&](size_t row) { return rows_.frame_of_row[row] <= frames; });
+      TestPart("the first " + std::to_string(frames) + " frames from the push on", own,
+               [&](size_t row) {
+                 return rows_.frame_of_row[row] <= PushFrame(RecordingOf(row)) + frames;
+               });
     }
-    const std::vector<bool> aside = FromTheSide(problem_.recordings());
-    TestPart(kFromTheSide, own, [&](size_t row) {
-      return aside[static_cast<size_t>(rows_.rows.cluster_of_row[row])];
-    });
-    verdict_.p_parts = Least(verdict_.parts);
+    // Only where sideways is as forwards must pushes from the side ask for the same.
+    if (problem_.options().model.directions == Directions::kIsotropic) {
+      TestPart(kFromTheSide, own, [&](size_t row) { return FromTheSide(RecordingOf(row)); });
+    }
+    verdict_.p_parts = Least(verdict_.parts, verdict_.parts.size());
   }
 
   template <typename Holds>
@@ -171,7 +200,8 @@ class ModelJudge {
     const Eigen::VectorXd sum = some.rowwise().sum() - share * scores_.topRows(n).rowwise().sum();
     for (Eigen::Index i = 0; i < shared; ++i) {
       const double error = ErrorOfSum(parts.row(i).transpose());
-      if (error <= 0.0) continue;
+      // What priors hold asks for its prior, in parts more than in all.
+      if (error <= 0.0 || uncertainty_->estimates[i].shares.data < kLeastShare) continue;
       const double t = sum[i] / error;
       verdict_.parts.push_back({columns_[i].name, name, t, StudentTail(t, verdict_.freedom)});
     }
@@ -179,10 +209,10 @@ class ModelJudge {
 
   void TestMotion() {
     verdict_.motion = CompareMotion(problem_, point_, clusters_);
-    verdict_.p_motion = Least(verdict_.motion.tests);
+    verdict_.p_motion = Least(verdict_.motion.tests, verdict_.motion.tests.size());
   }
 
-  void AddTotals(Uncertainty* uncertainty) {
+  void AddTotals() {
     const int n = rows_.num_estimates;
     std::vector<int> joint;
     std::vector<double> unit;
@@ -202,8 +232,10 @@ class ModelJudge {
     for (Eigen::Index i = 0; i < problem_.map().num_shared(); ++i) {
       const FittedColumn& column = columns_[i];
       const ScatterOf of = c.scatter.OfColumn(i);
-      Estimate& e = uncertainty->estimates[i];
-      const double pull = (e.shares.prior_pull + e.shares.settling_pull) / Slope(i);
+      Estimate& e = uncertainty_->estimates[i];
+      const double slope = Slope(i);
+      const double pull =
+          slope > 0.0 ? (e.shares.prior_pull + e.shares.settling_pull) / slope : 0.0;
       const double error = std::hypot(std::hypot(of.standard_error, moves[i]), pull);
       const double width = of.quantile * error;
       TotalError& total = e.total.emplace();
@@ -211,29 +243,34 @@ class ModelJudge {
       // Never less than that of the data alone, which may have fewer degrees of freedom.
       total.lower95 = std::min(e.lower95, ToNatural(column.transform, column.fitted - width));
       total.upper95 = std::max(e.upper95, ToNatural(column.transform, column.fitted + width));
-      total.narrow = IsNarrow(column.natural, total.lower95, total.upper95);
     }
   }
 
   const FitProblem& problem_;
   const FitPoint& point_;
+  Uncertainty* uncertainty_ = nullptr;
   Clusters clusters_;
   std::vector<FittedColumn> columns_;
   std::vector<Assumption> assumptions_;
   RowsByFrame rows_;
   Clustering clustering_;
-  Eigen::MatrixXd inverse_, scores_;
+  Eigen::MatrixXd beside_, inverse_, scores_;
   ModelVerdict verdict_;
 };
 
 }  // namespace
 
+size_t ModelVerdict::NumTested() const {
+  return static_cast<size_t>(std::count_if(assumptions.begin(), assumptions.end(),
+                                           [](const AssumptionTest& t) { return t.error > 0.0; }));
+}
+
 ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point,
                         Uncertainty* uncertainty) {
   const ModelVerdict verdict = ModelJudge(problem, point).Run(uncertainty);
   for (Estimate& e : uncertainty->estimates) {
-    if (e.status != EstimateStatus::kIdentified || !e.total) continue;
-    if (!e.total->narrow) {
+    if (e.status != EstimateStatus::kIdentified) continue;
+    if (e.total && !IsNarrow(e.value, e.total->lower95, e.total->upper95)) {
       e.status = EstimateStatus::kWeak;
     } else if (verdict.fails()) {
       e.status = EstimateStatus::kModelDependent;

@@ -11,6 +11,8 @@
 //   part     a part of the data, the frames up to h or the pushes from the side, must ask for the
 //            same estimates as all of them: its score, less the share H_h H^-1 of all, is zero on
 //            average whatever the noise, clustered likewise (Hausman 1978; Newey 1985)
+//   pushes   most of them agree with the motion they made, in direction, size and time
+//            (datasets/inspection/findings.h)
 //   motion   feet end, and hips turn, where and when the model has it (motion_check.h); and it
 //            explains most of their way
 //   total    errors of a fit in which everything with a sigma is free, with that prior: CR2 as
@@ -53,14 +55,18 @@ struct ModelVerdict {
   std::vector<AssumptionTest> assumptions;
   std::vector<PartTest> parts;
   MotionComparison motion;
-  int freedom = 0;  // of all tests
+  std::vector<std::string> of_pushes;  // what cannot be right of most pushes (findings.h)
+  int freedom = 0;                     // of all tests
   // Times the number of tests, at most 1.
   double p_assumptions = 1.0, p_parts = 1.0, p_motion = 1.0;
 
+  // Of the assumptions: others look like estimates, or are told by nothing here.
+  size_t NumTested() const;
   bool checked() const { return not_checked.empty(); }
   bool fails() const {
-    return checked() && (p_assumptions < kVerdictLevel || p_parts < kVerdictLevel ||
-                         p_motion < kVerdictLevel || motion.explained < kLeastExplained);
+    return checked() &&
+           (!of_pushes.empty() || p_assumptions < kVerdictLevel || p_parts < kVerdictLevel ||
+            p_motion < kVerdictLevel || motion.explained < kLeastExplained);
   }
 };
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "ident/problem/statistics.h"
+#include "ident/uncertainty/assumptions.h"
 #include "residuals/frame_residual.h"
 
 namespace pushid {
@@ -24,6 +25,7 @@ struct Motion {
 struct Compared {
   Motion recorded, predicted;
   double way = 0.0, error = 0.0;  // of the hip, squared, m^2
+  bool whole = true;              // every frame was seen
 };
 
 Compared MotionOf(const PendulumRecording& r, const std::vector<double>& raw,
@@ -36,17 +38,19 @@ Compared MotionOf(const PendulumRecording& r, const std::vector<double>& raw,
     const Eigen::Vector2d hip = (r.hip[n][t] - r.hip[n][0]).head<2>();
     const Eigen::Vector2d at = (r.states[n][t].q - r.states[n][0].q).head<2>();
     Eigen::Vector2d error = Eigen::Vector2d::Zero();
-    if (t > 0) {
+    const double seen = t > 0 ? r.Weight(n, t) : 1.0;
+    c.whole = c.whole && seen > 0.0;
+    if (t > 0 && seen > 0.0) {
       const int row = ((t - 1) * r.num_people() + n) * kFrameResiduals;
       const Eigen::Map<const FrameVector<double>> residual(raw.data() + row);
-      error = sigmas.hip * residual.head<2>();
-      feet += r.scene.dt * sigmas.velocity * along.dot(residual.segment<2>(3));
+      error = sigmas.hip / seen * residual.head<2>();
+      feet += r.scene.dt * sigmas.velocity / seen * along.dot(residual.segment<2>(3));
     }
     c.recorded.hip.push_back(along.dot(hip));
     c.predicted.hip.push_back(along.dot(hip + error));
     c.recorded.feet.push_back(along.dot(at));
     c.predicted.feet.push_back(along.dot(at) + feet);
-    c.way += hip.squaredNorm();
+    if (seen > 0.0) c.way += hip.squaredNorm();
     c.error += error.squaredNorm();
   }
   return c;
@@ -73,7 +77,8 @@ class Differences {
     count_[cluster] += 1;
   }
 
-  std::optional<MotionTest> Test(const char* quantity, const char* unit) const {
+  // stated: an error that all have in common.
+  std::optional<MotionTest> Test(const char* quantity, const char* unit, double stated) const {
     const double n = static_cast<double>(sum_.size());
     if (n < 3.0) return std::nullopt;
     std::vector<double> means;
@@ -82,9 +87,9 @@ class Differences {
     double squares = 0.0;
     for (double one : means) squares += (one - mean) * (one - mean);
     MotionTest test{quantity, unit, mean, std::sqrt(squares / (n * (n - 1.0)))};
-    if (mean == 0.0) return test;
-    test.t = mean / test.error;
-    test.p = test.error > 0.0 ? StudentTail(test.t, n - 1.0) : 0.0;
+    if (test.error <= 0.0) return std::nullopt;  // alike in all: nobody knows how much they scatter
+    test.t = mean / std::hypot(test.error, stated);
+    test.p = StudentTail(test.t, n - 1.0);
     return test;
   }
 
@@ -126,6 +131,7 @@ MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
     if (raw.empty()) return {};
     const Compared c = MotionOf(r, raw, problem.options().sigmas);
     if (c.way > 0.0) explained.push_back(1.0 - c.error / c.way);
+    if (!c.whole) continue;
     const int cluster = clusters.of[i][r.pushed_person];
     feet.Add(cluster, c.recorded.feet.back() - c.predicted.feet.back());
     const std::vector<int> recorded = TurnsOf(Smoothed(c.recorded.hip, r.scene.dt), kDrop);
@@ -138,8 +144,9 @@ MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
   }
   MotionComparison found;
   for (const std::optional<MotionTest>& test :
-       {feet.Test("travel of the feet", "m"), time.Test("first turn of the hip", "s"),
-        turns.Test("turns of the hip", "")}) {
+       {feet.Test("travel of the feet", "m", Stated(problem.recordings()).drift_m),
+        time.Test("first turn of the hip", "s", 0.0),
+        turns.Test("number of turns of the hip", "", 0.0)}) {
     if (test) found.tests.push_back(*test);
   }
   found.explained = explained.empty() ? 1.0 : Median(explained);

@@ -18,7 +18,9 @@ using RawResiduals = std::vector<std::vector<double>>;  // by recording
 RawResiduals RawOf(const FitProblem& problem, const FitPoint& point) {
   RawResiduals raw;
   for (size_t i = 0; i < problem.recordings().size(); ++i) {
-    raw.push_back(problem.RawResiduals(point, static_cast<int>(i)));
+    const int recording = static_cast<int>(i);
+    raw.push_back(problem.Count(recording) == 0 ? std::vector<double>()
+                                                : problem.RawResiduals(point, recording));
   }
   return raw;
 }
@@ -70,13 +72,15 @@ void LeaveOutNoiseOfRates(const RawResiduals& here, Eigen::Ref<Eigen::VectorXd> 
   }
 }
 
-// Raw rows become those of the cost: with c = sqrt(1 + |r|^2 / d^2), residual and Jacobian times
-// weight / sqrt(c); the loss's own Hessian has 1 / c of that along r (frame_residual.h).
-void WeighFrame(const double* raw, double weight, double robust, Eigen::Index row,
+// Raw rows, times how much of the frame was seen, become those of the cost: with c = sqrt(1 + |r|^2
+// / d^2), residual and Jacobian times weight / sqrt(c); the loss's own Hessian has 1 / c of that
+// along r (frame_residual.h).
+void WeighFrame(const double* raw, double seen, double weight, double robust, Eigen::Index row,
                 JacobianBlocks* rows) {
   const Eigen::Map<const FrameVector<double>> r(raw);
   const double squared = r.squaredNorm();
-  const double c = robust > 0.0 ? std::sqrt(1.0 + squared / (robust * robust)) : 1.0;
+  const double whole = seen > 0.0 ? squared / (seen * seen) : 0.0;  // as if all of it counted
+  const double c = robust > 0.0 ? std::sqrt(1.0 + whole / (robust * robust)) : 1.0;
   auto jacobian = rows->jacobian.middleRows<kFrameResiduals>(row);
   jacobian *= weight / std::sqrt(c);
   rows->residuals.segment<kFrameResiduals>(row) = weight / std::sqrt(c) * r;
@@ -92,7 +96,8 @@ void WeighFrames(const FitProblem& problem, const RawResiduals& raw, RowsByFrame
     const int people = problem.recordings()[i].num_people();
     const double weight = problem.Weight(static_cast<int>(i), 0);
     for (int slot = 0; slot * kFrameResiduals < static_cast<int>(raw[i].size()); ++slot) {
-      WeighFrame(raw[i].data() + slot * kFrameResiduals, weight, robust, row, &result->rows);
+      const double seen = problem.recordings()[i].Weight(slot % people, 1 + slot / people);
+      WeighFrame(raw[i].data() + slot * kFrameResiduals, seen, weight, robust, row, &result->rows);
       row += kFrameResiduals;
       for (int k = 0; k < kFrameResiduals; ++k) {
         result->rows.cluster_of_row.push_back(static_cast<int>(i));
@@ -134,9 +139,9 @@ RowsByFrame EvaluateByFrame(const FitProblem& problem, const FitPoint& point,
   RowsByFrame result;
   const RawResiduals here = RawOf(problem, point);
   Eigen::Index data = 0;
-  for (const std::vector<double>& raw : here) {
-    if (raw.empty()) return result;
-    data += static_cast<Eigen::Index>(raw.size());
+  for (size_t i = 0; i < here.size(); ++i) {
+    if (here[i].empty() && problem.Count(static_cast<int>(i)) > 0) return result;
+    data += static_cast<Eigen::Index>(here[i].size());
   }
   FitPoint copy = point;
   const JacobianBlocks score = EvaluateJacobianBlocks(problem.Build(&copy, 0));

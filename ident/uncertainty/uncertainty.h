@@ -64,7 +64,6 @@ struct Shares {
 // What an estimate owes to what the fit takes as known as well, natural units (model_verdict.h).
 struct TotalError {
   double error = 0.0, lower95 = 0.0, upper95 = 0.0;
-  bool narrow = false;  // IsNarrow
 };
 
 // One fitted number: a shared parameter, a subject's deviation or an initial velocity.

@@ -10,6 +10,7 @@ starts      another optimum from other starts? (ident/README.md); ten seconds
 Times are those of one core; without one, seconds.
 """
 import json
+import math
 
 import studies
 from studies import number, with_error
@@ -27,7 +28,7 @@ def transcript():
 
 
 def interval(bounds):
-    return f"{number(bounds[0])} to {number(bounds[1])}"
+    return " to ".join(number(float(end)) if math.isfinite(float(end)) else "open" for end in bounds)
 
 
 def estimates(model):

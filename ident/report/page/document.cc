@@ -40,7 +40,7 @@ std::string FigureText(const ReportFigure& figure) {
 }
 
 std::string SectionText(const ReportSection& section) {
-  std::string text;
+  std::string text = section.alarm.empty() ? "" : section.alarm + "\n";
   for (std::string paragraph : section.paragraphs) {
     while (!paragraph.empty() && paragraph.back() == '\n') paragraph.pop_back();
     if (!paragraph.empty()) text += paragraph + "\n";
@@ -146,15 +146,15 @@ std::string FigureHtml(const ReportFigure& figure) {
 }
 
 bool IsEmpty(const ReportSection& s) {
-  return s.paragraphs.empty() && s.advice.empty() && s.tables.empty() && s.figures.empty() &&
-         s.folds.empty() && s.widget.empty();
+  return s.alarm.empty() && s.paragraphs.empty() && s.advice.empty() && s.tables.empty() &&
+         s.figures.empty() && s.folds.empty() && s.widget.empty();
 }
 
 // Lines that belong together stay one paragraph.
-std::string Paragraph(std::string text) {
+std::string Paragraph(std::string text, const char* opening = "<p>") {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
   if (text.empty()) return "";
-  std::string html = "<p>";
+  std::string html = opening;
   size_t from = 0;
   for (size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n', from)) {
     html += EscapeXml(text.substr(from, end - from)) + "<br>";
@@ -165,6 +165,7 @@ std::string Paragraph(std::string text) {
 
 std::string SectionHtml(const ReportSection& section) {
   std::string html = "<section id=\"" + section.id + "\">\n" + Element("h2", section.title);
+  html += Paragraph(section.alarm, "<p class=\"alarm\">");
   for (const std::string& text : section.paragraphs) html += Paragraph(text);
   for (const auto& [sentence, command] : section.advice) {
     html += Paragraph(sentence);

@@ -36,7 +36,8 @@ struct ReportSection {
   std::vector<ReportTable> tables;
   std::vector<ReportFigure> figures;
   std::vector<ReportFold> folds;
-  std::string widget;  // HTML that only a page can show; empty elsewhere
+  std::string widget;      // HTML that only a page can show; empty elsewhere
+  std::string alarm = {};  // before everything else, and in red
 
   // A further paragraph or table, unless there is nothing in it.
   void Say(const std::string& text) {

@@ -24,6 +24,7 @@ th,td{padding:.2rem .8rem .2rem 0;text-align:left;border-bottom:1px solid var(--
 td:last-child{white-space:normal;min-width:6rem}
 th{font-weight:600}
 .number{text-align:right}
+.alarm{border-left:5px solid #c62828;background:var(--box);padding:.5rem .8rem}
 figure{margin:1rem 0;break-inside:avoid}
 figcaption{color:var(--faint);font-size:.85rem;max-width:78ch}
 .scroll svg{display:block}

@@ -10,11 +10,13 @@
 #include "ident/report/page/sections.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/value_text.h"
+#include "ident/report/verdict_text.h"
 
 namespace pushid {
 namespace {
 
 constexpr char kClusteredLook[] = "fill:none;stroke-width:3;stroke:#3b82f6";
+constexpr char kTotalLook[] = "fill:none;stroke-width:3;stroke:#9ca3af";
 constexpr char kTheseLook[] = "fill:none;stroke-width:3;stroke:#93c5fd";
 constexpr char kProfileLook[] = "fill:none;stroke-width:3;stroke:#009e73";
 constexpr char kBootstrapLook[] = "fill:none;stroke-width:3;stroke:#cc79a7";
@@ -170,13 +172,16 @@ ReportSection ParameterSection(const ReportSource& source) {
   section.Say(GainsText(source.fit));
   section.Show("fitted and held", EstimateTable(source.fit));
   section.Show("derived", DerivedTable(source.fit));
+  if (source.fit.verdict.checked()) {
+    section.Show("taken as known, and what the recordings say of it", AssumptionTable(source.fit));
+  }
   const std::vector<Agreement> agreements = CompareIntervals(source.model);
   std::vector<ForestRow> rows;
-  bool told_apart = false;
+  bool told_apart = false, with_total = false;
   TextTable numbers({"parameter", "unit", "value", "nominal", "clustered_lower95",
-                     "clustered_upper95", "these_people_lower95", "these_people_upper95",
-                     "profile_lower95", "profile_upper95", "bootstrap_lower95",
-                     "bootstrap_upper95"});
+                     "clustered_upper95", "total_lower95", "total_upper95", "these_people_lower95",
+                     "these_people_upper95", "profile_lower95", "profile_upper95",
+                     "bootstrap_lower95", "bootstrap_upper95"});
   for (const Estimate& e : source.fit.estimates) {
     const ParameterSpec* spec = source.fit.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
@@ -194,6 +199,10 @@ ReportSection ParameterSection(const ReportSource& source) {
       cells.push_back(interval == nullptr ? "" : DoubleText(interval->upper));
     };
     add(&clustered, nullptr);
+    const Interval total =
+        e.total ? Interval{e.total->error, e.total->lower95, e.total->upper95} : clustered;
+    add(e.total ? &total : nullptr, kTotalLook);
+    with_total = with_total || e.total;
     add(e.these ? &*e.these : nullptr, kTheseLook);
     told_apart = told_apart || e.these;
     const bool known = agreement != nullptr;
@@ -205,6 +214,7 @@ ReportSection ParameterSection(const ReportSource& source) {
   std::vector<LegendEntry> legend = {{"clustered 95 %", kClusteredLook}};
   if (told_apart)
     legend = {{"people like them, 95 %", kClusteredLook}, {"these people", kTheseLook}};
+  if (with_total) legend.push_back({"total 95 %", kTotalLook});
   if (!source.model.profiles.empty()) legend.push_back({"profile", kProfileLook});
   if (source.model.bootstrap) legend.push_back({"bootstrap", kBootstrapLook});
   legend.push_back({"nominal", kNominalLook});

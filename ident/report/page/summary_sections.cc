@@ -65,11 +65,13 @@ std::string Known(const FitResult& result) {
          "; " + VerdictSentence(verdict, result.behaviour) + ".";
 }
 
-// Which intervals ValueText shows.
+// Which intervals ValueText shows, where it shows any.
 std::string Brackets(const FitResult& result) {
+  if (With(result, EstimateStatus::kIdentified).empty()) return "";
   const bool total = std::any_of(result.estimates.begin(), result.estimates.end(),
                                  [](const Estimate& e) { return e.total.has_value(); });
-  return total ? "95 % intervals, with the errors of what is taken as known" : "95 % intervals";
+  return total ? " In brackets: 95 % intervals, with the errors of what is taken as known."
+               : " In brackets: 95 % intervals.";
 }
 
 std::string NotKnown(const FitResult& result) {
@@ -151,11 +153,16 @@ TextTable Legend(const FitResult& result) {
 
 ReportSection LeadSection(const ReportSource& source) {
   ReportSection section;
-  section.paragraphs = {ModelVerdictText(source.fit.verdict),
-                        Known(source.fit) + " In brackets: " + Brackets(source.fit) + ".",
-                        NotKnown(source.fit)};
+  const std::string verdict = ModelVerdictText(source.fit.verdict);
+  if (source.fit.verdict.fails()) {
+    section.alarm = verdict;
+  } else {
+    section.Say(verdict);
+  }
+  section.Say(Known(source.fit) + Brackets(source.fit));
+  section.Say(NotKnown(source.fit));
   section.Say(GainsText(source.fit));
-  section.Say(DoesNotFit(source));
+  if (!source.fit.verdict.checked()) section.Say(DoesNotFit(source));
   section.Say(Travels(source.propagation));
   section.Say(Next(source.model));
   section.Show("the parameters that were fitted", Legend(source.fit));

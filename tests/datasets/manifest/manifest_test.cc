@@ -65,6 +65,8 @@ TEST_F(ManifestTest, StatedErrors) {
   EXPECT_EQ(own.push_scale, StatedErrors().push_scale);
   json["recordings"][0]["stated_errors"] = {{"mass", -0.02}};
   EXPECT_TRUE(Contains(read().error().ToString(), "stated_errors: mass must be a standard"));
+  json["recordings"][0]["stated_errors"] = {{"mass", 3}};
+  EXPECT_TRUE(Contains(read().error().ToString(), "mass is a share: 0.05 means 5 %"));
   json["recordings"][0]["stated_errors"] = {{"weight", 0.02}};
   EXPECT_TRUE(Contains(read().error().ToString(), "weight is not known; there may be push_scale"));
   json["recordings"][0]["stated_errors"] = 0.02;
