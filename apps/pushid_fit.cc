@@ -74,9 +74,8 @@ int Run() {
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const ClusterBy drawn_by =
       checks.bootstrap.by == ClusterBy::kAuto ? roughly.cluster : checks.bootstrap.by;
-  const std::vector<PendulumRecording> pendulums =
-      Resampled(MakePendulumRecordings(recordings.value(), roughly.mapping), drawn_by, Seed(),
-                FLAGS_replica);
+  const std::vector<PendulumRecording> pendulums = Resampled(
+      MakePendulumRecordings(recordings.value(), roughly.mapping), drawn_by, Seed(), FLAGS_replica);
 
   Result<FitOptions> options = setup.value().For(pendulums);
   if (!options.ok()) return Fail(options.error());

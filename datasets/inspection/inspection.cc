@@ -14,8 +14,8 @@
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/manifest/joint_choice.h"
-#include "datasets/sensors/sensor_choice.h"
 #include "datasets/manifest/manifest.h"
+#include "datasets/sensors/sensor_choice.h"
 
 namespace pushid {
 namespace {

@@ -23,7 +23,7 @@ def fit(*flags):
 
 
 def transcript():
-    text = fit().text.split("\n\nexplained least")[0]  # the diagnostics name recordings
+    text = fit().text.split("\n\ntaken as known")[0]  # the diagnostics name recordings
     return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single", text)
 
 

@@ -234,7 +234,8 @@ TEST(ResultJson, DamageIsNamed) {
   for (const auto& [key, value] : good.items()) {
     // Older models have none.
     static const std::set<std::string> kLater = {
-        "format_version", "diagnostics", "changed_flags", "push_range", "recording_effect", "feet", "verdict"};
+        "format_version",   "diagnostics", "changed_flags", "push_range",
+        "recording_effect", "feet",        "verdict"};
     if (kLater.count(key) > 0) continue;
     json = good;
     json.erase(key);
