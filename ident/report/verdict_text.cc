@@ -139,7 +139,8 @@ TextTable AssumptionTable(const FitResult& result) {
     const std::string unit = test.unit.empty() ? "" : " " + test.unit;
     std::string moves;
     double most = 0.0;
-    for (size_t i = 0; i < test.moves.size(); ++i) {
+    const size_t known = std::min(test.moves.size(), result.uncertainty.estimates.size());
+    for (size_t i = 0; i < known; ++i) {
       const Estimate& e = result.uncertainty.estimates[i];
       if (e.standard_error <= 0.0 || std::abs(test.moves[i]) < most * e.standard_error) continue;
       most = std::abs(test.moves[i]) / e.standard_error;

@@ -24,8 +24,19 @@ FittedModel OfPreset(const std::string& name) {
   result.parameters = preset.table.Values();
   for (const ParameterSpec& spec : preset.table.specs) {
     const EstimateStatus status = spec.free ? EstimateStatus::kIdentified : EstimateStatus::kFixed;
-    result.estimates.push_back(
-        {spec.name, spec.unit, spec.nominal, 0.1, 0.02, spec.lower, spec.upper, 3.0, {}, status});
+    result.estimates.push_back({spec.name,
+                                spec.unit,
+                                spec.nominal,
+                                0.1,
+                                0.02,
+                                spec.lower,
+                                spec.upper,
+                                3.0,
+                                3.18,
+                                Interval{0.1, spec.lower, spec.upper},
+                                TotalError{0.2, spec.lower, spec.upper},
+                                {},
+                                status});
     if (spec.free) result.uncertainty.estimates.push_back(result.estimates.back());
   }
   const int free = static_cast<int>(result.uncertainty.estimates.size());
@@ -70,8 +81,12 @@ void AddConfidence(FittedModel* model) {
                       "threshold",
                       {{10.0, 1.3, {{"a_x", -0.1}}}}}};
   model->bootstrap = Bootstrap{2, 7, 1, {"mu"}, {"N s/m"}, {{0.1}, {0.7}}, {0.3}, {0.1}, {0.7}};
+  result->verdict.not_checked.clear();
+  result->verdict.assumptions = {{"masses", "", 0.03, 0.1, 0.05, 1.7, 0.1, {0.3}}};
+  result->verdict.parts = {{"mu", "the first 8 frames", 2.0, 0.05}};
+  result->verdict.motion.tests = {{"travel of the feet", "m", 0.01, 0.02, 0.5, 0.6}};
   Diagnostics& d = result->diagnostics;
-  d.start = {kInfinity, {}, {"t_v"}, {"moved"}, {"grams"}};
+  d.start = {kInfinity, {}, {"t_v"}, {"moved"}, {{FindingKind::kMass, "one", "S0", 62000.0}}};
   d.start.null_directions = {{{"mu", "Kp_x"}, {1.0, -1.0}, result->derived, "cannot be told"}};
   result->uncertainty.null_directions = d.start.null_directions;
   d.recordings = {{"one", 97.0, 0.2, 0.9, 31.0, 1e-7, {{3, 0, 2.3, 0.1}}}};

@@ -11,6 +11,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/fit/fit.h"
 #include "ident/report/report_text.h"
+#include "ident/report/verdict_text.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -284,6 +285,14 @@ TEST_F(ResultFile, BadFilesAreNamed) {
   const Result<FittedModel> missing = ReadFittedModel(Path("missing.json"));
   ASSERT_FALSE(missing.ok());
   EXPECT_TRUE(Contains(missing.error().ToString(), "missing.json"));
+}
+
+// A damaged verdict that moves more estimates than there are.
+TEST(ResultJson, AVerdictOfMoreEstimatesIsShown) {
+  FitResult result;
+  result.verdict.not_checked.clear();
+  result.verdict.assumptions = {{"masses", "", 0.03, 0.1, 0.05, 1.7, 0.1, {0.3, 0.4}}};
+  EXPECT_TRUE(Contains(AssumptionTable(result).ToString(), "masses"));
 }
 
 }  // namespace
