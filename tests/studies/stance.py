@@ -72,7 +72,7 @@ def sways():
     rows = []
     for impulse in IMPULSES:
         out = studies.run("pushid-formation", f"--model={model}", "--formation=line", "--people=1",
-                          f"--push={impulse}", "--push_duration=0.7", "--duration=6", out="csv_out").text
+                          f"--push={impulse}", "--push_duration=0.7", "--duration=6", out=None).text
         lines = out.splitlines()
         row = dict(zip(lines[1].replace("x m", "x_m").replace("y m", "y_m").replace("onset s", "onset_s")
                        .replace("peak m/s", "peak").replace("displaced m", "displaced").split(), lines[2].split()))
