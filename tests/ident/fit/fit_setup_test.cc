@@ -9,7 +9,6 @@
 #include "ident/fit/fit.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/parameters/option_table.h"
-#include "ident/parameters/pushed_feet.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -160,63 +159,6 @@ TEST(FitSetup, AutoLooksAtTheRecordings) {
     const FitOptions made = MakeFitOptions({{"fix", "mu=40"}}, &recordings).value();
     EXPECT_EQ(SettingsJson(setup.value().For(recordings).value()), SettingsJson(made));
   }
-}
-
-// Six pushed people, of whom so many moved their feet, the first by a step.
-std::vector<PendulumRecording> WhereMoved(int moved, bool by_steps = true) {
-  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
-  for (size_t i = 0; i < recordings.size(); ++i) {
-    recordings[i].steps.assign(1, PersonSteps());
-    if (static_cast<int>(i) < moved) recordings[i].steps[0].travel = 0.3;
-  }
-  if (moved > 0 && by_steps) recordings[0].steps[0].steps.resize(1);
-  return recordings;
-}
-
-TEST(FitSetup, FeetTellTheStance) {
-  const auto stance = [](int moved, const GivenOptions& given) {
-    const std::vector<PendulumRecording> recordings = WhereMoved(moved);
-    const Result<FitOptions> made = MakeFitOptions(given, &recordings, given);
-    EXPECT_TRUE(made.ok()) << made.error().ToString();
-    return made.value().model.stance;
-  };
-  EXPECT_EQ(stance(0, {}), Stance::kFixed);
-  EXPECT_EQ(stance(3, {}), Stance::kThreshold);
-  EXPECT_EQ(StanceOf(FeetOf(WhereMoved(3, false))), Stance::kSlide) << "who slides a little";
-  EXPECT_EQ(stance(5, {}), Stance::kSlide);
-  EXPECT_EQ(stance(6, {}), Stance::kSlide);
-  EXPECT_EQ(stance(0, {{"stance", "auto"}}), Stance::kFixed);
-  EXPECT_EQ(stance(0, {{"preset", "tail"}}), Stance::kFixed);
-  // Asked otherwise, published, or with what only feet that slide can do.
-  EXPECT_EQ(stance(0, {{"stance", "slide"}}), Stance::kSlide);
-  EXPECT_EQ(stance(6, {{"stance", "fixed"}}), Stance::kFixed);
-  EXPECT_EQ(stance(0, {{"preset", "ldp"}}), Stance::kSlide);
-  EXPECT_EQ(stance(0, {{"likelihood", "innovation"}}), Stance::kSlide);
-  EXPECT_EQ(stance(0, {{"free", "mu"}}), Stance::kSlide);
-  EXPECT_EQ(stance(0, {{"rod", "linear"}}), Stance::kSlide);
-}
-
-TEST(FitSetup, HeldFeetFreeBothGainsOfBothDirections) {
-  const FitOptions o = MakeFitOptions({{"preset", "tail"}, {"stance", "fixed"}}).value();
-  for (const ParameterSpec& spec : o.table.specs) {
-    const bool free = spec.id == kKpTheta || spec.id == kKpPhi || spec.id == kKdTheta ||
-                      spec.id == kKdPhi || spec.id == kComHeight;
-    EXPECT_EQ(spec.free, free) << spec.name;
-  }
-  EXPECT_EQ(o.settling_weight, 0.0);
-  EXPECT_EQ(o.model.push_tail, PushTail::kNone);
-}
-
-TEST(PushedFeet, InWords) {
-  const PushedFeet stand = FeetOf(WhereMoved(0)), some = FeetOf(WhereMoved(2));
-  EXPECT_EQ(FeetText(stand, Stance::kFixed),
-            "feet hold (--stance=fixed; they moved in 0 of 6 pushes)");
-  EXPECT_EQ(FeetText(some, Stance::kThreshold),
-            "feet hold, then step (--stance=threshold; they moved in 2 of 6 pushes)");
-  EXPECT_EQ(FeetText(PushedFeet(), Stance::kSlide), "");
-  EXPECT_EQ(FeetWarning(stand, Stance::kFixed), "");
-  EXPECT_TRUE(Contains(FeetWarning(stand, Stance::kSlide), "--stance=fixed"));
-  EXPECT_TRUE(Contains(FeetWarning(some, Stance::kFixed), "2 of 6"));
 }
 
 TEST(FitSetup, LdpsLossWeighsItsRowsAlikeUnlessToldOtherwise) {
