@@ -7,13 +7,15 @@
 //     F_theta = -s k  iff  s theta_n >= 0.1 or s theta_j <= -0.1
 //   and with s = sign(y_j - y_n), F_phi = +s k  iff  s phi_n <= -0.1 or s phi_j >= 0.1:
 //   push away when I lean towards the neighbour or the neighbour leans towards me.
-//   All of it times clamp(|v|, 0.8, 10) min(1, 0.5 + (range - d) 0.5 / 0.4), for d < range and a
-//   neighbour faster than 0.1 m/s.
-// Not mutual: what n gets from j is not what j gets from n.
+// for d < range. Not mutual: what n gets from j is not what j gets from n.
 //
-// LdpDiscreteTerm is the exact form: switches, forward differences of 1 mm, equal coordinates count
-// as "behind". PotentialTerm and LeanTerm are its smooth twins, for fitting: tanh switches, soft
-// clamp and minimum, the exact gradient; the clamp at 10 m/s is left out: no motion gets there.
+// LdpPublishedTerm is this, as the paper has it (Eq. 10 and 11, and the supplement's table).
+// LdpDiscreteTerm is what was released: the same with forward differences of 1 mm, 100 N m for both
+// torques (lean_phi=100), only of neighbours faster than 0.1 m/s, and all of it times
+//   clamp(|v|, 0.8, 10) min(1, 0.5 + (range - d) 0.5 / 0.4).
+// Equal coordinates count as "behind". PotentialTerm and LeanTerm are smooth twins of what was
+// released, for fitting: tanh switches, soft clamp and minimum, the exact gradient; the clamp at
+// 10 m/s is left out: no motion gets there.
 #pragma once
 
 #include <algorithm>
@@ -54,6 +56,54 @@ inline LdpTorqueSigns LdpTable(const Vector4<double>& n, const Vector4<double>& 
   return signs;
 }
 
+// Whether the carts are closer than the range.
+template <typename T>
+bool InLdpRange(const ParameterSet<T>& p, const Vector4<T>& q_n, const Vector4<T>& q_j) {
+  const double dx = RealPart(q_n[0]) - RealPart(q_j[0]), dy = RealPart(q_n[1]) - RealPart(q_j[1]);
+  return std::hypot(dx, dy) < RealPart(p[kNeighbourRange]);
+}
+
+// -grad_r U at one of two carts.
+template <typename T>
+Eigen::Matrix<T, 2, 1> LdpRepulsion(const ParameterSet<T>& p, const Eigen::Matrix<T, 2, 1>& r,
+                                    const Eigen::Matrix<T, 2, 1>& v) {
+  using std::exp, std::sqrt;
+  constexpr double kTiny = 1e-12;  // m^2
+  const Eigen::Matrix<T, 2, 1> next = r - kLdpStep * v;
+  const T near = sqrt(r.squaredNorm() + kTiny), then = sqrt(next.squaredNorm() + kTiny);
+  const T b = LdpEllipse(r, v);
+  const Eigen::Matrix<T, 2, 1> slope = (near + then) / (4.0 * b) * (r / near + next / then);
+  return (p[kPotentialStrength] / p[kPotentialLength] * exp(-b / p[kPotentialLength])) * slope;
+}
+
+template <typename T>
+Vector4<double> Reals(const Vector4<T>& v) {
+  return {RealPart(v[0]), RealPart(v[1]), RealPart(v[2]), RealPart(v[3])};
+}
+
+struct LdpPublishedTerm {
+  template <typename T>
+  static void Add(const Pair&, const ParameterSet<T>& p, const PendulumState<T>& n,
+                  const PendulumState<T>& j, PairForce<T>* force) {
+    if (!InLdpRange(p, n.q, j.q)) return;
+    AddOn(p, n, j, &force->on_n);
+    AddOn(p, j, n, &force->on_j);
+    force->acts = true;
+  }
+
+ private:
+  template <typename T>
+  static void AddOn(const ParameterSet<T>& p, const PendulumState<T>& n, const PendulumState<T>& j,
+                    Vector4<T>* on_n) {
+    const Eigen::Matrix<T, 2, 1> r = n.q.template head<2>() - j.q.template head<2>();
+    const Eigen::Matrix<T, 2, 1> v = j.qd.template head<2>() - n.qd.template head<2>();
+    on_n->template head<2>() += LdpRepulsion(p, r, v);
+    const LdpTorqueSigns signs = LdpTable(Reals(n.q), Reals(j.q));
+    (*on_n)[2] += static_cast<double>(signs.theta) * p[kLeanTheta];
+    (*on_n)[3] += static_cast<double>(signs.phi) * p[kLeanPhi];
+  }
+};
+
 struct LdpDiscreteTerm {
   template <typename T>
   static void Add(const Pair&, const ParameterSet<T>& p, const PendulumState<T>& n,
@@ -93,10 +143,6 @@ struct LdpDiscreteTerm {
     if (RealPart(gain) > 1.0) gain = T(1.0);
     *on_n += (speed * gain) * sum;
     *acts = true;
-  }
-  template <typename T>
-  static Vector4<double> Reals(const Vector4<T>& v) {
-    return {RealPart(v[0]), RealPart(v[1]), RealPart(v[2]), RealPart(v[3])};
   }
 };
 
@@ -153,19 +199,11 @@ struct PotentialTerm {
   template <typename T>
   static void AddOn(const ParameterSet<T>& p, const PendulumState<T>& n, const PendulumState<T>& j,
                     Vector4<T>* on_n, bool* acts) {
-    using std::exp, std::sqrt;
-    constexpr double kTiny = 1e-12;  // m^2
     const T gain = SmoothLdpGain(p, n, j);
     if (RealPart(gain) == 0.0) return;
     const Eigen::Matrix<T, 2, 1> r = n.q.template head<2>() - j.q.template head<2>();
     const Eigen::Matrix<T, 2, 1> v = j.qd.template head<2>() - n.qd.template head<2>();
-    const Eigen::Matrix<T, 2, 1> next = r - kLdpStep * v;
-    const T near = sqrt(r.squaredNorm() + kTiny), then = sqrt(next.squaredNorm() + kTiny);
-    const T b = LdpEllipse(r, v);
-    const Eigen::Matrix<T, 2, 1> slope = (near + then) / (4.0 * b) * (r / near + next / then);
-    const T f = gain * p[kPotentialStrength] / p[kPotentialLength] * exp(-b / p[kPotentialLength]);
-    (*on_n)[0] += f * slope[0];
-    (*on_n)[1] += f * slope[1];
+    on_n->template head<2>() += gain * LdpRepulsion(p, r, v);
     *acts = true;
   }
 };

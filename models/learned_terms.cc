@@ -13,12 +13,12 @@ std::string NetworkName(const NetworkShape& shape) {
 
 int RodShape::num_weights() const {
   if (!moves()) return 0;
-  int weights = 0, below = kInputs;
+  int weights = 0, below = num_inputs();
   for (int rows : hidden) {
     weights += rows * (below + 1);
     below = rows;
   }
-  return weights + below;
+  return weights + below + (biased() ? 1 : 0);
 }
 
 std::string RodName(const RodShape& shape) {
@@ -36,6 +36,10 @@ RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weight
     return i == 0 ? layers.inputs : layers.hidden[i - 1];
   };
   int at = shape.num_weights();  // of the matrix in hand
+  if (shape.biased()) {
+    --at;
+    if (by_weight != nullptr) by_weight[at] = kRodSpeed;
+  }
   const VectorX<double>& top = below(num_layers);
   at -= static_cast<int>(top.size());
   if (by_weight != nullptr) {
@@ -48,12 +52,14 @@ RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weight
     const int rows = shape.hidden[i], width = static_cast<int>(x.size());
     at -= rows * (width + 1);
     const auto active = layers.active[i].array(), rest = layers.rest[i].array();
-    const VectorX<double> by_sum = slope.array() * (1.0 - active.square());
+    VectorX<double> by_sum = slope.array() * (1.0 - active.square());
+    if (shape.biased()) by_sum = slope.array() * (active > 0.0).cast<double>();
     if (by_weight != nullptr) {
       Eigen::Map<Rows> own(by_weight + at, rows, width + 1);
       own.leftCols(width).noalias() = by_sum * x.transpose();
       // tanh' less tanh' at rest, without the difference of near equals.
       own.col(width) = -slope.array() * layers.hidden[i].array() * (active + rest);
+      if (shape.biased()) own.col(width) = by_sum;
     }
     const ConstRows<double> w(weights + at, rows, width, Eigen::OuterStride<>(width + 1));
     slope = w.transpose() * by_sum;
@@ -73,7 +79,9 @@ int PairShape::num_weights() const {
 
 std::string PairName(const PairShape& shape) {
   std::string name;
-  for (int size : shape.hidden) name += (name.empty() ? "network:" : "-") + std::to_string(size);
+  for (int size : shape.hidden) {
+    name += (!name.empty() ? "-" : shape.ldp ? "ldp_network:" : "network:") + std::to_string(size);
+  }
   return name;
 }
 

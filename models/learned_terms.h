@@ -8,6 +8,7 @@
 
 #include "models/contact.h"
 #include "models/enum_names.h"
+#include "models/ldp_interaction.h"
 #include "models/options.h"
 #include "models/self_network.h"
 
@@ -25,29 +26,39 @@ namespace pushid {
 // while; F_rest: the torque that holds the posture. A person at rest with the rod of frame 0
 // (u = 0) keeps exactly that rod, whatever the weights, and zero weights (of f or of o) are a
 // constant rod. Nothing pulls the rod back but the weights on l - l_0: built-in relaxation would
-// decide what the data can say. Source: LDP's rod network (Yue et al., CVPR 2024: 256-128-256),
-// with that guarantee added.
+// decide what the data can say.
 //
-// Weights are one flat array: f's, or for each layer the rows [W b], then o.
+// `ldp` is LDP's rod network (Yue et al., CVPR 2024, Eq. 7: 256-128-256) without that guarantee; it
+// sees the length itself and the mass:
+//   u = [as above (10), (l - 0.95 m) / 0.05, (M - 85 kg) / 20 kg]
+//   h_i = max(0, W_i h_{i-1} + b_i),  f = o h_n + c
+//
+// Weights are one flat array: f's, or for each layer the rows [W b], then o, of ldp [o c].
 
-enum class RodKind { kConstant, kLinear, kMlp };
-constexpr EnumNames<RodKind, 3> Names(RodKind) {
-  return {{{"constant", RodKind::kConstant}, {"linear", RodKind::kLinear}, {"mlp", RodKind::kMlp}}};
+enum class RodKind { kConstant, kLinear, kMlp, kLdp };
+constexpr EnumNames<RodKind, 4> Names(RodKind) {
+  return {{{"constant", RodKind::kConstant},
+           {"linear", RodKind::kLinear},
+           {"mlp", RodKind::kMlp},
+           {"ldp", RodKind::kLdp}}};
 }
 
 struct RodShape {
   RodKind kind = RodKind::kConstant;
   std::vector<int> hidden = {};  // layers of an MLP, at least one
 
-  static constexpr int kInputs = 11;
+  static constexpr int kMostInputs = 12;
   static constexpr int kForceInputs = kMotionInputs;  // where the four of the self force start
   static constexpr int kRodInput = kForceInputs + 4;
 
   bool moves() const { return kind != RodKind::kConstant; }
+  bool layered() const { return kind == RodKind::kMlp || kind == RodKind::kLdp; }
+  bool biased() const { return kind == RodKind::kLdp; }
+  int num_inputs() const { return kRodInput + (biased() ? 2 : 1); }
   int num_weights() const;
 };
 
-// "constant", "linear", "mlp:4", "mlp:256-128-256".
+// "constant", "linear", "mlp:4", "ldp:256-128-256".
 std::string RodName(const RodShape& shape);
 
 inline constexpr double kRodSpeed = 0.1;  // m/s per unit of f
@@ -58,50 +69,55 @@ inline constexpr double kShortestRod = 0.3, kLongestRod = 1.6;
 template <typename T>
 struct RodLayers {
   VectorX<T> inputs;                     // u
-  std::vector<VectorX<T>> active, rest;  // tanh(W x + b), tanh(b)
+  std::vector<VectorX<T>> active, rest;  // tanh(W x + b), tanh(b); of ldp, max(0, W x + b)
   std::vector<VectorX<T>> hidden;        // the one less the other
 
   explicit RodLayers(const RodShape& shape)
-      : inputs(VectorX<T>::Zero(RodShape::kInputs)),
+      : inputs(VectorX<T>::Zero(shape.num_inputs())),
         active(shape.hidden.size()),
         rest(shape.hidden.size()),
         hidden(shape.hidden.size()) {}
 };
 
-// e: (theta, phi) less the posture; force: F_self - F_rest; rod: l - l_0.
+// e: (theta, phi) less the posture; force: F_self - F_rest; rod: l - l_0; body: with l_0.
 template <typename T>
 void SetRodInputs(const T& e_theta, const T& e_phi, const Vector4<T>& qd, const Vector4<T>& force,
-                  const T& rod, double mass, RodLayers<T>* layers) {
+                  const T& rod, const Body& body, RodLayers<T>* layers) {
   VectorX<T>& u = layers->inputs;
   SetMotionInputs(e_theta, e_phi, qd, &u);
   for (int i = 0; i < 4; ++i) {
-    u[RodShape::kForceInputs + i] = force[i] / (kNetworkAcceleration * mass);
+    u[RodShape::kForceInputs + i] = force[i] / (kNetworkAcceleration * body.mass);
   }
   u[RodShape::kRodInput] = rod / kNetworkRod;
+  if (u.size() == RodShape::kRodInput + 1) return;
+  u[RodShape::kRodInput] += (body.rod_length - kReferenceRod) / kNetworkRod;
+  u[RodShape::kRodInput + 1] = T((body.mass - kReferenceMass) / kNetworkMass);
 }
 
 // dl/dt in m/s, the inputs set.
 template <typename T>
 T RodVelocity(const RodShape& shape, const T* weights, RodLayers<T>* layers) {
-  using std::tanh;
-  const auto squash = [](const T& a) { return tanh(a); };
   const VectorX<T>* below = &layers->inputs;
   for (size_t i = 0; i < shape.hidden.size(); ++i) {
     const int rows = shape.hidden[i], width = static_cast<int>(below->size());
     const Eigen::OuterStride<> stride(width + 1);
     const ConstRows<T> w(weights, rows, width, stride), b(weights + width, rows, 1, stride);
-    layers->active[i] = (w * *below + b).unaryExpr(squash);
-    layers->rest[i] = b.unaryExpr(squash);
+    const VectorX<T> sum = w * *below + b;
+    layers->active[i] = shape.biased() ? Rectified(sum) : Squashed(sum);
+    layers->rest[i] = shape.biased() ? VectorX<T>(VectorX<T>::Zero(rows)) : Squashed<T>(b);
     layers->hidden[i] = layers->active[i] - layers->rest[i];
     below = &layers->hidden[i];
     weights += rows * (width + 1);
   }
-  return kRodSpeed * Eigen::Map<const VectorX<T>>(weights, below->size()).dot(*below);
+  T f = Eigen::Map<const VectorX<T>>(weights, below->size()).dot(*below);
+  if (shape.biased()) f += weights[below->size()];
+  return kRodSpeed * f;
 }
 
 // Its derivatives by the inputs and, where by_weight is not null, by every weight, as RodVelocity
 // left the layers; by hand, from the output back.
-using RodInputGradient = Eigen::Matrix<double, 1, RodShape::kInputs>;
+using RodInputGradient =
+    Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, RodShape::kMostInputs>;
 RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weights,
                                      const RodLayers<double>& layers, double* by_weight);
 
@@ -115,9 +131,11 @@ RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weight
 //
 // x: the load of contact, w its onset (contact.h), so that people who do not touch do nothing to
 // each other, whatever the weights, and O = c = 0 is no force at all. Each of the two asks the same
-// network alone: the force is not mutual, and no matter who is numbered first. Source: LDP's
-// interaction network (Yue et al., CVPR 2024: 10-512-512-4, given by file in
-// network_interaction.h), with that gate added.
+// network alone: the force is not mutual, and no matter who is numbered first.
+//
+// `ldp_network` is LDP's interaction network (Yue et al., CVPR 2024: 10-512-512-4; network_
+// interaction.h takes one by file). It acts on every neighbour within the range, touched or not:
+//   h_i = max(0, W_i h_(i-1) + b_i),  F on n = 2 (85 kg) (O h_last + c),  |r_n - r_j| < range
 //
 // Weights are one flat array: for each layer the rows [W b], then the rows [O c].
 
@@ -125,13 +143,18 @@ inline constexpr double kPairDistance = 0.4;  // m
 
 struct PairShape {
   std::vector<int> hidden = {};  // units of each layer; empty: nothing is learned
+  bool ldp = false;              // LDP's: of every neighbour in range, rectified, no gate
 
   static constexpr int kInputs = 10;
   bool any() const { return !hidden.empty(); }
   int num_weights() const;
+  // Newtons and newton metres per unit of output.
+  double ForceUnit(const Body& body) const {
+    return kNetworkAcceleration * (ldp ? kReferenceMass : body.mass);
+  }
 };
 
-// "network:4", "network:32-16".
+// "network:4", "network:32-16", "ldp_network:512-512".
 std::string PairName(const PairShape& shape);
 
 // The values on the way from the inputs to the output.
@@ -167,10 +190,7 @@ void RunPairNetwork(const PairShape& shape, const T* weights, const PendulumStat
   for (size_t i = 0; i < shape.hidden.size(); ++i) {
     const ConstRows<T> layer = PairLayer(weights, shape.hidden[i], inputs);
     const VectorX<T> sum = layer.leftCols(inputs) * layers->values[i] + layer.col(inputs);
-    layers->values[i + 1] = sum.unaryExpr([](const T& a) {
-      using std::tanh;
-      return tanh(a);
-    });
+    layers->values[i + 1] = shape.ldp ? Rectified(sum) : Squashed(sum);
     weights += layer.size();
     inputs = shape.hidden[i];
   }
@@ -178,10 +198,11 @@ void RunPairNetwork(const PairShape& shape, const T* weights, const PendulumStat
   layers->output = last.leftCols(inputs) * layers->values.back() + last.col(inputs);
 }
 
-// The gate g of two people; zero where neither loads the other.
+// The gate g of two people; zero where neither loads the other, of LDP's out of range.
 template <typename T>
-T PairGate(const Pair& pair, const ParameterSet<T>& p, const Vector4<T>& q_n,
-           const Vector4<T>& q_j) {
+T PairGate(const PairShape& shape, const Pair& pair, const ParameterSet<T>& p,
+           const Vector4<T>& q_n, const Vector4<T>& q_j) {
+  if (shape.ldp) return T(InLdpRange(p, q_n, q_j) ? 1.0 : 0.0);
   const T load = LoadBetween(pair, p, q_n, q_j);
   return RealPart(load) > 0.0 ? T(load / (load + kContactOnset)) : T(0.0);
 }
@@ -190,17 +211,17 @@ template <typename T>
 void AddLearnedPair(const PairShape& shape, const T* weights, const Pair& pair,
                     const ParameterSet<T>& p, const PendulumState<T>& n, const PendulumState<T>& j,
                     PairForce<T>* force) {
-  const T gate = PairGate<T>(pair, p, n.q, j.q);
+  const T gate = PairGate<T>(shape, pair, p, n.q, j.q);
   if (!(RealPart(gate) > 0.0)) return;
   PairLayers<T> layers;
   RunPairNetwork(shape, weights, n, j, &layers);
-  force->on_n += (kNetworkAcceleration * pair.body_n.mass * gate) * layers.output;
+  force->on_n += (shape.ForceUnit(pair.body_n) * gate) * layers.output;
   RunPairNetwork(shape, weights, j, n, &layers);
-  force->on_j += (kNetworkAcceleration * pair.body_j.mass * gate) * layers.output;
+  force->on_j += (shape.ForceUnit(pair.body_j) * gate) * layers.output;
   force->acts = true;
 }
 
-// "none", "mlp:4", "gru:8", "lstm:256:32" (hidden size, embedding).
+// "none", "mlp:4", "gru:8", "ldp:256:32" (hidden size, embedding).
 std::string NetworkName(const NetworkShape& shape);
 
 struct LearnedTerms {
@@ -220,6 +241,12 @@ struct LearnedTerms {
 inline bool LearnsAlone(const ModelOptions& options) {
   return options.learned != nullptr &&
          (options.learned->shape.any() || options.learned->rod.moves());
+}
+
+// Whether a rod that moves takes the cart with it, which LDP's does not.
+inline bool RodMovesCart(const ModelOptions& options) {
+  return options.learned != nullptr && options.learned->rod.moves() &&
+         !options.learned->rod.biased();
 }
 
 // Whether the rod moves.

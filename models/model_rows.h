@@ -17,19 +17,21 @@
 //   first, last  its parameters, which are zero where it does not act and are freed where it does
 //   mode_weight  default of --mode_weight with it
 //   note         for the help
-// Network(id, name, gates, recurrent, cell, Kind): a kind of network (self_network.h).
+// Network(id, name, gates, recurrent, cell, biased, Kind): a kind of network (self_network.h).
 //   gates      rows [W U C] per hidden unit
 //   recurrent  whether it remembers its hidden units; then it may have an embedding
 //   cell       whether it has cells besides
+//   biased     whether it has LDP's biases, so that a person at rest may feel a force
 //   Kind       its formula (MlpCell in self_network.h) and, by hand, its derivatives (AdvanceMlp in
 //              residuals/sensitivities/network_sensitivities.cc, ActivateMlp and DeactivateMlp in
 //              residuals/packed/packed_network.cc)
 // clang-format off
 #define PUSHID_SELF_FORCES(Law, Network) \
   Law(kLinear, "linear", kAx, kDq, 30.0, "cross terms, quadratic") \
-  Network(kMlp, "mlp", 1, false, false, Mlp) \
-  Network(kGru, "gru", 2, true, false, Gru) \
-  Network(kLstm, "lstm", 3, true, true, Lstm)
+  Network(kMlp, "mlp", 1, false, false, false, Mlp) \
+  Network(kGru, "gru", 2, true, false, false, Gru) \
+  Network(kLstm, "lstm", 3, true, true, false, Lstm) \
+  Network(kLdp, "ldp", 4, true, true, true, Ldp)
 // clang-format on
 #define PUSHID_NO_SELF_FORCE(...)  // for tables of the other kind alone
 
@@ -38,12 +40,13 @@
 //   near    what must be near for it to act: kPoints (of contact) or kCarts
 //   Term    its formula (pair.h)
 //   note    for the help of --interaction; empty: none
-#define PUSHID_INTERACTION_TERMS(X)                                                 \
-  X(spring, kPoints, ContactPart, "")                                               \
-  X(damping, kPoints, ContactPart, "")                                              \
-  X(potential, kCarts, PotentialTerm, "")                                           \
-  X(lean, kCarts, LeanTerm, "")                                                     \
-  X(ldp_discrete, kCarts, LdpDiscreteTerm, "LDP's exact form, for evaluation only") \
+#define PUSHID_INTERACTION_TERMS(X)                                                              \
+  X(spring, kPoints, ContactPart, "")                                                            \
+  X(damping, kPoints, ContactPart, "")                                                           \
+  X(potential, kCarts, PotentialTerm, "")                                                        \
+  X(lean, kCarts, LeanTerm, "")                                                                  \
+  X(ldp_published, kCarts, LdpPublishedTerm, "LDP's equations 10 and 11 and its table of signs") \
+  X(ldp_discrete, kCarts, LdpDiscreteTerm, "the same as LDP released it, for evaluation only")   \
   X(network, kCarts, NetworkTerm, "given by --interaction_network")
 
 // X(id, name, symbol, unit, nominal, lower, upper, scale, transform, acts, freed, meaning, when): a
@@ -178,11 +181,11 @@
     "height of contact, fraction of the rod", \
     "never without a measurement: heights from the ankles to the chest fit alike") \
   X(kPotentialStrength, "potential_strength", "u", "N m", 150, 0.1, 1e5, 150, kLog, \
-    m.interaction.potential || m.interaction.ldp_discrete, m.interaction.potential, \
+    m.interaction.LdpPotential(), m.interaction.potential, \
     "strength of LDP's potential", \
     "to compare with LDP") \
   X(kPotentialLength, "potential_length", "sigma", "m", 0.5, 0.02, 5, 0.5, kLog, \
-    m.interaction.potential || m.interaction.ldp_discrete, m.interaction.potential, \
+    m.interaction.LdpPotential(), m.interaction.potential, \
     "decay length of LDP's potential", \
     "to compare with LDP") \
   X(kNeighbourRange, "neighbour_range", "range", "m", 0.5, 0.1, 3, 0.5, kLog, \
@@ -190,16 +193,16 @@
     "cart distance at which LDP's terms end", \
     "where people stand farther apart than half a metre") \
   X(kLeanTheta, "lean_theta", "k_theta", "N m", 100, -2000, 2000, 100, kIdentity, \
-    m.interaction.lean || m.interaction.ldp_discrete, m.interaction.lean, \
+    m.interaction.LdpTorques(), m.interaction.lean, \
     "torque against leaning on others, y", \
     "to compare with LDP") \
-  X(kLeanPhi, "lean_phi", "k_phi", "N m", 100, -2000, 2000, 100, kIdentity, \
-    m.interaction.lean || m.interaction.ldp_discrete, m.interaction.lean, \
+  X(kLeanPhi, "lean_phi", "k_phi", "N m", 50, -2000, 2000, 100, kIdentity, \
+    m.interaction.LdpTorques(), m.interaction.lean, \
     "torque against leaning on others, x", \
     "to compare with LDP") \
   /* the rod */ \
   X(kRodLift, "rod_lift", "k", "1", 1, -10, 10, 0.5, kIdentity, \
-    RodMoves(m), RodMoves(m), \
+    RodMoves(m), RodMovesCart(m), \
     "rise of the cart over the rod's shortening", \
     "with a learned rod, always") \
   /* feet that stand and step (stance.h) */ \

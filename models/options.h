@@ -23,18 +23,22 @@ struct InteractionTerms {
   PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
 #undef PUSHID_SWITCH
   bool learned = false;
+  bool learned_in_range = false;  // LDP's: of every neighbour, not of those who touch
 
   // Those that ask how far the points of contact are apart, and those that ask it of the carts.
-  bool Contact() const { return learned || AnyWhere(Near::kPoints); }
-  bool AtCarts() const { return AnyWhere(Near::kCarts); }
+  bool Contact() const { return LearnedTouch() || AnyWhere(Near::kPoints); }
+  bool AtCarts() const { return (learned && learned_in_range) || AnyWhere(Near::kCarts); }
   bool Any() const { return Contact() || AtCarts(); }
   // A learned force that may do what stiffness and damping of contact should.
-  bool LearnedBesideContact() const { return learned && (spring || damping); }
+  bool LearnedBesideContact() const { return LearnedTouch() && (spring || damping); }
+  bool LdpPotential() const { return potential || ldp_published || ldp_discrete; }
+  bool LdpTorques() const { return lean || ldp_published || ldp_discrete; }
   // What one gets the other gives: contact alone.
   bool Mutual() const { return Any() && !learned && !AtCarts(); }
 
  private:
   enum class Near { kPoints, kCarts };
+  bool LearnedTouch() const { return learned && !learned_in_range; }
   bool AnyWhere(Near asked) const {
     bool any = false;
 #define PUSHID_SWITCH(member, near, ...) any |= member && Near::near == asked;

@@ -178,7 +178,7 @@ class SceneForces {
     if (!networks_.empty()) force += networks_[person].force;
     for (int i = 0; i < 2; ++i) force[2 + i] -= self.hold[i];
     SetRodInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd, force,
-                    state.rod, self.body.mass, &rods_[person]);
+                    state.rod, self.body, &rods_[person]);
     return RodVelocity(network.rod, network_weights_ + network.rod_at(), &rods_[person]);
   }
 

@@ -18,19 +18,25 @@
 //
 //   F = 2 M [O h']                        m/s^2 and m^2/s^2 per unit of output
 //
+//   ldp    x = max(0, E [u, k])
+//          i, f, o = s(W x + U h + b + b'), g = tanh(W_g x + U_g h + b_g + b_g')
+//          c' = f c + i g,  h' = o tanh(c'),  F = 2 (85 kg) [O h' + d]
+//
 // s is the logistic function, products of vectors are by element, memories start at zero. What
 // could answer to k alone has no bias and no mass: a person at rest (u = 0) feels exactly no
-// force, whatever the weights, and O = 0 is no force at all. Source: LDP's self-force network
-// (Yue et al., CVPR 2024: a 32-d embedding before an LSTM of 256), with that guarantee added.
+// force, whatever the weights, and O = 0 is no force at all. `ldp` has no such guarantee: it is the
+// network of Yue et al. (CVPR 2024, Eq. 6): mass among the inputs, an embedding of 32, an LSTM of
+// 256 with the two biases of a gate that LibTorch has: 298,244 weights.
 //
-// Weights are one flat array: E, then the rows [W U C] of the gates, then the rows [W U] of the
-// candidates (n or g), then O; each matrix by rows.
+// Weights are one flat array: E, then the rows [W U C] of the gates (of ldp [W U b b'], g among
+// them), then the rows [W U] of the candidates (n or g), then O, of ldp [O d]; each matrix by rows.
 #pragma once
 
 #include <Eigen/Core>
 #include <cmath>
 #include <vector>
 
+#include "models/dual.h"
 #include "models/enum_names.h"
 #include "models/ipm.h"
 #include "models/model_rows.h"
@@ -83,12 +89,12 @@ struct NetworkKindRow {
   const char* name;
   NetworkKind value;
   int gates;  // for each hidden unit
-  bool recurrent, cell;
+  bool recurrent, cell, biased;
 };
 inline constexpr NetworkKindRow kNetworkKinds[] = {
-    {"none", NetworkKind::kNone, 0, false, false},
-#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
-  {name, NetworkKind::id, gates, recurrent, cell},
+    {"none", NetworkKind::kNone, 0, false, false, false},
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, biased, Kind) \
+  {name, NetworkKind::id, gates, recurrent, cell, biased},
     PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
 #undef PUSHID_NETWORK
 };
@@ -102,17 +108,30 @@ struct NetworkShape {
 
   bool any() const { return kind != NetworkKind::kNone; }
   bool recurrent() const { return RowOf(kind).recurrent; }
+  bool biased() const { return RowOf(kind).biased; }
   int cells() const { return RowOf(kind).cell ? hidden : 0; }
   int num_features() const { return embedding > 0 ? embedding : kMotionInputs; }
   int gate_rows() const { return RowOf(kind).gates * hidden; }
-  int candidate_rows() const { return recurrent() ? hidden : 0; }
+  // Where all are biased, candidates are gates like the others.
+  int candidate_rows() const { return recurrent() && !biased() ? hidden : 0; }
   int candidate_width() const { return num_features() + (recurrent() ? hidden : 0); }
   int gate_width() const { return candidate_width() + 2; }
+  int embed_width() const { return kMotionInputs + (biased() ? 2 : 0); }
+  int output_width() const { return hidden + (biased() ? 1 : 0); }
   // Where each matrix starts in the flat array.
-  int gates_at() const { return embedding * kMotionInputs; }
+  int gates_at() const { return embedding * embed_width(); }
   int candidates_at() const { return gates_at() + gate_rows() * gate_width(); }
   int output_at() const { return candidates_at() + candidate_rows() * candidate_width(); }
-  int num_weights() const { return any() ? output_at() + 4 * hidden : 0; }
+  int num_weights() const { return any() ? output_at() + 4 * output_width() : 0; }
+
+  // Newtons and newton metres per unit of output.
+  double ForceUnit(double mass) const {
+    return kNetworkAcceleration * (biased() ? kReferenceMass : mass);
+  }
+  // What the gates' last two columns multiply.
+  Eigen::Vector2d GateContext(const Eigen::Vector2d& context) const {
+    return biased() ? Eigen::Vector2d::Ones().eval() : context;
+  }
 };
 
 // The matrices in a flat array.
@@ -121,12 +140,12 @@ struct NetworkWeights {
   ConstRows<T> embed, gates, context, candidates, output;
 
   NetworkWeights(const NetworkShape& s, const T* w)
-      : embed(w, s.embedding, kMotionInputs, Stride(kMotionInputs)),
+      : embed(w, s.embedding, s.embed_width(), Stride(s.embed_width())),
         gates(w + s.gates_at(), s.gate_rows(), s.candidate_width(), Stride(s.gate_width())),
         context(w + s.gates_at() + s.candidate_width(), s.gate_rows(), 2, Stride(s.gate_width())),
         candidates(w + s.candidates_at(), s.candidate_rows(), s.candidate_width(),
                    Stride(s.candidate_width())),
-        output(w + s.output_at(), 4, s.hidden, Stride(s.hidden)) {}
+        output(w + s.output_at(), 4, s.output_width(), Stride(s.output_width())) {}
 
  private:
   static Eigen::OuterStride<> Stride(int width) { return Eigen::OuterStride<>(width); }
@@ -136,9 +155,9 @@ struct NetworkWeights {
 // what derivatives by hand are made of.
 template <typename T>
 struct NetworkState {
-  VectorX<T> inputs, features;       // u, x
-  VectorX<T> gates;                  // activations: mlp tanh; gru z, r; lstm i, f, o
-  VectorX<T> rest;                   // mlp: tanh(C k)
+  VectorX<T> inputs, features;  // u, x
+  VectorX<T> gates;             // activations: mlp tanh; gru z, r; lstm i, f, o; ldp i, f, o, g
+  VectorX<T> rest;              // mlp: tanh(C k)
   VectorX<T> candidates, recurrent;  // n or g; gru: U_n h
   VectorX<T> hidden_before, cell_before, hidden, cell, cell_tanh;
   Eigen::Vector2d context = Eigen::Vector2d::Zero();  // k
@@ -161,6 +180,10 @@ template <typename T>
 VectorX<T> Squashed(const VectorX<T>& sum) {
   using std::tanh;
   return sum.unaryExpr([](const T& a) { return tanh(a); });
+}
+template <typename T>
+VectorX<T> Rectified(const VectorX<T>& sum) {
+  return sum.unaryExpr([](const T& a) -> T { return RealPart(a) > 0.0 ? a : T(0.0); });
 }
 template <typename T>
 VectorX<T> Logistic(const VectorX<T>& sum) {
@@ -207,6 +230,30 @@ struct LstmCell {
   }
 };
 
+struct LdpCell {
+  template <typename T>
+  static void Step(const VectorX<T>& sum, const VectorX<T>&, NetworkState<T>* state) {
+    NetworkState<T>& s = *state;
+    const Eigen::Index h = s.hidden.size();
+    s.candidates = sum.tail(h);
+    s.recurrent = VectorX<T>::Zero(h);  // already in the sum
+    LstmCell::Step<T>(sum.head(3 * h), sum, state);
+    s.gates.conservativeResize(4 * h);
+    s.gates.tail(h) = s.candidates;
+  }
+};
+
+// The features x, its inputs set.
+template <typename T>
+VectorX<T> NetworkFeatures(const NetworkShape& shape, const NetworkWeights<T>& weights,
+                           const NetworkState<T>& state) {
+  if (shape.embedding == 0) return state.inputs;
+  const VectorX<T> sum = weights.embed.leftCols(kMotionInputs) * state.inputs;
+  if (!shape.biased()) return Squashed(sum);
+  const Eigen::Matrix<T, 2, 1> context = state.context.template cast<T>();
+  return Rectified<T>(sum + weights.embed.rightCols(2) * context);
+}
+
 // One step of the network, its inputs set: the memory goes on, and the force is what it answers.
 template <typename T>
 Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, double mass,
@@ -214,13 +261,9 @@ Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, double mass,
   if (!shape.any()) return Vector4<T>::Zero();
   const NetworkWeights<T> w(shape, weights);
   NetworkState<T>& s = *state;
-  if (shape.embedding > 0) {
-    s.features = Squashed<T>(w.embed * s.inputs);
-  } else {
-    s.features = s.inputs;
-  }
+  s.features = NetworkFeatures(shape, w, s);
   const int nf = shape.num_features(), h = shape.hidden;
-  const VectorX<T> context = w.context * s.context.template cast<T>();
+  const VectorX<T> context = w.context * shape.GateContext(s.context).template cast<T>();
   VectorX<T> sum = w.gates.leftCols(nf) * s.features + context;
   if (shape.recurrent()) {
     s.hidden_before = s.hidden;
@@ -231,14 +274,16 @@ Vector4<T> StepNetwork(const NetworkShape& shape, const T* weights, double mass,
   switch (shape.kind) {
     case NetworkKind::kNone:
       break;
-#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
-  case NetworkKind::id:                                        \
-    Kind##Cell::Step(sum, context, &s);                        \
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, biased, Kind) \
+  case NetworkKind::id:                                                \
+    Kind##Cell::Step(sum, context, &s);                                \
     break;
       PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
 #undef PUSHID_NETWORK
   }
-  return T(kNetworkAcceleration * mass) * (w.output * s.hidden);
+  Vector4<T> output = w.output.leftCols(h) * s.hidden;
+  if (shape.biased()) output += w.output.col(h);
+  return T(shape.ForceUnit(mass)) * output;
 }
 
 }  // namespace pushid

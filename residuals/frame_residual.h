@@ -11,11 +11,13 @@
 // positions alone, which let velocities run wild between frames; one scalar per frame, which stalls
 // Gauss-Newton.
 //
-// FrameLoss::kLdp, for comparison, is LDP's (Yue et al., CVPR 2024, Eq. 6): the absolute errors of
-// all states and velocities, and phi' itself. Its rows are
-//   [x, y - measured; phi'; xd, yd - measured; theta, phi - measured; thd, phd - measured]
+// FrameLoss::kLdp is LDP's (Yue et al., CVPR 2024, supplement, Eq. 6): the absolute errors of x, y,
+// theta, phi, xd, yd and thd, and in place of that of phd, phd itself, lambda times. Its rows are
+//   [x, y - measured; lambda phd; xd, yd - measured; theta, phi - measured; thd - measured; l -
+//   measured]
 // each with a w of its own, so that the cost is d |r| beyond d: absolute values that can be
-// differentiated.
+// differentiated. The rod's row, zero where the rod is constant, is what a law of the rod learns
+// from: the other rows hardly depend on l.
 #pragma once
 
 #include <cmath>
@@ -31,6 +33,8 @@ enum class FrameLoss { kHip, kLdp };
 constexpr EnumNames<FrameLoss, 2> Names(FrameLoss) {
   return {{{"hip", FrameLoss::kHip}, {"ldp", FrameLoss::kLdp}}};
 }
+
+inline constexpr double kLdpRateWeight = 0.3;  // lambda of LDP's loss, as released
 
 struct ResidualSigmas {
   double hip = 0.10;      // m; raise it when the marker of the hip is poor
@@ -52,6 +56,7 @@ struct MeasuredFrameOf {
   Vector3<L> hip;          // m
   PendulumState<L> state;  // m, rad, m/s, rad/s
   L weight = L(1.0);       // on r; 0 where nothing was measured
+  L rod = L(0.0);          // l - l_0, m; 0 where the model's is constant
 };
 using MeasuredFrame = MeasuredFrameOf<double>;
 
@@ -69,7 +74,7 @@ FrameVector<T> RawFrameResidual(const BodyOf<L>& body, const PendulumState<T>& s
   FrameVector<T> r;
   if (sigmas.loss == FrameLoss::kLdp) {
     for (int i = 0; i < 2; ++i) r[i] = (state.q[i] - measured.state.q[i]) / sigmas.hip;
-    r[2] = state.qd[3] / sigmas.rate;
+    r[2] = kLdpRateWeight * state.qd[3] / sigmas.rate;
   } else {
     r.template head<3>() = (HipPosition(body, angles, state.q) - measured.hip) / T(sigmas.hip);
   }
@@ -78,6 +83,7 @@ FrameVector<T> RawFrameResidual(const BodyOf<L>& body, const PendulumState<T>& s
     r[5 + i] = (state.q[2 + i] - measured.state.q[2 + i]) / sigmas.angle;
     r[7 + i] = (state.qd[2 + i] - measured.state.qd[2 + i]) / sigmas.rate;
   }
+  if (sigmas.loss == FrameLoss::kLdp) r[8] = (state.rod - measured.rod) / sigmas.hip;
   return r;
 }
 
@@ -95,7 +101,9 @@ void RawFrameJacobian(const BodyOf<L>& body, const L& lift, const PendulumState<
   j(5, 2) = j(6, 3) = T(1.0 / sigmas.angle);
   j(7, 6) = j(8, 7) = T(1.0 / sigmas.rate);
   if (sigmas.loss == FrameLoss::kLdp) {
-    j(2, 7) = T(1.0 / sigmas.rate);
+    j(2, 7) = T(kLdpRateWeight / sigmas.rate);
+    j(8, 7) = T(0.0);
+    if constexpr (kColumns == 10) j(8, 8) = T(1.0 / sigmas.hip);
     return;
   }
   j(0, 2) = l * c_th / sigmas.hip;

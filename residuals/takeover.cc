@@ -104,7 +104,7 @@ ContactTakeover ContactTakeoverOf(const std::vector<PendulumRecording>& recordin
           if (seen == 0.0) continue;
           const Pair pair = PairOf(recording.scene, n, j);
           const PendulumState<double>&at_n = recording.states[n][t], &at_j = recording.states[j][t];
-          if (!(PairGate<double>(pair, contact, at_n.q, at_j.q) > 0.0)) continue;
+          if (!(PairGate<double>(learned.pair, pair, contact, at_n.q, at_j.q) > 0.0)) continue;
           ForceRegression<2, 8>::UnitForces by_unit;
           by_unit.row(0) = ForcesOf<ContactTerm<true, false>>(pair, unit, at_n, at_j);
           by_unit.row(1) = ForcesOf<ContactTerm<false, true>>(pair, unit, at_n, at_j);

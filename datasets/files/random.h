@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdint>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace pushid {
 
@@ -31,6 +33,14 @@ class Random {
     return radius * std::cos(angle);
   }
   double Normal(double mean, double sigma) { return mean + sigma * Normal(); }
+
+  // Fisher and Yates's shuffle.
+  template <typename Value>
+  void Shuffle(std::vector<Value>* items) {
+    for (size_t i = items->size(); i > 1; --i) {
+      std::swap((*items)[i - 1], (*items)[Fork() % i]);
+    }
+  }
 
   // Seed for an independent stream, e.g. one per recording.
   uint64_t Fork() { return engine_(); }

@@ -39,6 +39,10 @@ struct PendulumRecording {
     return given ? weight[person][frame] : 1.0;
   }
   int num_people() const { return static_cast<int>(hip.size()); }
+  // Of the rod's length since frame 0, m.
+  double RodChange(int person, int frame) const {
+    return rod_length[person][frame] - rod_length[person][0];
+  }
   bool StepsKnown() const { return !steps.empty(); }
   bool Stepped(int person) const { return StepsKnown() && steps[person].Stepped(); }
 };

@@ -199,6 +199,10 @@ Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>&
                                            const SolveProgress& progress) {
   if (!NeedsGradientTraining(options)) return options;
   FitProblem physics(recordings, PhysicsAlone(options));
+  if (options.network_training == NetworkTraining::kTogether) {
+    return TrainLargeNetwork(recordings, options, {physics.options(), physics.NominalPoint()},
+                             progress);
+  }
   const Solution solution = SolveAsAsked(&physics, progress).solution;
   if (solution.best < 0) return Error{"the physical model alone has no usable optimum"};
   return TrainLargeNetwork(recordings, options, {physics.options(), solution.Best().to}, progress);

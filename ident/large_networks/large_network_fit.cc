@@ -1,77 +1,21 @@
-// ident: L-BFGS over the weights of a large network.
+// ident: L-BFGS and Adam over the weights of a large network.
 #include "ident/large_networks/large_network_fit.h"
 
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 
+#include "datasets/files/random.h"
+#include "ident/large_networks/network_judge.h"
 #include "ident/parameters/learned_terms_io.h"
 
 namespace pushid {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// From the flat vector that L-BFGS moves, [weights, (shared - start) / unit], to a point.
-class Variables {
- public:
-  explicit Variables(const LargeNetworkFit& fit)
-      : fit_(fit), num_weights_(fit.model.learned->num_weights()), shared_(fit.shared) {}
-
-  int size() const { return num_weights_ + num_shared(); }
-  int num_weights() const { return num_weights_; }
-  int num_shared() const {
-    return fit_.options.fit_shared ? static_cast<int>(fit_.shared.size()) : 0;
-  }
-  std::vector<double> Start() const {
-    std::vector<double> start = fit_.model.learned->weights;
-    start.resize(size(), 0.0);
-    return start;
-  }
-  const std::vector<double>& Shared(const double* variables) {
-    for (int i = 0; i < num_shared(); ++i) {
-      shared_[i] = fit_.shared[i] + fit_.shared_prior[i].unit * variables[num_weights_ + i];
-    }
-    return shared_;
-  }
-
-  // Returns the cost of the priors at Shared(variables), and adds their gradient (may be null).
-  double AddPriors(const double* variables, double* gradient) const {
-    double cost = 0.0;
-    const double sigma = fit_.options.weight_sigma;
-    if (sigma > 0.0) {
-      const Eigen::Map<const Eigen::VectorXd> weights(variables, num_weights_);
-      cost += 0.5 * weights.squaredNorm() / (sigma * sigma);
-      if (gradient != nullptr) {
-        Eigen::Map<Eigen::VectorXd>(gradient, num_weights_) += weights / (sigma * sigma);
-      }
-    }
-    for (int i = 0; i < num_shared(); ++i) {
-      const SharedPrior& prior = fit_.shared_prior[i];
-      const double r = (shared_[i] - prior.mean) / prior.sigma;
-      cost += 0.5 * r * r;
-      if (gradient != nullptr) gradient[num_weights_ + i] += r / prior.sigma * prior.unit;
-    }
-    return cost;
-  }
-
-  // From d/d(shared) to d/d(variables).
-  void Scale(const std::vector<double>& by_shared, double* gradient) const {
-    for (int i = 0; i < num_shared(); ++i) {
-      gradient[num_weights_ + i] = by_shared[i] * fit_.shared_prior[i].unit;
-    }
-  }
-
- private:
-  const LargeNetworkFit& fit_;
-  int num_weights_;
-  std::vector<double> shared_;
-};
 
 class TrainingCost : public ceres::FirstOrderFunction {
  public:
@@ -95,74 +39,10 @@ class TrainingCost : public ceres::FirstOrderFunction {
 
  private:
   // Ceres' const means that the function stays the same, not that it keeps no memory.
-  mutable Variables variables_;
+  mutable NetworkVariables variables_;
   AdjointGradient* adjoint_;
   mutable std::vector<double> by_shared_;
   mutable int gradients_ = 0;
-};
-
-// Judges what is held out, and keeps the best point.
-class Judge : public ceres::IterationCallback {
- public:
-  Judge(const LargeNetworkFit& fit, AdjointGradient* held_out, const std::vector<double>* x,
-        const LargeNetworkProgress& progress, LargeNetworkSolution* solution)
-      : fit_(fit),
-        variables_(fit),
-        held_out_(held_out),
-        x_(*x),
-        progress_(progress),
-        solution_(*solution),
-        begin_(Clock::now()) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    if (!solution_.trace.empty() && !summary.step_is_successful) return ceres::SOLVER_CONTINUE;
-    LargeNetworkIteration now;
-    now.iteration = summary.iteration;
-    now.cost = summary.cost;
-    now.gradient = summary.gradient_max_norm;
-    const std::vector<double>& shared = variables_.Shared(x_.data());
-    now.training_cost = now.cost - variables_.AddPriors(x_.data(), nullptr);
-    if (held_out_ != nullptr) {
-      const AdjointCost judged = held_out_->Evaluate(shared.data(), x_.data(), nullptr, nullptr);
-      now.held_out_cost = judged.cost;
-      now.held_out_failures =
-          static_cast<int>(std::count_if(judged.status.begin(), judged.status.end(),
-                                         [](const RolloutStatus& status) { return !status.ok; }));
-    }
-    now.seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
-    const bool first = solution_.trace.empty();
-    solution_.trace.push_back(now);
-    if (first) {
-      solution_.initial_cost = now.cost;
-      solution_.initial_training_cost = now.training_cost;
-      solution_.initial_held_out_cost = now.held_out_cost;
-    }
-    const LargeNetworkIteration& best = solution_.trace[best_];
-    // Where nothing is held out, the latest is the best: the cost never rises.
-    if (first || held_out_ == nullptr ||
-        std::pair(now.held_out_failures, now.held_out_cost) <
-            std::pair(best.held_out_failures, best.held_out_cost)) {
-      best_ = solution_.trace.size() - 1;
-      solution_.weights.assign(x_.begin(), x_.begin() + variables_.num_weights());
-      solution_.shared = shared;
-    }
-    if (progress_ && !progress_(now)) return ceres::SOLVER_TERMINATE_SUCCESSFULLY;
-    const size_t since = solution_.trace.size() - 1 - best_;
-    solution_.stopped_early = since >= static_cast<size_t>(std::max(1, fit_.options.patience));
-    return solution_.stopped_early ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-
-  const LargeNetworkIteration& Best() const { return solution_.trace[best_]; }
-
- private:
-  const LargeNetworkFit& fit_;
-  Variables variables_;
-  AdjointGradient* held_out_;
-  const std::vector<double>& x_;
-  const LargeNetworkProgress& progress_;
-  LargeNetworkSolution& solution_;
-  size_t best_ = 0;  // in the trace
-  Clock::time_point begin_;
 };
 
 MaybeError CheckFit(const LargeNetworkFit& fit) {
@@ -184,6 +64,15 @@ MaybeError CheckFit(const LargeNetworkFit& fit) {
 }
 
 // The training recordings, those that fail at the start held to the frames before.
+std::vector<AdjointRecording> Shortened(const LargeNetworkFit& fit,
+                                        const std::vector<ShortenedRecording>& shortened) {
+  std::vector<AdjointRecording> recordings = fit.training;
+  for (const ShortenedRecording& one : shortened) {
+    recordings[one.training].horizon = one.status.frame;
+  }
+  return recordings;
+}
+
 Result<AdjointGradient> MakeTraining(const LargeNetworkFit& fit,
                                      std::vector<ShortenedRecording>* shortened) {
   Result<AdjointGradient> whole =
@@ -192,16 +81,10 @@ Result<AdjointGradient> MakeTraining(const LargeNetworkFit& fit,
   const AdjointCost start = whole.value().Evaluate(
       fit.shared.data(), fit.model.learned->weights.data(), nullptr, nullptr);
   if (start.ok()) return whole;
-  std::vector<AdjointRecording> recordings;
   for (int i = 0; i < static_cast<int>(fit.training.size()); ++i) {
-    AdjointRecording recording = fit.training[i];
-    if (!start.status[i].ok) {
-      shortened->push_back({i, start.status[i]});
-      recording.horizon = start.status[i].frame;
-    }
-    recordings.push_back(recording);
+    if (!start.status[i].ok) shortened->push_back({i, start.status[i]});
   }
-  return AdjointGradient::Create(recordings, fit.model, fit.map, fit.sigmas);
+  return AdjointGradient::Create(Shortened(fit, *shortened), fit.model, fit.map, fit.sigmas);
 }
 
 ceres::GradientProblemSolver::Options LbfgsOptions(const LargeNetworkOptions& options) {
@@ -219,6 +102,88 @@ ceres::GradientProblemSolver::Options LbfgsOptions(const LargeNetworkOptions& op
   solver.logging_type = ceres::SILENT;
   solver.update_state_every_iteration = true;  // for the judge
   return solver;
+}
+
+void SolveByLbfgs(const LargeNetworkFit& fit, AdjointGradient* training, NetworkJudge* judge,
+                  std::vector<double>* x, LargeNetworkSolution* solution) {
+  auto* cost = new TrainingCost(fit, training);
+  const ceres::GradientProblem problem(cost);  // takes ownership
+  ceres::GradientProblemSolver::Options options = LbfgsOptions(fit.options);
+  options.callbacks.push_back(judge);
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(options, problem, x->data(), &summary);
+  solution->message = summary.message;
+  solution->converged = summary.termination_type == ceres::CONVERGENCE;
+  solution->gradients = cost->gradients();
+}
+
+// Adam (Kingma and Ba, 2015) with its usual constants.
+class Adam {
+ public:
+  explicit Adam(Eigen::Index size)
+      : mean_(Eigen::ArrayXd::Zero(size)), square_(Eigen::ArrayXd::Zero(size)) {}
+
+  void Step(const Eigen::ArrayXd& gradient, double rate, std::vector<double>* x) {
+    constexpr double kMean = 0.9, kSquare = 0.999, kTiny = 1e-8;
+    mean_ = kMean * mean_ + (1.0 - kMean) * gradient;
+    square_ = kSquare * square_ + (1.0 - kSquare) * gradient.square();
+    of_mean_ *= kMean, of_square_ *= kSquare;
+    const Eigen::ArrayXd scale = (square_ / (1.0 - of_square_)).sqrt() + kTiny;
+    Eigen::Map<Eigen::ArrayXd>(x->data(), mean_.size()) -= rate / (1.0 - of_mean_) * mean_ / scale;
+  }
+
+ private:
+  Eigen::ArrayXd mean_, square_;
+  double of_mean_ = 1.0, of_square_ = 1.0;
+};
+
+// Passes over the training recordings, kRecordingsOfAStep at a time in random order. Where a
+// rollout leaves the domain, the frames before count. The rate falls to a hundredth of its start.
+MaybeError SolveByAdam(const LargeNetworkFit& fit, const std::vector<ShortenedRecording>& shortened,
+                       NetworkJudge* judge, std::vector<double>* x,
+                       LargeNetworkSolution* solution) {
+  constexpr size_t kRecordingsOfAStep = 8;
+  constexpr double kLastRate = 0.01;
+  Random random(fit.options.seed);
+  std::vector<AdjointRecording> recordings = Shortened(fit, shortened);
+  random.Shuffle(&recordings);
+  std::vector<AdjointGradient> batches;
+  for (size_t i = 0; i < recordings.size(); i += kRecordingsOfAStep) {
+    const auto end = recordings.begin() + std::min(i + kRecordingsOfAStep, recordings.size());
+    Result<AdjointGradient> batch =
+        AdjointGradient::Create({recordings.begin() + i, end}, fit.model, fit.map, fit.sigmas);
+    if (!batch.ok()) return batch.error();
+    batches.push_back(std::move(batch.value()));
+  }
+  NetworkVariables variables(fit);
+  Eigen::ArrayXd gradient(variables.size());
+  std::vector<double> by_shared(fit.shared.size());
+  Adam adam(variables.size());
+  std::vector<int> order(batches.size());
+  std::iota(order.begin(), order.end(), 0);
+  for (int pass = 0; pass <= fit.options.max_iterations; ++pass) {
+    const double done = static_cast<double>(pass) / std::max(1, fit.options.max_iterations);
+    ceres::IterationSummary summary;
+    summary.iteration = pass;
+    summary.step_is_successful = true;
+    random.Shuffle(&order);
+    for (int k : order) {
+      const std::vector<double>& shared = variables.Shared(x->data());
+      summary.cost +=
+          batches[k].Evaluate(shared.data(), x->data(), by_shared.data(), gradient.data()).cost;
+      variables.Scale(by_shared, gradient.data());
+      const double share = 1.0 / static_cast<double>(batches.size());
+      Eigen::ArrayXd of_priors = Eigen::ArrayXd::Zero(gradient.size());
+      summary.cost += share * variables.AddPriors(x->data(), of_priors.data());
+      gradient += share * of_priors;
+      summary.gradient_max_norm = std::max(summary.gradient_max_norm, gradient.abs().maxCoeff());
+      ++solution->gradients;
+      if (pass > 0) adam.Step(gradient, fit.options.rate * std::pow(kLastRate, done), x);
+    }
+    if ((*judge)(summary) != ceres::SOLVER_CONTINUE) break;
+  }
+  solution->message = "all passes done";
+  return std::nullopt;
 }
 
 }  // namespace
@@ -253,26 +218,25 @@ Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,
       AdjointGradient::Create(fit.held_out, fit.model, fit.map, fit.sigmas);
   if (!held_out.ok()) return held_out.error();
 
-  std::vector<double> x = Variables(fit).Start();
-  auto* cost = new TrainingCost(fit, &training.value());
-  const ceres::GradientProblem problem(cost);  // takes ownership
-  ceres::GradientProblemSolver::Options options = LbfgsOptions(fit.options);
-  Judge judge(fit, fit.held_out.empty() ? nullptr : &held_out.value(), &x, progress, &solution);
-  options.callbacks.push_back(&judge);
-  ceres::GradientProblemSolver::Summary summary;
-  ceres::Solve(options, problem, x.data(), &summary);
-  if (solution.trace.empty()) {
-    return Error{"the training of the network could not start: " + summary.message};
+  std::vector<double> x = NetworkVariables(fit).Start();
+  NetworkJudge judge(fit, fit.held_out.empty() ? nullptr : &held_out.value(), &x, progress,
+                     &solution);
+  if (fit.options.optimizer == NetworkOptimizer::kAdam) {
+    if (MaybeError error = SolveByAdam(fit, solution.shortened, &judge, &x, &solution)) {
+      return *error;
+    }
+  } else {
+    SolveByLbfgs(fit, &training.value(), &judge, &x, &solution);
   }
-  solution.message = summary.message;
-  solution.converged = summary.termination_type == ceres::CONVERGENCE;
-  solution.gradients = cost->gradients();
+  if (solution.trace.empty()) {
+    return Error{"the training of the network could not start: " + solution.message};
+  }
   solution.best_iteration = judge.Best().iteration;
   solution.final_cost = judge.Best().cost;
   solution.final_training_cost = judge.Best().training_cost;
   solution.best_held_out_cost = judge.Best().held_out_cost;
   solution.held_out_failures = judge.Best().held_out_failures;
-  solution.seconds = summary.total_time_in_seconds;
+  solution.seconds = solution.trace.back().seconds;
   return solution;
 }
 

@@ -1,5 +1,5 @@
 // ident: training a network too large for Gauss-Newton, by its adjoint gradient
-// (residuals/adjoint/adjoint_gradient.h) and L-BFGS.
+// (residuals/adjoint/adjoint_gradient.h) and L-BFGS, or Adam.
 //
 //   cost = cost of the training recordings + 1/2 |weights / sigma|^2
 //        (+ 1/2 |(shared - mean) / sigma|^2, where the shared parameters are fitted too)
@@ -13,8 +13,8 @@
 // Early stopping: after every iteration the held-out recordings are judged, by those that fail
 // first, then by cost; the best point of all is kept. Steps under which a training recording leaves
 // the domain are not taken. Parameters have no bounds here: keep them fixed, or hold them by
-// priors on the fitted scale. Rejected: first-order steps on single recordings, as LDP trains: the
-// whole gradient is cheap enough to need no learning rate.
+// priors on the fitted scale. Adam steps on a few recordings at a time, as LDP trains; its best
+// point without held-out recordings is the last.
 #pragma once
 
 #include <functional>
@@ -22,12 +22,16 @@
 #include <string>
 #include <vector>
 
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/parameter_table.h"
 #include "residuals/adjoint/adjoint_gradient.h"
 
 namespace pushid {
 
 struct LargeNetworkOptions {
+  NetworkOptimizer optimizer = NetworkOptimizer::kLbfgs;
+  double rate = 1e-3;         // of Adam, at first
+  uint64_t seed = 1;          // of Adam's order
   double weight_sigma = 1.0;  // of the prior that ties the weights to zero; 0: none
   bool fit_shared = false;    // the map's fitted parameters too, not only the weights
   int max_iterations = 500;

@@ -21,14 +21,17 @@ std::vector<AdjointRecording> Counted(const FitProblem& problem, const FitPoint&
   return counted;
 }
 
-// What the network is trained beside: the physical parameters held where they fit best alone, and
-// the lift free, without which a rod's law means nothing.
+// What the network is trained beside: what is free, where all is trained together; else the
+// physical parameters held where they fit best alone, and the lift free, without which a rod's law
+// means nothing.
 ParameterMap MapBesideNetwork(const FitOptions& options, const ParameterSet<double>& physics) {
   ParameterMap map;
+  if (options.network_training == NetworkTraining::kTogether) map = options.table.Map();
+  map.num_weights = static_cast<int>(options.model.learned->weights.size());
+  if (options.network_training == NetworkTraining::kTogether) return map;
   map.values = physics;
   const ParameterSpec& lift = options.table[kRodLift];
   if (lift.free) map.fitted = {{lift.id, lift.transform}};
-  map.num_weights = static_cast<int>(options.model.learned->weights.size());
   return map;
 }
 
@@ -75,7 +78,10 @@ Result<FitOptions> TrainByGradient(const std::vector<PendulumRecording>& recordi
   fit.options.fit_shared = true;
   fit.sigmas = physics.options.sigmas;
   fit.options.weight_sigma = options.network_prior;
-  fit.options.max_iterations = options.max_iterations;
+  fit.options.max_iterations = options.network_iterations;
+  fit.options.optimizer = options.network_optimizer;
+  fit.options.rate = options.network_rate;
+  fit.options.seed = options.seed;
   const Result<LargeNetworkSolution> trained =
       FitLargeNetwork(fit, [&progress](const LargeNetworkIteration& i) {
         if (progress) progress("network by its gradient", i.iteration, i.cost);

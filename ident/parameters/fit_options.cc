@@ -70,10 +70,6 @@ std::string LossViolation(const FitOptions& o) {
   if (o.sigma_source == SigmaSource::kEstimate) {
     return "--loss=ldp weights all states equally: --sigmas must be fixed";
   }
-  if (o.model.learned != nullptr && o.model.learned->rod.moves()) {
-    return "--loss=ldp does not include the rod's length, which --rod would learn; drop one of the "
-           "two";
-  }
   return "";
 }
 

@@ -48,6 +48,23 @@ constexpr EnumNames<FitStart, 2> Names(FitStart) {
   return {{{"nominal", FitStart::kNominal}, {"equation_error", FitStart::kEquationError}}};
 }
 
+// How a network that is too large for Gauss-Newton is trained, and by what.
+enum class NetworkTraining {
+  kAfterPhysics,  // the physical model alone, then the weights, then the physical model again
+  kTogether       // weights and free parameters at once, from the nominal values
+};
+constexpr EnumNames<NetworkTraining, 2> Names(NetworkTraining) {
+  return {{{"after_physics", NetworkTraining::kAfterPhysics},
+           {"together", NetworkTraining::kTogether}}};
+}
+enum class NetworkOptimizer {
+  kLbfgs,  // Ceres' L-BFGS on all recordings
+  kAdam    // Adam on a few recordings at a time, as LDP trains
+};
+constexpr EnumNames<NetworkOptimizer, 2> Names(NetworkOptimizer) {
+  return {{{"lbfgs", NetworkOptimizer::kLbfgs}, {"adam", NetworkOptimizer::kAdam}}};
+}
+
 // Where the support of standing feet comes from (models/stance.h).
 enum class SupportSource {
   kTable,    // the table's values, free or fixed
@@ -117,8 +134,13 @@ struct FitOptions {
   // Share of the recordings held out to stop a network's training before it learns the rest by
   // heart; 0: none, the prior alone holds it.
   double early_stopping = 0.0;
-  bool hold_network = false;  // its weights are taken as they are
-  int ensemble = 1;           // networks from so many seeds; predictions are their median
+  // Of large networks (large_networks/large_network_fit.h).
+  NetworkTraining network_training = NetworkTraining::kAfterPhysics;
+  NetworkOptimizer network_optimizer = NetworkOptimizer::kLbfgs;
+  int network_iterations = 200;  // of L-BFGS, or Adam's passes over the recordings, at most
+  double network_rate = 1e-3;    // learning rate of Adam, which falls to a hundredth of it
+  bool hold_network = false;     // its weights are taken as they are
+  int ensemble = 1;              // networks from so many seeds; predictions are their median
 
   // Weight of restored bodies against recorded ones (residuals/cost_functions/body_residual.h), and
   // what is known of the bodies, which no file holds; 0: pendulums alone.

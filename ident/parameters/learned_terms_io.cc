@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <sstream>
-#include <stdexcept>
 
 #include "datasets/files/random.h"
 #include "ident/parameters/option_names.h"
@@ -14,16 +12,14 @@
 namespace pushid {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kDefaultHidden = 4;
-constexpr int kLargestSize = 4096;
-constexpr size_t kMostLayers = 8;
 constexpr double kOpenForgetGate = 1.0;
 // So that none repeats the weights of another.
 constexpr uint64_t kRodSeed = 7919, kPairSeed = 104729;
 
-constexpr char kNetworkTerm[] = "network:";  // before the sizes
+// Before the sizes; the second is LDP's.
+constexpr std::string_view kNetworkTerm = "network:", kLdpNetworkTerm = "ldp_network:";
+constexpr int kLdpEmbedding = 32;
 
 // A size between 1 and kLargestSize, or 0.
 int Size(const std::string& text) {
@@ -59,6 +55,7 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
   shape.hidden = kDefaultHidden;
   const bool known =
       shape.any() && text.back() != ':' && parts.size() <= (shape.recurrent() ? 3 : 2);
+  if (shape.biased()) shape.embedding = kLdpEmbedding;  // which takes the mass
   if (parts.size() > 1) shape.hidden = Size(parts[1]);
   if (parts.size() > 2) shape.embedding = Size(parts[2]);
   if (known && shape.hidden > 0 && (parts.size() < 3 || shape.embedding > 0)) return shape;
@@ -73,12 +70,13 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
 
 std::vector<std::string> NetworkExamples() {
   std::vector<std::string> examples;
-  std::string recurrent;
+  std::string recurrent, ldp;
   for (const NetworkKindRow& row : kNetworkKinds) {
     if (row.value == NetworkKind::kNone) continue;
-    examples.push_back(row.name + std::string(":4"));
-    if (row.recurrent) recurrent = row.name;
+    (row.biased ? ldp : recurrent) = row.name;
+    if (!row.biased) examples.push_back(row.name + std::string(":4"));
   }
+  examples.push_back(ldp + ":256:32, LDP's, which has biases");
   examples.push_back(recurrent + ":256:32");
   return examples;
 }
@@ -111,10 +109,12 @@ Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
   const size_t colon = text.find(':');
   const std::string sizes =
       colon == std::string::npos ? std::to_string(kDefaultHidden) : text.substr(colon + 1);
-  const RodShape shape{RodKind::kMlp, HiddenSizes(sizes)};
-  if (text.substr(0, colon) == "mlp" && !shape.hidden.empty()) return shape;
+  const RodShape shape{FromName<RodKind>(text.substr(0, colon)).value_or(RodKind::kConstant),
+                       HiddenSizes(sizes)};
+  if (shape.layered() && !shape.hidden.empty()) return shape;
   return Error{flag + " is '" + text +
-               "'; it must be constant, linear, mlp:4 or mlp:256-128-256 (hidden sizes of 1 to " +
+               "'; it must be constant, linear, mlp:4 or, as LDP's, ldp:256-128-256 (hidden sizes "
+               "of 1 to " +
                std::to_string(kLargestSize) + ", at most " + std::to_string(kMostLayers) +
                " layers)"};
 }
@@ -123,15 +123,18 @@ Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::s
   InteractionChoice choice;
   std::string others;
   for (const std::string& part : Split(text, ',')) {
-    if (part.rfind(kNetworkTerm, 0) != 0) {
+    const bool ldp = part.rfind(kLdpNetworkTerm, 0) == 0;
+    if (!ldp && part.rfind(kNetworkTerm, 0) != 0) {
       others += (others.empty() ? "" : ",") + part;
       continue;
     }
     if (choice.pair.any()) return Error{flag + " names more than one network"};
-    choice.pair.hidden = HiddenSizes(part.substr(sizeof kNetworkTerm - 1));
+    const size_t sizes_at = ldp ? kLdpNetworkTerm.size() : kNetworkTerm.size();
+    choice.pair = {HiddenSizes(part.substr(sizes_at)), ldp};
     if (choice.pair.any()) continue;
     return Error{flag + " names '" + part +
-                 "'; a network is network:4 or network:8-8 (hidden sizes of 1 to " +
+                 "'; a network is network:4 or, as LDP's, ldp_network:512-512 (hidden sizes of 1 "
+                 "to " +
                  std::to_string(kLargestSize) + ", at most " + std::to_string(kMostLayers) +
                  " layers)"};
   }
@@ -142,6 +145,7 @@ Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::s
     if (MaybeError error = ParseName(flag, others, &choice.terms)) return *error;
   }
   choice.terms.learned = choice.pair.any();
+  choice.terms.learned_in_range = choice.pair.ldp;
   return choice;
 }
 
@@ -168,7 +172,7 @@ std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
   const auto fill = [&](int first, int last, int fan_in) {
     for (int i = first; i < last; ++i) weights[i] = random.Normal() / std::sqrt(fan_in);
   };
-  fill(0, shape.gates_at(), kMotionInputs);
+  fill(0, shape.gates_at(), shape.embed_width());
   fill(shape.gates_at(), shape.candidates_at(), shape.gate_width());
   fill(shape.candidates_at(), shape.output_at(), std::max(1, shape.candidate_width()));
   if (shape.cells() > 0) {
@@ -199,100 +203,10 @@ void AddHiddenWeights(const std::vector<int>& hidden, int inputs, uint64_t seed,
 std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, uint64_t seed,
                                                    const RodShape& rod, const PairShape& pair) {
   LearnedTerms network{shape, InitialWeights(shape, seed), rod, pair};
-  AddHiddenWeights(rod.hidden, RodShape::kInputs, seed + kRodSeed, &network.weights);
+  AddHiddenWeights(rod.hidden, rod.num_inputs(), seed + kRodSeed, &network.weights);
   network.weights.resize(network.pair_at(), 0.0);
   AddHiddenWeights(pair.hidden, PairShape::kInputs, seed + kPairSeed, &network.weights);
   network.weights.resize(network.num_weights(), 0.0);
-  return std::make_shared<const LearnedTerms>(std::move(network));
-}
-
-namespace {
-
-void CheckSizes(const std::string& what, const std::vector<int>& hidden) {
-  for (int size : hidden) {
-    if (size >= 1 && size <= kLargestSize) continue;
-    throw std::runtime_error(what + ": sizes must lie between 1 and " +
-                             std::to_string(kLargestSize));
-  }
-}
-
-RodShape RodFromJson(const Json& json) {
-  const std::string kind = json.at("kind");
-  const std::optional<RodKind> known = FromName<RodKind>(kind);
-  if (!known) {
-    throw std::runtime_error("rod: '" + kind + "' is not a kind (constant, linear, mlp)");
-  }
-  RodShape rod;
-  rod.kind = *known;
-  rod.hidden = json.at("hidden").get<std::vector<int>>();
-  const bool layers_fit = rod.kind == RodKind::kMlp
-                              ? !rod.hidden.empty() && rod.hidden.size() <= kMostLayers
-                              : rod.hidden.empty();
-  if (!layers_fit) throw std::runtime_error("rod: no " + kind + " has so many layers");
-  CheckSizes("rod", rod.hidden);
-  return rod;
-}
-
-PairShape PairFromJson(const Json& json) {
-  PairShape pair{json.at("hidden").get<std::vector<int>>()};
-  if (!pair.any() || pair.hidden.size() > kMostLayers) {
-    throw std::runtime_error("interaction: a network has one to " + std::to_string(kMostLayers) +
-                             " hidden layers");
-  }
-  CheckSizes("interaction", pair.hidden);
-  return pair;
-}
-
-}  // namespace
-
-Json ToJson(const LearnedTerms& network) {
-  const NetworkShape& s = network.shape;
-  Json json = {{"kind", NameOf(s.kind)},
-               {"hidden", s.hidden},
-               {"embedding", s.embedding},
-               {"rod", {{"kind", NameOf(network.rod.kind)}, {"hidden", network.rod.hidden}}},
-               {"weights", network.weights}};
-  if (network.pair.any()) json["interaction"] = {{"hidden", network.pair.hidden}};
-  return json;
-}
-
-std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
-  LearnedTerms network;
-  NetworkShape& s = network.shape;
-  const std::string kind = json.at("kind");
-  if (const std::optional<NetworkKind> known = FromName<NetworkKind>(kind)) {
-    s.kind = *known;
-  } else {
-    throw std::runtime_error("network: '" + kind + "' is not a kind (" +
-                             Listed(AllNames<NetworkKind>(), ",") + ")");
-  }
-  if (json.contains("rod")) network.rod = RodFromJson(json.at("rod"));
-  if (json.contains("interaction")) network.pair = PairFromJson(json.at("interaction"));
-  if (!network.any()) throw std::runtime_error("network: nothing is learned");
-  for (const char* size : {"hidden", "embedding"}) {
-    if (!json.at(size).is_number_integer()) {
-      throw std::runtime_error(std::string("network: ") + size + " must be a whole number");
-    }
-  }
-  s.hidden = json.at("hidden");
-  s.embedding = json.at("embedding");
-  if (json.value("rod_input", false)) {
-    throw std::runtime_error("network: rod_input, an option of earlier versions, is gone");
-  }
-  if (s.hidden < (s.any() ? 1 : 0) || s.hidden > kLargestSize || s.embedding < 0 ||
-      s.embedding > kLargestSize) {
-    throw std::runtime_error("network: sizes must lie between 1 and " +
-                             std::to_string(kLargestSize));
-  }
-  network.weights = json.at("weights").get<std::vector<double>>();
-  if (static_cast<int>(network.weights.size()) != network.num_weights()) {
-    throw std::runtime_error("network: " + LearnedName(network) + " has " +
-                             std::to_string(network.num_weights()) + " weights, not " +
-                             std::to_string(network.weights.size()));
-  }
-  for (double weight : network.weights) {
-    if (!std::isfinite(weight)) throw std::runtime_error("network: a weight is not finite");
-  }
   return std::make_shared<const LearnedTerms>(std::move(network));
 }
 

@@ -3,10 +3,11 @@
 //
 //   mlp:4, gru:8, lstm:16           kind and hidden size (4 where it is left out)
 //   lstm:256:32                     with an embedding of 32 before it
-//   constant, linear, mlp:4, mlp:256-128-256                     a law of the rod
-//   network:4, network:8-8, among the terms of an interaction    hidden sizes
+//   ldp:256:32                      LDP's, with biases and the mass; it always has an embedding
+//   constant, linear, mlp:4, ldp:256-128-256                     a law of the rod
+//   network:8-8, ldp_network:512-512, among the terms of an interaction    hidden sizes
 // JSON: {"kind": "gru", "hidden": 8, "embedding": 0,
-//        "rod": {"kind": "mlp", "hidden": [4]}, "interaction": {"hidden": [4]},
+//        "rod": {"kind": "mlp", "hidden": [4]}, "interaction": {"hidden": [4], "ldp": false},
 //        "weights": [...]}
 // weights: the flat array of models/learned_terms.h, without loss. Kind none, and no interaction,
 // where those are not learned.
@@ -22,6 +23,9 @@
 #include "models/learned_terms.h"
 
 namespace pushid {
+
+inline constexpr int kLargestSize = 4096;  // of a layer
+inline constexpr size_t kMostLayers = 8;
 
 // The value of --self_force: none, linear, a network, or "linear,gru:4". What is not named is none.
 struct SelfForceChoice {

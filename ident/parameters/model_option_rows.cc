@@ -20,8 +20,10 @@ Row PresetRow() {
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
       "tail, posture-relative recovery), group (tail with linear self forces and contact, pooled "
       "by "
-      "setting), ldp (plain PD and friction from upright), or ldp_groups (that with LDP's "
-      "potential and torques between people, and a network beside them)",
+      "setting), ldp (plain PD and friction from upright), ldp_groups (that with LDP's potential "
+      "and "
+      "torques between people, and a small network beside them), or ldp_published (LDP with all "
+      "its networks, of one person or of groups)",
       nullptr);
   row.choices = PresetNames();
   row.text = [](const FitOptions&) { return std::string(kAutoPreset); };
@@ -115,7 +117,9 @@ Row SelfForceRow() {
 Row RodRow() {
   Row row = WordsRow("rod", OptionStage::kModel,
                      "the rod's length: constant, or a state that a learned law changes, together "
-                     "with the cart's height: linear, mlp:4, mlp:256-128-256 (hidden sizes)",
+                     "with the cart's height: linear, mlp:4 (hidden sizes); or LDP's, whose cart "
+                     "keeps its height, "
+                     "ldp:256-128-256",
                      [](const std::string& text, FitOptions* o) -> MaybeError {
                        const Result<RodShape> rod = ParseRod("--rod", text);
                        if (!rod.ok()) return rod.error();
@@ -146,7 +150,7 @@ std::string InteractionHelp() {
   std::string text =
       "interaction between people: none, or some of these, comma-separated: contact (smooth and "
       "mutual: spring,damping), ldp (smoothed: potential,lean), network:4 (learned beside contact, "
-      "by hidden sizes)";
+      "by hidden sizes), ldp_network:512-512 (LDP's, learned of every neighbour in range)";
   for (const InteractionTermName& term : kInteractionTerms) {
     text += ", " + std::string(term.name);
     if (!term.note.empty()) text += " (" + std::string(term.note) + ")";

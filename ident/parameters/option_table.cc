@@ -57,8 +57,8 @@ Row LossRow() {
   Row row = NameRow<FrameLoss>(
       "loss", "/sigmas/loss", [](FitOptions & o) -> auto& { return o.sigmas.loss; },
       "what is minimized: hip (positions of the hip, velocities, angles and rates, robust by "
-      "frame), or ldp (absolute errors of all states and velocities, and phi' itself, for "
-      "comparison)");
+      "frame), or ldp (LDP's Eq. 6: absolute errors of all states and velocities, but for the rate "
+      "of phi, which is itself held small)");
   row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
     FrameLoss loss;
     if (MaybeError error = ParseName("--loss", text, &loss)) return error;
@@ -202,6 +202,22 @@ std::vector<Row> WeightRows() {
           kNumber, "slowest decay the hinge allows, 1/s"),
       Decided(PoolByRow()),
       PoolingSigmaRow(),
+      MayBeAbsent(Decided(NameRow<NetworkTraining>(
+          "network_training", "/network_training",
+          [](O & o) -> auto& { return o.network_training; },
+          "large networks: after_physics (fitted without them first, and again with them held), or "
+          "together with the free parameters"))),
+      MayBeAbsent(NameRow<NetworkOptimizer>(
+          "network_optimizer", "/network_optimizer",
+          [](O & o) -> auto& { return o.network_optimizer; },
+          "large networks: lbfgs (Ceres' L-BFGS on all recordings) or adam (on eight at a time)")),
+      MayBeAbsent(CountRow(
+          "network_iterations", "/network_iterations",
+          [](O & o) -> auto& { return o.network_iterations; },
+          "large networks: iterations of L-BFGS or passes of Adam, at most")),
+      MayBeAbsent(NumberRow(
+          "network_rate", "/network_rate", [](O & o) -> auto& { return o.network_rate; }, kPositive,
+          "large networks: Adam's learning rate, which falls to a hundredth of it")),
       MayBeAbsent(NumberRow(
           "network_prior", "/network_prior", [](O & o) -> auto& { return o.network_prior; },
           kNotNegative,

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "datasets/manifest/recording.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/ldp_presets.h"
 #include "models/parameters.h"
 #include "models/self_terms.h"
 
@@ -24,8 +24,6 @@ void Free(const Start& start, ParameterTable* table) {
   spec.nominal = start.value;
   spec.prior = Prior{start.value, start.sigma};
 }
-constexpr double kLdpDampingPerFrame = 200.0, kLdpRate = 60.0;  // N m per frame; Hz
-
 FitOptions TailPreset() {
   FitOptions o;
   o.preset = "tail";
@@ -70,32 +68,6 @@ FitOptions GroupPreset() {
   return o;
 }
 
-FitOptions LdpPreset() {
-  FitOptions o;
-  o.preset = "ldp";
-  o.table = BaseTable();
-  o.table[kKpX].nominal = o.table[kKpY].nominal = 30;
-  o.table[kKdTheta].nominal = o.table[kKdPhi].nominal = kLdpDampingPerFrame / kLdpRate;
-  for (Parameter id : {kMu, kMuY, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = true;
-  o.model.posture = Posture::kUpright;
-  o.model.gain_scaling = GainScaling::kMass;
-  o.model.friction = FrictionKind::kAnisotropic;
-  o.model.push = PushUse::kAsRecorded;
-  o.model.push_tail = PushTail::kNone;
-  return o;
-}
-
-// LDP's whole composition for groups: potential, torques against leaning on each other, and a
-// network beside them.
-FitOptions LdpGroupsPreset() {
-  constexpr int kHidden = 4;
-  FitOptions o = LdpPreset();
-  o.preset = "ldp_groups";
-  o.model.interaction.potential = o.model.interaction.lean = o.model.interaction.learned = true;
-  o.model.learned = InitialNetwork({}, o.seed, {}, PairShape{{kHidden}});
-  return o;
-}
-
 struct NamedPreset {
   const char* name;
   FitOptions (*make)();
@@ -104,6 +76,8 @@ struct NamedPreset {
 constexpr NamedPreset kPresets[] = {{"tail", TailPreset, true},
                                     {"ldp", LdpPreset, false},
                                     {"ldp_groups", LdpGroupsPreset, false},
+                                    {kLdpPublished, LdpPublishedPreset, false},
+                                    {kLdpPublishedGroups, LdpPublishedGroupsPreset, false},
                                     {"group", GroupPreset, true}};
 
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
@@ -217,10 +191,11 @@ bool TakesStanceFromFeet(const std::string& preset) {
 }
 
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings) {
-  if (name != kAutoPreset) return name;
   const bool groups =
       std::any_of(recordings.begin(), recordings.end(),
                   [](const PendulumRecording& recording) { return recording.num_people() > 1; });
+  if (name == kLdpPublished && groups) return kLdpPublishedGroups;
+  if (name != kAutoPreset) return name;
   return groups ? "group" : "tail";
 }
 

@@ -2,11 +2,15 @@
 //
 //   tail:  one person: push tail, posture-relative recovery, one cross term; six free parameters,
 //          the tail's time partially pooled by condition
-//   ldp:   one person: plain PD balance and friction from upright; six free parameters
+//   ldp:   one person: plain PD balance and one friction from upright; five free parameters
 //   group: people who touch: tail with all linear self forces and contact, every parameter
 //          partially pooled by setting (condition); eighteen shared parameters
 //   ldp_groups: people who touch, as LDP composes them: that with a potential, torques against
 //          leaning on each other and a learned interaction
+//   ldp_published: LDP as published (Yue et al., CVPR 2024), networks and all: PD and friction at
+//          all times, an LSTM as self force, a law of the rod; between people
+//          (ldp_published_groups, which it stands for where there are several) also potential,
+//          torques and a network on every neighbour
 //   auto:  tail where every recording is of one person, otherwise group
 //
 //   FitOptions options = MakePreset("tail").value();
@@ -29,7 +33,7 @@ inline constexpr char kAutoPreset[] = "auto";
 // The names of all, kAutoPreset among them.
 std::vector<std::string> PresetNames();
 
-// What "auto" stands for on these recordings; other names as they are.
+// What "auto" and "ldp_published" stand for on these recordings; other names as they are.
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings);
 
 // Complete and ready for PrepareFit. Errors: no such preset (auto is none before PresetFor).

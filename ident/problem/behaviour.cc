@@ -102,7 +102,7 @@ Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
       RodLayers<double> layers(network.rod);
       SetRodInputs<double>(from[0], from[1], qd,
                            self.Total(parameters, state, before) + to.head<4>(), state.rod,
-                           self.body.mass, &layers);
+                           self.body, &layers);
       to[4] = RodVelocity(network.rod, network.weights.data() + network.rod_at(), &layers);
     }
     return to;

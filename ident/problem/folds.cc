@@ -18,13 +18,6 @@ std::string PushedSubject(const PendulumRecording& recording) {
   return recording.subject_ids[recording.pushed_person];
 }
 
-// Fisher and Yates's shuffle.
-void Shuffle(std::vector<int>* items, Random* random) {
-  for (size_t i = items->size(); i > 1; --i) {
-    std::swap((*items)[i - 1], (*items)[random->Fork() % i]);
-  }
-}
-
 std::vector<Fold> StratifiedFolds(const std::vector<PendulumRecording>& recordings, int num_folds,
                                   int repeats, uint64_t seed) {
   std::map<std::array<std::string, 3>, std::vector<int>> strata;
@@ -40,7 +33,7 @@ std::vector<Fold> StratifiedFolds(const std::vector<PendulumRecording>& recordin
     int next = 0;  // carried over from stratum to stratum: folds stay equally large
     for (const auto& [key, members] : strata) {
       std::vector<int> shuffled = members;
-      Shuffle(&shuffled, &random);
+      random.Shuffle(&shuffled);
       for (int index : shuffled) round[next++ % num_folds].held_out.push_back(index);
     }
     for (int f = 0; f < num_folds; ++f) {

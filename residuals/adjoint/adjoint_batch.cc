@@ -28,9 +28,9 @@ PackedColumns ColumnsOf(const std::vector<AdjointRecording>& all,
 
 }  // namespace
 
-MeasuredFrame AdjointGradient::Batch::Walker::Measured(int frame) const {
+MeasuredFrame AdjointGradient::Batch::Walker::Measured(int frame, bool rod_moves) const {
   return {recording->hip[person][frame], recording->states[person][frame],
-          recording->Weight(person, frame)};
+          recording->Weight(person, frame), rod_moves ? recording->RodChange(person, frame) : 0.0};
 }
 
 AdjointGradient::Batch::Batch(const std::vector<AdjointRecording>& all,
@@ -119,7 +119,7 @@ void AdjointGradient::Batch::SetRodVelocities(int step) {
   rod_velocities_.setZero(people);
   if (!rod_) return;
   RodLayers<double> layers(options_.learned->rod);
-  rod_inputs_.setZero(RodShape::kInputs, people);
+  rod_inputs_.setZero(options_.learned->rod.num_inputs(), people);
   for (int column = 0; column < people; ++column) {
     const Walker& walker = walkers_[column];
     if (!Going(walker, step)) continue;
@@ -129,7 +129,7 @@ void AdjointGradient::Batch::SetRodVelocities(int step) {
     force += forces_.col(column);
     force.tail<2>() -= walker.self.hold;
     SetRodInputs<double>(state.q[2] - walker.self.posture[0], state.q[3] - walker.self.posture[1],
-                         state.qd, force, state.rod, walker.body().mass, &layers);
+                         state.qd, force, state.rod, walker.body(), &layers);
     rod_inputs_.col(column) = layers.inputs;
   }
   rod_->Forward(step, rod_inputs_, &rod_velocities_);
@@ -170,7 +170,7 @@ double AdjointGradient::Batch::Cost() const {
       const PendulumState<double>& state = walker.path[t];
       const FrameVector<double> r =
           walker.weight * FrameResidual<double>(BodyNow(walker.body(), state.rod, lift), state,
-                                                walker.Measured(t), sigmas_);
+                                                walker.Measured(t, rod_.has_value()), sigmas_);
       cost += 0.5 * r.squaredNorm();
     }
   }

@@ -56,7 +56,7 @@ class AdjointGradient::Batch {
     const Vector4<double>& VelocityBefore(int frame) const {
       return path[frame > 0 ? frame - 1 : 0].qd;
     }
-    MeasuredFrame Measured(int frame) const;
+    MeasuredFrame Measured(int frame, bool rod_moves) const;
   };
 
   bool Going(const Walker& walker, int step) const { return step + 1 < end_[walker.place]; }

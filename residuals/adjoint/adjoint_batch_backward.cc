@@ -8,7 +8,7 @@ double AdjointGradient::Batch::AddResidual(int column, int frame, Adjoint* adjoi
   FrameJacobian<10> jacobian;
   const FrameVector<double> r =
       MovingRodResidualWithJacobian(walker.body(), Parameters(column)[kRodLift], walker.path[frame],
-                                    walker.Measured(frame), sigmas_, &jacobian);
+                                    walker.Measured(frame, rod_.has_value()), sigmas_, &jacobian);
   const Eigen::Matrix<double, 10, 1> gradient =
       walker.weight * walker.weight * (jacobian.transpose() * r);
   adjoint->state += gradient.head<8>();

@@ -11,8 +11,6 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 
-double ForceUnit(const Body& body) { return kNetworkAcceleration * body.mass; }
-
 // Adds the adjoint of [state of n, state of j].
 void AddToBoth(const Eigen::Matrix<double, 1, 16>& by_states, int n, int j, Matrix* by_state) {
   by_state->col(n) += by_states.head<8>().transpose();
@@ -60,7 +58,10 @@ void TouchingPeople::FindContacts(Group* group, const PeopleNow& now,
         InteractionBetween<double>(options_.interaction, options_.interaction_network.get(),
                                    contact.pair, p, states[n], states[j]);
     contact.terms = force.acts;
-    if (network_) contact.gate = PairGate<double>(contact.pair, p, states[n].q, states[j].q);
+    if (network_) {
+      contact.gate =
+          PairGate<double>(options_.learned->pair, contact.pair, p, states[n].q, states[j].q);
+    }
     if (!contact.terms && !contact.learned()) return;
     received->col(contact.n) += force.on_n;
     received->col(contact.j) += force.on_j;
@@ -83,11 +84,12 @@ void TouchingPeople::AskNetwork(const PeopleNow& now, std::vector<Contact>* cont
     }
   }
   network_->Forward(inputs_, &outputs_);
+  const PairShape& shape = options_.learned->pair;
   column = 0;
   for (Contact& c : *contacts) {
     if (!c.learned()) continue;
-    c.learned_n = ForceUnit(c.pair.body_n) * outputs_.col(column++);
-    c.learned_j = ForceUnit(c.pair.body_j) * outputs_.col(column++);
+    c.learned_n = shape.ForceUnit(c.pair.body_n) * outputs_.col(column++);
+    c.learned_j = shape.ForceUnit(c.pair.body_j) * outputs_.col(column++);
     received->col(c.n) += c.gate * c.learned_n;
     received->col(c.j) += c.gate * c.learned_j;
   }
@@ -116,8 +118,10 @@ void TouchingPeople::TermsBack(const Contact& c, const PeopleNow& now, const Mat
 
 void TouchingPeople::GateBack(const Contact& c, const PeopleNow& now, const Matrix& by_received,
                               Matrix* by_state, ParameterSet<double>* by_parameter) const {
+  if (options_.learned->pair.ldp) return;  // a hard switch
   const GateJacobian gate =
-      PairGateJacobian(c.pair, now.parameters[c.first], now.states[c.n].q, now.states[c.j].q);
+      PairGateJacobian(options_.learned->pair, c.pair, now.parameters[c.first], now.states[c.n].q,
+                       now.states[c.j].q);
   const double by_gate =
       c.learned_n.dot(by_received.col(c.n)) + c.learned_j.dot(by_received.col(c.j));
   by_state->col(c.n).head<4>() += by_gate * gate.by_places.head<4>().transpose();
@@ -131,11 +135,12 @@ void TouchingPeople::NetworkBack(int step, const Matrix& by_received, Matrix* by
   const auto asked =
       std::count_if(contacts.begin(), contacts.end(), [](const Contact& c) { return c.learned(); });
   outputs_.resize(4, 2 * asked);
+  const PairShape& shape = options_.learned->pair;
   int column = 0;
   for (const Contact& c : contacts) {
     if (!c.learned()) continue;
-    outputs_.col(column++) = ForceUnit(c.pair.body_n) * c.gate * by_received.col(c.n);
-    outputs_.col(column++) = ForceUnit(c.pair.body_j) * c.gate * by_received.col(c.j);
+    outputs_.col(column++) = shape.ForceUnit(c.pair.body_n) * c.gate * by_received.col(c.n);
+    outputs_.col(column++) = shape.ForceUnit(c.pair.body_j) * c.gate * by_received.col(c.j);
   }
   network_->Backward(step, outputs_, &inputs_);
   column = 0;

@@ -38,7 +38,8 @@ struct RolloutProblem {
   int num_residuals() const { return (horizon - 1) * recording->num_people() * kFrameResiduals; }
   MeasuredFrame Measured(int frame, int person) const {
     return {recording->hip[person][frame], recording->states[person][frame],
-            recording->Weight(person, frame)};
+            recording->Weight(person, frame),
+            RodMoves(options) ? recording->RodChange(person, frame) : 0.0};
   }
 };
 

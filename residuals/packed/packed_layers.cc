@@ -7,7 +7,11 @@ namespace pushid {
 
 PackedRod::PackedRod(const RodShape& shape, const VectorKernels& kernels,
                      const PackedColumns& columns)
-    : columns_(columns), kernels_(kernels), right_(kernels, PackedMatrix::kRight) {
+    : columns_(columns),
+      kernels_(kernels),
+      biased_(shape.biased()),
+      top_(shape.num_inputs()),
+      right_(kernels, PackedMatrix::kRight) {
   for (int rows : shape.hidden) {
     layers_.push_back({PackedLayer(kernels, rows, top_, output_at_), Eigen::VectorXd(rows),
                        Eigen::VectorXd(rows), Columns(rows, columns_.total()),
@@ -15,7 +19,7 @@ PackedRod::PackedRod(const RodShape& shape, const VectorKernels& kernels,
     output_at_ += layers_.back().num_weights();
     top_ = rows;
   }
-  inputs_.resize(RodShape::kInputs, columns_.total());
+  inputs_.resize(shape.num_inputs(), columns_.total());
   outputs_.resize(1, columns_.total());
 }
 
@@ -26,6 +30,7 @@ void PackedRod::Start(const double* weights) {
     layer.rest = Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>(
         weights + layer.at + layer.width, layer.rows, 1, Eigen::OuterStride<>(layer.stride()));
     kernels_.tanh(layer.rest.data(), layer.rows);
+    if (biased_) layer.rest.setZero();
     layer.bias.setZero();
   }
 }
@@ -41,10 +46,16 @@ void PackedRod::Forward(int step, const Columns& inputs, Eigen::RowVectorXd* vel
     }
     right_.Pack(below.data(), n, layer.width, layer.width, 1);
     AddProduct(layer.weights, right_, active.data(), layer.rows);
-    kernels_.tanh(active.data(), active.size());
+    if (biased_) {
+      active = active.cwiseMax(0.0);
+    } else {
+      kernels_.tanh(active.data(), active.size());
+    }
     columns_.At(layer.hidden, step) = active.colwise() - layer.rest;
   }
-  *velocities = kRodSpeed * (Output().transpose() * columns_.At(Below(layers_.size()), step));
+  *velocities = Output().transpose() * columns_.At(Below(layers_.size()), step);
+  if (biased_) velocities->array() += weights_[output_at_ + top_];
+  *velocities *= kRodSpeed;
 }
 
 void PackedRod::Backward(int step, const Eigen::RowVectorXd& velocities, Columns* inputs) {
@@ -54,11 +65,16 @@ void PackedRod::Backward(int step, const Eigen::RowVectorXd& velocities, Columns
   for (size_t i = layers_.size(); i-- > 0;) {
     Layer& layer = layers_[i];
     auto active = columns_.At(layer.active, step), hidden = columns_.At(layer.hidden, step);
-    layer.bias -= (inputs->array() * hidden.array() * (active.colwise() + layer.rest).array())
-                      .rowwise()
-                      .sum()
-                      .matrix();
-    active = inputs->array() * (1.0 - active.array().square());
+    if (biased_) {
+      active = inputs->array() * (active.array() > 0.0).cast<double>();
+      layer.bias += active.rowwise().sum();
+    } else {
+      layer.bias -= (inputs->array() * hidden.array() * (active.colwise() + layer.rest).array())
+                        .rowwise()
+                        .sum()
+                        .matrix();
+      active = inputs->array() * (1.0 - active.array().square());
+    }
     inputs->setZero(layer.width, n);
     right_.Pack(active.data(), n, layer.rows, layer.rows, 1);
     AddProduct(layer.transposed, right_, inputs->data(), layer.width);
@@ -79,6 +95,7 @@ void PackedRod::AddWeightGradient(double* gradient) {
   }
   Eigen::Map<Eigen::VectorXd>(gradient + output_at_, top_) +=
       Below(layers_.size()) * outputs_.transpose();
+  if (biased_) gradient[output_at_ + top_] += outputs_.sum();
 }
 
 namespace {
@@ -88,7 +105,10 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 }  // namespace
 
 PackedPairs::PackedPairs(const PairShape& shape, const VectorKernels& kernels)
-    : kernels_(kernels), right_(kernels, PackedMatrix::kRight), inputs_(PairShape::kInputs, 0) {
+    : kernels_(kernels),
+      rectified_(shape.ldp),
+      right_(kernels, PackedMatrix::kRight),
+      inputs_(PairShape::kInputs, 0) {
   std::vector<int> sizes = shape.hidden;
   sizes.push_back(4);
   int width = PairShape::kInputs, at = 0;
@@ -129,7 +149,12 @@ void PackedPairs::Forward(const Columns& inputs, Columns* outputs) {
     values.colwise() = PairLayer(weights_ + layer.at, layer.rows, layer.width).col(layer.width);
     right_.Pack(below.data(), n, layer.width, layer.width, 1);
     AddProduct(layer.weights, right_, values.data(), layer.rows);
-    if (!IsOutput(i)) kernels_.tanh(values.data(), values.size());
+    if (IsOutput(i)) continue;
+    if (rectified_) {
+      values = values.cwiseMax(0.0);
+    } else {
+      kernels_.tanh(values.data(), values.size());
+    }
   }
   *outputs = At(layers_.back().values, step);
 }
@@ -142,7 +167,7 @@ void PackedPairs::Backward(int step, const Columns& outputs, Columns* inputs) {
     Layer& layer = layers_[i];
     auto back = At(layer.back, step);
     back = *inputs;
-    if (!IsOutput(i)) back.array() *= 1.0 - At(layer.values, step).array().square();
+    if (!IsOutput(i)) back.array() *= Slopes(At(layer.values, step));
     inputs->setZero(layer.width, n);
     right_.Pack(back.data(), n, layer.rows, layer.rows, 1);
     AddProduct(layer.transposed, right_, inputs->data(), layer.width);
@@ -158,7 +183,7 @@ void PackedPairs::Linearize(Columns* by_input) {
     const Layer& layer = layers_[i];
     back.swap(*by_input);
     for (int c = 0; c < n && !IsOutput(i); ++c) {
-      const Eigen::ArrayXd slope = 1.0 - layer.values.col(first_[step] + c).array().square();
+      const Eigen::ArrayXd slope = Slopes(layer.values.col(first_[step] + c));
       back.middleCols<4>(4 * c).array().colwise() *= slope;
     }
     by_input->setZero(layer.width, 4 * n);

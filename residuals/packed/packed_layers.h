@@ -20,6 +20,7 @@ namespace pushid {
 // and backwards, with D = H^ (1 - A^2) from the adjoint H^ of a layer's values,
 //   H^_below = W' D,   W^ = sum over steps D H_below' = one product over all (people x steps),
 //   b^ = -sum H^ H (A + tanh(b)): tanh' less tanh' at rest, without the difference of near equals.
+// Of an ldp law, A = H = max(0, W H_below + b), D = H^ where A > 0, and b^ = sum D.
 class PackedRod {
  public:
   using Columns = Eigen::MatrixXd;
@@ -51,8 +52,9 @@ class PackedRod {
 
   PackedColumns columns_;
   const VectorKernels& kernels_;
+  const bool biased_;
   const double* weights_ = nullptr;
-  int output_at_ = 0, top_ = RodShape::kInputs;  // of o: its first weight, its size
+  int output_at_ = 0, top_;  // of o: its first weight, its size
   std::vector<Layer> layers_;
   PackedMatrix right_;
   Columns inputs_, outputs_;  // of all steps: u, adjoints of o H
@@ -68,7 +70,8 @@ class PackedRod {
 // and backwards, with D = H^ (1 - H^2) from the adjoint H^ of a layer's values (D = Y^ of the
 // last),
 //   H^_below = W' D,   W^ = sum over steps D H_below' = one product over all columns,   b^ = sum D.
-// H and D of every step are kept: 16 bytes a unit and column.
+// H and D of every step are kept: 16 bytes a unit and column. Of an ldp network max(0, .) stands
+// for tanh.
 
 class PackedPairs {
  public:
@@ -103,6 +106,12 @@ class PackedPairs {
 
   // What a layer sees of all steps.
   Columns& Below(size_t layer) { return layer == 0 ? inputs_ : layers_[layer - 1].values; }
+  // Of the hidden units, by their values.
+  template <typename Values>
+  Eigen::ArrayXXd Slopes(const Values& values) const {
+    if (rectified_) return (values.array() > 0.0).template cast<double>();
+    return 1.0 - values.array().square();
+  }
   bool IsOutput(size_t layer) const { return layer + 1 == layers_.size(); }
   auto At(Columns& of, int step) const {
     return of.middleCols(first_[step], first_[step + 1] - first_[step]);
@@ -111,6 +120,7 @@ class PackedPairs {
   void Grow();
 
   const VectorKernels& kernels_;
+  const bool rectified_;
   const double* weights_ = nullptr;
   std::vector<Layer> layers_;
   std::vector<int> first_ = {0};  // column of each step, and the total

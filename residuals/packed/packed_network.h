@@ -6,6 +6,7 @@
 // and backwards, with D = d(cost)/dS from the adjoints of outputs and memories,
 //   Z^ = W' D,   W^ = sum over steps D Z' = one product over all (people x steps).
 // Z, activations and cells of every step are kept.
+// Of an ldp network, whose gates are all biased, k is 1 and 1, and its mass goes to the embedding.
 // A GRU multiplies U_n h by r: there W has the rows [W_n 0] and [0 U_n] in place of [W_n U_n], a
 // third more work, for one product instead of three.
 #pragma once
@@ -44,6 +45,20 @@ class PackedColumns {
   std::vector<int> first_ = {0};  // column of each step, and the total
 };
 
+// The candidates' rows [W U] in the stacked matrix, below those of the gates: of a network with
+// cells in one piece, of the others W above U, because a gate scales what U makes of h.
+// visit(row, first column, columns)
+template <typename Visit>
+void ForCandidates(const NetworkShape& s, Visit visit) {
+  if (s.candidate_rows() == 0) return;
+  if (s.cells() > 0) {
+    visit(s.gate_rows(), 0, s.candidate_width());
+  } else {
+    visit(s.gate_rows(), 0, s.num_features());
+    visit(s.gate_rows() + s.hidden, s.num_features(), s.hidden);
+  }
+}
+
 class PackedNetwork {
  public:
   using Columns = Eigen::MatrixXd;
@@ -73,8 +88,8 @@ class PackedNetwork {
   void PackWeights();
   // From a person's sums of a step, in activations_, to the hidden units; and from d(cost)/dh to D
   // in activations_ and to the carried adjoint's direct part.
-#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
-  void Activate##Kind(int step, int column);                   \
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, biased, Kind) \
+  void Activate##Kind(int step, int column);                           \
   void Deactivate##Kind(int step, int column, const Columns& hidden);
   PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
 #undef PUSHID_NETWORK
@@ -87,7 +102,7 @@ class PackedNetwork {
   const double* weights_ = nullptr;  // of the last Start
   int rows_;                         // of W
   Eigen::VectorXd scale_;            // newtons per output, by column
-  Columns context_;                  // k, by column
+  Columns own_, context_;            // k, and what the gates see of it, by column
   PackedMatrix stacked_, transposed_, right_;
 
   Columns inputs_, z_, activations_, hidden_, cells_, cell_tanh_;  // of all steps

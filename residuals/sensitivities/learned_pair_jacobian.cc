@@ -26,15 +26,17 @@ Output Backward(const PairShape& shape, const double* weights, const PairLayers<
     }
     const Output by_from = back * PairLayer(weights + at, rows, inputs).leftCols(inputs);
     if (i == 0) return by_from;
-    back = by_from * (1.0 - from.array().square()).matrix().asDiagonal();
+    const Eigen::VectorXd slope = shape.ldp ? (from.array() > 0.0).cast<double>().matrix().eval()
+                                            : (1.0 - from.array().square()).matrix().eval();
+    back = by_from * slope.asDiagonal();
   }
   return back;  // not reached: the inputs are the first layer's
 }
 
 // side: whose force it is, 0 of n and 1 of j.
-void AddResponse(const Pair& pair, const GateJacobian& gate, int side, const PairResponse& response,
-                 PairJacobian* jacobian) {
-  const double scale = kNetworkAcceleration * (side == 0 ? pair.body_n.mass : pair.body_j.mass);
+void AddResponse(const PairShape& shape, const Pair& pair, const GateJacobian& gate, int side,
+                 const PairResponse& response, PairJacobian* jacobian) {
+  const double scale = shape.ForceUnit(side == 0 ? pair.body_n : pair.body_j);
   const Eigen::Matrix<double, 4, 16> own =
       scale * gate.gate * PairInputsByStates(response.by_input);
   auto by_states = jacobian->by_states.middleRows<4>(4 * side);
@@ -49,8 +51,13 @@ void AddResponse(const Pair& pair, const GateJacobian& gate, int side, const Pai
 
 }  // namespace
 
-GateJacobian PairGateJacobian(const Pair& pair, const ParameterSet<double>& p,
-                              const Vector4<double>& q_n, const Vector4<double>& q_j) {
+GateJacobian PairGateJacobian(const PairShape& shape, const Pair& pair,
+                              const ParameterSet<double>& p, const Vector4<double>& q_n,
+                              const Vector4<double>& q_j) {
+  if (shape.ldp) {  // a hard switch
+    return {PairGate<double>(shape, pair, p, q_n, q_j), Eigen::Matrix<double, 1, 8>::Zero(),
+            Eigen::Matrix<double, 1, kContactParameters>::Zero()};
+  }
   using Jet = ceres::Jet<double, 8 + kContactParameters>;
   Vector4<Jet> n, j;
   for (int i = 0; i < 4; ++i) {
@@ -61,7 +68,7 @@ GateJacobian PairGateJacobian(const Pair& pair, const ParameterSet<double>& p,
   for (int i = 0; i < kContactParameters; ++i) {
     parameters[kContactStiffness + i] = Jet(p[kContactStiffness + i], 8 + i);
   }
-  const Jet gate = PairGate<Jet>(pair, parameters, n, j);
+  const Jet gate = PairGate<Jet>(shape, pair, parameters, n, j);
   return {gate.a, gate.v.head<8>().transpose(), gate.v.tail<kContactParameters>().transpose()};
 }
 
@@ -70,23 +77,23 @@ void AddLearnedPairJacobian(const PairShape& shape, const double* weights, const
                             const PendulumState<double>& j, PairJacobian* jacobian,
                             PairByWeight* by_weight) {
   if (by_weight != nullptr) by_weight->setZero(8, shape.num_weights());
-  const GateJacobian gate = PairGateJacobian(pair, p, n.q, j.q);
+  const GateJacobian gate = PairGateJacobian(shape, pair, p, n.q, j.q);
   if (!(gate.gate > 0.0)) return;
   PairLayers<double> layers;
   Output unwanted(4, 0);
   for (int side = 0; side < 2; ++side) {
-    const double mass = side == 0 ? pair.body_n.mass : pair.body_j.mass;
+    const double unit = shape.ForceUnit(side == 0 ? pair.body_n : pair.body_j);
     RunPairNetwork(shape, weights, side == 0 ? n : j, side == 0 ? j : n, &layers);
-    const Output by_input = by_weight == nullptr ? Backward(shape, weights, layers, 0.0, unwanted)
-                                                 : Backward(shape, weights, layers,
-                                                            kNetworkAcceleration * mass * gate.gate,
-                                                            by_weight->middleRows<4>(4 * side));
-    AddResponse(pair, gate, side, {layers.output, by_input}, jacobian);
+    const Output by_input = by_weight == nullptr
+                                ? Backward(shape, weights, layers, 0.0, unwanted)
+                                : Backward(shape, weights, layers, unit * gate.gate,
+                                           by_weight->middleRows<4>(4 * side));
+    AddResponse(shape, pair, gate, side, {layers.output, by_input}, jacobian);
   }
 }
 
 HeldPairs::HeldPairs(const PairShape& shape, const double* weights)
-    : packed_(shape, BestVectorKernels()) {
+    : shape_(shape), packed_(shape, BestVectorKernels()) {
   packed_.Start(weights);
 }
 
@@ -95,7 +102,7 @@ void HeldPairs::Ask(const SceneForces<double>& forces) {
   first_.clear();
   int columns = 0;
   for (const auto& [n, j] : forces.acting()) {
-    gates_.push_back(PairGateJacobian(forces.pairs().Of(n, j), forces.Parameters(0),
+    gates_.push_back(PairGateJacobian(shape_, forces.pairs().Of(n, j), forces.Parameters(0),
                                       forces.state(n).q, forces.state(j).q));
     first_.push_back(columns);
     if (gates_.back().gate > 0.0) columns += 2;
@@ -121,7 +128,7 @@ void HeldPairs::AddTo(size_t k, const SceneForces<double>& forces, PairJacobian*
   const Pair pair = forces.pairs().Of(n, j);
   for (int side = 0; side < 2; ++side) {
     const int column = first_[k] + side;
-    AddResponse(pair, gates_[k], side,
+    AddResponse(shape_, pair, gates_[k], side,
                 {outputs_.col(column), by_input_.middleCols<4>(4 * column).transpose()}, jacobian);
   }
 }

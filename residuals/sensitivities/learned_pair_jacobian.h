@@ -27,8 +27,9 @@ struct GateJacobian {
   Eigen::Matrix<double, 1, 8> by_places;
   Eigen::Matrix<double, 1, kContactParameters> by_parameter;
 };
-GateJacobian PairGateJacobian(const Pair& pair, const ParameterSet<double>& p,
-                              const Vector4<double>& q_n, const Vector4<double>& q_j);
+GateJacobian PairGateJacobian(const PairShape& shape, const Pair& pair,
+                              const ParameterSet<double>& p, const Vector4<double>& q_n,
+                              const Vector4<double>& q_j);
 
 // From derivatives by u of n, who meets j, to those by [q, qd] of n, then of j.
 template <typename Rows>
@@ -75,6 +76,7 @@ class HeldPairs {
   void AddTo(size_t k, const SceneForces<double>& forces, PairJacobian* jacobian) const;
 
  private:
+  PairShape shape_;
   PackedPairs packed_;
   std::vector<GateJacobian> gates_;
   std::vector<int> first_;  // column of each pair: what n hears of j; the next: j of n

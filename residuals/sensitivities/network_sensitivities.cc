@@ -18,7 +18,7 @@ NetworkSensitivities::NetworkSensitivities(const NetworkShape& shape, const doub
                                            double mass, int num_columns, int weight_column)
     : shape_(shape),
       weights_(shape, weights),
-      scale_(kNetworkAcceleration * mass),
+      scale_(shape.ForceUnit(mass)),
       weight_column_(weight_column),
       embedding_(shape.embedding, num_columns),
       now_(shape.hidden, num_columns),
@@ -44,15 +44,20 @@ void NetworkSensitivities::AddOwnGates(const NetworkState<double>& state, int bl
   AddOwn(first, width, 0, gain, state.features, rows);
   if (shape_.recurrent())
     AddOwn(first, width, shape_.num_features(), gain, state.hidden_before, rows);
-  AddOwn(first, width, shape_.candidate_width(), gain, state.context, rows);
+  AddOwn(first, width, shape_.candidate_width(), gain, shape_.GateContext(state.context), rows);
 }
 
 void NetworkSensitivities::AdvanceEmbedding(const NetworkState<double>& state,
                                             const States& by_state) {
-  const VectorXd slope = TanhSlope(state.features);
-  const Columns embed = slope.asDiagonal() * weights_.embed * MotionInputScales().asDiagonal();
+  const VectorXd slope = shape_.biased() ? VectorXd((state.features.array() > 0.0).cast<double>())
+                                         : TanhSlope(state.features);
+  const Columns embed = slope.asDiagonal() * weights_.embed.leftCols(kMotionInputs) *
+                        MotionInputScales().asDiagonal();
   SetNarrowProduct(embed, by_state.middleRows<kMotionInputs>(2), embedding_);
-  AddOwn(0, kMotionInputs, 0, slope, state.inputs, embedding_.topRows(shape_.embedding));
+  auto rows = embedding_.topRows(shape_.embedding);
+  const int width = shape_.embed_width();
+  AddOwn(0, width, 0, slope, state.inputs, rows);
+  if (shape_.biased()) AddOwn(0, width, kMotionInputs, slope, state.context, rows);
 }
 
 void NetworkSensitivities::Carry(const Columns& step, const States& by_state, bool add,
@@ -102,8 +107,10 @@ void NetworkSensitivities::AdvanceGru(const NetworkState<double>& state, const S
 
 void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state, const States& by_state) {
   const int nf = shape_.num_features(), h = shape_.hidden;
-  const VectorXd slope = LogisticSlope(state.gates);
-  const VectorXd input = state.gates.head(h), output = state.gates.tail(h);
+  const VectorXd slope = LogisticSlope(state.gates.head(3 * h));
+  const VectorXd input = state.gates.head(h), output = state.gates.segment(2 * h, h);
+  const auto by_features =
+      shape_.biased() ? weights_.gates.bottomRows(h) : weights_.candidates.topRows(h);
   // How far the sums of i, f and g move c', and that of o moves h'.
   const VectorXd by_i = state.candidates.cwiseProduct(slope.head(h));
   const VectorXd by_f = state.cell_before.cwiseProduct(slope.segment(h, h));
@@ -111,19 +118,27 @@ void NetworkSensitivities::AdvanceLstm(const NetworkState<double>& state, const 
   const VectorXd by_o = state.cell_tanh.cwiseProduct(slope.tail(h));
   Columns step = by_i.asDiagonal() * weights_.gates.topRows(h);
   step += by_f.asDiagonal() * weights_.gates.middleRows(h, h);
-  step += by_g.asDiagonal() * weights_.candidates;
+  step += by_g.asDiagonal() * by_features;
   cell_ = state.gates.segment(h, h).asDiagonal() * cell_;
   Carry(step, by_state, true, &cell_);
   AddOwnGates(state, 0, by_i, cell_.topRows(h));
   AddOwnGates(state, 1, by_f, cell_.topRows(h));
-  const int first = shape_.candidates_at(), width = shape_.candidate_width();
-  AddOwn(first, width, 0, by_g, state.features, cell_.topRows(h));
-  AddOwn(first, width, nf, by_g, state.hidden_before, cell_.topRows(h));
+  if (shape_.biased()) {
+    AddOwnGates(state, 3, by_g, cell_.topRows(h));
+  } else {
+    const int first = shape_.candidates_at(), width = shape_.candidate_width();
+    AddOwn(first, width, 0, by_g, state.features, cell_.topRows(h));
+    AddOwn(first, width, nf, by_g, state.hidden_before, cell_.topRows(h));
+  }
 
-  step = by_o.asDiagonal() * weights_.gates.bottomRows(h);
+  step = by_o.asDiagonal() * weights_.gates.middleRows(2 * h, h);
   Carry(step, by_state, false, &next_);
   next_ += output.cwiseProduct(TanhSlope(state.cell_tanh)).asDiagonal() * cell_;
   AddOwnGates(state, 2, by_o, next_.topRows(h));
+}
+
+void NetworkSensitivities::AdvanceLdp(const NetworkState<double>& state, const States& by_state) {
+  AdvanceLstm(state, by_state);
 }
 
 void NetworkSensitivities::Advance(const NetworkState<double>& state, const States& by_state) {
@@ -132,9 +147,9 @@ void NetworkSensitivities::Advance(const NetworkState<double>& state, const Stat
   switch (shape_.kind) {
     case NetworkKind::kNone:
       return;
-#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
-  case NetworkKind::id:                                        \
-    Advance##Kind(state, by_state);                            \
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, biased, Kind) \
+  case NetworkKind::id:                                                \
+    Advance##Kind(state, by_state);                                    \
     break;
       PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
 #undef PUSHID_NETWORK
@@ -143,19 +158,27 @@ void NetworkSensitivities::Advance(const NetworkState<double>& state, const Stat
 }
 
 void NetworkSensitivities::AddTo(ForceColumns* by_column) const {
-  const Columns output = scale_ * weights_.output;
+  const Columns output = scale_ * weights_.output.leftCols(shape_.hidden);
   AddNarrowProduct(output, next_, *by_column);
-  AddOwn(shape_.output_at(), shape_.hidden, 0, VectorXd::Constant(4, scale_), hidden_,
+  AddOwn(shape_.output_at(), shape_.output_width(), 0, VectorXd::Constant(4, scale_), Output(),
          by_column->topRows(4));
+}
+
+VectorXd NetworkSensitivities::Output() const {
+  VectorXd output = VectorXd::Ones(shape_.output_width());
+  output.head(shape_.hidden) = hidden_;
+  return output;
 }
 
 void NetworkSensitivities::AddTo(const Eigen::RowVector4d& by_force,
                                  Eigen::RowVectorXd* by_column) const {
-  const Eigen::RowVectorXd by_hidden = (scale_ * by_force) * weights_.output;
+  const Eigen::RowVectorXd by_hidden =
+      (scale_ * by_force) * weights_.output.leftCols(shape_.hidden);
   by_column->noalias() += by_hidden * next_;
+  const int width = shape_.output_width();
   for (int row = 0; row < 4; ++row) {
-    AddOwn(shape_.output_at() + row * shape_.hidden, shape_.hidden, 0,
-           VectorXd::Constant(1, scale_ * by_force[row]), hidden_, by_column->topRows(1));
+    AddOwn(shape_.output_at() + row * width, width, 0,
+           VectorXd::Constant(1, scale_ * by_force[row]), Output(), by_column->topRows(1));
   }
 }
 

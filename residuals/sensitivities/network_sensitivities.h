@@ -38,6 +38,7 @@ class NetworkSensitivities {
   void AddTo(const Eigen::RowVector4d& by_force, Eigen::RowVectorXd* by_column) const;
 
  private:
+  Eigen::VectorXd Output() const;  // what the output's weights multiply
   void AdvanceEmbedding(const NetworkState<double>& state, const States& by_state);
   // rows = step [features; hidden], or the same added: the linearized step meets the columns.
   void Carry(const Columns& step, const States& by_state, bool add, Columns* rows) const;
@@ -50,7 +51,7 @@ class NetworkSensitivities {
   template <typename Rows>
   void AddOwnGates(const NetworkState<double>& state, int block, const Eigen::VectorXd& gain,
                    Rows rows) const;
-#define PUSHID_NETWORK(id, name, gates, recurrent, cell, Kind) \
+#define PUSHID_NETWORK(id, name, gates, recurrent, cell, biased, Kind) \
   void Advance##Kind(const NetworkState<double>& state, const States& by_state);
   PUSHID_SELF_FORCES(PUSHID_NO_SELF_FORCE, PUSHID_NETWORK)
 #undef PUSHID_NETWORK

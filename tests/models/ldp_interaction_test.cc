@@ -114,6 +114,40 @@ TEST(LdpDiscrete, SpeedGainIsClamped) {
   EXPECT_NEAR(torque(30.0), 100 * 0.75 * 10.0, 1e-9);
 }
 
+// The same as published: no gains, the exact gradient, and of neighbours who stand, too. d = 0.3:
+// F = 150 / 0.5 exp(-0.6); both torques from the table.
+TEST(LdpPublished, ForceByHand) {
+  InteractionTerms terms;
+  terms.ldp_published = true;
+  const double repulsion = 300.0 * std::exp(-0.6);
+  const PairForce<double> force =
+      Between(terms, At(0.0, 0.0, 0.15, -0.15, 0.0), At(0.3, 0.0, 0.0, 0.0, 0.0));
+  ASSERT_TRUE(force.acts);
+  EXPECT_NEAR(force.on_n[0], -repulsion, 1e-6);
+  EXPECT_NEAR(force.on_j[0], repulsion, 1e-6);
+  EXPECT_NEAR(force.on_n[1], 0.0, 1e-9);
+  EXPECT_EQ(force.on_n[2], -100.0);
+  EXPECT_EQ(force.on_j[2], 100.0);
+  EXPECT_EQ(force.on_n[3], 0.0) << "equal y counts as to the right: phi < 0 leans away";
+  EXPECT_FALSE(Between(terms, At(0, 0, 0.2, 0), At(0.5, 0, 0, 0)).acts) << "out of range";
+}
+
+// -grad U by central differences, of carts that move.
+TEST(LdpPublished, ForceIsTheSlopeOfThePotential) {
+  InteractionTerms terms;
+  terms.ldp_published = true;
+  const auto n = At(0.0, 0.0, 0.0, 0.0, 0.3), j = At(0.25, -0.2, 0.0, 0.0, 1.7);
+  const Eigen::Vector2d v(1.4, 0.0);
+  const auto potential = [&](const Eigen::Vector2d& r) {
+    return 150.0 * std::exp(-LdpEllipse<double>(r, v) / 0.5);
+  };
+  const PairForce<double> force = Between(terms, n, j);
+  for (int axis = 0; axis < 2; ++axis) {
+    const Eigen::Vector2d r(-0.25, 0.2), step = 1e-6 * Eigen::Vector2d::Unit(axis);
+    EXPECT_NEAR(force.on_n[axis], -(potential(r + step) - potential(r - step)) / 2e-6, 1e-5);
+  }
+}
+
 // Away from the switches the twins agree with the exact form.
 TEST(LdpSmooth, IsTheDiscreteFormAwayFromItsSwitches) {
   InteractionTerms smooth;

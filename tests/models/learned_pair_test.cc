@@ -38,9 +38,10 @@ struct Two {
 TEST(LearnedPair, SizesAndNames) {
   EXPECT_EQ(PairShape{}.num_weights(), 0);
   EXPECT_EQ(PairShape{{4}}.num_weights(), 11 * 4 + 5 * 4);
-  EXPECT_EQ((PairShape{{512, 512}}.num_weights()), 11 * 512 + 513 * 512 + 513 * 4);
+  EXPECT_EQ((PairShape{{512, 512}, true}.num_weights()), 270340) << "LDP's";
   EXPECT_EQ(PairName({{4}}), "network:4");
   EXPECT_EQ((PairName({{8, 3}})), "network:8-3");
+  EXPECT_EQ((PairName({{8, 3}, true})), "ldp_network:8-3");
 }
 
 TEST(LearnedPair, IsSilentWithoutLoad) {
@@ -78,6 +79,29 @@ TEST(LearnedPair, EachAsksAlone) {
   EXPECT_LT((one.on_n - other.on_j).norm(), 1e-12);
   EXPECT_LT((one.on_j - other.on_n).norm(), 1e-12);
   EXPECT_GT((one.on_n + one.on_j).norm(), 1.0) << "not mutual";
+}
+
+// One rectified unit that sees dx: F_x on n = 170 N (2 max(0, dx / 0.4 + 1) + 0.5), whoever leans
+// or touches, and whatever n weighs; nothing from 0.5 m on.
+TEST(LearnedPair, LdpsActsOnEveryNeighbourInRange) {
+  const PairShape shape{{1}, true};
+  std::vector<double> weights(shape.num_weights(), 0.0);
+  weights[0] = 1.0, weights[10] = 1.0, weights[11] = 2.0, weights[12] = 0.5;
+  ParameterSet<double> p{};
+  p[kNeighbourRange] = 0.5;
+  const auto on = [&](double apart) {
+    const Two two(apart);
+    PairForce<double> force;
+    AddLearnedPair(shape, weights.data(), two.pair, p, two.n, two.j, &force);
+    return force;
+  };
+  const double unit = 2.0 * 85.0;
+  EXPECT_NEAR(on(0.3).on_n[0], unit * (2.0 * 0.25 + 0.5), 1e-10);
+  EXPECT_NEAR(on(0.3).on_j[0], unit * (2.0 * 1.75 + 0.5), 1e-10);
+  EXPECT_NEAR(on(0.45).on_n[0], unit * 0.5, 1e-10) << "rectified";
+  EXPECT_EQ(on(0.3).on_n.tail<3>().norm(), 0.0);
+  EXPECT_FALSE(on(0.499).on_n[0] == 0.0);
+  EXPECT_FALSE(on(0.501).acts);
 }
 
 // To the last bit, as every term.

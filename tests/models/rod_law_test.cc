@@ -17,6 +17,13 @@ std::vector<RodShape> EveryLaw() {
           {RodKind::kMlp, {2, 4, 3}}};
 }
 
+std::vector<RodShape> EveryLawAndLdps() {
+  std::vector<RodShape> all = EveryLaw();
+  all.push_back({RodKind::kLdp, {4}});
+  all.push_back({RodKind::kLdp, {3, 2}});
+  return all;
+}
+
 std::vector<double> RandomWeights(int count, double size, Random* random) {
   std::vector<double> weights;
   for (int i = 0; i < count; ++i) weights.push_back(random->Uniform(-size, size));
@@ -26,43 +33,62 @@ std::vector<double> RandomWeights(int count, double size, Random* random) {
 TEST(RodLaw, GradientByHandEqualsJets) {
   using Jet = ceres::Jet<double, 100>;
   Random random(71);
-  for (const RodShape& shape : EveryLaw()) {
-    const int weights = shape.num_weights();
-    ASSERT_LE(RodShape::kInputs + weights, 100);
+  for (const RodShape& shape : EveryLawAndLdps()) {
+    const int weights = shape.num_weights(), inputs = shape.num_inputs();
+    ASSERT_LE(inputs + weights, 100);
     for (double size : {0.0, 1e-8, 1.0}) {
       SCOPED_TRACE(RodName(shape));
       const std::vector<double> w = RandomWeights(weights, 1.5, &random);
       RodLayers<double> layers(shape);
       RodLayers<Jet> jets(shape);
-      for (int i = 0; i < RodShape::kInputs; ++i) {
+      for (int i = 0; i < inputs; ++i) {
         layers.inputs[i] = random.Uniform(-size, size);
         jets.inputs[i] = Jet(layers.inputs[i], i);
       }
       std::vector<Jet> wj;
-      for (int i = 0; i < weights; ++i) wj.emplace_back(w[i], RodShape::kInputs + i);
+      for (int i = 0; i < weights; ++i) wj.emplace_back(w[i], inputs + i);
       const double velocity = RodVelocity(shape, w.data(), &layers);
       const Jet expected = RodVelocity(shape, wj.data(), &jets);
       Eigen::VectorXd by_weight = Eigen::VectorXd::Constant(weights, NAN);
       const RodInputGradient by_input =
           RodVelocityGradient(shape, w.data(), layers, by_weight.data());
       EXPECT_NEAR(velocity, expected.a, 1e-16);
-      ExpectClose(by_input, expected.v.head<RodShape::kInputs>().transpose(), 1e-14, 1e-2);
+      ExpectClose(by_input, expected.v.head(inputs).transpose(), 1e-14, 1e-2);
       // Those by b are differences of numbers of order 1.
-      ExpectClose(by_weight, expected.v.segment(RodShape::kInputs, weights), 1e-14, 1e-2);
+      ExpectClose(by_weight, expected.v.segment(inputs, weights), 1e-14, 1e-2);
       EXPECT_EQ(RodVelocityGradient(shape, w.data(), layers, nullptr), by_input);
     }
   }
 }
 
 TEST(RodLaw, SizesAndNames) {
-  const RodShape constant, linear{RodKind::kLinear, {}}, ldp{RodKind::kMlp, {256, 128, 256}};
+  const RodShape constant, linear{RodKind::kLinear, {}}, mlp{RodKind::kMlp, {256, 128, 256}};
   EXPECT_EQ(constant.num_weights(), 0);
   EXPECT_EQ(linear.num_weights(), 11);
-  EXPECT_EQ(ldp.num_weights(), 256 * 12 + 128 * 257 + 256 * 129 + 256);
+  EXPECT_EQ(mlp.num_weights(), 256 * 12 + 128 * 257 + 256 * 129 + 256);
+  const RodShape ldp{RodKind::kLdp, {256, 128, 256}};  // the mass among the inputs, all biases
+  EXPECT_EQ(ldp.num_weights(), 256 * 13 + 128 * 257 + 256 * 129 + 257);
   EXPECT_EQ(RodName(constant), "constant");
   EXPECT_EQ(RodName(linear), "linear");
   EXPECT_EQ(RodName({RodKind::kMlp, {4}}), "mlp:4");
-  EXPECT_EQ(RodName(ldp), "mlp:256-128-256");
+  EXPECT_EQ(RodName(ldp), "ldp:256-128-256");
+}
+
+// One unit that sees the length and the mass: h = max(0, (l - 0.95) / 0.05 + 2 (M - 85) / 20 +
+// 0.5), dl/dt = 0.1 (3 h - 1).
+TEST(RodLaw, LdpsSeesLengthAndMass) {
+  const RodShape shape{RodKind::kLdp, {1}};
+  std::vector<double> weights(shape.num_weights(), 0.0);
+  ASSERT_EQ(weights.size(), 15u);
+  weights[10] = 1.0, weights[11] = 2.0, weights[12] = 0.5, weights[13] = 3.0, weights[14] = -1.0;
+  const auto velocity = [&](double mass, double rod) {
+    RodLayers<double> layers(shape);
+    SetRodInputs<double>(0.1, 0.2, {1, 2, 3, 4}, {5, 6, 7, 8}, rod, {mass, 0.9, 0.1}, &layers);
+    return RodVelocity(shape, weights.data(), &layers);
+  };
+  EXPECT_NEAR(velocity(85.0, 0.05), 0.1 * (3.0 * 0.5 - 1.0), 1e-14);
+  EXPECT_NEAR(velocity(95.0, 0.05), 0.1 * (3.0 * 1.5 - 1.0), 1e-14);
+  EXPECT_NEAR(velocity(85.0, 0.0), -0.1, 1e-14) << "rectified";
 }
 
 ParameterSet<double> RodParameters() {
@@ -152,7 +178,7 @@ TEST(RodLaw, APushMovesTheRodAndTheRodThePendulum) {
 
 TEST(RodLaw, LdpsSizeRunsInARollout) {
   Random random(75);
-  const RodShape ldp{RodKind::kMlp, {256, 128, 256}};
+  const RodShape ldp{RodKind::kLdp, {256, 128, 256}};
   const auto path = RollStanding(TwoPeople(40.0), WithRod(ldp, kMotionMlp, 0.05, &random), 60);
   EXPECT_NE(path.At(59, 0).rod, 0.0);
 }

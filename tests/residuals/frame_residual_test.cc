@@ -77,13 +77,51 @@ TEST_P(FrameTwins, OfLdpsLossAgreeToo) {
   }
 }
 
-// The sum of absolute errors, and of the rate of phi, by hand.
-TEST(FrameResidual, LdpsLossIsTheSumOfAbsoluteErrors) {
+// By [q, qd, rod, lift], for both losses, in three regimes.
+TEST_P(FrameTwins, OfMovingRodsAgreeToo) {
+  using Jet = ceres::Jet<double, 10>;
+  Random random(23);
+  for (const ResidualSigmas& base : {ResidualSigmas(), kLdpSigmas}) {
+    ResidualSigmas sigmas = base;
+    sigmas.robust = GetParam();
+    for (double magnitude : {0.0, 1e-8, 0.5}) {
+      for (int i = 0; i < 20; ++i) {
+        MeasuredFrame measured = Measure(UniformState(magnitude, &random));
+        measured.weight = random.Uniform(0.0, 1.0);
+        measured.rod = random.Uniform(-0.1, 0.1) * magnitude;
+        PendulumState<double> state = UniformState(magnitude, &random);
+        state.rod = random.Uniform(-0.2, 0.2) * magnitude;
+        const double lift = random.Uniform(-1.0, 1.0);
+        PendulumState<Jet> jets = JetState<Jet>(state, 0);
+        jets.rod = Jet(state.rod, 8);
+        const FrameVector<Jet> expected =
+            FrameResidual(BodyNow<Jet>(kBody, jets.rod, Jet(lift, 9)), jets, measured, sigmas);
+        FrameJacobian<10> jacobian;
+        jacobian.setConstant(std::nan(""));
+        const FrameVector<double> r = MovingRodResidualWithJacobian(
+            kBody, lift, PosedPendulum<double>(state), measured, sigmas, &jacobian);
+        for (int row = 0; row < kFrameResiduals; ++row) {
+          EXPECT_NEAR(r[row], expected[row].a, 1e-14 * std::max(1.0, std::abs(r[row])));
+          const auto derivative = expected[row].v.transpose();
+          const double scale = std::max(1.0, derivative.cwiseAbs().maxCoeff());
+          EXPECT_LT((jacobian.row(row) - derivative).cwiseAbs().maxCoeff(), 1e-12 * scale) << row;
+        }
+      }
+    }
+  }
+}
+
+// The sum of absolute errors, of the rate of phi itself and of the rod, by hand. Of the measured
+// rate of phi nothing is asked.
+TEST(FrameResidual, LdpsLossIsItsEquation6) {
   PendulumState<double> state;
-  const MeasuredFrame measured = Measure(state);
+  MeasuredFrame measured = Measure(state);
+  measured.state.qd[3] = 5.0;
+  measured.rod = -0.02;
   state.q << 0.3, -0.2, 0.4, -0.5;
   state.qd << 1.0, -2.0, 0.5, -0.7;
-  const double sum = 0.3 + 0.2 + 0.4 + 0.5 + 1.0 + 2.0 + 0.5 + 0.7 + 0.7;
+  state.rod = 0.03;
+  const double sum = 0.3 + 0.2 + 0.4 + 0.5 + 1.0 + 2.0 + 0.5 + 0.3 * 0.7 + 0.05;
   const double cost = 0.5 * FrameResidual(kBody, state, measured, kLdpSigmas).squaredNorm();
   // Beyond the kink: d |r| - d^2 for each of the nine.
   EXPECT_NEAR(cost, 0.01 * sum / 0.1 - 9 * 1e-4, 1e-4);

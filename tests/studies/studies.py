@@ -21,6 +21,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 BIN = os.path.abspath(os.environ.get("PUSHID_BIN", os.path.join(SOURCE, "build/release/bin")))
@@ -31,10 +32,10 @@ END = "<!-- end -->"
 
 
 class Output:
-    """What a program printed, and the file it wrote (`path`), which `json` parses."""
+    """What a program printed, the file it wrote (`path`), which `json` parses, and how long that took."""
 
-    def __init__(self, text, path):
-        self.text, self.path = text, path
+    def __init__(self, text, path, seconds, failed):
+        self.text, self.path, self.seconds, self.failed = text, path, seconds, failed
 
     @property
     def json(self):
@@ -42,29 +43,38 @@ class Output:
             return json.load(file)
 
 
-def run(program, *arguments, out="json_out", keep=True):
-    """Runs a program with --OUT=FILE added (out=None: without) unless it was run so before and keep is true."""
+def run(program, *arguments, out="json_out", ending="json", keep=True, may_fail=False):
+    """Runs a program with --OUT=FILE.ENDING added (out=None: without) unless it was run so before and keep is true.
+
+    A failure ends the study unless may_fail; a usage error always does."""
     executable = os.path.join(BIN, program)
     if not os.path.exists(executable):
         sys.exit(f"{executable} is missing: build the programs, or name their folder by PUSHID_BIN")
     with open(executable, "rb") as file:
         key = hashlib.sha256(file.read() + "\0".join(arguments).encode()).hexdigest()[:16]
     os.makedirs(KEPT, exist_ok=True)
-    text_file, path = (os.path.join(KEPT, f"{program}-{key}.{ending}") for ending in ("txt", "json"))
+    text_file, path, kept = (os.path.join(KEPT, f"{program}-{key}.{e}") for e in ("txt", ending, "run"))
     if not (keep and os.path.exists(text_file)):
         command = [executable, *arguments] + ([f"--{out}={path}"] if out else [])
         print(f"{program} {' '.join(arguments)}", file=sys.stderr, flush=True)
         environment = dict(os.environ, OPENBLAS_NUM_THREADS="1")  # results repeat to the bit
+        begin = time.monotonic()
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=environment)
-        if done.returncode != 0:
+        seconds = time.monotonic() - begin
+        if done.returncode != 0 and not (may_fail and done.returncode == 2):
             sys.exit(f"{program} ended with exit code {done.returncode}")
         if not keep:
-            return Output(done.stdout, path)
-        with tempfile.NamedTemporaryFile("w", dir=KEPT, delete=False) as file:
-            file.write(done.stdout)
-        os.replace(file.name, text_file)
+            return Output(done.stdout, path, seconds, done.returncode != 0)
+        for name, text in ((kept, f"{seconds} {done.returncode}"), (text_file, done.stdout)):
+            with tempfile.NamedTemporaryFile("w", dir=KEPT, delete=False) as file:
+                file.write(text)
+            os.replace(file.name, name)
+    seconds, code = "nan", "0"
+    if os.path.exists(kept):
+        with open(kept, encoding="utf-8") as file:
+            seconds, code = file.read().split()
     with open(text_file, encoding="utf-8") as file:
-        return Output(file.read(), path)
+        return Output(file.read(), path, float(seconds), code != "0")
 
 
 def on_recordings(program, setting, *arguments, **options):

@@ -25,7 +25,9 @@ std::vector<Learned> EveryLearned() {
                               {{}, deep},
                               {{NetworkKind::kGru, 2}, mlp},
                               {{NetworkKind::kMlp, 3}, linear},
-                              {{NetworkKind::kLstm, 3, 2}, deep}};
+                              {{NetworkKind::kLstm, 3, 2}, deep},
+                              {{}, {RodKind::kLdp, {5}}},
+                              {{NetworkKind::kLdp, 3, 4}, {RodKind::kLdp, {4, 9, 3}}}};
   for (const NetworkShape& shape : std::vector<NetworkShape>{{NetworkKind::kMlp, 4},
                                                              {NetworkKind::kMlp, 13},
                                                              {NetworkKind::kMlp, 3, 5},
@@ -33,7 +35,9 @@ std::vector<Learned> EveryLearned() {
                                                              {NetworkKind::kGru, 5, 4},
                                                              {NetworkKind::kLstm, 3},
                                                              {NetworkKind::kLstm, 6, 4},
-                                                             {NetworkKind::kLstm, 17, 9}}) {
+                                                             {NetworkKind::kLstm, 17, 9},
+                                                             {NetworkKind::kLdp, 4, 3},
+                                                             {NetworkKind::kLdp, 17, 9}}) {
     all.push_back({shape});
   }
   return all;

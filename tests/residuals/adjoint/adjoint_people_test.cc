@@ -83,7 +83,9 @@ std::vector<Model> EveryModel(double weight, Random* random) {
       MakeModel("spring,damping", {}, {}, {{4}}, weight, random),
       MakeModel("spring,damping", {}, {}, {{13, 6, 9}}, weight, random),
       MakeModel("damping,potential,lean", {}, {}, {{3, 2}}, weight, random),
-      MakeModel("spring,damping,potential", gru, rod, {{5}}, weight, random)};
+      MakeModel("spring,damping,potential", gru, rod, {{5}}, weight, random),
+      MakeModel("ldp_published", {NetworkKind::kLdp, 3, 2}, {RodKind::kLdp, {3}}, {{5, 4}, true},
+                weight, random)};
   models[3].options.push = PushUse::kAsRecorded;
   models[5].options.push = PushUse::kAsRecorded;
   models[2].options.cart_derivative = CartDerivative::kBackward;
@@ -105,7 +107,9 @@ TEST_P(AdjointOfPeople, GradientEqualsForwardSensitivities) {
     const std::vector<AdjointRecording> recordings = Weighted(made);
     const Gradient expected =
         ByForwardSensitivities(recordings, model.options, model.map, model.shared, model.weights);
-    EXPECT_TRUE(!regime.touching || expected.shared[kContactDistance] != 0.0);
+    const Parameter apart =
+        model.options.interaction.Contact() ? kContactDistance : kPotentialLength;
+    EXPECT_TRUE(!regime.touching || expected.shared[apart] != 0.0);
     for (const VectorKernels* kernels : SupportedVectorKernels()) {
       SCOPED_TRACE(kernels->name);
       auto adjoint = AdjointGradient::Create(recordings, model.options, model.map, {}, *kernels);

@@ -19,7 +19,9 @@ std::vector<Learned> EveryLearned() {
           {deep, {}},
           {linear, {NetworkKind::kMlp, 2}},
           {mlp, {NetworkKind::kGru, 2}},
-          {mlp, {NetworkKind::kLstm, 2, 3}}};
+          {mlp, {NetworkKind::kLstm, 2, 3}},
+          {{RodKind::kLdp, {3, 2}}, {}},
+          {{RodKind::kLdp, {3}}, {NetworkKind::kLdp, 2, 3}}};
 }
 
 std::string LawName(const Learned& learned) {

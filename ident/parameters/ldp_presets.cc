@@ -1,0 +1,67 @@
+// ident: LDP's settings.
+#include "ident/parameters/ldp_presets.h"
+
+#include "ident/parameters/learned_terms_io.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kRate = 60.0;                                         // Hz
+constexpr double kCartGainPerFrame = 4.0, kAngleGainPerFrame = 200.0;  // Kd
+
+}  // namespace
+
+FitOptions LdpPreset() {
+  FitOptions o;
+  o.preset = "ldp";
+  o.table = BaseTable();
+  o.table[kKpX].nominal = o.table[kKpY].nominal = 30;
+  o.table[kKdTheta].nominal = o.table[kKdPhi].nominal = kAngleGainPerFrame / kRate;
+  for (Parameter id : {kMu, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = true;
+  o.model.posture = Posture::kUpright;
+  o.model.gain_scaling = GainScaling::kNone;
+  o.model.push = PushUse::kAsRecorded;
+  o.model.push_tail = PushTail::kNone;
+  return o;
+}
+
+FitOptions LdpGroupsPreset() {
+  constexpr int kHidden = 4;
+  FitOptions o = LdpPreset();
+  o.preset = "ldp_groups";
+  o.model.interaction.potential = o.model.interaction.lean = o.model.interaction.learned = true;
+  o.model.interaction.learned_in_range = true;
+  o.model.learned = InitialNetwork({}, o.seed, {}, PairShape{{kHidden}, true});
+  return o;
+}
+
+FitOptions LdpPublishedPreset() {
+  FitOptions o = LdpPreset();
+  o.preset = kLdpPublished;
+  for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = false;
+  o.table[kKdX].nominal = o.table[kKdY].nominal = kCartGainPerFrame / kRate;
+  o.table[kRodLift].nominal = 0.0;
+  o.model.cart_derivative = CartDerivative::kBackward;
+  o.model.push = PushUse::kAdded;
+  o.model.learned =
+      InitialNetwork({NetworkKind::kLdp, 256, 32}, o.seed, {RodKind::kLdp, {256, 128, 256}});
+  o.sigmas = kLdpSigmas;
+  o.sigma_source = SigmaSource::kFixed;
+  o.recording_weight = RecordingWeight::kFrame;
+  o.start = FitStart::kNominal;
+  o.network_training = NetworkTraining::kTogether;
+  o.network_prior = 0.0;
+  return o;
+}
+
+FitOptions LdpPublishedGroupsPreset() {
+  FitOptions o = LdpPublishedPreset();
+  o.preset = kLdpPublishedGroups;
+  o.model.interaction.ldp_published = true;
+  o.model.interaction.learned = o.model.interaction.learned_in_range = true;
+  const LearnedTerms& alone = *o.model.learned;
+  o.model.learned = InitialNetwork(alone.shape, o.seed, alone.rod, PairShape{{512, 512}, true});
+  return o;
+}
+
+}  // namespace pushid

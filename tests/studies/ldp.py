@@ -1,0 +1,313 @@
+"""LDP (Yue et al., CVPR 2024) as published, beside pushid's own models, on any recordings with masses and pushes.
+
+    python3 tests/studies/ldp.py [BLOCK ...] [--recordings=MANIFEST] [--folds=4] [--jobs=N] [--write]
+
+single     the five metrics of held-out single people (models/README.md); an hour of one core
+groups     the same of groups; three hours
+strength   MPJPE by the strength of the push; the same runs
+quarter    trained on a quarter of the recordings; ten minutes
+ablation   parts of the restoration left out, single people; an hour
+optimizers L-BFGS against Adam, single people, first fold; twenty minutes
+strong     pushes 1.37 times as strong, and three pushes, of the first fold's held-out single people; seconds
+people     ten people in a line and 13 in a diamond, from recorded people; a minute
+sizes      number of weights beside the paper's; seconds
+
+Without --recordings the published recordings of PUSHID_RECORDINGS. Where the manifest's recordings have a `split` (train or
+eval, as python3 -m pushid.ldp writes it), that is used; otherwise folds, stratified by setting and strength. As published
+means: --preset=ldp_published, then --kind=cvae --training=published on the recorded pendulums, nothing post-processed.
+Everything is trained anew in every fold. What was run is kept (studies.py). Needs pushid-train-restoration, which is built
+where LibTorch is found.
+"""
+import collections
+import concurrent.futures
+import csv
+import json
+import math
+import os
+import statistics
+import sys
+
+import studies
+from studies import number, with_error
+
+METRICS = [("MPJPE_m", "MPJPE, m"), ("hipADE_m", "hipADE, m"), ("hipFDE_m", "hipFDE, m"), ("MBLE_m", "MBLE, m"),
+           ("FSE_cm", "FSE, cm a frame")]
+# The paper's tables, on its own split; what its released weights gave on that split (hips alone).
+CLAIMS = {"single": (0.097, 0.086, 0.171, 0.002, 0.131), "groups": (0.106, 0.092, 0.218, 0.003, 0.069)}
+RELEASED = {"single": (None, 0.212, 0.352, None, None), "groups": (None, 0.125, 0.280, None, None)}
+
+PUBLISHED_FIT = ["--preset=ldp_published", "--network_optimizer=adam"]
+PUBLISHED_BODIES = ["--kind=cvae", "--training=published", "--coordinates=ldp", "--predicted_pendulums=false"]
+OWN_BODIES = {"single": [], "groups": ["--sees=neighbours"]}
+
+
+def option(name, default):
+    given = [a for a in sys.argv[1:] if a.startswith(f"--{name}=")]
+    for a in given:
+        sys.argv.remove(a)
+    return given[-1].partition("=")[2] if given else default
+
+
+MANIFEST = os.path.abspath(option("recordings", studies.MANIFEST))
+FOLDS = int(option("folds", 4))
+JOBS = int(option("jobs", os.cpu_count()))
+
+
+def entries(setting):
+    """Of the manifest, with paths that hold anywhere."""
+    if not os.path.exists(MANIFEST):
+        sys.exit(f"{MANIFEST} is missing: name the recordings by --recordings=MANIFEST")
+    with open(MANIFEST, encoding="utf-8") as file:
+        all_entries = json.load(file)["recordings"]
+    folder = os.path.dirname(MANIFEST)
+    found = []
+    for e in all_entries:
+        if (len(e["subjects"]) > 1) != (setting == "groups"):
+            continue
+        e = dict(e, bvh=[os.path.join(folder, b) for b in e["bvh"]])
+        if "push_csv" in e:
+            e["push_csv"] = os.path.join(folder, e["push_csv"])
+        e["pushes"] = [dict(p, csv=os.path.join(folder, p["csv"])) for p in e.get("pushes", [])]
+        if not e["pushes"]:
+            del e["pushes"]
+        found.append(e)
+    if not found:
+        sys.exit(f"{MANIFEST} has no recordings of {setting}")
+    return found
+
+
+def written(name, recordings):
+    """The path of a manifest with these recordings."""
+    os.makedirs(studies.KEPT, exist_ok=True)
+    path = os.path.join(studies.KEPT, f"ldp_{name}.json")
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump({"recordings": recordings}, file, indent=1)
+    return path
+
+
+def folds(setting):
+    """(name, training, held out) of each."""
+    recordings = entries(setting)
+    if any("split" in e for e in recordings):
+        return [("split", [e for e in recordings if e.get("split") != "eval"],
+                 [e for e in recordings if e.get("split") == "eval"])]
+    order = sorted(recordings, key=lambda e: (e["setting"], e.get("magnitude", ""), e["id"]))
+    return [(f"fold{k + 1}", [e for i, e in enumerate(order) if i % FOLDS != k],
+             [e for i, e in enumerate(order) if i % FOLDS == k]) for k in range(FOLDS)]
+
+
+class Trained:
+    """A pendulum's model and a restoration, trained on a fold."""
+
+    def __init__(self, setting, fold, fit, bodies, part=""):
+        name, train, held = fold
+        self.train = written(f"{setting}_{name}{part}_train", train)
+        self.held = written(f"{setting}_{name}_held", held)
+        self.fitted = studies.run("pushid-fit", f"--recordings={self.train}", *fit, out="model_out")
+        key = os.path.basename(self.fitted.path)[:-len(".json")]
+        flags = "".join(bodies).replace("--", "_").replace("=", "").replace(",", "")
+        self.restoration = os.path.join(studies.KEPT, f"{key}{flags}")
+        self.bodies = studies.run("pushid-train-restoration", f"--recordings={self.train}",
+                                  f"--model={self.fitted.path}", f"--out={self.restoration}", *bodies, out=None)
+
+    def scores(self, *flags):
+        return studies.run("pushid-evaluate", f"--recordings={self.held}", f"--model={self.fitted.path}",
+                           f"--restoration={self.restoration}", *flags).json
+
+
+def own(setting, fold):
+    return Trained(setting, fold, [], OWN_BODIES[setting])
+
+
+def published(setting, fold, fit=(), bodies=(), part=""):
+    return Trained(setting, fold, [*PUBLISHED_FIT, *fit], [*PUBLISHED_BODIES, *bodies], part)
+
+
+def in_parallel(calls):
+    with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
+        return [done.result() for done in [pool.submit(call) for call in calls]]
+
+
+def clustered(rows, metric):
+    """The mean over recordings and its standard error by the pushed person."""
+    values = [r[metric] for r in rows]
+    mean = statistics.mean(values)
+    groups = collections.defaultdict(float)
+    for r in rows:
+        groups[r["person"]] += r[metric] - mean
+    g = len(groups)
+    error = math.sqrt(g / (g - 1) * sum(v * v for v in groups.values())) / len(values) if g > 1 else math.nan
+    return mean, error
+
+
+def rows_of(json_of_fold, held):
+    """Scores by recording; one that could not be rolled out has none and is counted."""
+    person = {e["id"]: e["subjects"][e["pushed_person"]]["id"] for e in held}
+    strength = {e["id"]: e.get("magnitude", "") for e in held}
+    return [dict(r, person=person[r["id"]], strength=strength[r["id"]]) for r in json_of_fold["recordings"]]
+
+
+def evaluated(setting, train, *flags):
+    """Of all folds: recordings' scores, and the seconds that pendulum and bodies took."""
+    made = folds(setting)
+    trained = in_parallel([lambda f=f: train(setting, f) for f in made])
+    rows = []
+    for one, fold in zip(trained, made):
+        rows += rows_of(one.scores(*flags), fold[2])
+    return rows, [t.fitted.seconds for t in trained], [t.bodies.seconds for t in trained]
+
+
+def cells(rows):
+    scored = [r for r in rows if "MPJPE_m" in r]
+    return [f"{len(scored)} of {len(rows)}"] + [with_error(*clustered(scored, key)) for key, _ in METRICS]
+
+
+def minutes(seconds):
+    return f"{statistics.mean(seconds) / 60:.1f}"
+
+
+def claim(values):
+    return [number(v) if v is not None else None for v in values]
+
+
+def tables(setting):
+    rows = [["claim of the paper, its split", None, *claim(CLAIMS[setting]), "900", None],
+            ["its released weights, its split", None, *claim(RELEASED[setting]), None, None]]
+    for name, train, flags in [("as published, z its mean", published, ["--postprocess=none"]),
+                               ("as published, z drawn", published, ["--postprocess=none", "--latent=draw"]),
+                               ("pushid's own", own, [])]:
+        scores, fit_seconds, body_seconds = evaluated(setting, train, *flags)
+        rows.append([name, *cells(scores), minutes(fit_seconds), minutes(body_seconds)])
+    header = ["", "rolled out", *[title for _, title in METRICS], "pendulum, minutes", "bodies, minutes"]
+    return studies.table(header, rows)
+
+
+def strength():
+    rows = []
+    for setting in CLAIMS:
+        found = {name: evaluated(setting, train, *flags)[0]
+                 for name, train, flags in [("published", published, ["--postprocess=none"]), ("own", own, [])]}
+        for kind in sorted({r["strength"] for r in found["own"]}):
+            cell = []
+            for name in found:
+                scored = [r for r in found[name] if r["strength"] == kind and "MPJPE_m" in r]
+                cell += [with_error(*clustered(scored, key)) for key in ("MPJPE_m", "hipADE_m", "hipFDE_m")]
+            rows.append([setting, kind, *cell])
+    metrics = ["MPJPE, m", "hipADE, m", "hipFDE, m"]
+    return studies.table(["", "push", *[f"{m}, {n}" for n in ("as published", "own") for m in metrics]], rows)
+
+
+def quarter():
+    made = folds("single")
+    rows = []
+    for name, part in [("all", 1), ("a quarter", 4)]:
+        less = [(n, train[::part], held) for n, train, held in made]
+        trained = in_parallel([lambda f=f: published("single", f, part=f"_{part}th" if part > 1 else "") for f in less])
+        scores = []
+        for one, fold in zip(trained, less):
+            scores += rows_of(one.scores("--postprocess=none"), fold[2])
+        rows.append([f"{name} ({len(less[0][1])} recordings)", *cells(scores)])
+    return studies.table(["as published, trained on", "rolled out", *[title for _, title in METRICS]], rows)
+
+
+def ablation():
+    rows = []
+    for name, bodies in [("lower then upper, pendulum", []), ("one network, pendulum", ["--nohalves"]),
+                         ("lower then upper, no pendulum, three draws averaged", ["--sees=pose"]),
+                         ("one network, no pendulum, three draws averaged", ["--sees=pose", "--nohalves"])]:
+        own_flags = [b for b in PUBLISHED_BODIES if not (b.startswith("--coordinates") and "--sees=pose" in bodies)]
+        made = folds("single")
+        trained = in_parallel([lambda f=f: Trained("single", f, PUBLISHED_FIT, [*own_flags, *bodies]) for f in made])
+        scores = []
+        for one, fold in zip(trained, made):
+            scores += rows_of(one.scores("--postprocess=none"), fold[2])
+        rows.append([name, *cells(scores)])
+    return studies.table(["as published", "rolled out", *[title for _, title in METRICS]], rows)
+
+
+def optimizers():
+    fold = folds("single")[0]
+    rows = []
+    train = written("single_fold1_train", fold[1])
+    held = written("single_fold1_held", fold[2])
+    for name, flags in [("L-BFGS, 200 iterations", ["--network_optimizer=lbfgs"]),
+                        ("Adam, 200 passes at 1e-3", ["--network_optimizer=adam"]),
+                        ("Adam, 500 passes at 3e-4",
+                         ["--network_optimizer=adam", "--network_iterations=500", "--network_rate=3e-4"])]:
+        fitted = studies.run("pushid-fit", f"--recordings={train}", "--preset=ldp_published", *flags, out="model_out")
+        cell = []
+        for recordings in (train, held):
+            mean = studies.run("pushid-evaluate", f"--recordings={recordings}", f"--model={fitted.path}").json["mean"]
+            cell += [number(mean["hipADE_m"]), number(mean["hipFDE_m"])]
+        rows.append([name, *cell, f"{fitted.seconds / 60:.1f}"])
+    return studies.table(["first fold", "hipADE, trained on, m", "hipFDE, trained on, m", "hipADE, held out, m",
+                          "hipFDE, held out, m", "minutes"], rows)
+
+
+def path_of(trained, recording, *flags):
+    """Hip by frame of person 0, or None where the rollout left the domain."""
+    done = studies.run("pushid-predict", f"--recordings={trained.held}", f"--model={trained.fitted.path}",
+                       f"--id={recording}", *flags, out="out", keep=True, ending="csv", may_fail=True)
+    if done.failed:
+        return None
+    with open(done.path, encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def strong():
+    fold = folds("single")[0]
+    rows = []
+    for system, trained in [("as published", published("single", fold)), ("pushid's own", own("single", fold))]:
+        for name, flags in [("as recorded", ["--frames=180"]), ("1.37 times", ["--frames=180", "--push_scale=1.37"]),
+                            ("three times, 1 s apart", ["--frames=300", "--push_again=60,120"])]:
+            paths = [path_of(trained, e["id"], *flags) for e in fold[2]]
+            whole = [p for p in paths if p]
+            lean = [max(abs(float(row["theta_rad"])) for row in p) for p in whole]
+            way = [math.hypot(*(float(p[-1][k]) - float(p[0][k]) for k in ("hip_x_m", "hip_y_m"))) for p in whole]
+            speed = [math.hypot(float(p[-1]["xd_m_s"]), float(p[-1]["yd_m_s"])) for p in whole]
+            still = sum(v < 0.1 for v in speed)
+            rows.append([system, name, f"{len(whole)} of {len(paths)}", number(statistics.median(lean), 2),
+                         number(statistics.median(way), 2), f"{still} of {len(whole)}"])
+    return studies.table(["", "push", "rolled out", "largest lean, rad (median)", "way of the hip, m (median)",
+                          "slower than 0.1 m/s at the end"], rows)
+
+
+def people():
+    fold = folds("groups")[0]
+    rows = []
+    for system, trained in [("as published", published("groups", fold)), ("pushid's own", own("groups", fold))]:
+        for name, flags in [("ten in a line", ["--formation=line", "--people=10"]),
+                            ("13 in a diamond", ["--formation=diamond", "--people=13"])]:
+            done = studies.run("pushid-formation", f"--model={trained.fitted.path}", *flags,
+                               f"--poses_from={trained.train}", f"--restoration={trained.restoration}", "--push=80",
+                               "--duration=4", out="csv_out", ending="csv", may_fail=True)
+            if done.failed:
+                rows.append([system, name, "left the domain", None, None])
+                continue
+            with open(done.path, encoding="utf-8") as file:
+                path = list(csv.DictReader(file))
+            by_person = collections.defaultdict(list)
+            for row in path:
+                by_person[row["person"]].append(row)
+            fastest = [max(math.hypot(float(r["xd_m_s"]), float(r["yd_m_s"])) for r in p) for p in by_person.values()]
+            rows.append([system, name, f"{sum(v > 0.1 for v in fastest)} of {len(fastest)}", number(max(fastest), 2),
+                         number(done.seconds / max(len(p) for p in by_person.values()) * 1e3, 2)])
+    return studies.table(["80 N s on the first", "", "faster than 0.1 m/s", "fastest, m/s",
+                          "ms a frame, with reading and bodies"], rows)
+
+
+def sizes():
+    fold = folds("single")[0]
+    trained = published("single", fold)
+    with open(os.path.join(trained.restoration, "restoration.json"), encoding="utf-8") as file:
+        counted = json.load(file)["weights"]
+    rows = [[name, f"{count:,}", f"{paper:,}" if paper else None] for name, count, paper in
+            [("LSTM of the self force", 298244, 298244), ("interaction", 270340, 270340),
+             *[(k.replace("_", " "), v, {"CVAE-Lower": 865536, "CVAE-Upper": 1097904}.get(k)) for k, v in counted.items()]]]
+    return studies.table(["network", "weights", "paper"], rows)
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"single": lambda: tables("single"), "groups": lambda: tables("groups"), "strength": strength,
+                            "quarter": quarter, "ablation": ablation, "optimizers": optimizers, "strong": strong,
+                            "people": people, "sizes": sizes})
