@@ -5,6 +5,7 @@
 #include <string>
 
 #include "datasets/files/error.h"
+#include "ident/bodies/restoration_files.h"
 #include "models/restoration/postprocess.h"
 #include "models/restoration/restoration.h"
 
@@ -13,6 +14,7 @@ namespace pushid {
 struct RestorationFlags {
   std::string name;  // folder of pushid-train-restoration, or rigid; empty: no bodies
   PostprocessOptions postprocess;
+  LatentChoice latent;  // of a cvae
 
   bool given() const { return !name.empty(); }
 };

@@ -36,6 +36,9 @@ DEFINE_string(sees, pushid::NameOf(pushid::RestorationTrainingOptions{}.view),
               "pose and the push, cvae the previous pose)");
 DEFINE_bool(halves, pushid::RestorationTrainingOptions{}.halves,
             "cvae: a network for the lower and one for the upper body (false: one for both)");
+DEFINE_string(training, pushid::NameOf(pushid::RestorationTrainingOptions{}.training),
+              "cvae: pushid's training (own), or as published: Adam at 1e-4 falling to 1e-7, sigma "
+              "compared, the latent variable drawn (published)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
 DEFINE_bool(check, pushid::TrainRestorationFlags{}.check,
@@ -79,6 +82,7 @@ struct FlagOfKind {
 constexpr FlagOfKind kFlagsOfKinds[] = {
     {"mrt_size", "--mrt_size", RestorationKind::kMrt},
     {"halves", "--nohalves", RestorationKind::kCvae},
+    {"training", "--training", RestorationKind::kCvae},
 };
 
 bool AtDefault(const char* flag) {
@@ -129,6 +133,7 @@ MaybeError ReadOptions(RestorationRunOptions* options) {
   for (const MaybeError& error :
        {ParseName("--coordinates", FLAGS_coordinates, &training.coordinates),
         ParseName("--sees", FLAGS_sees, &training.view),
+        ParseName("--training", FLAGS_training, &training.training),
         ParseName("--mrt_size", FLAGS_mrt_size, &training.mrt_size)}) {
     if (error) return error;
   }

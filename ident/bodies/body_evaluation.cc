@@ -199,7 +199,7 @@ Json ToJson(const BodySummary& summary, bool with_recordings) {
 }
 
 void AddBodyJson(const BodyEvaluation& evaluation, Json* json) {
-  static const std::set<std::string> kAtTop = {"true_pendulum", "recorded"};
+  static const std::set<std::string> kAtTop = {"true_pendulum", "recorded", "restoration_drawn"};
   for (const auto& [name, summary] : evaluation) {
     if (name == "restoration" || name == "generator") {
       Merge(ToJson(summary, true), json);

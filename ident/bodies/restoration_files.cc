@@ -1,6 +1,7 @@
 // ident: restorations written and read.
 #include "ident/bodies/restoration_files.h"
 
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
@@ -15,6 +16,14 @@ namespace pushid {
 namespace {
 
 constexpr uint64_t kDrawsSeed = 1;  // of a chain without a pendulum
+
+// Begun anew with every call.
+std::function<NormalSource()> NormalsOf(uint64_t seed) {
+  return [seed] {
+    const auto random = std::make_shared<Random>(seed);
+    return NormalSource([random] { return random->Normal(); });
+  };
+}
 
 constexpr TensorFolderKind kRestorationFolder = {
     "restoration", "--restoration", "pushid-train-restoration --out", kRestorationFormat};
@@ -72,12 +81,27 @@ Result<std::unique_ptr<Restoration>> MakeCvae(const RestorationFile& file, const
   const Result<RestorationView> view = ViewOf(file, path);
   if (!view.ok()) return view.error();
   const CvaeLayout layout = {coordinates, view.value() == RestorationView::kPendulum,
-                             file.settings->value(kCvaeHalvesKey, true)};
-  const auto draws = [] {
-    const auto random = std::make_shared<Random>(kDrawsSeed);
-    return NormalSource([random] { return random->Normal(); });
-  };
-  return std::unique_ptr<Restoration>(new CvaeRestoration(TakeCvae(layout, reader), draws));
+                             file.settings->value(kCvaeHalvesKey, true),
+                             file.settings->value(kCvaeSigmaKey, false)};
+  return std::unique_ptr<Restoration>(
+      new CvaeRestoration(TakeCvae(layout, reader), NormalsOf(kDrawsSeed)));
+}
+
+MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration) {
+  if (choice.latent == CvaeLatent::kMean) return std::nullopt;
+  auto* cvae = dynamic_cast<CvaeRestoration*>(restoration);
+  if (cvae == nullptr || !cvae->weights().layout.pendulum) {
+    return Error{
+        "--latent=draw needs a restoration of --kind=cvae and --sees=pendulum: others "
+        "have no sampler to draw from"};
+  }
+  if (!cvae->CanDraw()) {
+    return Error{
+        "--latent=draw needs the sigma of the samplers, which an earlier version did not "
+        "keep; train again with this version, or give --latent=mean"};
+  }
+  cvae->DrawLatent(NormalsOf(choice.seed));
+  return std::nullopt;
 }
 
 std::string RestorationJsonFile(const std::string& folder) {

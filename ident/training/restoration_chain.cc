@@ -24,7 +24,30 @@ double LargestChange(const IdentifiedModel& before, const IdentifiedModel& after
   return largest;
 }
 
-// A restoration beside its baselines; a peer alone.
+constexpr int kScoredDraws = 3;  // of the latent variable, whose scores are averaged
+
+// Metric by metric; a failure is a failure of all.
+BodyScore MeanScore(const std::vector<BodyScore>& scores) {
+  BodyScore mean = scores.front();
+  for (double& value : mean.value) value = 0.0;
+  for (const BodyScore& score : scores) {
+    for (int m = 0; m < kNumBodyMetrics; ++m) {
+      mean.value[m] += score.value[m] / static_cast<double>(scores.size());
+    }
+  }
+  return mean;
+}
+
+// The restoration of the predicted pendulums alone, as restoration_drawn.
+void ScoreDrawn(const IdentifiedModel& model, const Restoration& restoration,
+                const RestorationRunOptions& options, const BodyRecording& recording,
+                BodyScores* scores) {
+  BodyScores of_draw;
+  ScoreRestoration(model, restoration, options.postprocess, recording, &of_draw, options.observed);
+  (*scores)["restoration_drawn"].push_back(of_draw["restoration"].front());
+}
+
+// A restoration beside its baselines; of a cvae also with a drawn latent variable; a peer alone.
 Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
                                 const RestorationRunOptions& options,
                                 const BodyRecording& recording) {
@@ -39,6 +62,15 @@ Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedMod
   if (!restoration.ok()) return restoration.error();
   ScoreRestoration(model, *restoration.value(), options.postprocess, recording, &scores,
                    options.observed);
+  if (file.kind != RestorationKind::kCvae || options.training.view == RestorationView::kPose) {
+    return scores;
+  }
+  for (int k = 0; k < kScoredDraws; ++k) {
+    const LatentChoice drawn = {CvaeLatent::kDraw, options.training.seed + k};
+    if (MaybeError error = ChooseLatent(drawn, restoration.value().get())) return *error;
+    ScoreDrawn(model, *restoration.value(), options, recording, &scores);
+  }
+  scores["restoration_drawn"] = {MeanScore(scores["restoration_drawn"])};
   return scores;
 }
 

@@ -37,10 +37,11 @@ std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
 std::string KeyOfTraining(const std::vector<RestorationSample>& training,
                           const std::vector<RestorationSample>& held,
                           const RestorationTrainingOptions& options) {
-  return "1 " + NameOf(options.kind) + " " + NameOf(options.coordinates) + " " +
+  return "2 " + NameOf(options.kind) + " " + NameOf(options.coordinates) + " " +
          NameOf(options.view) + (options.halves ? " halves " : " whole ") +
-         NameOf(options.mrt_size) + " " + std::to_string(options.effort) + " " +
-         std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
+         NameOf(options.training) + " " + NameOf(options.mrt_size) + " " +
+         std::to_string(options.effort) + " " + std::to_string(options.seed) + " " +
+         KeyOfSamples(training) + KeyOfSamples(held);
 }
 
 // All frames of all samples side by side; scaled with `scaling`, which is set first if it is empty.
@@ -100,6 +101,18 @@ void Scale(const CvaeWeights& scalings, std::vector<CvaeSequence>* sequences) {
   }
 }
 
+// Beside Table 3 of Yue et al., CVPR 2024, which states the two halves' autoencoders.
+std::vector<NetworkSize> SizesOf(const CvaeTrainer& trainer, const CvaeLayout& layout) {
+  constexpr int64_t kPublished[4] = {865536, 0, 1097904, 0};
+  std::vector<NetworkSize> sizes;
+  for (size_t i = 0; i < trainer.NumParameters().size(); ++i) {
+    const int64_t parameters = trainer.NumParameters()[i];
+    if (parameters == 0) continue;
+    sizes.push_back({kCvaeStageNames[i], parameters, layout.halves ? kPublished[i] : 0});
+  }
+  return sizes;
+}
+
 constexpr int kWindowEpochs = 40;
 
 }  // namespace
@@ -134,6 +147,7 @@ Result<RestorationTraining> TrainCvae(const std::vector<RestorationSample>& trai
   Scale(scalings, &judged);
   CvaeOptions cvae;
   for (int& steps : cvae.steps) steps = EpochsOf(steps, options);
+  cvae.training = options.training;
   static_cast<TrainerOptions&>(cvae) = options;
   const auto trainer =
       std::make_shared<CvaeTrainer>(std::move(learnt), std::move(judged), scalings, cvae);
@@ -141,9 +155,27 @@ Result<RestorationTraining> TrainCvae(const std::vector<RestorationSample>& trai
     file->tensors = ToTensors(trainer->Best());
     *file->settings = {{kViewKey, NameOf(options.view)},
                        {kCvaeCoordinatesKey, NameOf(options.coordinates)},
-                       {kCvaeHalvesKey, options.halves}};
+                       {kCvaeHalvesKey, options.halves},
+                       {kCvaeSigmaKey, true},
+                       {kCvaeTrainingKey, NameOf(options.training)}};
   };
-  return RestorationTraining{trainer, finish};
+  return RestorationTraining{trainer, finish, SizesOf(*trainer, scalings.layout)};
+}
+
+nlohmann::ordered_json SizesJson(const std::vector<NetworkSize>& sizes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const NetworkSize& size : sizes) json[size.name] = size.parameters;
+  return json;
+}
+
+std::string SizesText(const std::vector<NetworkSize>& sizes) {
+  std::string text;
+  for (const NetworkSize& size : sizes) {
+    text += size.name + ": " + std::to_string(size.parameters) + " parameters";
+    if (size.published > 0) text += " (published: " + std::to_string(size.published) + ")";
+    text += "\n";
+  }
+  return text;
 }
 
 int EpochsOf(int epochs, const RestorationTrainingOptions& options) {
@@ -169,6 +201,7 @@ Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>
     if (!of_kind.ok()) return of_kind.error();
     Trainer* trainer = of_kind.value().trainer.get();
     TrainedRestoration trained;
+    trained.sizes = of_kind.value().sizes;
     const auto told = [&](TrainingPoint* point) {
       if (progress) progress(*point, trainer->ShareDone());
     };

@@ -7,8 +7,10 @@
 // recording would err too little.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,7 +21,7 @@
 #include "ident/model/identified_model.h"
 #include "ident/training/training_run.h"
 #include "models/peers/mrt_network.h"
-#include "models/restoration/cvae_features.h"
+#include "models/restoration/cvae_trainer.h"
 #include "models/restoration/restoration.h"
 #include "models/restoration/trainer.h"
 
@@ -76,18 +78,31 @@ struct RestorationTrainingOptions : TrainerOptions, CheckpointOptions {
   RestorationView view = RestorationView::kPendulum;    // of kWindow and kCvae
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;  // of kCvae
   bool halves = true;                                   // of kCvae: lower, then upper body
+  CvaeTraining training = CvaeTraining::kOwn;           // of kCvae
   MrtSize mrt_size = MrtSize::kSmall;                   // of kMrt
   double effort = 1.0;                                  // multiplies the number of steps
 };
 
+// A network, how many numbers it learns, and how many the same has in its paper; 0: not stated.
+struct NetworkSize {
+  std::string name;
+  int64_t parameters = 0, published = 0;
+};
+
+nlohmann::ordered_json SizesJson(const std::vector<NetworkSize>& sizes);
+// A line each: "lower autoencoder: 865536 parameters (published: 865536)".
+std::string SizesText(const std::vector<NetworkSize>& sizes);
+
 struct TrainedRestoration : TrainingCourse {
   RestorationFile file;
+  std::vector<NetworkSize> sizes;
 };
 
 // What a kind's own function returns (ident/bodies/restoration_kinds.h).
 struct RestorationTraining {
   std::shared_ptr<Trainer> trainer;
   std::function<void(RestorationFile* file)> finish;  // settings and tensors of the trained
+  std::vector<NetworkSize> sizes{};
 };
 // `epochs` times the options' effort.
 int EpochsOf(int epochs, const RestorationTrainingOptions& options);

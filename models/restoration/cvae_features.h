@@ -34,6 +34,7 @@ struct CvaeLayout {
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;
   bool pendulum = true;  // false: the next pose from the pose alone; the network carries the hip
   bool halves = true;    // false: one network for all joints, in the place of the lower body's
+  bool sigma = true;     // false: samplers of earlier versions, of which only the mean was kept
 
   const std::vector<int>& LowerJoints() const;
   const std::vector<int>& UpperJoints() const;  // none without halves

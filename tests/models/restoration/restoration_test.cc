@@ -28,6 +28,9 @@ Restorations KindsOnTheTip() {
   kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae()));
   kinds.push_back(
       std::make_unique<CvaeRestoration>(RandomCvae(3, {CvaeCoordinates::kTip, true, false})));
+  auto drawn = std::make_unique<CvaeRestoration>(RandomCvae());
+  drawn->DrawLatent(Draws);
+  kinds.push_back(std::move(drawn));
   return kinds;
 }
 
@@ -108,6 +111,40 @@ TEST(RestorationTest, TheHipGoesWithTheTip) {
       EXPECT_LT((motion[t].col(0) - TipAt(person, t)).norm(), 1e-9) << restoration->kind();
     }
   }
+}
+
+// z = mu + sigma eps: here sigma is 2 for every input.
+TEST(CvaeLatentTest, ADrawIsTheMeanAndSigmaTimesTheDraw) {
+  CvaeSampler sampler = RandomCvae().lower_sampler;
+  sampler.log_variance.weights.setZero();
+  sampler.log_variance.bias.setConstant(std::log(4.0f));
+  Random random(3);
+  const Eigen::MatrixXf condition = RandomMatrix(CvaeLayout().LowerFrame(), 2, 1.0, &random);
+  const Eigen::MatrixXf pendulum = RandomMatrix(kPendulumFrame, 2, 1.0, &random);
+  const Eigen::MatrixXf eps = RandomMatrix(kLatent, 1, 1.0, &random);
+  const Eigen::MatrixXf mean = sampler.Evaluate(condition, pendulum, {});
+  const Eigen::MatrixXf drawn = sampler.Evaluate(condition, pendulum, eps);
+  for (int person : {0, 1}) {
+    EXPECT_LT((drawn.col(person) - mean.col(person) - 2.0f * eps).norm(), 1e-5f);
+  }
+}
+
+TEST(CvaeLatentTest, DrawsRepeatByTheirSourceAndVanishWithSigma) {
+  const RestorationInput person = MovingPerson(StandingPose(), 80, 20);
+  CvaeWeights weights = RandomCvae();
+  const BodyMotion mean = CvaeRestoration(weights).Restore({person})[0];
+  CvaeRestoration drawn(weights);
+  drawn.DrawLatent(Draws);
+  const BodyMotion once = drawn.Restore({person})[0];
+  EXPECT_EQ(Largest(once, drawn.Restore({person})[0]), 0.0);
+  EXPECT_GT(Largest(once, mean), 1e-3);
+  for (CvaeSampler* sampler : {&weights.lower_sampler, &weights.upper_sampler}) {
+    sampler->log_variance.weights.setZero();
+    sampler->log_variance.bias.setConstant(-60.0f);
+  }
+  CvaeRestoration narrow(weights);
+  narrow.DrawLatent(Draws);
+  EXPECT_LT(Largest(narrow.Restore({person})[0], mean), 1e-5);
 }
 
 TEST(RestorationTest, OtherFrameRatesAreTheSameMotion) {
