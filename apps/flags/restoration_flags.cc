@@ -52,17 +52,8 @@ MaybeError WarnOfCrowd(const RestorationFlags& flags, int people) {
 
 }  // namespace
 
-MaybeError CheckRod(const std::string& flag, bool rod_moves) {
-  if (!rod_moves) return std::nullopt;
-  return Error{
-      "the model's rod changes length, and bodies need a rod of constant length; fit one with "
-      "--rod=constant for --" +
-      flag};
-}
-
 Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
-                                                            bool rod_moves, int people) {
-  if (MaybeError error = CheckRod("restoration", rod_moves)) return *error;
+                                                            int people) {
   Result<std::unique_ptr<Restoration>> restoration = LoadRestoration(flags.name);
   if (!restoration.ok()) return restoration;
   if (MaybeError error = ChooseLatent(flags.latent, restoration.value().get())) return *error;

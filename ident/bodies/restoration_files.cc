@@ -11,6 +11,7 @@
 #include "ident/parameters/option_names.h"
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/window_restoration.h"
+#include "models/restoration/window_tangent.h"
 
 namespace pushid {
 namespace {

@@ -10,6 +10,7 @@
 #include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
 #include "ident/validation/crossvalidation.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 namespace {
@@ -81,16 +82,16 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RestorationRunOptions& options,
                                                const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  std::vector<RolloutPath<double>> paths;
+  std::vector<Prediction> predictions;
   if (options.predicted_pendulums && RowOf(options.training.kind).follows_pendulum &&
       options.training.view != RestorationView::kPose) {
-    paths = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
-                             options.training.seed, [&](int fold, int folds) {
-                               if (progress) {
-                                 progress("predicting pendulums out of fold",
-                                          static_cast<double>(fold) / folds);
-                               }
-                             });
+    predictions = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
+                                   options.training.seed, [&](int fold, int folds) {
+                                     if (progress) {
+                                       progress("predicting pendulums out of fold",
+                                                static_cast<double>(fold) / folds);
+                                     }
+                                   });
   }
   std::vector<int> learnt, judged;
   SplitHeldOut(pendulums, among, options.held_out, options.training.seed, &learnt, &judged);
@@ -99,13 +100,16 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
         "there are too few recordings to train on and to hold out for early stopping; at least two "
         "are needed"};
   }
-  auto training =
-      MakeSamples(recordings, Picked(among, learnt), Picked(paths, learnt), options.mirrored);
-  for (RestorationSample& sample : MakeSamples(
-           options.more, Others({}, static_cast<int>(options.more.size())), {}, options.mirrored)) {
+  const bool rod_moves = RodMoves(options.fit.model);
+  auto training = MakeSamples(recordings, Picked(among, learnt), Picked(predictions, learnt),
+                              rod_moves, options.mirrored);
+  for (RestorationSample& sample :
+       MakeSamples(options.more, Others({}, static_cast<int>(options.more.size())), {}, rod_moves,
+                   options.mirrored)) {
     training.push_back(std::move(sample));
   }
-  const auto held = MakeSamples(recordings, Picked(among, judged), Picked(paths, judged), false);
+  const auto held =
+      MakeSamples(recordings, Picked(among, judged), Picked(predictions, judged), rod_moves, false);
   return TrainRestoration(training, held, options.training,
                           [&](const TrainingPoint& point, double done) {
                             if (!progress) return;

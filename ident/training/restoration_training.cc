@@ -26,6 +26,7 @@ std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
   for (const RestorationSample& sample : samples) {
     add(sample.person().first_pose);
     for (const auto& q : sample.person().q) add(q);
+    for (const auto& lengths : sample.person().lengths) add(lengths);
     add(sample.person().push.velocity);
     add(sample.person().push.place);
     for (const Pose& pose : sample.motion) add(pose);
@@ -225,17 +226,16 @@ std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recor
   return std::move(model.value());
 }
 
-std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
-                                                  const std::vector<int>& among,
-                                                  const FitOptions& options, int folds,
-                                                  uint64_t seed,
-                                                  const OutOfFoldProgress& progress) {
+std::vector<Prediction> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
+                                         const std::vector<int>& among, const FitOptions& options,
+                                         int folds, uint64_t seed,
+                                         const OutOfFoldProgress& progress) {
   const int total = static_cast<int>(among.size());
-  std::vector<RolloutPath<double>> paths(total);
-  if (total < 2) return paths;
+  std::vector<Prediction> predictions(total);
+  if (total < 2) return predictions;
   const auto made = MakeFolds(Picked(recordings, among), FoldScheme::kStratified,
                               std::min(folds, total), 1, seed);
-  if (!made.ok()) return paths;
+  if (!made.ok()) return predictions;
   int done = 0;
   for (const Fold& fold : made.value()) {
     if (progress) progress(done++, static_cast<int>(made.value().size()));
@@ -244,16 +244,18 @@ std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumReco
     if (!model) continue;
     for (int k : fold.held_out) {
       Prediction prediction = Predict(*model, recordings[among[k]]);
-      if (prediction.status.ok) paths[k] = std::move(prediction.path);
+      if (!prediction.status.ok) continue;
+      prediction.forces = {}, prediction.hip.clear();
+      predictions[k] = std::move(prediction);
     }
   }
-  return paths;
+  return predictions;
 }
 
 std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,
                                            const std::vector<int>& among,
-                                           const std::vector<RolloutPath<double>>& paths,
-                                           bool mirrored) {
+                                           const std::vector<Prediction>& predictions,
+                                           bool rod_moves, bool mirrored) {
   std::vector<RestorationSample> samples;
   const auto add = [&](const BodyRecording& recording, std::vector<RestorationInput> people) {
     const double weight = 100.0 / (recording.num_people() * recording.num_frames());
@@ -271,9 +273,9 @@ std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& rec
   };
   for (size_t k = 0; k < among.size(); ++k) {
     const BodyRecording& recording = recordings[among[k]];
-    add(recording, RecordedPeople(recording));
-    if (k >= paths.size() || paths[k].num_frames() == 0) continue;
-    add(recording, PredictedPeople(recording, paths[k]));
+    add(recording, RecordedPeople(recording, rod_moves));
+    if (k >= predictions.size() || predictions[k].path.num_frames() == 0) continue;
+    add(recording, PredictedPeople(recording, predictions[k]));
   }
   return samples;
 }

@@ -41,15 +41,14 @@ std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>
 std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
                                      const std::vector<int>& train, const FitOptions& options);
 
-// For every recording of `among` (indices) the path that a model predicts which was fitted to the
-// other folds of `among`; an empty path where the rollout failed. Fewer recordings than folds: one
-// fold each. Results are in the order of `among`.
+// For every recording of `among` (indices) what a model predicts which was fitted to the other
+// folds of `among`, without forces and hips; an empty path where the rollout failed. Fewer
+// recordings than folds: one fold each. Results are in the order of `among`.
 using OutOfFoldProgress = std::function<void(int fold, int folds)>;
-std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
-                                                  const std::vector<int>& among,
-                                                  const FitOptions& options, int folds,
-                                                  uint64_t seed,
-                                                  const OutOfFoldProgress& progress = nullptr);
+std::vector<Prediction> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
+                                         const std::vector<int>& among, const FitOptions& options,
+                                         int folds, uint64_t seed,
+                                         const OutOfFoldProgress& progress = nullptr);
 
 // One person of one recording with one pendulum, among everybody of the recording.
 struct RestorationSample {
@@ -62,11 +61,12 @@ struct RestorationSample {
 };
 
 // Of every person of the recordings: the true pendulum, the predicted one (where the path is not
-// empty), and both in the mirror. paths: in the order of `among`, or none.
+// empty), and both in the mirror. predictions: in the order of `among`, or none. rod_moves: as for
+// RecordedPeople.
 std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,
                                            const std::vector<int>& among,
-                                           const std::vector<RolloutPath<double>>& paths,
-                                           bool mirrored);
+                                           const std::vector<Prediction>& predictions,
+                                           bool rod_moves, bool mirrored);
 
 // Indices into `among`'s values: about `share` of the recordings, at least one, spread over
 // settings and strengths, to stop a training early by.

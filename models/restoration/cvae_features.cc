@@ -98,7 +98,7 @@ Eigen::MatrixXf PendulumFrames(const RestorationInput& person, const CvaeLayout&
     auto column = out.col(t);
     column.head<4>() = q.cast<float>();
     column.segment<3>(4) = end.cast<float>();
-    column[7] = static_cast<float>(person.body.rod_length);
+    column[7] = static_cast<float>(person.BodyAt(t).rod_length);
     if (t == 0) continue;
     for (int i = 0; i < 7; ++i) column[8 + i] = column[from[i]] - out(from[i], t - 1);
   }
@@ -156,9 +156,12 @@ RestorationInput Resampled(const RestorationInput& person, double dt) {
   RestorationInput other = person;
   other.dt = dt;
   other.q.clear();
+  other.lengths.clear();
   const double end = static_cast<double>(person.q.size() - 1) * person.dt;
   for (int t = 0; t * dt < end + dt; ++t) {
-    other.q.push_back(Between(person.q, FrameAt(t * dt, person.dt, person.q.size())));
+    const double at = FrameAt(t * dt, person.dt, person.q.size());
+    other.q.push_back(Between(person.q, at));
+    if (!person.lengths.empty()) other.lengths.push_back(Between(person.lengths, at));
   }
   return other;
 }
