@@ -53,9 +53,10 @@ DEFINE_double(checkpoint_seconds, pushid::RestorationTrainingOptions{}.checkpoin
               "time between two checkpoints in --out");
 DEFINE_double(effort, pushid::RestorationTrainingOptions{}.effort,
               "factor on the number of training steps");
-DEFINE_double(body_weight, 0.0,
-              "window: joint training: fit the pendulum also to the restored bodies, with this "
-              "weight, retrain the network on the new pendulums, and repeat; 0: separate training");
+DEFINE_double(
+    body_weight, 0.0,
+    "window, cvae: joint training: fit the pendulum also to the restored bodies, with this "
+    "weight, retrain the network on the new pendulums, and repeat; 0: separate training");
 DEFINE_int32(rounds, pushid::RestorationRunOptions{}.rounds,
              "with --body_weight: largest number of rounds, unless it converges earlier");
 DEFINE_bool(predicted_pendulums, pushid::RestorationRunOptions{}.predicted_pendulums,
@@ -149,7 +150,7 @@ MaybeError ReadOptions(RestorationRunOptions* options) {
   if (!(FLAGS_body_weight >= 0.0)) return Error{"--body_weight must not be negative"};
   if (FLAGS_body_weight > 0.0 &&
       (!RowOf(*kind).differentiable || training.view != RestorationView::kPendulum)) {
-    return Error{"--body_weight needs --kind=window and --sees=pendulum"};
+    return Error{"--body_weight needs --kind=window or cvae, and --sees=pendulum"};
   }
   if (FLAGS_rounds < 1) return Error{"--rounds must be positive"};
   if (FLAGS_body_weight == 0.0 && FLAGS_rounds != options->rounds) {

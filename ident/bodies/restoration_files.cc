@@ -10,6 +10,7 @@
 #include "ident/bodies/tensor_folder.h"
 #include "ident/parameters/option_names.h"
 #include "models/restoration/cvae_restoration.h"
+#include "models/restoration/cvae_tangent.h"
 #include "models/restoration/window_restoration.h"
 #include "models/restoration/window_tangent.h"
 
@@ -131,16 +132,32 @@ Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder, 
   return MakeRestoration(file.value(), folder);
 }
 
+namespace {
+
+// Null where derivatives are not known.
+std::shared_ptr<const BodyTangent> TangentOf(const Restoration& restoration) {
+  const auto* window = dynamic_cast<const WindowRestoration*>(&restoration);
+  if (window != nullptr && window->weights().view == RestorationView::kPendulum) {
+    return std::make_shared<WindowTangent>(window->weights());
+  }
+  const auto* cvae = dynamic_cast<const CvaeRestoration*>(&restoration);
+  if (cvae != nullptr && cvae->weights().layout.pendulum) {
+    return std::make_shared<CvaeTangent>(cvae->weights());
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 Result<std::shared_ptr<const BodyData>> MakeBodyData(const Restoration& restoration,
                                                      const std::vector<BodyRecording>& recordings) {
-  const auto* window = dynamic_cast<const WindowRestoration*>(&restoration);
-  if (window == nullptr || window->weights().view != RestorationView::kPendulum) {
-    return Error{
-        "--body_weight needs a restoration of --kind=window and --sees=pendulum: the derivatives "
-        "of others are not known"};
-  }
   auto data = std::make_shared<BodyData>();
-  data->restoration = std::make_shared<WindowTangent>(window->weights());
+  data->restoration = TangentOf(restoration);
+  if (data->restoration == nullptr) {
+    return Error{
+        "--body_weight needs a restoration of --kind=window or cvae and --sees=pendulum: the "
+        "derivatives of others are not known"};
+  }
   for (const BodyRecording& recording : recordings) {
     data->motions[recording.pendulum.id] = recording.bodies;
   }

@@ -69,8 +69,8 @@ struct LatentChoice {
 // Errors: kDraw of another kind, without samplers, or with samplers whose sigma was not kept.
 MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration);
 
-// The bodies of a fit with body_weight (FitOptions). Errors: a restoration that is no `window` of
-// the pendulum alone, whose Jacobian is not known.
+// The bodies of a fit with body_weight (FitOptions). Errors: a restoration that is no `window` or
+// `cvae` of the pendulum alone, whose Jacobian is not known. Of a `cvae`, z is the sampler's mean.
 Result<std::shared_ptr<const BodyData>> MakeBodyData(const Restoration& restoration,
                                                      const std::vector<BodyRecording>& recordings);
 

@@ -36,14 +36,14 @@ struct RestorationKindRow {
   bool trained;           // it has weights, and stands in a folder
   bool follows_pendulum;  // otherwise it is a peer (peers/peer.h), which continues recorded bodies
   bool sees_neighbours;   // it has RestorationView::kNeighbours
-  bool differentiable;    // by the pendulum (window_tangent.h), for training as a whole
+  bool differentiable;    // by the pendulum (body_tangent.h), for training as a whole
 };
 
 inline constexpr RestorationKindRow kRestorationKinds[] = {
     {"rigid", RestorationKind::kRigid, "the first pose carried by the rod's tip", false, true,
      false, false},
     {"window", RestorationKind::kWindow, "fast, default", true, true, true, true},
-    {"cvae", RestorationKind::kCvae, "LDP's chain", true, true, false, false},
+    {"cvae", RestorationKind::kCvae, "LDP's chain", true, true, false, true},
     {"simlpe", RestorationKind::kSimlpe, "siMLPe, which continues 12 given frames", true, false,
      false, false},
     {"mrt", RestorationKind::kMrt, "MRT, which continues 20 given frames of a whole group", true,

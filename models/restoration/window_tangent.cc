@@ -58,6 +58,7 @@ std::vector<BodyTangent::Joints> WindowTangent::At(const RestorationInput& perso
     Eigen::VectorXd x(kWindowPendulumInputs + of_person.rows());
     FillPendulumInputs(path, person.dt, t, x.head(kWindowPendulumInputs));
     x.tail(of_person.rows()) = of_person.col(t);
+    x[kWindowRodInput] = person.BodyAt(t).rod_length;  // not rounded
     x = (x - mean_).cwiseQuotient(spread_);
     Eigen::MatrixXd dx = Eigen::MatrixXd::Zero(x.size(), columns);
     if (with) {

@@ -175,7 +175,7 @@ TEST_F(RestorationAppTest, BodiesTakePartInAFit) {
   const AppRun rigid =
       RunApp("pushid-fit", {Recordings(), "--body_weight=1", "--body_restoration=rigid"});
   EXPECT_EQ(rigid.exit_code, 1);
-  EXPECT_TRUE(Contains(rigid.err, "--kind=window and --sees=pendulum"));
+  EXPECT_TRUE(Contains(rigid.err, "--kind=window or cvae and --sees=pendulum"));
   const auto strong = fit("100");
   // A recording's cost is of its rollout and its bodies: all but priors and settling.
   double sum = 0.0;
