@@ -76,5 +76,17 @@ TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
   EXPECT_NE(drawn, mean);
 }
 
+// Pendulums with rods that move, restored and fitted to bodies through the chain.
+TEST_F(CvaeAppTest, IsTrainedAsAWholeOnRodsThatMove) {
+  const std::string model = "--model=" + FitModel("rod.json", {"--rod=linear"});
+  const AppRun run = RunApp(
+      "pushid-train-restoration",
+      {Recordings(), model, "--crossvalidate=2", "--kind=cvae", "--effort=0.001", "--body_weight=1",
+       "--rounds=1", "--predicted_pendulums=false", "--quiet", "--json_out=" + Path("cv.json")},
+      400);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(Json(Path("cv.json"))["run"]["rounds"], (std::vector<int>{1, 1}));
+}
+
 }  // namespace
 }  // namespace pushid
