@@ -95,8 +95,7 @@ BodyScene SceneOfRun(const FormationRun& run, std::vector<BodyMotion> bodies) {
 }
 
 Result<LoadedGenerator> LoadFormationGenerator(const DiffusionGeneratorOptions& diffusion,
-                                               bool rod_moves, const Scene& scene) {
-  if (MaybeError error = CheckRod("generator", rod_moves)) return *error;
+                                               const Scene& scene) {
   GeneratorChanges changes;
   changes.diffusion = diffusion;
   Result<LoadedGenerator> loaded = LoadGenerator(FLAGS_generator, changes, "--generator");
@@ -150,18 +149,17 @@ Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine() {
   return FormationBodyFlags{restoration.value(), diffusion.value()};
 }
 
-Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
-                                                    Scene* scene) {
+Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, Scene* scene) {
   const bool generates = !FLAGS_generator.empty();
   if (!generates && !flags.restoration.given()) return std::optional<FormationBodyPlan>();
   FormationBodyPlan plan;
   if (generates) {
-    Result<LoadedGenerator> generator = LoadFormationGenerator(flags.diffusion, rod_moves, *scene);
+    Result<LoadedGenerator> generator = LoadFormationGenerator(flags.diffusion, *scene);
     if (!generator.ok()) return generator.error();
     plan.generator = std::move(generator.value());
   } else {
     Result<std::unique_ptr<Restoration>> restoration =
-        LoadFlaggedRestoration(flags.restoration, rod_moves, scene->num_people());
+        LoadFlaggedRestoration(flags.restoration, scene->num_people());
     if (!restoration.ok()) return restoration.error();
     plan.restoration = std::move(restoration.value());
   }

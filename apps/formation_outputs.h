@@ -32,8 +32,7 @@ struct FormationBodyPlan {
 };
 
 // Nothing without either flag. Gives the scene's people the pendulums of their bodies.
-Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, bool rod_moves,
-                                                    Scene* scene);
+Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, Scene* scene);
 
 // The tables and pictures of the run that the flags name.
 MaybeError WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,

@@ -36,7 +36,7 @@ Result<GroupHips> HipsBeside(const LoadedGenerator& loaded,
   if (!physics) return GroupHips();
   const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, frames);
   if (!predicted.ok()) return predicted.error();
-  return PendulumHips(recording, predicted.value().path);
+  return PendulumHips(recording, predicted.value());
 }
 
 Result<std::vector<std::string>> WriteGroup(const std::string& path, const BodyScene& scene) {
@@ -125,7 +125,7 @@ Result<nlohmann::ordered_json> ShowSeconds(const LoadedGenerator& loaded,
     if (!physics) continue;
     const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, frames);
     if (!predicted.ok()) return predicted.error();
-    const auto people = PredictedPeople(recording, predicted.value().path);
+    const auto people = PredictedPeople(recording, predicted.value());
     rigid.push_back({RigidRestoration().Restore(people), dt, pushed});
   }
   nlohmann::ordered_json json;

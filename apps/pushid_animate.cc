@@ -15,7 +15,6 @@
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/prediction/prediction.h"
-#include "models/learned_terms.h"
 
 DEFINE_string(id, "", "the recording to show");
 DEFINE_string(out, "", "the page to write (HTML), for any browser");
@@ -83,9 +82,8 @@ int Run() {
   const IdentifiedModel& model = what_ifs.value().front().model;
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({FLAGS_id}, true);
   if (!recordings.ok()) return Fail(recordings.error());
-  const Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags.value(), RodMoves(model.options),
-                             static_cast<int>(recordings.value().front().people.size()));
+  const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration(
+      flags.value(), static_cast<int>(recordings.value().front().people.size()));
   if (!restoration.ok()) return Fail(restoration.error());
   const Result<BodyRecording> recording =
       MakeBodyRecording(recordings.value().front(), model.mapping);

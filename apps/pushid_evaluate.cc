@@ -22,7 +22,6 @@
 #include "ident/validation/held_out_spread.h"
 #include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
-#include "models/learned_terms.h"
 
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");
@@ -56,7 +55,7 @@ Result<std::optional<BodyEvaluation>> Bodies(const RestorationFlags& flags,
   size_t people = 0;
   for (const Recording& recording : recordings) people = std::max(people, recording.people.size());
   const Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags, RodMoves(model.options), static_cast<int>(people));
+      LoadFlaggedRestoration(flags, static_cast<int>(people));
   if (!restoration.ok()) return restoration.error();
   const Result<std::vector<BodyRecording>> bodies = MakeBodyRecordings(recordings, model.mapping);
   if (!bodies.ok()) return bodies.error();

@@ -25,8 +25,9 @@ DEFINE_string(model_out, "", "write the identified model here (JSON)");
 DEFINE_int32(replica, 0,
              "fit bootstrap replica k: as many people or recordings (--bootstrap_by), drawn with "
              "replacement from --seed and k; 0: the recordings as they are");
-DEFINE_string(body_restoration, "",
-              "folder that pushid-train-restoration --kind=window wrote, for --body_weight");
+DEFINE_string(
+    body_restoration, "",
+    "folder that pushid-train-restoration --kind=window or cvae wrote, for --body_weight");
 DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
 DEFINE_bool(list_parameters, false,
             "only print every parameter: name, symbol, unit, meaning, when to free it (Markdown)");
@@ -40,7 +41,7 @@ MaybeError CheckBodyFlags(const FitOptions& options) {
   if (options.body_weight > 0.0 && FLAGS_body_restoration.empty()) {
     return Error{
         "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
-        "--kind=window wrote"};
+        "--kind=window or cvae wrote"};
   }
   if (options.body_weight <= 0.0 && !FLAGS_body_restoration.empty()) {
     return Error{"--body_restoration does nothing without --body_weight; give --body_weight=1"};

@@ -16,7 +16,6 @@
 #include "ident/formations/wave_speed.h"
 #include "ident/model/model_json.h"
 #include "ident/prediction/prediction.h"
-#include "models/learned_terms.h"
 
 namespace {
 
@@ -169,7 +168,7 @@ int Run() {
   if (!drawn.ok()) return Fail(drawn.error());
   Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
-  const auto bodies = PlanBodies(body_flags.value(), RodMoves(model.value().options), &scene);
+  const auto bodies = PlanBodies(body_flags.value(), &scene);
   if (!bodies.ok()) return Fail(bodies.error());
   if (MaybeError error = CheckDraws(drawn.value(), model.value())) return Fail(*error);
   if (MaybeError error = ActAsIn(flags.value().as_setting, &model.value())) return Fail(*error);

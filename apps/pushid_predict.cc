@@ -93,7 +93,7 @@ Result<std::vector<std::string>> WriteScene(const BodyScene& scene, const BodyRe
 int WriteBodies(const RestorationFlags& flags, const Recording& recorded, SkeletonMapping mapping,
                 const Prediction& prediction) {
   const Result<std::unique_ptr<Restoration>> restoration =
-      LoadFlaggedRestoration(flags, prediction.rod_moves, static_cast<int>(recorded.people.size()));
+      LoadFlaggedRestoration(flags, static_cast<int>(recorded.people.size()));
   if (!restoration.ok()) return Fail(restoration.error());
   const Result<BodyRecording> recording = MakeBodyRecording(recorded, mapping);
   if (!recording.ok()) return Fail(recording.error());

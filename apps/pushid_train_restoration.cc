@@ -55,6 +55,7 @@ nlohmann::ordered_json TrainingJson(const std::vector<BodyRecording>& recordings
     }
   }
   json[kMostPeopleKey] = most;
+  if (!trained.sizes.empty()) json["parameters"] = SizesJson(trained.sizes);
   json["curve"] = CurveJson(trained.curve);
   return json;
 }
@@ -89,6 +90,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   line.Finish();
   if (!learnt.ok()) return Fail(learnt.error());
   const TrainedRestoration& trained = learnt.value();
+  std::fprintf(stderr, "%s", SizesText(trained.sizes).c_str());
   RestorationFile file = trained.file;
   file.training = TrainingJson(recordings, options.more, trained);
   const std::string title = NameOf(options.training.kind) + " restoration, " +

@@ -4,17 +4,30 @@
 #include <gflags/gflags.h>
 
 #include "apps/flags/body_flags.h"
+#include "apps/flags/command_line.h"
 #include "apps/support/app_support.h"
 #include "ident/bodies/restoration_files.h"
+#include "ident/parameters/option_names.h"
 
 DEFINE_string(restoration, "",
               "whole bodies: the folder that pushid-train-restoration --out wrote, or rigid");
+DEFINE_string(latent, pushid::NameOf(pushid::LatentChoice{}.latent),
+              "cvae: the latent variable is the sampler's mean (mean), or drawn from its Gaussian "
+              "in every frame (draw)");
+DEFINE_uint64(latent_seed, pushid::LatentChoice{}.seed, "with --latent=draw: seed of the draws");
 
 namespace pushid {
 
 Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& otherwise) {
   RestorationFlags flags;
   flags.name = FLAGS_restoration.empty() ? otherwise : FLAGS_restoration;
+  if (MaybeError error = ParseName("--latent", FLAGS_latent, &flags.latent.latent)) return *error;
+  flags.latent.seed = FLAGS_latent_seed;
+  const bool draws = flags.latent.latent == CvaeLatent::kDraw;
+  if (draws && FLAGS_restoration.empty()) {
+    return Error{"--latent=draw needs --restoration, the folder of a cvae"};
+  }
+  if (!draws && Given("latent_seed")) return Error{"--latent_seed needs --latent=draw"};
   if (!flags.given()) return flags;
   const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
   if (!postprocess.ok()) return postprocess.error();
@@ -39,19 +52,11 @@ MaybeError WarnOfCrowd(const RestorationFlags& flags, int people) {
 
 }  // namespace
 
-MaybeError CheckRod(const std::string& flag, bool rod_moves) {
-  if (!rod_moves) return std::nullopt;
-  return Error{
-      "the model's rod changes length, and bodies need a rod of constant length; fit one with "
-      "--rod=constant for --" +
-      flag};
-}
-
 Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
-                                                            bool rod_moves, int people) {
-  if (MaybeError error = CheckRod("restoration", rod_moves)) return *error;
+                                                            int people) {
   Result<std::unique_ptr<Restoration>> restoration = LoadRestoration(flags.name);
   if (!restoration.ok()) return restoration;
+  if (MaybeError error = ChooseLatent(flags.latent, restoration.value().get())) return *error;
   if (MaybeError error = WarnOfCrowd(flags, people)) return *error;
   return restoration;
 }

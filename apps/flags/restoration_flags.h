@@ -5,6 +5,7 @@
 #include <string>
 
 #include "datasets/files/error.h"
+#include "ident/bodies/restoration_files.h"
 #include "models/restoration/postprocess.h"
 #include "models/restoration/restoration.h"
 
@@ -13,6 +14,7 @@ namespace pushid {
 struct RestorationFlags {
   std::string name;  // folder of pushid-train-restoration, or rigid; empty: no bodies
   PostprocessOptions postprocess;
+  LatentChoice latent;  // of a cvae
 
   bool given() const { return !name.empty(); }
 };
@@ -20,14 +22,10 @@ struct RestorationFlags {
 // Without --restoration, `otherwise` is taken.
 Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& otherwise = "");
 
-// flag: what asks for bodies, "restoration". Errors: a model whose rod moves, for bodies are
-// carried by rods of constant length.
-MaybeError CheckRod(const std::string& flag, bool rod_moves);
-
 // people: the most there are in one recording. Warns where a restoration that never saw a group is
 // to make one.
 Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
-                                                            bool rod_moves, int people);
+                                                            int people);
 
 // "--joints_out needs bodies: name the folder ...".
 Error NeedsRestoration(const std::string& flag);

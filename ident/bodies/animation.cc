@@ -56,7 +56,7 @@ void AddPrediction(const PendulumRecording& recording, const Prediction& predict
     person.tip = prediction.hip[n];
     for (int t = 0; t < prediction.path.num_frames(); ++t) {
       const Vector4<double>& q = prediction.path.At(t, n).q;
-      person.cart.emplace_back(q[0], q[1], recording.scene.people[n].body.cart_height);
+      person.cart.emplace_back(q[0], q[1], prediction.BodyAt(recording.scene, t, n).cart_height);
       person.force.push_back(prediction.forces.At(t, n).Total());
     }
     animation->people.push_back(std::move(person));

@@ -9,6 +9,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/fit/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 
@@ -62,7 +63,8 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
                        int first_frame = 1) {
     (*scores)[name].push_back(ScoreBodies(recording, bodies, first_frame));
   };
-  const std::vector<RestorationInput> recorded = RecordedPeople(recording, observed);
+  const std::vector<RestorationInput> recorded =
+      RecordedPeople(recording, RodMoves(model.options), observed);
   add("true_pendulum", RestoreBodies(restoration, options, recorded));
   add("static", StaticBodies(recording, observed));
   add("constant_velocity", ConstantVelocityBodies(recording, observed));
@@ -199,7 +201,7 @@ Json ToJson(const BodySummary& summary, bool with_recordings) {
 }
 
 void AddBodyJson(const BodyEvaluation& evaluation, Json* json) {
-  static const std::set<std::string> kAtTop = {"true_pendulum", "recorded"};
+  static const std::set<std::string> kAtTop = {"true_pendulum", "recorded", "restoration_drawn"};
   for (const auto& [name, summary] : evaluation) {
     if (name == "restoration" || name == "generator") {
       Merge(ToJson(summary, true), json);

@@ -2,6 +2,7 @@
 #include "ident/bodies/body_recording.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "datasets/files/names.h"
 #include "datasets/formats/bvh.h"
@@ -91,30 +92,38 @@ std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& rec
   return pendulums;
 }
 
-std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
-                                              const RolloutPath<double>& path) {
-  std::vector<RestorationInput> people = People(recording);
-  for (int n = 0; n < recording.num_people(); ++n) {
-    for (int t = 0; t < path.num_frames(); ++t) people[n].q.push_back(path.At(t, n).q);
+void FollowPrediction(const Prediction& prediction, std::vector<RestorationInput>* people) {
+  for (int n = 0; n < static_cast<int>(people->size()); ++n) {
+    RestorationInput& person = (*people)[n];
+    for (int t = 0; t < prediction.path.num_frames(); ++t) {
+      person.Follow(prediction.path.At(t, n), prediction.rod_moves, prediction.Lift(n));
+    }
+    person.stands = StandingFrames(prediction, n);
   }
-  return people;
 }
 
 std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
                                               const Prediction& prediction) {
-  std::vector<RestorationInput> people = PredictedPeople(recording, prediction.path);
-  for (int n = 0; n < recording.num_people(); ++n) {
-    people[n].stands = StandingFrames(prediction, n);
-  }
+  std::vector<RestorationInput> people = People(recording);
+  FollowPrediction(prediction, &people);
   AddSeen(recording, prediction.observed, &people);
   return people;
 }
 
-std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, int observed) {
+std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, bool rod_moves,
+                                             int observed) {
   std::vector<RestorationInput> people = People(recording);
   AddSeen(recording, observed, &people);
+  const PendulumRecording& pendulum = recording.pendulum;
   for (int n = 0; n < recording.num_people(); ++n) {
-    for (const auto& state : recording.pendulum.states[n]) people[n].q.push_back(state.q);
+    for (int t = 0; t < recording.num_frames(); ++t) {
+      const Vector4<double>& q = pendulum.states[n][t].q;
+      people[n].q.push_back(q);
+      if (!rod_moves) continue;
+      const double length = pendulum.rod_length[n][t];
+      people[n].lengths.emplace_back(
+          length, pendulum.hip[n][t].z() - length * std::cos(q[2]) * std::cos(q[3]));
+    }
   }
   return people;
 }

@@ -73,12 +73,17 @@ Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recordin
 RecordedBodies BodiesOfGroups(const std::vector<Recording>& recordings);
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings);
 
-// People with predicted pendulums (and whether their feet stand, where a prediction says so, and
-// the first poses that it has seen), or with those seen in the recording, after `observed` poses.
+// Predicted pendulums of people in their first poses: q, rods that move, and whether feet stand,
+// where the prediction says so.
+void FollowPrediction(const Prediction& prediction, std::vector<RestorationInput>* people);
+
+// People of a recording with predicted pendulums and the first poses that the prediction has seen.
 std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
                                               const Prediction& prediction);
-std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
-                                              const RolloutPath<double>& path);
-std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, int observed = 0);
+// The same with recorded pendulums, after `observed` poses. rod_moves: beside predictions whose
+// rods move, the rod has the recorded length of each frame, so that its tip is the recorded hip;
+// otherwise that of frame 0.
+std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, bool rod_moves,
+                                             int observed = 0);
 
 }  // namespace pushid

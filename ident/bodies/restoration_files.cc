@@ -1,6 +1,7 @@
 // ident: restorations written and read.
 #include "ident/bodies/restoration_files.h"
 
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
@@ -9,12 +10,22 @@
 #include "ident/bodies/tensor_folder.h"
 #include "ident/parameters/option_names.h"
 #include "models/restoration/cvae_restoration.h"
+#include "models/restoration/cvae_tangent.h"
 #include "models/restoration/window_restoration.h"
+#include "models/restoration/window_tangent.h"
 
 namespace pushid {
 namespace {
 
 constexpr uint64_t kDrawsSeed = 1;  // of a chain without a pendulum
+
+// Begun anew with every call.
+std::function<NormalSource()> NormalsOf(uint64_t seed) {
+  return [seed] {
+    const auto random = std::make_shared<Random>(seed);
+    return NormalSource([random] { return random->Normal(); });
+  };
+}
 
 constexpr TensorFolderKind kRestorationFolder = {
     "restoration", "--restoration", "pushid-train-restoration --out", kRestorationFormat};
@@ -72,12 +83,27 @@ Result<std::unique_ptr<Restoration>> MakeCvae(const RestorationFile& file, const
   const Result<RestorationView> view = ViewOf(file, path);
   if (!view.ok()) return view.error();
   const CvaeLayout layout = {coordinates, view.value() == RestorationView::kPendulum,
-                             file.settings->value(kCvaeHalvesKey, true)};
-  const auto draws = [] {
-    const auto random = std::make_shared<Random>(kDrawsSeed);
-    return NormalSource([random] { return random->Normal(); });
-  };
-  return std::unique_ptr<Restoration>(new CvaeRestoration(TakeCvae(layout, reader), draws));
+                             file.settings->value(kCvaeHalvesKey, true),
+                             file.settings->value(kCvaeSigmaKey, false)};
+  return std::unique_ptr<Restoration>(
+      new CvaeRestoration(TakeCvae(layout, reader), NormalsOf(kDrawsSeed)));
+}
+
+MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration) {
+  if (choice.latent == CvaeLatent::kMean) return std::nullopt;
+  auto* cvae = dynamic_cast<CvaeRestoration*>(restoration);
+  if (cvae == nullptr || !cvae->weights().layout.pendulum) {
+    return Error{
+        "--latent=draw needs a restoration of --kind=cvae and --sees=pendulum: others "
+        "have no sampler to draw from"};
+  }
+  if (!cvae->CanDraw()) {
+    return Error{
+        "--latent=draw needs the sigma of the samplers, which an earlier version did not "
+        "keep; train again with this version, or give --latent=mean"};
+  }
+  cvae->DrawLatent(NormalsOf(choice.seed));
+  return std::nullopt;
 }
 
 std::string RestorationJsonFile(const std::string& folder) {
@@ -106,16 +132,32 @@ Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder, 
   return MakeRestoration(file.value(), folder);
 }
 
+namespace {
+
+// Null where derivatives are not known.
+std::shared_ptr<const BodyTangent> TangentOf(const Restoration& restoration) {
+  const auto* window = dynamic_cast<const WindowRestoration*>(&restoration);
+  if (window != nullptr && window->weights().view == RestorationView::kPendulum) {
+    return std::make_shared<WindowTangent>(window->weights());
+  }
+  const auto* cvae = dynamic_cast<const CvaeRestoration*>(&restoration);
+  if (cvae != nullptr && cvae->weights().layout.pendulum) {
+    return std::make_shared<CvaeTangent>(cvae->weights());
+  }
+  return nullptr;
+}
+
+}  // namespace
+
 Result<std::shared_ptr<const BodyData>> MakeBodyData(const Restoration& restoration,
                                                      const std::vector<BodyRecording>& recordings) {
-  const auto* window = dynamic_cast<const WindowRestoration*>(&restoration);
-  if (window == nullptr || window->weights().view != RestorationView::kPendulum) {
-    return Error{
-        "--body_weight needs a restoration of --kind=window and --sees=pendulum: the derivatives "
-        "of others are not known"};
-  }
   auto data = std::make_shared<BodyData>();
-  data->restoration = std::make_shared<WindowTangent>(window->weights());
+  data->restoration = TangentOf(restoration);
+  if (data->restoration == nullptr) {
+    return Error{
+        "--body_weight needs a restoration of --kind=window or cvae and --sees=pendulum: the "
+        "derivatives of others are not known"};
+  }
   for (const BodyRecording& recording : recordings) {
     data->motions[recording.pendulum.id] = recording.bodies;
   }

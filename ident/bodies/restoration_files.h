@@ -3,6 +3,7 @@
 // tensor_folder.h has the layout.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_recording.h"
+#include "models/restoration/cvae_restoration.h"
 #include "models/restoration/dense_network.h"
 #include "models/restoration/restoration.h"
 #include "residuals/cost_functions/body_residual.h"
@@ -18,11 +20,13 @@ namespace pushid {
 
 inline constexpr int kRestorationFormat = 1;
 // In RestorationFile::settings: a name of RestorationView (of kWindow and kCvae), of
-// CvaeCoordinates, and whether the body has two networks (of kCvae). Files of before have none of
-// them.
+// CvaeCoordinates, whether the body has two networks, whether samplers kept their sigma, and a name
+// of CvaeTraining (of kCvae). Files of before have none of them.
 inline constexpr char kViewKey[] = "sees";
 inline constexpr char kCvaeCoordinatesKey[] = "coordinates";
 inline constexpr char kCvaeHalvesKey[] = "halves";
+inline constexpr char kCvaeSigmaKey[] = "sigma";
+inline constexpr char kCvaeTrainingKey[] = "training";
 
 // In RestorationFile::training: the most people of one recording that it learned from.
 inline constexpr char kMostPeopleKey[] = "most_people";
@@ -57,8 +61,16 @@ Result<bool> LearnedAlone(const std::string& folder);
 Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder,
                                                      const char* flag = "--restoration");
 
-// The bodies of a fit with body_weight (FitOptions). Errors: a restoration that is no `window` of
-// the pendulum alone, whose Jacobian is not known.
+// How z of a `cvae` is chosen (models/restoration/cvae_restoration.h).
+struct LatentChoice {
+  CvaeLatent latent = CvaeLatent::kMean;
+  uint64_t seed = 1;  // of kDraw
+};
+// Errors: kDraw of another kind, without samplers, or with samplers whose sigma was not kept.
+MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration);
+
+// The bodies of a fit with body_weight (FitOptions). Errors: a restoration that is no `window` or
+// `cvae` of the pendulum alone, whose Jacobian is not known. Of a `cvae`, z is the sampler's mean.
 Result<std::shared_ptr<const BodyData>> MakeBodyData(const Restoration& restoration,
                                                      const std::vector<BodyRecording>& recordings);
 

@@ -66,7 +66,8 @@ MaybeError CheckBodies(const std::vector<PendulumRecording>& recordings,
   if (options.body == nullptr) {
     return Error{
         "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
-        "--kind=window wrote, and is available only in pushid-fit and pushid-train-restoration"};
+        "--kind=window or cvae wrote, and is available only in pushid-fit and "
+        "pushid-train-restoration"};
   }
   for (const PendulumRecording& recording : recordings) {
     if (options.body->motions.count(recording.id) > 0) continue;

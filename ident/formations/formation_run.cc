@@ -174,12 +174,7 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
                                         const PostprocessOptions& options) {
   const Scene& scene = run.recording.scene;
   std::vector<RestorationInput> people = PeopleOf(scene, first_poses);
-  for (int n = 0; n < scene.num_people(); ++n) {
-    for (int t = 0; t < run.num_frames(); ++t) {
-      people[n].q.push_back(run.prediction.path.At(t, n).q);
-    }
-    people[n].stands = StandingFrames(run.prediction, n);
-  }
+  FollowPrediction(run.prediction, &people);
   return RestoreBodies(restoration, options, people);
 }
 
@@ -210,7 +205,7 @@ Result<std::vector<BodyMotion>> GeneratedBodies(const FormationRun& run,
     held.bodies.emplace_back(run.num_frames(), pose);
     held.pendulum.hip.emplace_back(run.num_frames(), pose.col(kBodyHip));
   }
-  const GroupHips hips = PendulumHips(held, run.prediction.path);
+  const GroupHips hips = PendulumHips(held, run.prediction);
   return GenerateBodies(loaded.settings, *loaded.generator, held, hips, run.num_frames());
 }
 

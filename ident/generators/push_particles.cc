@@ -49,9 +49,9 @@ PushedParticles ParticlesOf(const BodyRecording& recording, int person) {
   return particles;
 }
 
-GroupHips PendulumHips(const BodyRecording& recording, const RolloutPath<double>& path) {
+GroupHips PendulumHips(const BodyRecording& recording, const Prediction& prediction) {
   GroupHips hips;
-  for (const RestorationInput& person : PredictedPeople(recording, path)) {
+  for (const RestorationInput& person : PredictedPeople(recording, prediction)) {
     const Pose& first = person.first_pose;
     const Eigen::Vector3d origin(first(0, kBodyHip), first(1, kBodyHip), 0.0);
     Eigen::Matrix3Xf hip(3, person.q.size());

@@ -27,7 +27,7 @@ PushedParticles ParticlesOf(const BodyRecording& recording, int person);
 
 // Where a prediction has everybody's hip, in the coordinates of their particles.
 using GroupHips = std::vector<Eigen::Matrix3Xf>;
-GroupHips PendulumHips(const BodyRecording& recording, const RolloutPath<double>& path);
+GroupHips PendulumHips(const BodyRecording& recording, const Prediction& prediction);
 
 // Everybody of a recording, for generators whose people see each other; hips: or empty.
 std::vector<ObservedMotion> GroupOf(const BodyRecording& recording, const GroupHips& hips = {});

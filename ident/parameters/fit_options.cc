@@ -76,15 +76,12 @@ std::string LossViolation(const FitOptions& o) {
 // What restored bodies cannot go together with; empty: nothing.
 std::string BodyViolation(const FitOptions& o) {
   if (o.body_weight <= 0.0) return "";
-  const char* other = RodMoves(o.model)                         ? "--rod"
-                      : o.likelihood != Likelihood::kTrajectory ? "--likelihood"
+  const char* other = o.likelihood != Likelihood::kTrajectory ? "--likelihood"
                       : NeedsGradientTraining(o) ? "a network that is trained by its gradient"
                       : o.sigmas.loss == FrameLoss::kLdp ? "--loss=ldp"
                                                          : nullptr;
   if (other == nullptr) return "";
-  return std::string(
-             "--body_weight compares bodies on rollouts of rods of constant length and does "
-             "not go together with ") +
+  return std::string("--body_weight compares bodies on rollouts and does not go together with ") +
          other + "; drop one of the two";
 }
 

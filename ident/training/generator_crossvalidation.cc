@@ -87,10 +87,10 @@ class FoldJudge {
       return Error{"recording " + recording.pendulum.id + ": physics " +
                    OutsideText(predicted.value().status)};
     }
-    const RolloutPath<double>& path = predicted.value().path;
+    const Prediction& prediction = predicted.value();
     (*scores)["rigid"] =
-        ScoreBodies(recording, RigidRestoration().Restore(PredictedPeople(recording, path)));
-    return PendulumHips(recording, path);
+        ScoreBodies(recording, RigidRestoration().Restore(PredictedPeople(recording, prediction)));
+    return PendulumHips(recording, prediction);
   }
 
   MaybeError Add(const std::string& name, const BodyRecording& recording, int observed,

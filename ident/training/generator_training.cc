@@ -230,10 +230,11 @@ std::vector<GroupHips> OutOfFoldHips(const std::vector<BodyRecording>& recording
                                      uint64_t seed) {
   constexpr int kInnerFolds = 4;
   std::vector<GroupHips> hips(recordings.size());
-  const auto paths = PredictOutOfFold(PendulumsOf(recordings), among, physics, kInnerFolds, seed);
+  const auto predictions =
+      PredictOutOfFold(PendulumsOf(recordings), among, physics, kInnerFolds, seed);
   for (size_t k = 0; k < among.size(); ++k) {
-    if (paths[k].num_frames() == 0) continue;
-    hips[among[k]] = PendulumHips(recordings[among[k]], paths[k]);
+    if (predictions[k].path.num_frames() == 0) continue;
+    hips[among[k]] = PendulumHips(recordings[among[k]], predictions[k]);
   }
   return hips;
 }

@@ -10,6 +10,7 @@
 #include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
 #include "ident/validation/crossvalidation.h"
+#include "models/learned_terms.h"
 
 namespace pushid {
 namespace {
@@ -24,7 +25,30 @@ double LargestChange(const IdentifiedModel& before, const IdentifiedModel& after
   return largest;
 }
 
-// A restoration beside its baselines; a peer alone.
+constexpr int kScoredDraws = 3;  // of the latent variable, whose scores are averaged
+
+// Metric by metric; a failure is a failure of all.
+BodyScore MeanScore(const std::vector<BodyScore>& scores) {
+  BodyScore mean = scores.front();
+  for (double& value : mean.value) value = 0.0;
+  for (const BodyScore& score : scores) {
+    for (int m = 0; m < kNumBodyMetrics; ++m) {
+      mean.value[m] += score.value[m] / static_cast<double>(scores.size());
+    }
+  }
+  return mean;
+}
+
+// The restoration of the predicted pendulums alone, as restoration_drawn.
+void ScoreDrawn(const IdentifiedModel& model, const Restoration& restoration,
+                const RestorationRunOptions& options, const BodyRecording& recording,
+                BodyScores* scores) {
+  BodyScores of_draw;
+  ScoreRestoration(model, restoration, options.postprocess, recording, &of_draw, options.observed);
+  (*scores)["restoration_drawn"].push_back(of_draw["restoration"].front());
+}
+
+// A restoration beside its baselines; of a cvae also with a drawn latent variable; a peer alone.
 Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
                                 const RestorationRunOptions& options,
                                 const BodyRecording& recording) {
@@ -39,6 +63,15 @@ Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedMod
   if (!restoration.ok()) return restoration.error();
   ScoreRestoration(model, *restoration.value(), options.postprocess, recording, &scores,
                    options.observed);
+  if (file.kind != RestorationKind::kCvae || options.training.view == RestorationView::kPose) {
+    return scores;
+  }
+  for (int k = 0; k < kScoredDraws; ++k) {
+    const LatentChoice drawn = {CvaeLatent::kDraw, options.training.seed + k};
+    if (MaybeError error = ChooseLatent(drawn, restoration.value().get())) return *error;
+    ScoreDrawn(model, *restoration.value(), options, recording, &scores);
+  }
+  scores["restoration_drawn"] = {MeanScore(scores["restoration_drawn"])};
   return scores;
 }
 
@@ -49,16 +82,16 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RestorationRunOptions& options,
                                                const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  std::vector<RolloutPath<double>> paths;
+  std::vector<Prediction> predictions;
   if (options.predicted_pendulums && RowOf(options.training.kind).follows_pendulum &&
       options.training.view != RestorationView::kPose) {
-    paths = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
-                             options.training.seed, [&](int fold, int folds) {
-                               if (progress) {
-                                 progress("predicting pendulums out of fold",
-                                          static_cast<double>(fold) / folds);
-                               }
-                             });
+    predictions = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
+                                   options.training.seed, [&](int fold, int folds) {
+                                     if (progress) {
+                                       progress("predicting pendulums out of fold",
+                                                static_cast<double>(fold) / folds);
+                                     }
+                                   });
   }
   std::vector<int> learnt, judged;
   SplitHeldOut(pendulums, among, options.held_out, options.training.seed, &learnt, &judged);
@@ -67,13 +100,16 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
         "there are too few recordings to train on and to hold out for early stopping; at least two "
         "are needed"};
   }
-  auto training =
-      MakeSamples(recordings, Picked(among, learnt), Picked(paths, learnt), options.mirrored);
-  for (RestorationSample& sample : MakeSamples(
-           options.more, Others({}, static_cast<int>(options.more.size())), {}, options.mirrored)) {
+  const bool rod_moves = RodMoves(options.fit.model);
+  auto training = MakeSamples(recordings, Picked(among, learnt), Picked(predictions, learnt),
+                              rod_moves, options.mirrored);
+  for (RestorationSample& sample :
+       MakeSamples(options.more, Others({}, static_cast<int>(options.more.size())), {}, rod_moves,
+                   options.mirrored)) {
     training.push_back(std::move(sample));
   }
-  const auto held = MakeSamples(recordings, Picked(among, judged), Picked(paths, judged), false);
+  const auto held =
+      MakeSamples(recordings, Picked(among, judged), Picked(predictions, judged), rod_moves, false);
   return TrainRestoration(training, held, options.training,
                           [&](const TrainingPoint& point, double done) {
                             if (!progress) return;

@@ -56,7 +56,9 @@ Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
                                 const RunProgress& progress = nullptr);
 
 struct ChainValidation {
-  BodyEvaluation evaluation;  // every recording as predicted by the fold that did not see it
+  // Every recording as predicted by the fold that did not see it. Of a cvae, restoration_drawn has
+  // the mean of the scores of three draws of the latent variable, and restoration is by its mean.
+  BodyEvaluation evaluation;
   std::vector<double> training_seconds;  // of pendulum and restoration, by fold
   std::vector<int> rounds;               // of training as a whole, by fold
 };

@@ -26,6 +26,7 @@ std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
   for (const RestorationSample& sample : samples) {
     add(sample.person().first_pose);
     for (const auto& q : sample.person().q) add(q);
+    for (const auto& lengths : sample.person().lengths) add(lengths);
     add(sample.person().push.velocity);
     add(sample.person().push.place);
     for (const Pose& pose : sample.motion) add(pose);
@@ -37,10 +38,11 @@ std::string KeyOfSamples(const std::vector<RestorationSample>& samples) {
 std::string KeyOfTraining(const std::vector<RestorationSample>& training,
                           const std::vector<RestorationSample>& held,
                           const RestorationTrainingOptions& options) {
-  return "1 " + NameOf(options.kind) + " " + NameOf(options.coordinates) + " " +
+  return "2 " + NameOf(options.kind) + " " + NameOf(options.coordinates) + " " +
          NameOf(options.view) + (options.halves ? " halves " : " whole ") +
-         NameOf(options.mrt_size) + " " + std::to_string(options.effort) + " " +
-         std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
+         NameOf(options.training) + " " + NameOf(options.mrt_size) + " " +
+         std::to_string(options.effort) + " " + std::to_string(options.seed) + " " +
+         KeyOfSamples(training) + KeyOfSamples(held);
 }
 
 // All frames of all samples side by side; scaled with `scaling`, which is set first if it is empty.
@@ -100,6 +102,18 @@ void Scale(const CvaeWeights& scalings, std::vector<CvaeSequence>* sequences) {
   }
 }
 
+// Beside Table 3 of Yue et al., CVPR 2024, which states the two halves' autoencoders.
+std::vector<NetworkSize> SizesOf(const CvaeTrainer& trainer, const CvaeLayout& layout) {
+  constexpr int64_t kPublished[4] = {865536, 0, 1097904, 0};
+  std::vector<NetworkSize> sizes;
+  for (size_t i = 0; i < trainer.NumParameters().size(); ++i) {
+    const int64_t parameters = trainer.NumParameters()[i];
+    if (parameters == 0) continue;
+    sizes.push_back({kCvaeStageNames[i], parameters, layout.halves ? kPublished[i] : 0});
+  }
+  return sizes;
+}
+
 constexpr int kWindowEpochs = 40;
 
 }  // namespace
@@ -134,6 +148,7 @@ Result<RestorationTraining> TrainCvae(const std::vector<RestorationSample>& trai
   Scale(scalings, &judged);
   CvaeOptions cvae;
   for (int& steps : cvae.steps) steps = EpochsOf(steps, options);
+  cvae.training = options.training;
   static_cast<TrainerOptions&>(cvae) = options;
   const auto trainer =
       std::make_shared<CvaeTrainer>(std::move(learnt), std::move(judged), scalings, cvae);
@@ -141,9 +156,27 @@ Result<RestorationTraining> TrainCvae(const std::vector<RestorationSample>& trai
     file->tensors = ToTensors(trainer->Best());
     *file->settings = {{kViewKey, NameOf(options.view)},
                        {kCvaeCoordinatesKey, NameOf(options.coordinates)},
-                       {kCvaeHalvesKey, options.halves}};
+                       {kCvaeHalvesKey, options.halves},
+                       {kCvaeSigmaKey, true},
+                       {kCvaeTrainingKey, NameOf(options.training)}};
   };
-  return RestorationTraining{trainer, finish};
+  return RestorationTraining{trainer, finish, SizesOf(*trainer, scalings.layout)};
+}
+
+nlohmann::ordered_json SizesJson(const std::vector<NetworkSize>& sizes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const NetworkSize& size : sizes) json[size.name] = size.parameters;
+  return json;
+}
+
+std::string SizesText(const std::vector<NetworkSize>& sizes) {
+  std::string text;
+  for (const NetworkSize& size : sizes) {
+    text += size.name + ": " + std::to_string(size.parameters) + " parameters";
+    if (size.published > 0) text += " (published: " + std::to_string(size.published) + ")";
+    text += "\n";
+  }
+  return text;
 }
 
 int EpochsOf(int epochs, const RestorationTrainingOptions& options) {
@@ -169,6 +202,7 @@ Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>
     if (!of_kind.ok()) return of_kind.error();
     Trainer* trainer = of_kind.value().trainer.get();
     TrainedRestoration trained;
+    trained.sizes = of_kind.value().sizes;
     const auto told = [&](TrainingPoint* point) {
       if (progress) progress(*point, trainer->ShareDone());
     };
@@ -192,17 +226,16 @@ std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recor
   return std::move(model.value());
 }
 
-std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
-                                                  const std::vector<int>& among,
-                                                  const FitOptions& options, int folds,
-                                                  uint64_t seed,
-                                                  const OutOfFoldProgress& progress) {
+std::vector<Prediction> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
+                                         const std::vector<int>& among, const FitOptions& options,
+                                         int folds, uint64_t seed,
+                                         const OutOfFoldProgress& progress) {
   const int total = static_cast<int>(among.size());
-  std::vector<RolloutPath<double>> paths(total);
-  if (total < 2) return paths;
+  std::vector<Prediction> predictions(total);
+  if (total < 2) return predictions;
   const auto made = MakeFolds(Picked(recordings, among), FoldScheme::kStratified,
                               std::min(folds, total), 1, seed);
-  if (!made.ok()) return paths;
+  if (!made.ok()) return predictions;
   int done = 0;
   for (const Fold& fold : made.value()) {
     if (progress) progress(done++, static_cast<int>(made.value().size()));
@@ -211,16 +244,18 @@ std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumReco
     if (!model) continue;
     for (int k : fold.held_out) {
       Prediction prediction = Predict(*model, recordings[among[k]]);
-      if (prediction.status.ok) paths[k] = std::move(prediction.path);
+      if (!prediction.status.ok) continue;
+      prediction.forces = {}, prediction.hip.clear();
+      predictions[k] = std::move(prediction);
     }
   }
-  return paths;
+  return predictions;
 }
 
 std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,
                                            const std::vector<int>& among,
-                                           const std::vector<RolloutPath<double>>& paths,
-                                           bool mirrored) {
+                                           const std::vector<Prediction>& predictions,
+                                           bool rod_moves, bool mirrored) {
   std::vector<RestorationSample> samples;
   const auto add = [&](const BodyRecording& recording, std::vector<RestorationInput> people) {
     const double weight = 100.0 / (recording.num_people() * recording.num_frames());
@@ -238,9 +273,9 @@ std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& rec
   };
   for (size_t k = 0; k < among.size(); ++k) {
     const BodyRecording& recording = recordings[among[k]];
-    add(recording, RecordedPeople(recording));
-    if (k >= paths.size() || paths[k].num_frames() == 0) continue;
-    add(recording, PredictedPeople(recording, paths[k]));
+    add(recording, RecordedPeople(recording, rod_moves));
+    if (k >= predictions.size() || predictions[k].path.num_frames() == 0) continue;
+    add(recording, PredictedPeople(recording, predictions[k]));
   }
   return samples;
 }

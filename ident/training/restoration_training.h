@@ -7,8 +7,10 @@
 // recording would err too little.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,7 +21,7 @@
 #include "ident/model/identified_model.h"
 #include "ident/training/training_run.h"
 #include "models/peers/mrt_network.h"
-#include "models/restoration/cvae_features.h"
+#include "models/restoration/cvae_trainer.h"
 #include "models/restoration/restoration.h"
 #include "models/restoration/trainer.h"
 
@@ -39,15 +41,14 @@ std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>
 std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
                                      const std::vector<int>& train, const FitOptions& options);
 
-// For every recording of `among` (indices) the path that a model predicts which was fitted to the
-// other folds of `among`; an empty path where the rollout failed. Fewer recordings than folds: one
-// fold each. Results are in the order of `among`.
+// For every recording of `among` (indices) what a model predicts which was fitted to the other
+// folds of `among`, without forces and hips; an empty path where the rollout failed. Fewer
+// recordings than folds: one fold each. Results are in the order of `among`.
 using OutOfFoldProgress = std::function<void(int fold, int folds)>;
-std::vector<RolloutPath<double>> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
-                                                  const std::vector<int>& among,
-                                                  const FitOptions& options, int folds,
-                                                  uint64_t seed,
-                                                  const OutOfFoldProgress& progress = nullptr);
+std::vector<Prediction> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
+                                         const std::vector<int>& among, const FitOptions& options,
+                                         int folds, uint64_t seed,
+                                         const OutOfFoldProgress& progress = nullptr);
 
 // One person of one recording with one pendulum, among everybody of the recording.
 struct RestorationSample {
@@ -60,11 +61,12 @@ struct RestorationSample {
 };
 
 // Of every person of the recordings: the true pendulum, the predicted one (where the path is not
-// empty), and both in the mirror. paths: in the order of `among`, or none.
+// empty), and both in the mirror. predictions: in the order of `among`, or none. rod_moves: as for
+// RecordedPeople.
 std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,
                                            const std::vector<int>& among,
-                                           const std::vector<RolloutPath<double>>& paths,
-                                           bool mirrored);
+                                           const std::vector<Prediction>& predictions,
+                                           bool rod_moves, bool mirrored);
 
 // Indices into `among`'s values: about `share` of the recordings, at least one, spread over
 // settings and strengths, to stop a training early by.
@@ -76,18 +78,31 @@ struct RestorationTrainingOptions : TrainerOptions, CheckpointOptions {
   RestorationView view = RestorationView::kPendulum;    // of kWindow and kCvae
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;  // of kCvae
   bool halves = true;                                   // of kCvae: lower, then upper body
+  CvaeTraining training = CvaeTraining::kOwn;           // of kCvae
   MrtSize mrt_size = MrtSize::kSmall;                   // of kMrt
   double effort = 1.0;                                  // multiplies the number of steps
 };
 
+// A network, how many numbers it learns, and how many the same has in its paper; 0: not stated.
+struct NetworkSize {
+  std::string name;
+  int64_t parameters = 0, published = 0;
+};
+
+nlohmann::ordered_json SizesJson(const std::vector<NetworkSize>& sizes);
+// A line each: "lower autoencoder: 865536 parameters (published: 865536)".
+std::string SizesText(const std::vector<NetworkSize>& sizes);
+
 struct TrainedRestoration : TrainingCourse {
   RestorationFile file;
+  std::vector<NetworkSize> sizes;
 };
 
 // What a kind's own function returns (ident/bodies/restoration_kinds.h).
 struct RestorationTraining {
   std::shared_ptr<Trainer> trainer;
   std::function<void(RestorationFile* file)> finish;  // settings and tensors of the trained
+  std::vector<NetworkSize> sizes{};
 };
 // `epochs` times the options' effort.
 int EpochsOf(int epochs, const RestorationTrainingOptions& options);

@@ -67,18 +67,6 @@ void TakePositions(const Eigen::MatrixXf& frames, const std::vector<int>& joints
   }
 }
 
-double FrameAt(double time, double dt, size_t count) {
-  return std::clamp(time / dt, 0.0, static_cast<double>(count - 1));
-}
-
-// values[at] by linear interpolation.
-template <typename Value>
-Value Between(const std::vector<Value>& values, double at) {
-  const size_t low = static_cast<size_t>(at), high = std::min(low + 1, values.size() - 1);
-  const double share = at - static_cast<double>(low);
-  return (1.0 - share) * values[low] + share * values[high];
-}
-
 bool SameRate(double a, double b) { return std::abs(a / b - 1.0) < 1e-3; }
 
 }  // namespace
@@ -98,7 +86,7 @@ Eigen::MatrixXf PendulumFrames(const RestorationInput& person, const CvaeLayout&
     auto column = out.col(t);
     column.head<4>() = q.cast<float>();
     column.segment<3>(4) = end.cast<float>();
-    column[7] = static_cast<float>(person.body.rod_length);
+    column[7] = static_cast<float>(person.BodyAt(t).rod_length);
     if (t == 0) continue;
     for (int i = 0; i < 7; ++i) column[8 + i] = column[from[i]] - out(from[i], t - 1);
   }
@@ -155,21 +143,19 @@ RestorationInput Resampled(const RestorationInput& person, double dt) {
   if (SameRate(person.dt, dt)) return person;
   RestorationInput other = person;
   other.dt = dt;
-  other.q.clear();
   const double end = static_cast<double>(person.q.size() - 1) * person.dt;
-  for (int t = 0; t * dt < end + dt; ++t) {
-    other.q.push_back(Between(person.q, FrameAt(t * dt, person.dt, person.q.size())));
+  int frames = 0;
+  while (frames * dt < end + dt) ++frames;
+  other.q = ResampledPath(person.q, person.dt, dt, frames);
+  if (!person.lengths.empty()) {
+    other.lengths = ResampledPath(person.lengths, person.dt, dt, frames);
   }
   return other;
 }
 
 BodyMotion Resampled(const BodyMotion& motion, double motion_dt, double dt, int frames) {
   if (SameRate(motion_dt, dt) && static_cast<int>(motion.size()) == frames) return motion;
-  BodyMotion other;
-  for (int t = 0; t < frames; ++t) {
-    other.push_back(Between(motion, FrameAt(t * dt, motion_dt, motion.size())));
-  }
-  return other;
+  return ResampledPath(motion, motion_dt, dt, frames);
 }
 
 }  // namespace pushid

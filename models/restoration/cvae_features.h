@@ -17,6 +17,7 @@
 // positions.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "models/enum_names.h"
@@ -34,6 +35,7 @@ struct CvaeLayout {
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;
   bool pendulum = true;  // false: the next pose from the pose alone; the network carries the hip
   bool halves = true;    // false: one network for all joints, in the place of the lower body's
+  bool sigma = true;     // false: samplers of earlier versions, of which only the mean was kept
 
   const std::vector<int>& LowerJoints() const;
   const std::vector<int>& UpperJoints() const;  // none without halves
@@ -66,6 +68,20 @@ BodyFrames FramesOf(const RestorationInput& person, const BodyMotion& motion,
 // Back from frames to the world; the hip is at the rod's tip in `tip` coordinates.
 BodyMotion MotionFromFrames(const RestorationInput& person, const BodyFrames& frames,
                             const CvaeLayout& layout);
+
+// `frames` values at dt, by linear interpolation between values at from_dt; the last goes on.
+template <typename Value>
+std::vector<Value> ResampledPath(const std::vector<Value>& values, double from_dt, double dt,
+                                 int frames) {
+  std::vector<Value> other;
+  for (int t = 0; t < frames; ++t) {
+    const double at = std::clamp(t * dt / from_dt, 0.0, static_cast<double>(values.size() - 1));
+    const size_t low = static_cast<size_t>(at), high = std::min(low + 1, values.size() - 1);
+    const double share = at - static_cast<double>(low);
+    other.push_back((1.0 - share) * values[low] + share * values[high]);
+  }
+  return other;
+}
 
 // The same person at another rate, by linear interpolation; unchanged where the rates agree.
 RestorationInput Resampled(const RestorationInput& person, double dt);

@@ -14,6 +14,11 @@ Eigen::MatrixXf ScaledPendulum(const CvaeWeights& weights, const RestorationInpu
 
 }  // namespace
 
+int CvaeRestoration::NumDraws() const {
+  if (!weights_.layout.pendulum) return kCvaeDraws;
+  return latent_ == CvaeLatent::kDraw ? 1 : 0;
+}
+
 std::vector<BodyMotion> CvaeRestoration::Restore(
     const std::vector<RestorationInput>& people) const {
   const int n = static_cast<int>(people.size());
@@ -22,8 +27,7 @@ std::vector<BodyMotion> CvaeRestoration::Restore(
   std::vector<BodyFrames> frames;
   const CvaeLayout& layout = weights_.layout;
   Eigen::MatrixXf lower(layout.LowerFrame(), n), upper(layout.UpperFrame(), n);
-  Eigen::MatrixXf pendulum(layout.PendulumFrame(), n),
-      draws(kLatent, layout.pendulum ? 0 : kCvaeDraws);
+  Eigen::MatrixXf pendulum(layout.PendulumFrame(), n), draws(kLatent, NumDraws());
   int longest = 0;
   for (int i = 0; i < n; ++i) {
     at_rate.push_back(Resampled(people[i], 1.0 / kCvaeRate));
@@ -36,14 +40,18 @@ std::vector<BodyMotion> CvaeRestoration::Restore(
         {Eigen::MatrixXf(layout.LowerFrame(), count), Eigen::MatrixXf(layout.UpperFrame(), count)});
     longest = std::max(longest, count);
   }
-  const NormalSource normal = layout.pendulum ? nullptr : draws_();
+  const NormalSource normal = draws.size() > 0 ? draws_() : nullptr;
+  const auto draw = [&] {
+    for (float& z : draws.reshaped()) z = static_cast<float>(normal());
+  };
   for (int t = 0; t < longest; ++t) {
     if (t > 0) {
       for (int i = 0; i < n; ++i) {
         pendulum.col(i) = pendulums[i].col(std::min<Eigen::Index>(t, pendulums[i].cols() - 1));
       }
-      for (float& z : draws.reshaped()) z = static_cast<float>(normal());
+      draw();
       StepLower(weights_, pendulum, draws, &lower);
+      if (layout.pendulum) draw();  // without one, z is that of the lower body
       StepUpper(weights_, pendulum, draws, lower, &upper);
     }
     for (int i = 0; i < n; ++i) {
@@ -102,7 +110,7 @@ Eigen::MatrixXf NextFrame(const CvaeSampler& sampler, const CvaeDecoder& decoder
                           const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum,
                           const Eigen::MatrixXf& draws) {
   if (pendulum.rows() > 0)
-    return decoder.Evaluate(sampler.Evaluate(condition, pendulum), condition);
+    return decoder.Evaluate(sampler.Evaluate(condition, pendulum, draws), condition);
   Eigen::MatrixXf sum = decoder.Evaluate(draws.col(0).replicate(1, condition.cols()), condition);
   for (Eigen::Index k = 1; k < draws.cols(); ++k) {
     sum += decoder.Evaluate(draws.col(k).replicate(1, condition.cols()), condition);
@@ -113,12 +121,17 @@ Eigen::MatrixXf NextFrame(const CvaeSampler& sampler, const CvaeDecoder& decoder
 }  // namespace
 
 Eigen::MatrixXf CvaeSampler::Evaluate(const Eigen::MatrixXf& condition,
-                                      const Eigen::MatrixXf& pendulum) const {
+                                      const Eigen::MatrixXf& pendulum,
+                                      const Eigen::MatrixXf& eps) const {
   Eigen::MatrixXf hidden = Apply(first, Stacked(condition, pendulum));
   ApplyElu(&hidden);
   hidden = Apply(second, Stacked(hidden, pendulum));
   ApplyElu(&hidden);
-  return Apply(mean, Stacked(hidden, pendulum));
+  hidden = Stacked(hidden, pendulum);
+  const Eigen::MatrixXf mu = Apply(mean, hidden);
+  if (eps.size() == 0) return mu;
+  const Eigen::MatrixXf sigma = (0.5f * Apply(log_variance, hidden).array()).exp();
+  return mu + (sigma.array().colwise() * eps.col(0).array()).matrix();
 }
 
 Eigen::MatrixXf CvaeDecoder::Evaluate(const Eigen::MatrixXf& z,
@@ -147,11 +160,13 @@ void StepUpper(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
 
 namespace {
 
-void ListSampler(const std::string& name, int condition, CvaeSampler* sampler,
+void ListSampler(const std::string& name, int condition, bool sigma, CvaeSampler* sampler,
                  TensorFields* fields) {
   fields->Layer(name + ".first", condition + kPendulumFrame, kCvaeHidden, &sampler->first);
   fields->Layer(name + ".second", kCvaeHidden + kPendulumFrame, kCvaeHidden, &sampler->second);
-  fields->Layer(name + ".mean", kCvaeHidden + kPendulumFrame, kLatent, &sampler->mean);
+  const int last = kCvaeHidden + kPendulumFrame;
+  fields->Layer(name + ".mean", last, kLatent, &sampler->mean);
+  if (sigma) fields->Layer(name + ".log_variance", last, kLatent, &sampler->log_variance);
 }
 
 void ListDecoder(const std::string& name, int condition, int frame, CvaeDecoder* decoder,
@@ -170,8 +185,10 @@ void ListTensors(CvaeWeights* weights, TensorFields* fields) {
   if (layout.halves) fields->Scales("upper", upper, &weights->upper);
   if (layout.pendulum) {
     fields->Scales("pendulum", kPendulumFrame, &weights->pendulum);
-    ListSampler("lower_sampler", lower, &weights->lower_sampler, fields);
-    if (layout.halves) ListSampler("upper_sampler", condition, &weights->upper_sampler, fields);
+    ListSampler("lower_sampler", lower, layout.sigma, &weights->lower_sampler, fields);
+    if (layout.halves) {
+      ListSampler("upper_sampler", condition, layout.sigma, &weights->upper_sampler, fields);
+    }
   }
   ListDecoder("lower_decoder", lower, lower, &weights->lower_decoder, fields);
   if (!layout.halves) return;

@@ -21,15 +21,23 @@ namespace pushid {
 // there are no samplers: z is drawn from a standard normal three times a frame and the poses are
 // averaged, as LDP does in its ablation.
 //
-// z is the sampler's mean: drawing it triples the jitter. The experts' outputs are blended, not
+// A sampler gives a Gaussian: z is its mean (CvaeLatent::kMean), or mu + sigma eps, eps drawn anew
+// for every frame and half of the body (kDraw). The experts' outputs are blended, not
 // their weights: the same function, since a layer is linear, and one product for a whole crowd.
 
 inline constexpr int kLatent = 64, kExperts = 4, kCvaeHidden = 256, kGateHidden = 64;
 
-// Three layers, the pendulum concatenated at each: [x, p] -> 256 -> 256 -> mean.
+enum class CvaeLatent { kMean, kDraw };
+constexpr EnumNames<CvaeLatent, 2> Names(CvaeLatent) {
+  return {{{"mean", CvaeLatent::kMean}, {"draw", CvaeLatent::kDraw}}};
+}
+
+// Three layers, the pendulum concatenated at each: [x, p] -> 256 -> 256 -> mean and log-variance.
 struct CvaeSampler {
-  DenseLayer first, second, mean;
-  Eigen::MatrixXf Evaluate(const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum) const;
+  DenseLayer first, second, mean, log_variance;  // the last: of layouts with sigma
+  // eps: a column for everybody; none: the mean.
+  Eigen::MatrixXf Evaluate(const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum,
+                           const Eigen::MatrixXf& eps) const;
 };
 
 // Three layers of four experts, z concatenated at each: [z, c] -> 256 -> 256 -> frame; the experts'
@@ -51,8 +59,9 @@ struct CvaeWeights {
 inline constexpr int kCvaeDraws = 3;  // of z in a frame, without a pendulum
 
 // One frame on: scaled frames of everybody, a column each, in place. pendulum: scaled, of the next
-// frame. draws: of z where there is no pendulum, kLatent x kCvaeDraws, the same for everybody, so
-// that the order of people changes nothing.
+// frame. draws: standard normal numbers, kLatent x kCvaeDraws where there is no pendulum (z), one
+// column (eps) or none (the mean) with samplers; the same for everybody, so that the order of
+// people changes nothing.
 void StepLower(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
                const Eigen::MatrixXf& draws, Eigen::MatrixXf* lower);
 // lower: already of the next frame. Nothing happens without halves.
@@ -70,10 +79,20 @@ class CvaeRestoration : public Restoration {
   std::string_view kind() const override { return RowOf(RestorationKind::kCvae).name; }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
   const CvaeWeights& weights() const { return weights_; }
+  bool CanDraw() const { return weights_.layout.pendulum && weights_.layout.sigma; }
+  // From here on z is drawn from the samplers' Gaussians (CanDraw); every call of Restore takes its
+  // normal numbers from `draws` anew.
+  void DrawLatent(std::function<NormalSource()> draws) {
+    latent_ = CvaeLatent::kDraw;
+    draws_ = std::move(draws);
+  }
 
  private:
+  int NumDraws() const;  // columns of draws in a step
+
   CvaeWeights weights_;
   std::function<NormalSource()> draws_;
+  CvaeLatent latent_ = CvaeLatent::kMean;
 };
 
 }  // namespace pushid

@@ -7,7 +7,8 @@ namespace pushid {
 namespace {
 
 constexpr double kTeacher = 0.14, kRamp = 0.14;  // shares of a stage's steps
-constexpr double kStandingSpeed = 0.15;          // m/s: slower true ankles should stand
+// Of the published training, from the first step to the last, in a straight line.
+constexpr double kFirstPublishedRate = 1e-4, kLastPublishedRate = 1e-7;
 
 Tensor Padded(const std::vector<const Eigen::MatrixXf*>& parts, int64_t longest) {
   Tensor all = torch::zeros({static_cast<int64_t>(parts.size()), longest, parts[0]->rows()});
@@ -16,14 +17,6 @@ Tensor Padded(const std::vector<const Eigen::MatrixXf*>& parts, int64_t longest)
     all[static_cast<int64_t>(i)].slice(0, 0, part.size(0)).copy_(part);
   }
   return all;
-}
-
-// Where the right and the left ankle stand among the joints.
-std::array<int64_t, 2> AnklesAmong(const std::vector<int>& joints) {
-  const auto at = [&joints](int joint) {
-    return std::find(joints.begin(), joints.end(), joint) - joints.begin();
-  };
-  return {at(kRightAnkle), at(kLeftAnkle)};
 }
 
 Tensor Positions(const Tensor& frames, int numbers) { return frames.slice(-1, 3, 3 + numbers); }
@@ -49,8 +42,10 @@ void CvaeStages::StartStage() {
     PredictLower(&training);
     PredictLower(&held);
   }
+  // Without weight decay AdamW is Adam.
   optimizer = std::make_unique<torch::optim::AdamW>(
-      Trained(), torch::optim::AdamWOptions(options.learning_rate).weight_decay(1e-4));
+      Trained(),
+      torch::optim::AdamWOptions(LearningRate(0.0)).weight_decay(Published() ? 0.0 : 1e-4));
   step = 0;
   rollout_left = 0;
   best_loss = kWorstCvaeLoss;
@@ -82,65 +77,53 @@ void CvaeStages::NewBatch() {
 
 Tensor CvaeStages::AutoencoderLoss(const Tensor& next, const Tensor& condition, Tensor* output) {
   const Gaussian g = Half().Encode(next, condition);
-  const Tensor z = g.mean + torch::exp(0.5 * g.log_variance) * torch::randn_like(g.mean);
-  *output = Half().decoder->Forward(z, condition);
+  *output = Half().decoder->Forward(g.Draw(), condition);
   const Tensor kl = -0.5 * (1.0 + g.log_variance - g.mean.pow(2) - g.log_variance.exp()).mean();
   return (*output - next).pow(2).mean() + options.kl_weight * kl;
 }
 
-// How far ankles slide (m) whose true speed says that they stand.
-Tensor CvaeStages::Skate(const Tensor& output, const Tensor& x, const Tensor& next,
-                         const Tensor& before) const {
-  Tensor skate = torch::zeros({1});
-  const int numbers = layout().LowerPositions();
-  for (const int64_t ankle : AnklesAmong(layout().LowerJoints())) {
-    const auto place = [&](const Tensor& frame) {
-      const auto part = [&](const Tensor& t) { return t.slice(-1, 3 * ankle, 3 * ankle + 2); };
-      const Tensor hip_way =
-          frame.slice(-1, 0, 2) * lower_spread.slice(0, 0, 2) + lower_mean.slice(0, 0, 2);
-      const Tensor p = Positions(frame, numbers) * lower_spread.slice(0, 3, 3 + numbers) +
-                       lower_mean.slice(0, 3, 3 + numbers);
-      return std::make_pair(part(p), hip_way);
-    };
-    const auto [now, way] = place(output);
-    const auto [last, unused] = place(x);
-    const auto [true_now, true_way] = place(next);
-    const auto [true_last, unused2] = place(before);
-    const Tensor true_slide = (true_now - true_last + true_way).norm(2, 1);
-    const Tensor standing = (true_slide * kCvaeRate < kStandingSpeed).to(torch::kFloat32);
-    skate = skate + ((now - last + true_way).abs().sum(1) * standing).mean();
-  }
-  return skate;
+// FSE of the batch's outputs, with what they started from, in m.
+Tensor CvaeStages::Skate(const Tensor& output, const Tensor& pendulum) const {
+  const auto lower_of = [this](const Tensor& t) { return t * lower_spread + lower_mean; };
+  const auto pendulum_of = [this](const Tensor& t) { return t * pendulum_spread + pendulum_mean; };
+  const Tensor zeros = torch::zeros_like(first);
+  return FootSkateOf(
+      layout(), {lower_of(output), lower_of(state), lower_of(training.lower.index({rows, zeros})),
+                 pendulum_of(pendulum), pendulum_of(training.pendulum.index({rows, zeros}))});
 }
 
 Tensor CvaeStages::SamplerLoss(const Tensor& next, const Tensor& condition, const Tensor& pendulum,
-                               const Tensor& before, Tensor* output) {
+                               Tensor* output) {
   Gaussian wanted;
   {
     torch::NoGradGuard no_grad;
     wanted = Half().Encode(next, condition);
   }
   const Gaussian g = Half().Sample(condition, pendulum);
-  Tensor loss =
-      (g.mean - wanted.mean).pow(2).mean() + (g.log_variance - wanted.log_variance).pow(2).mean();
-  *output = Half().decoder->Forward(g.mean, condition);
-  if (!Upper())
-    loss = loss + options.skate_weight * kCvaeRate * Skate(*output, state, next, before);
+  const Tensor width =
+      Published() ? g.Sigma() - wanted.Sigma() : g.log_variance - wanted.log_variance;
+  Tensor loss = (g.mean - wanted.mean).pow(2).mean() + width.pow(2).mean();
+  *output = Half().decoder->Forward(Published() ? g.Draw() : g.mean, condition);
+  if (!Upper()) loss = loss + options.skate_weight * Skate(*output, pendulum);
   return loss;
+}
+
+double CvaeStages::LearningRate(double done) const {
+  if (!Published()) return options.learning_rate * OneCycle(done);
+  return kFirstPublishedRate + (kLastPublishedRate - kFirstPublishedRate) * done;
 }
 
 double CvaeStages::Step() {
   if (rollout_left == 0) NewBatch();
   const double done = static_cast<double>(step) / options.steps[stage];
-  SetLearningRate(optimizer.get(), options.learning_rate * OneCycle(done));
-  const Tensor before = Frames(training).index({rows, first + at});
+  SetLearningRate(optimizer.get(), LearningRate(done));
   const Tensor next = Frames(training).index({rows, first + at + 1});
   const Tensor pendulum = training.pendulum.index({rows, first + at + 1});
   Tensor lower_next;
   if (Upper()) lower_next = training.lower_predicted.index({rows, first + at + 1});
   const Tensor condition = Condition(state, lower_next);
   Tensor output;
-  const Tensor loss = Sampler() ? SamplerLoss(next, condition, pendulum, before, &output)
+  const Tensor loss = Sampler() ? SamplerLoss(next, condition, pendulum, &output)
                                 : AutoencoderLoss(next, condition, &output);
   Improve(optimizer.get(), loss, Trained(), 1.0);
   const double own = std::clamp((done - kTeacher) / kRamp, 0.0, 1.0);

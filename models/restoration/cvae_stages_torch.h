@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "models/restoration/cvae_restoration.h"
+#include "models/restoration/cvae_skate_torch.h"
 #include "models/restoration/cvae_trainer.h"
 #include "models/restoration/support_torch.h"
 
@@ -18,6 +19,9 @@ using torch::Tensor;
 
 struct Gaussian {
   Tensor mean, log_variance;
+
+  Tensor Sigma() const { return torch::exp(0.5 * log_variance); }
+  Tensor Draw() const { return mean + Sigma() * torch::randn_like(mean); }
 };
 
 inline Tensor Join(const Tensor& a, const Tensor& b) { return torch::cat({a, b}, 1); }
@@ -42,7 +46,9 @@ class EncoderModule : public torch::nn::Module {
     h = join(h);
     return {mean_(h), log_variance_(h)};
   }
-  CvaeSampler SamplerWeights() const { return {ToLayer(first_), ToLayer(second_), ToLayer(mean_)}; }
+  CvaeSampler SamplerWeights() const {
+    return {ToLayer(first_), ToLayer(second_), ToLayer(mean_), ToLayer(log_variance_)};
+  }
 
  private:
   torch::nn::Linear first_, second_, mean_, log_variance_;
@@ -132,7 +138,7 @@ struct CvaeStages {
   CvaeSequences training, held;
   std::shared_ptr<HalfModule> lower, upper, best_lower, best_upper;  // upper: null without halves
   std::unique_ptr<torch::optim::AdamW> optimizer;
-  Tensor lower_spread, upper_spread, lower_mean;  // of positions, for errors in m
+  Tensor lower_spread, upper_spread, lower_mean, pendulum_spread, pendulum_mean;  // for m
   int stage = 0, step = 0, rounds = 0;
   double best_loss = kWorstCvaeLoss;
   // The batch that is being rolled out.
@@ -142,6 +148,7 @@ struct CvaeStages {
 
   bool Upper() const { return stage >= 2; }
   bool Sampler() const { return stage % 2 == 1; }
+  bool Published() const { return options.training == CvaeTraining::kPublished; }
   std::vector<Tensor> Trained() {
     return Sampler() ? Half().sampler->parameters() : Half().AutoencoderParameters();
   }
@@ -168,9 +175,9 @@ struct CvaeStages {
   double Step();
   Tensor AutoencoderLoss(const Tensor& next, const Tensor& condition, Tensor* output);
   Tensor SamplerLoss(const Tensor& next, const Tensor& condition, const Tensor& pendulum,
-                     const Tensor& before, Tensor* output);
-  Tensor Skate(const Tensor& output, const Tensor& x, const Tensor& next,
-               const Tensor& before) const;
+                     Tensor* output);
+  Tensor Skate(const Tensor& output, const Tensor& pendulum) const;
+  double LearningRate(double done) const;
   enum class Latent { kEncoder, kSampler, kPriorMean };
   Tensor RollOut(const CvaeSequences& s, Latent latent);
   double HeldLoss();

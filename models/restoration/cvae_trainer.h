@@ -7,8 +7,13 @@
 // gradients through earlier frames.
 //   autoencoder: mean square error of the scaled frame + 0.005 KL to a standard normal, mean
 //                over the latent variable
-//   sampler:     squared difference of its mean and log-variance to the encoder's; for the lower
-//                body also how fast ankles slide which should stand (foot skate)
+//   sampler:     squared difference of its Gaussian to the encoder's, mean over the latent
+//   variable:
+//                of the mean, and of the log-variance (own) or of sigma (published, Eq. 7); for the
+//                lower body also the foot-skate error of the output (cvae_skate.h)
+// Training `published`: Adam, its rate from 1e-4 down to 1e-7 in a straight line, and the sampler's
+// output is decoded from a drawn z. `own` (default): AdamW with one cycle up to 1e-3, and z is the
+// sampler's mean. Published is no weight of the foot skate: it is chosen here.
 // Source: Yue et al., CVPR 2024; autoencoders as in Ling et al., Character controllers using motion
 // VAEs, SIGGRAPH 2020. A round is a few hundred steps; after each the held-out sequences judge, and
 // of every stage's last part the best round is kept.
@@ -29,15 +34,24 @@ struct CvaeSequence {
   Eigen::MatrixXf lower, upper, pendulum;
 };
 
+enum class CvaeTraining { kOwn, kPublished };
+constexpr EnumNames<CvaeTraining, 2> Names(CvaeTraining) {
+  return {{{"own", CvaeTraining::kOwn}, {"published", CvaeTraining::kPublished}}};
+}
+
 struct CvaeOptions : TrainerOptions {
+  CvaeTraining training = CvaeTraining::kOwn;
   std::array<int, 4> steps = {12000, 8000, 12000, 8000};  // of the stages, where they are
   int rollout = 8, sampler_rollout = 16;                  // frames
   int batch = 64;
-  int round = 400;  // steps between two judgements
-  double learning_rate = 1e-3;
+  int round = 400;              // steps between two judgements
+  double learning_rate = 1e-3;  // the highest of the cycle (own)
   double kl_weight = 0.005;
-  double skate_weight = 0.1;
+  double skate_weight = 0.06;  // a cm a frame
 };
+
+inline constexpr const char* kCvaeStageNames[4] = {"lower autoencoder", "lower sampler",
+                                                   "upper autoencoder", "upper sampler"};
 
 class CvaeTrainer : public Trainer {
  public:

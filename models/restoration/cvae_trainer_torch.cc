@@ -5,13 +5,6 @@
 #include "models/restoration/cvae_trainer.h"
 
 namespace pushid {
-namespace {
-
-const char* const kStageNames[4] = {"lower autoencoder", "lower sampler", "upper autoencoder",
-                                    "upper sampler"};
-
-}  // namespace
-
 struct CvaeTrainer::Torch : KeptRun<Run, Torch>, CvaeStages {
   template <typename Fields>
   void Keep(Fields* fields) {
@@ -53,7 +46,7 @@ struct CvaeTrainer::Torch : KeptRun<Run, Torch>, CvaeStages {
     double sum = 0.0;
     int steps = 0;
     while (steps < options.round && step < Steps(stage)) sum += Step(), ++steps;
-    TrainingPoint point = {++rounds, sum / std::max(1, steps), HeldLoss(), kStageNames[stage]};
+    TrainingPoint point = {++rounds, sum / std::max(1, steps), HeldLoss(), kCvaeStageNames[stage]};
     // Best of the part in which the network goes on from its own frames.
     if (point.validation_loss < best_loss && step >= Steps(stage) / 2) {
       best_loss = point.validation_loss;
@@ -78,6 +71,8 @@ CvaeTrainer::CvaeTrainer(std::vector<CvaeSequence> training, std::vector<CvaeSeq
   t.held = Gather(held);
   t.lower_spread = ToTensor(scalings.lower.spread), t.lower_mean = ToTensor(scalings.lower.mean);
   t.upper_spread = ToTensor(scalings.upper.spread);
+  t.pendulum_spread = ToTensor(scalings.pendulum.spread);
+  t.pendulum_mean = ToTensor(scalings.pendulum.mean);
   const CvaeLayout& layout = scalings.layout;
   const auto lower = [&layout] {
     return std::make_shared<HalfModule>(layout.LowerFrame(), layout.LowerFrame(),

@@ -7,7 +7,7 @@
 namespace pushid {
 
 Vector3<double> TipAt(const RestorationInput& person, int frame) {
-  return HipPosition(person.body, person.q[frame]);
+  return HipPosition(person.BodyAt(frame), person.q[frame]);
 }
 
 Vector4<double> TurnedPendulum(const Vector4<double>& q, double angle) {

@@ -36,14 +36,14 @@ struct RestorationKindRow {
   bool trained;           // it has weights, and stands in a folder
   bool follows_pendulum;  // otherwise it is a peer (peers/peer.h), which continues recorded bodies
   bool sees_neighbours;   // it has RestorationView::kNeighbours
-  bool differentiable;    // by the pendulum (window_tangent.h), for training as a whole
+  bool differentiable;    // by the pendulum (body_tangent.h), for training as a whole
 };
 
 inline constexpr RestorationKindRow kRestorationKinds[] = {
     {"rigid", RestorationKind::kRigid, "the first pose carried by the rod's tip", false, true,
      false, false},
     {"window", RestorationKind::kWindow, "fast, default", true, true, true, true},
-    {"cvae", RestorationKind::kCvae, "LDP's chain", true, true, false, false},
+    {"cvae", RestorationKind::kCvae, "LDP's chain", true, true, false, true},
     {"simlpe", RestorationKind::kSimlpe, "siMLPe, which continues 12 given frames", true, false,
      false, false},
     {"mrt", RestorationKind::kMrt, "MRT, which continues 20 given frames of a whole group", true,
@@ -80,16 +80,30 @@ struct SeenPush {
 
 struct RestorationInput {
   Pose first_pose;                 // m, world
-  Body body;                       // mass, rod length and cart height
+  Body body;                       // mass, rod length and cart height, at frame 0
   std::vector<Vector4<double>> q;  // the pendulum, frame by frame; at least one
   double dt = 1.0 / 60.0;          // s
   double push_start = 0.0;         // s, of the first push on anybody
   SeenPush push = {};
   // Frame by frame, whether the feet stand; empty: the model says nothing of them.
   std::vector<bool> stands = {};
+  // Where the rod moves: its length and the cart's height at every frame of q, m; empty: as in
+  // body.
+  std::vector<Eigen::Vector2d> lengths = {};
   // Poses of the first frames, first_pose among them, where more than that was seen.
   std::vector<Pose> seen = {};
 
+  Body BodyAt(int frame) const {
+    if (lengths.empty()) return body;
+    return {body.mass, lengths[frame][0], lengths[frame][1]};
+  }
+  // One frame more of a rollout's path; lift: of the cart (BodyNow).
+  void Follow(const PendulumState<double>& state, bool rod_moves, double lift) {
+    q.push_back(state.q);
+    if (!rod_moves) return;
+    const Body now = BodyNow(body, state.rod, lift);
+    lengths.emplace_back(now.rod_length, now.cart_height);
+  }
   // The last frame that was seen.
   int Now() const { return seen.empty() ? 0 : static_cast<int>(seen.size()) - 1; }
 };

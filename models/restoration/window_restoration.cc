@@ -50,7 +50,7 @@ Eigen::MatrixXf PushInputs(const RestorationInput& person) {
 
 }  // namespace
 
-// Only the time differs from frame to frame.
+// Only the time and a rod that moves differ from frame to frame.
 Eigen::MatrixXf WindowPersonInputs(const RestorationInput& person) {
   const double heading = Heading(person.first_pose);
   const Eigen::Matrix3d turn = TurnAboutZ(-heading);
@@ -61,7 +61,7 @@ Eigen::MatrixXf WindowPersonInputs(const RestorationInput& person) {
     int row = 0;
     const auto add = [&](double value) { inputs(row++, t) = static_cast<float>(value); };
     add(std::clamp(t * person.dt - person.push_start, 0.0, kLongestTime));
-    add(person.body.mass), add(person.body.rod_length), add(leg);
+    add(person.body.mass), add(person.BodyAt(t).rod_length), add(leg);
     add(first[2]), add(first[3]);
     for (const int joint : kSeenJoints) {
       const Eigen::Vector3d place =
@@ -151,14 +151,14 @@ int QuarterOf(const Eigen::Vector2d& away) {
   return away.y() > 0.0 ? 2 : 3;
 }
 
-// Where the rod's tip goes (x, y).
-FramePath<Eigen::Vector2d> TipPath(const Body& body, const FramePath<Vector4<double>>& turned,
-                                   double dt) {
+// Where the rod's tip goes (x, y), seen along a turned path.
+FramePath<Eigen::Vector2d> TipPath(const RestorationInput& person,
+                                   const FramePath<Vector4<double>>& turned) {
   std::vector<Eigen::Vector2d> tips;
   for (int t = 0; t < turned.num_frames(); ++t) {
-    tips.emplace_back(HipPosition(body, turned.At(t)).head<2>());
+    tips.emplace_back(HipPosition(person.BodyAt(t), turned.At(t)).head<2>());
   }
-  return {std::move(tips), dt};
+  return {std::move(tips), person.dt};
 }
 
 // Indices of the nearest in each quarter; -1: nobody.
@@ -188,7 +188,7 @@ Eigen::MatrixXf NeighbourInputs(const std::vector<RestorationInput>& people, int
   const RestorationInput& person = people[n];
   const double heading = Heading(person.first_pose);
   const auto nearest = Nearest(people, n, TurnAboutZ(-heading));
-  const auto own = TipPath(person.body, TurnedPath(person, heading), person.dt);
+  const auto own = TipPath(person, TurnedPath(person, heading));
   const double frames_per_lag = 1.0 / (kWindowLagRate * person.dt);
   const int frames = static_cast<int>(person.q.size());
   Eigen::MatrixXf inputs = Eigen::MatrixXf::Zero(kNeighbourInputs, frames);
@@ -196,7 +196,7 @@ Eigen::MatrixXf NeighbourInputs(const std::vector<RestorationInput>& people, int
     if (nearest[quarter] < 0) continue;
     const RestorationInput& other = people[nearest[quarter]];
     const FramePath<Vector4<double>> path = TurnedPath(other, heading);
-    const auto tip = TipPath(other.body, path, other.dt);
+    const auto tip = TipPath(other, path);
     const auto away_at = [&](double frame) -> Eigen::Vector2d {
       return tip.At(frame) - own.At(frame);
     };
@@ -205,7 +205,7 @@ Eigen::MatrixXf NeighbourInputs(const std::vector<RestorationInput>& people, int
       auto column = inputs.col(t).segment(quarter * kNumbersPerNeighbour, kNumbersPerNeighbour);
       int row = 0;
       const auto add = [&column, &row](double value) { column[row++] = static_cast<float>(value); };
-      add(first.x()), add(first.y()), add(other.body.rod_length), add(Nearness(first));
+      add(first.x()), add(first.y()), add(other.BodyAt(t).rod_length), add(Nearness(first));
       for (const int lag : kLags) {
         const Eigen::Vector2d away = away_at(t + lag * frames_per_lag);
         add(away.x() - first.x()), add(away.y() - first.y()), add(Nearness(away));

@@ -53,6 +53,8 @@ inline constexpr double kWindowLagRate = 60.0;  // Hz
 inline constexpr int kWindowPendulumInputs =
     4 * static_cast<int>(kWindowLags.size() + kWindowRateLags.size());
 
+inline constexpr int kWindowRodInput = kWindowPendulumInputs + 2;  // the row of the rod's length
+
 // The pendulum's part of the inputs at a frame. Value: 4 x columns, of a turned path or of its
 // derivatives; rows: kWindowPendulumInputs x columns.
 template <typename Value, typename Rows>
@@ -76,7 +78,8 @@ void FillPendulumInputs(const FramePath<Value>& path, double dt, int frame, Rows
 int WindowInputRows(RestorationView view);
 int WindowOutputRows(RestorationView view);
 
-// The person's part, which no pendulum changes: a column per frame.
+// The person's part, of which the pendulum's path changes only the rod's length, where that moves:
+// a column per frame.
 Eigen::MatrixXf WindowPersonInputs(const RestorationInput& person);
 
 // A column per frame, of person n.

@@ -8,49 +8,13 @@
 namespace pushid {
 namespace {
 
-using TangentBlock = Eigen::Matrix<double, 4, Eigen::Dynamic>;
-
-// The rod's direction r(theta, phi), and its derivatives by the two.
-struct Rod {
-  explicit Rod(const Vector4<double>& q) {
-    const double st = std::sin(q[2]), ct = std::cos(q[2]), sp = std::sin(q[3]), cp = std::cos(q[3]);
-    direction << st, -ct * sp, ct * cp;
-    by_angles << ct, 0.0, st * sp, -ct * cp, -st * cp, -ct * sp;
-  }
-  Eigen::Vector3d direction;
-  Eigen::Matrix<double, 3, 2> by_angles;
-};
-
-// d TurnedPendulum(q, angle) / dq.
-Eigen::Matrix4d TurnedDerivative(const Vector4<double>& q, double angle) {
-  const Eigen::Matrix3d turn = TurnAboutZ(angle);
-  const Rod rod(q);
-  const Eigen::Vector3d r = turn * rod.direction;
-  const Eigen::Matrix<double, 3, 2> dr = turn * rod.by_angles;
-  Eigen::Matrix4d by_q = Eigen::Matrix4d::Zero();
-  by_q.topLeftCorner<2, 2>() = turn.topLeftCorner<2, 2>();
-  by_q.block<1, 2>(2, 2) = dr.row(0) / std::sqrt(1.0 - r.x() * r.x());
-  by_q.block<1, 2>(3, 2) =
-      (r.y() * dr.row(2) - r.z() * dr.row(1)) / (r.y() * r.y() + r.z() * r.z());
-  return by_q;
-}
-
-FramePath<TangentBlock> TurnedDerivatives(const RestorationInput& person, double heading,
-                                          const WindowTangent::PathDerivatives& derivatives) {
-  std::vector<TangentBlock> turned;
+FramePath<TurnedBlock> TurnedPathOf(const RestorationInput& person, double heading,
+                                    const BodyTangent::PathDerivatives& derivatives) {
+  std::vector<TurnedBlock> turned;
   for (size_t t = 0; t < person.q.size(); ++t) {
-    turned.emplace_back(TurnedDerivative(person.q[t], -heading) * derivatives[t]);
+    turned.push_back(TurnedDerivatives(person.q[t], -heading, derivatives[t]));
   }
   return {std::move(turned), person.dt};
-}
-
-// Of the rod's tip in the world.
-Eigen::MatrixXd TipDerivatives(const RestorationInput& person, int frame,
-                               const TangentBlock& derivatives) {
-  Eigen::MatrixXd by =
-      person.body.rod_length * Rod(person.q[frame]).by_angles * derivatives.bottomRows<2>();
-  by.topRows<2>() += derivatives.topRows<2>();
-  return by;
 }
 
 }  // namespace
@@ -77,26 +41,30 @@ void WindowTangent::Forward(Eigen::VectorXd* x, Eigen::MatrixXd* dx) const {
   }
 }
 
-std::vector<WindowTangent::Joints> WindowTangent::At(const RestorationInput& person,
-                                                     const PathDerivatives& derivatives,
-                                                     const std::vector<int>& frames) const {
+std::vector<BodyTangent::Joints> WindowTangent::At(const RestorationInput& person,
+                                                   const PathDerivatives& derivatives,
+                                                   const std::vector<int>& frames) const {
   const double heading = Heading(person.first_pose);
   const Eigen::Matrix3d turn = TurnAboutZ(heading);
   const Eigen::MatrixXd of_person = WindowPersonInputs(person).cast<double>();
   const auto path = TurnedPath(person, heading);
   const bool with = !derivatives.empty();
   const Eigen::Index columns = with ? derivatives.front().cols() : 0;
-  const FramePath<TangentBlock> by_path =
-      with ? TurnedDerivatives(person, heading, derivatives)
-           : FramePath<TangentBlock>({TangentBlock(4, 0)}, person.dt);
+  const FramePath<TurnedBlock> by_path =
+      with ? TurnedPathOf(person, heading, derivatives)
+           : FramePath<TurnedBlock>({TurnedBlock(4, 0)}, person.dt);
   std::vector<Joints> all;
   for (const int t : frames) {
     Eigen::VectorXd x(kWindowPendulumInputs + of_person.rows());
     FillPendulumInputs(path, person.dt, t, x.head(kWindowPendulumInputs));
     x.tail(of_person.rows()) = of_person.col(t);
+    x[kWindowRodInput] = person.BodyAt(t).rod_length;  // not rounded
     x = (x - mean_).cwiseQuotient(spread_);
     Eigen::MatrixXd dx = Eigen::MatrixXd::Zero(x.size(), columns);
-    if (with) FillPendulumInputs(by_path, person.dt, t, dx.topRows(kWindowPendulumInputs));
+    if (with) {
+      FillPendulumInputs(by_path, person.dt, t, dx.topRows(kWindowPendulumInputs));
+      dx.row(kWindowRodInput) = derivatives[t].row(4);
+    }
     for (Eigen::Index i = 0; i < x.size(); ++i) {
       dx.row(i) *= std::abs(x[i]) < kLargestScaled ? 1.0 / spread_[i] : 0.0;
     }
@@ -104,7 +72,7 @@ std::vector<WindowTangent::Joints> WindowTangent::At(const RestorationInput& per
     Forward(&x, &dx);
     Joints joints{Eigen::VectorXd(3 * kBodyJoints), Eigen::MatrixXd(3 * kBodyJoints, columns)};
     const Eigen::Vector3d tip = TipAt(person, t);
-    Eigen::MatrixXd tip_by(3, columns);
+    Eigen::Matrix3Xd tip_by(3, columns);
     if (with) tip_by = TipDerivatives(person, t, derivatives[t]);
     joints.positions.head<3>() = tip;
     joints.derivatives.topRows(3) = tip_by;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/learned_terms.h"
+
 namespace pushid {
 namespace {
 
@@ -15,12 +17,27 @@ std::vector<Pose> FirstPoses(const std::vector<BodyMotion>& motions) {
   return poses;
 }
 
-// dq of one person, frame by frame.
-WindowTangent::PathDerivatives OfPerson(const RolloutSensitivities& sensitivities, int person,
-                                        int frames) {
-  WindowTangent::PathDerivatives derivatives;
-  for (int t = 0; t < frames; ++t) {
-    derivatives.emplace_back(sensitivities.At(t, person).topRows<4>());
+// Of q, rod length and cart height h = h_0 - lift rod of one person, frame by frame.
+BodyTangent::PathDerivatives OfPerson(const RolloutProblem& problem,
+                                      const SensitivityInputs& inputs,
+                                      const RolloutPath<double>& path,
+                                      const RolloutSensitivities& sensitivities, int person) {
+  const bool rod_moves = RodMoves(problem.options);
+  const double lift = inputs.parameters[person][kRodLift];
+  BodyTangent::PathDerivatives derivatives;
+  for (int t = 0; t < problem.horizon; ++t) {
+    BodyTangent::PathBlock by =
+        BodyTangent::PathBlock::Zero(BodyTangent::kPathRows, inputs.num_columns);
+    by.topRows<4>() = sensitivities.At(t, person).topRows<4>();
+    if (rod_moves) {
+      by.row(4) = sensitivities.Rod(t, person);
+      by.row(5) = -lift * by.row(4);
+      for (const ColumnEntry& entry : inputs.entries[person]) {
+        if (entry.parameter != kRodLift) continue;
+        by(5, entry.column) -= entry.derivative * path.At(t, person).rod;
+      }
+    }
+    derivatives.push_back(std::move(by));
   }
   return derivatives;
 }
@@ -44,7 +61,7 @@ int BodyResidual::num_rows() const {
   return static_cast<int>(frames_.size()) * num_people() * kRows;
 }
 
-void BodyResidual::RowsOfFrame(const WindowTangent::Joints& joints, int frame, int person,
+void BodyResidual::RowsOfFrame(const BodyTangent::Joints& joints, int frame, int person,
                                double weight, Eigen::VectorXd* residuals,
                                RowMajorMatrix* rows) const {
   const ResidualSigmas& sigmas = problem().sigmas;
@@ -68,9 +85,12 @@ RolloutStatus BodyResidual::Visit(double const* const* blocks, Derivatives deriv
   RowMajorMatrix rows(kRows, with_rows ? inputs.num_columns : 0);
   for (int n = 0; n < num_people(); ++n) {
     RestorationInput person = people_[n];
-    for (int t = 0; t < problem().horizon; ++t) person.q.push_back(path.At(t, n).q);
-    WindowTangent::PathDerivatives by_path;
-    if (with_rows) by_path = OfPerson(sensitivities, n, problem().horizon);
+    const double lift = inputs.parameters[n][kRodLift];
+    for (int t = 0; t < problem().horizon; ++t) {
+      person.Follow(path.At(t, n), RodMoves(problem().options), lift);
+    }
+    BodyTangent::PathDerivatives by_path;
+    if (with_rows) by_path = OfPerson(problem(), inputs, path, sensitivities, n);
     const auto joints = data_->restoration->At(person, by_path, frames_);
     for (size_t k = 0; k < frames_.size(); ++k) {
       const double weight = problem().weight * problem().recording->Weight(n, frames_[k]) * scale_;

@@ -7,9 +7,9 @@
 //           66, the recording's and the frame's weight, and sqrt(body_weight kBodyStride), for
 //           every kBodyStride-th frame.
 //   blocks: as rollout_problem.h.
-// Joints are those of the window network on the rollout's path, before any post-processing; their
-// Jacobian is the network's (models/restoration/window_tangent.h) times the rollout's
-// sensitivities.
+// Joints are those of a restoration on the rollout's path, before any post-processing, rod and cart
+// as they move; their Jacobian is the restoration's (models/restoration/body_tangent.h) times the
+// rollout's sensitivities.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "models/restoration/window_tangent.h"
+#include "models/restoration/body_tangent.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 
 namespace pushid {
@@ -26,14 +26,13 @@ inline constexpr int kBodyStride = 3;  // frames
 
 // What is known of the bodies: the restoration, and the recorded motions by recording.
 struct BodyData {
-  std::shared_ptr<const WindowTangent> restoration;
+  std::shared_ptr<const BodyTangent> restoration;
   std::map<std::string, std::vector<BodyMotion>> motions;  // by id; one per person
 };
 
 class BodyResidual : public CondensedRows {
  public:
-  // problem: of the pendulum, whose weight and sigmas count; its rod is constant, and the data has
-  // its recording.
+  // problem: of the pendulum, whose weight and sigmas count; the data has its recording.
   BodyResidual(std::shared_ptr<const RolloutProblem> problem, std::shared_ptr<const BodyData> data,
                double body_weight);
 
@@ -45,7 +44,7 @@ class BodyResidual : public CondensedRows {
 
  private:
   // Residuals of a frame, and their rows where there are derivatives.
-  void RowsOfFrame(const WindowTangent::Joints& joints, int frame, int person, double weight,
+  void RowsOfFrame(const BodyTangent::Joints& joints, int frame, int person, double weight,
                    Eigen::VectorXd* residuals, RowMajorMatrix* rows) const;
 
   std::shared_ptr<const BodyData> data_;

@@ -1,5 +1,7 @@
 // A network from the fit to the page: every program takes a model that has one.
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/apps/app_fixture.h"
 
@@ -7,6 +9,16 @@ namespace pushid {
 namespace {
 
 using NetworkAppTest = AppTest;
+
+// A line of a table of commas.
+std::vector<std::string> CellsOf(std::istream* table) {
+  std::string line, cell;
+  std::getline(*table, line);
+  std::istringstream cells(line);
+  std::vector<std::string> all;
+  while (std::getline(cells, cell, ',')) all.push_back(cell);
+  return all;
+}
 
 TEST_F(NetworkAppTest, EveryProgramTakesAnEnsemble) {
   const std::string model =
@@ -40,10 +52,44 @@ TEST_F(NetworkAppTest, ARodThatMovesGoesThroughEveryProgram) {
   }
   EXPECT_NE(ReadText(Path("report.html")).find("network mlp:2 and rod linear"), std::string::npos);
   EXPECT_NE(ReadText(Path("path.csv")).find(",rod_length_m,cart_height_m"), std::string::npos);
-  const auto bodies = RunApp("pushid-predict", {"--model=" + model, Recordings(), "--id=" + id_,
-                                                "--restoration=rigid", "--out=" + Path("b.bvh")});
-  EXPECT_EQ(bodies.exit_code, 1);
-  EXPECT_NE(bodies.err.find("the model's rod changes length"), std::string::npos);
+}
+
+// The hip of a restored body is the tip of the rod as it is in that frame.
+TEST_F(NetworkAppTest, BodiesFollowARodThatMoves) {
+  const std::string model = "--model=" + FitModel("model.json", {"--rod=linear"});
+  const auto bodies =
+      RunApp("pushid-predict",
+             {model, Recordings(), "--id=" + id_, "--restoration=rigid", "--postprocess=none",
+              "--out=" + Path("path.csv"), "--json_out=" + Path("b.json")});
+  ASSERT_EQ(bodies.exit_code, 0) << bodies.err;
+  std::istringstream table(ReadText(Path("path.csv")));
+  const auto names = CellsOf(&table);
+  const auto column = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) - names.begin();
+  };
+  const auto joints = Json(Path("b.json"))["people"][0]["joints_m"];
+  double shortest = 10.0, longest = 0.0;
+  for (size_t t = 0; t < joints.size(); ++t) {
+    const auto row = CellsOf(&table);
+    for (int i = 0; i < 3; ++i) {
+      const std::string name = std::string("hip_") + "xyz"[i] + "_m";
+      EXPECT_NEAR(joints[t][0][i].get<double>(), std::stod(row[column(name)]), 2e-5) << t;
+    }
+    shortest = std::min(shortest, std::stod(row[column("rod_length_m")]));
+    longest = std::max(longest, std::stod(row[column("rod_length_m")]));
+  }
+  EXPECT_GT(longest - shortest, 1e-5) << "the rod does move";
+  for (const auto& [app, arguments] : std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"pushid-evaluate", {Recordings(), "--restoration=rigid"}},
+           {"pushid-animate", {Recordings(), "--id=" + id_, "--out=" + Path("a.html")}},
+           {"pushid-formation",
+            {"--formation=line", "--people=3", "--duration=1", "--restoration=rigid",
+             "--poses_from=" + manifest_, "--bodies_out=" + Path("f.bvh")}}}) {
+    std::vector<std::string> all = {model};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    const auto run = RunApp(app, all);
+    EXPECT_EQ(run.exit_code, 0) << app << ": " << run.err;
+  }
 }
 
 TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {

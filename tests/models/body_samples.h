@@ -107,6 +107,7 @@ inline CvaeWeights RandomCvae(uint64_t seed = 1, const CvaeLayout& layout = {}) 
   const auto sampler = [&random](int condition) {
     return CvaeSampler{RandomLayer(condition + kPendulumFrame, kCvaeHidden, &random),
                        RandomLayer(kCvaeHidden + kPendulumFrame, kCvaeHidden, &random),
+                       RandomLayer(kCvaeHidden + kPendulumFrame, kLatent, &random),
                        RandomLayer(kCvaeHidden + kPendulumFrame, kLatent, &random)};
   };
   const auto decoder = [&random](int condition, int frame) {

@@ -138,6 +138,31 @@ TEST(CvaeTrainerTest, TheChainWithoutLibTorchIsTheTrainedOne) {
   EXPECT_NEAR(error, last.validation_loss, 1e-4 * std::max(1.0, error));
 }
 
+// The published training is another one, draws in its steps, and resumes all the same.
+TEST(CvaeTrainerTest, ThePublishedTrainingKeepsSigmaAndResumes) {
+  CvaeWeights scalings;
+  const auto sequences = Sequences(2, &scalings);
+  CvaeOptions options = QuickCvae();
+  CvaeTrainer own(sequences, sequences, scalings, options);
+  while (!own.Done()) own.RunRound();
+  options.training = CvaeTraining::kPublished;
+  CvaeTrainer published(sequences, sequences, scalings, options);
+  std::string state;
+  for (int round = 0; !published.Done(); ++round) {
+    published.RunRound();
+    if (round == 3) state = published.State();  // in the lower sampler
+  }
+  CvaeTrainer resumed(sequences, sequences, scalings, options);
+  ASSERT_TRUE(resumed.Resume(state));
+  while (!resumed.Done()) resumed.RunRound();
+  const auto sigma_of = [](const CvaeTrainer& trainer) {
+    return trainer.Best().lower_sampler.log_variance.weights;
+  };
+  EXPECT_EQ(sigma_of(published).rows(), kLatent);
+  EXPECT_EQ(sigma_of(published), sigma_of(resumed));
+  EXPECT_NE(sigma_of(published), sigma_of(own));
+}
+
 TEST(CvaeTrainerTest, ResumesToTheLastBitInTheMiddleOfAnyStage) {
   CvaeWeights scalings;
   const auto sequences = Sequences(2, &scalings);

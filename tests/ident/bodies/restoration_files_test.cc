@@ -63,6 +63,38 @@ TEST_F(RestorationFilesTest, ACvaeComesBackToTheLastBit) {
   for (int t = 0; t < 20; ++t) EXPECT_EQ(before[t], after[t]);
 }
 
+// Files of earlier versions have no sigma: they are read, and a draw is refused.
+TEST_F(RestorationFilesTest, TheLatentVariableIsDrawnWhereSigmaWasKept) {
+  const RestorationInput person = MovingPerson(StandingPose(), 80, 20);
+  const auto load = [&](bool sigma) {
+    RestorationFile file;
+    file.kind = RestorationKind::kCvae;
+    CvaeLayout layout;
+    layout.sigma = sigma;
+    if (sigma) (*file.settings)["sigma"] = true;
+    file.tensors = ToTensors(RandomCvae(1, layout));
+    EXPECT_FALSE(WriteRestorationFile(Path("c"), file));
+    auto loaded = LoadRestoration(Path("c"));
+    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
+    return std::move(loaded.value());
+  };
+  const auto with = load(true), before = load(false);
+  const Pose mean = with->Restore({person})[0][19];
+  EXPECT_EQ(mean, before->Restore({person})[0][19]);
+  ASSERT_FALSE(ChooseLatent({CvaeLatent::kDraw, 7}, with.get()));
+  const Pose drawn = with->Restore({person})[0][19];
+  EXPECT_NE(drawn, mean);
+  EXPECT_EQ(drawn, with->Restore({person})[0][19]) << "a seed's draws repeat";
+  ASSERT_FALSE(ChooseLatent({CvaeLatent::kDraw, 8}, with.get()));
+  EXPECT_NE(drawn, with->Restore({person})[0][19]);
+  EXPECT_FALSE(ChooseLatent({}, before.get()));
+  const MaybeError refused = ChooseLatent({CvaeLatent::kDraw, 7}, before.get());
+  ASSERT_TRUE(refused);
+  EXPECT_TRUE(Contains(refused->message, "train again"));
+  const auto rigid = LoadRestoration("rigid");
+  EXPECT_TRUE(ChooseLatent({CvaeLatent::kDraw, 7}, rigid.value().get()));
+}
+
 // What a restoration sees and how it is made stand in its settings; files without them are as
 // before.
 TEST_F(RestorationFilesTest, ViewsAndLayoutsComeBack) {

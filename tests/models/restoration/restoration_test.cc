@@ -28,6 +28,9 @@ Restorations KindsOnTheTip() {
   kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae()));
   kinds.push_back(
       std::make_unique<CvaeRestoration>(RandomCvae(3, {CvaeCoordinates::kTip, true, false})));
+  auto drawn = std::make_unique<CvaeRestoration>(RandomCvae());
+  drawn->DrawLatent(Draws);
+  kinds.push_back(std::move(drawn));
   return kinds;
 }
 
@@ -110,14 +113,85 @@ TEST(RestorationTest, TheHipGoesWithTheTip) {
   }
 }
 
+// z = mu + sigma eps: here sigma is 2 for every input.
+TEST(CvaeLatentTest, ADrawIsTheMeanAndSigmaTimesTheDraw) {
+  CvaeSampler sampler = RandomCvae().lower_sampler;
+  sampler.log_variance.weights.setZero();
+  sampler.log_variance.bias.setConstant(std::log(4.0f));
+  Random random(3);
+  const Eigen::MatrixXf condition = RandomMatrix(CvaeLayout().LowerFrame(), 2, 1.0, &random);
+  const Eigen::MatrixXf pendulum = RandomMatrix(kPendulumFrame, 2, 1.0, &random);
+  const Eigen::MatrixXf eps = RandomMatrix(kLatent, 1, 1.0, &random);
+  const Eigen::MatrixXf mean = sampler.Evaluate(condition, pendulum, {});
+  const Eigen::MatrixXf drawn = sampler.Evaluate(condition, pendulum, eps);
+  for (int person : {0, 1}) {
+    EXPECT_LT((drawn.col(person) - mean.col(person) - 2.0f * eps).norm(), 1e-5f);
+  }
+}
+
+TEST(CvaeLatentTest, DrawsRepeatByTheirSourceAndVanishWithSigma) {
+  const RestorationInput person = MovingPerson(StandingPose(), 80, 20);
+  CvaeWeights weights = RandomCvae();
+  const BodyMotion mean = CvaeRestoration(weights).Restore({person})[0];
+  CvaeRestoration drawn(weights);
+  drawn.DrawLatent(Draws);
+  const BodyMotion once = drawn.Restore({person})[0];
+  EXPECT_EQ(Largest(once, drawn.Restore({person})[0]), 0.0);
+  EXPECT_GT(Largest(once, mean), 1e-3);
+  for (CvaeSampler* sampler : {&weights.lower_sampler, &weights.upper_sampler}) {
+    sampler->log_variance.weights.setZero();
+    sampler->log_variance.bias.setConstant(-60.0f);
+  }
+  CvaeRestoration narrow(weights);
+  narrow.DrawLatent(Draws);
+  EXPECT_LT(Largest(narrow.Restore({person})[0], mean), 1e-5);
+}
+
+// A rod that shortens by 1 mm a frame while the cart rises by half of it.
+RestorationInput WithShorteningRod(RestorationInput person) {
+  for (size_t t = 0; t < person.q.size(); ++t) {
+    const double way = 1e-3 * static_cast<double>(t);
+    person.lengths.emplace_back(person.body.rod_length - way, person.body.cart_height + 0.5 * way);
+  }
+  return person;
+}
+
+TEST(RestorationTest, TheHipGoesWithTheTipOfARodThatMoves) {
+  const RestorationInput constant = MovingPerson(StandingPose(), 80, 30);
+  const RestorationInput person = WithShorteningRod(constant);
+  for (const auto& restoration : KindsOnTheTip()) {
+    const BodyMotion motion = restoration->Restore({person})[0];
+    for (int t = 0; t < 30; ++t) {
+      const Body body = {80.0, constant.body.rod_length - 1e-3 * t,
+                         constant.body.cart_height + 5e-4 * t};
+      EXPECT_LT((motion[t].col(0) - HipPosition(body, person.q[t])).norm(), 1e-9)
+          << restoration->kind() << ", frame " << t;
+    }
+  }
+  EXPECT_GT((TipAt(person, 29) - TipAt(constant, 29)).norm(), 0.01);
+}
+
+// What the networks see of such a rod.
+TEST(RestorationTest, NetworksSeeTheLengthOfTheFrame) {
+  const RestorationInput person = WithShorteningRod(MovingPerson(StandingPose(), 80, 30));
+  const double now = person.body.rod_length - 0.01;
+  EXPECT_NEAR(PendulumFrames(person, {})(7, 10), now, 1e-6);
+  EXPECT_NEAR(PendulumFrames(person, {})(6, 10),
+              TipAt(person, 10).z() - person.first_pose(2, kBodyHip), 1e-6);
+  EXPECT_NEAR(WindowInputs({person}, 0, RestorationView::kPendulum)(kWindowRodInput, 10), now,
+              1e-6);
+}
+
 TEST(RestorationTest, OtherFrameRatesAreTheSameMotion) {
-  const RestorationInput at_60 = MovingPerson(StandingPose(), 80, 61);
+  const RestorationInput at_60 = WithShorteningRod(MovingPerson(StandingPose(), 80, 61));
   RestorationInput at_120 = at_60;
   at_120.dt = 1.0 / 120.0;
   at_120.q.clear();
+  at_120.lengths.clear();
   for (int t = 0; t < 121; ++t) {
-    const Vector4<double>& low = at_60.q[t / 2];
-    at_120.q.push_back(t % 2 == 0 ? low : Vector4<double>(0.5 * (low + at_60.q[t / 2 + 1])));
+    const int low = t / 2, high = (t + 1) / 2;
+    at_120.q.push_back(0.5 * (at_60.q[low] + at_60.q[high]));
+    at_120.lengths.push_back(0.5 * (at_60.lengths[low] + at_60.lengths[high]));
   }
   const CvaeRestoration cvae(RandomCvae());
   const BodyMotion slow = cvae.Restore({at_60})[0], fast = cvae.Restore({at_120})[0];

@@ -15,7 +15,11 @@ const std::vector<int> kAsked = {1, 5, 20, 38, 39};
 // q moved along the columns of its derivatives by `steps`.
 RestorationInput Moved(RestorationInput person, const WindowTangent::PathDerivatives& derivatives,
                        const Eigen::VectorXd& steps) {
-  for (int t = 0; t < kFrames; ++t) person.q[t] += derivatives[t] * steps;
+  for (int t = 0; t < kFrames; ++t) {
+    const Eigen::VectorXd move = derivatives[t] * steps;
+    person.q[t] += move.head<4>();
+    person.lengths[t] += move.tail<2>();
+  }
   return person;
 }
 
@@ -23,8 +27,8 @@ RestorationInput Moved(RestorationInput person, const WindowTangent::PathDerivat
 WindowTangent::PathDerivatives Derivatives(int columns, uint64_t seed) {
   Random random(seed);
   WindowTangent::PathDerivatives derivatives;
-  const Eigen::MatrixXf a = RandomMatrix(4, columns, 1.0, &random);
-  const Eigen::MatrixXf b = RandomMatrix(4, columns, 1.0, &random);
+  const Eigen::MatrixXf a = RandomMatrix(BodyTangent::kPathRows, columns, 1.0, &random);
+  const Eigen::MatrixXf b = RandomMatrix(BodyTangent::kPathRows, columns, 1.0, &random);
   for (int t = 0; t < kFrames; ++t) {
     const double s = t / 60.0;
     derivatives.emplace_back((s * s * a + s * std::sin(5.0 * s) * b).cast<double>());
@@ -55,6 +59,10 @@ TEST(WindowTangentTest, DerivativesAreThoseOfFiniteDifferences) {
       RestorationInput person =
           MovingPerson(Placed(StandingPose(), turn, {0.3, -0.6, 0.0}), 70.0, kFrames);
       person.dt = 1.0 / fps;  // lags between frames
+      for (int t = 0; t < kFrames; ++t) {
+        person.lengths.emplace_back(person.body.rod_length - 1e-3 * t,
+                                    person.body.cart_height + 5e-4 * t);
+      }
       const auto joints = tangent.At(person, derivatives, kAsked);
       for (int column = 0; column < kColumns; ++column) {
         const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(kColumns, column);
@@ -75,7 +83,7 @@ TEST(WindowTangentTest, DerivativesAreThoseOfFiniteDifferences) {
 
 TEST(WindowTangentTest, WhatLiesBeyondTheScalingHasNoDerivative) {
   WindowWeights weights = RandomWindow(6);
-  weights.inputs.mean.head(kWindowPendulumInputs).setConstant(100.0f);
+  weights.inputs.mean.head(kWindowRodInput + 1).setConstant(100.0f);
   const RestorationInput person = MovingPerson(StandingPose(), 70.0, kFrames);
   const auto derivatives = Derivatives(1, 7);
   const auto joints = WindowTangent(weights).At(person, derivatives, {20});

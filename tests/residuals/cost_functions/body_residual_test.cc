@@ -1,9 +1,12 @@
 // Bodies in the problem: nothing is left where model and restoration made them, the gradient is
-// that of finite differences in three regimes, and each person has rows of their own.
+// that of finite differences in three regimes and with a rod that moves, and each person has rows
+// of their own.
 #include "residuals/cost_functions/body_residual.h"
 
 #include <gtest/gtest.h>
 
+#include "models/learned_terms.h"
+#include "models/restoration/window_tangent.h"
 #include "tests/models/body_samples.h"
 #include "tests/residuals/residual_samples.h"
 
@@ -12,7 +15,7 @@ namespace {
 
 constexpr int kBodyFrames = 30;
 
-enum class BodyRegime { kStanding, kPushed, kTouching };
+enum class BodyRegime { kStanding, kPushed, kTouching, kRod };
 
 // Two people, whose bodies follow the very rollout that the recording holds, or are off by `noise`.
 struct BodySample {
@@ -26,6 +29,10 @@ struct BodySample {
     Scene scene = SceneOfPeople(2, 0.05, &random);
     if (regime == BodyRegime::kTouching) scene.people[1].start.q[0] = 0.3;
     ModelOptions options;
+    // A rod that moves, by a law of random weights.
+    if (regime == BodyRegime::kRod) {
+      options = WithNetwork({}, 0.5, &random, RodShape{RodKind::kLinear, {}});
+    }
     options.interaction.spring = options.interaction.damping = true;
     if (regime != BodyRegime::kStanding) {
       scene.pushes = {RandomPush(0, 0, 4, PushKind::kNet, 150.0, &random)};
@@ -35,14 +42,18 @@ struct BodySample {
     recording.subject_ids = {"anna", "bert"};
     ResidualSigmas sigmas;
     sigmas.robust = robust;
-    const ParameterMap map = EveryParameterMap({kMu, kKpTheta});
+    std::vector<Parameter> free = {kMu, kKpTheta};
+    if (regime == BodyRegime::kRod) free.push_back(kRodLift);
+    ParameterMap map = EveryParameterMap(free);
+    // Away from the truth the law's weights are fitted too.
+    if (regime == BodyRegime::kRod && noise > 0.0) map.num_weights = options.learned->num_weights();
     problem = MakeRolloutProblem(recording, options, map, sigmas, 0.7, 0);
     truth = RandomBlocks(map, problem->layout, RecoveringParameters(), 0.0, 0.0, &random);
     blocks = RandomBlocks(map, problem->layout, RecoveringParameters(), 0.1, 0.1, &random);
-    TakeBodies(noise, &random);
+    TakeBodies(options, noise, &random);
   }
 
-  void TakeBodies(double noise, Random* random) {
+  void TakeBodies(const ModelOptions& options, double noise, Random* random) {
     const WindowWeights weights = RandomWindow(8);
     data->restoration = std::make_shared<WindowTangent>(weights);
     std::vector<Pose> poses;
@@ -52,7 +63,9 @@ struct BodySample {
     }
     std::vector<RestorationInput> people = PeopleOf(recording.scene, poses);
     for (int n = 0; n < 2; ++n) {
-      for (const auto& state : recording.states[n]) people[n].q.push_back(state.q);
+      for (const auto& state : recording.states[n]) {
+        people[n].Follow(state, RodMoves(options), RecoveringParameters()[kRodLift]);
+      }
     }
     data->motions["two"] = WindowRestoration(weights).Restore(people);
     for (size_t n = 0; n < 2; ++n) {
@@ -73,7 +86,7 @@ double CostAt(const BodyResidual& residual, const ParameterBlocks& blocks) {
 
 TEST(BodyResidual, NothingIsLeftAtTheTruth) {
   for (const BodyRegime regime :
-       {BodyRegime::kStanding, BodyRegime::kPushed, BodyRegime::kTouching}) {
+       {BodyRegime::kStanding, BodyRegime::kPushed, BodyRegime::kTouching, BodyRegime::kRod}) {
     const BodySample s(regime, 0.5, 0.0);
     const BodyResidual residual(s.problem, s.data, 2.0);
     EXPECT_EQ(residual.num_rows(), 9 * 2 * 66);
@@ -87,7 +100,7 @@ TEST(BodyResidual, NothingIsLeftAtTheTruth) {
 
 TEST(BodyResidual, TheGradientIsThatOfFiniteDifferences) {
   for (const BodyRegime regime :
-       {BodyRegime::kStanding, BodyRegime::kPushed, BodyRegime::kTouching}) {
+       {BodyRegime::kStanding, BodyRegime::kPushed, BodyRegime::kTouching, BodyRegime::kRod}) {
     for (const double robust : {0.0, 0.5}) {
       const BodySample s(regime, robust, 0.05);
       const BodyResidual residual(s.problem, s.data, 2.0);

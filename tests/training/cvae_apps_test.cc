@@ -1,0 +1,92 @@
+// LDP's chain as a user trains and uses it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+class CvaeAppTest : public AppTest {
+ protected:
+  void SetUp() override {
+    AppTest::SetUp();
+    model_ = "--model=" + FitModel();
+  }
+  AppRun Train(const std::string& out, std::vector<std::string> more) {
+    more.insert(more.end(), {Recordings(), model_, "--out=" + Path(out), "--quiet"});
+    return RunApp("pushid-train-restoration", more, 120);
+  }
+
+  std::string model_;
+};
+
+TEST_F(CvaeAppTest, TheCvaeTrainsAndIsUsed) {
+  const AppRun run = Train("v", {"--kind=cvae", "--effort=0.001"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun evaluate =
+      RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v")});
+  EXPECT_EQ(evaluate.exit_code, 0) << evaluate.err;
+}
+
+// As published: sizes are said beside the paper's, and z is drawn where that is asked for.
+TEST_F(CvaeAppTest, ThePublishedCvaeSaysItsSizesAndDraws) {
+  const std::vector<std::string> flags = {"--kind=cvae", "--effort=0.001", "--training=published",
+                                          "--coordinates=ldp"};
+  const AppRun run = Train("v", flags);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.err,
+                       "lower autoencoder: 865536 parameters (published: 865536)\n"
+                       "lower sampler: 136960 parameters\n"
+                       "upper autoencoder: 1097904 parameters (published: 1097904)\n"));
+  const auto json = Json(Path("v/restoration.json"));
+  EXPECT_EQ(json["settings"]["training"], "published");
+  EXPECT_EQ(json["training"]["parameters"]["upper autoencoder"], 1097904);
+  const auto joints = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = {model_,
+                                    Recordings(),
+                                    "--restoration=" + Path("v"),
+                                    "--id=" + id_,
+                                    "--out=" + Path("m.bvh"),
+                                    "--joints_out=" + Path("j.csv")};
+    all.insert(all.end(), more.begin(), more.end());
+    const AppRun predict = RunApp("pushid-predict", all);
+    EXPECT_EQ(predict.exit_code, 0) << predict.err;
+    return ReadText(Path("j.csv"));
+  };
+  const std::string mean = joints({}), drawn = joints({"--latent=draw"});
+  EXPECT_NE(mean, drawn);
+  EXPECT_EQ(drawn, joints({"--latent=draw", "--latent_seed=1"}));
+  EXPECT_NE(drawn, joints({"--latent=draw", "--latent_seed=2"}));
+}
+
+TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
+  const AppRun run =
+      RunApp("pushid-train-restoration",
+             {Recordings(), model_, "--crossvalidate=2", "--kind=cvae", "--effort=0.001",
+              "--predicted_pendulums=false", "--quiet", "--json_out=" + Path("cv.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "restoration drawn"));
+  const auto json = Json(Path("cv.json"));
+  const double mean = json["mean"]["MPJPE_m"], drawn = json["restoration_drawn"]["mean"]["MPJPE_m"];
+  EXPECT_GT(drawn, 0.0);
+  EXPECT_NE(drawn, mean);
+}
+
+// Pendulums with rods that move, restored and fitted to bodies through the chain.
+TEST_F(CvaeAppTest, IsTrainedAsAWholeOnRodsThatMove) {
+  const std::string model = "--model=" + FitModel("rod.json", {"--rod=linear"});
+  const AppRun run = RunApp(
+      "pushid-train-restoration",
+      {Recordings(), model, "--crossvalidate=2", "--kind=cvae", "--effort=0.001", "--body_weight=1",
+       "--rounds=1", "--predicted_pendulums=false", "--quiet", "--json_out=" + Path("cv.json")},
+      400);
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(Json(Path("cv.json"))["run"]["rounds"], (std::vector<int>{1, 1}));
+}
+
+}  // namespace
+}  // namespace pushid
