@@ -33,7 +33,7 @@ TEST_F(FormationGeneratorTest, GivesTheFormationBodies) {
   FitModel();
   ASSERT_EQ(Train({"--kind=diffusion", "--out=" + Path("g")}).exit_code, 0);
   std::vector<std::string> flags = kQuick;
-  flags.insert(flags.end(), {"--blend=0.5", "--poses_from=" + manifest_,
+  flags.insert(flags.end(), {"--blend=0.5", "--people_from=" + manifest_,
                              "--html_out=" + Path("p.html"), "--strip_out=" + Path("s.svg"),
                              "--joints_out=" + Path("j.csv"), "--bodies_out=" + Path("b.bvh")});
   const AppRun run = Simulate(flags);
