@@ -211,6 +211,14 @@ def test_recordings_in_neither_list_say_so(checkout):
     assert imported(checkout)[1]["row_1_01"]["split"] == "unlisted"
 
 
+def test_one_split_alone(checkout):
+    out = checkout.parent / "held_out"
+    ldp.main(["--split=eval", str(checkout), str(out)])
+    assert [r["id"] for r in json.loads((out / "manifest.json").read_text())["recordings"]] == [
+        "single_X09_00", "row_1_06", "row_2_03"]
+    assert sorted(os.listdir(out / "push")) == ["row_1_06.csv", "row_2_03.csv", "single_X09_00.csv"]
+
+
 def test_a_folder_that_exists_is_kept(checkout, capsys):
     out, _ = imported(checkout)
     (out / "manifest.json").write_text("mine")

@@ -1,4 +1,4 @@
-"""python3 -m pushid.ldp CHECKOUT OUT: the recordings of LDP (Yue et al., CVPR 2024) with a manifest.
+"""python3 -m pushid.ldp [--split=train] CHECKOUT OUT: the recordings of LDP (Yue et al., CVPR 2024) with a manifest.
 
 CHECKOUT is a clone of github.com/realcrane/Human-Motion-Prediction-under-Unexpected-Perturbation. Motion is copied as
 it is, pushes become CSV files, and the label `split` of every recording is the release's own: train or eval. Needs
@@ -179,10 +179,8 @@ def groups(checkout):
     raw = os.path.join(checkout, GROUPS)
     data, masses = os.path.join(raw, "group_data"), os.path.join(raw, "group_mass_id_set.pkl")
     people_of = load(masses)
-    names = [name for name in folders(data, r"\w+") if os.path.isdir(os.path.join(data, name))]
-    numbers = {name: folders(os.path.join(data, name), r"\d+") for name in names}
+    numbers = {name: folders(os.path.join(data, name), r"\d+") for name in folders(data, "|".join(GROUP_STRENGTHS))}
     for name, given in numbers.items():
-        check(name in GROUP_STRENGTHS, os.path.join(data, name), "no setting of the release")
         check(given == [str(n) for n in range(len(given))], os.path.join(data, name), "folders not numbered from 0 on")
     splits = read_splits(data, {name: len(given) for name, given in numbers.items()})
     for name, given in numbers.items():
@@ -234,6 +232,7 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(prog="python3 -m pushid.ldp", description=__doc__.split("\n\n")[0] + f"""
         CHECKOUT: a clone of {SOURCE}. OUT: the folder to write; it must not exist.""")
     parser.error = lambda text: parser.exit(1, f"{parser.prog}: error: {text}; see --help\n")
+    parser.add_argument("--split", choices=("train", "eval"), help="only the recordings of this list (default: all)")
     parser.add_argument("checkout", metavar="CHECKOUT")
     parser.add_argument("out", metavar="OUT")
     given = parser.parse_args(arguments)
@@ -241,7 +240,8 @@ def main(arguments=None):
     try:
         if os.path.lexists(out):
             raise Problem(f"{out} exists; name another folder, or remove it")
-        recordings = [*single_people(given.checkout), *groups(given.checkout)]
+        recordings = [one for one in (*single_people(given.checkout), *groups(given.checkout))
+                      if given.split in (None, one[0]["split"])]
         write(out, recordings)
     except (Problem, OSError) as error:
         parser.exit(1, f"{parser.prog}: error: {error}\n")
