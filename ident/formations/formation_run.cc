@@ -154,7 +154,7 @@ std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene) {
                                           SkeletonMapping::kExact);
     person.body.rod_length = mapped.rod_length;
     person.body.cart_height = mapped.cart_height;
-    person.start.q = mapped.q;
+    person.start.q.tail<2>() = mapped.q.tail<2>();
     placed.push_back(pose);
   }
   return placed;

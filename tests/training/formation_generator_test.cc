@@ -39,7 +39,7 @@ TEST_F(FormationGeneratorTest, GivesTheFormationBodies) {
   const AppRun run = Simulate(flags);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.err, "of kind net and is applied to pushes of kind external"));
-  EXPECT_TRUE(Contains(run.out, "5 people in a diamond"));
+  EXPECT_TRUE(Contains(run.out, "5 recorded people in a diamond"));
   const std::string page = ReadText(Path("p.html"));
   EXPECT_TRUE(Contains(page, "bodies by diffusion"));
   EXPECT_TRUE(Contains(ReadText(Path("s.svg")), "bodies by diffusion"));
