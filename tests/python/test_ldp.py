@@ -185,6 +185,17 @@ def test_other_shapes_are_told_of(checkout, capsys, opcodes, reason):
     refused(checkout, capsys, "row_1", reason, "take the file from the release")
 
 
+@pytest.mark.parametrize("text", ["", "Frames: 40\nFrame Time: 0.0.1\n", "Frames: 40\nFrame Time: 0\n", "Frames: all"])
+def test_motion_that_is_none(checkout, capsys, text):
+    (checkout / GROUPS / "group_data/row_2/1/3_X-09.bvh").write_text(text)
+    refused(checkout, capsys, "row_2/1/3_X-09.bvh", "no BVH file")
+
+
+def test_people_of_one_recording_have_one_length(checkout, capsys):
+    (checkout / GROUPS / "group_data/row_2/1/3_X-09.bvh").write_text("Frames: 39\nFrame Time: 1.6667e-2\n")
+    refused(checkout, capsys, "row_2/1", "another number of frames")
+
+
 def test_missing_files_are_named(checkout, capsys):
     for file in [FORCES, PUSHES, SINGLE + "indiv_data", GROUPS + "group_data/train_list.yaml",
                  GROUPS + "group_mass_id_set.pkl", GROUPS + "group_data/row_1/3", GROUPS + "group_forces/row_2"]:

@@ -151,7 +151,8 @@ def bvh_head(path):
     """Frames, and frames per second as a whole number: the release rounds frame times."""
     with open(path, encoding="latin-1") as file:
         head = file.read(20000)
-    frames, time = re.search(r"^Frames:\s*(\d+)", head, re.M), re.search(r"^Frame Time:\s*([\d.]+)", head, re.M)
+    frames = re.search(r"^Frames:\s*(\d+)\s*$", head, re.M)
+    time = re.search(r"^Frame Time:\s*(\d*\.?\d+(?:[eE][-+]?\d+)?)\s*$", head, re.M)
     check(frames and time and float(time[1]) > 0, path, "no BVH file with 'Frames:' and 'Frame Time:'")
     return int(frames[1]), round(1 / float(time[1]))
 
