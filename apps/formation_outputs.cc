@@ -10,7 +10,6 @@
 #include "apps/flags/overwrite_flag.h"
 #include "datasets/exchange/crowd.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/loading/load_recordings.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_files.h"
 #include "ident/formations/formation_files.h"
@@ -28,9 +27,6 @@ DEFINE_bool(forces_own_scale, false, "with --forces_svg_out, give each panel its
 DEFINE_string(generator, "",
               "whole bodies by diffusion instead of --restoration: the folder that "
               "pushid-train-generator --kind=diffusion --out wrote");
-DEFINE_string(poses_from, "",
-              "with bodies: manifest.json of recordings whose first poses (skeleton and "
-              "lean) are used, in their order (default: the synthetic skeleton, upright)");
 DEFINE_string(html_out, "", "page of the moving people (HTML)");
 DEFINE_string(strip_out, "", "strip of poses (SVG)");
 DEFINE_string(joints_out, "", "with bodies: joint positions (CSV)");
@@ -55,7 +51,7 @@ MaybeError CheckWayToBodies() {
   for (const char* flag : DiffusionFlagNames()) {
     rules.push_back({flag, FlagRule::kNeeds, {"generator"}, ""});
   }
-  for (const char* flag : {"poses_from", "joints_out", "bodies_out"}) {
+  for (const char* flag : {"joints_out", "bodies_out"}) {
     rules.push_back({flag,
                      FlagRule::kNeeds,
                      {"restoration", "generator"},
@@ -72,18 +68,6 @@ MaybeError CheckPicture(const std::string& flag, const std::string& file, int pe
 }
 
 constexpr int kPosesOfStrip = 6;
-
-Result<std::vector<Pose>> FirstPosesFrom(const std::string& manifest, double rod_length) {
-  if (manifest.empty()) return std::vector<Pose>{SyntheticPose(rod_length)};
-  LoadOptions options;
-  options.keep_all_joints = true;
-  const Result<std::vector<Recording>> recordings = LoadRecordings(manifest, options);
-  if (!recordings.ok()) return recordings.error();
-  const Result<std::vector<BodyRecording>> bodies =
-      MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
-  if (!bodies.ok()) return bodies.error();
-  return FirstPoses(bodies.value());
-}
 
 BodyScene SceneOfRun(const FormationRun& run, std::vector<BodyMotion> bodies) {
   BodyScene scene;
@@ -149,7 +133,9 @@ Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine() {
   return FormationBodyFlags{restoration.value(), diffusion.value()};
 }
 
-Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, Scene* scene) {
+Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags,
+                                                    const std::vector<Pose>& first_poses,
+                                                    Scene* scene) {
   const bool generates = !FLAGS_generator.empty();
   if (!generates && !flags.restoration.given()) return std::optional<FormationBodyPlan>();
   FormationBodyPlan plan;
@@ -163,10 +149,9 @@ Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& fl
     if (!restoration.ok()) return restoration.error();
     plan.restoration = std::move(restoration.value());
   }
-  const Result<std::vector<Pose>> poses =
-      FirstPosesFrom(FLAGS_poses_from, scene->people.front().body.rod_length);
-  if (!poses.ok()) return poses.error();
-  plan.first_poses = TakePoses(poses.value(), scene);
+  plan.first_poses = first_poses.empty()
+                         ? TakePoses({SyntheticPose(scene->people.front().body.rod_length)}, scene)
+                         : first_poses;
   return std::optional<FormationBodyPlan>(std::move(plan));
 }
 

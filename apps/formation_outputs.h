@@ -31,8 +31,11 @@ struct FormationBodyPlan {
   std::vector<Pose> first_poses;
 };
 
-// Nothing without either flag. Gives the scene's people the pendulums of their bodies.
-Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags, Scene* scene);
+// Nothing without either flag. first_poses: of recorded people; without them everybody gets the
+// synthetic skeleton, and the scene's people its pendulum.
+Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags,
+                                                    const std::vector<Pose>& first_poses,
+                                                    Scene* scene);
 
 // The tables and pictures of the run that the flags name.
 MaybeError WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,

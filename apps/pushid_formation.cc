@@ -168,7 +168,7 @@ int Run() {
   if (!drawn.ok()) return Fail(drawn.error());
   Result<IdentifiedModel> model = LoadFlaggedModel();
   if (!model.ok()) return Fail(model.error());
-  const auto bodies = PlanBodies(body_flags.value(), &scene);
+  const auto bodies = PlanBodies(body_flags.value(), flags.value().first_poses, &scene);
   if (!bodies.ok()) return Fail(bodies.error());
   if (MaybeError error = CheckDraws(drawn.value(), model.value())) return Fail(*error);
   if (MaybeError error = ActAsIn(flags.value().as_setting, &model.value())) return Fail(*error);

@@ -12,11 +12,13 @@
 #include "apps/flags/restoration_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/fit/model_rollout.h"
+#include "ident/prediction/changed_pushes.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
@@ -28,6 +30,11 @@ DEFINE_string(out, "",
               "the bodies instead, if the name ends in .bvh (one file per person), or in .gltf or "
               ".glb (all in one animated glTF file)");
 DEFINE_int32(frames, 0, "frames to predict; 0: as many as the recording has");
+DEFINE_double(push_scale, pushid::ChangedPushes{}.scale,
+              "what-if: multiply the recorded pushes by this, as in 1.37");
+DEFINE_string(push_again, "",
+              "what-if: frames at which the recorded push comes again, comma-separated, as in "
+              "40,80; --frames gives it time");
 DEFINE_string(joints_out, "",
               "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");
 DEFINE_string(json_out, "", "--restoration: joint positions of every person and frame (JSON)");
@@ -45,7 +52,34 @@ std::string BodyOutput() {
   return IsBodyFile(FLAGS_out) ? "out=" + FLAGS_out : "";
 }
 
-bool WholeRecording() { return FLAGS_frames == 0; }
+// Only then are there errors to print.
+bool IsThatOfTheRecording() {
+  return FLAGS_frames == 0 && FLAGS_push_scale == 1.0 && FLAGS_push_again.empty();
+}
+
+Result<ChangedPushes> ChangedPushesFromCommandLine() {
+  ChangedPushes changed;
+  changed.scale = FLAGS_push_scale;
+  for (const std::string& spaced : SplitList(FLAGS_push_again)) {
+    const std::string word(Trimmed(spaced));
+    std::int64_t frame = 0;
+    if (!ParseInteger(word, &frame) || std::abs(frame) > kMostFrames) {
+      return Error{"--push_again: " + Quoted(word) +
+                   " is not a frame's number; give numbers as in 40,80"};
+    }
+    changed.again.push_back(static_cast<int>(frame));
+  }
+  return changed;
+}
+
+// With the pushes that the flags, once checked, ask for.
+Result<PendulumRecording> PushedRecording(const Recording& recorded, SkeletonMapping mapping) {
+  const PendulumRecording recording = MakePendulumRecording(recorded, mapping);
+  const ChangedPushes changed = ChangedPushesFromCommandLine().value();
+  const int frames = FLAGS_frames > 0 ? FLAGS_frames : recording.num_frames();
+  if (MaybeError error = CheckChangedPushes(changed, recording, frames)) return *error;
+  return WithPushes(recording, changed);
+}
 
 // That of --restoration, once all flags have been checked.
 Result<RestorationFlags> CheckedFlags() {
@@ -58,8 +92,15 @@ Result<RestorationFlags> CheckedFlags() {
   if (!restoration.ok()) return restoration.error();
   const std::string needy = BodyOutput();
   if (!needy.empty() && !restoration.value().given()) return NeedsRestoration(needy);
-  if (!WholeRecording() && (FLAGS_frames < 2 || FLAGS_frames > kMostFrames)) {
+  if (FLAGS_frames != 0 && (FLAGS_frames < 2 || FLAGS_frames > kMostFrames)) {
     return Error{"--frames must be 0, or lie between 2 and " + std::to_string(kMostFrames)};
+  }
+  const Result<ChangedPushes> changed = ChangedPushesFromCommandLine();
+  if (!changed.ok()) return changed.error();
+  if (MaybeError error = CheckExcludes({"push_scale", "push_again"}, "observed",
+                                       "--observed is for the recorded motion, and --{} for "
+                                       "another push than made it; leave one out")) {
+    return *error;
   }
   if (MaybeError error = CheckOutputFiles({FLAGS_joints_out, FLAGS_json_out, FLAGS_out})) {
     return *error;
@@ -100,7 +141,7 @@ int WriteBodies(const RestorationFlags& flags, const Recording& recorded, Skelet
   std::vector<BodyMotion> bodies = RestoreBodies(*restoration.value(), flags.postprocess,
                                                  PredictedPeople(recording.value(), prediction));
   BodyScore score;
-  if (WholeRecording()) score = ScoreBodies(recording.value(), bodies);
+  if (IsThatOfTheRecording()) score = ScoreBodies(recording.value(), bodies);
   const BodyScene scene = SceneOf(recording.value(), std::move(bodies));
   const Result<std::vector<std::string>> files = WriteScene(scene, recording.value(), prediction);
   if (!files.ok()) return Fail(files.error());
@@ -108,7 +149,7 @@ int WriteBodies(const RestorationFlags& flags, const Recording& recorded, Skelet
               scene.num_people(), scene.num_people() == 1 ? "body" : "bodies",
               std::string(restoration.value()->kind()).c_str());
   for (const std::string& file : files.value()) std::printf("  %s\n", file.c_str());
-  if (WholeRecording()) {
+  if (IsThatOfTheRecording()) {
     std::printf("against the recording: %s\n", MetricsText(score.value, 3).c_str());
   }
   return kDone;
@@ -120,7 +161,7 @@ int WritePendulums(const PendulumRecording& recording, const Prediction& predict
   }
   std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),
               prediction.path.num_frames(), FLAGS_out.c_str());
-  if (WholeRecording()) {
+  if (IsThatOfTheRecording()) {
     const RecordingScore score = ScoreHip(recording, prediction.hip, prediction.observed);
     std::printf("against the recording: %s\n", MetricsText(score, 3, prediction.observed).c_str());
   }
@@ -139,12 +180,14 @@ int Run() {
   const Result<std::vector<Recording>> recordings =
       LoadFlaggedRecordings({FLAGS_id}, restoration.given());
   if (!recordings.ok()) return Fail(recordings.error());
-  const PendulumRecording recording =
-      MakePendulumRecording(recordings.value().front(), model.value().mapping);
+  const Result<PendulumRecording> pushed =
+      PushedRecording(recordings.value().front(), model.value().mapping);
+  if (!pushed.ok()) return Fail(pushed.error());
+  const PendulumRecording& recording = pushed.value();
 
   WarnGrouped(InputWarnings(model.value(), {recording}));
   if (MaybeError error = CheckObservedFlag({recording}, model.value())) return Fail(*error);
-  if (!WholeRecording() && FLAGS_frames <= ObservedFrames()) {
+  if (FLAGS_frames != 0 && FLAGS_frames <= ObservedFrames()) {
     return Fail("--frames=" + std::to_string(FLAGS_frames) + " leaves none to predict after " +
                 "--observed=" + std::to_string(ObservedFrames()) + "; it must be larger");
   }
@@ -161,6 +204,10 @@ int Run() {
                                                      model.value().mapping, prediction)
                                        : WritePendulums(recording, prediction);
   if (code != kDone) return code;
+  if (const ChangedPushes changed = ChangedPushesFromCommandLine().value(); changed.Any()) {
+    std::printf("%s; no recorded motion to compare with\n",
+                ChangedPushesText(changed, recording).c_str());
+  }
   std::printf("%s%s", PredictedStepsText(recording, prediction).c_str(),
               EffectText(prediction).c_str());
   return PrintFutures(futures.value(), model.value(), recording, FLAGS_frames);

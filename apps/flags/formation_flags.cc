@@ -13,6 +13,8 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/loading/load_recordings.h"
+#include "ident/formations/recorded_people.h"
 
 DEFINE_string(
     formation, "",
@@ -34,6 +36,10 @@ DEFINE_string(push, "80",
 DEFINE_double(push_duration, pushid::HipPush{}.duration, "duration of each push (a half-sine), s");
 DEFINE_double(mass, 80.0, "mass of each person, kg");
 DEFINE_double(rod_length, pushid::kReferenceRod, "rod length (ankles to hip) of each person, m");
+DEFINE_string(people_from, "",
+              "manifest.json of recordings whose people stand in the formation, each once and in "
+              "their order, then from the first again: their masses, and the postures (rod length, "
+              "lean, skeleton) in which their first recordings begin");
 DEFINE_double(duration, 0.0, "duration, s; 0: until 6 s after the last push");
 DEFINE_string(as_setting, "",
               "use the parameters of this setting, for models with parameters by "
@@ -168,13 +174,29 @@ MaybeError CheckFormationNumbers() {
         CheckRange("duration", FLAGS_duration, 0, 3600)}) {
     if (error) return error;
   }
-  return std::nullopt;
+  return CheckExcludes({"mass", "rod_length"}, "people_from",
+                       "--people_from gives the recorded people's mass and rod length; leave out "
+                       "--{}");
+}
+
+// Their first poses; nobody without the flag.
+Result<std::vector<Pose>> PlaceFlaggedPeople(Scene* scene) {
+  if (FLAGS_people_from.empty()) return std::vector<Pose>();
+  LoadOptions options;
+  options.keep_all_joints = true;
+  const Result<std::vector<Recording>> recordings = LoadRecordings(FLAGS_people_from, options);
+  if (!recordings.ok()) return recordings.error();
+  const Result<std::vector<BodyRecording>> bodies =
+      MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
+  if (!bodies.ok()) return bodies.error();
+  return PlacePeople(DistinctPeople(bodies.value()), scene);
 }
 
 // "10 people in a line, 0.45 m apart".
 std::string PeopleText(int people) {
   std::ostringstream text;
-  text << people << (people == 1 ? " person" : " people");
+  text << people << (FLAGS_people_from.empty() ? "" : " recorded")
+       << (people == 1 ? " person" : " people");
   if (FromFile()) {
     text << " of " << FLAGS_formation;
     if (Given("formation_frame")) text << ", frame " << FLAGS_formation_frame;
@@ -243,6 +265,9 @@ Result<FormationFlags> FormationFlagsFromCommandLine() {
   flags.names = placed.value().names;
   flags.as_setting = FLAGS_as_setting;
   flags.scene = FormationScene(positions, {FLAGS_mass, FLAGS_rod_length, 0.0}, 1.0 / FLAGS_fps);
+  const Result<std::vector<Pose>> poses = PlaceFlaggedPeople(&flags.scene);
+  if (!poses.ok()) return poses.error();
+  flags.first_poses = poses.value();
   for (const HipPush& push : pushes.value()) {
     for (int person : pushed.value()) AddHipPush(person, push, &flags.scene);
   }

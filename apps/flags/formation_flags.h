@@ -6,6 +6,7 @@
 
 #include "datasets/files/error.h"
 #include "models/crowd.h"
+#include "models/restoration/body.h"
 
 namespace pushid {
 
@@ -14,7 +15,8 @@ struct FormationFlags {
   Scene scene;                     // people and pushes
   std::vector<std::string> names;  // of people who come from a file; otherwise empty
   int frames = 0;
-  std::string as_setting;  // whose parameters all people have; empty: the shared ones
+  std::vector<Pose> first_poses;  // of the recorded people of --people_from; otherwise empty
+  std::string as_setting;         // whose parameters all people have; empty: the shared ones
 };
 // Errors name the flag.
 Result<FormationFlags> FormationFlagsFromCommandLine();

@@ -4,6 +4,7 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
+#include "ident/prediction/changed_pushes.h"
 #include "ident/prediction/futures.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"
@@ -101,10 +102,24 @@ Result<std::vector<HipPaths>> Drawn(const Model& model, const IdentifiedModel& i
       DrawPaths(fit, sets.value(), ErrorPaths(fit, DataOf(model)->pendulums), seen, seed, frames));
 }
 
+PendulumRecording PushedAs(const ChangedPushes& changed, const PendulumRecording& recorded,
+                           int observed, int frames) {
+  if (changed.Any() && observed > 0) {
+    Raise(Fault::kUsage, Error{"observed is for the recorded motion, and push_scale and push_again "
+                               "for another push than made it; leave one out"});
+  }
+  Check(CheckChangedPushes(changed, recorded, frames > 0 ? frames : recorded.num_frames()),
+        Fault::kUsage);
+  return WithPushes(recorded, changed);
+}
+
 py::dict PredictOn(const Model& model, const SharedRecording& recording, int observed, int frames,
-                   int samples, uint64_t seed, const std::string& set) {
+                   int samples, uint64_t seed, const std::string& set, double push_scale,
+                   const std::vector<int>& push_again) {
   const IdentifiedModel identified = With(model, set);
-  const PendulumRecording seen = MakePendulumRecording(*recording, identified.mapping);
+  const PendulumRecording seen =
+      PushedAs({push_scale, push_again}, MakePendulumRecording(*recording, identified.mapping),
+               observed, frames);
   if (observed < 0 || frames < 0 || samples < 0) {
     Raise(Fault::kUsage, Error{"observed, frames and samples must not be negative"});
   }

@@ -18,9 +18,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kInputs[] = {
-    "recordings", "model",    "physics",  "truth",   "self_from", "interaction_network",
-    "poses_from", "sensor",   "masses",   "sensors", "mapping",   "generator",
-    "plan",       "flagfile", "formation"};
+    "recordings",  "model",    "physics",  "truth",   "self_from", "interaction_network",
+    "people_from", "sensor",   "masses",   "sensors", "mapping",   "generator",
+    "plan",        "flagfile", "formation"};
 
 // Through symbolic and hard links too; a file need not exist.
 bool Same(const std::string& a, const std::string& b) {

@@ -97,6 +97,9 @@ void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecord
   }
 }
 
+// A label of published recordings, which is like the key of a format.
+constexpr char kSplitLabel[] = "split";
+
 // A text under a key that no program knows is a label as well.
 void AddLabels(const Json& object, const JsonFields& fields, RecordingLabels* labels) {
   if (!object.is_object()) return;
@@ -176,7 +179,9 @@ const std::vector<std::string>& ManifestKeys() {
     empty.content = Json::object();
     JsonFields fields(empty, empty.content, "", "");
     ReadRecording(empty, empty.content, {}, &fields);
-    return fields.asked();
+    std::vector<std::string> asked = fields.asked();
+    asked.push_back(kSplitLabel);
+    return asked;
   }();
   return keys;
 }

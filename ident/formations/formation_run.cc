@@ -141,14 +141,6 @@ Pose SyntheticPose(double rod_length) {
   return pose;
 }
 
-std::vector<Pose> FirstPoses(const std::vector<BodyRecording>& recordings) {
-  std::vector<Pose> poses;
-  for (const BodyRecording& recording : recordings) {
-    for (const BodyMotion& body : recording.bodies) poses.push_back(body.front());
-  }
-  return poses;
-}
-
 std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene) {
   std::vector<Pose> placed;
   for (int n = 0; n < scene->num_people(); ++n) {
@@ -162,7 +154,7 @@ std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene) {
                                           SkeletonMapping::kExact);
     person.body.rod_length = mapped.rod_length;
     person.body.cart_height = mapped.cart_height;
-    person.start.q = mapped.q;
+    person.start.q.tail<2>() = mapped.q.tail<2>();
     placed.push_back(pose);
   }
   return placed;

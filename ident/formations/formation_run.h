@@ -79,9 +79,6 @@ double SignedHipSpeed(const FormationRun& run, int person, int frame);
 // floor.
 Pose SyntheticPose(double rod_length);
 
-// First poses of all people in recordings, in their order.
-std::vector<Pose> FirstPoses(const std::vector<BodyRecording>& recordings);
-
 // Puts poses (in turn, should there be fewer than people) where the formation's people stand,
 // facing +x, and gives those people the pendulum that goes with the pose: rod length, cart height
 // and lean. Masses and pushes stay. Returns the first pose of each person.

@@ -144,6 +144,41 @@ TEST_F(PredictAppTest, ASlipperyFloorCarriesFurtherAndFramesMayGoOn) {
   EXPECT_GT(last[0], last[1] + 0.02);
 }
 
+// Further with a harder push and with three of them; errors against the recording are not printed.
+TEST_F(PredictAppTest, HarderPushesAndRepeatedOnes) {
+  const std::string model = "--model=" + FitModel(), out = Path("trajectory.csv");
+  const auto predict = [&](std::vector<std::string> flags) {
+    flags.insert(flags.end(), {model, Recordings(), "--id=" + id_, "--out=" + out});
+    return RunApp("pushid-predict", flags);
+  };
+  ASSERT_EQ(predict({"--frames=120"}).exit_code, 0);
+  const double once = LastNumber(out, "hip_x_m");
+  AppRun run = predict({"--push_scale=1.2"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "1.2 times the recorded push; no recorded motion to compare"));
+  EXPECT_FALSE(Contains(run.out, "hipADE"));
+  EXPECT_EQ(ReadCsv(out).size(), 46u);
+  EXPECT_TRUE(Contains(predict({"--push_scale=1"}).out, "hipADE"));
+  ASSERT_EQ(predict({"--push_scale=1.2", "--frames=120"}).exit_code, 0);
+  EXPECT_GT(LastNumber(out, "hip_x_m"), once + 0.02);
+  run = predict({"--push_again=40,80", "--frames=120"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "the recorded push, at frames 0, 40 and 80; no recorded motion"));
+  EXPECT_GT(LastNumber(out, "hip_x_m"), once + 0.1);
+
+  const std::pair<std::vector<std::string>, const char*> bad[] = {
+      {{"--push_scale=0"}, "--push_scale is 0; it must be a positive number"},
+      {{"--push_again=40,x"}, "--push_again: 'x' is not a frame's number"},
+      {{"--push_again=2"}, "--push_again: frame 2 comes before the push before it has ended"},
+      {{"--push_again=80"}, "frame 80 is too late for the 45 frames that are predicted"},
+      {{"--push_again=40", "--observed=12"}, "--push_again for another push than made it"}};
+  for (const auto& [flags, message] : bad) {
+    run = predict(flags);
+    EXPECT_EQ(run.exit_code, 1) << message;
+    EXPECT_TRUE(Contains(run.err, message)) << run.err;
+  }
+}
+
 TEST_F(CrossValidateAppTest, EverySchemeScoresAndCompares) {
   for (const char* scheme : {"stratified", "subject", "strong"}) {
     const std::string out = Path(std::string(scheme) + ".json");

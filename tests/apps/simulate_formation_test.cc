@@ -113,6 +113,28 @@ TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {
   EXPECT_TRUE(Contains(run.out, "no speed: several people are pushed"));
 }
 
+// The two people of the fixture in turn, and not the formation's own.
+TEST_F(SimulateFormationTest, TenRecordedPeopleInALine) {
+  const AppRun run = Simulate({"--formation=line", "--people=10", "--people_from=" + manifest_,
+                               "--bvh_out=" + Path("line"), "--duration=1"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "10 recorded people in a line"));
+  std::vector<double> masses;
+  const nlohmann::ordered_json recorded = Json(manifest_);
+  for (const auto& entry : recorded["recordings"]) {
+    const double mass = entry["subjects"][0]["mass_kg"];
+    if (masses.empty() || masses.back() != mass) masses.push_back(mass);
+  }
+  ASSERT_EQ(masses.size(), 2u);
+  const auto people = Json(Path("line/manifest.json"))["recordings"][0]["subjects"];
+  ASSERT_EQ(people.size(), 10u);
+  for (int n = 0; n < 10; ++n) EXPECT_EQ(people[n]["mass_kg"], masses[n % 2]) << n;
+  EXPECT_TRUE(Refused(Simulate({"--formation=line", "--people_from=" + manifest_, "--mass=70"}),
+                      {"--people_from gives", "leave out --mass"}));
+  EXPECT_TRUE(
+      Refused(Simulate({"--formation=line", "--people_from=" + Path("none.json")}), {"none.json"}));
+}
+
 TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
   nlohmann::ordered_json json = Json(alone_);
   json["warnings"] = {"ends behind the start", "recording 'a': a.bvh has gaps",

@@ -42,6 +42,7 @@ import_from() {
 import pushid
 assert pushid.__file__.startswith('$1'), pushid.__file__
 assert pushid.fit(pushid.read('$scratch/recordings/manifest.json')).converged"
+  PYTHONPATH="$1" PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 -m pushid.ldp --help >/dev/null
 }
 import_from "$scratch/moved/lib/python3/dist-packages"
 

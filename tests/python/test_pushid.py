@@ -312,6 +312,14 @@ def test_predictions(made, result):
     assert (seen["lower90"] <= seen["upper90"]).all() and seen["observed"] == 20
     less = result.predict(recording, set={"mu": 0.0})
     assert less["hip"][-1, 0, 0] > predicted["hip"][-1, 0, 0]
+    harder = result.predict(recording, push_scale=1.37)
+    assert harder["hip"][-1, 0, 0] > predicted["hip"][-1, 0, 0]
+    thrice = result.predict(recording, push_again=[40, 80], frames=150)["hip"]
+    once = result.predict(recording, frames=150)["hip"]
+    assert np.allclose(thrice[:41], once[:41], atol=1e-12) and thrice[-1, 0, 0] > once[-1, 0, 0] + 0.1
+    for wrong in ({"push_scale": 0.0}, {"push_again": [2]}, {"push_again": [89]}, {"push_scale": 2.0, "observed": 20}):
+        with pytest.raises(pushid.UsageError, match=f"{[*wrong][0]}[ :]"):
+            result.predict(recording, **wrong)
     with pytest.raises(pushid.UsageError, match="observed"):
         result.predict(recording, observed=91)
     with pytest.raises(pushid.UsageError, match="negative"):

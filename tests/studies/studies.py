@@ -80,7 +80,8 @@ def run(program, *arguments, out="json_out", ending="json", keep=True, may_fail=
 def on_recordings(program, setting, *arguments, **options):
     """The same with the published recordings of a setting; a lack of them ends the study."""
     if not os.path.exists(MANIFEST):
-        sys.exit(f"{MANIFEST} is missing: PUSHID_RECORDINGS names the folder of the recordings")
+        sys.exit(f"{MANIFEST} is missing: PUSHID_RECORDINGS names the folder of the recordings, which "
+                 "python3 -m pushid.ldp --split=train writes (apps/python/README.md)")
     return run(program, f"--recordings={MANIFEST}", f"--setting={setting}", *arguments, **options)
 
 

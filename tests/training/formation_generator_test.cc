@@ -33,13 +33,13 @@ TEST_F(FormationGeneratorTest, GivesTheFormationBodies) {
   FitModel();
   ASSERT_EQ(Train({"--kind=diffusion", "--out=" + Path("g")}).exit_code, 0);
   std::vector<std::string> flags = kQuick;
-  flags.insert(flags.end(), {"--blend=0.5", "--poses_from=" + manifest_,
+  flags.insert(flags.end(), {"--blend=0.5", "--people_from=" + manifest_,
                              "--html_out=" + Path("p.html"), "--strip_out=" + Path("s.svg"),
                              "--joints_out=" + Path("j.csv"), "--bodies_out=" + Path("b.bvh")});
   const AppRun run = Simulate(flags);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.err, "of kind net and is applied to pushes of kind external"));
-  EXPECT_TRUE(Contains(run.out, "5 people in a diamond"));
+  EXPECT_TRUE(Contains(run.out, "5 recorded people in a diamond"));
   const std::string page = ReadText(Path("p.html"));
   EXPECT_TRUE(Contains(page, "bodies by diffusion"));
   EXPECT_TRUE(Contains(ReadText(Path("s.svg")), "bodies by diffusion"));

@@ -101,7 +101,7 @@ TEST_F(RestorationAppTest, AnimatesAndPosesFormations) {
   EXPECT_EQ(html.find("http"), std::string::npos) << "the page must stand alone";
   const AppRun simulate = RunApp(
       "pushid-formation", {model_, restoration, "--formation=line", "--people=3", "--duration=1",
-                           "--poses_from=" + manifest_, "--html_out=" + Path("f.html"),
+                           "--people_from=" + manifest_, "--html_out=" + Path("f.html"),
                            "--bodies_out=" + Path("f.bvh"), "--strip_out=" + Path("f.svg")});
   ASSERT_EQ(simulate.exit_code, 0) << simulate.err;
   EXPECT_TRUE(std::filesystem::exists(Path("f_2_p02.bvh")));

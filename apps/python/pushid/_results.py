@@ -166,17 +166,19 @@ class Result:
         """Finds the further push that would reduce the error of a parameter (or of all together) most; see Design."""
         return Design(_pushid.design(self._model, parameter))
 
-    def predict(self, recording, *, observed=0, frames=0, samples=0, seed=1, set=None):
+    def predict(self, recording, *, observed=0, frames=0, samples=0, seed=1, set=None, push_scale=1.0, push_again=()):
         """Predicts the motion from the first frame (or `observed` frames) and the push.
 
         {"hip": (frames, people, 3), "states": (frames, people, 8: q and its rate), ...}; with `observed` also the
         90 % bands "lower90" and "upper90" of the later frames. samples: number of futures to draw, as "samples" of
         shape (samples, frames, people, 3): after `observed` frames from the distribution behind those bands; otherwise
         from the process noise if the model has one, or from the covariance of the parameters and the errors of the
-        fitted recordings. frames: number of frames (0: as in the recording). set: {name: value} for "what if". Raises
-        FitError if a rollout leaves the model's domain; warns about pushes unlike the fitted ones.
+        fitted recordings. frames: number of frames (0: as in the recording). set: {name: value} for "what if";
+        push_scale multiplies the push, and push_again lists frames at which it comes again. Raises FitError if a
+        rollout leaves the model's domain; warns about pushes unlike the fitted ones.
         """
-        return _pushid.predict(self._model, *checked(recording), observed, frames, samples, seed, text_of("set", set or {}))
+        return _pushid.predict(self._model, *checked(recording), observed, frames, samples, seed, text_of("set", set or {}),
+                               push_scale, list(push_again))
 
     def path_between(self, start, end, *, frames=90, fps=60.0, mass=85.0, rod=0.95):
         """The most probable path of a person between two states under the model's process noise.

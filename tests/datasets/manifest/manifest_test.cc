@@ -39,7 +39,7 @@ constexpr char kGood[] = R"({
    "bvh": ["bvh/b0.bvh", "/elsewhere/b1.bvh"],
    "magnitude": "strong",
    "condition_code": "p",
-   "joints": {"hip": "Hips", "left_ankle": 3}, "why": "because",
+   "joints": {"hip": "Hips", "left_ankle": 3}, "why": "because", "split": "eval",
    "up": "+y",
    "forward": "Z",
    "length_unit": "m",
@@ -102,7 +102,8 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(b.labels.condition(), "p");
   EXPECT_EQ(b.labels.Of("why"), "because");
   EXPECT_EQ(b.labels.Keys(),
-            (std::vector<std::string>{"condition", "magnitude", "setting", "why"}));
+            (std::vector<std::string>{"condition", "magnitude", "setting", "split", "why"}));
+  EXPECT_TRUE(MisspeltKeys(b).empty()) << "split is like sqlite, and is a label";
   EXPECT_EQ(b.joints.hip->name, "Hips");
   EXPECT_EQ(b.joints.left_ankle->index, 3);
   EXPECT_FALSE(b.joints.right_ankle);
