@@ -79,14 +79,16 @@ Dual CvaeTangent::Mixed(const Layer& experts, const Dual& v, const Dual& shares)
   const Eigen::Index rows = experts.weights.rows() / kExperts;
   const Eigen::VectorXd all = experts.weights * v.x + experts.bias;
   Dual mixed{Eigen::VectorXd::Zero(rows), Eigen::MatrixXd::Zero(rows, v.dx.cols())};
-  Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(rows, v.x.size());
+  for (int e = 0; e < kExperts; ++e) mixed.x += shares.x[e] * all.segment(e * rows, rows);
+  if (v.dx.cols() == 0) return mixed;
+  static_assert(kExperts == 4, "the blend, in one pass over the weights, names every expert");
+  const auto of = [&](int e) { return experts.weights.middleRows(e * rows, rows); };
+  const Eigen::MatrixXd blend =
+      shares.x[0] * of(0) + shares.x[1] * of(1) + shares.x[2] * of(2) + shares.x[3] * of(3);
+  mixed.dx.noalias() = blend * v.dx;
   for (int e = 0; e < kExperts; ++e) {
-    mixed.x += shares.x[e] * all.segment(e * rows, rows);
-    if (v.dx.cols() == 0) continue;
-    weights += shares.x[e] * experts.weights.middleRows(e * rows, rows);
     mixed.dx.noalias() += all.segment(e * rows, rows) * shares.dx.row(e);
   }
-  mixed.dx.noalias() += weights * v.dx;
   return mixed;
 }
 
