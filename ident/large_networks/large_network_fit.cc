@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "datasets/files/random.h"
@@ -137,49 +138,102 @@ class Adam {
   double of_mean_ = 1.0, of_square_ = 1.0;
 };
 
-// Passes over the training recordings, kRecordingsOfAStep at a time in random order. Where a
-// rollout leaves the domain, the frames before count. The rate falls to a hundredth of its start.
+// A gradient that is far longer than those before tells of somebody who is about to fall, and
+// little of where to go.
+class Clip {
+ public:
+  void Shorten(Eigen::ArrayXd* gradient) {
+    constexpr double kLongest = 2.0, kKept = 0.95;  // of the mean length so far
+    const double length = gradient->matrix().norm();
+    const double most = mean_ > 0.0 ? std::min(length, kLongest * mean_) : length;
+    if (most < length) *gradient *= most / length;
+    mean_ = mean_ > 0.0 ? kKept * mean_ + (1.0 - kKept) * most : length;
+  }
+
+ private:
+  double mean_ = 0.0;
+};
+
+// The training recordings at random, kRecordingsOfAStep at a time. Where a rollout leaves the
+// domain, the frames before count.
+class TrainingBatches {
+ public:
+  static Result<TrainingBatches> Create(const LargeNetworkFit& fit,
+                                        std::vector<AdjointRecording> recordings) {
+    constexpr size_t kRecordingsOfAStep = 8;
+    TrainingBatches made(fit);
+    made.random_.Shuffle(&recordings);
+    for (size_t i = 0; i < recordings.size(); i += kRecordingsOfAStep) {
+      const auto end = recordings.begin() + std::min(i + kRecordingsOfAStep, recordings.size());
+      Result<AdjointGradient> batch =
+          AdjointGradient::Create({recordings.begin() + i, end}, fit.model, fit.map, fit.sigmas);
+      if (!batch.ok()) return batch.error();
+      made.batches_.push_back(std::move(batch.value()));
+    }
+    return made;
+  }
+
+  // Calls step(gradient) for each, in random order; returns the sum of their costs and failures.
+  template <typename Step>
+  std::pair<double, int> Pass(const std::vector<double>& x, const Step& step) {
+    std::pair<double, int> sum = {0.0, 0};
+    std::vector<int> order(batches_.size());
+    std::iota(order.begin(), order.end(), 0);
+    random_.Shuffle(&order);
+    const double share = 1.0 / static_cast<double>(batches_.size());
+    for (int k : order) {
+      const double* shared = variables_.Shared(x.data()).data();
+      gradient_.setZero();
+      const AdjointCost cost =
+          batches_[k].Evaluate(shared, x.data(), by_shared_.data(), gradient_.data());
+      variables_.Scale(by_shared_, gradient_.data());
+      of_priors_.setZero();
+      sum.first += cost.cost + share * variables_.AddPriors(x.data(), of_priors_.data());
+      sum.second += cost.num_failed();
+      gradient_ += share * of_priors_;
+      step(&gradient_);
+    }
+    return sum;
+  }
+
+ private:
+  explicit TrainingBatches(const LargeNetworkFit& fit)
+      : variables_(fit),
+        random_(fit.options.seed),
+        gradient_(variables_.size()),
+        of_priors_(variables_.size()),
+        by_shared_(fit.shared.size()) {}
+
+  NetworkVariables variables_;
+  Random random_;
+  std::vector<AdjointGradient> batches_;
+  Eigen::ArrayXd gradient_, of_priors_;
+  std::vector<double> by_shared_;
+};
+
+// Passes over all batches; the rate falls to a hundredth of its start.
 MaybeError SolveByAdam(const LargeNetworkFit& fit, const std::vector<ShortenedRecording>& shortened,
                        NetworkJudge* judge, std::vector<double>* x,
                        LargeNetworkSolution* solution) {
-  constexpr size_t kRecordingsOfAStep = 8;
   constexpr double kLastRate = 0.01;
-  Random random(fit.options.seed);
-  std::vector<AdjointRecording> recordings = Shortened(fit, shortened);
-  random.Shuffle(&recordings);
-  std::vector<AdjointGradient> batches;
-  for (size_t i = 0; i < recordings.size(); i += kRecordingsOfAStep) {
-    const auto end = recordings.begin() + std::min(i + kRecordingsOfAStep, recordings.size());
-    Result<AdjointGradient> batch =
-        AdjointGradient::Create({recordings.begin() + i, end}, fit.model, fit.map, fit.sigmas);
-    if (!batch.ok()) return batch.error();
-    batches.push_back(std::move(batch.value()));
-  }
-  NetworkVariables variables(fit);
-  Eigen::ArrayXd gradient(variables.size());
-  std::vector<double> by_shared(fit.shared.size());
-  Adam adam(variables.size());
-  std::vector<int> order(batches.size());
-  std::iota(order.begin(), order.end(), 0);
-  for (int pass = 0; pass <= fit.options.max_iterations; ++pass) {
-    const double done = static_cast<double>(pass) / std::max(1, fit.options.max_iterations);
+  Result<TrainingBatches> batches = TrainingBatches::Create(fit, Shortened(fit, shortened));
+  if (!batches.ok()) return batches.error();
+  Adam adam(static_cast<Eigen::Index>(x->size()));
+  Clip clip;
+  const int passes = fit.options.max_iterations;
+  for (int pass = 0; pass <= passes; ++pass) {
+    const double rate =
+        pass == 0 ? 0.0 : fit.options.rate * std::pow(kLastRate, double(pass) / passes);
     ceres::IterationSummary summary;
     summary.iteration = pass;
     summary.step_is_successful = true;
-    random.Shuffle(&order);
-    for (int k : order) {
-      const std::vector<double>& shared = variables.Shared(x->data());
-      summary.cost +=
-          batches[k].Evaluate(shared.data(), x->data(), by_shared.data(), gradient.data()).cost;
-      variables.Scale(by_shared, gradient.data());
-      const double share = 1.0 / static_cast<double>(batches.size());
-      Eigen::ArrayXd of_priors = Eigen::ArrayXd::Zero(gradient.size());
-      summary.cost += share * variables.AddPriors(x->data(), of_priors.data());
-      gradient += share * of_priors;
-      summary.gradient_max_norm = std::max(summary.gradient_max_norm, gradient.abs().maxCoeff());
+    std::tie(summary.cost,
+             solution->training_failures) = batches.value().Pass(*x, [&](Eigen::ArrayXd* gradient) {
       ++solution->gradients;
-      if (pass > 0) adam.Step(gradient, fit.options.rate * std::pow(kLastRate, done), x);
-    }
+      summary.gradient_max_norm = std::max(summary.gradient_max_norm, gradient->abs().maxCoeff());
+      clip.Shorten(gradient);
+      if (rate > 0.0) adam.Step(*gradient, rate, x);
+    });
     if ((*judge)(summary) != ceres::SOLVER_CONTINUE) break;
   }
   solution->message = "all passes done";

@@ -14,7 +14,8 @@
 // first, then by cost; the best point of all is kept. Steps under which a training recording leaves
 // the domain are not taken. Parameters have no bounds here: keep them fixed, or hold them by
 // priors on the fitted scale. Adam steps on a few recordings at a time, as LDP trains; its best
-// point without held-out recordings is the last.
+// point without held-out recordings is the last, and the cost of a pass is summed while the weights
+// move.
 #pragma once
 
 #include <functional>
@@ -66,8 +67,9 @@ struct LargeNetworkIteration {
   double training_cost = 0.0;  // of the training recordings alone
   double held_out_cost = 0.0;  // of the held-out recordings alone
   int held_out_failures = 0;
-  double gradient = 0.0;  // largest component
-  double seconds = 0.0;   // since the start
+  int training_failures = 0;  // of Adam, whose steps may make rollouts leave the domain
+  double gradient = 0.0;      // largest component
+  double seconds = 0.0;       // since the start
 };
 
 // A training recording that could not be rolled out to its end at the start: held to the frames
@@ -84,6 +86,7 @@ struct LargeNetworkSolution {
   double initial_training_cost = 0.0, final_training_cost = 0.0;  // without the priors
   double initial_held_out_cost = 0.0, best_held_out_cost = 0.0;
   int held_out_failures = 0;  // at the best point
+  int training_failures = 0;  // in the last pass of Adam
   bool stopped_early = false;
   bool converged = false;  // by tolerance
   std::string message;     // Ceres'

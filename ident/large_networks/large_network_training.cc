@@ -84,7 +84,11 @@ Result<FitOptions> TrainByGradient(const std::vector<PendulumRecording>& recordi
   fit.options.seed = options.seed;
   const Result<LargeNetworkSolution> trained =
       FitLargeNetwork(fit, [&progress](const LargeNetworkIteration& i) {
-        if (progress) progress("network by its gradient", i.iteration, i.cost);
+        const std::string failing =
+            i.training_failures > 0
+                ? ", " + std::to_string(i.training_failures) + " rollouts leave the domain"
+                : "";
+        if (progress) progress("network by its gradient" + failing, i.iteration, i.cost);
         return true;
       });
   if (!trained.ok()) return trained.error();

@@ -62,14 +62,13 @@ LargeNetworkIteration NetworkJudge::Now(const ceres::IterationSummary& summary) 
   now.iteration = summary.iteration;
   now.cost = summary.cost;
   now.gradient = summary.gradient_max_norm;
+  now.training_failures = solution_.training_failures;
   const std::vector<double>& shared = variables_.Shared(x_.data());
   now.training_cost = now.cost - variables_.AddPriors(x_.data(), nullptr);
   if (held_out_ != nullptr) {
     const AdjointCost judged = held_out_->Evaluate(shared.data(), x_.data(), nullptr, nullptr);
     now.held_out_cost = judged.cost;
-    now.held_out_failures =
-        static_cast<int>(std::count_if(judged.status.begin(), judged.status.end(),
-                                       [](const RolloutStatus& status) { return !status.ok; }));
+    now.held_out_failures = judged.num_failed();
   }
   now.seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
   return now;

@@ -50,6 +50,7 @@ FitOptions LdpPublishedPreset() {
   o.recording_weight = RecordingWeight::kFrame;
   o.start = FitStart::kNominal;
   o.network_training = NetworkTraining::kTogether;
+  o.network_optimizer = NetworkOptimizer::kAdam;  // L-BFGS ends at the first hard switch
   o.network_prior = 0.0;
   return o;
 }

@@ -76,7 +76,7 @@ std::vector<std::string> NetworkExamples() {
     (row.biased ? ldp : recurrent) = row.name;
     if (!row.biased) examples.push_back(row.name + std::string(":4"));
   }
-  examples.push_back(ldp + ":256:32, LDP's, which has biases");
+  examples.push_back(ldp + ":256:32");
   examples.push_back(recurrent + ":256:32");
   return examples;
 }

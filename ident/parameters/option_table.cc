@@ -207,10 +207,10 @@ std::vector<Row> WeightRows() {
           [](O & o) -> auto& { return o.network_training; },
           "large networks: after_physics (fitted without them first, and again with them held), or "
           "together with the free parameters"))),
-      MayBeAbsent(NameRow<NetworkOptimizer>(
+      MayBeAbsent(Decided(NameRow<NetworkOptimizer>(
           "network_optimizer", "/network_optimizer",
           [](O & o) -> auto& { return o.network_optimizer; },
-          "large networks: lbfgs (Ceres' L-BFGS on all recordings) or adam (on eight at a time)")),
+          "large networks: lbfgs (Ceres' L-BFGS on all recordings) or adam (on eight at a time)"))),
       MayBeAbsent(CountRow(
           "network_iterations", "/network_iterations",
           [](O & o) -> auto& { return o.network_iterations; },

@@ -11,9 +11,10 @@ int Frames(const AdjointRecording& r) {
   return r.horizon > 0 ? std::min(r.horizon, frames) : frames;
 }
 
-// In place of the map's values; null: these.
-const ParameterSet<double>* Held(const AdjointRecording& r, int person) {
-  return r.held.empty() ? nullptr : &r.held[r.held.size() == 1 ? 0 : person];
+// In place of the map's values, if any.
+std::optional<ParameterSet<double>> Held(const AdjointRecording& r, int person) {
+  if (r.held.empty()) return std::nullopt;
+  return r.held[r.held.size() == 1 ? 0 : person];
 }
 
 PackedColumns ColumnsOf(const std::vector<AdjointRecording>& all,
@@ -66,7 +67,7 @@ double AdjointGradient::Batch::Forward(const ParameterMap& map, const double* sh
   now_.parameters.clear();
   ParameterMap own = map;
   for (const Walker& walker : walkers_) {
-    own.values = walker.held == nullptr ? map.values : *walker.held;
+    own.values = walker.held.value_or(map.values);
     now_.parameters.push_back(own.Apply<double>(shared, nullptr));
   }
   if (network_) network_->Start(weights);

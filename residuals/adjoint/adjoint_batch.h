@@ -47,7 +47,7 @@ class AdjointGradient::Batch {
     int index, place, person;  // of the recording among all, in the batch; of the person in it
     double weight;
     SelfForce self;
-    const ParameterSet<double>* held;  // in place of the map's values; null: these
+    std::optional<ParameterSet<double>> held;  // in place of the map's values
     std::vector<PendulumState<double>> path;
     std::vector<Vector4<double>> acceleration;
 

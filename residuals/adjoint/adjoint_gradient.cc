@@ -43,8 +43,9 @@ MaybeError WhatCannotBeDone(const std::vector<AdjointRecording>& recordings,
 
 }  // namespace
 
-bool AdjointCost::ok() const {
-  return std::all_of(status.begin(), status.end(), [](const RolloutStatus& s) { return s.ok; });
+int AdjointCost::num_failed() const {
+  return static_cast<int>(
+      std::count_if(status.begin(), status.end(), [](const RolloutStatus& s) { return !s.ok; }));
 }
 
 AdjointGradient::AdjointGradient() = default;

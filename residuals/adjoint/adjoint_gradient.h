@@ -45,7 +45,8 @@ struct AdjointCost {
   // By recording: where its rollout left the domain.
   std::vector<RolloutStatus> status;
 
-  bool ok() const;
+  bool ok() const { return num_failed() == 0; }
+  int num_failed() const;
 };
 
 class AdjointGradient {

@@ -36,7 +36,7 @@ METRICS = [("MPJPE_m", "MPJPE, m"), ("hipADE_m", "hipADE, m"), ("hipFDE_m", "hip
 CLAIMS = {"single": (0.097, 0.086, 0.171, 0.002, 0.131), "groups": (0.106, 0.092, 0.218, 0.003, 0.069)}
 RELEASED = {"single": (None, 0.212, 0.352, None, None), "groups": (None, 0.125, 0.280, None, None)}
 
-PUBLISHED_FIT = ["--preset=ldp_published", "--network_optimizer=adam"]
+PUBLISHED_FIT = ["--preset=ldp_published"]
 PUBLISHED_BODIES = ["--kind=cvae", "--training=published", "--coordinates=ldp", "--predicted_pendulums=false"]
 OWN_BODIES = {"single": [], "groups": ["--sees=neighbours"]}
 
@@ -279,7 +279,7 @@ def people():
         for name, flags in [("ten in a line", ["--formation=line", "--people=10"]),
                             ("13 in a diamond", ["--formation=diamond", "--people=13"])]:
             done = studies.run("pushid-formation", f"--model={trained.fitted.path}", *flags,
-                               f"--poses_from={trained.train}", f"--restoration={trained.restoration}", "--push=80",
+                               f"--people_from={trained.train}", f"--restoration={trained.restoration}", "--push=80",
                                "--duration=4", out="csv_out", ending="csv", may_fail=True)
             if done.failed:
                 rows.append([system, name, "left the domain", None, None])

@@ -180,15 +180,19 @@ TEST(LearnedInteraction, ByName) {
   EXPECT_FALSE(choice.value().terms.damping || choice.value().terms.network);
   EXPECT_EQ(choice.value().pair.hidden, std::vector<int>({8, 3}));
   EXPECT_FALSE(ParseInteraction("--interaction", "none").value().terms.Any());
-  EXPECT_TRUE(ParseInteraction("--interaction", "network:4").value().terms.learned);
-  for (const char* bad : {"network:", "network:0", "network:4-", "network:9999", "network:x",
-                          "network:4,network:4", "none,network:4"}) {
+  const InteractionTerms touching = ParseInteraction("f", "network:4").value().terms;
+  EXPECT_TRUE(touching.learned && touching.Contact() && !touching.AtCarts());
+  const InteractionTerms in_range = ParseInteraction("f", "ldp_network:4").value().terms;
+  EXPECT_TRUE(in_range.learned && in_range.AtCarts() && !in_range.Contact());
+  for (const char* bad :
+       {"network:", "network:0", "network:4-", "network:9999", "network:x", "network:4,network:4",
+        "none,network:4", "ldp_network:", "network:4,ldp_network:4"}) {
     const auto wrong = ParseInteraction("--interaction", bad);
     ASSERT_FALSE(wrong.ok()) << bad;
     EXPECT_TRUE(Contains(wrong.error().ToString(), "--interaction"));
   }
   const FitOptions ldp = MakePreset("ldp_groups").value();
-  EXPECT_EQ(InteractionText(ldp.model), "potential,lean,network:4");
+  EXPECT_EQ(InteractionText(ldp.model), "potential,lean,ldp_network:4");
   EXPECT_EQ(ldp.model.learned->weights.size(), 64u);
   std::string error;
   EXPECT_TRUE(ldp.IsValid(&error)) << error;

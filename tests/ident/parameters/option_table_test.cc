@@ -71,7 +71,7 @@ TEST(OptionTable, NumbersGoWhereTheirRowSays) {
 }
 
 TEST(OptionTable, EveryPresetComesBackFromJson) {
-  for (const char* name : {"tail", "ldp", "group"}) {
+  for (const char* name : {"tail", "ldp", "group", "ldp_published_groups"}) {
     const FitOptions options = MakePreset(name).value();
     const auto json = OptionsJson(options);
     EXPECT_EQ(OptionsJson(OptionsFrom(json)).dump(), json.dump()) << name;

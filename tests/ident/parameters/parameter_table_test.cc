@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/folds.h"
@@ -31,7 +32,9 @@ TEST(Presets, FreeWhatTheyPromise) {
     EXPECT_EQ(spec.pooled, spec.id == kTailTime) << spec.name;
   }
   EXPECT_EQ(FreeNames(ldp.table),
-            (std::set<std::string>{"mu", "mu_y", "Kp_theta", "Kp_phi", "Kd_theta", "Kd_phi"}));
+            (std::set<std::string>{"mu", "Kp_theta", "Kp_phi", "Kd_theta", "Kd_phi"}));
+  EXPECT_EQ(ldp.model.friction, FrictionKind::kIsotropic);
+  EXPECT_EQ(ldp.model.gain_scaling, GainScaling::kNone);
   EXPECT_EQ(ldp.model.posture, Posture::kUpright);
   EXPECT_EQ(ldp.model.push_tail, PushTail::kNone);
   EXPECT_EQ(ldp.table[kKpX].nominal, 30.0);
@@ -39,7 +42,43 @@ TEST(Presets, FreeWhatTheyPromise) {
   const Result<FitOptions> wrong = MakePreset("tial");
   ASSERT_FALSE(wrong.ok());
   EXPECT_TRUE(Contains(wrong.error().ToString(),
-                       "--preset is 'tial'; it must be auto, tail, ldp, ldp_groups or group"));
+                       "--preset is 'tial'; it must be auto, tail, ldp, ldp_groups, "
+                       "ldp_published, ldp_published_groups or group"));
+}
+
+// The numbers of the paper (Table 3) and the table of its supplement.
+TEST(Presets, LdpAsPublished) {
+  const FitOptions single = MakePreset("ldp_published").value();
+  const FitOptions groups = MakePreset("ldp_published_groups").value();
+  for (const FitOptions& o : {single, groups}) {
+    EXPECT_EQ(FreeNames(o.table), std::set<std::string>{"mu"}) << o.preset;
+    EXPECT_EQ(o.table[kMu].nominal, 100.0);
+    EXPECT_EQ(o.table[kKpX].nominal, 30.0);
+    EXPECT_EQ(o.table[kKpTheta].nominal, 1500.0);
+    EXPECT_NEAR(60.0 * o.table[kKdTheta].nominal, 200.0, 1e-12) << "per frame";
+    EXPECT_NEAR(60.0 * o.table[kKdX].nominal, 4.0, 1e-12);
+    EXPECT_EQ(o.table[kRodLift].nominal, 0.0) << "the cart keeps its height";
+    EXPECT_EQ(o.model.push, PushUse::kAdded);
+    EXPECT_EQ(o.model.posture, Posture::kUpright);
+    EXPECT_EQ(o.sigmas.loss, FrameLoss::kLdp);
+    EXPECT_EQ(o.model.learned->rod_at(), 298244);
+    EXPECT_EQ(o.network_training, NetworkTraining::kTogether);
+    std::string error;
+    EXPECT_TRUE(o.IsValid(&error)) << error;
+  }
+  EXPECT_FALSE(single.model.interaction.Any());
+  EXPECT_EQ(groups.model.learned->pair.num_weights(), 270340);
+  EXPECT_EQ(groups.table[kLeanTheta].nominal, 100.0);
+  EXPECT_EQ(groups.table[kLeanPhi].nominal, 50.0);
+  EXPECT_EQ(groups.table[kPotentialStrength].nominal, 150.0);
+  EXPECT_EQ(groups.table[kPotentialLength].nominal, 0.5);
+  EXPECT_EQ(groups.table[kNeighbourRange].nominal, 0.5);
+  EXPECT_EQ(InteractionText(groups.model), "ldp_published,ldp_network:512-512");
+  std::vector<PendulumRecording> recordings(2);
+  recordings[0].hip.resize(1), recordings[1].hip.resize(1);
+  EXPECT_EQ(PresetFor("ldp_published", recordings), "ldp_published");
+  recordings[1].hip.resize(4);
+  EXPECT_EQ(PresetFor("ldp_published", recordings), "ldp_published_groups");
 }
 
 TEST(Presets, EveryRowIsSound) {

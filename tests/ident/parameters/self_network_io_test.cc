@@ -12,7 +12,8 @@ namespace pushid {
 namespace {
 
 TEST(SelfNetworkIo, NamesAreReadAndWritten) {
-  for (const char* text : {"none", "linear", "mlp:4", "gru:8", "lstm:256:32", "linear,gru:4"}) {
+  for (const char* text :
+       {"none", "linear", "mlp:4", "gru:8", "lstm:256:32", "ldp:256:32", "linear,gru:4"}) {
     const auto choice = ParseSelfForce("--self_force", text);
     ASSERT_TRUE(choice.ok()) << text;
     const LearnedTerms network{choice.value().network, {}};
@@ -20,6 +21,7 @@ TEST(SelfNetworkIo, NamesAreReadAndWritten) {
               text);
   }
   EXPECT_EQ(ParseSelfForce("f", "mlp").value().network.hidden, 4);
+  EXPECT_EQ(ParseSelfForce("f", "ldp:8").value().network.embedding, 32) << "it takes the mass";
   EXPECT_EQ(ParseSelfForce("f", "gru:4,none,linear,linear").value().kind, SelfForceKind::kLinear);
   for (const char* text : {"rnn", "mlp:", "mlp:0", "mlp:x", "mlp:4:2", "gru:4:0", "mlp:99999",
                            "mlp:4,gru:4", "gru:4:2:1", "mlp:-1"}) {
@@ -33,12 +35,13 @@ TEST(SelfNetworkIo, NamesAreReadAndWritten) {
 TEST(SelfNetworkIo, HelpAndMessageNameEveryKind) {
   EXPECT_EQ(FindFitOption("self_force")->help,
             "additional self force: none, linear (cross terms, quadratic), a network by kind and "
-            "hidden size (mlp:4, gru:4, lstm:4; lstm:256:32 with an embedding), or linear and a "
+            "hidden size (mlp:4, gru:4, lstm:4, ldp:256:32; lstm:256:32 with an embedding), or "
+            "linear and a "
             "network, comma-separated");
-  EXPECT_EQ(
-      ParseSelfForce("f", "rnn").error().ToString(),
-      "f is 'rnn'; it must be none, linear, mlp:4, gru:4, lstm:4 or lstm:256:32 (hidden size, "
-      "embedding; 1 to 4096), or linear and a network, as linear,gru:4");
+  EXPECT_EQ(ParseSelfForce("f", "rnn").error().ToString(),
+            "f is 'rnn'; it must be none, linear, mlp:4, gru:4, lstm:4, ldp:256:32 or lstm:256:32 "
+            "(hidden size, "
+            "embedding; 1 to 4096), or linear and a network, as linear,gru:4");
 }
 
 TEST(SelfNetworkIo, StartsWithoutForceAndFromItsSeed) {
@@ -51,7 +54,7 @@ TEST(SelfNetworkIo, StartsWithoutForceAndFromItsSeed) {
 }
 
 TEST(SelfNetworkIo, RodsAreReadAndWritten) {
-  for (const char* text : {"constant", "linear", "mlp:4", "mlp:256-128-256"}) {
+  for (const char* text : {"constant", "linear", "mlp:4", "mlp:256-128-256", "ldp:256-128-256"}) {
     const auto shape = ParseRod("--rod", text);
     ASSERT_TRUE(shape.ok()) << text;
     EXPECT_EQ(RodName(shape.value()), text);
@@ -85,7 +88,8 @@ TEST(SelfNetworkIo, FilesKeepEverything) {
   const RodShape linear{RodKind::kLinear, {}}, mlp{RodKind::kMlp, {3, 2}};
   for (const LearnedTerms& network :
        {*InitialNetwork({NetworkKind::kGru, 2, 3}, 1, mlp), *InitialNetwork({}, 2, linear),
-        *InitialNetwork({}, 3, mlp), *InitialNetwork({NetworkKind::kMlp, 2}, 4)}) {
+        *InitialNetwork({}, 3, mlp), *InitialNetwork({NetworkKind::kMlp, 2}, 4),
+        *InitialNetwork({NetworkKind::kLdp, 2, 3}, 5, {RodKind::kLdp, {3}}, {{4}, true})}) {
     const auto read = LearnedFromJson(nlohmann::ordered_json::parse(ToJson(network).dump()));
     EXPECT_EQ(LearnedName(*read), LearnedName(network));
     EXPECT_EQ(read->weights, network.weights);

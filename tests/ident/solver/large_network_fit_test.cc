@@ -118,6 +118,28 @@ TEST(LargeNetworkFit, EarlyStoppingKeepsTheBestPoint) {
   EXPECT_EQ(s.Network({kShape, {}})->weights, s.weights);
 }
 
+// Adam finds it too, by passes over a few recordings at a time, and repeats to the bit.
+TEST(LargeNetworkFit, AdamRecoversWhatAPlantedNetworkDoes) {
+  const Planted planted;
+  LargeNetworkFit fit = planted.Fit(1);
+  fit.training = planted.Some(0, 5);
+  fit.options.weight_sigma = 100.0;
+  fit.options.optimizer = NetworkOptimizer::kAdam;
+  fit.options.rate = 1e-2;
+  fit.options.max_iterations = 150;
+  const auto solution = FitLargeNetwork(fit);
+  ASSERT_TRUE(solution.ok()) << solution.error().ToString();
+  const LargeNetworkSolution& s = solution.value();
+  EXPECT_EQ(s.trace.size(), 151u);
+  EXPECT_EQ(s.gradients, 151 * 3) << "twenty recordings, eight at a time";
+  EXPECT_NEAR(s.trace.front().training_cost, CostOf(fit, fit.training, fit.model.learned->weights),
+              1e-9 * s.initial_cost);
+  const std::vector<AdjointRecording> unseen = planted.Some(5, 6);
+  EXPECT_LT(CostOf(fit, unseen, s.weights), 0.1 * CostOf(fit, unseen, fit.model.learned->weights));
+  fit.options.max_iterations = 3;
+  EXPECT_EQ(FitLargeNetwork(fit).value().weights, FitLargeNetwork(fit).value().weights);
+}
+
 TEST(LargeNetworkFit, TheSameStartGivesTheSameBits) {
   const Planted planted(0.005);
   LargeNetworkFit fit = planted.Fit(3);

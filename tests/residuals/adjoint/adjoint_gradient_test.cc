@@ -209,6 +209,25 @@ TEST(AdjointGradient, AddsUpManyRecordings) {
   EXPECT_EQ(weights_alone, large.weights);
 }
 
+// Values held per person are the gradient's own: the list it was made of may be gone.
+TEST(AdjointGradient, KeepsHeldValues) {
+  Random random(66);
+  const ModelOptions options = WithNetwork({NetworkKind::kGru, 2}, 0.5, &random);
+  const std::vector<PendulumRecording> made =
+      SomeRecordings(options, {"", 0.1, 100.0, 0.05, 0.5, 0.0}, &random);
+  ParameterMap map;
+  map.num_weights = options.learned->num_weights();
+  std::vector<AdjointRecording> recordings = {{&made[0]}, {&made[1]}};
+  for (AdjointRecording& r : recordings) r.held = {RecoveringParameters()};
+  auto adjoint = AdjointGradient::Create(recordings, options, map, {});
+  ASSERT_TRUE(adjoint.ok());
+  const double* weights = options.learned->weights.data();
+  const double cost = adjoint.value().Evaluate(nullptr, weights, nullptr, nullptr).cost;
+  for (AdjointRecording& r : recordings) r.held[0].fill(NAN);
+  recordings.clear();
+  EXPECT_EQ(adjoint.value().Evaluate(nullptr, weights, nullptr, nullptr).cost, cost);
+}
+
 // F_x = -M b tanh(xd / 0.2 m/s): a law of a user's own.
 struct Brake {
   template <typename T>
