@@ -6,7 +6,6 @@
 namespace pushid {
 namespace {
 
-constexpr double kRate = 60.0;                                         // Hz
 constexpr double kCartGainPerFrame = 4.0, kAngleGainPerFrame = 200.0;  // Kd
 
 }  // namespace
@@ -16,7 +15,7 @@ FitOptions LdpPreset() {
   o.preset = "ldp";
   o.table = BaseTable();
   o.table[kKpX].nominal = o.table[kKpY].nominal = 30;
-  o.table[kKdTheta].nominal = o.table[kKdPhi].nominal = kAngleGainPerFrame / kRate;
+  o.table[kKdTheta].nominal = o.table[kKdPhi].nominal = kAngleGainPerFrame / kLdpRate;
   for (Parameter id : {kMu, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = true;
   o.model.posture = Posture::kUpright;
   o.model.gain_scaling = GainScaling::kNone;
@@ -39,7 +38,7 @@ FitOptions LdpPublishedPreset() {
   FitOptions o = LdpPreset();
   o.preset = kLdpPublished;
   for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = false;
-  o.table[kKdX].nominal = o.table[kKdY].nominal = kCartGainPerFrame / kRate;
+  o.table[kKdX].nominal = o.table[kKdY].nominal = kCartGainPerFrame / kLdpRate;
   o.table[kRodLift].nominal = 0.0;
   o.model.cart_derivative = CartDerivative::kBackward;
   o.model.push = PushUse::kAdded;

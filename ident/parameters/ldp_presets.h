@@ -6,6 +6,7 @@
 
 namespace pushid {
 
+inline constexpr double kLdpRate = 60.0;  // Hz: LDP counts Kd per frame
 inline constexpr char kLdpPublished[] = "ldp_published";
 inline constexpr char kLdpPublishedGroups[] = "ldp_published_groups";
 

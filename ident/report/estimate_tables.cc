@@ -5,6 +5,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/parameters/ldp_presets.h"
 #include "ident/parameters/option_names.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/value_text.h"
@@ -190,13 +191,25 @@ std::string TiedText(const FitResult& result) {
   return tied.empty() ? "" : "Sideways as forwards: " + tied + " (--directions=isotropic).\n";
 }
 
+// LDP's Kd multiply differences from frame to frame; empty for models that are not LDP's.
+std::string PerFrameText(const FitResult& result) {
+  if (result.options.preset.rfind("ldp", 0) != 0) return "";
+  std::string text;
+  for (Parameter id : {kKdX, kKdY, kKdTheta, kKdPhi}) {
+    if (!Acts(id, result.options.model)) continue;
+    text += (text.empty() ? "" : ", ") + result.options.table[id].name + " " +
+            Rounded(kLdpRate * result.parameters[id], 4);
+  }
+  return "In LDP's units, per frame of 1/60 s: " + text + ".\n";
+}
+
 }  // namespace
 
 std::string ConventionText(const FitResult& result) {
   const ParameterTable& specs = result.options.table;
   const std::string quoted =
       "Gains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
-      NameOf(result.options.model.gain_scaling) + ").\n" + TiedText(result);
+      NameOf(result.options.model.gain_scaling) + ").\n" + PerFrameText(result) + TiedText(result);
   if (!Acts(kMu, result.options.model)) return quoted;
   bool fitted = false;
   std::string held;

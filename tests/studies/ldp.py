@@ -21,6 +21,7 @@ where LibTorch is found.
 import collections
 import concurrent.futures
 import csv
+import hashlib
 import json
 import math
 import os
@@ -76,21 +77,22 @@ def entries(setting):
     return found
 
 
-def written(name, recordings):
-    """The path of a manifest with these recordings."""
+def written(recordings):
+    """The path of a manifest with these recordings, named after what it holds."""
     os.makedirs(studies.KEPT, exist_ok=True)
-    path = os.path.join(studies.KEPT, f"ldp_{name}.json")
+    text = json.dumps({"recordings": recordings}, indent=1)
+    path = os.path.join(studies.KEPT, f"ldp-{hashlib.sha256(text.encode()).hexdigest()[:16]}.json")
     with open(path, "w", encoding="utf-8") as file:
-        json.dump({"recordings": recordings}, file, indent=1)
+        file.write(text)
     return path
 
 
 def folds(setting):
     """(name, training, held out) of each."""
     recordings = entries(setting)
-    if any("split" in e for e in recordings):
-        return [("split", [e for e in recordings if e.get("split") != "eval"],
-                 [e for e in recordings if e.get("split") == "eval"])]
+    train, held = ([e for e in recordings if e.get("split") == split] for split in ("train", "eval"))
+    if train and held:
+        return [("split", train, held)]
     order = sorted(recordings, key=lambda e: (e["setting"], e.get("magnitude", ""), e["id"]))
     return [(f"fold{k + 1}", [e for i, e in enumerate(order) if i % FOLDS != k],
              [e for i, e in enumerate(order) if i % FOLDS == k]) for k in range(FOLDS)]
@@ -99,14 +101,13 @@ def folds(setting):
 class Trained:
     """A pendulum's model and a restoration, trained on a fold."""
 
-    def __init__(self, setting, fold, fit, bodies, part=""):
-        name, train, held = fold
-        self.train = written(f"{setting}_{name}{part}_train", train)
-        self.held = written(f"{setting}_{name}_held", held)
+    def __init__(self, fold, fit, bodies):
+        _, train, held = fold
+        self.train, self.held = written(train), written(held)
         self.fitted = studies.run("pushid-fit", f"--recordings={self.train}", *fit, out="model_out")
-        key = os.path.basename(self.fitted.path)[:-len(".json")]
-        flags = "".join(bodies).replace("--", "_").replace("=", "").replace(",", "")
-        self.restoration = os.path.join(studies.KEPT, f"{key}{flags}")
+        with open(os.path.join(studies.BIN, "pushid-train-restoration"), "rb") as file:
+            key = hashlib.sha256(file.read() + "\0".join([self.fitted.path, *bodies]).encode()).hexdigest()[:16]
+        self.restoration = os.path.join(studies.KEPT, f"ldp-bodies-{key}")
         self.bodies = studies.run("pushid-train-restoration", f"--recordings={self.train}",
                                   f"--model={self.fitted.path}", f"--out={self.restoration}", *bodies, out=None)
 
@@ -116,11 +117,11 @@ class Trained:
 
 
 def own(setting, fold):
-    return Trained(setting, fold, [], OWN_BODIES[setting])
+    return Trained(fold, [], OWN_BODIES[setting])
 
 
-def published(setting, fold, fit=(), bodies=(), part=""):
-    return Trained(setting, fold, [*PUBLISHED_FIT, *fit], [*PUBLISHED_BODIES, *bodies], part)
+def published(_, fold):
+    return Trained(fold, PUBLISHED_FIT, PUBLISHED_BODIES)
 
 
 def in_parallel(calls):
@@ -138,6 +139,10 @@ def clustered(rows, metric):
     g = len(groups)
     error = math.sqrt(g / (g - 1) * sum(v * v for v in groups.values())) / len(values) if g > 1 else math.nan
     return mean, error
+
+
+def mean_cell(rows, metric):
+    return with_error(*clustered(rows, metric)) if rows else None
 
 
 def rows_of(json_of_fold, held):
@@ -159,7 +164,7 @@ def evaluated(setting, train, *flags):
 
 def cells(rows):
     scored = [r for r in rows if "MPJPE_m" in r]
-    return [f"{len(scored)} of {len(rows)}"] + [with_error(*clustered(scored, key)) for key, _ in METRICS]
+    return [f"{len(scored)} of {len(rows)}"] + [mean_cell(scored, key) for key, _ in METRICS]
 
 
 def minutes(seconds):
@@ -191,7 +196,7 @@ def strength():
             cell = []
             for name in found:
                 scored = [r for r in found[name] if r["strength"] == kind and "MPJPE_m" in r]
-                cell += [with_error(*clustered(scored, key)) for key in ("MPJPE_m", "hipADE_m", "hipFDE_m")]
+                cell += [mean_cell(scored, key) for key in ("MPJPE_m", "hipADE_m", "hipFDE_m")]
             rows.append([setting, kind, *cell])
     metrics = ["MPJPE, m", "hipADE, m", "hipFDE, m"]
     return studies.table(["", "push", *[f"{m}, {n}" for n in ("as published", "own") for m in metrics]], rows)
@@ -202,7 +207,7 @@ def quarter():
     rows = []
     for name, part in [("all", 1), ("a quarter", 4)]:
         less = [(n, train[::part], held) for n, train, held in made]
-        trained = in_parallel([lambda f=f: published("single", f, part=f"_{part}th" if part > 1 else "") for f in less])
+        trained = in_parallel([lambda f=f: published("single", f) for f in less])
         scores = []
         for one, fold in zip(trained, less):
             scores += rows_of(one.scores("--postprocess=none"), fold[2])
@@ -217,7 +222,7 @@ def ablation():
                          ("one network, no pendulum, three draws averaged", ["--sees=pose", "--nohalves"])]:
         own_flags = [b for b in PUBLISHED_BODIES if not (b.startswith("--coordinates") and "--sees=pose" in bodies)]
         made = folds("single")
-        trained = in_parallel([lambda f=f: Trained("single", f, PUBLISHED_FIT, [*own_flags, *bodies]) for f in made])
+        trained = in_parallel([lambda f=f: Trained(f, PUBLISHED_FIT, [*own_flags, *bodies]) for f in made])
         scores = []
         for one, fold in zip(trained, made):
             scores += rows_of(one.scores("--postprocess=none"), fold[2])
@@ -228,8 +233,7 @@ def ablation():
 def optimizers():
     fold = folds("single")[0]
     rows = []
-    train = written("single_fold1_train", fold[1])
-    held = written("single_fold1_held", fold[2])
+    train, held = written(fold[1]), written(fold[2])
     for name, flags in [("L-BFGS, 200 iterations", ["--network_optimizer=lbfgs"]),
                         ("Adam, 200 passes at 1e-3", ["--network_optimizer=adam"]),
                         ("Adam, 500 passes at 3e-4",
@@ -297,13 +301,13 @@ def people():
 
 
 def sizes():
-    fold = folds("single")[0]
-    trained = published("single", fold)
+    trained = published("single", folds("single")[0])
     with open(os.path.join(trained.restoration, "restoration.json"), encoding="utf-8") as file:
-        counted = json.load(file)["weights"]
-    rows = [[name, f"{count:,}", f"{paper:,}" if paper else None] for name, count, paper in
-            [("LSTM of the self force", 298244, 298244), ("interaction", 270340, 270340),
-             *[(k.replace("_", " "), v, {"CVAE-Lower": 865536, "CVAE-Upper": 1097904}.get(k)) for k, v in counted.items()]]]
+        counted = json.load(file)["training"]["parameters"]
+    counted["self force, rod"] = len(trained.fitted.json["self_network"]["weights"])
+    counted["self force, rod, interaction"] = len(published("groups", folds("groups")[0]).fitted.json["self_network"]["weights"])
+    paper = {"lower autoencoder": 865536, "upper autoencoder": 1097904}
+    rows = [[name, f"{count:,}", f"{paper[name]:,}" if name in paper else None] for name, count in counted.items()]
     return studies.table(["network", "weights", "paper"], rows)
 
 
