@@ -19,12 +19,10 @@
 //   note         for the help
 // Network(id, name, gates, recurrent, cell, biased, Kind): a kind of network (self_network.h).
 //   gates      rows [W U C] per hidden unit
-//   recurrent  whether it remembers its hidden units; then it may have an embedding
-//   cell       whether it has cells besides
+//   recurrent, cell  whether it remembers its hidden units, and cells besides
 //   biased     whether it has LDP's biases, so that a person at rest may feel a force
 //   Kind       its formula (MlpCell in self_network.h) and, by hand, its derivatives (AdvanceMlp in
-//              residuals/sensitivities/network_sensitivities.cc, ActivateMlp and DeactivateMlp in
-//              residuals/packed/packed_network.cc)
+//              network_sensitivities.cc, ActivateMlp and DeactivateMlp in residuals/packed/)
 // clang-format off
 #define PUSHID_SELF_FORCES(Law, Network) \
   Law(kLinear, "linear", kAx, kDq, 30.0, "cross terms, quadratic") \
@@ -38,8 +36,7 @@
 // X(member, near, Term, note): a term between two people.
 //   member  its switch (InteractionTerms), by whose name flags call it
 //   near    what must be near for it to act: kPoints (of contact) or kCarts
-//   Term    its formula (pair.h)
-//   note    for the help of --interaction; empty: none
+//   Term, note  its formula (pair.h), and what the help of --interaction says of it
 #define PUSHID_INTERACTION_TERMS(X)                                                              \
   X(spring, kPoints, ContactPart, "")                                                            \
   X(damping, kPoints, ContactPart, "")                                                           \

@@ -241,6 +241,12 @@ std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOpti
         "--interaction=ldp_discrete is discontinuous, so it can be evaluated but not fitted; fit "
         "ldp (potential,lean), its smooth form");
   }
+  const InteractionTerms& terms = options.model.interaction;
+  if ((terms.ldp_published || terms.learned_in_range) && !NeedsGradientTraining(options)) {
+    warnings.push_back("--interaction=" + InteractionText(options.model) +
+                       " acts from one distance or lean on; derivatives do not see these switches, "
+                       "so the fit may end before its optimum");
+  }
   return warnings;
 }
 

@@ -1,4 +1,4 @@
-// ident: L-BFGS and Adam over the weights of a large network.
+// ident: L-BFGS over the weights of a large network.
 #include "ident/large_networks/large_network_fit.h"
 
 #include <ceres/gradient_problem.h>
@@ -7,11 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
-#include <tuple>
 #include <utility>
 
-#include "datasets/files/random.h"
+#include "ident/large_networks/network_adam.h"
 #include "ident/large_networks/network_judge.h"
 #include "ident/parameters/learned_terms_io.h"
 
@@ -65,15 +63,6 @@ MaybeError CheckFit(const LargeNetworkFit& fit) {
 }
 
 // The training recordings, those that fail at the start held to the frames before.
-std::vector<AdjointRecording> Shortened(const LargeNetworkFit& fit,
-                                        const std::vector<ShortenedRecording>& shortened) {
-  std::vector<AdjointRecording> recordings = fit.training;
-  for (const ShortenedRecording& one : shortened) {
-    recordings[one.training].horizon = one.status.frame;
-  }
-  return recordings;
-}
-
 Result<AdjointGradient> MakeTraining(const LargeNetworkFit& fit,
                                      std::vector<ShortenedRecording>* shortened) {
   Result<AdjointGradient> whole =
@@ -118,128 +107,6 @@ void SolveByLbfgs(const LargeNetworkFit& fit, AdjointGradient* training, Network
   solution->gradients = cost->gradients();
 }
 
-// Adam (Kingma and Ba, 2015) with its usual constants.
-class Adam {
- public:
-  explicit Adam(Eigen::Index size)
-      : mean_(Eigen::ArrayXd::Zero(size)), square_(Eigen::ArrayXd::Zero(size)) {}
-
-  void Step(const Eigen::ArrayXd& gradient, double rate, std::vector<double>* x) {
-    constexpr double kMean = 0.9, kSquare = 0.999, kTiny = 1e-8;
-    mean_ = kMean * mean_ + (1.0 - kMean) * gradient;
-    square_ = kSquare * square_ + (1.0 - kSquare) * gradient.square();
-    of_mean_ *= kMean, of_square_ *= kSquare;
-    const Eigen::ArrayXd scale = (square_ / (1.0 - of_square_)).sqrt() + kTiny;
-    Eigen::Map<Eigen::ArrayXd>(x->data(), mean_.size()) -= rate / (1.0 - of_mean_) * mean_ / scale;
-  }
-
- private:
-  Eigen::ArrayXd mean_, square_;
-  double of_mean_ = 1.0, of_square_ = 1.0;
-};
-
-// A gradient that is far longer than those before tells of somebody who is about to fall, and
-// little of where to go.
-class Clip {
- public:
-  void Shorten(Eigen::ArrayXd* gradient) {
-    constexpr double kLongest = 2.0, kKept = 0.95;  // of the mean length so far
-    const double length = gradient->matrix().norm();
-    const double most = mean_ > 0.0 ? std::min(length, kLongest * mean_) : length;
-    if (most < length) *gradient *= most / length;
-    mean_ = mean_ > 0.0 ? kKept * mean_ + (1.0 - kKept) * most : length;
-  }
-
- private:
-  double mean_ = 0.0;
-};
-
-// The training recordings at random, kRecordingsOfAStep at a time. Where a rollout leaves the
-// domain, the frames before count.
-class TrainingBatches {
- public:
-  static Result<TrainingBatches> Create(const LargeNetworkFit& fit,
-                                        std::vector<AdjointRecording> recordings) {
-    constexpr size_t kRecordingsOfAStep = 8;
-    TrainingBatches made(fit);
-    made.random_.Shuffle(&recordings);
-    for (size_t i = 0; i < recordings.size(); i += kRecordingsOfAStep) {
-      const auto end = recordings.begin() + std::min(i + kRecordingsOfAStep, recordings.size());
-      Result<AdjointGradient> batch =
-          AdjointGradient::Create({recordings.begin() + i, end}, fit.model, fit.map, fit.sigmas);
-      if (!batch.ok()) return batch.error();
-      made.batches_.push_back(std::move(batch.value()));
-    }
-    return made;
-  }
-
-  // Calls step(gradient) for each, in random order; returns the sum of their costs and failures.
-  template <typename Step>
-  std::pair<double, int> Pass(const std::vector<double>& x, const Step& step) {
-    std::pair<double, int> sum = {0.0, 0};
-    std::vector<int> order(batches_.size());
-    std::iota(order.begin(), order.end(), 0);
-    random_.Shuffle(&order);
-    const double share = 1.0 / static_cast<double>(batches_.size());
-    for (int k : order) {
-      const double* shared = variables_.Shared(x.data()).data();
-      gradient_.setZero();
-      const AdjointCost cost =
-          batches_[k].Evaluate(shared, x.data(), by_shared_.data(), gradient_.data());
-      variables_.Scale(by_shared_, gradient_.data());
-      of_priors_.setZero();
-      sum.first += cost.cost + share * variables_.AddPriors(x.data(), of_priors_.data());
-      sum.second += cost.num_failed();
-      gradient_ += share * of_priors_;
-      step(&gradient_);
-    }
-    return sum;
-  }
-
- private:
-  explicit TrainingBatches(const LargeNetworkFit& fit)
-      : variables_(fit),
-        random_(fit.options.seed),
-        gradient_(variables_.size()),
-        of_priors_(variables_.size()),
-        by_shared_(fit.shared.size()) {}
-
-  NetworkVariables variables_;
-  Random random_;
-  std::vector<AdjointGradient> batches_;
-  Eigen::ArrayXd gradient_, of_priors_;
-  std::vector<double> by_shared_;
-};
-
-// Passes over all batches; the rate falls to a hundredth of its start.
-MaybeError SolveByAdam(const LargeNetworkFit& fit, const std::vector<ShortenedRecording>& shortened,
-                       NetworkJudge* judge, std::vector<double>* x,
-                       LargeNetworkSolution* solution) {
-  constexpr double kLastRate = 0.01;
-  Result<TrainingBatches> batches = TrainingBatches::Create(fit, Shortened(fit, shortened));
-  if (!batches.ok()) return batches.error();
-  Adam adam(static_cast<Eigen::Index>(x->size()));
-  Clip clip;
-  const int passes = fit.options.max_iterations;
-  for (int pass = 0; pass <= passes; ++pass) {
-    const double rate =
-        pass == 0 ? 0.0 : fit.options.rate * std::pow(kLastRate, double(pass) / passes);
-    ceres::IterationSummary summary;
-    summary.iteration = pass;
-    summary.step_is_successful = true;
-    std::tie(summary.cost,
-             solution->training_failures) = batches.value().Pass(*x, [&](Eigen::ArrayXd* gradient) {
-      ++solution->gradients;
-      summary.gradient_max_norm = std::max(summary.gradient_max_norm, gradient->abs().maxCoeff());
-      clip.Shorten(gradient);
-      if (rate > 0.0) adam.Step(*gradient, rate, x);
-    });
-    if ((*judge)(summary) != ceres::SOLVER_CONTINUE) break;
-  }
-  solution->message = "all passes done";
-  return std::nullopt;
-}
-
 }  // namespace
 
 std::vector<SharedPrior> SharedPriors(const ParameterTable& table, const ParameterMap& map) {
@@ -276,7 +143,8 @@ Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,
   NetworkJudge judge(fit, fit.held_out.empty() ? nullptr : &held_out.value(), &x, progress,
                      &solution);
   if (fit.options.optimizer == NetworkOptimizer::kAdam) {
-    if (MaybeError error = SolveByAdam(fit, solution.shortened, &judge, &x, &solution)) {
+    if (MaybeError error =
+            SolveByAdam(fit, Shortened(fit, solution.shortened), &judge, &x, &solution)) {
       return *error;
     }
   } else {

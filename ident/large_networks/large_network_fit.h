@@ -6,16 +6,14 @@
 //   LargeNetworkFit fit{training, held_out, options.model, options.table.Map(), options.sigmas};
 //   fit.shared = ..., fit.options.weight_sigma = ...;
 //   Result<LargeNetworkSolution> solution = FitLargeNetwork(fit);
-// Starts from the network that the model holds: random hidden weights and no output. Nothing is
-// drawn at random on the way, so that the same start gives the same bits, unless the time limit
-// ends it.
+// Starts from the network that the model holds: random hidden weights and no output. The same start
+// (and, of Adam, the same seed) gives the same bits, unless the time limit ends it.
 //
 // Early stopping: after every iteration the held-out recordings are judged, by those that fail
-// first, then by cost; the best point of all is kept. Steps under which a training recording leaves
-// the domain are not taken. Parameters have no bounds here: keep them fixed, or hold them by
-// priors on the fitted scale. Adam steps on a few recordings at a time, as LDP trains; its best
-// point without held-out recordings is the last, and the cost of a pass is summed while the weights
-// move.
+// first, then by cost; the best point of all is kept. L-BFGS takes no step under which a training
+// recording leaves the domain. Parameters have no bounds here: keep them fixed, or hold them by
+// priors on the fitted scale. Adam (network_adam.h): the cost of a pass is summed while
+// the weights move.
 #pragma once
 
 #include <functional>
@@ -89,7 +87,7 @@ struct LargeNetworkSolution {
   int training_failures = 0;  // in the last pass of Adam
   bool stopped_early = false;
   bool converged = false;  // by tolerance
-  std::string message;     // Ceres'
+  std::string message;     // why it ended
   int gradients = 0;       // evaluations
   double seconds = 0.0;
   std::vector<ShortenedRecording> shortened;

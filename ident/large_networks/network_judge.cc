@@ -47,6 +47,15 @@ void NetworkVariables::Scale(const std::vector<double>& by_shared, double* gradi
   }
 }
 
+std::vector<AdjointRecording> Shortened(const LargeNetworkFit& fit,
+                                        const std::vector<ShortenedRecording>& shortened) {
+  std::vector<AdjointRecording> recordings = fit.training;
+  for (const ShortenedRecording& one : shortened) {
+    recordings[one.training].horizon = one.status.frame;
+  }
+  return recordings;
+}
+
 NetworkJudge::NetworkJudge(const LargeNetworkFit& fit, AdjointGradient* held_out,
                            const std::vector<double>* x, const LargeNetworkProgress& progress,
                            LargeNetworkSolution* solution)
@@ -85,7 +94,6 @@ ceres::CallbackReturnType NetworkJudge::operator()(const ceres::IterationSummary
     solution_.initial_held_out_cost = now.held_out_cost;
   }
   const LargeNetworkIteration& best = solution_.trace[best_];
-  // Where nothing is held out, the latest is the best: the cost never rises.
   if (first || held_out_ == nullptr ||
       std::pair(now.held_out_failures, now.held_out_cost) <
           std::pair(best.held_out_failures, best.held_out_cost)) {

@@ -34,7 +34,11 @@ class NetworkVariables {
   std::vector<double> shared_;
 };
 
-// Judges what is held out, and keeps the best point.
+// The training recordings, those of `shortened` held to the frames before their failure.
+std::vector<AdjointRecording> Shortened(const LargeNetworkFit& fit,
+                                        const std::vector<ShortenedRecording>& shortened);
+
+// Judges what is held out, and keeps the best point: the latest where nothing is.
 class NetworkJudge : public ceres::IterationCallback {
  public:
   // held_out: null where nothing is; x: what is moved.

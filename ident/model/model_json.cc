@@ -188,7 +188,8 @@ class ModelReader {
     const std::string interaction = At("model").at("interaction");
     const auto named = ParseInteraction("interaction", interaction);
     const PairShape pair = options.learned != nullptr ? options.learned->pair : PairShape{};
-    if (!named.ok() || named.value().pair.hidden != pair.hidden) {
+    if (!named.ok() || named.value().pair.hidden != pair.hidden ||
+        named.value().pair.ldp != pair.ldp) {
       throw WrongEntry("model/interaction",
                        "interaction is " + interaction + ", which self_network is not");
     }

@@ -25,6 +25,9 @@ std::string MissingNetwork(const FitOptions& o) {
            " acts on networks, but there is none; add one, as in --self_force=mlp:4";
   }
   const bool pair = network != nullptr && network->pair.any();
+  if (o.model.interaction.learned_in_range != (pair && network->pair.ldp)) {
+    return "--interaction names another network between people than there is";
+  }
   if (o.model.interaction.learned != pair) {
     return pair ? "a network between people is there, but --interaction does not name network:SIZES"
                 : "--interaction names a network to be fitted, but there is none; name its layers, "

@@ -11,7 +11,8 @@ inline constexpr char kLdpPublished[] = "ldp_published";
 inline constexpr char kLdpPublishedGroups[] = "ldp_published_groups";
 
 // Plain PD balance and one friction, from upright. Kd is 200 N m per frame of 1/60 s in the paper
-// and in its code, hence 200 / 60 N m s/rad; whoever reads it as SI takes --fix=Kd_theta=200.
+// and in its code, hence 200 / 60 N m s/rad; to read it as SI, use
+// --fix=Kd_theta=200,Kd_phi=200.
 FitOptions LdpPreset();
 
 // What LDP puts between people, to fit around: potential, torques against leaning on each other,

@@ -127,7 +127,9 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
       InverseMassMatrix<double>(at_rest, Angles<double>(), at_rest.mass + scene.dt * rest.ground);
   for (int i = 0; i < 2; ++i) rest.by_state(i, 2 + i) -= rest.ground;
   Eigen::MatrixXd learned = Eigen::MatrixXd::Zero(5, kMemoryAt);
-  if (options.learned != nullptr) {
+  const auto& network = options.learned;
+  // LDP's networks have no rest: their simulations tell.
+  if (network != nullptr && !network->shape.biased() && !network->rod.biased()) {
     learned = LearnedStep(*options.learned, self, parameters);
   }
   const Eigen::Index size = learned.cols(), memory = size - kMemoryAt;

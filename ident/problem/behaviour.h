@@ -46,7 +46,7 @@ struct Behaviour {
   std::vector<SettlingSimulation> simulations;
   // Largest real part of the free modes at rest, 1/s, leaving out the cart's free position;
   // positive: the slightest push grows.
-  double fastest_growth = 0.0;
+  double fastest_growth = 0.0;  // of the physics alone beside networks that have no rest
   // A rod that nothing pulls back neither grows nor decays, but for rounding.
   bool unstable() const { return fastest_growth > 1e-6; }
   bool settles = false;  // every settling simulation settled

@@ -200,6 +200,7 @@ std::string PerFrameText(const FitResult& result) {
     text += (text.empty() ? "" : ", ") + result.options.table[id].name + " " +
             Rounded(kLdpRate * result.parameters[id], 4);
   }
+  if (text.empty()) return "";
   return "In LDP's units, per frame of 1/60 s: " + text + ".\n";
 }
 

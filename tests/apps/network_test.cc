@@ -84,7 +84,7 @@ TEST_F(NetworkAppTest, BodiesFollowARodThatMoves) {
            {"pushid-animate", {Recordings(), "--id=" + id_, "--out=" + Path("a.html")}},
            {"pushid-formation",
             {"--formation=line", "--people=3", "--duration=1", "--restoration=rigid",
-             "--poses_from=" + manifest_, "--bodies_out=" + Path("f.bvh")}}}) {
+             "--people_from=" + manifest_, "--bodies_out=" + Path("f.bvh")}}}) {
     std::vector<std::string> all = {model};
     all.insert(all.end(), arguments.begin(), arguments.end());
     const auto run = RunApp(app, all);

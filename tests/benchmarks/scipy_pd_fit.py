@@ -7,7 +7,7 @@ part of the tests. Against it stands, as whole processes:
 
   time /usr/bin/python3 tests/benchmarks/scipy_pd_fit.py ../shared/fzj_push/manifest.json
   time pushid-fit --recordings=../shared/fzj_push/manifest.json --setting=single
-  time pushid-fit --recordings=../shared/fzj_push/manifest.json --setting=single --preset=ldp --starts=1
+  time pushid-fit --recordings=../shared/fzj_push/manifest.json --setting=single --preset=ldp --friction=anisotropic --free=mu_y --gain_scaling=mass
 
 --start picks one start (default: each in turn), --loss is least_squares' own.
 """

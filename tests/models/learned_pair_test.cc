@@ -81,8 +81,8 @@ TEST(LearnedPair, EachAsksAlone) {
   EXPECT_GT((one.on_n + one.on_j).norm(), 1.0) << "not mutual";
 }
 
-// One rectified unit that sees dx: F_x on n = 170 N (2 max(0, dx / 0.4 + 1) + 0.5), whoever leans
-// or touches, and whatever n weighs; nothing from 0.5 m on.
+// One rectified unit that sees dx: F_x on n = 170 N (2 max(0, dx / 0.4 + 1) + 0.5), without contact
+// and whatever n weighs; nothing from 0.5 m on.
 TEST(LearnedPair, LdpsActsOnEveryNeighbourInRange) {
   const PairShape shape{{1}, true};
   std::vector<double> weights(shape.num_weights(), 0.0);

@@ -172,12 +172,13 @@ def rivals():
                                  env=dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")).stdout
         return float(re.search(r"evaluations, ([0-9.]+) s", printed).group(1))
 
+    six_parameters = ["--preset=ldp", "--friction=anisotropic", "--free=mu_y", "--gain_scaling=mass"]
     fit = [os.path.join(studies.BIN, "pushid-fit"), f"--recordings={studies.MANIFEST}", "--setting=single"]
-    times = {"`pushid-fit --preset=ldp`": ([], []), "`pushid-fit`, its default of 6 parameters and 2 pooled": ([], []),
+    times = {"`pushid-fit --preset=ldp`, with six parameters": ([], []), "`pushid-fit`, its default of 6 parameters and 2 pooled": ([], []),
              "SciPy, `least_squares`": ([], []), "PyTorch, autograd and `LBFGS`": ([], [])}
     for _ in range(5):  # in turns
         for (solves, processes_of), (solve, command) in zip(times.values(), [
-                (lambda: solve_seconds("--preset=ldp"), [*fit, "--preset=ldp"]), (solve_seconds, fit),
+                (lambda: solve_seconds(*six_parameters), [*fit, *six_parameters]), (solve_seconds, fit),
                 (lambda: told("scipy"), script("scipy")), (lambda: told("torch"), script("torch"))]):
             solves.append(solve())
             processes_of.append(processor_seconds_once(*command))

@@ -89,6 +89,8 @@ std::vector<ModelOptions> SomeModels(double weight, Random* random) {
   models[0].interaction = {};
   models[0].interaction.learned = true;
   models[1].interaction.spring = true;
+  models.push_back(WithNetwork({}, weight, random, {}, {{3, 2}, true}));
+  models.back().interaction.ldp_published = true;
   return models;
 }
 
@@ -119,9 +121,11 @@ TEST(LearnedPairRollouts, FixedWeightsAreTheModels) {
 }
 
 // All pairs of a frame at once, some of whom do not touch, and pair by pair.
-TEST(HeldPairs, AreThoseOfEachPairAlone) {
+class HeldPairsOf : public testing::TestWithParam<bool> {};  // LDP's network
+
+TEST_P(HeldPairsOf, AreThoseOfEachPairAlone) {
   Random random(74);
-  ModelOptions options = WithNetwork({}, 0.3, &random, {}, {{20, 9}});
+  ModelOptions options = WithNetwork({}, 0.3, &random, {}, {{20, 9}, GetParam()});
   options.interaction.spring = options.interaction.damping = true;
   const PairShape& shape = options.learned->pair;
   const double* const weights = options.learned->weights.data();
@@ -159,6 +163,8 @@ TEST(HeldPairs, AreThoseOfEachPairAlone) {
   }
   EXPECT_GT(touching, 8);
 }
+
+INSTANTIATE_TEST_SUITE_P(Both, HeldPairsOf, testing::Values(false, true));
 
 }  // namespace
 }  // namespace pushid
