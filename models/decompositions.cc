@@ -64,6 +64,9 @@ Eigen::MatrixXd Triangle(const Eigen::MatrixXd& a) {
 }
 
 RightSingular DecomposeRight(const Eigen::MatrixXd& a) {
+  if (a.rows() == 0) {
+    return {Eigen::VectorXd::Zero(a.cols()), Eigen::MatrixXd::Identity(a.cols(), a.cols())};
+  }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixV()};
 }

@@ -1,6 +1,7 @@
 // ident: a fit, from recordings to a judged result.
 #include "ident/fit/fit.h"
 
+#include <limits>
 #include <optional>
 
 #include "ident/fit/estimates_table.h"
@@ -33,7 +34,12 @@ Result<SolvedFit> SolveFit(const std::vector<PendulumRecording>& recordings,
   const Result<FitOptions> trained = WithLargeNetworkTrained(recordings, options, progress);
   if (!trained.ok()) return trained.error();
   SolvedFit fit{FitProblem(recordings, trained.value()), {}, {}, ""};
+  // What was trained together is an optimum of it all already.
+  const bool stays =
+      options.network_training == NetworkTraining::kTogether && NeedsGradientTraining(options);
+  if (stays) fit.problem.set_gradient_tolerance(std::numeric_limits<double>::infinity());
   fit.solved = SolveAsAsked(&fit.problem, progress);
+  fit.problem.set_gradient_tolerance(options.gradient_tolerance);
   if (!fit.ok()) return fit;
   fit.no_noise = EstimateNoise(fit.Best().to, &fit.problem);
   if (options.ensemble > 1) fit.others = FitOtherSeeds(recordings, trained.value());

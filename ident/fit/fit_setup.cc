@@ -63,7 +63,8 @@ MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* 
 // Options that were given but act on nothing: an error that says what is missing.
 MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   const auto& network = options.model.learned;
-  for (const char* name : {"network_prior", "early_stopping", "ensemble"}) {
+  for (const char* name : {"network_prior", "early_stopping", "ensemble", "network_training",
+                           "network_optimizer", "network_iterations", "network_rate"}) {
     if (network != nullptr || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name +
                  " acts on networks, but there is none; add one, as in --self_force=mlp:4"};

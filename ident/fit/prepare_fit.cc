@@ -16,13 +16,15 @@
 namespace pushid {
 namespace {
 
+bool AnyGroup(const std::vector<PendulumRecording>& recordings) {
+  return std::any_of(recordings.begin(), recordings.end(),
+                     [](const PendulumRecording& recording) { return recording.num_people() > 1; });
+}
+
 Warnings WarningsBefore(const std::vector<PendulumRecording>& recordings,
                         const FitOptions& options) {
   Warnings warnings = FindingWarnings(FitFindings(FindingsOf(recordings)));
-  const bool groups =
-      std::any_of(recordings.begin(), recordings.end(),
-                  [](const PendulumRecording& recording) { return recording.num_people() > 1; });
-  if (groups && !options.model.interaction.Any()) {
+  if (AnyGroup(recordings) && !options.model.interaction.Any()) {
     warnings.emplace_back(
         "recordings contain several people, but the model has no interaction between them "
         "(--preset=group or --interaction=contact adds one)");
@@ -174,6 +176,11 @@ MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                       Warnings* warnings) {
   if (recordings.empty()) return Error{"there are no recordings to fit"};
+  if (options->model.interaction.learned && !AnyGroup(recordings)) {
+    return Error{
+        "--interaction names a network between people, but every recording is of one person; leave "
+        "it out, or fit recordings of groups"};
+  }
   if (MaybeError error = CheckPoolingLabel(recordings, *options)) return error;
   if (MaybeError error = CheckBodies(recordings, *options)) return error;
   if (MaybeError error = CheckFrameRates(recordings, *options)) return error;

@@ -92,6 +92,11 @@ Result<FitOptions> TrainByGradient(const std::vector<PendulumRecording>& recordi
         return true;
       });
   if (!trained.ok()) return trained.error();
+  if (trained.value().training_failures == static_cast<int>(fit.training.size())) {
+    return Error{
+        "in the last pass of the training every rollout left the domain; lower "
+        "--network_rate"};
+  }
 
   FitOptions held = options;
   held.model.learned = trained.value().Network(*options.model.learned);

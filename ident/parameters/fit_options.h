@@ -51,7 +51,7 @@ constexpr EnumNames<FitStart, 2> Names(FitStart) {
 // How a network that is too large for Gauss-Newton is trained, and by what.
 enum class NetworkTraining {
   kAfterPhysics,  // the physical model alone, then the weights, then the physical model again
-  kTogether       // weights and free parameters at once, from the nominal values; then these again
+  kTogether       // weights and free parameters at once, from the nominal values
 };
 constexpr EnumNames<NetworkTraining, 2> Names(NetworkTraining) {
   return {{{"after_physics", NetworkTraining::kAfterPhysics},

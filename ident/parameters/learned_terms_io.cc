@@ -19,7 +19,8 @@ constexpr uint64_t kRodSeed = 7919, kPairSeed = 104729;
 
 // Before the sizes; the second is LDP's.
 constexpr std::string_view kNetworkTerm = "network:", kLdpNetworkTerm = "ldp_network:";
-constexpr int kLdpEmbedding = 32;
+constexpr int kLdpHidden = 256, kLdpEmbedding = 32;
+constexpr char kLdpRod[] = "256-128-256";
 
 // A size between 1 and kLargestSize, or 0.
 int Size(const std::string& text) {
@@ -52,7 +53,7 @@ Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& te
   NetworkShape shape;
   shape.kind = parts.empty() ? NetworkKind::kNone
                              : FromName<NetworkKind>(parts[0]).value_or(NetworkKind::kNone);
-  shape.hidden = kDefaultHidden;
+  shape.hidden = shape.biased() ? kLdpHidden : kDefaultHidden;
   const bool known =
       shape.any() && text.back() != ':' && parts.size() <= (shape.recurrent() ? 3 : 2);
   if (shape.biased()) shape.embedding = kLdpEmbedding;  // which takes the mass
@@ -107,10 +108,9 @@ Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
   if (text == "constant") return RodShape{};
   if (text == "linear") return RodShape{RodKind::kLinear, {}};
   const size_t colon = text.find(':');
-  const std::string sizes =
-      colon == std::string::npos ? std::to_string(kDefaultHidden) : text.substr(colon + 1);
-  const RodShape shape{FromName<RodKind>(text.substr(0, colon)).value_or(RodKind::kConstant),
-                       HiddenSizes(sizes)};
+  RodShape shape{FromName<RodKind>(text.substr(0, colon)).value_or(RodKind::kConstant)};
+  const std::string usual = shape.biased() ? kLdpRod : std::to_string(kDefaultHidden);
+  shape.hidden = HiddenSizes(colon == std::string::npos ? usual : text.substr(colon + 1));
   if (shape.layered() && !shape.hidden.empty()) return shape;
   return Error{flag + " is '" + text +
                "'; it must be constant, linear, mlp:4 or, as LDP's, ldp:256-128-256 (hidden sizes "

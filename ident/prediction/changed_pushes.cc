@@ -20,8 +20,11 @@ MaybeError CheckAgain(const std::vector<int>& again, const Scene& scene, int fra
   int end = scene.LastPushEnd();
   for (int frame : again) {
     const std::string start = "--push_again: frame " + std::to_string(frame);
+    if (frame < 0) return Error{start + " is negative; frames count from 0"};
     if (frame < end) {
-      return Error{start + " comes before the push before it has ended; pushes must not overlap: " +
+      return Error{start +
+                   " comes before the push before it has ended; pushes must not overlap, and stand "
+                   "in ascending order: " +
                    "give frame " + std::to_string(end) + " or a later one"};
     }
     // Row t drives the step from frame t to t + 1.

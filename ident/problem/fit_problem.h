@@ -51,6 +51,7 @@ class FitProblem {
   void Weigh(const CostWeights& weights);
   void set_settling_weight(double weight) { options_.settling_weight = weight; }
   void set_function_tolerance(double tolerance) { options_.function_tolerance = tolerance; }
+  void set_gradient_tolerance(double tolerance) { options_.gradient_tolerance = tolerance; }
 
   const ParameterMap& map() const { return map_; }
   // As the model sees them: in axes along their pushes, where it is the same in all directions.

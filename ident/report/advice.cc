@@ -155,6 +155,12 @@ void Adviser::Person() {
   const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour));
   const bool tail = o.model.push_tail == PushTail::kExponential;
   if (OfSteps()) return;  // nothing can hold such a fit to settle
+  if (o.network_training == NetworkTraining::kTogether) {
+    return Add(sentence +
+                   "; nothing in the model as published holds people to settle. Compare the "
+                   "errors with those of a model that does.",
+               Same().Set("preset", kAutoPreset));
+  }
   switch (verdict) {
     case Verdict::kSettles:
       return;

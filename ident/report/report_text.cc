@@ -45,6 +45,13 @@ std::string TrainingText(const FitOptions& o) {
     text += ", early stopping on " + Rounded(100.0 * o.early_stopping, 4) + " % of the recordings";
   }
   if (o.model.learned->num_weights() > kMostGaussNewtonWeights) {
+    const bool together = o.network_training == NetworkTraining::kTogether;
+    const bool adam = o.network_optimizer == NetworkOptimizer::kAdam;
+    text += std::string(", trained ") + (together ? "together with the free parameters " : "") +
+            "by " +
+            (adam ? "Adam, " + std::to_string(o.network_iterations) + " passes" + ", rate " +
+                        Rounded(o.network_rate, 3) + " falling to a hundredth"
+                  : "L-BFGS");
     text += ", fixed while the errors above were computed";
   }
   return text;

@@ -74,14 +74,14 @@ def read_list(path):
     return numbers
 
 
-def folders(path, pattern):
+def folders(path, pattern, like):
     """The names in a folder that match, sorted: numbers by value."""
     try:
         names = [name for name in os.listdir(path) if re.fullmatch(pattern, name)]
     except OSError as error:
         raise Problem(f"{path}: {error.strerror}; {COMPLETE}") from None
     if not names:
-        raise Problem(f"{path}: nothing named as {pattern}; {COMPLETE}")
+        raise Problem(f"{path}: none of its names is like {like}; {COMPLETE}")
     return sorted(names, key=lambda name: (int(name) if name.isdigit() else 0, name))
 
 
@@ -163,7 +163,7 @@ def single_people(checkout):
     loaded = [load(path) for path in files]
     for path, value in zip(files, loaded):
         check(isinstance(value, dict), path, "no dictionary by person")
-    motion = {name: folders(os.path.join(data, name), r".*\.bvh") for name in folders(data, r"X\d+")}
+    motion = {name: folders(os.path.join(data, name), r".*\.bvh", "NAME.bvh") for name in folders(data, r"X\d+", "X09")}
     splits = read_splits(data, {name: len(takes) for name, takes in motion.items()})
     for name, takes in motion.items():
         pushes = push_rows(loaded[0].get(name), loaded[1].get(name), files, name, len(takes))
@@ -180,7 +180,8 @@ def groups(checkout):
     raw = os.path.join(checkout, GROUPS)
     data, masses = os.path.join(raw, "group_data"), os.path.join(raw, "group_mass_id_set.pkl")
     people_of = load(masses)
-    numbers = {name: folders(os.path.join(data, name), r"\d+") for name in folders(data, "|".join(GROUP_STRENGTHS))}
+    numbers = {name: folders(os.path.join(data, name), r"\d+", "0")
+               for name in folders(data, "|".join(GROUP_STRENGTHS), "row_1")}
     for name, given in numbers.items():
         check(given == [str(n) for n in range(len(given))], os.path.join(data, name), "folders not numbered from 0 on")
     splits = read_splits(data, {name: len(given) for name, given in numbers.items()})
@@ -192,7 +193,7 @@ def groups(checkout):
         pushes = push_rows(load(files[0]), load(files[1]), files, name, len(given))
         for number, label in enumerate(GROUP_STRENGTHS[name][:len(given)].ljust(len(given), ".")):
             folder = os.path.join(data, name, str(number))
-            takes = folders(folder, r"\d+_X-\d+\.bvh")
+            takes = folders(folder, r"\d+_X-\d+\.bvh", "0_X-07.bvh")
             people = [take[take.index("_") + 1:-4] for take in takes]
             if people_of[name][number] != [f"{name}_{person[2:]}" for person in people]:
                 print(f"warning: {masses}: {name} number {number} has other people than the files in {folder}; masses "

@@ -22,6 +22,7 @@ TEST(SelfNetworkIo, NamesAreReadAndWritten) {
   }
   EXPECT_EQ(ParseSelfForce("f", "mlp").value().network.hidden, 4);
   EXPECT_EQ(ParseSelfForce("f", "ldp:8").value().network.embedding, 32) << "it takes the mass";
+  EXPECT_EQ(NetworkName(ParseSelfForce("f", "ldp").value().network), "ldp:256:32");
   EXPECT_EQ(ParseSelfForce("f", "gru:4,none,linear,linear").value().kind, SelfForceKind::kLinear);
   for (const char* text : {"rnn", "mlp:", "mlp:0", "mlp:x", "mlp:4:2", "gru:4:0", "mlp:99999",
                            "mlp:4,gru:4", "gru:4:2:1", "mlp:-1"}) {
@@ -60,6 +61,7 @@ TEST(SelfNetworkIo, RodsAreReadAndWritten) {
     EXPECT_EQ(RodName(shape.value()), text);
   }
   EXPECT_EQ(RodName(ParseRod("f", "mlp").value()), "mlp:4");
+  EXPECT_EQ(RodName(ParseRod("f", "ldp").value()), "ldp:256-128-256");
   for (const char* text : {"", "none", "gru:4", "linear:4", "constant:1", "mlp:", "mlp:0", "mlp:4-",
                            "mlp:-4", "mlp:4--4", "mlp:4:4", "mlp:99999", "mlp:1-1-1-1-1-1-1-1-1"}) {
     const auto shape = ParseRod("--rod", text);
