@@ -39,7 +39,6 @@ FitOptions LdpPublishedPreset() {
   o.preset = kLdpPublished;
   for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = false;
   o.table[kKdX].nominal = o.table[kKdY].nominal = kCartGainPerFrame / kLdpRate;
-  o.table[kRodLift].nominal = 0.0;  // the cart keeps its height
   o.model.cart_derivative = CartDerivative::kBackward;
   o.model.push = PushUse::kAdded;
   o.model.learned =

@@ -126,8 +126,6 @@ Row RodRow() {
                        LearnedTerms network = Learned(*o);
                        network.rod = rod.value();
                        SetLearned(network, o);
-                       o->table[kRodLift].nominal =
-                           rod.value().biased() ? 0.0 : BaseTable()[kRodLift].nominal;
                        return std::nullopt;
                      });
   row.text = [](const FitOptions& o) { return RodName(Learned(o).rod); };

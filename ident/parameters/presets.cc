@@ -246,6 +246,8 @@ void FreeSideways(FitOptions* o) {
 void FreeTerms(FitOptions* o) {
   FreeSelfForce(o->self_force, &o->table);
   FreeByTerm(o->model, &o->table);
+  // Beside LDP's law of the rod the cart keeps its height.
+  if (RodMoves(o->model) && !RodMovesCart(o->model)) o->table[kRodLift].nominal = 0.0;
   FreeNoise(o);
   for (ParameterSpec& spec : o->table.specs) {
     if (!o->preset_priors) spec.prior.reset();

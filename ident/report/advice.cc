@@ -154,13 +154,8 @@ void Adviser::Person() {
   const Verdict verdict = VerdictOf(result_.behaviour, o.model);
   const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour));
   const bool tail = o.model.push_tail == PushTail::kExponential;
-  if (OfSteps()) return;  // nothing can hold such a fit to settle
-  if (o.network_training == NetworkTraining::kTogether) {
-    return Add(sentence +
-                   "; nothing in the model as published holds people to settle. Compare the "
-                   "errors with those of a model that does.",
-               Same().Set("preset", kAutoPreset));
-  }
+  // Nothing can hold such a fit to settle, and nothing published holds LDP's.
+  if (OfSteps() || o.network_training == NetworkTraining::kTogether) return;
   switch (verdict) {
     case Verdict::kSettles:
       return;

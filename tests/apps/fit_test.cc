@@ -254,7 +254,8 @@ TEST_F(FitAppTest, GainsThatCannotBeToldApartAreNamed) {
 TEST_F(FitAppTest, ThePlainPresetFitsToo) {
   const nlohmann::ordered_json model = Json(FitModel("m.json", {"--preset=ldp", "--starts=1"}));
   EXPECT_EQ(model["model"]["preset"], "ldp");
-  EXPECT_TRUE(Contains(fit_.out, "mu_y"));
+  EXPECT_FALSE(Contains(fit_.out, "mu_y"));
+  EXPECT_TRUE(Contains(fit_.out, "In LDP's units, per frame of 1/60 s: Kd_theta "));
 }
 
 }  // namespace

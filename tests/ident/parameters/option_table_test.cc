@@ -72,7 +72,8 @@ TEST(OptionTable, NumbersGoWhereTheirRowSays) {
 
 TEST(OptionTable, EveryPresetComesBackFromJson) {
   for (const char* name : {"tail", "ldp", "group", "ldp_published_groups"}) {
-    const FitOptions options = MakePreset(name).value();
+    FitOptions options = MakePreset(name).value();
+    options.model.learned = nullptr;  // is written apart
     const auto json = OptionsJson(options);
     EXPECT_EQ(OptionsJson(OptionsFrom(json)).dump(), json.dump()) << name;
   }

@@ -76,7 +76,7 @@ TEST(ChangedPushes, ErrorsNameTheFlagAndTheReason) {
   EXPECT_TRUE(Contains(Message(1.0, {4}), "give frame 5 or a later one"));
   EXPECT_TRUE(Contains(Message(1.0, {20, 21}), "frame 21 comes before"));
   EXPECT_TRUE(Contains(Message(1.0, {39}), "--push_again: frame 39 is too late for the 40 frames"));
-  EXPECT_TRUE(Contains(Message(1.0, {-1}), "frame -1 comes before"));
+  EXPECT_TRUE(Contains(Message(1.0, {-1}), "frame -1 is negative"));
   PendulumRecording calm = Pushed();
   calm.scene.pushes.clear();
   const MaybeError error = CheckChangedPushes({1.37, {}}, calm, 40);

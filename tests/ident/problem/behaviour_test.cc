@@ -306,7 +306,7 @@ TEST(Behaviour, AFitThatIsNotHeldToSettleSaysSo) {
 }
 
 // The trap in the published data: least squares makes people drive themselves, and must say so.
-TEST(Behaviour, LdpPresetOnRealRecordingsIsSelfPropelling) {
+TEST(Behaviour, PlainPdOnRealRecordingsIsSelfPropelling) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
   LoadOptions load;
   load.setting = "single";
@@ -315,7 +315,10 @@ TEST(Behaviour, LdpPresetOnRealRecordingsIsSelfPropelling) {
   const FitOptions preset = MakePreset("ldp").value();
   FitOptions options;
   options.model = preset.model;
+  options.model.friction = FrictionKind::kAnisotropic;
+  options.model.gain_scaling = GainScaling::kMass;
   options.table = preset.table;
+  options.table[kMuY].free = true;
   const FitResult result = Fit(AsPendulums(loaded.value()), options);
   ASSERT_TRUE(result.ok());
   EXPECT_TRUE(result.behaviour.self_propelling);

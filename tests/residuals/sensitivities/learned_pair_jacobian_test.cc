@@ -131,7 +131,8 @@ TEST_P(HeldPairsOf, AreThoseOfEachPairAlone) {
   const double* const weights = options.learned->weights.data();
   Scene scene = SceneOfPeople(6, 0.05, &random);
   for (int n = 4; n < 6; ++n) scene.people[n].start.q[0] += 5.0;
-  const std::vector<ParameterSet<double>> p(6, RecoveringParameters());
+  std::vector<ParameterSet<double>> p(6, RecoveringParameters());
+  p[0][kNeighbourRange] = 3.0;
   SceneForces<double> forces(scene, options, p);
   HeldPairs held(shape, weights);
   int touching = 0;
