@@ -7,6 +7,7 @@
 
 #include "datasets/manifest/recording.h"
 #include "ident/parameters/ldp_presets.h"
+#include "models/learned_terms.h"
 #include "models/parameters.h"
 #include "models/self_terms.h"
 

@@ -151,11 +151,10 @@ FitCommand Adviser::DecayingModes() const {
 
 void Adviser::Person() {
   const FitOptions& o = result_.options;
+  if (OfSteps() || o.network_training == NetworkTraining::kTogether) return;  // nothing holds them
   const Verdict verdict = VerdictOf(result_.behaviour, o.model);
   const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour));
   const bool tail = o.model.push_tail == PushTail::kExponential;
-  // Nothing can hold such a fit to settle, and nothing published holds LDP's.
-  if (OfSteps() || o.network_training == NetworkTraining::kTogether) return;
   switch (verdict) {
     case Verdict::kSettles:
       return;
