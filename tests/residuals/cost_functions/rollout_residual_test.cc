@@ -55,8 +55,10 @@ TEST_P(RolloutTwins, ForwardSensitivitiesEqualJetsForEveryModel) {
         RandomBlocks(map, problem->layout, RandomRecoveringParameters(&random, regime.spread),
                      regime.deviation, regime.velocity, &random);
     ASSERT_EQ(blocks.size(), 4u);
+    // Ankles that hold against LDP's repulsion: torques of 100 N m nearly cancel.
+    const bool cancels = options.stance == Stance::kThreshold && options.interaction.ldp_published;
     ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), blocks,
-                          {1e-10, regime.absolute, 1e-12});
+                          {1e-10, std::max(regime.absolute, cancels ? 3e-17 : 0.0), 1e-12});
     if (HasFailure()) return;  // one model's report is enough
   }
 }
@@ -64,7 +66,7 @@ TEST_P(RolloutTwins, ForwardSensitivitiesEqualJetsForEveryModel) {
 INSTANTIATE_TEST_SUITE_P(
     ThreeRegimes, RolloutTwins,
     testing::Values(RolloutRegime{"at_rest", 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1e-14},
-                    RolloutRegime{"tiny", 0.0, 1e-6, 1e-8, 1e-8, 0.3, 0.1, 3e-17},
+                    RolloutRegime{"tiny", 0.0, 1e-6, 1e-8, 1e-8, 0.3, 0.1, 1e-18},
                     RolloutRegime{"large", 0.1, 150.0, 0.3, 0.05, 0.4, 0.1, 1e-13}),
     [](const auto& test) { return test.param.name; });
 
