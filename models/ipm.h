@@ -30,13 +30,19 @@ inline constexpr double kReferenceRod = 0.95;  // m
 
 // L: of what is constant (double), unless a rod moves, or several people stand side by side in a
 // vector of the processor (residuals/lanes).
+//
+// The rod is what is seen, from the ankles to the hip. A body that is no point at the hip
+// (mass_distribution.h) moves like a pendulum of another length and mass.
 template <typename L>
 struct BodyOf {
-  L mass = L(kReferenceMass);       // kg
-  L rod_length = L(kReferenceRod);  // m
-  L cart_height = L(0.0);           // m
+  L mass = L(kReferenceMass);             // kg
+  L rod_length = L(kReferenceRod);        // m
+  L cart_height = L(0.0);                 // m
+  L point_share = L(1.0 - kCartShare);    // of the mass, in the pendulum's point
+  L pendulum_ratio = L(1.0);              // of the pendulum's length to the rod's
 
-  L point_mass() const { return (1.0 - kCartShare) * mass; }
+  L point_mass() const { return point_share * mass; }
+  L pendulum_length() const { return pendulum_ratio * rod_length; }
 };
 
 // What does not change during a recording; the lengths are those of frame 0.
@@ -54,7 +60,8 @@ struct PendulumState {
 // k = lift: bent knees and raised heels.
 template <typename T>
 BodyOf<T> BodyNow(const Body& body, const T& rod, const T& lift) {
-  return {T(body.mass), body.rod_length + rod, body.cart_height - lift * rod};
+  return {T(body.mass), body.rod_length + rod, body.cart_height - lift * rod, T(body.point_share),
+          T(body.pendulum_ratio)};
 }
 
 // Sines and cosines of theta and phi: a step needs them several times, and they are half its cost.
@@ -83,7 +90,7 @@ struct PosedPendulum : PendulumState<T> {
 
 template <typename T, typename L>
 Matrix4<T> MassMatrix(const BodyOf<L>& body, const Angles<T>& angles) {
-  const L m = body.point_mass(), l = body.rod_length;
+  const L m = body.point_mass(), l = body.pendulum_length();
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
   const T zero(0.0), total(body.mass);
   Matrix4<T> mass;
@@ -101,7 +108,7 @@ Matrix4<T> MassMatrix(const BodyOf<L>& body, const Vector4<T>& q) {
 
 template <typename T, typename L>
 Vector4<T> Coriolis(const BodyOf<L>& body, const Angles<T>& angles, const Vector4<T>& qd) {
-  const L m = body.point_mass(), l = body.rod_length;
+  const L m = body.point_mass(), l = body.pendulum_length();
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
   const T thd = qd[2], phd = qd[3];
   return {-m * l * s_th * thd * thd,
@@ -116,7 +123,7 @@ Vector4<T> Coriolis(const BodyOf<L>& body, const Vector4<T>& q, const Vector4<T>
 
 template <typename T, typename L>
 Vector4<T> Gravity(const BodyOf<L>& body, const Angles<T>& angles) {
-  const L mgl = body.point_mass() * kGravity * body.rod_length;
+  const L mgl = body.point_mass() * kGravity * body.pendulum_length();
   return {T(0.0), T(0.0), -mgl * angles.s_th * angles.c_ph, -mgl * angles.c_th * angles.s_ph};
 }
 
@@ -209,12 +216,13 @@ Vector4<T> InverseDynamics(const BodyOf<L>& body, const PendulumState<T>& state,
 }
 
 // d(M a + C + G)/d(theta, phi, thetad, phid) at fixed acceleration a. Written out: automatic
-// derivatives of these four rows took a tenth of a Jacobian.
+// derivatives of these four rows took a tenth of a Jacobian. g: m/s^2, of the ground (ground.h).
 template <typename T>
 Matrix4<T> InverseDynamicsJacobian(const BodyOf<T>& body, const Angles<T>& angles,
-                                   const Vector4<T>& qd, const Vector4<T>& a) {
+                                   const Vector4<T>& qd, const Vector4<T>& a,
+                                   double g = kGravity) {
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
-  const T ml = body.point_mass() * body.rod_length, l = body.rod_length;
+  const T l = body.pendulum_length(), ml = body.point_mass() * l;
   const T thd = qd[2], phd = qd[3], both = thd * thd + phd * phd;
   const T s2 = 2.0 * s_th * c_th, c2 = c_th * c_th - s_th * s_th;
   const T s_s = s_th * s_ph, s_c = s_th * c_ph, c_s = c_th * s_ph, c_c = c_th * c_ph;
@@ -223,10 +231,10 @@ Matrix4<T> InverseDynamicsJacobian(const BodyOf<T>& body, const Angles<T>& angle
       c_s * a[2] + s_c * a[3] + 2.0 * c_c * thd * phd - s_s * both,
       s_c * a[2] + c_s * a[3] - 2.0 * s_s * thd * phd + c_c * both, 2.0 * (s_c * phd + c_s * thd),
       2.0 * (s_c * thd + c_s * phd),  //
-      -s_th * a[0] + c_s * a[1] + l * c2 * phd * phd - kGravity * c_c, s_c * a[1] + kGravity * s_s,
+      -s_th * a[0] + c_s * a[1] + l * c2 * phd * phd - g * c_c, s_c * a[1] + g * s_s,
       T(0.0), l * s2 * phd,  //
-      s_c * a[1] - l * s2 * a[3] - 2.0 * l * c2 * thd * phd + kGravity * s_s,
-      c_s * a[1] - kGravity * c_c, -l * s2 * phd, -l * s2 * thd;
+      s_c * a[1] - l * s2 * a[3] - 2.0 * l * c2 * thd * phd + g * s_s,
+      c_s * a[1] - g * c_c, -l * s2 * phd, -l * s2 * thd;
   return ml * by;
 }
 

@@ -10,7 +10,8 @@
 // limit of short steps. So d/dt [e, v, w] = A [e, v, w]; the cart's own place is a free mode of
 // rate zero and left out, and so are learned terms: of a rod that moves (learned_terms.h) the
 // length alone has no part in the first order, upright. A user's own law (force_law.h) that couples
-// the planes does so in behaviour.h, not here. Where feet stand (stance.h) or hold (standing.h)
+// the planes does so in behaviour.h, not here, and so does a reaction delay, by a step that
+// remembers. Where feet stand (stance.h) or hold (standing.h)
 // rest is standing: the ankles balance, and the ground resists the cart.
 #pragma once
 
@@ -41,33 +42,54 @@ BodyOf<T> BodyAtRest(Stance stance, const Body& body, const ParameterSet<T>& p) 
 // The self force near rest: that of sliding feet, or of feet that stand.
 template <typename T>
 Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSet<T>& p,
-                         const PendulumState<T>& state, const Vector4<T>& previous) {
-  if (stance == Stance::kSlide) return self.Total(p, state, previous);
+                         const PendulumState<T>& state, const Perceived<T>& perceived,
+                         const Vector4<T>& previous) {
   Vector4<T> force = self.Own(p, state);
   const auto value = [&p](Parameter id) { return p[id]; };
-  if (stance == Stance::kThreshold) {
-    force.template tail<2>() += AnkleTorque(self, StanceParameters<T>(value), state);
+  if (stance == Stance::kSlide) {
+    const Vector4<T> of_cart =
+        self.Balance(p, perceived.step, previous) + self.Linear(p, perceived.step);
+    const Vector4<T> of_angles =
+        self.Balance(p, perceived.ankle, previous) + self.Linear(p, perceived.ankle);
+    force += self.Friction(p, state.qd);
+    force.template head<2>() += of_cart.template head<2>();
+    force.template tail<2>() += of_angles.template tail<2>();
+  } else if (stance == Stance::kThreshold) {
+    force.template tail<2>() += AnkleTorque(self, StanceParameters<T>(value), perceived.ankle);
   } else {
-    force.template tail<2>() +=
-        StandingTorque(self, StandingParameters<T>(value), Angles<T>(state.q), state.qd);
+    force.template tail<2>() += StandingTorque(
+        self, StandingParameters<T>(value), Angles<T>(perceived.ankle.q), perceived.ankle.qd);
   }
   return force;
 }
 
+// Derivatives by what: by the state with all that is perceived of it at once, as without a delay;
+// or by each alone.
+enum class RestInput { kAll, kState, kAnkle, kStep };
+
 template <typename T>
-RestJacobian<T> LinearizeAtRest(Stance stance, const SelfForce& self, const ParameterSet<T>& p) {
+RestJacobian<T> LinearizeAtRest(Stance stance, const SelfForce& self, const ParameterSet<T>& p,
+                                RestInput by = RestInput::kAll) {
   using RestDual = Dual<T, 8>;
   ParameterSet<RestDual> parameters;
   for (int i = 0; i < kNumParameters; ++i) parameters[i] = RestDual::Constant(p[i]);
-  PendulumState<RestDual> state;
+  PendulumState<RestDual> moved, rest;
   Vector4<RestDual> previous;
-  for (int i = 0; i < 4; ++i) state.qd[i] = RestDual::Input(T(0.0), 2 + i);
+  for (int i = 0; i < 4; ++i) moved.qd[i] = RestDual::Input(T(0.0), 2 + i);
   for (int i = 0; i < 2; ++i) {
-    state.q[2 + i] = RestDual::Input(T(self.posture[i]), i);
+    moved.q[2 + i] = RestDual::Input(T(self.posture[i]), i);
+    rest.q[2 + i] = RestDual(self.posture[i]);
     previous[i] = RestDual::Input(T(0.0), 6 + i);
   }
+  const auto input = [&](RestInput own) -> const PendulumState<RestDual>& {
+    return by == RestInput::kAll || by == own ? moved : rest;
+  };
+  const PendulumState<RestDual>& state = input(RestInput::kState);
+  Perceived<RestDual> perceived;
+  perceived.ankle = input(RestInput::kAnkle);
+  perceived.step = input(RestInput::kStep);
   const Vector4<RestDual> force =
-      ForceNearRest(stance, self, parameters, state, previous) -
+      ForceNearRest(stance, self, parameters, state, perceived, previous) -
       Gravity<RestDual>(BodyAtRest(stance, self.body, parameters), state.q);
   RestJacobian<T> jacobian;
   if (stance == Stance::kFixed) jacobian.ground = T(kHeldFast * self.body.mass);

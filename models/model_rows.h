@@ -8,8 +8,9 @@
 //   along_y  the parameter that is the drag along y as mu is along x (self_terms.h)
 //   Law      its formula (self_terms.h)
 #define PUSHID_FRICTION_LAWS(X)               \
-  X(kIsotropic, "isotropic", kMu, LinearDrag) \
-  X(kAnisotropic, "anisotropic", kMuY, LinearDrag)
+  X(kIsotropic, "isotropic", kMu, LinearDrag)  \
+  X(kAnisotropic, "anisotropic", kMuY, LinearDrag) \
+  X(kCoulomb, "coulomb", kMu, CoulombDrag)
 
 // What --self_force names: at most one law and at most one network.
 //
@@ -74,6 +75,11 @@
     m.friction == FrictionKind::kAnisotropic && m.stance != Stance::kFixed, false, \
     "drag of the stepping feet along y", \
     "with pushes to the side, and anisotropic friction") \
+  X(kCoulombFriction, "mu_coulomb", "mu_c", "1", 0.02, 0, 5, 0.05, kIdentity, \
+    m.friction == FrictionKind::kCoulomb && m.stance != Stance::kFixed, \
+    m.friction == FrictionKind::kCoulomb, \
+    "dry friction of the cart over its weight", \
+    "with --friction=coulomb: rigs and robots whose cart comes to a stop") \
   X(kKpX, "Kp_x", "Kp_x", "N s/m", 0, -2000, 2000, 100, kIdentity, \
     m.stance != Stance::kFixed, false, \
     "balance gain on the cart's velocity, x", \
@@ -106,6 +112,37 @@
     true, false, \
     "balance damping about x", \
     "with pushes to the side and well measured rates") \
+  /* how late active feedback comes, and what muscles do at once (reaction_delay.h) */ \
+  X(kReactionDelay, "reaction_delay", "d", "s", 0.13, 0.005, 0.6, 0.05, kLog, \
+    m.delay != Delay::kNone, m.delay != Delay::kNone, \
+    "reaction delay of active feedback", \
+    "with --delay: people answer after 0.1 to 0.2 s, and without it damping comes out too low") \
+  X(kStepDelay, "step_delay", "d_s", "s", 0.2, 0.005, 0.8, 0.05, kLog, \
+    m.delay == Delay::kAnkleAndStep && m.stance != Stance::kFixed, \
+    m.delay == Delay::kAnkleAndStep && m.stance != Stance::kFixed, \
+    "reaction delay of the feet", \
+    "with --delay=ankle_and_step") \
+  X(kPassiveStiffness, "passive_stiffness", "s_K", "1", 0.2, 0.005, 0.99, 0.2, kLogit, \
+    m.delay != Delay::kNone, m.delay != Delay::kNone, \
+    "share of the stiffness that acts at once", \
+    "with --delay: muscles and tendons do not wait") \
+  X(kPassiveDamping, "passive_damping", "s_D", "1", 0.2, 0.005, 0.99, 0.2, kLogit, \
+    m.delay != Delay::kNone, m.delay != Delay::kNone, \
+    "share of the damping that acts at once", \
+    "with --delay: muscles and tendons do not wait") \
+  /* the body and its drive, of robots and rigs (mass_distribution.h) */ \
+  X(kCartMassShare, "cart_share", "s_c", "1", 0.1, 0.001, 0.98, 0.1, kLogit, \
+    m.body == BodyModel::kTable && m.stance != Stance::kFixed, false, \
+    "share of the mass in the cart", \
+    "with --body=table, where it is not known") \
+  X(kGyrationRadius, "gyration_radius", "r", "1", 0, 0, 3, 0.3, kIdentity, \
+    m.body == BodyModel::kTable && m.stance != Stance::kFixed, false, \
+    "radius of gyration about the centre of mass over the rod", \
+    "with --body=table, where it is not known") \
+  X(kPushGain, "push_gain", "g_u", "1", 1, 0.01, 100, 1, kLog, \
+    m.body == BodyModel::kTable, false, \
+    "force of a push over what was recorded of it", \
+    "with --body=table, where a motor's force is known up to a factor") \
   /* the linear self force */ \
   X(kAx, "a_x", "a_x", "m/s^2/rad", 0, -200, 200, 10, kIdentity, \
     m.stance != Stance::kFixed, false, \

@@ -13,7 +13,9 @@
 
 #include "models/interaction.h"
 #include "models/options.h"
+#include "models/mass_distribution.h"
 #include "models/parameters.h"
+#include "models/reaction_delay.h"
 #include "models/scene.h"
 #include "models/self_force.h"
 #include "models/stance.h"
@@ -53,20 +55,41 @@ struct NetForce {
   }
 };
 
-// The parts that reports list: all but for noise, and for a user's own laws where the model has
-// none.
+// The parts that reports list: all but for noise, for a user's own laws where the model has none,
+// and for inertia, which files list where the ground moves.
 std::vector<ForcePart> ReportedParts(const ModelOptions& options);
 
 // What a person does about being pushed: friction, balance and the linear terms.
 template <typename T>
 void AddSlidingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
                       const PendulumState<T>& state, const Vector4<T>& qd_previous,
-                      NetForce<T>* force) {
+                      NetForce<T>* force, const Perceived<T>* perceived) {
   if (active == ActiveForces::kPushOnly) return;
   (*force)[ForcePart::kFriction] = self.Friction(p, state.qd);
   if (active == ActiveForces::kPushAndFriction) return;
-  (*force)[ForcePart::kBalance] = self.Balance(p, state, qd_previous);
-  (*force)[ForcePart::kLinear] = self.Linear(p, state);
+  Vector4<T>& balance = (*force)[ForcePart::kBalance];
+  Vector4<T>& linear = (*force)[ForcePart::kLinear];
+  const PendulumState<T>& of_cart = perceived != nullptr ? perceived->step : state;
+  balance = self.Balance(p, of_cart, qd_previous);
+  linear = self.Linear(p, of_cart);
+  if (perceived == nullptr) return;
+  balance.template tail<2>() = self.Balance(p, perceived->ankle, qd_previous).template tail<2>();
+  linear.template tail<2>() = self.Linear(p, perceived->ankle).template tail<2>();
+}
+
+// The body of a rollout: of who slides or steps; where the table has its masses, those.
+template <typename T>
+BodyOf<T> TableBody(const Body& body, const ParameterSet<T>& p) {
+  return Distributed<T>(body, {p[kCartMassShare], T(1.0), p[kGyrationRadius]});
+}
+
+// What holds the posture of a body with the table's masses, less what holds that of its own.
+template <typename T>
+Eigen::Matrix<T, 2, 1> HoldOfTable(const SelfForce& self, const ParameterSet<T>& p) {
+  const BodyOf<T> body = TableBody(self.body, p);
+  const double own = self.body.point_share * self.body.pendulum_ratio;
+  const T more = body.point_share * body.pendulum_ratio / own - 1.0;
+  return {more * self.hold[0], more * self.hold[1]};
 }
 
 // What was taken out of a `net_without_friction` push.
@@ -80,14 +103,17 @@ void AddPublishedFriction(const PendulumState<T>& state, NetForce<T>* force) {
 // The same of feet that stand and step.
 template <typename T>
 void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
-                     const PendulumState<T>& state, NetForce<T>* force) {
+                     const PendulumState<T>& state, const Perceived<T>& perceived,
+                     NetForce<T>* force) {
   using Cart = Eigen::Matrix<T, 2, 1>;
   const T& s = state.step;
+  const PendulumState<T>& of_cart = perceived.step;
   const Cart friction = self.Friction(p, state.qd).template head<2>();
-  const Cart balance = self.Balance(p, state, state.qd).template head<2>();
-  const Cart linear = self.LinearOnCart(p, state), cart_force = friction + balance + linear;
+  const Cart balance = self.Balance(p, of_cart, of_cart.qd).template head<2>();
+  const Cart linear = self.LinearOnCart(p, of_cart), cart_force = friction + balance + linear;
   const StanceParameters<T> stance([&p](Parameter id) { return p[id]; });
-  const StanceForces<T> of_stance = StanceAt(self, stance, force->angles, state, cart_force);
+  const StanceForces<T> of_stance =
+      StanceAt(self, stance, force->angles, state, perceived, cart_force);
   force->next_step = of_stance.next_step;
   if (active == ActiveForces::kPushOnly) return;
   if (active == ActiveForces::kPushAndFriction) return AddPublishedFriction(state, force);
@@ -98,40 +124,64 @@ void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForc
   (*force)[ForcePart::kLinear] = {s * linear[0], s * linear[1], T(0.0), T(0.0)};
 }
 
-// The same of feet that hold, whatever happens. While a push is the whole force, its rows hold the
+// The same of feet that hold, whatever happens; felt: by the ankles. While a push is the whole force, its rows hold the
 // feet's reaction.
 template <typename T>
 void AddStandingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
-                       const PendulumState<T>& state, NetForce<T>* force) {
+                       const PendulumState<T>& state, const PendulumState<T>& felt,
+                       NetForce<T>* force) {
   if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(state, force);
   if (active != ActiveForces::kAll) return;
   const StandingParameters<T> standing([&p](Parameter id) { return p[id]; });
   force->ground = T(kHeldFast * self.body.mass);
   (*force)[ForcePart::kBalance].template tail<2>() =
-      StandingTorque(self, standing, force->angles, state.qd);
+      StandingTorque(self, standing, Angles<T>(felt.q), felt.qd);
 }
 
-// received: from others; network: what the person's own network answers.
+// The body whose equations of motion a step has.
+template <typename T>
+BodyOf<T> DynamicBody(const ModelOptions& options, const Body& body, const ParameterSet<T>& p,
+                      bool holds_fast) {
+  if (holds_fast) return StandingBody<T>(body, p[kComHeight]);
+  if (options.body == BodyModel::kTable) return TableBody(body, p);
+  return BodyNow<T>(body, T(0.0), T(0.0));
+}
+
+// received: from others; network: what the person's own network answers; perceived: where control
+// is late.
 template <typename T>
 NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                        const ParameterSet<T>& p, int person, int frame,
                        const PosedPendulum<T>& state, const Vector4<T>& qd_previous,
                        const Vector4<T>& received = Vector4<T>::Zero(),
-                       const Vector4<T>& network = Vector4<T>::Zero()) {
+                       const Vector4<T>& network = Vector4<T>::Zero(),
+                       const Perceived<T>* perceived = nullptr) {
   NetForce<T> force;
   force.angles = state.angles;
   force[ForcePart::kPush] = PushForceAt(scene, person, frame).template cast<T>();
+  if (options.body == BodyModel::kTable) force[ForcePart::kPush] *= p[kPushGain];
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   switch (options.stance) {
     case Stance::kSlide:
-      AddSlidingForces(self, p, active, state, qd_previous, &force);
+      AddSlidingForces(self, p, active, state, qd_previous, &force, perceived);
       break;
     case Stance::kThreshold:
-      AddStanceForces(self, p, active, state, &force);
+      AddStanceForces(self, p, active, state, perceived != nullptr ? *perceived : Perceived<T>(state),
+                      &force);
       break;
     case Stance::kFixed:
-      AddStandingForces(self, p, active, state, &force);
+      AddStandingForces<T>(self, p, active, state, perceived != nullptr ? perceived->ankle : state,
+                           &force);
       break;
+  }
+  if (scene.ground.moves()) {
+    const bool holds = options.stance == Stance::kFixed && RealPart(force.ground) > 0.0;
+    force[ForcePart::kInertia] =
+        GroundForce<T, T>(DynamicBody(options, self.body, p, holds), force.angles,
+                          scene.ground.steps[std::min<size_t>(frame, scene.ground.steps.size() - 1)]);
+  }
+  if (options.body == BodyModel::kTable && active == ActiveForces::kAll) {
+    force[ForcePart::kBalance].template tail<2>() += HoldOfTable(self, p);
   }
   if (active != ActiveForces::kAll) return force;
   // Only here: a push that is the whole force includes the tail of an earlier one.

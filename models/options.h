@@ -79,7 +79,7 @@ inline constexpr ProcessNoiseTermName kProcessNoiseTerms[] = {
     {"speed", &ProcessNoiseTerms::speed},
     {"push", &ProcessNoiseTerms::push}};
 
-// The parts of the net force, in the order of the CSV's columns. The last two are reported
+// The parts of the net force, in the order of the CSV's columns. The last three are reported
 // only where they act (ReportedParts).
 #define PUSHID_FORCE_PARTS(X)                             \
   X(kFriction, "friction")       /* of the ground */      \
@@ -90,7 +90,8 @@ inline constexpr ProcessNoiseTermName kProcessNoiseTerms[] = {
   X(kInteraction, "interaction") /* with others */        \
   X(kNetwork, "network")         /* learned self force */ \
   X(kNoise, "noise")             /* drawn */              \
-  X(kOwn, "own")                 /* laws of the user's */
+  X(kOwn, "own")                 /* laws of the user's */ \
+  X(kInertia, "inertia")         /* on ground that moves */
 
 enum class ForcePart : int {
 #define PUSHID_FORCE_PART(id, name) id,
@@ -196,6 +197,29 @@ constexpr EnumNames<CartDerivative, 2> Names(CartDerivative) {
   return {{{"none", CartDerivative::kNone}, {"backward", CartDerivative::kBackward}}};
 }
 
+// How late active feedback comes (reaction_delay.h).
+enum class Delay {
+  kNone,         // at once
+  kOne,          // all of it after one reaction_delay
+  kAnkleAndStep  // ankles after reaction_delay, feet after step_delay
+};
+constexpr EnumNames<Delay, 3> Names(Delay) {
+  return {
+      {{"none", Delay::kNone}, {"one", Delay::kOne}, {"ankle_and_step", Delay::kAnkleAndStep}}};
+}
+
+// Where a body's mass is (mass_distribution.h).
+enum class BodyModel {
+  kLdp,             // nine tenths at the hip; of who stands, that of an average body (standing.h)
+  kAnthropometric,  // where the recorded segments have it (de Leva 1996)
+  kTable            // cart_share and gyration_radius of the table, for robots and rigs
+};
+constexpr EnumNames<BodyModel, 3> Names(BodyModel) {
+  return {{{"ldp", BodyModel::kLdp},
+           {"anthropometric", BodyModel::kAnthropometric},
+           {"table", BodyModel::kTable}}};
+}
+
 class ForceLaw;
 struct InteractionNetwork;
 struct LearnedTerms;
@@ -208,6 +232,8 @@ struct ModelOptions {
   PushUse push = PushUse::kAdded;
   PushTail push_tail = PushTail::kExponential;
   Stance stance = Stance::kSlide;
+  Delay delay = Delay::kNone;
+  BodyModel body = BodyModel::kLdp;
   CartDerivative cart_derivative = CartDerivative::kNone;
   InteractionTerms interaction;
   std::shared_ptr<const InteractionNetwork> interaction_network;  // of the network term

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "models/frame_table.h"
 #include "models/ipm.h"
 #include "models/process_noise.h"
 #include "models/scene_forces.h"
@@ -21,32 +22,6 @@ struct RolloutStatus {
   std::string_view quantity;  // theta, phi, rod or "state" (not finite)
 };
 
-// One value for everybody at frames 0 .. num_frames - 1, stored frame by frame.
-template <typename Value>
-class FrameTable {
- public:
-  FrameTable() = default;
-  FrameTable(int num_frames, int num_people)
-      : num_people_(num_people), values_(static_cast<size_t>(num_frames) * num_people) {}
-  Value& At(int frame, int person) { return values_[Index(frame, person)]; }
-  const Value& At(int frame, int person) const { return values_[Index(frame, person)]; }
-  // Everybody at one frame, in a row.
-  const Value* Frame(int frame) const { return values_.data() + Index(frame, 0); }
-  int num_people() const { return num_people_; }
-  int num_frames() const {
-    return num_people_ == 0 ? 0 : static_cast<int>(values_.size()) / num_people_;
-  }
-
- private:
-  size_t Index(int frame, int person) const {
-    return static_cast<size_t>(frame) * num_people_ + person;
-  }
-  int num_people_ = 0;
-  std::vector<Value> values_;
-};
-
-template <typename T>
-using RolloutPath = FrameTable<PendulumState<T>>;
 // The parts of the net force that drove a rollout, for reports; the last frame's drive no step.
 using ForceTrace = FrameTable<NetForce<double>>;
 
@@ -76,7 +51,7 @@ RolloutStatus RollOn(const Scene& scene, const ModelOptions& options, SceneForce
   for (int t = from; t < num_frames; ++t) {
     const bool last = t + 1 == num_frames;
     if (last && trace == nullptr) break;
-    forces->Update(path->Frame(t));
+    forces->Update(*path, t);
     forces->PrepareAll();
     for (int n = 0; n < people; ++n) {
       const Vector4<T>& qd_previous = path->At(t > 0 ? t - 1 : 0, n).qd;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "models/ground.h"
 #include "models/ipm.h"
 #include "models/push.h"
 
@@ -20,6 +21,7 @@ struct Scene {
   double dt = 1.0 / 60.0;  // s
   std::vector<ScenePerson> people;
   std::vector<ScenePush> pushes;
+  GroundMotion ground;  // people and pushes are as it sees them
 
   int num_people() const { return static_cast<int>(people.size()); }
   int LastPushEnd() const {

@@ -27,6 +27,7 @@ std::vector<ForcePart> ReportedParts(const ModelOptions& options) {
   for (ForcePart part : kForceParts) {
     if (part == ForcePart::kNoise) continue;  // a model's rollout is without
     if (part == ForcePart::kOwn && options.own_laws.empty()) continue;
+    if (part == ForcePart::kInertia) continue;  // listed where the ground moves
     parts.push_back(part);
   }
   return parts;

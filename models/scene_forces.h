@@ -35,10 +35,21 @@ class SceneForces {
     if (options.learned != nullptr) StartNetworks(network_weights);
   }
 
-  // states: of everybody at the next frame, the first one at the first call.
+  // states: of everybody at the next frame, the first one at the first call. Of a model without a
+  // delay.
   void Update(const PendulumState<T>* states) {
     states_.assign(states, states + scene_->people.size());
     finder_.Update(Parameters(0), states_);
+  }
+  // The same from a path that is known up to this frame.
+  void Update(const RolloutPath<T>& path, int frame) {
+    Update(path.Frame(frame));
+    if (options_->delay == Delay::kNone) return;
+    perceived_.clear();
+    for (int n = 0; n < scene_->num_people(); ++n) {
+      perceived_.push_back(
+          Perceive<T>(options_->delay, Parameters(n), path, frame, n, scene_->dt));
+    }
   }
 
   // What all others do to one person, and what the person's own network answers: once a frame. Each
@@ -72,7 +83,8 @@ class SceneForces {
   NetForce<T> On(int person, int frame, const Vector4<T>& qd_previous) const {
     return NetForceAt(*scene_, *options_, self_[person], Parameters(person), person, frame,
                       states_[person], qd_previous, received_[person],
-                      networks_.empty() ? Vector4<T>(Vector4<T>::Zero()) : networks_[person].force);
+                      networks_.empty() ? Vector4<T>(Vector4<T>::Zero()) : networks_[person].force,
+                      perceived(person));
   }
 
   Vector4<T> AccelerationOf(int person, const NetForce<T>& force) const {
@@ -87,6 +99,9 @@ class SceneForces {
                                   scene_->dt);
     }
     const Vector4<T> total = force.Total();
+    if (options_->body == BodyModel::kTable) {
+      return Acceleration(TableBody(body, Parameters(person)), force.angles, state.qd, total);
+    }
     if (rods_.empty()) return Acceleration(body, force.angles, state.qd, total);
     return Acceleration(BodyNow(body, state.rod, T(0.0)), force.angles, state.qd, total);
   }
@@ -113,6 +128,10 @@ class SceneForces {
   const PosedPendulum<T>& state(int person) const { return states_[person]; }
   // Who acted on whom at PrepareAll, as ForEachPair visits them.
   const std::vector<std::pair<int, int>>& acting() const { return acting_; }
+  // Null without a delay.
+  const Perceived<T>* perceived(int person) const {
+    return perceived_.empty() ? nullptr : &perceived_[person];
+  }
   const SelfForce& self(int person) const { return self_[person]; }
   const Vector4<T>& received(int person) const { return received_[person]; }
   // As Prepare left it; only where options have a network.
@@ -193,6 +212,7 @@ class SceneForces {
   std::vector<T> own_weights_;
   const T* network_weights_ = nullptr;
   std::vector<PosedPendulum<T>> states_;
+  std::vector<Perceived<T>> perceived_;
   std::vector<std::pair<int, int>> acting_;
 };
 

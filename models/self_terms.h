@@ -111,11 +111,26 @@ struct SelfJacobian {
 };
 
 // Laws of friction (PUSHID_FRICTION_LAWS), without branches, since a scalar may hold several
-// people. scale: of forces; p: the parameters from kMu up to kKpX.
+// people. scale: of forces; p: the parameters from kMu up to kKpX; weight: N.
 struct LinearDrag {
   template <typename T, typename L, typename Set>
-  static Vector4<T> Force(const L& scale, const Set& p, Parameter along_y, const Vector4<T>& qd) {
+  static Vector4<T> Force(const L& scale, const Set& p, Parameter along_y, const Vector4<T>& qd,
+                          const L& /*weight*/) {
     return {-scale * p[kMu] * qd[0], -scale * p[along_y] * qd[1], T(0.0), T(0.0)};
+  }
+};
+
+// The same and dry friction: -mu v - mu_c M g v / sqrt(v^2 + v_0^2), which holds no cart still but
+// brings it to a creep.
+struct CoulombDrag {
+  static constexpr double kCreep = 0.01;  // v_0, m/s
+  template <typename T, typename L, typename Set>
+  static Vector4<T> Force(const L& scale, const Set& p, Parameter along_y, const Vector4<T>& qd,
+                          const L& weight) {
+    using std::sqrt;
+    const T speed = sqrt(qd[0] * qd[0] + qd[1] * qd[1] + T(kCreep * kCreep));
+    const T dry = weight * p[kCoulombFriction] / speed;
+    return {-(scale * p[kMu] + dry) * qd[0], -(scale * p[along_y] + dry) * qd[1], T(0.0), T(0.0)};
   }
 };
 
@@ -136,7 +151,7 @@ struct SelfTerms {
     switch (friction) {
 #define PUSHID_FRICTION(id, name, along_y, Law) \
   case FrictionKind::id:                        \
-    return Law::Force<T>(scale.force, p, along_y, qd);
+    return Law::Force<T>(scale.force, p, along_y, qd, L(body.mass * kGravity));
       PUSHID_FRICTION_LAWS(PUSHID_FRICTION)
 #undef PUSHID_FRICTION
     }
@@ -208,6 +223,15 @@ struct SelfTerms {
       jacobian->by_parameter.row(row).template segment<kParameters>(kMu) =
           force[row].v.template tail<kParameters>().transpose();
     }
+  }
+
+  // Of Balance and Linear alone.
+  template <typename Set, typename T>
+  void ControlJacobian(const Set& p, const PendulumState<T>& state, const Vector4<T>& qd_previous,
+                       SelfJacobian<T>* jacobian) const {
+    jacobian->SetZero();
+    AddBalanceJacobian(p, state, qd_previous, jacobian);
+    AddLinearJacobian(p, state, jacobian);
   }
 
   template <typename Set, typename T>
@@ -283,7 +307,9 @@ struct SelfTerms {
     by_parameter(3, kDq) = -ml2 * rate_ph * phd;
   }
 
-  L PointInertia() const { return body.point_mass() * body.rod_length * body.rod_length; }
+  L PointInertia() const {
+    return body.point_mass() * body.pendulum_length() * body.pendulum_length();
+  }
   // |v| whose derivative exists at rest; 1e-3 (m/s or rad/s) is far below any motion that matters.
   static constexpr double kRestSpeedSquared = 1e-6;
   template <typename T>

@@ -31,6 +31,7 @@
 
 #include <cmath>
 
+#include "models/reaction_delay.h"
 #include "models/self_force.h"
 
 namespace pushid {
@@ -160,15 +161,16 @@ Eigen::Matrix<T, 2, 1> FootTorque(const SelfForce& self, const StanceParameters<
   return {theta + coriolis[2] + gravity[2], phi + coriolis[3] + gravity[3]};
 }
 
-// cart_force: F_c above, not yet times s.
+// cart_force: F_c above, not yet times s. perceived: by ankles and by what steps.
 template <typename T>
 StanceForces<T> StanceAt(const SelfForce& self, const StanceParameters<T>& p,
                          const Angles<T>& angles, const PendulumState<T>& state,
-                         const Eigen::Matrix<T, 2, 1>& cart_force) {
-  const Eigen::Matrix<T, 2, 1> capture = CaptureOffset(self, angles, state.qd);
+                         const Perceived<T>& perceived, const Eigen::Matrix<T, 2, 1>& cart_force) {
+  const Eigen::Matrix<T, 2, 1> capture =
+      CaptureOffset(self, Angles<T>(perceived.step.q), perceived.step.qd);
   const T& s = state.step;
   StanceForces<T> forces;
-  forces.torque = (1.0 - s) * AnkleTorque(self, p, state) +
+  forces.torque = (1.0 - s) * AnkleTorque(self, p, perceived.ankle) +
                   s * FootTorque(self, p, angles, state.qd, capture, cart_force);
   forces.ground = GroundResistance(p, self.body.mass, state);
   forces.next_step = NextStepState<T>(p, SupportRatio(p, capture), s, self.dt);

@@ -12,7 +12,8 @@
 // them, the ankles' torque is, about each angle q_i,
 //   -K t du/dq_i - Kd_i |du/dq_i|^2 q_i' + hold_i,   t = (a / sin a) (u cos a - u0), |t| = a,
 //   K = diag(Kp_theta, Kp_phi, their mean),   hold_i: of a force that balances gravity at u0,
-// which is the same in all directions where the gains are.
+// which is the same in all directions where the gains are. Where the mass of a body is known by
+// its segments (mass_distribution.h), that is what turns, and k / 1.09 scales its height.
 // Rejected: the mass at the hip (0.9 M, no inertia of its own): of one simulated rigid body whose
 // pushes are known Kp comes out 10 to 16 % too low, and Kd as much too high.
 #pragma once
@@ -23,6 +24,7 @@ namespace pushid {
 
 inline constexpr double kMassAboveAnkles = 0.97;  // of the body's
 inline constexpr double kInertiaRatio = 1.15;     // about the ankles, over m h^2
+inline constexpr double kComOverHip = 1.09;       // k of an average body
 inline constexpr double kHeldFast = 1e8;          // 1/s, times the mass: the ground on held feet
 
 // The parameters of standing, which derivatives are taken by.
@@ -40,11 +42,26 @@ struct StandingParameters {
         com_height(value(kComHeight)) {}
 };
 
+inline bool IsPointAtHip(const Body& body) {
+  return body.point_share == Body{}.point_share && body.pendulum_ratio == 1.0;
+}
+
 // The pendulum that moves like the body.
 template <typename T>
 BodyOf<T> StandingBody(const Body& body, const T& com_height) {
-  constexpr double kShare = kMassAboveAnkles / kInertiaRatio / (1.0 - kCartShare);
-  return {T(kShare * body.mass), kInertiaRatio * body.rod_length * com_height, T(body.cart_height)};
+  if (IsPointAtHip(body)) {
+    return {T(body.mass), T(body.rod_length), T(body.cart_height),
+            T(kMassAboveAnkles / kInertiaRatio), kInertiaRatio * com_height};
+  }
+  return {T(body.mass), T(body.rod_length), T(body.cart_height), T(body.point_share),
+          (body.pendulum_ratio / kComOverHip) * com_height};
+}
+
+// Its first moment about the ankles over what com_height is multiplied with, kg m.
+inline double MomentPerComHeight(const Body& body) {
+  const double share =
+      IsPointAtHip(body) ? kMassAboveAnkles : body.point_share * body.pendulum_ratio / kComOverHip;
+  return share * body.mass * body.rod_length;
 }
 
 // asin(s) / s by s^2: within 1e-4 up to 0.6 rad.
@@ -70,7 +87,7 @@ Eigen::Matrix<T, 2, 1> StandingTorque(const SelfForce& self, const StandingParam
   const T gains[] = {stretch * p.Kp[0], stretch * p.Kp[1], stretch * 0.5 * (p.Kp[0] + p.Kp[1])};
   const bool holds = !self.hold.isZero(0.0);
   const T moment =
-      (holds ? kMassAboveAnkles * kGravity * self.body.mass * self.body.rod_length / u0[2] : 0.0) *
+      (holds ? kGravity * MomentPerComHeight(self.body) / u0[2] : 0.0) *
       p.com_height;
   Eigen::Matrix<T, 2, 1> torque;
   for (int i = 0; i < 2; ++i) {

@@ -43,6 +43,8 @@ struct ResidualSigmas {
   double rate = 3.0;      // rad/s
   double robust = 0.5;    // pseudo-Huber scale d in sigmas (of |r|); 0 means plain least squares
   FrameLoss loss = FrameLoss::kHip;
+  // Of force platforms (cost_functions/plate_residual.h): N, and m of the centre of pressure.
+  double shear = 10.0, centre = 0.005;
 
   // d of whole frames; 0 where each row has its own.
   double OfFrames() const { return loss == FrameLoss::kHip ? robust : 0.0; }

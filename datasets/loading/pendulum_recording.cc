@@ -1,6 +1,7 @@
 // datasets: mapping a recording's skeletons to pendulums.
 #include "datasets/loading/pendulum_recording.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -22,6 +23,14 @@ std::string HashOf(const PendulumRecording& recording, const std::string& files)
     hash.Add(body, 3);
     hash.Add(person.start.qd.data(), 4);
     for (const Vector3<double>& hip : recording.hip[n]) hash.Add(hip.data(), 3);
+  }
+  for (const GroundPose& pose : recording.scene.ground.poses) hash.Add(pose.data(), 4);
+  for (const std::vector<PlateFrame>& of_one : recording.plates) {
+    for (const PlateFrame& frame : of_one) {
+      hash.Add(frame.shear.data(), 2);
+      hash.Add(frame.centre.data(), 2);
+      hash.Add(&frame.weight, 1);
+    }
   }
   for (const ScenePush& push : recording.scene.pushes) {
     const double kind[] = {static_cast<double>(push.person), static_cast<double>(push.start_frame),
@@ -47,6 +56,67 @@ double FacingBeforePush(const Recording& recording) {
   return to_the_left.norm() > 0.0 ? std::atan2(-to_the_left.x(), to_the_left.y()) : 0.0;
 }
 
+// Points as ground that moves sees them: less its shift, and turned back by its tilt about the place
+// where the person stood.
+class OnGround {
+ public:
+  OnGround(const Recording& recording, const RecordedPerson& person) : poses_(recording.ground) {
+    if (!poses_.empty()) origin_ = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
+  }
+  Vector3<double> operator()(size_t frame, const Vector3<double>& point) const {
+    if (poses_.empty()) return point;
+    const GroundPose& pose = poses_[std::min(frame, poses_.size() - 1)];
+    const Vector3<double> from = point - origin_ - Vector3<double>(pose[0], pose[1], 0.0);
+    return origin_ + TurnedBack(pose, from);
+  }
+  // A direction.
+  Vector3<double> Turn(size_t frame, const Vector3<double>& v) const {
+    return poses_.empty() ? v : TurnedBack(poses_[std::min(frame, poses_.size() - 1)], v);
+  }
+
+ private:
+  static Vector3<double> TurnedBack(const GroundPose& pose, const Vector3<double>& v) {
+    const Eigen::AngleAxisd by_phi(-pose[3], Vector3<double>::UnitX());
+    const Eigen::AngleAxisd by_theta(-pose[2], Vector3<double>::UnitY());
+    return by_theta * (by_phi * v);
+  }
+  const std::vector<GroundPose>& poses_;
+  Vector3<double> origin_ = Vector3<double>::Zero();
+};
+
+// The first frame at which anything happens: a push, or ground that leaves its place.
+size_t FirstDisturbance(const Recording& recording) {
+  size_t first = static_cast<size_t>(recording.num_frames());
+  for (const Push& push : recording.pushes) {
+    first = std::min(first, static_cast<size_t>(push.start_frame));
+  }
+  for (size_t t = 1; t < recording.ground.size(); ++t) {
+    if (recording.ground[t] != recording.ground[0]) return std::min(first, t - 1);
+  }
+  return first;
+}
+
+// The centre of pressure counts from where it was before anything happened (of quiet stance: on
+// average), since neither ankles nor hip are seen where they are: what is compared is how it moves.
+std::vector<PlateFrame> PlateFrames(const Recording& recording, const RecordedPerson& person,
+                                    const OnGround& ground) {
+  std::vector<PlateFrame> frames;
+  const size_t before = std::max<size_t>(1, FirstDisturbance(recording));
+  Eigen::Vector2d rest = Eigen::Vector2d::Zero();
+  double weights = 0.0;
+  for (size_t t = 0; t < person.plates.size(); ++t) {
+    const PlateSample& sample = person.plates[t];
+    frames.push_back({ground.Turn(t, sample.force).head<2>(),
+                      ground(t, sample.centre).head<2>(), sample.weight});
+    if (t >= before || sample.weight <= 0.0) continue;
+    rest += frames.back().centre;
+    weights += 1.0;
+  }
+  if (weights > 0.0) rest /= weights;
+  for (PlateFrame& frame : frames) frame.centre -= rest;
+  return frames;
+}
+
 }  // namespace
 
 PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping) {
@@ -63,9 +133,12 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     std::vector<PendulumState<double>> states(person.hip.size());
     std::vector<double> lengths(person.hip.size());
     ScenePerson in_scene;
+    const OnGround ground(recording, person);
+    std::vector<Vector3<double>> hip;
     for (size_t t = 0; t < person.hip.size(); ++t) {
-      const MappedPose pose =
-          MapSkeleton(person.hip[t], person.left_ankle[t], person.right_ankle[t], mapping);
+      hip.push_back(ground(t, person.hip[t]));
+      const MappedPose pose = MapSkeleton(hip[t], ground(t, person.left_ankle[t]),
+                                          ground(t, person.right_ankle[t]), mapping);
       states[t].q = pose.q;
       if (t > 0) states[t].qd = (pose.q - states[t - 1].q) * recording.fps;
       lengths[t] = pose.rod_length;
@@ -80,7 +153,8 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     result.scene.people.push_back(in_scene);
     result.states.push_back(std::move(states));
     result.rod_length.push_back(std::move(lengths));
-    result.hip.push_back(person.hip);
+    result.hip.push_back(std::move(hip));
+    result.plates.push_back(PlateFrames(recording, person, ground));
     result.steps.push_back(FindSteps(person, recording.fps));
     result.foot_support.push_back(SupportOf(person));
     std::vector<double> weight = person.weight;
@@ -89,6 +163,10 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     }
     result.weight.push_back(std::move(weight));
   }
+  if (!recording.ground.empty()) {
+    result.scene.ground = GroundThrough(recording.ground, result.scene.dt);
+  }
+  if (!result.HasPlates()) result.plates.clear();
   for (const Push& push : recording.pushes) {
     result.scene.pushes.push_back(
         MakeScenePush(push.person, push.start_frame, recording.push_kind, push.force));
@@ -130,6 +208,15 @@ Scene TurnedScene(const PendulumRecording& recording, double angle) {
     }
     push = MakeScenePush(push.person, push.start_frame, push.kind, std::move(push.force));
   }
+  if (scene.ground.moves()) {
+    // Small tilts add up as vectors do: theta leans towards x, phi towards -y.
+    for (GroundPose& pose : scene.ground.poses) {
+      const Eigen::Vector2d shift = axes.Horizontal(pose.head<2>());
+      const Eigen::Vector2d lean = axes.Horizontal({pose[2], -pose[3]});
+      pose = {shift[0], shift[1], lean[0], -lean[1]};
+    }
+    scene.ground = GroundThrough(std::move(scene.ground.poses), scene.dt);
+  }
   for (ScenePerson& person : scene.people) {
     person.start.qd = axes.PoseJacobian(person.start.q) * person.start.qd;
     person.start.q = axes.Pose(person.start.q);
@@ -143,6 +230,12 @@ PendulumRecording Turned(PendulumRecording recording, double angle) {
   recording.facing -= angle;
   for (int n = 0; n < recording.num_people(); ++n) {
     for (Vector3<double>& hip : recording.hip[n]) hip = axes.Point(hip);
+    if (recording.HasPlates(n)) {
+      for (PlateFrame& frame : recording.plates[n]) {
+        frame.shear = axes.Horizontal(frame.shear);
+        frame.centre = axes.Horizontal(frame.centre);
+      }
+    }
     std::vector<PendulumState<double>>& states = recording.states[n];
     for (size_t t = 0; t < states.size(); ++t) {
       states[t].q = axes.Pose(states[t].q);

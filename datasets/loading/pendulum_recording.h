@@ -6,10 +6,18 @@
 
 #include "datasets/loading/foot_steps.h"
 #include "datasets/manifest/recording.h"
+#include "models/mass_distribution.h"
 #include "models/scene.h"
 #include "models/skeleton_mapping.h"
 
 namespace pushid {
+
+// What platforms measured of one person at one frame, in the scene's axes.
+struct PlateFrame {
+  Eigen::Vector2d shear = Eigen::Vector2d::Zero();   // horizontal force on the person, N
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // of pressure, less that at rest, m
+  double weight = 0.0;                               // in [0, 1]
+};
 
 struct PendulumRecording {
   std::string id;
@@ -27,6 +35,9 @@ struct PendulumRecording {
   // How much each frame counts, in [0, 1]; [person] is empty where all of them count fully. That of
   // a frame is the least of its own and the one before, which its velocity needs.
   std::vector<std::vector<double>> weight;
+  // [person][frame]; [person] is empty where no platform measured, and all of it where none did.
+  std::vector<std::vector<PlateFrame>> plates;
+  std::vector<MassDistribution> masses;  // one per person, by the segments; empty: not known
   // One per person, from the feet; empty where a recording was not made from one.
   std::vector<PersonSteps> steps;
   std::vector<FootSupport> foot_support;
@@ -42,6 +53,15 @@ struct PendulumRecording {
   // Of the rod's length since frame 0, m.
   double RodChange(int person, int frame) const {
     return rod_length[person][frame] - rod_length[person][0];
+  }
+  bool HasPlates(int person) const {
+    return person < static_cast<int>(plates.size()) && !plates[person].empty();
+  }
+  bool HasPlates() const {
+    for (const std::vector<PlateFrame>& of_one : plates) {
+      if (!of_one.empty()) return true;
+    }
+    return false;
   }
   bool StepsKnown() const { return !steps.empty(); }
   bool Stepped(int person) const { return StepsKnown() && steps[person].Stepped(); }

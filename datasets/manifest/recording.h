@@ -13,6 +13,7 @@
 #include "datasets/manifest/body_roles.h"
 #include "datasets/manifest/stated_errors.h"
 #include "models/enum_names.h"
+#include "models/ground.h"
 #include "models/push.h"  // PushKind
 
 namespace pushid {
@@ -86,6 +87,13 @@ struct FileSkeleton {
   Eigen::Matrix3d world_from_file = Eigen::Matrix3d::Identity();
 };
 
+// What force platforms under a person measured at one frame: the sum of them all.
+struct PlateSample {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  // on the person, N
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of pressure, m
+  double weight = 0.0;  // in [0, 1]: 0 where nothing was measured
+};
+
 struct RecordedPerson {
   std::string subject_id;
   double mass_kg = 0.0;
@@ -101,6 +109,8 @@ struct RecordedPerson {
   // One per frame in [0, 1]: how much the frame counts; empty: 1 for all. 0 where hip or ankles
   // were not seen: the positions there mean nothing.
   std::vector<double> weight;
+  // One per frame; empty: no platform is to be measured against.
+  std::vector<PlateSample> plates;
   // All joints, frame-major ([frame][joint]); empty unless asked for.
   std::vector<std::vector<Eigen::Vector3d>> joints;
   // Names and parents (-1 for a root) of `joints`; empty unless those were asked for.
@@ -120,6 +130,7 @@ struct Recording {
   InitialVelocity initial_velocity = InitialVelocity::kZero;
   std::vector<RecordedPerson> people;
   std::vector<Push> pushes;
+  std::vector<GroundPose> ground;  // one per frame, in the laboratory; empty: it does not move
   StatedErrors stated_errors;
   std::string content_hash;  // of every file it was read from, for provenance
 

@@ -139,6 +139,20 @@ Row PresetPriorsRow() {
       [](bool value, FitOptions* o) { o->preset_priors = value; });
 }
 
+Row DelayRow() {
+  Row row = NameRow<Delay>(
+      "delay", "/delay", [](FitOptions & o) -> auto& { return o.model.delay; },
+      "reaction delay of active feedback: none, one (of all of it) or ankle_and_step (the feet's "
+      "own); reaction_delay and the passive shares of stiffness and damping are then fitted");
+  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
+    Delay delay;
+    if (MaybeError error = ParseName("--delay", text, &delay)) return error;
+    SetDelay(delay, o);
+    return std::nullopt;
+  };
+  return MayBeAbsent(row);
+}
+
 std::string FrictionHelp() {
   std::string text;
   for (const auto& law : Names(FrictionKind{}))
@@ -243,6 +257,12 @@ std::vector<Row> ModelOptionRows() {
       Decided(NameRow<PushTail>(
           "push_tail", "/push_tail", [](O & o) -> auto& { return o.model.push_tail; },
           "none or exponential")),
+      DelayRow(),
+      MayBeAbsent(NameRow<BodyModel>(
+          "body", "/body", [](O & o) -> auto& { return o.model.body; },
+          "where a body's mass is: ldp (nine tenths at the hip; of who stands, an average body's), "
+          "anthropometric (by the recorded segments, de Leva 1996) or table (cart_share, "
+          "gyration_radius and push_gain, of robots and rigs: set, fitted or from --fix)")),
       NameRow<CartDerivative>(
           "cart_derivative", "/cart_derivative",
           [](O & o) -> auto& { return o.model.cart_derivative; },

@@ -155,7 +155,21 @@ void SetStance(Stance stance, FitOptions* options) {
   }
 }
 
+void SetDelay(Delay delay, FitOptions* options) {
+  options->model.delay = delay;
+  if (delay == Delay::kNone) return;
+  // A hinge on the free modes knows none of it; settling simulations do.
+  options->mode_weight = 0.0;
+  options->start = FitStart::kNominal;
+  // Weak priors: published delays are 0.10 to 0.16 s (median 0.134), passive shares 0 to 0.9.
+  for (const Start& start : {Start{kReactionDelay, 0.13, 0.1}, Start{kStepDelay, 0.2, 0.15},
+                             Start{kPassiveStiffness, 0.2, 0.2}, Start{kPassiveDamping, 0.2, 0.2}}) {
+    Free(start, &options->table);
+  }
+}
+
 std::string MemoryOf(const ModelOptions& model) {
+  if (model.delay != Delay::kNone) return "--delay=" + NameOf(model.delay);
   if (model.stance != Stance::kSlide) return "--stance=" + NameOf(model.stance);
   if (model.learned != nullptr) return "a network";
   if (model.cart_derivative != CartDerivative::kNone) return "--cart_derivative";

@@ -62,6 +62,9 @@ inline constexpr char kAutoStance[] = "auto";
 bool TakesStanceFromFeet(const std::string& preset);
 void SetStance(Stance stance, FitOptions* options);
 
+// With a delay its parameters are free, with weak priors.
+void SetDelay(Delay delay, FitOptions* options);
+
 // What the fit maximizes. A likelihood of single steps has process noise, at least a diagonal one,
 // and demands nothing of people in simulations: these see rollouts, which it does not fit.
 void SetLikelihood(Likelihood likelihood, FitOptions* options);

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "models/decompositions.h"
 #include "models/learned_terms.h"
 #include "models/modal_stability.h"
+#include "models/reaction_delay.h"
 #include "models/rollout.h"
 #include "models/self_terms.h"
 
@@ -115,13 +117,51 @@ Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
   return jacobian;
 }
 
+// What a velocity one step on has of what is perceived late: columns of the state now, and of those
+// before it, lag by lag.
+struct LateVelocity {
+  Eigen::Matrix<double, 4, 6> by_now = Eigen::Matrix<double, 4, 6>::Zero();
+  Eigen::MatrixXd by_past;  // 4 x 6 lags
+
+  // inverse: of the mass matrix, times the step.
+  LateVelocity(const ModelOptions& options, const ParameterSet<double>& p, const SelfForce& self,
+               const Eigen::Matrix4d& inverse, double dt) {
+    const double longest = std::max(p[kReactionDelay], p[StepDelayOf(options.delay)]);
+    const int lags = static_cast<int>(longest / dt) + DelayedFrames<double>::kCount;
+    by_past = Eigen::MatrixXd::Zero(4, 6 * lags);
+    const auto add = [&](RestInput input, Parameter delay, const Eigen::Array<double, 6, 1>& share) {
+      const Eigen::Matrix<double, 4, 6> by =
+          inverse * LinearizeAtRest(options.stance, self, p, input).by_state;
+      by_now += by * share.matrix().asDiagonal();
+      const DelayedFrames<double> frames(p[delay], 0, dt);
+      for (int i = 0; i < DelayedFrames<double>::kCount; ++i) {
+        const int lag = i - frames.frame;
+        const Eigen::Matrix<double, 4, 6> part =
+            frames.weight[i] * by * (1.0 - share).matrix().asDiagonal();
+        if (lag <= 0) {
+          by_now += part;
+        } else {
+          by_past.middleCols<6>(6 * (lag - 1)) += part;
+        }
+      }
+    };
+    Eigen::Array<double, 6, 1> passive;
+    passive << p[kPassiveStiffness], p[kPassiveStiffness], 0.0, 0.0, p[kPassiveDamping],
+        p[kPassiveDamping];
+    add(RestInput::kAnkle, kReactionDelay, passive);
+    add(RestInput::kStep, StepDelayOf(options.delay), Eigen::Array<double, 6, 1>::Zero());
+  }
+};
+
 // Eigenvalues of one free step about rest, as growth rates. Where the cart stands does not matter:
 // x and y are no part of the state.
 double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& parameters) {
   const Scene scene = SettlingScene(80.0, 0.0);
   const Body& body = scene.people[0].body;
   const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
-  RestJacobian<double> rest = LinearizeAtRest(options.stance, self, parameters);
+  const bool late = options.delay != Delay::kNone;
+  RestJacobian<double> rest = LinearizeAtRest(options.stance, self, parameters,
+                                              late ? RestInput::kState : RestInput::kAll);
   const Body at_rest = BodyAtRest(options.stance, body, parameters);
   const Eigen::Matrix4d inverse =
       InverseMassMatrix<double>(at_rest, Angles<double>(), at_rest.mass + scene.dt * rest.ground);
@@ -132,23 +172,32 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   if (network != nullptr && !network->shape.biased() && !network->rod.biased()) {
     learned = LearnedStep(*options.learned, self, parameters);
   }
-  const Eigen::Index size = learned.cols(), memory = size - kMemoryAt;
+  std::optional<LateVelocity> of_past;
+  if (late) of_past.emplace(options, parameters, self, scene.dt * inverse, scene.dt);
+  const Eigen::Index known = learned.cols(), memory = known - kMemoryAt;
+  const Eigen::Index past = late ? of_past->by_past.cols() : 0, size = known + past;
   Eigen::MatrixXd step = Eigen::MatrixXd::Zero(size, size);
   auto velocity = step.middleRows<4>(2);
   velocity.middleCols<4>(2).setIdentity();
   velocity.leftCols<6>() += scene.dt * inverse * rest.by_state;
   velocity.middleCols<2>(kPreviousAt) +=
       scene.dt * inverse.leftCols<2>() * rest.by_previous.asDiagonal();
-  velocity += scene.dt * inverse * learned.topRows<4>();
+  velocity.leftCols(known) += scene.dt * inverse * learned.topRows<4>();
+  if (late) {
+    velocity.leftCols<6>() += of_past->by_now;
+    velocity.rightCols(past) += of_past->by_past;
+    step.block<6, 6>(known, 0).setIdentity();
+    step.block(known + 6, known, past - 6, past - 6).setIdentity();
+  }
   step.topLeftCorner<2, 2>().setIdentity();
   step.topRows<2>() += scene.dt * velocity.bottomRows<2>();
   step.block<2, 2>(kPreviousAt, 2).setIdentity();
   // A law that is switched off leaves the rod where it is, which tells nothing of the person.
   if (!learned.row(4).isZero(0.0)) {
-    step.row(kRodAt) = scene.dt * learned.row(4);
+    step.row(kRodAt).head(known) = scene.dt * learned.row(4);
     step(kRodAt, kRodAt) += 1.0;
   }
-  step.bottomRows(memory) = learned.bottomRows(memory);
+  step.block(kMemoryAt, 0, memory, known) = learned.bottomRows(memory);
   return std::log(SpectralRadius(step)) / scene.dt;
 }
 

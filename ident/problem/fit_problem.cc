@@ -209,6 +209,11 @@ std::vector<double> FitProblem::RawResiduals(const FitPoint& point, int recordin
   return values;
 }
 
+size_t FitProblem::NumMotionRows(int recording) const {
+  const PendulumRecording& r = recordings()[recording];
+  return static_cast<size_t>(r.num_frames() - 1) * r.num_people() * kFrameResiduals;
+}
+
 std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording) const {
   std::vector<double*> blocks = {point->shared.data()};
   const BlockLayout layout(map_, PoolingUnits(recordings()[recording], map_.pool_by), false);

@@ -101,8 +101,11 @@ class FitProblem {
   Deviance DevianceAt(const FitPoint& point) const;
 
   // A recording's residuals in sigmas before any weight: FrameResidual's, by frame from frame 1 on,
-  // then person. Empty where its rollout leaves the domain.
+  // then person; then those of platforms (cost_functions/plate_residual.h). Empty where its rollout
+  // leaves the domain.
   std::vector<double> RawResiduals(const FitPoint& point, int recording) const;
+  // How many of them are of motion.
+  size_t NumMotionRows(int recording) const;
 
   // Clusters of what is not data.
   static constexpr int kPriorCluster = -1;     // priors on parameters

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "ident/uncertainty/uncertainty.h"
+#include "residuals/cost_functions/plate_residual.h"
 
 namespace pushid {
 namespace {
@@ -21,6 +22,10 @@ constexpr Kind kKinds[] = {{0, 3, 2.3660, 1.0},
                            {3, 2, 1.3863, kRateWeight},
                            {5, 2, 1.3863, kRateWeight},
                            {7, 2, 1.3863, kRateWeight}};
+
+// Of platforms (plate_residual.h): shear and the centre of pressure, counted as the hip is.
+constexpr double kPlateMedian = 1.3863;
+constexpr double kLeastShear = 0.5, kLeastCentre = 2e-4;  // N, m: no platform is more exact
 
 double Median(std::vector<double>* values) {
   const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
@@ -45,10 +50,17 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) 
   const std::array<double, 4> floors = Floors(problem);
   double* const scales[] = {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate};
   std::array<std::vector<double>, 4> squares;
+  std::array<std::vector<double>, 2> of_plates;
   for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
     if (problem.Count(i) == 0) continue;
     const std::vector<double> residuals = problem.RawResiduals(point, i);
-    for (size_t row = 0; row < residuals.size(); row += kFrameResiduals) {
+    const size_t motion = problem.NumMotionRows(i);
+    for (size_t row = motion; row < residuals.size(); row += kPlateResiduals) {
+      const Eigen::Map<const PlateVector<double>> r(residuals.data() + row);
+      if (r.isZero(0.0)) continue;
+      for (int k = 0; k < 2; ++k) of_plates[k].push_back(r.segment<2>(2 * k).squaredNorm());
+    }
+    for (size_t row = 0; row < std::min(motion, residuals.size()); row += kFrameResiduals) {
       const Eigen::Map<const FrameVector<double>> r(residuals.data() + row);
       if (r.isZero(0.0)) continue;  // nothing was measured
       for (size_t k = 0; k < squares.size(); ++k) {
@@ -60,6 +72,13 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) 
     if (squares[k].empty()) continue;
     *scales[k] *= std::sqrt(Median(&squares[k]) / kKinds[k].median) / kKinds[k].weight;
     *scales[k] = std::max(*scales[k], floors[k] / kKinds[k].weight);
+  }
+  double* const plate_scales[] = {&sigmas.shear, &sigmas.centre};
+  constexpr double kLeast[] = {kLeastShear, kLeastCentre};
+  for (int k = 0; k < 2; ++k) {
+    if (of_plates[k].empty()) continue;
+    *plate_scales[k] *= std::sqrt(Median(&of_plates[k]) / kPlateMedian);
+    *plate_scales[k] = std::max(*plate_scales[k], kLeast[k]);
   }
   return sigmas;
 }

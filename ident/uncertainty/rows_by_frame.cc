@@ -6,6 +6,7 @@
 
 #include "ident/problem/parallel.h"
 #include "ident/uncertainty/fitted_columns.h"
+#include "residuals/cost_functions/plate_residual.h"
 #include "residuals/frame_residual.h"
 
 namespace pushid {
@@ -61,13 +62,15 @@ void SetDifferences(const RawResiduals& here, const RawResiduals& there, double 
 // With d(model - (1 + eta) measured) = d(model) - measured, the column holds the noise of what was
 // measured, which the residual holds as well: their product is no longer zero on average. The same
 // model, with d(model / (1 + eta) - measured) = d(model) - model: less by the residual.
-void LeaveOutNoiseOfRates(const RawResiduals& here, Eigen::Ref<Eigen::VectorXd> column) {
+void LeaveOutNoiseOfRates(const FitProblem& problem, const RawResiduals& here,
+                          Eigen::Ref<Eigen::VectorXd> column) {
   Eigen::Index row = 0;
-  for (const std::vector<double>& raw : here) {
-    for (size_t k = 0; k < raw.size(); ++k, ++row) {
+  for (size_t i = 0; i < here.size(); ++i) {
+    const size_t motion = problem.NumMotionRows(static_cast<int>(i));
+    for (size_t k = 0; k < here[i].size(); ++k, ++row) {
       const size_t channel = k % kFrameResiduals;
       const bool rate = channel == 3 || channel == 4 || channel >= 7;
-      if (rate) column[row] -= raw[k];
+      if (rate && k < motion) column[row] -= here[i][k];
     }
   }
 }
@@ -75,16 +78,17 @@ void LeaveOutNoiseOfRates(const RawResiduals& here, Eigen::Ref<Eigen::VectorXd> 
 // Raw rows, times how much of the frame was seen, become those of the cost: with c = sqrt(1 + |r|^2
 // / d^2), residual and Jacobian times weight / sqrt(c); the loss's own Hessian has 1 / c of that
 // along r (frame_residual.h).
+template <int kRows>
 void WeighFrame(const double* raw, double seen, double weight, double robust, Eigen::Index row,
                 JacobianBlocks* rows) {
-  const Eigen::Map<const FrameVector<double>> r(raw);
+  const Eigen::Map<const Eigen::Matrix<double, kRows, 1>> r(raw);
   const double squared = r.squaredNorm();
   const double whole = seen > 0.0 ? squared / (seen * seen) : 0.0;  // as if all of it counted
   const double c = robust > 0.0 ? std::sqrt(1.0 + whole / (robust * robust)) : 1.0;
-  auto jacobian = rows->jacobian.middleRows<kFrameResiduals>(row);
+  auto jacobian = rows->jacobian.middleRows<kRows>(row);
   jacobian *= weight / std::sqrt(c);
-  rows->residuals.segment<kFrameResiduals>(row) = weight / std::sqrt(c) * r;
-  auto own = rows->robust_jacobian.middleRows<kFrameResiduals>(row);
+  rows->residuals.segment<kRows>(row) = weight / std::sqrt(c) * r;
+  auto own = rows->robust_jacobian.middleRows<kRows>(row);
   own = jacobian;
   if (squared > 0.0) own += (1.0 / c - 1.0) / squared * r * (r.transpose() * jacobian);
 }
@@ -93,16 +97,33 @@ void WeighFrames(const FitProblem& problem, const RawResiduals& raw, RowsByFrame
   const double robust = problem.options().sigmas.OfFrames();
   Eigen::Index row = 0;
   for (size_t i = 0; i < raw.size(); ++i) {
-    const int people = problem.recordings()[i].num_people();
+    const PendulumRecording& recording = problem.recordings()[i];
+    const int people = recording.num_people();
     const double weight = problem.Weight(static_cast<int>(i), 0);
-    for (int slot = 0; slot * kFrameResiduals < static_cast<int>(raw[i].size()); ++slot) {
-      const double seen = problem.recordings()[i].Weight(slot % people, 1 + slot / people);
-      WeighFrame(raw[i].data() + slot * kFrameResiduals, seen, weight, robust, row, &result->rows);
-      row += kFrameResiduals;
-      for (int k = 0; k < kFrameResiduals; ++k) {
+    const auto belong = [&](int rows, int person, int frame) {
+      row += rows;
+      for (int k = 0; k < rows; ++k) {
         result->rows.cluster_of_row.push_back(static_cast<int>(i));
-        result->rows.person_of_row.push_back(slot % people);
-        result->frame_of_row.push_back(1 + slot / people);
+        result->rows.person_of_row.push_back(person);
+        result->frame_of_row.push_back(frame);
+      }
+    };
+    if (raw[i].empty()) continue;
+    const int motion = static_cast<int>(problem.NumMotionRows(static_cast<int>(i)));
+    for (int slot = 0; slot * kFrameResiduals < motion; ++slot) {
+      const double seen = recording.Weight(slot % people, 1 + slot / people);
+      WeighFrame<kFrameResiduals>(raw[i].data() + slot * kFrameResiduals, seen, weight, robust, row,
+                                  &result->rows);
+      belong(kFrameResiduals, slot % people, 1 + slot / people);
+    }
+    const double* of_plates = raw[i].data() + motion;
+    for (int t = 0; t + 1 < recording.num_frames(); ++t) {
+      for (int n = 0; n < people; ++n) {
+        if (!recording.HasPlates(n)) continue;
+        WeighFrame<kPlateResiduals>(of_plates, recording.plates[n][t].weight, weight, robust, row,
+                                    &result->rows);
+        of_plates += kPlateResiduals;
+        belong(kPlateResiduals, n, t);
       }
     }
   }
@@ -170,7 +191,7 @@ RowsByFrame EvaluateByFrame(const FitProblem& problem, const FitPoint& point,
                     : RawUnder(assumptions[column - result.num_estimates], problem, point);
     SetDifferences(here, there, step, rows.jacobian.col(column).head(data));
     if (!of_estimate && assumptions[column - result.num_estimates].of_rates) {
-      LeaveOutNoiseOfRates(here, rows.jacobian.col(column).head(data));
+      LeaveOutNoiseOfRates(problem, here, rows.jacobian.col(column).head(data));
     }
   });
   WeighFrames(problem, here, &result);

@@ -60,10 +60,21 @@ RolloutStatus CondensedRollout::Visit(double const* const* blocks, Derivatives d
     visit({person, problem().weight * problem().recording->Weight(person, frame), kFrameResiduals,
            residuals, by_column->data()});
   };
+  const auto told_of_plates = [&](int frame, int person, const double* residuals,
+                                  double* by_column) {
+    const double seen = problem().recording->plates[person][frame].weight;
+    visit({person, problem().weight * seen, kPlateResiduals, residuals, by_column});
+  };
   if (oracle_ == nullptr) {
-    return VisitFrames(problem(), blocks, derivatives,
-                       [&told](int frame, int person, const FrameVector<double>& r,
-                               FrameRows* by_column) { told(frame, person, r.data(), by_column); });
+    return VisitFrames(
+        problem(), blocks, derivatives,
+        [&told](int frame, int person, const FrameVector<double>& r, FrameRows* by_column) {
+          told(frame, person, r.data(), by_column);
+        },
+        [&told_of_plates](int frame, int person, const PlateVector<double>& r,
+                          PlateRows* by_column) {
+          told_of_plates(frame, person, r.data(), by_column->data());
+        });
   }
   const int rows = oracle_->num_residuals(), people = num_people();
   std::vector<double> residuals(rows);
@@ -77,10 +88,19 @@ RolloutStatus CondensedRollout::Visit(double const* const* blocks, Derivatives d
   }
   const int padded = NormalEquations::PaddedSize(problem().layout.num_acting());
   FrameRows by_column(kFrameResiduals, with_rows ? padded : 0);
-  for (int row = 0; row < rows; row += kFrameResiduals) {
-    if (with_rows) columns().Gather(by_block, row, &by_column);
+  const int motion = problem().num_motion_rows();
+  for (int row = 0; row < motion; row += kFrameResiduals) {
+    if (with_rows) columns().Gather(by_block, row, by_column);
     const int at = row / kFrameResiduals;
     told(1 + at / people, at % people, residuals.data() + row, &by_column);
+  }
+  const std::vector<int> on_plates = problem().PeopleOnPlates();
+  const int plated = static_cast<int>(on_plates.size());
+  PlateRows of_plate(kPlateResiduals, with_rows ? padded : 0);
+  for (int row = motion; row < rows; row += kPlateResiduals) {
+    if (with_rows) columns().Gather(by_block, row, of_plate);
+    const int at = (row - motion) / kPlateResiduals;
+    told_of_plates(at / plated, on_plates[at % plated], residuals.data() + row, of_plate.data());
   }
   return {};
 }

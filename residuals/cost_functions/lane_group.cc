@@ -38,7 +38,9 @@ bool SameLanes(const RolloutProblem& a, const RolloutProblem& b) {
 bool HasLanes(const RolloutProblem& problem) {
   const ModelOptions& options = problem.options;
   return problem.recording->num_people() == 1 && options.stance == Stance::kSlide &&
-         options.learned == nullptr && options.own_laws.empty() &&
+         options.learned == nullptr && options.own_laws.empty() && options.delay == Delay::kNone &&
+         options.body != BodyModel::kTable && !problem.recording->scene.ground.moves() &&
+         !problem.recording->HasPlates() &&
          problem.sigmas.loss == FrameLoss::kHip;
 }
 
@@ -59,6 +61,8 @@ LaneGroup::LaneGroup(std::vector<const RolloutProblem*> problems, const PersonLa
     Constant(kLaneMass, at) = self.body.mass;
     Constant(kLaneRod, at) = self.body.rod_length;
     Constant(kLaneHeight, at) = self.body.cart_height;
+    Constant(kLanePointShare, at) = self.body.point_share;
+    Constant(kLanePendulumRatio, at) = self.body.pendulum_ratio;
     Constant(kLaneScale, at) = self.scale.force;
     Constant(kLaneScale + 1, at) = self.scale.stiffness;
     Constant(kLaneScale + 2, at) = self.scale.damping;

@@ -93,13 +93,13 @@ void ActingColumns::Scatter(const Eigen::Ref<const RowMajorMatrix>& by_acting, i
 }
 
 void ActingColumns::Gather(const std::vector<RowMajorMatrix>& by_block, int first_row,
-                           FrameRows* by_acting) const {
-  by_acting->setZero();
+                           Eigen::Ref<RowMajorMatrix> by_acting) const {
+  by_acting.setZero();
   auto column = of_column_.begin();
   for (const RowMajorMatrix& block : by_block) {
     for (Eigen::Index i = 0; i < block.cols(); ++i, ++column) {
       if (column->first != column->second) continue;  // a sum of what other columns hold alone
-      by_acting->col(column->first) = block.col(i).segment<kFrameResiduals>(first_row);
+      by_acting.col(column->first) = block.col(i).segment(first_row, by_acting.rows());
     }
   }
 }
@@ -126,8 +126,50 @@ RolloutStatus RollOut(const RolloutProblem& p, double const* const* blocks, Deri
   return RolloutWithSensitivities(scene, p.options, *inputs, p.horizon, path, sensitivities);
 }
 
+namespace {
+
+// Rows of platforms, of a rollout that is there.
+void VisitPlates(const RolloutProblem& p, const SensitivityInputs& inputs,
+                 const RolloutPath<double>& path, const RolloutSensitivities& sensitivities,
+                 bool with_rows, const PlateVisitor& visit) {
+  const Scene& scene = p.recording->scene;
+  PlateRows by_column(kPlateResiduals, with_rows ? inputs.num_columns : 0);
+  PlateJacobian jacobian;
+  const std::vector<int> people = p.PeopleOnPlates();
+  for (int t = 0; t + 1 < p.horizon; ++t) {
+    for (int n : people) {
+      const PlatePlace place{&scene, &p.options, n, t};
+      const PlateFrame& measured = p.recording->plates[n][t];
+      const ParameterSet<double>& set = inputs.parameters[n];
+      if (!with_rows) {
+        visit(t, n,
+              p.weight * PlateResidual<double>(place, set, path.At(t, n), path.At(t + 1, n).qd,
+                                               measured, p.sigmas),
+              &by_column);
+        continue;
+      }
+      const PlateVector<double> r =
+          p.weight * PlateResidualWithJacobian(place, set, path.At(t, n), path.At(t + 1, n).qd,
+                                               measured, p.sigmas, &jacobian);
+      jacobian *= p.weight;
+      by_column.noalias() = jacobian.leftCols<8>() * sensitivities.At(t, n);
+      by_column.noalias() += jacobian.middleCols<4>(8) * sensitivities.At(t + 1, n).bottomRows<4>();
+      for (const ColumnEntry& entry : inputs.entries[n]) {
+        for (int k = 0; k < kNumPlateParameters; ++k) {
+          if (entry.parameter != kPlateParameters[k]) continue;
+          by_column.col(entry.column) += entry.derivative * jacobian.col(12 + k);
+        }
+      }
+      visit(t, n, r, &by_column);
+    }
+  }
+}
+
+}  // namespace
+
 RolloutStatus VisitFrames(const RolloutProblem& p, double const* const* blocks,
-                          Derivatives derivatives, const FrameVisitor& visit) {
+                          Derivatives derivatives, const FrameVisitor& visit,
+                          const PlateVisitor& plates) {
   const Scene& scene = p.recording->scene;
   const bool with_rows = derivatives != Derivatives::kNone;
   SensitivityInputs inputs;
@@ -174,6 +216,7 @@ RolloutStatus VisitFrames(const RolloutProblem& p, double const* const* blocks,
       visit(t, n, r, &by_column);
     }
   }
+  if (plates) VisitPlates(p, inputs, path, sensitivities, with_rows, plates);
   return status;
 }
 
@@ -183,6 +226,10 @@ bool RolloutResiduals(const RolloutProblem& problem, double const* const* blocks
                      [&residuals](int, int, const FrameVector<double>& r, FrameRows*) {
                        Eigen::Map<FrameVector<double>>{residuals} = r;
                        residuals += kFrameResiduals;
+                     },
+                     [&residuals](int, int, const PlateVector<double>& r, PlateRows*) {
+                       Eigen::Map<PlateVector<double>>{residuals} = r;
+                       residuals += kPlateResiduals;
                      })
       .ok;
 }

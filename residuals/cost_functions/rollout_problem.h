@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
+#include "residuals/cost_functions/plate_residual.h"
 #include "residuals/frame_residual.h"
 #include "residuals/normal_equations.h"
 #include "residuals/parameter_map.h"
@@ -35,7 +36,20 @@ struct RolloutProblem {
   double weight = 1.0;  // on every residual of the recording
   int horizon = 0;      // frames rolled out, including frame 0
 
-  int num_residuals() const { return (horizon - 1) * recording->num_people() * kFrameResiduals; }
+  // Of motion, then of platforms (plate_residual.h), frame by frame from frame 0 on, of those
+  // people who have some.
+  int num_residuals() const { return num_motion_rows() + num_plate_rows(); }
+  int num_motion_rows() const { return (horizon - 1) * recording->num_people() * kFrameResiduals; }
+  int num_plate_rows() const {
+    return (horizon - 1) * static_cast<int>(PeopleOnPlates().size()) * kPlateResiduals;
+  }
+  std::vector<int> PeopleOnPlates() const {
+    std::vector<int> people;
+    for (int n = 0; n < recording->num_people(); ++n) {
+      if (recording->HasPlates(n)) people.push_back(n);
+    }
+    return people;
+  }
   MeasuredFrame Measured(int frame, int person) const {
     return {recording->hip[person][frame], recording->states[person][frame],
             recording->Weight(person, frame),
@@ -70,7 +84,7 @@ class ActingColumns {
                double** jacobians) const;
   // Back again: rows of the blocks' derivatives by acting column.
   void Gather(const std::vector<RowMajorMatrix>& by_block, int first_row,
-              FrameRows* by_acting) const;
+              Eigen::Ref<RowMajorMatrix> by_acting) const;
 
  private:
   std::vector<int> block_sizes_;
@@ -95,10 +109,16 @@ RolloutStatus RollOut(const RolloutProblem& problem, double const* const* blocks
 using FrameVisitor = std::function<void(int frame, int person, const FrameVector<double>& residual,
                                         FrameRows* by_column)>;
 
+using PlateRows = Eigen::Matrix<double, kPlateResiduals, Eigen::Dynamic, Eigen::RowMajor>;
+using PlateVisitor = std::function<void(int frame, int person, const PlateVector<double>& residual,
+                                        PlateRows* by_column)>;
+
 // What is on hand of a rollout's residuals, frame by frame from frame 1 on, then person by person.
-// The visitor may change the rows, which are there only with derivatives.
+// The visitor may change the rows, which are there only with derivatives. plates: then those of
+// platforms, in the same way from frame 0 on; null: nobody asks.
 RolloutStatus VisitFrames(const RolloutProblem& problem, double const* const* blocks,
-                          Derivatives derivatives, const FrameVisitor& visit);
+                          Derivatives derivatives, const FrameVisitor& visit,
+                          const PlateVisitor& plates = nullptr);
 
 // The residuals alone, problem.num_residuals() of them; false outside the model's domain.
 bool RolloutResiduals(const RolloutProblem& problem, double const* const* blocks,
@@ -137,6 +157,15 @@ struct RolloutResidualFunctor {
                                ? FrameResidual<T>(BodyNow(body, state.rod, parameters[n][kRodLift]),
                                                   state, p.Measured(t, n), p.sigmas)
                                : FrameResidual<T>(body, state, p.Measured(t, n), p.sigmas));
+      }
+    }
+    for (int t = 0; t + 1 < p.horizon; ++t) {
+      for (int n : p.PeopleOnPlates()) {
+        Eigen::Map<PlateVector<T>> r(residuals);
+        r = T(p.weight) * PlateResidual<T>({&scene, &p.options, n, t}, parameters[n], path.At(t, n),
+                                           path.At(t + 1, n).qd, p.recording->plates[n][t],
+                                           p.sigmas);
+        residuals += kPlateResiduals;
       }
     }
     return true;

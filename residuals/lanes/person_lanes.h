@@ -29,6 +29,8 @@ enum LaneConstant {
   kLaneMass = 0,
   kLaneRod,
   kLaneHeight,
+  kLanePointShare,
+  kLanePendulumRatio,
   kLaneScale,                     // 3: of GainScaleOf
   kLanePosture = kLaneScale + 3,  // 2
   kLaneHold = kLanePosture + 2,   // 2

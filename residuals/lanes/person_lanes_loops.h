@@ -30,7 +30,8 @@ class Roller {
       : in_(in), sums_(sums), carried_(carried) {
     const double* const c = in.constants;
     const auto constant = [c](int id) { return LoadLanes(c + id * kWidth); };
-    self_.body = {constant(kLaneMass), constant(kLaneRod), constant(kLaneHeight)};
+    self_.body = {constant(kLaneMass), constant(kLaneRod), constant(kLaneHeight),
+                  constant(kLanePointShare), constant(kLanePendulumRatio)};
     self_.scale.force = constant(kLaneScale);
     self_.scale.stiffness = constant(kLaneScale + 1);
     self_.scale.damping = constant(kLaneScale + 2);

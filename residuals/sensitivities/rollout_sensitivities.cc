@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "residuals/packed/packed_matrix.h"
+#include "residuals/sensitivities/delay_sensitivities.h"
 #include "residuals/sensitivities/learned_pair_jacobian.h"
 #include "residuals/sensitivities/network_sensitivities.h"
 #include "residuals/sensitivities/stance_sensitivities.h"
@@ -16,20 +17,82 @@ namespace pushid {
 Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
                                      const Vector4<double>& a) {
   using Jet = ceres::Jet<double, 1>;
-  const BodyOf<Jet> jets{Jet(body.mass), Jet(body.rod_length, 0), Jet(0.0)};
+  const BodyOf<Jet> jets{Jet(body.mass), Jet(body.rod_length, 0), Jet(0.0), Jet(body.point_share),
+                         Jet(body.pendulum_ratio)};
   const PendulumState<Jet> still{state.q.cast<Jet>(), state.qd.cast<Jet>()};
   const Vector4<Jet> value = InverseDynamics<Jet>(jets, still, a.cast<Jet>());
   return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
 }
 
+namespace {
+
+// What balances on what was perceived: rows of the cart by steps, those of the angles by ankles.
+void LateJacobian(const SelfForce& self, const ParameterSet<double>& p,
+                  const PendulumState<double>& state, const Perceived<double>& perceived,
+                  const Vector4<double>& previous, SelfForce::Jacobian* jacobian,
+                  PerceivedJacobian* by_perceived) {
+  SelfForce::Jacobian of_cart, of_angles;
+  self.ControlJacobian(p, perceived.step, previous, &of_cart);
+  self.ControlJacobian(p, perceived.ankle, previous, &of_angles);
+  self.FrictionJacobian(p, state.qd, jacobian);
+  self.AddOwnJacobian(p, state, jacobian);
+  by_perceived->by_step.topRows<2>() = of_cart.by_state.topRows<2>();
+  by_perceived->by_ankle.bottomRows<2>() = of_angles.by_state.bottomRows<2>();
+  jacobian->by_previous = of_cart.by_previous;
+  jacobian->by_parameter.topRows<2>() += of_cart.by_parameter.topRows<2>();
+  jacobian->by_parameter.bottomRows<2>() += of_angles.by_parameter.bottomRows<2>();
+}
+
+using BodyJet = ceres::Jet<double, 2>;
+
+// Of functions of the table's masses: cart_share and gyration_radius.
+ParameterSet<BodyJet> MassJets(const ParameterSet<double>& p) {
+  ParameterSet<BodyJet> jets{};
+  jets[kCartMassShare] = BodyJet(p[kCartMassShare], 0);
+  jets[kGyrationRadius] = BodyJet(p[kGyrationRadius], 1);
+  return jets;
+}
+
+void AddHoldOfTable(const SelfForce& self, const ParameterSet<double>& p,
+                    SelfForce::Jacobian* jacobian) {
+  const Eigen::Matrix<BodyJet, 2, 1> hold = HoldOfTable(self, MassJets(p));
+  for (int i = 0; i < 2; ++i) {
+    jacobian->by_parameter(2 + i, kCartMassShare) += hold[i].v[0];
+    jacobian->by_parameter(2 + i, kGyrationRadius) += hold[i].v[1];
+  }
+}
+
+// -d(M a + C + g_n / g G)/d(the table's masses) at fixed acceleration a.
+void SubtractInverseDynamicsByMasses(const Body& body, const ParameterSet<double>& p,
+                                     const PendulumState<double>& state, const Vector4<double>& a,
+                                     double gravity, SelfForce::Jacobian* jacobian) {
+  const BodyOf<BodyJet> jets = TableBody(body, MassJets(p));
+  const PendulumState<BodyJet> still{state.q.cast<BodyJet>(), state.qd.cast<BodyJet>()};
+  const Vector4<BodyJet> value =
+      InverseDynamics<BodyJet>(jets, still, a.cast<BodyJet>()) +
+      BodyJet(gravity / kGravity - 1.0) * Gravity<BodyJet>(jets, still.q);
+  for (int i = 0; i < 4; ++i) {
+    jacobian->by_parameter(i, kCartMassShare) -= value[i].v[0];
+    jacobian->by_parameter(i, kGyrationRadius) -= value[i].v[1];
+  }
+}
+
+}  // namespace
+
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                       const ParameterSet<double>& p, int person, int frame,
                       const PendulumState<double>& state, const Vector4<double>& previous,
-                      SelfForce::Jacobian* jacobian) {
+                      SelfForce::Jacobian* jacobian, const Perceived<double>* perceived,
+                      PerceivedJacobian* by_perceived) {
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
+  if (by_perceived != nullptr) by_perceived->SetZero();
   switch (active) {
     case ActiveForces::kAll:
-      self.TotalJacobian(p, state, previous, jacobian);
+      if (perceived == nullptr) {
+        self.TotalJacobian(p, state, previous, jacobian);
+      } else {
+        LateJacobian(self, p, state, *perceived, previous, jacobian, by_perceived);
+      }
       break;
     case ActiveForces::kPushAndFriction:
       self.FrictionJacobian(p, state.qd, jacobian);
@@ -37,6 +100,10 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
     case ActiveForces::kPushOnly:
       jacobian->SetZero();
       break;
+  }
+  if (options.body == BodyModel::kTable) {
+    jacobian->by_parameter.col(kPushGain) += PushForceAt(scene, person, frame);
+    if (active == ActiveForces::kAll) AddHoldOfTable(self, p, jacobian);
   }
   if (options.push_tail == PushTail::kNone || active != ActiveForces::kAll) return;
   for (const ScenePush& push : scene.pushes) {
@@ -210,9 +277,13 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
   SelfForce::Jacobian jacobian;
   const std::vector<std::vector<ColumnEntry>> own_entries = WithoutPairs(inputs.entries);
   StanceJacobian stance;
+  const bool late = options.delay != Delay::kNone;
+  PerceivedJacobian by_perceived;
+  std::optional<PerceivedSensitivities> perceived;
+  if (late) perceived.emplace(inputs.num_columns);
   for (int t = 0; t + 1 < num_frames; ++t) {
     const int before = t > 0 ? t - 1 : 0;
-    forces.Update(path->Frame(t));
+    forces.Update(*path, t);
     forces.PrepareAll();
     received.Update(*sensitivities, t, forces);
     for (int n = 0; n < people; ++n) {
@@ -228,16 +299,28 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
       const std::string_view outside = OutsideDomain(body, path->At(t + 1, n));
       if (!outside.empty()) return {false, t + 1, n, outside};
 
+      // Ground that moves is one more acceleration, and another gravity (models/ground.h).
+      GroundStep ground;
+      if (scene.ground.moves()) ground = scene.ground.steps[t];
+      const Vector4<double> felt = a + ground.acceleration;
       if (stands) {
-        NetForceJacobianOfStance(scene, options, self, p, n, t, state, a, &jacobian, &stance);
+        NetForceJacobianOfStance(scene, options, self, p, n, t, state, a, &jacobian, &stance,
+                                 forces.perceived(n), &by_perceived);
       } else if (options.stance == Stance::kFixed) {
-        NetForceJacobianOfStanding(scene, options, self, p, n, t, state, a, &jacobian);
+        NetForceJacobianOfStanding(scene, options, self, p, n, t, state, a, ground, &jacobian,
+                                   forces.perceived(n), &by_perceived);
       } else {
-        NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian);
+        NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian,
+                         forces.perceived(n), &by_perceived);
       }
-      const Body now_body = forces.HoldsFast(force) ? StandingBody(body, p[kComHeight])
-                                                    : BodyNow(body, state.rod, 0.0);
-      const Matrix4<double> rigid = InverseDynamicsJacobian(now_body, force.angles, state.qd, a);
+      const bool holds_fast = forces.HoldsFast(force);
+      const Body now_body = rod_moves ? BodyNow(body, state.rod, 0.0)
+                                      : DynamicBody(options, body, p, holds_fast);
+      const Matrix4<double> rigid =
+          InverseDynamicsJacobian(now_body, force.angles, state.qd, felt, ground.gravity);
+      if (options.body == BodyModel::kTable) {
+        SubtractInverseDynamicsByMasses(body, p, state, felt, ground.gravity, &jacobian);
+      }
       jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
       jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
       const auto now = sensitivities->At(t, n);
@@ -245,6 +328,11 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
         SetNarrowProduct(jacobian.by_state.rightCols<6>(), now.bottomRows<6>(), by_column);
       } else {
         SetNarrowProduct(jacobian.by_state, now, by_column);
+      }
+      if (late) {
+        perceived->Update(scene, options, p, *path, *sensitivities, t, n);
+        perceived->AddTo(by_perceived.by_ankle, by_perceived.by_step, &by_column);
+        perceived->AddParameters(by_perceived.by_ankle, by_perceived.by_step, &jacobian);
       }
       if (self.cart_derivative) {
         by_column.topRows<2>() +=
@@ -254,12 +342,14 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
         AddWhereAny(entry, jacobian.by_parameter.col(entry.parameter), &by_column);
       }
       if (stands) {
+        if (late) perceived->AddToStep(&stance);
         AdvanceStepState(stance, inputs.entries[n], now, sensitivities->StepState(t, n),
                          sensitivities->StepState(t + 1, n));
+        if (late) perceived->AddToStepState(stance, sensitivities->StepState(t + 1, n));
         by_column.noalias() += stance.by_step * sensitivities->StepState(t, n);
       }
       const auto rod_now = sensitivities->Rod(t, n);
-      if (rod_moves) by_column.noalias() -= InverseDynamicsByRod(now_body, state, a) * rod_now;
+      if (rod_moves) by_column.noalias() -= InverseDynamicsByRod(now_body, state, felt) * rod_now;
       if (!networks.empty()) networks[n].Advance(forces.network(n), now);
       if (ForcesAt(scene, options.push, n, t) == ActiveForces::kAll) {
         received.AddTo(n, &by_column);

@@ -8,15 +8,27 @@ namespace {
 
 using Ids = StanceParameters<double>;
 
-// Inputs of the jets: theta, phi, qd, s, the cart's own forces, then the parameters.
-constexpr int kVelocityAt = 2, kStepAt = 6, kCartForceAt = 7, kParametersAt = 9;
+// Inputs of the jets: theta, phi, qd, s, the cart's own forces, what ankles perceive (two angles and
+// their rates), what steps perceive (two angles, qd), then the parameters.
+constexpr int kVelocityAt = 2, kStepAt = 6, kCartForceAt = 7, kAnkleAt = 9, kFootAt = 13;
+constexpr int kParametersAt = 19;
 constexpr int kInputs = kParametersAt + Ids::kCount;
 using StanceJet = ceres::Jet<double, kInputs>;
 
 StanceForces<StanceJet> JetsOfStance(const SelfForce& self, const ParameterSet<double>& p,
                                      const PendulumState<double>& state,
+                                     const Perceived<double>& perceived,
                                      const Eigen::Vector2d& cart_force) {
   PendulumState<StanceJet> jets;
+  Perceived<StanceJet> felt;
+  for (int i = 0; i < 2; ++i) {
+    felt.ankle.q[2 + i] = StanceJet(perceived.ankle.q[2 + i], kAnkleAt + i);
+    felt.ankle.qd[2 + i] = StanceJet(perceived.ankle.qd[2 + i], kAnkleAt + 2 + i);
+    felt.step.q[2 + i] = StanceJet(perceived.step.q[2 + i], kFootAt + i);
+  }
+  for (int i = 0; i < 4; ++i) {
+    felt.step.qd[i] = StanceJet(perceived.step.qd[i], kFootAt + 2 + i);
+  }
   Eigen::Matrix<StanceJet, 2, 1> force;
   for (int i = 0; i < 2; ++i) {
     jets.q[i] = StanceJet(state.q[i]);
@@ -29,22 +41,35 @@ StanceForces<StanceJet> JetsOfStance(const SelfForce& self, const ParameterSet<d
   // In the order of kIds, which is that of the members.
   const StanceParameters<StanceJet> parameters(
       [&](Parameter id) { return StanceJet(p[id], input++); });
-  return StanceAt(self, parameters, Angles<StanceJet>(jets.q), jets, force);
+  return StanceAt(self, parameters, Angles<StanceJet>(jets.q), jets, felt, force);
 }
 
-// One output's derivatives by the state, by s and by the parameters. own: of the cart's forces.
+// The cart's own forces: friction of the state, what is perceived of the rest.
+struct CartForceJacobian {
+  Eigen::Matrix<double, 2, 8> by_state, by_perceived;
+  Eigen::Matrix<double, 2, kNumParameters> by_parameter;
+};
+
+// One output's derivatives by the state, by what is perceived, by s and by the parameters. own: of
+// the cart's forces.
 struct OutputJacobian {
   Eigen::Matrix<double, 1, 8> by_state = Eigen::Matrix<double, 1, 8>::Zero();
+  Eigen::Matrix<double, 1, 8> by_ankle = by_state, by_foot = by_state;
   double by_step = 0.0;
   Eigen::Matrix<double, 1, kNumParameters> by_parameter;
 
-  OutputJacobian(const StanceJet& output, const SelfForce::Jacobian& own) {
+  OutputJacobian(const StanceJet& output, const CartForceJacobian& own) {
     by_state.segment<2>(2) = output.v.head<2>().transpose();
     by_state.tail<4>() = output.v.segment<4>(kVelocityAt).transpose();
+    by_ankle.segment<2>(2) = output.v.segment<2>(kAnkleAt).transpose();
+    by_ankle.tail<2>() = output.v.segment<2>(kAnkleAt + 2).transpose();
+    by_foot.segment<2>(2) = output.v.segment<2>(kFootAt).transpose();
+    by_foot.tail<4>() = output.v.segment<4>(kFootAt + 2).transpose();
     by_step = output.v[kStepAt];
     const Eigen::RowVector2d by_force = output.v.segment<2>(kCartForceAt).transpose();
-    by_state += by_force * own.by_state.topRows<2>();
-    by_parameter = by_force * own.by_parameter.topRows<2>();
+    by_state += by_force * own.by_state;
+    by_foot += by_force * own.by_perceived;
+    by_parameter = by_force * own.by_parameter;
     for (int i = 0; i < Ids::kCount; ++i) by_parameter[Ids::kIds[i]] += output.v[kParametersAt + i];
   }
 };
@@ -72,13 +97,15 @@ Eigen::Matrix<StandingJet, 2, 1> JetsOfStanding(const SelfForce& self,
 }
 
 // Of M a + C + G of the body that stands, by the height of its centre of mass.
+// a, gravity: with those of ground that moves.
 Vector4<double> InverseDynamicsByComHeight(const Body& body, double com_height,
                                            const PendulumState<double>& state,
-                                           const Vector4<double>& a) {
+                                           const Vector4<double>& a, double gravity) {
   using Jet = ceres::Jet<double, 1>;
   const PendulumState<Jet> still{state.q.cast<Jet>(), state.qd.cast<Jet>()};
-  const Vector4<Jet> value =
-      InverseDynamics<Jet>(StandingBody(body, Jet(com_height, 0)), still, a.cast<Jet>());
+  const BodyOf<Jet> standing = StandingBody(body, Jet(com_height, 0));
+  const Vector4<Jet> value = InverseDynamics<Jet>(standing, still, a.cast<Jet>()) +
+                             Jet(gravity / kGravity - 1.0) * Gravity<Jet>(standing, still.q);
   return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
 }
 
@@ -109,24 +136,30 @@ void AddPublishedFriction(SelfForce::Jacobian* jacobian) {
 void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
                                 const SelfForce& self, const ParameterSet<double>& p, int person,
                                 int frame, const PendulumState<double>& state,
-                                const Vector4<double>& a, SelfForce::Jacobian* jacobian) {
+                                const Vector4<double>& a, const GroundStep& ground,
+                                SelfForce::Jacobian* jacobian, const Perceived<double>* perceived,
+                                PerceivedJacobian* by_perceived) {
+  if (by_perceived != nullptr) by_perceived->SetZero();
   jacobian->by_state.setZero();
   jacobian->by_previous.setZero();
   jacobian->by_parameter.setZero();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(jacobian);
   if (active != ActiveForces::kAll) return;
-  const Eigen::Matrix<StandingJet, 2, 1> torque = JetsOfStanding(self, p, state);
+  const Eigen::Matrix<StandingJet, 2, 1> torque =
+      JetsOfStanding(self, p, perceived != nullptr ? perceived->ankle : state);
+  auto& by_felt = perceived != nullptr ? by_perceived->by_ankle : jacobian->by_state;
   for (int i = 0; i < 2; ++i) {
     jacobian->by_state(i, 4 + i) = -kHeldFast * self.body.mass;
-    jacobian->by_state.row(2 + i).segment<2>(2) = torque[i].v.head<2>().transpose();
-    jacobian->by_state.row(2 + i).tail<2>() = torque[i].v.segment<2>(2).transpose();
+    by_felt.row(2 + i).segment<2>(2) = torque[i].v.head<2>().transpose();
+    by_felt.row(2 + i).tail<2>() = torque[i].v.segment<2>(2).transpose();
     for (int k = 0; k < StandingIds::kCount; ++k) {
       jacobian->by_parameter(2 + i, StandingIds::kIds[k]) = torque[i].v[kStandingAt + k];
     }
   }
   jacobian->by_parameter.col(kComHeight) -=
-      InverseDynamicsByComHeight(self.body, p[kComHeight], state, a);
+      InverseDynamicsByComHeight(self.body, p[kComHeight], state, a + ground.acceleration,
+                                 ground.gravity);
   self.AddOwnJacobian(p, state, jacobian);
 }
 
@@ -134,16 +167,27 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
                               int frame, const PendulumState<double>& state,
                               const Vector4<double>& a, SelfForce::Jacobian* jacobian,
-                              StanceJacobian* stance) {
-  const Vector4<double> own =
-      self.Friction(p, state.qd) + self.Balance(p, state, state.qd) + self.Linear(p, state);
-  SelfForce::Jacobian of_own;
-  self.MotionJacobian(p, state, state.qd, &of_own);
-  const StanceForces<StanceJet> jets = JetsOfStance(self, p, state, own.head<2>());
+                              StanceJacobian* stance, const Perceived<double>* late,
+                              PerceivedJacobian* by_perceived) {
+  const Perceived<double> perceived = late != nullptr ? *late : Perceived<double>(state);
+  const PendulumState<double>& of_step = perceived.step;
+  const Vector4<double> own = self.Friction(p, state.qd) + self.Balance(p, of_step, of_step.qd) +
+                              self.Linear(p, of_step);
+  SelfForce::Jacobian of_friction, of_control;
+  self.FrictionJacobian(p, state.qd, &of_friction);
+  self.ControlJacobian(p, of_step, of_step.qd, &of_control);
+  const CartForceJacobian of_own{
+      of_friction.by_state.topRows<2>(), of_control.by_state.topRows<2>(),
+      of_friction.by_parameter.topRows<2>() + of_control.by_parameter.topRows<2>()};
+  const StanceForces<StanceJet> jets = JetsOfStance(self, p, state, perceived, own.head<2>());
   const OutputJacobian next(jets.next_step, of_own);
   stance->next_by_state = next.by_state;
+  stance->next_by_ankle = next.by_ankle;
+  stance->next_by_foot = next.by_foot;
   stance->next_by_step = next.by_step;
   stance->next_by_parameter = next.by_parameter;
+  if (late == nullptr) stance->next_by_state += next.by_ankle + next.by_foot;
+  if (by_perceived != nullptr) by_perceived->SetZero();
   stance->by_step.setZero();
   jacobian->by_state.setZero();
   jacobian->by_previous.setZero();
@@ -156,11 +200,20 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
     const double after = state.qd[i] + scene.dt * a[i];
     jacobian->by_state.row(i) = state.step * of_own.by_state.row(i) - after * ground.by_state;
     jacobian->by_state(i, 4 + i) -= jets.ground.a;
+    const Eigen::Matrix<double, 1, 8> of_cart = state.step * of_own.by_perceived.row(i);
     jacobian->by_parameter.row(i) =
         state.step * of_own.by_parameter.row(i) - after * ground.by_parameter;
     stance->by_step[i] = own[i] - after * ground.by_step;
     const OutputJacobian torque(jets.torque[i], of_own);
     jacobian->by_state.row(2 + i) = torque.by_state;
+    if (late == nullptr) {
+      jacobian->by_state.row(i) += of_cart;
+      jacobian->by_state.row(2 + i) += torque.by_ankle + torque.by_foot;
+    } else {
+      by_perceived->by_step.row(i) = of_cart;
+      by_perceived->by_step.row(2 + i) = torque.by_foot;
+      by_perceived->by_ankle.row(2 + i) = torque.by_ankle;
+    }
     jacobian->by_parameter.row(2 + i) = torque.by_parameter;
     stance->by_step[2 + i] = torque.by_step;
   }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "models/scene_forces.h"
+#include "residuals/sensitivities/rollout_sensitivities.h"
 
 namespace pushid {
 
@@ -16,6 +17,7 @@ namespace pushid {
 struct StanceJacobian {
   Vector4<double> by_step;                    // of F - D v' at fixed a, by s
   Eigen::Matrix<double, 1, 8> next_by_state;  // of s' by [q, qd]
+  Eigen::Matrix<double, 1, 8> next_by_ankle, next_by_foot;  // by what is perceived, where late
   double next_by_step = 0.0;                  // by s
   Eigen::Matrix<double, 1, kNumParameters> next_by_parameter;
 };
@@ -26,13 +28,19 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
                               int frame, const PendulumState<double>& state,
                               const Vector4<double>& a, SelfForce::Jacobian* jacobian,
-                              StanceJacobian* stance);
+                              StanceJacobian* stance, const Perceived<double>* perceived = nullptr,
+                              PerceivedJacobian* by_perceived = nullptr);
 
+// perceived, by_perceived: as NetForceJacobian has them. ground: of the step.
+//
 // The same where feet hold, whatever happens; jacobian: all of F - M a - C - G - D v' that the
 // parameters and the state decide by the ankles, the ground and the height of the centre of mass.
 void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
                                 const SelfForce& self, const ParameterSet<double>& p, int person,
                                 int frame, const PendulumState<double>& state,
-                                const Vector4<double>& a, SelfForce::Jacobian* jacobian);
+                                const Vector4<double>& a, const GroundStep& ground,
+                                SelfForce::Jacobian* jacobian,
+                                const Perceived<double>* perceived = nullptr,
+                                PerceivedJacobian* by_perceived = nullptr);
 
 }  // namespace pushid

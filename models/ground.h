@@ -1,0 +1,51 @@
+// models: ground that moves: a platform that is shifted, lifted or tilted.
+//
+// The model lives in the ground's frame: q is what the ground sees. With a_g the ground's
+// acceleration and gamma its second derivative of tilt, people feel the generalized force
+//   -M(q) A - (g_n / g - 1) G(q),   A = [a_gx - g_x, a_gy - g_y, gamma_theta, gamma_phi]
+// with g_x, g_y the components of gravity along the ground and g_n that into it: a frame that
+// accelerates and one that is tilted cannot be told apart. gamma acts as about the cart: first order
+// in the angles, whose sums are those in the laboratory.
+#pragma once
+
+#include <vector>
+
+#include "models/ipm.h"
+
+namespace pushid {
+
+// Of the ground during the step from one frame to the next.
+struct GroundStep {
+  Vector4<double> acceleration = Vector4<double>::Zero();  // A, m/s^2 and rad/s^2
+  double gravity = kGravity;  // g_n: towards the ground, what lifting adds included, m/s^2
+};
+
+// Where the ground is, in the laboratory: m, m; tilt about y and about x as theta and phi are, rad.
+using GroundPose = Vector4<double>;
+
+// Empty: ground that does not move.
+struct GroundMotion {
+  std::vector<GroundPose> poses;  // one per frame
+  std::vector<GroundStep> steps;  // one per frame; of the last the one before
+  double dt = 0.0;                // s
+
+  bool moves() const { return !poses.empty(); }
+};
+
+// The motion through such poses, frame by frame: its accelerations are those by which semi-implicit
+// Euler steps along them, from rest. dt: s.
+GroundMotion GroundThrough(std::vector<GroundPose> poses, double dt);
+
+// A state as the laboratory sees it.
+PendulumState<double> InLaboratory(const GroundMotion& ground, int frame,
+                                   PendulumState<double> state);
+
+// The force above.
+template <typename T, typename L>
+Vector4<T> GroundForce(const BodyOf<L>& body, const Angles<T>& angles, const GroundStep& ground) {
+  const Vector4<T> a = ground.acceleration.cast<T>();
+  return -(MassMatrix<T, L>(body, angles) * a) -
+         T(ground.gravity / kGravity - 1.0) * Gravity<T, L>(body, angles);
+}
+
+}  // namespace pushid

@@ -1,0 +1,83 @@
+// residuals: the chain rule through a reaction delay.
+#include "residuals/sensitivities/delay_sensitivities.h"
+
+#include <algorithm>
+
+#include "models/reaction_delay.h"
+
+namespace pushid {
+namespace {
+
+// d [q, qd] of a delayed state / d columns. Before frame 0 people are at rest where they started.
+void DelayedBlock(const RolloutSensitivities& sensitivities, int person,
+                  const DelayedFrames<double>& frames, RolloutSensitivities::Block* block) {
+  block->setZero();
+  for (int i = 0; i < DelayedFrames<double>::kCount; ++i) {
+    const int at = frames.frame - i;
+    if (at < 0 || frames.weight[i] == 0.0) continue;  // a start's pose has no derivatives
+    *block += frames.weight[i] * sensitivities.At(at, person);
+  }
+}
+
+}  // namespace
+
+PerceivedSensitivities::PerceivedSensitivities(int num_columns)
+    : ankle_(8, num_columns), step_(8, num_columns) {}
+
+void PerceivedSensitivities::Update(const Scene& scene, const ModelOptions& options,
+                                    const ParameterSet<double>& p, const RolloutPath<double>& path,
+                                    const RolloutSensitivities& sensitivities, int frame,
+                                    int person) {
+  const PendulumState<double>& now = path.At(frame, person);
+  step_delay_ = StepDelayOf(options.delay);
+  const DelayedFrames<double> ankle(p[kReactionDelay], frame, scene.dt);
+  const DelayedFrames<double> step(p[step_delay_], frame, scene.dt);
+  const DelayedState<double> then(path, person, ankle), then_step(path, person, step);
+  DelayedBlock(sensitivities, person, ankle, &ankle_);
+  const double stiffness = p[kPassiveStiffness], damping = p[kPassiveDamping];
+  const auto of_now = sensitivities.At(frame, person);
+  ankle_.middleRows<2>(2) =
+      (1.0 - stiffness) * ankle_.middleRows<2>(2) + stiffness * of_now.middleRows<2>(2);
+  ankle_.bottomRows<2>() =
+      (1.0 - damping) * ankle_.bottomRows<2>() + damping * of_now.bottomRows<2>();
+  // Ankles ask for nothing of the cart.
+  ankle_.topRows<2>().setZero();
+  ankle_.middleRows<2>(4).setZero();
+  ankle_by_delay_.setZero();
+  by_stiffness_share_.setZero();
+  by_damping_share_.setZero();
+  ankle_by_delay_.segment<2>(2) = (1.0 - stiffness) * then.q_by_delay.tail<2>();
+  ankle_by_delay_.tail<2>() = (1.0 - damping) * then.qd_by_delay.tail<2>();
+  by_stiffness_share_.segment<2>(2) = now.q.tail<2>() - then.q.tail<2>();
+  by_damping_share_.tail<2>() = now.qd.tail<2>() - then.qd.tail<2>();
+  DelayedBlock(sensitivities, person, step, &step_);
+  step_by_delay_ << then_step.q_by_delay, then_step.qd_by_delay;
+}
+
+void PerceivedSensitivities::AddTo(
+    const Eigen::Matrix<double, 4, 8>& by_ankle, const Eigen::Matrix<double, 4, 8>& by_step,
+    Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>* by_column) const {
+  by_column->noalias() += by_ankle * ankle_;
+  if (!by_step.isZero(0.0)) by_column->noalias() += by_step * step_;
+}
+
+void PerceivedSensitivities::AddParameters(const Eigen::Matrix<double, 4, 8>& by_ankle,
+                                           const Eigen::Matrix<double, 4, 8>& by_step,
+                                           SelfForce::Jacobian* jacobian) const {
+  auto& by_parameter = jacobian->by_parameter;
+  by_parameter.col(kReactionDelay) += by_ankle * ankle_by_delay_;
+  by_parameter.col(step_delay_) += by_step * step_by_delay_;
+  by_parameter.col(kPassiveStiffness) += by_ankle * by_stiffness_share_;
+  by_parameter.col(kPassiveDamping) += by_ankle * by_damping_share_;
+}
+
+void PerceivedSensitivities::AddToStep(StanceJacobian* stance) const {
+  stance->next_by_parameter[step_delay_] += stance->next_by_foot.dot(step_by_delay_);
+}
+
+void PerceivedSensitivities::AddToStepState(const StanceJacobian& stance,
+                                            Eigen::Ref<Eigen::RowVectorXd> next) const {
+  next.noalias() += stance.next_by_foot * step_;
+}
+
+}  // namespace pushid

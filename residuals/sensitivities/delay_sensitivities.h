@@ -1,0 +1,48 @@
+// residuals: derivatives of what control perceives (models/reaction_delay.h), and of the forces that
+// act on it.
+//
+// With S(t) = d [q, qd] / d columns and w_i the weights of a delayed state,
+//   S_p = s S(t) + (1 - s) sum_i w_i S(t_i)  row by row, s the passive shares,
+// and beside it the derivatives by the delays and by the shares, which go into those by parameter.
+#pragma once
+
+#include "models/scene_forces.h"
+#include "residuals/sensitivities/rollout_sensitivities.h"
+#include "residuals/sensitivities/stance_sensitivities.h"
+
+namespace pushid {
+
+// Of one person at one frame.
+class PerceivedSensitivities {
+ public:
+  // Prepared for a rollout of so many columns.
+  explicit PerceivedSensitivities(int num_columns);
+
+  void Update(const Scene& scene, const ModelOptions& options, const ParameterSet<double>& p,
+              const RolloutPath<double>& path, const RolloutSensitivities& sensitivities, int frame,
+              int person);
+
+  // Adds what the forces change by through what was perceived: by_ankle and by_step are their
+  // derivatives by the two perceived states, over [q, qd].
+  void AddTo(const Eigen::Matrix<double, 4, 8>& by_ankle, const Eigen::Matrix<double, 4, 8>& by_step,
+             Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>* by_column) const;
+  // The same through the delays and the shares.
+  void AddParameters(const Eigen::Matrix<double, 4, 8>& by_ankle,
+                     const Eigen::Matrix<double, 4, 8>& by_step,
+                     SelfForce::Jacobian* jacobian) const;
+
+  // The same of the next step state: its derivative by the delay, and what it changes by through
+  // what steps perceive.
+  void AddToStep(StanceJacobian* stance) const;
+  void AddToStepState(const StanceJacobian& stance,
+                      Eigen::Ref<Eigen::RowVectorXd> next) const;
+
+ private:
+  using Block = RolloutSensitivities::Block;
+  using State = Eigen::Matrix<double, 8, 1>;
+  Block ankle_, step_;
+  State ankle_by_delay_, step_by_delay_, by_stiffness_share_, by_damping_share_;
+  Parameter step_delay_ = kReactionDelay;
+};
+
+}  // namespace pushid
