@@ -7,6 +7,7 @@
 #include <set>
 
 #include "datasets/files/input_file.h"
+#include "datasets/loading/segment_masses.h"
 #include "models/turn.h"
 
 namespace pushid {
@@ -63,18 +64,28 @@ class OnGround {
   OnGround(const Recording& recording, const RecordedPerson& person) : poses_(recording.ground) {
     if (!poses_.empty()) origin_ = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
   }
-  Vector3<double> operator()(size_t frame, const Vector3<double>& point) const {
-    if (poses_.empty()) return point;
-    const GroundPose& pose = poses_[std::min(frame, poses_.size() - 1)];
-    const Vector3<double> from = point - origin_ - Vector3<double>(pose[0], pose[1], 0.0);
-    return origin_ + TurnedBack(pose, from);
-  }
-  // A direction.
-  Vector3<double> Turn(size_t frame, const Vector3<double>& v) const {
-    return poses_.empty() ? v : TurnedBack(poses_[std::min(frame, poses_.size() - 1)], v);
+  // All of a person but for the joints that only bodies have.
+  RecordedPerson Moved(RecordedPerson person) const {
+    if (poses_.empty()) return person;
+    for (auto* track : {&person.hip, &person.left_ankle, &person.right_ankle, &person.left_toe,
+                        &person.right_toe, &person.left_heel, &person.right_heel}) {
+      for (size_t t = 0; t < track->size(); ++t) (*track)[t] = Point(t, (*track)[t]);
+    }
+    for (size_t t = 0; t < person.plates.size(); ++t) {
+      PlateSample& sample = person.plates[t];
+      sample.force = TurnedBack(At(t), sample.force);
+      sample.centre = Point(t, sample.centre);
+    }
+    return person;
   }
 
  private:
+  const GroundPose& At(size_t frame) const { return poses_[std::min(frame, poses_.size() - 1)]; }
+  Vector3<double> Point(size_t frame, const Vector3<double>& point) const {
+    const GroundPose& pose = At(frame);
+    const Vector3<double> from = point - origin_ - Vector3<double>(pose[0], pose[1], 0.0);
+    return origin_ + TurnedBack(pose, from);
+  }
   static Vector3<double> TurnedBack(const GroundPose& pose, const Vector3<double>& v) {
     const Eigen::AngleAxisd by_phi(-pose[3], Vector3<double>::UnitX());
     const Eigen::AngleAxisd by_theta(-pose[2], Vector3<double>::UnitY());
@@ -98,16 +109,14 @@ size_t FirstDisturbance(const Recording& recording) {
 
 // The centre of pressure counts from where it was before anything happened (of quiet stance: on
 // average), since neither ankles nor hip are seen where they are: what is compared is how it moves.
-std::vector<PlateFrame> PlateFrames(const Recording& recording, const RecordedPerson& person,
-                                    const OnGround& ground) {
+std::vector<PlateFrame> PlateFrames(const Recording& recording, const RecordedPerson& person) {
   std::vector<PlateFrame> frames;
   const size_t before = std::max<size_t>(1, FirstDisturbance(recording));
   Eigen::Vector2d rest = Eigen::Vector2d::Zero();
   double weights = 0.0;
   for (size_t t = 0; t < person.plates.size(); ++t) {
     const PlateSample& sample = person.plates[t];
-    frames.push_back({ground.Turn(t, sample.force).head<2>(),
-                      ground(t, sample.centre).head<2>(), sample.weight});
+    frames.push_back({sample.force.head<2>(), sample.centre.head<2>(), sample.weight});
     if (t >= before || sample.weight <= 0.0) continue;
     rest += frames.back().centre;
     weights += 1.0;
@@ -129,16 +138,15 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
   result.scene.dt = 1.0 / recording.fps;
   result.facing = FacingBeforePush(recording);
 
-  for (const RecordedPerson& person : recording.people) {
+  for (const RecordedPerson& recorded : recording.people) {
+    const OnGround ground(recording, recorded);
+    const RecordedPerson person = ground.Moved(recorded);
     std::vector<PendulumState<double>> states(person.hip.size());
     std::vector<double> lengths(person.hip.size());
     ScenePerson in_scene;
-    const OnGround ground(recording, person);
-    std::vector<Vector3<double>> hip;
     for (size_t t = 0; t < person.hip.size(); ++t) {
-      hip.push_back(ground(t, person.hip[t]));
-      const MappedPose pose = MapSkeleton(hip[t], ground(t, person.left_ankle[t]),
-                                          ground(t, person.right_ankle[t]), mapping);
+      const MappedPose pose =
+          MapSkeleton(person.hip[t], person.left_ankle[t], person.right_ankle[t], mapping);
       states[t].q = pose.q;
       if (t > 0) states[t].qd = (pose.q - states[t - 1].q) * recording.fps;
       lengths[t] = pose.rod_length;
@@ -153,8 +161,9 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     result.scene.people.push_back(in_scene);
     result.states.push_back(std::move(states));
     result.rod_length.push_back(std::move(lengths));
-    result.hip.push_back(std::move(hip));
-    result.plates.push_back(PlateFrames(recording, person, ground));
+    result.hip.push_back(person.hip);
+    result.plates.push_back(PlateFrames(recording, person));
+    result.masses.push_back(MassesOf(person));
     result.steps.push_back(FindSteps(person, recording.fps));
     result.foot_support.push_back(SupportOf(person));
     std::vector<double> weight = person.weight;
@@ -190,7 +199,14 @@ Eigen::Vector2d PushDirection(const PendulumRecording& recording) {
     if (push.person != recording.pushed_person) continue;
     sum += static_cast<double>(push.force.size()) * push.mean.head<2>();
   }
-  return sum.norm() > 0.0 ? Eigen::Vector2d(sum.normalized()) : Eigen::Vector2d(1.0, 0.0);
+  if (sum.norm() > 0.0) return sum.normalized();
+  // Without a push: where the ground goes farthest, shifted or tilted by as many metres as the rod.
+  Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
+  for (const GroundPose& pose : recording.scene.ground.poses) {
+    const Eigen::Vector2d moved = pose.head<2>() + Eigen::Vector2d(pose[2], -pose[3]);
+    if (moved.norm() > farthest.norm()) farthest = moved;
+  }
+  return farthest.norm() > 0.0 ? Eigen::Vector2d(farthest.normalized()) : Eigen::Vector2d(1.0, 0.0);
 }
 
 Scene TurnedScene(const PendulumRecording& recording, double angle) {

@@ -73,7 +73,8 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
 std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings,
                                                       SkeletonMapping mapping);
 
-// Horizontal and of length 1: of the impulse on the pushed person; x without one.
+// Horizontal and of length 1: of the impulse on the pushed person; without one of the ground's
+// farthest shift; x without either.
 Eigen::Vector2d PushDirection(const PendulumRecording& recording);
 
 // In axes turned by so much about the vertical; forces at the recorded poses. The steps of the feet

@@ -20,13 +20,21 @@ struct Subject {
 // known seed would change.
 constexpr int kSpreadDraws = 35;
 
-// The rod's lift and those behind it are not spread.
+// Not of delays, of bodies and of dry friction, nor of the rod's lift and what is behind it.
+constexpr bool IsSpread(int id) {
+  return id < kRodLift && id != kCoulombFriction && (id < kReactionDelay || id > kPushGain);
+}
+
 ParameterSet<double> Spread(ParameterSet<double> parameters, double sigma, Random* random) {
-  static_assert(kRodLift <= kSpreadDraws);
-  for (int i = 0; i < kSpreadDraws; ++i) {
-    const double factor = std::exp(sigma * random->Normal());
-    if (i < kRodLift) parameters[i] *= factor;
+  constexpr int kNotSpread = 2 + kPushGain - kReactionDelay;
+  static_assert(kRodLift - kNotSpread <= kSpreadDraws);
+  int draws = 0;
+  for (int i = 0; i < kRodLift; ++i) {
+    if (!IsSpread(i)) continue;
+    parameters[i] *= std::exp(sigma * random->Normal());
+    ++draws;
   }
+  for (; draws < kSpreadDraws; ++draws) random->Normal();
   return parameters;
 }
 

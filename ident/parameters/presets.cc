@@ -33,8 +33,8 @@ FitOptions TailPreset() {
   // and cross term slide along a ridge that fits no better and predicts unseen pushes worse (hipADE
   // 0.112 against 0.096 m in cross-validation); the prior's exact centre hardly matters.
   for (const Start& start :
-       {Start{kMu, 40, 40}, Start{kKpTheta, 1400, 1400}, Start{kAx, -10, 10},
-        Start{kTailGain, 1, 1}, Start{kTailTorque, 0.5, 0.5}, Start{kTailTime, 0.2, 0.2}}) {
+       {Start{kMu, 40, 40}, Start{kKpTheta, 1400, 1400}, Start{kKdTheta, 140, 140},
+        Start{kAx, -10, 10}, Start{kTailGain, 1, 1}, Start{kTailTorque, 0.5, 0.5}, Start{kTailTime, 0.2, 0.2}}) {
     Free(start, &o.table);
   }
   // Not by the push's duration (tail_exponent): in the published recordings that stands for the

@@ -38,6 +38,10 @@ PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings) {
     if (!recording.StepsKnown()) continue;
     std::set<int> pushed;
     for (const ScenePush& push : recording.scene.pushes) pushed.insert(push.person);
+    // Ground that moves pushes everybody; who sways in quiet does so on feet that hold.
+    if (pushed.empty() || recording.scene.ground.moves()) {
+      for (int n = 0; n < recording.num_people(); ++n) pushed.insert(n);
+    }
     for (int person : pushed) {
       const PersonSteps& steps = recording.steps[person];
       ++feet.seen;

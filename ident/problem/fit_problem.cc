@@ -14,7 +14,7 @@ namespace pushid {
 
 FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, FitOptions options,
                        std::vector<int> counts)
-    : turned_(InOwnAxes(recordings, options.model.directions)),
+    : turned_(InOwnAxes(recordings, options.model)),
       recordings_(turned_ == nullptr ? &recordings : turned_.get()),
       options_(std::move(options)),
       counts_(std::move(counts)),

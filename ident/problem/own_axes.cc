@@ -1,6 +1,7 @@
 // ident: recordings and rollouts turned into a model's axes, and back.
 #include "ident/problem/own_axes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/turn.h"
@@ -35,13 +36,24 @@ double OwnAxes(const PendulumRecording& recording, Directions directions) {
   return std::atan2(along[1], along[0]);
 }
 
+Scene WithBodies(Scene scene, const PendulumRecording& recording, BodyModel body) {
+  if (body != BodyModel::kAnthropometric) return scene;
+  for (size_t n = 0; n < std::min(scene.people.size(), recording.masses.size()); ++n) {
+    scene.people[n].body = Distributed<double>(scene.people[n].body, recording.masses[n]);
+  }
+  return scene;
+}
+
 std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
-    const std::vector<PendulumRecording>& recordings, Directions directions) {
-  if (directions == Directions::kAxes) return nullptr;
+    const std::vector<PendulumRecording>& recordings, const ModelOptions& options) {
+  if (options.directions == Directions::kAxes && options.body != BodyModel::kAnthropometric) {
+    return nullptr;
+  }
   auto turned = std::make_shared<std::vector<PendulumRecording>>();
   turned->reserve(recordings.size());
   for (const PendulumRecording& recording : recordings) {
-    turned->push_back(Turned(recording, OwnAxes(recording, directions)));
+    turned->push_back(Turned(recording, OwnAxes(recording, options.directions)));
+    turned->back().scene = WithBodies(turned->back().scene, recording, options.body);
   }
   return turned;
 }
@@ -53,8 +65,9 @@ RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOp
     return Rollout(scene, options, parameters, InitialVelocities(scene), num_frames, path, trace);
   };
   const double angle = OwnAxes(recording, options.directions);
-  if (angle == 0.0) return roll(recording.scene);
-  const RolloutStatus status = roll(TurnedScene(recording, angle));
+  if (angle == 0.0) return roll(WithBodies(recording.scene, recording, options.body));
+  const RolloutStatus status =
+      roll(WithBodies(TurnedScene(recording, angle), recording, options.body));
   TurnBack(angle, path, trace, status.ok ? num_frames : status.frame);
   return status;
 }

@@ -1,5 +1,6 @@
-// ident: the axes in which a model sees a recording (Directions): turned about the vertical, along
-// the push on a person alone, or along what the people face.
+// ident: how a model sees a recording: in its axes (Directions: turned about the vertical, along the
+// push on a person alone, or along what the people face), and with the masses where it has them
+// (BodyModel).
 #pragma once
 
 #include <memory>
@@ -15,9 +16,12 @@ namespace pushid {
 // rad, from the file's x axis to the model's.
 double OwnAxes(const PendulumRecording& recording, Directions directions);
 
-// The recordings in a model's axes; null where those are the files'.
+// The scene with the bodies of a model.
+Scene WithBodies(Scene scene, const PendulumRecording& recording, BodyModel body);
+
+// The recordings as a model sees them; null where that is as the files have them.
 std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
-    const std::vector<PendulumRecording>& recordings, Directions directions);
+    const std::vector<PendulumRecording>& recordings, const ModelOptions& options);
 
 // A rollout in a model's axes, seen in those of the file: what a fit that sees recordings in the
 // model's axes predicts. path and trace as those of Rollout.

@@ -31,7 +31,7 @@ void ScaleMeasured(double eta, ChangedProblem* p) {
 }
 
 // Later by eta frames, between rows by straight lines.
-void Delay(double eta, ChangedProblem* p) {
+void Lag(double eta, ChangedProblem* p) {
   ForMeasured(p, [eta](const PendulumRecording&, ScenePush* push) {
     const std::vector<Vector4<double>> old = push->force;
     const int n = static_cast<int>(old.size());
@@ -180,7 +180,7 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
   const StatedErrors stated = Stated(problem.recordings());
   if (measured) {
     all.push_back({"scale of the pushes", "", stated.push_scale, 1e-4, ScaleMeasured});
-    all.push_back({"lag of the pushes", "frames", stated.push_lag_frames, 1e-3, Delay});
+    all.push_back({"lag of the pushes", "frames", stated.push_lag_frames, 1e-3, Lag});
     all.push_back({"height of the pushes", "m", stated.push_height_m, 1e-4, Raise});
     all.push_back({"zero of the pushes", "N", stated.push_zero_N, 1e-2, Shift});
   }
@@ -188,7 +188,9 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
   all.push_back({"frame rate", "", stated.frame_rate, 1e-4, Hasten, {}, true});
   all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, Drift});
   const FitOptions& options = problem.options();
-  if (options.model.stance == Stance::kFixed) all.push_back(Delayed(problem, point));
+  if (options.model.stance == Stance::kFixed && options.model.delay == Delay::kNone) {
+    all.push_back(Delayed(problem, point));
+  }
   for (const ParameterSpec& spec : options.table.specs) {
     const bool of_tail = spec.id >= kTailGain && spec.id <= kTailExponent;
     const bool tested = !spec.free && !spec.tied_to && !HeldByConvention(spec.id) &&
