@@ -6,6 +6,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/fit.h"
+#include "ident/fit/laboratory_checks.h"
 #include "ident/parameters/presets.h"
 #include "ident/parameters/pushed_feet.h"
 #include "ident/problem/fit_problem.h"
@@ -184,6 +185,7 @@ MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptio
   if (MaybeError error = CheckPoolingLabel(recordings, *options)) return error;
   if (MaybeError error = CheckBodies(recordings, *options)) return error;
   if (MaybeError error = CheckFrameRates(recordings, *options)) return error;
+  if (MaybeError error = CheckLaboratory(recordings, *options)) return error;
   if (MaybeError error = CheckLikelihood(recordings, *options)) return error;
   Warnings told;
   if (MaybeError error = TakeSupportFromFeet(recordings, options, &told)) return error;

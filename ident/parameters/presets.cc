@@ -51,6 +51,7 @@ FitOptions GroupPreset() {
   o.preset = "group";
   o.model.interaction.spring = o.model.interaction.damping = true;
   SetSelfForce(SelfForceKind::kLinear, &o);
+  o.table[kKdTheta] = BaseTable()[kKdTheta];
   // Of a line, less leaves somebody a little too fast.
   o.settling_weight = 80.0;
   o.pool = "all,-mu";  // the same floor: by setting, mu predicts no better and turns negative

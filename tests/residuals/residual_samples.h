@@ -33,6 +33,9 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kSupportFront] = 0.1, p[kSupportBack] = 0.07, p[kSupportSide] = 0.09, p[kAnkleReach] = 1.3;
   p[kStepGain] = 1.1, p[kStepOnset] = 0.12, p[kStepRelease] = 0.35, p[kStaticFriction] = 0.8;
   p[kComHeight] = 1.07;
+  p[kCoulombFriction] = 0.02, p[kReactionDelay] = 0.043, p[kStepDelay] = 0.071;
+  p[kPassiveStiffness] = 0.3, p[kPassiveDamping] = 0.4;
+  p[kCartMassShare] = 0.2, p[kGyrationRadius] = 0.25, p[kPushGain] = 1.1;
   return p;
 }
 
@@ -220,7 +223,8 @@ inline std::vector<ModelOptions> EveryModelOptions() {
                   std::pair(Stance::kThreshold, CartDerivative::kNone)})
               for (const InteractionTerms& interaction : SomeInteractions())
                 all.push_back({posture, scaling, Directions::kAxes, friction, use, tail, stance,
-                               derivative, interaction, nullptr, nullptr});
+                               Delay::kNone, BodyModel::kLdp, derivative, interaction, nullptr,
+                               nullptr});
   return all;
 }
 

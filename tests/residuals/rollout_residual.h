@@ -28,6 +28,12 @@ class RolloutResidual : public ceres::CostFunction {
                                   if (jacobians != nullptr)
                                     columns_.Scatter(*by_column, row, num_residuals(), jacobians);
                                   row += kFrameResiduals;
+                                },
+                                [&](int, int, const PlateVector<double>& r, PlateRows* by_column) {
+                                  Eigen::Map<PlateVector<double>>(residuals + row) = r;
+                                  if (jacobians != nullptr)
+                                    columns_.Scatter(*by_column, row, num_residuals(), jacobians);
+                                  row += kPlateResiduals;
                                 });
     return last_failure_.ok;
   }

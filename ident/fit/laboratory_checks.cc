@@ -1,0 +1,80 @@
+// ident: what a delay, moving ground, platforms and other bodies ask of recordings.
+#include "ident/fit/laboratory_checks.h"
+
+#include "datasets/files/number_text.h"
+#include "ident/parameters/option_names.h"
+#include "models/learned_terms.h"
+
+namespace pushid {
+namespace {
+
+// A delay is seen in how an answer follows a push: a recording should last some times as long.
+constexpr double kDelaysInRecording = 2.0;
+
+MaybeError CheckDelay(const std::vector<PendulumRecording>& recordings, const FitOptions& options) {
+  if (options.model.delay == Delay::kNone) return std::nullopt;
+  for (Parameter id : {kReactionDelay, kStepDelay}) {
+    if (!Acts(id, options.model)) continue;
+    const ParameterSpec& spec = options.table[id];
+    for (const PendulumRecording& r : recordings) {
+      const double seconds = (r.num_frames() - 1) * r.scene.dt;
+      if (seconds >= kDelaysInRecording * spec.nominal) continue;
+      return Error{"recording " + r.id + " lasts " + Rounded(seconds, 3) + " s, too short for a " +
+                   spec.name + " of " + Rounded(spec.nominal, 3) +
+                   " s: nothing in it comes after the delay; leave the recording out, set a "
+                   "shorter delay (--free=" +
+                   spec.name + "=0.1), or fit with --delay=none"};
+    }
+  }
+  return std::nullopt;
+}
+
+MaybeError CheckBodyModel(const FitOptions& options) {
+  const ModelOptions& model = options.model;
+  if (model.body != BodyModel::kTable) return std::nullopt;
+  if (model.stance != Stance::kSlide) {
+    return Error{"--body=table is for a pendulum on a cart that moves, but --stance is " +
+                 NameOf(model.stance) +
+                 "; add --stance=slide, or take the masses from the segments "
+                 "(--body=anthropometric)"};
+  }
+  if (RodMoves(model)) return Error{"--body=table and --rod do not go together; leave one out"};
+  return std::nullopt;
+}
+
+MaybeError CheckPlates(const PendulumRecording& r, const ModelOptions& model) {
+  if (!r.HasPlates()) return std::nullopt;
+  if (model.interaction.Any() && r.num_people() > 1) {
+    return Error{"recording " + r.id +
+                 " has force_plates and several people who touch: platforms cannot tell what they "
+                 "do to each other from what the ground does; set \"use\": \"none\" there, or fit "
+                 "with --interaction=none"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+MaybeError CheckLaboratory(const std::vector<PendulumRecording>& recordings,
+                           const FitOptions& options) {
+  if (MaybeError error = CheckDelay(recordings, options)) return error;
+  if (MaybeError error = CheckBodyModel(options)) return error;
+  const bool large = NeedsGradientTraining(options);
+  if (large && (options.model.delay != Delay::kNone || options.model.body == BodyModel::kTable)) {
+    return Error{
+        "networks of this size are trained by their gradient, which knows neither --delay nor "
+        "--body=table; leave them out, or take a smaller network"};
+  }
+  for (const PendulumRecording& r : recordings) {
+    if (MaybeError error = CheckPlates(r, options.model)) return error;
+    if (large && (r.scene.ground.moves() || r.HasPlates())) {
+      return Error{"recording " + r.id +
+                   " has moving ground or force_plates, and the network is of a size that is "
+                   "trained by its gradient, which knows neither; take a smaller network, or leave "
+                   "the recording out"};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid
