@@ -10,6 +10,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/report/fit_command.h"
+#include "ident/uncertainty/assumptions.h"
 
 namespace pushid {
 namespace {
@@ -19,6 +20,7 @@ constexpr double kStrongLeverage = 1.0;  // standard errors that one recording m
 constexpr int kFewRecordings = 10;
 constexpr double kTermLevel = 0.001;  // of a score test: seven terms are tested at once
 constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
+constexpr double kLeastDelay = 0.03, kLagLevel = 0.05;        // s; of a test of the delay
 constexpr int kManyIterations = 1000, kManyStarts = 8;
 constexpr int kReplicas = 199, kManyReplicas = 999;
 
@@ -28,6 +30,7 @@ class Adviser {
 
   std::vector<Advice> Run() {
     Solver();
+    Lag();
     Identifiability();
     Shares();
     Person();
@@ -64,6 +67,7 @@ class Adviser {
   FitCommand SettleHarder(double weight) const;
   FitCommand DecayingModes() const;
   void Solver();
+  void Lag();
   void Identifiability();
   void Person();
   void People();
@@ -86,6 +90,19 @@ void Adviser::Solver() {
             .Set("max_iterations",
                  std::to_string(std::max(kManyIterations, 2 * result_.options.max_iterations)))
             .Set("starts", std::to_string(std::max(kManyStarts, 2 * result_.options.num_starts))));
+  }
+}
+
+// A delay that is left out is taken for less damping.
+void Adviser::Lag() {
+  for (const AssumptionTest& test : result_.verdict.assumptions) {
+    if (test.name != kReactionDelayName || test.error <= 0.0) continue;
+    const double t = test.wanted / test.error;
+    if (test.wanted < kLeastDelay || StudentTail(t, result_.verdict.freedom) > kLagLevel) continue;
+    Add("The response lags (the residuals ask for a reaction delay of " + Rounded(test.wanted, 2) +
+            " +- " + Rounded(test.error, 1) +
+            " s), and damping comes out too low without it; try --delay=one.",
+        Same().Set("delay", "one"));
   }
 }
 

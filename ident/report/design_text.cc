@@ -137,11 +137,28 @@ std::string NoSizesText(const StudyPlan& plan) {
   return plan.no_sizes.empty() ? "" : "More people, more pushes: " + plan.no_sizes + ".";
 }
 
+TextTable EquipmentTable(const StudyPlan& plan, const std::string& parameter) {
+  const std::vector<size_t> chosen = Chosen(plan, parameter);
+  std::vector<std::string> header = {"equipment"};
+  for (size_t i : chosen) header.push_back("error of " + plan.parameters[i]);
+  TextTable table = TextTable::OfNumbers(header);
+  for (const EquipmentRow& row : plan.equipment) {
+    std::vector<std::string> cells = {row.equipment};
+    for (size_t i : chosen) cells.push_back(Change(row.error_ratio[i]));
+    table.Add(cells);
+  }
+  return table;
+}
+
 std::string StudiesText(const StudyPlan& plan, const std::string& parameter) {
   std::string text = NoSensorText(plan);
   text += text.empty() ? "effect of a force sensor in the same study, with the whole push known\n" +
                              SensorTable(plan, parameter).ToString()
                        : "\n";
+  if (!plan.equipment.empty()) {
+    text += "\neffect of a laboratory's equipment on standard errors\n" +
+            EquipmentTable(plan, parameter).ToString();
+  }
   if (!plan.no_sizes.empty()) return text + "\n" + NoSizesText(plan) + "\n";
   text += "\nstandard errors with more people and more pushes of each\n" +
           StudySizesTable(plan, parameter).ToString();

@@ -133,23 +133,26 @@ Assumption Held(const ParameterSpec& spec) {
           }};
 }
 
-constexpr double kReactionDelay = 0.1;  // s
+constexpr double kStatedDelay = 0.1, kTriedDelay = 0.12;  // s
 
 // Of who stands: what is fitted as damping is less by the delay times the stiffness.
 Assumption Delayed(const FitProblem& problem, const FitPoint& point) {
   const ParameterSet<double> values = problem.Parameters(point, "");
-  std::vector<std::pair<size_t, double>> shifts;  // of the shared values, per second of delay
+  Assumption delay{kReactionDelayName, "s", kStatedDelay, kTriedDelay, {}};
   for (const auto& [damping, stiffness] :
        {std::pair(kKdTheta, kKpTheta), std::pair(kKdPhi, kKpPhi)}) {
     for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
       if (problem.map().fitted[i].parameter != damping) continue;
       const Transform transform = problem.options().table[damping].transform;
-      shifts.emplace_back(i, -values[stiffness] / TransformSlope(transform, values[damping]));
+      const double more = values[damping] + kTriedDelay * values[stiffness];
+      delay.along.emplace_back(i, ToFitted(transform, more) - ToFitted(transform, values[damping]));
     }
   }
-  Assumption delay{"reaction delay", "s", kReactionDelay, 1e-5, {}};
-  delay.move = [shifts](double eta, FitPoint* moved) {
-    for (const auto& [index, shift] : shifts) moved->shared[index] += eta * shift;
+  delay.change = [](double eta, ChangedProblem* p) {
+    p->options.model.delay = Delay::kOne;
+    p->options.table[kReactionDelay].nominal = eta;
+    for (Parameter share : {kPassiveStiffness, kPassiveDamping})
+      p->options.table[share].nominal = 0.0;
   };
   return delay;
 }
@@ -194,8 +197,8 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
   for (const ParameterSpec& spec : options.table.specs) {
     const bool of_tail = spec.id >= kTailGain && spec.id <= kTailExponent;
     const bool tested = !spec.free && !spec.tied_to && !HeldByConvention(spec.id) &&
-                        !IsNoiseParameter(spec.id) && Acts(spec.id, options.model) &&
-                        !(of_tail && only_measured);
+                        !IsNoiseParameter(spec.id) && spec.id != kPushGain &&
+                        Acts(spec.id, options.model) && !(of_tail && only_measured);
     if (tested) all.push_back(Held(spec));
   }
   return all;

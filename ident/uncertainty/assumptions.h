@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ident/problem/fit_problem.h"
@@ -22,8 +23,10 @@ struct Assumption {
   double sigma = 0.0;  // standard deviation that is stated of eta; 0: none, it is only tested
   double step = 0.0;   // of differences
   std::function<void(double eta, ChangedProblem*)> change;
-  // Instead: what looks like other estimates, and so is never told by the data alone.
-  std::function<void(double eta, FitPoint*)> move = {};
+  // Besides: estimates that go with it, as a change of the first order would be theirs; and how far
+  // each shared one does, on the fitted scale, at `step`. The difference is that to a problem which
+  // is changed by `step` as a whole, in which they do.
+  std::vector<std::pair<size_t, double>> along = {};
   // It scales measured rates, and what is compared with them instead: their noise would ask for
   // less.
   bool of_rates = false;
@@ -33,7 +36,9 @@ struct Assumption {
 // Pushes by inverse dynamics have neither a clock, a height nor a zero of their own, and follow the
 // masses. Of a held gain, a factor of two; of a term left out, nothing. Who stands reacts late,
 // by some 0.1 s: a torque Kp e(t - tau) is Kp e - tau Kp e' at first order, so that the damping
-// that is fitted is Kd - tau Kp.
+// that is fitted is Kd - tau Kp. What is beyond the first order tells whether they do: the problem
+// with a delay of 0.12 s, and Kd greater by it, against the problem as it is.
+inline constexpr char kReactionDelayName[] = "reaction delay";
 
 // The largest of the recordings.
 StatedErrors Stated(const std::vector<PendulumRecording>& recordings);

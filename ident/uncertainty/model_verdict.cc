@@ -144,7 +144,7 @@ class ModelJudge {
           test.moves.push_back(a.sigma * moves[i] * Slope(i));
         }
       }
-      if (!a.move && information > kLeastInformation * all) {
+      if (information > kLeastInformation * all) {
         const Eigen::VectorXd parts =
             scores_.row(column).transpose() + scores_.topRows(n).transpose() * moves;
         test.wanted = -scores_.row(column).sum() / information;

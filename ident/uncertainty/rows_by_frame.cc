@@ -36,15 +36,12 @@ FitPoint Moved(const FitPoint& point, int column, double step) {
 
 RawResiduals RawUnder(const Assumption& assumption, const FitProblem& problem,
                       const FitPoint& point) {
-  if (assumption.move) {
-    FitPoint moved = point;
-    assumption.move(assumption.step, &moved);
-    return RawOf(problem, moved);
-  }
+  FitPoint moved = point;
+  for (const auto& [index, shift] : assumption.along) moved.shared[index] += shift;
   ChangedProblem changed{problem.recordings(), problem.options()};
   changed.options.model.directions = Directions::kAxes;  // the problem's own are turned already
   assumption.change(assumption.step, &changed);
-  return RawOf(FitProblem(changed.recordings, changed.options, problem.counts()), point);
+  return RawOf(FitProblem(changed.recordings, changed.options, problem.counts()), moved);
 }
 
 // Into a column; zeros where a changed rollout has another length.
@@ -194,6 +191,14 @@ RowsByFrame EvaluateByFrame(const FitProblem& problem, const FitPoint& point,
       LeaveOutNoiseOfRates(problem, here, rows.jacobian.col(column).head(data));
     }
   });
+  // As if the estimates had stayed where they are.
+  for (size_t k = 0; k < assumptions.size(); ++k) {
+    for (const auto& [index, shift] : assumptions[k].along) {
+      rows.jacobian.col(estimates + static_cast<Eigen::Index>(k)).head(data) -=
+          shift / assumptions[k].step *
+          rows.jacobian.col(static_cast<Eigen::Index>(index)).head(data);
+    }
+  }
   WeighFrames(problem, here, &result);
   AddBeside(score, assumptions, data, &result);
   return result;

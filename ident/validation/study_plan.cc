@@ -202,6 +202,7 @@ StudyPlan PlanStudies(const FitProblem& problem, const FitPoint& estimate, const
     return plan;
   }
   AddSensor(problem, known, parts, &plan);
+  plan.equipment = PlanEquipment(problem, estimate, parts, known);
   plan.no_sizes = WhyNoSizes(problem, parts);
   if (plan.no_sizes.empty()) AddSizes(parts, known, slope, &plan);
   return plan;

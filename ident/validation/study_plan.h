@@ -43,6 +43,7 @@
 
 #include "ident/problem/fit_point.h"
 #include "ident/problem/jacobian_blocks.h"
+#include "ident/validation/laboratory_plan.h"
 
 namespace pushid {
 
@@ -67,6 +68,7 @@ struct StudyPlan {
   // of what one recording tells through its noise.
   std::vector<double> between_people, between_recordings, noise;
   std::vector<StudySize> sizes;  // the first: as it is
+  std::vector<EquipmentRow> equipment;
 };
 
 // The errors of the shared parameters `known` (indices), in natural units.

@@ -1,0 +1,151 @@
+// ident: rows of equipment that is not there yet.
+#include "ident/validation/laboratory_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ident/prediction/prediction.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/problem/jacobian_blocks.h"
+#include "ident/validation/study_plan.h"
+#include "models/decompositions.h"
+
+namespace pushid {
+namespace {
+
+using Eigen::MatrixXd;
+
+constexpr double kPlannedShear = 5.0, kPlannedCentre = 0.003;  // N, m
+constexpr double kStep = 0.04, kStepSeconds = 0.4;             // m, s
+constexpr double kSway = 0.01;                                 // m, of each sine
+constexpr double kSines[] = {0.15, 0.35, 0.65, 1.05, 1.55};    // Hz
+
+enum class Platform { kStill, kStep, kSines };
+
+// Shifted along the direction of the recorded pushes.
+GroundMotion PlatformMotion(Platform platform, int frames, double dt,
+                            const Eigen::Vector2d& along) {
+  std::vector<GroundPose> poses(frames, GroundPose::Zero());
+  for (int t = 0; t < frames; ++t) {
+    const double seconds = t * dt;
+    double shift = 0.0;
+    if (platform == Platform::kStep) {
+      const double u = std::clamp(seconds / kStepSeconds, 0.0, 1.0);
+      shift = kStep * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+    } else {
+      const double begin = std::min(1.0, seconds);  // from rest
+      for (double f : kSines) shift += kSway * begin * std::sin(2.0 * M_PI * f * seconds);
+    }
+    poses[t].head<2>() = shift * along;
+  }
+  return GroundThrough(std::move(poses), dt);
+}
+
+void AddPlates(PendulumRecording* r) {
+  r->plates.assign(r->num_people(), {});
+  for (int n = 0; n < r->num_people(); ++n) {
+    PlateFrame frame;
+    frame.weight = 1.0;
+    r->plates[n].assign(r->num_frames(), frame);
+  }
+}
+
+// The recording as it would be on the platform; nothing where somebody falls.
+bool OnPlatform(const FitProblem& problem, const FitPoint& estimate, Platform platform,
+                PendulumRecording* r) {
+  const Eigen::Vector2d along = PushDirection(*r);
+  r->scene.pushes.clear();
+  r->scene.ground = PlatformMotion(platform, r->num_frames(), r->scene.dt, along);
+  IdentifiedModel model;
+  model.options = problem.options().model;
+  model.options.directions = Directions::kAxes;  // the problem's are turned already
+  model.parameters = problem.Parameters(estimate, "");
+  for (ScenePerson& person : r->scene.people) person.start.qd.setZero();
+  RolloutPath<double> path;
+  if (!Rollout<double>(r->scene, model.options, {model.parameters}, InitialVelocities(r->scene),
+                       r->num_frames(), &path)
+           .ok) {
+    return false;
+  }
+  for (int n = 0; n < r->num_people(); ++n) {
+    const Body& body = r->scene.people[n].body;
+    for (int t = 0; t < r->num_frames(); ++t) {
+      r->states[n][t] = path.At(t, n);
+      r->hip[n][t] = HipPosition(body, path.At(t, n).q);
+    }
+  }
+  r->weight.clear();
+  r->plates.clear();
+  return true;
+}
+
+// J'J of recordings with the fit's weights, over the shared parameters; of their platforms alone
+// where `base` has the same recordings without.
+MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
+                     const std::vector<PendulumRecording>& recordings) {
+  FitOptions options = problem.options();
+  for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
+  options.settling_weight = options.mode_weight = 0.0;
+  options.model.directions = Directions::kAxes;
+  if (options.model.body == BodyModel::kAnthropometric) options.model.body = BodyModel::kLdp;
+  if (!std::any_of(problem.recordings().begin(), problem.recordings().end(),
+                   [](const PendulumRecording& r) { return r.HasPlates(); })) {
+    options.sigmas.shear = kPlannedShear;
+    options.sigmas.centre = kPlannedCentre;
+  }
+  const FitProblem planned(recordings, options);
+  FitPoint point = planned.NominalPoint();
+  point.shared = estimate.shared;
+  const MatrixXd jacobian = EvaluateJacobianBlocks(planned.Build(&point, 0))
+                                .jacobian.leftCols(problem.map().num_shared());
+  return jacobian.transpose() * jacobian;
+}
+
+}  // namespace
+
+std::vector<EquipmentRow> PlanEquipment(const FitProblem& problem, const FitPoint& estimate,
+                                        const ErrorParts& parts, const std::vector<int>& known) {
+  std::vector<EquipmentRow> rows;
+  if (known.empty() || parts.sigma <= 0.0) return rows;
+  const MatrixXd& clustered = parts.by_person.size() > 0 ? parts.by_person : parts.by_recording;
+  if (clustered.size() == 0) return rows;
+  const MatrixXd noise = parts.naive(known, known);
+  const MatrixXd present = Inverse(noise);
+  const auto add = [&](const std::string& equipment, const MatrixXd& more) {
+    const MatrixXd then = Inverse(present + more(known, known) / (parts.sigma * parts.sigma));
+    EquipmentRow row{equipment, {}};
+    for (size_t k = 0; k < known.size(); ++k) {
+      const int at = static_cast<int>(k);
+      const double now = clustered(known[k], known[k]);
+      const double stays = std::max(0.0, now - noise(at, at));
+      row.error_ratio.push_back(std::sqrt((stays + then(at, at)) / std::max(now, noise(at, at))));
+    }
+    rows.push_back(std::move(row));
+  };
+  std::vector<PendulumRecording> same = problem.recordings();
+  const bool plates = std::any_of(same.begin(), same.end(),
+                                  [](const PendulumRecording& r) { return r.HasPlates(); });
+  if (!plates) {
+    const MatrixXd without = Information(problem, estimate, same);
+    for (PendulumRecording& r : same) AddPlates(&r);
+    add("force platforms under the same recordings",
+        Information(problem, estimate, same) - without);
+  }
+  for (Platform platform : {Platform::kStep, Platform::kSines}) {
+    std::vector<PendulumRecording> moved = problem.recordings();
+    bool stand = true;
+    for (PendulumRecording& r : moved) {
+      stand = stand && OnPlatform(problem, estimate, platform, &r);
+    }
+    if (!stand) continue;
+    const std::string name = platform == Platform::kStep
+                                 ? "as many recordings on ground that steps 4 cm"
+                                 : "as many recordings on ground that sways (five sines of 1 cm)";
+    if (!plates) add(name, Information(problem, estimate, moved));
+    for (PendulumRecording& r : moved) AddPlates(&r);
+    add(name + ", with force platforms", Information(problem, estimate, moved));
+  }
+  return rows;
+}
+
+}  // namespace pushid
