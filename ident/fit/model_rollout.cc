@@ -5,6 +5,7 @@
 
 #include "ident/problem/own_axes.h"
 #include "models/learned_terms.h"
+#include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
 
