@@ -20,7 +20,7 @@ constexpr double kStrongLeverage = 1.0;  // standard errors that one recording m
 constexpr int kFewRecordings = 10;
 constexpr double kTermLevel = 0.001;  // of a score test: seven terms are tested at once
 constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
-constexpr double kLeastDelay = 0.03, kLagLevel = 0.05;        // s; of a test of the delay
+constexpr double kLeastDelay = 0.02, kLagLevel = 0.05;        // s; of a test of the delay
 constexpr int kManyIterations = 1000, kManyStarts = 8;
 constexpr int kReplicas = 199, kManyReplicas = 999;
 
@@ -98,7 +98,9 @@ void Adviser::Lag() {
   for (const AssumptionTest& test : result_.verdict.assumptions) {
     if (test.name != kReactionDelayName || test.error <= 0.0) continue;
     const double t = test.wanted / test.error;
-    if (test.wanted < kLeastDelay || StudentTail(t, result_.verdict.freedom) > kLagLevel) continue;
+    // One-sided: nobody reacts before they are pushed.
+    const double p = 0.5 * StudentTail(t, result_.verdict.freedom);
+    if (test.wanted < kLeastDelay || p > kLagLevel) continue;
     Add("The response lags (the residuals ask for a reaction delay of " + Rounded(test.wanted, 2) +
             " +- " + Rounded(test.error, 1) +
             " s), and damping comes out too low without it; try --delay=one.",
