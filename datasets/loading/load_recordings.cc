@@ -9,6 +9,8 @@
 #include "datasets/formats/force_csv.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/loading/ground_record.h"
+#include "datasets/loading/plate_record.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {
@@ -65,6 +67,22 @@ MaybeError LoadPushes(const std::string& manifest, const ManifestPush& entry, Co
   return std::nullopt;
 }
 
+// Ground and platforms, at the frames of the motion as it is now.
+MaybeError LoadLaboratory(const ManifestRecording& entry, const LoadOptions& options,
+                          Recording* recording) {
+  if (entry.ground.given()) {
+    Result<std::vector<GroundPose>> ground = LoadGround(entry, *recording);
+    if (!ground.ok()) return ground.error();
+    recording->ground = std::move(ground.value());
+  }
+  for (const ManifestPlates& plates : entry.plates) {
+    if (MaybeError failed = LoadPlates(entry, plates, options.preparation.lowpass_hz, recording)) {
+      return failed;
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
@@ -117,6 +135,9 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   }
   recording.content_hash = hash.Hex();
   if (MaybeError failed = PrepareMotion(options.preparation, &recording)) {
+    return OfRecording(entry, *std::move(failed));
+  }
+  if (MaybeError failed = LoadLaboratory(entry, options, &recording)) {
     return OfRecording(entry, *std::move(failed));
   }
   return recording;

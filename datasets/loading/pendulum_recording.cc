@@ -57,24 +57,20 @@ double FacingBeforePush(const Recording& recording) {
   return to_the_left.norm() > 0.0 ? std::atan2(-to_the_left.x(), to_the_left.y()) : 0.0;
 }
 
-// Points as ground that moves sees them: less its shift, and turned back by its tilt about the place
-// where the person stood.
+// Points as ground that moves sees them: less its shift, and turned back by its tilt about the
+// place where the person stood.
 class OnGround {
  public:
   OnGround(const Recording& recording, const RecordedPerson& person) : poses_(recording.ground) {
     if (!poses_.empty()) origin_ = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
   }
-  // All of a person but for the joints that only bodies have.
+  // All of a person but for the joints that only bodies have, and for platforms, which move with
+  // the ground.
   RecordedPerson Moved(RecordedPerson person) const {
     if (poses_.empty()) return person;
     for (auto* track : {&person.hip, &person.left_ankle, &person.right_ankle, &person.left_toe,
                         &person.right_toe, &person.left_heel, &person.right_heel}) {
       for (size_t t = 0; t < track->size(); ++t) (*track)[t] = Point(t, (*track)[t]);
-    }
-    for (size_t t = 0; t < person.plates.size(); ++t) {
-      PlateSample& sample = person.plates[t];
-      sample.force = TurnedBack(At(t), sample.force);
-      sample.centre = Point(t, sample.centre);
     }
     return person;
   }

@@ -22,6 +22,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/units.h"
+#include "datasets/manifest/laboratory_keys.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {
@@ -80,6 +81,8 @@ struct ManifestRecording {
   std::optional<double> length_scale;  // m in one of the file's lengths, instead of a unit
   std::vector<ManifestPush> pushes;
   InitialVelocity initial_velocity = InitialVelocity::kZero;
+  ManifestGround ground;
+  std::vector<ManifestPlates> plates;
   StatedErrors stated_errors;
   std::optional<int> frames;     // checked against the file when given
   int first_frame = 0;           // of the file, from 0, that becomes frame 0

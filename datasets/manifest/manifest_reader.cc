@@ -154,6 +154,8 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   recording.length_scale = ReadLengthScale(&fields);
   ReadPushes(document, &fields, &recording);
   recording.initial_velocity = fields.Choice("initial_velocity", InitialVelocity::kZero);
+  recording.ground = ReadGroundKey(document, &fields);
+  recording.plates = ReadPlatesKey(document, &fields, people);
   recording.stated_errors = ReadStatedErrors(document, &fields, stated);
   if (fields.Has("frames")) {
     recording.frames = fields.Whole("frames", "the number of frames", 0, kAnyFrame);

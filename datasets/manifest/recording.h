@@ -87,7 +87,8 @@ struct FileSkeleton {
   Eigen::Matrix3d world_from_file = Eigen::Matrix3d::Identity();
 };
 
-// What force platforms under a person measured at one frame: the sum of them all.
+// What force platforms under a person measured at one frame: the sum of them all, in the axes of the
+// ground, with which they move.
 struct PlateSample {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // on the person, N
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of pressure, m

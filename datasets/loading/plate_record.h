@@ -1,0 +1,28 @@
+// datasets: what force platforms under a person measured, at the frames of the motion.
+//
+// C3D: platforms of the types of sensors/force_platform.h. Tables: columns that end with fx, fy, fz
+// (vx, vy, vz in OpenSim's) and px, py (and pz, which is not needed), for each platform behind a
+// prefix of its own:
+//   time,fx,fy,fz,px,py             time,left_fx,...,left_py,right_fx,...,right_py
+// N on the person, m, in the axes that are said. Forces of several platforms add up, and their
+// moments do. Low-passed without delay below half the frame rate before frames are taken.
+#pragma once
+
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/manifest/manifest.h"
+
+namespace pushid {
+
+inline constexpr double kWeightTolerance = 0.05;  // of the mean vertical force about m g
+inline constexpr double kOffPlate = 0.02;         // m beyond the edge, of most frames: a wrong one
+inline constexpr double kFarFromFeet = 0.6;       // m, of the centre of pressure
+
+// Into the person's `plates`. Errors: those of the files, no such platform or column, a record that
+// ends early, a mean vertical force that is not the weight, a centre of pressure off the platform
+// or far from the feet.
+MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
+                      double lowpass_hz, Recording* recording);
+
+}  // namespace pushid

@@ -1,0 +1,106 @@
+// datasets: reading the keys of a laboratory.
+#include "datasets/manifest/laboratory_keys.h"
+
+#include <cmath>
+
+#include "datasets/formats/units.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void ReadAxes(JsonFields* given, std::string* up, std::string* forward) {
+  *up = given->OptionalText("up", "");
+  *forward = given->OptionalText("forward", "");
+  if (given->failed()) return;
+  const Result<Eigen::Matrix3d> axes =
+      AxesRotation(up->empty() ? "z" : *up, forward->empty() ? "x" : *forward);
+  if (!axes.ok()) given->Fail(up->empty() ? "forward" : "up", axes.error().message);
+}
+
+std::vector<std::string> ReadNames(JsonFields* given, const char* key) {
+  std::vector<std::string> names;
+  if (!given->Has(key)) return names;
+  for (const Json& item : given->List(key)) {
+    if (!item.is_string()) {
+      given->Fail(key, "must be a list of names, not of " + Shown(item));
+      break;
+    }
+    names.push_back(item.get<std::string>());
+  }
+  return names;
+}
+
+std::optional<double> ReadStart(JsonFields* given) {
+  if (!given->Has("start")) return std::nullopt;
+  return given->Number("start", "the file's clock at frame 0 in s");
+}
+
+ManifestPlates ReadPlates(JsonFields* given, int people) {
+  ManifestPlates plates;
+  plates.use = given->Choice("use", PlateUse::kMeasure);
+  plates.person = given->OptionalWhole("person", "the index of a subject, from 0", 0,
+                                       std::max(0, people - 1), 0);
+  plates.file = given->OptionalText("file", "");
+  plates.plates = ReadNames(given, "plates");
+  plates.start_s = ReadStart(given);
+  plates.lowpass_hz = given->OptionalNumber("lowpass_hz", "a cut-off in Hz", 0.0);
+  if (!given->failed() && !(plates.lowpass_hz >= 0.0 && std::isfinite(plates.lowpass_hz))) {
+    given->Fail("lowpass_hz", "must be a cut-off in Hz, or 0 for 0.4 of the frame rate");
+  }
+  ReadAxes(given, &plates.up, &plates.forward);
+  given->OnlyAsked();
+  return plates;
+}
+
+}  // namespace
+
+ManifestGround ReadGroundKey(const JsonDocument& document, JsonFields* fields) {
+  ManifestGround ground;
+  constexpr const char* kKey = "ground";
+  if (!fields->Has(kKey)) return ground;
+  JsonFields given(document, fields->At(kKey), fields->Pointer(kKey), fields->label() + ", ground");
+  ground.csv = given.OptionalText("csv", "");
+  ground.markers = ReadNames(&given, "markers");
+  if (!given.failed() && ground.csv.empty() == ground.markers.empty()) {
+    given.Fail("",
+               "needs either \"csv\" (a file of how the ground moves) or \"markers\" (at least "
+               "three, on the ground)");
+  }
+  if (!given.failed() && !ground.markers.empty() && ground.markers.size() < 3) {
+    given.Fail("markers", "names " + std::to_string(ground.markers.size()) +
+                              "; three or more tell a shift from a tilt");
+  }
+  ground.quantity = given.Choice("quantity", GroundQuantity::kDisplacement);
+  ground.start_s = ReadStart(&given);
+  ReadAxes(&given, &ground.up, &ground.forward);
+  given.OnlyAsked();
+  fields->Add(given);
+  return ground;
+}
+
+std::vector<ManifestPlates> ReadPlatesKey(const JsonDocument& document, JsonFields* fields,
+                                          int people) {
+  std::vector<ManifestPlates> plates;
+  constexpr const char* kKey = "force_plates";
+  if (!fields->Has(kKey)) return plates;
+  const Json& value = fields->At(kKey);
+  const auto read = [&](const Json& item, const std::string& pointer, const std::string& label) {
+    JsonFields given(document, item, pointer, label);
+    plates.push_back(ReadPlates(&given, people));
+    fields->Add(given);
+  };
+  const std::string label = fields->label() + ", force_plates";
+  if (!value.is_array()) {
+    read(value, fields->Pointer(kKey), label);
+    return plates;
+  }
+  for (size_t i = 0; i < value.size(); ++i) {
+    read(value[i], fields->Pointer(std::string(kKey) + "/" + std::to_string(i)),
+         label + " " + std::to_string(i));
+  }
+  return plates;
+}
+
+}  // namespace pushid

@@ -1,0 +1,80 @@
+// datasets: reading columns with their times.
+#include "datasets/sensors/timed_columns.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/files/numeric_table.h"
+#include "datasets/formats/motion_bids.h"
+#include "datasets/formats/motion_formats.h"
+
+namespace pushid {
+
+Result<TimedColumns> ReadTimedColumns(
+    const std::string& path,
+    const std::function<Result<std::vector<int>>(const std::vector<std::string>&)>& choose) {
+  const MotionFormat format = MotionFormatOfFile(path).value_or(MotionFormat::kCsv);
+  const bool bids = format == MotionFormat::kBids;
+  std::vector<int> columns;
+  int time = -1;
+  TableReadOptions options;
+  options.keep_lines = true;
+  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+    if (!bids) time = FindTimeColumn(names, "");
+    if (!bids && time < 0) return Error{"there is no column called time", path};
+    const Result<std::vector<int>> chosen = choose(names);
+    if (!chosen.ok()) return chosen.error();
+    columns = chosen.value();
+    std::vector<int> wanted;
+    for (int column : columns) {
+      if (column >= 0) wanted.push_back(column);
+    }
+    if (!bids) wanted.push_back(time);
+    return wanted;
+  };
+  const Result<BidsHeader> header = bids ? ReadBidsHeader(path) : BidsHeader{};
+  if (!header.ok()) return header.error();
+  const Result<NumericTable> table =
+      bids ? ReadBidsTable(path, header.value(), options)
+           : ReadNumericTable(path, RowOf(format).table.value_or(TableFormat::kCsv), options);
+  if (!table.ok()) return table.error();
+  TimedColumns read;
+  read.file = path;
+  read.lines = table.value().lines;
+  if (table.value().num_rows() < 3) {
+    return Error{
+        "it has " + std::to_string(table.value().num_rows()) + " rows; three or more are needed",
+        path};
+  }
+  if (bids) {
+    read.rate_hz = header.value().rate_hz;
+  } else {
+    const Result<double> step = EvenTimeStep(table.value(), time);
+    if (!step.ok()) return step.error();
+    read.rate_hz = 1.0 / step.value();
+    read.first_s = table.value().data.back()[0];
+  }
+  size_t next = 0;
+  for (int column : columns) {
+    read.values.push_back(column >= 0 ? table.value().data[next++] : std::vector<double>());
+  }
+  return read;
+}
+
+Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at) {
+  const int last = static_cast<int>(track.size()) - 1;
+  if (at <= 0.0 || last < 3) return track[std::clamp(static_cast<int>(std::lround(at)), 0, last)];
+  if (at >= last) return track[last];
+  const int first = std::clamp(static_cast<int>(at) - 1, 0, last - 3);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 4; ++i) {
+    double weight = 1.0;
+    for (int k = 0; k < 4; ++k) {
+      if (k != i) weight *= (at - first - k) / (i - k);
+    }
+    sum += weight * track[first + i];
+  }
+  return sum;
+}
+
+}  // namespace pushid
