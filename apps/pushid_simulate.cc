@@ -11,6 +11,7 @@
 #include "apps/flags/overwrite_flag.h"
 #include "apps/support/processes.h"
 #include "datasets/files/number_text.h"
+#include "datasets/loading/ground_record.h"
 #include "datasets/manifest/recording.h"
 #include "ident/figures/text_table.h"
 #include "ident/fit/push_range.h"
@@ -29,11 +30,25 @@ DEFINE_int32(frames, pushid::SyntheticOptions{}.frames, "frames of each recordin
 DEFINE_double(fps, pushid::SyntheticOptions{}.fps, "frames per second");
 // The library's recordings are exact; a user's trial should be as noisy as real ones.
 DEFINE_double(noise, 0.002, "standard deviation of the joints' positions, m");
-DEFINE_string(push_kind, pushid::NameOf(pushid::SyntheticOptions{}.push_kind),
-              "net (only the push's first part, the tail follows) or external");
+DEFINE_string(
+    push_kind, pushid::NameOf(pushid::SyntheticOptions{}.push_kind),
+    "net (only the push's first part, the tail follows), external, or none (with --ground)");
+DEFINE_string(
+    ground, "none",
+    "motion of the ground along x: none, step (within 0.4 s), sine (0.5 Hz), sum_of_sines (five "
+    "of 0.15 to 1.55 Hz), or a CSV file time,x,y,theta,phi (m, rad)");
+DEFINE_double(ground_size, pushid::SyntheticOptions{}.ground_size_m,
+              "displacement of a step, or of each sine, m");
+DEFINE_bool(plates, false, "also write what force platforms under the feet measure");
+DEFINE_double(plate_noise, pushid::SyntheticOptions{}.plate_noise_m,
+              "with --plates, standard deviation of the centre of pressure, m");
 DEFINE_choice(truth_stance, pushid::SyntheticOptions{}.model.stance,
-              "without --model: behaviour of the synthetic people's feet: slide, or threshold "
-              "(hold, then step)");
+              "without --model: behaviour of the synthetic people's feet: slide, threshold "
+              "(hold, then step) or fixed (hold)");
+DEFINE_choice(
+    truth_delay, pushid::SyntheticOptions{}.model.delay,
+    "without --model: reaction delay of the synthetic people: none, one or ankle_and_step "
+    "(--set=reaction_delay=0.13)");
 DEFINE_string(
     truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
     "without --model: process noise of the synthetic people: none, diagonal or full; with speed "
@@ -57,10 +72,33 @@ MaybeError CheckRecordingNumbers() {
         CheckRange("group_size", FLAGS_group_size, 1, std::min(FLAGS_people, 100)),
         CheckRange("frames", FLAGS_frames, 3, 100000), CheckRange("fps", FLAGS_fps, 10, 10000),
         CheckRange("noise", FLAGS_noise, 0, 0.1),
+        CheckRange("ground_size", FLAGS_ground_size, 0, 1),
+        CheckRange("plate_noise", FLAGS_plate_noise, 0, 0.1),
         CheckRange("recording_spread", FLAGS_recording_spread, 0, 2),
         CheckRange("subject_spread", FLAGS_subject_spread, 0, 2)}) {
     if (error) return error;
   }
+  return std::nullopt;
+}
+
+// What --ground names; a file is sampled at the recordings' frames.
+MaybeError SetGround(SyntheticOptions* study) {
+  const std::optional<GroundKind> kind = FromName<GroundKind>(FLAGS_ground);
+  if (kind && *kind != GroundKind::kFile) {
+    study->ground = *kind;
+    if (study->pushes || study->ground != GroundKind::kNone) return std::nullopt;
+    return Error{"--push_kind=none leaves nothing that moves anybody; add --ground=step"};
+  }
+  study->ground = GroundKind::kFile;
+  ManifestRecording entry;
+  entry.ground.csv = FLAGS_ground;
+  Recording frames;
+  frames.fps = study->fps;
+  frames.people.resize(1);
+  frames.people[0].hip.resize(study->frames);
+  Result<std::vector<GroundPose>> read = LoadGround(entry, frames);
+  if (!read.ok()) return read.error();
+  study->ground_poses = std::move(read.value());
   return std::nullopt;
 }
 
@@ -69,17 +107,20 @@ Result<SyntheticOptions> StudyFromCommandLine() {
   for (MaybeError error :
        {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
         CheckRecordingNumbers(),
-        CheckExcludes({"truth_stance", "truth_noise"}, "model",
+        CheckExcludes({"truth_stance", "truth_delay", "truth_noise"}, "model",
                       "--model sets the parameters of the people; leave --{} out")}) {
     if (error) return *error;
   }
-  const std::optional<PushKind> kind = FromName<PushKind>(FLAGS_push_kind);
-  if (!kind || *kind == PushKind::kNetWithoutFriction) {
-    return Error{"--push_kind is '" + FLAGS_push_kind + "'; it must be net or external"};
-  }
   SyntheticOptions study;
+  study.pushes = FLAGS_push_kind != "none";
+  const std::optional<PushKind> kind =
+      study.pushes ? FromName<PushKind>(FLAGS_push_kind) : PushKind::kExternal;
+  if (!kind || *kind == PushKind::kNetWithoutFriction) {
+    return Error{"--push_kind is '" + FLAGS_push_kind + "'; it must be net, external or none"};
+  }
   for (MaybeError error :
        {ParseName("--truth_stance", FLAGS_truth_stance, &study.model.stance),
+        ParseName("--truth_delay", FLAGS_truth_delay, &study.model.delay),
         ParseName("--truth_noise", FLAGS_truth_noise, &study.model.process_noise)}) {
     if (error) return *error;
   }
@@ -93,6 +134,10 @@ Result<SyntheticOptions> StudyFromCommandLine() {
   study.recording_spread = FLAGS_recording_spread;
   study.subject_spread = FLAGS_subject_spread;
   study.seed = FLAGS_seed;
+  study.plates = FLAGS_plates;
+  study.plate_noise_m = FLAGS_plate_noise;
+  study.ground_size_m = FLAGS_ground_size;
+  if (MaybeError error = SetGround(&study)) return *error;
   return study;
 }
 

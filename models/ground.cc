@@ -1,6 +1,8 @@
 // models: ground that moves.
 #include "models/ground.h"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace pushid {
@@ -26,6 +28,27 @@ GroundMotion GroundThrough(std::vector<GroundPose> poses, double dt) {
   ground.dt = dt;
   ground.poses = std::move(poses);
   return ground;
+}
+
+namespace {
+
+Eigen::Matrix3d Tilt(const GroundPose& pose) {
+  return (Eigen::AngleAxisd(pose[3], Vector3<double>::UnitX()) *
+          Eigen::AngleAxisd(pose[2], Vector3<double>::UnitY()))
+      .toRotationMatrix();
+}
+
+}  // namespace
+
+Vector3<double> OnGround(const GroundPose& pose, const Vector3<double>& origin,
+                         const Vector3<double>& point) {
+  const Vector3<double> shift(pose[0], pose[1], 0.0);
+  return origin + Tilt(pose).transpose() * (point - origin - shift);
+}
+
+Vector3<double> PointInLaboratory(const GroundPose& pose, const Vector3<double>& origin,
+                                  const Vector3<double>& point) {
+  return origin + Vector3<double>(pose[0], pose[1], 0.0) + Tilt(pose) * (point - origin);
 }
 
 PendulumState<double> InLaboratory(const GroundMotion& ground, int frame,

@@ -4,8 +4,8 @@
 // acceleration and gamma its second derivative of tilt, people feel the generalized force
 //   -M(q) A - (g_n / g - 1) G(q),   A = [a_gx - g_x, a_gy - g_y, gamma_theta, gamma_phi]
 // with g_x, g_y the components of gravity along the ground and g_n that into it: a frame that
-// accelerates and one that is tilted cannot be told apart. gamma acts as about the cart: first order
-// in the angles, whose sums are those in the laboratory.
+// accelerates and one that is tilted cannot be told apart. gamma acts as about the cart: first
+// order in the angles, whose sums are those in the laboratory.
 #pragma once
 
 #include <vector>
@@ -39,6 +39,13 @@ GroundMotion GroundThrough(std::vector<GroundPose> poses, double dt);
 // A state as the laboratory sees it.
 PendulumState<double> InLaboratory(const GroundMotion& ground, int frame,
                                    PendulumState<double> state);
+
+// A point of the laboratory as the ground sees it, and back: less its shift, and turned back by its
+// tilt about `origin`, where a person stood at frame 0.
+Vector3<double> OnGround(const GroundPose& pose, const Vector3<double>& origin,
+                         const Vector3<double>& point);
+Vector3<double> PointInLaboratory(const GroundPose& pose, const Vector3<double>& origin,
+                                  const Vector3<double>& point);
 
 // The force above.
 template <typename T, typename L>

@@ -97,6 +97,8 @@ Perceived<T> Perceive(Delay delay, const ParameterSet<T>& p, const RolloutPath<T
   Perceived<T> perceived(state);
   if (delay == Delay::kNone) return perceived;
   const DelayedState<T> ankle(path, person, DelayedFrames<T>(p[kReactionDelay], now, dt));
+  perceived.ankle.q = ankle.q;
+  perceived.ankle.qd = ankle.qd;
   for (int i = 2; i < 4; ++i) {
     perceived.ankle.q[i] = ankle.q[i] + p[kPassiveStiffness] * (state.q[i] - ankle.q[i]);
     perceived.ankle.qd[i] = ankle.qd[i] + p[kPassiveDamping] * (state.qd[i] - ankle.qd[i]);

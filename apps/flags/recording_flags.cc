@@ -154,10 +154,12 @@ Provenance ProvenanceOfRun() {
 
 MaybeError CheckPushed(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings) {
-    if (!recording.pushes.empty()) continue;
-    return Error{"recording " + recording.id +
-                     " has no push: estimate one with pushid-push, or leave it out (--leave_out)",
-                 FLAGS_recordings};
+    if (!recording.pushes.empty() || !recording.ground.empty()) continue;
+    return Error{
+        "recording " + recording.id +
+            " has neither a push nor ground that moves: estimate a push with pushid-push, or "
+            "leave it out (--leave_out)",
+        FLAGS_recordings};
   }
   return std::nullopt;
 }

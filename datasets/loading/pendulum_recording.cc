@@ -1,7 +1,6 @@
 // datasets: mapping a recording's skeletons to pendulums.
 #include "datasets/loading/pendulum_recording.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -57,39 +56,20 @@ double FacingBeforePush(const Recording& recording) {
   return to_the_left.norm() > 0.0 ? std::atan2(-to_the_left.x(), to_the_left.y()) : 0.0;
 }
 
-// Points as ground that moves sees them: less its shift, and turned back by its tilt about the
-// place where the person stood.
-class OnGround {
- public:
-  OnGround(const Recording& recording, const RecordedPerson& person) : poses_(recording.ground) {
-    if (!poses_.empty()) origin_ = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
-  }
-  // All of a person but for the joints that only bodies have, and for platforms, which move with
-  // the ground.
-  RecordedPerson Moved(RecordedPerson person) const {
-    if (poses_.empty()) return person;
-    for (auto* track : {&person.hip, &person.left_ankle, &person.right_ankle, &person.left_toe,
-                        &person.right_toe, &person.left_heel, &person.right_heel}) {
-      for (size_t t = 0; t < track->size(); ++t) (*track)[t] = Point(t, (*track)[t]);
+// All of a person as ground that moves sees it, but for the joints that only bodies have, and for
+// platforms, which move with the ground.
+RecordedPerson SeenFromGround(const Recording& recording, RecordedPerson person) {
+  const std::vector<GroundPose>& poses = recording.ground;
+  if (poses.empty()) return person;
+  const Vector3<double> origin = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
+  for (auto* track : {&person.hip, &person.left_ankle, &person.right_ankle, &person.left_toe,
+                      &person.right_toe, &person.left_heel, &person.right_heel}) {
+    for (size_t t = 0; t < track->size(); ++t) {
+      (*track)[t] = OnGround(poses[std::min(t, poses.size() - 1)], origin, (*track)[t]);
     }
-    return person;
   }
-
- private:
-  const GroundPose& At(size_t frame) const { return poses_[std::min(frame, poses_.size() - 1)]; }
-  Vector3<double> Point(size_t frame, const Vector3<double>& point) const {
-    const GroundPose& pose = At(frame);
-    const Vector3<double> from = point - origin_ - Vector3<double>(pose[0], pose[1], 0.0);
-    return origin_ + TurnedBack(pose, from);
-  }
-  static Vector3<double> TurnedBack(const GroundPose& pose, const Vector3<double>& v) {
-    const Eigen::AngleAxisd by_phi(-pose[3], Vector3<double>::UnitX());
-    const Eigen::AngleAxisd by_theta(-pose[2], Vector3<double>::UnitY());
-    return by_theta * (by_phi * v);
-  }
-  const std::vector<GroundPose>& poses_;
-  Vector3<double> origin_ = Vector3<double>::Zero();
-};
+  return person;
+}
 
 // The first frame at which anything happens: a push, or ground that leaves its place.
 size_t FirstDisturbance(const Recording& recording) {
@@ -135,8 +115,7 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
   result.facing = FacingBeforePush(recording);
 
   for (const RecordedPerson& recorded : recording.people) {
-    const OnGround ground(recording, recorded);
-    const RecordedPerson person = ground.Moved(recorded);
+    const RecordedPerson person = SeenFromGround(recording, recorded);
     std::vector<PendulumState<double>> states(person.hip.size());
     std::vector<double> lengths(person.hip.size());
     ScenePerson in_scene;

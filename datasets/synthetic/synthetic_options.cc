@@ -75,27 +75,34 @@ MaybeError CheckSyntheticOptions(const SyntheticOptions& o) {
                    std::to_string(strength.acceleration) + " m/s^2: must be within +-100"};
     }
   }
+  if (o.ground == GroundKind::kFile && static_cast<int>(o.ground_poses.size()) < o.frames) {
+    return Error{"the ground's file has " + std::to_string(o.ground_poses.size()) + " poses for " +
+                 std::to_string(o.frames) + " frames; give one for each"};
+  }
   if (o.push_start_frame > o.frames - 2) {
     return Error{"push_start_frame " + std::to_string(o.push_start_frame) +
                  " leaves no frame to push: must be at most frames - 2"};
   }
-  for (const MaybeError& wrong :
-       {one("subjects", o.subjects, 1, kMany),
-        one("recordings_per_subject", o.recordings_per_subject, 1, kMany),
-        one("frames", o.frames, 3, 10 * kMany), one("fps", o.fps, 1, 10000),
-        range("mass_kg", o.min_mass_kg, o.max_mass_kg, 1, 400),
-        range("rod_m", o.min_rod_m, o.max_rod_m, 0.1, 3),
-        one("lean_sigma_rad", o.lean_sigma_rad, 0, 1),
-        range("push_s", o.min_push_s, o.max_push_s, 0, 1000),
-        one("push_start_frame", o.push_start_frame, 0, 10 * kMany),
-        one("direction_sigma_rad", o.direction_sigma_rad, 0, 10),
-        range("height", o.min_height, o.max_height, -1, 3),
-        one("recording_spread", o.recording_spread, 0, 2),
-        one("subject_spread", o.subject_spread, 0, 2),
-        one("people_in_row", o.people_in_row, 1, o.subjects),
-        range("spacing_m", o.min_spacing_m, o.max_spacing_m, 0.05, 100),
-        one("sideways_sigma_m", o.sideways_sigma_m, 0, 10),
-        one("joint_noise_m", o.joint_noise_m, 0, 0.1)}) {
+  for (const MaybeError& wrong : {one("subjects", o.subjects, 1, kMany),
+                                  one("recordings_per_subject", o.recordings_per_subject, 1, kMany),
+                                  one("frames", o.frames, 3, 10 * kMany),
+                                  one("fps", o.fps, 1, 10000),
+                                  range("mass_kg", o.min_mass_kg, o.max_mass_kg, 1, 400),
+                                  range("rod_m", o.min_rod_m, o.max_rod_m, 0.1, 3),
+                                  one("lean_sigma_rad", o.lean_sigma_rad, 0, 1),
+                                  range("push_s", o.min_push_s, o.max_push_s, 0, 1000),
+                                  one("push_start_frame", o.push_start_frame, 0, 10 * kMany),
+                                  one("direction_sigma_rad", o.direction_sigma_rad, 0, 10),
+                                  range("height", o.min_height, o.max_height, -1, 3),
+                                  one("recording_spread", o.recording_spread, 0, 2),
+                                  one("subject_spread", o.subject_spread, 0, 2),
+                                  one("people_in_row", o.people_in_row, 1, o.subjects),
+                                  range("spacing_m", o.min_spacing_m, o.max_spacing_m, 0.05, 100),
+                                  one("sideways_sigma_m", o.sideways_sigma_m, 0, 10),
+                                  one("ground_size_m", o.ground_size_m, -1, 1),
+                                  one("plate_noise_m", o.plate_noise_m, 0, 0.1),
+                                  one("plate_noise_n", o.plate_noise_n, 0, 1000),
+                                  one("joint_noise_m", o.joint_noise_m, 0, 0.1)}) {
     if (wrong) return wrong;
   }
   return {};

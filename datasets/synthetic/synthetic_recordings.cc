@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "datasets/files/random.h"
+#include "models/ground_reaction.h"
 
 namespace pushid {
 namespace {
@@ -85,6 +86,7 @@ RolloutStatus RollDriven(const SyntheticOptions& options, Random* random,
 RolloutStatus AbsorbOtherForces(const SyntheticOptions& options, SyntheticRecording* made) {
   const ModelOptions& model = options.model;
   if (model.push == PushUse::kAdded || options.push_kind == PushKind::kExternal) return {};
+  if (made->scene.pushes.empty()) return {};
   ModelOptions added = model;
   added.push = PushUse::kAdded;
   ForceTrace forces;
@@ -112,9 +114,15 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
     const Vector4<double>& q = state.q;
     const Body body = BodyNow(made.scene.people[n].body, state.rod, made.parameters[n][kRodLift]);
     const double sigma = t == 0 && !options.noise_at_first_frame ? 0.0 : options.joint_noise_m;
+    const Vector4<double>& start = made.path.At(0, n).q;
     const auto observed = [&](const Vector3<double>& position) {
       const double x = noise->Normal(), y = noise->Normal(), z = noise->Normal();
-      return Vector3<double>(position + sigma * Vector3<double>(x, y, z));
+      const Vector3<double> seen =
+          made.scene.ground.moves()
+              ? PointInLaboratory(made.scene.ground.poses[t],
+                                  {start[0], start[1], body.cart_height}, position)
+              : position;
+      return Vector3<double>(seen + sigma * Vector3<double>(x, y, z));
     };
     const Vector3<double> cart(q[0], q[1], body.cart_height);
     person.hip.push_back(observed(HipPosition(body, q)));
@@ -122,6 +130,32 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
     person.right_ankle.push_back(observed(cart - subject.skeleton.HalfStance()));
   }
   return person;
+}
+
+// What platforms under the person measure, which move with the ground.
+std::vector<PlateSample> ObservePlates(const SyntheticOptions& options,
+                                       const SyntheticRecording& made, int n, Random* noise) {
+  std::vector<PlateSample> plates;
+  const Scene& scene = made.scene;
+  const BodyOf<double> body = DynamicBody(options.model, scene.people[n].body, made.parameters[n],
+                                          options.model.stance == Stance::kFixed);
+  const double weight = scene.people[n].body.mass * kGravity;
+  for (int t = 0; t < options.frames; ++t) {
+    const int at = std::min(t, options.frames - 2);  // the last frame has no step
+    const Vector4<double> a = (made.path.At(at + 1, n).qd - made.path.At(at, n).qd) / scene.dt;
+    const GroundStep ground = scene.ground.moves() ? scene.ground.steps[at] : GroundStep{};
+    const GroundReactionOf<double> reaction =
+        GroundReaction<double>(body, made.path.At(at, n), a, ground, PushForceAt(scene, n, at));
+    const auto err = [&](double sigma) { return sigma * noise->Normal(); };
+    PlateSample sample;
+    sample.force = {reaction[0] + err(options.plate_noise_n),
+                    reaction[1] + err(options.plate_noise_n), weight + err(options.plate_noise_n)};
+    sample.centre = {reaction[2] + err(options.plate_noise_m),
+                     reaction[3] + err(options.plate_noise_m), 0.0};
+    sample.weight = 1.0;
+    plates.push_back(sample);
+  }
+  return plates;
 }
 
 std::vector<Subject> DrawSubjects(const SyntheticOptions& options, Random* people, Random* spread) {
@@ -169,7 +203,7 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
   Random people(root.Fork()), motion(root.Fork()), spread(root.Fork());
   const uint64_t own_noise = root.Fork();
   Random noise(options.noise_seed != 0 ? options.noise_seed : own_noise);
-  Random driving(root.Fork());
+  Random driving(root.Fork()), on_plates(root.Fork());
 
   const std::vector<Subject> subjects = DrawSubjects(options, &people, &spread);
   std::vector<SyntheticRecording> result;
@@ -184,12 +218,23 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
       SyntheticRecording made;
       made.scene.dt = 1.0 / options.fps;
       PlaceRow(options, row, &motion, &spread, &made);
+      if (options.ground != GroundKind::kNone) {
+        made.scene.ground = GroundThrough(
+            options.ground == GroundKind::kFile
+                ? options.ground_poses
+                : SyntheticGround(options.ground,
+                                  r % 2 == 0 ? options.ground_size_m : -options.ground_size_m,
+                                  options.frames, made.scene.dt, Eigen::Vector2d::UnitX()),
+            made.scene.dt);
+      }
       std::vector<Vector4<double>> rows =
           DrawPush(options, made.scene.people[0], strength.acceleration, &motion);
       const size_t room = options.frames - 1 - options.push_start_frame;
       if (rows.size() > room) rows.resize(room);
-      made.scene.pushes.push_back(
-          MakeScenePush(0, options.push_start_frame, options.push_kind, rows));
+      if (options.pushes) {
+        made.scene.pushes.push_back(
+            MakeScenePush(0, options.push_start_frame, options.push_kind, rows));
+      }
 
       RolloutStatus status = AbsorbOtherForces(options, &made);
       if (status.ok) status = RollDriven(options, &driving, &made);
@@ -203,13 +248,18 @@ Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticO
         recording.people.push_back(
             ObservePerson(options, made, *row[n], static_cast<int>(n), &noise));
       }
+      for (size_t n = 0; options.plates && n < row.size(); ++n) {
+        recording.people[n].plates = ObservePlates(options, made, static_cast<int>(n), &on_plates);
+      }
+      recording.ground = made.scene.ground.poses;
       recording.id = id;
       recording.labels.Set(kMagnitudeLabel, strength.name);
       recording.labels.Set(kSettingLabel, row.size() > 1 ? "row" : "single");
       recording.fps = options.fps;
       recording.push_kind = options.push_kind;
-      const ScenePush& push = made.scene.pushes[0];
-      recording.pushes.push_back({0, push.start_frame, push.force, "synthetic"});
+      for (const ScenePush& push : made.scene.pushes) {
+        recording.pushes.push_back({0, push.start_frame, push.force, "synthetic"});
+      }
       result.push_back(std::move(made));
     }
   }

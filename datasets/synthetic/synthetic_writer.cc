@@ -1,9 +1,12 @@
 // datasets: synthetic recordings as files, through the writers that users have.
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"
@@ -20,12 +23,52 @@ BvhMotion Motion(const SyntheticRecording& made, int n) {
   motion.frame_time_s = 1.0 / made.recording.fps;
   const RecordedPerson& person = made.recording.people[n];
   for (int t = 0; t < made.recording.num_frames(); ++t) {
-    const Vector4<double>& q = made.path.At(t, n).q;
+    const Vector4<double> q = InLaboratory(made.scene.ground, t, made.path.At(t, n)).q;
     made.skeletons[n].AppendFrame(
         {q[2], q[3], person.hip[t], person.left_ankle[t], person.right_ankle[t]}, kUnit,
         &motion.values);
   }
   return motion;
+}
+
+std::string GroundFile(const Recording& recording) { return "ground/" + recording.id + ".csv"; }
+std::string PlatesFile(const Recording& recording) { return "plates/" + recording.id + ".csv"; }
+
+// A row for each frame: its time, then the numbers.
+template <typename Row>
+MaybeError WriteTimed(const std::string& path, const std::string& names, double fps, int frames,
+                      const Row& row) {
+  std::string text = "time," + names + "\n";
+  for (int t = 0; t < frames; ++t) {
+    text += DoubleText(t / fps);
+    for (double value : row(t)) text += "," + DoubleText(value);
+    text += "\n";
+  }
+  return WriteFileAtomically(path, text);
+}
+
+// The ground's and the platforms' files, where the recording has them; of the first person.
+MaybeError WriteLaboratory(const std::string& folder, const SyntheticRecording& made) {
+  const Recording& recording = made.recording;
+  const int frames = recording.num_frames();
+  if (made.scene.ground.moves()) {
+    if (MaybeError failed = MakeFolder(folder + "/ground")) return failed;
+    if (MaybeError failed = WriteTimed(folder + "/" + GroundFile(recording), "x,y,theta,phi",
+                                       recording.fps, frames, [&](int t) {
+                                         const GroundPose& pose = recording.ground[t];
+                                         return std::vector<double>(pose.data(), pose.data() + 4);
+                                       })) {
+      return failed;
+    }
+  }
+  const std::vector<PlateSample>& plates = recording.people[0].plates;
+  if (plates.empty()) return std::nullopt;
+  if (MaybeError failed = MakeFolder(folder + "/plates")) return failed;
+  return WriteTimed(
+      folder + "/" + PlatesFile(recording), "fx,fy,fz,px,py", recording.fps, frames, [&](int t) {
+        const PlateSample& s = plates[t];
+        return std::vector<double>{s.force[0], s.force[1], s.force[2], s.centre[0], s.centre[1]};
+      });
 }
 
 ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::string>& bvh,
@@ -40,6 +83,12 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
   entry.joints.hip = JointReference{joints[kHipJoint].name};
   entry.joints.left_ankle = JointReference{joints[kLeftAnkleJoint].name};
   entry.joints.right_ankle = JointReference{joints[kRightAnkleJoint].name};
+  if (made.scene.ground.moves()) (*entry.json)["ground"] = {{"csv", GroundFile(recording)}};
+  for (const RecordedPerson& person : recording.people) {
+    if (person.plates.empty()) continue;
+    (*entry.json)["force_plates"] = {{"use", "measure"}, {"file", PlatesFile(recording)}};
+  }
+  if (recording.pushes.empty()) return entry;
   const int start = recording.pushes[0].start_frame;
   if (start == 0) {
     entry.push_csv = csv;
@@ -85,8 +134,11 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
         return failed;
       }
     }
-    if (MaybeError failed = WritePushCsv(folder + "/" + csv, made.recording.pushes[0].force)) {
-      return failed;
+    if (MaybeError failed = WriteLaboratory(folder, made)) return failed;
+    if (!made.recording.pushes.empty()) {
+      if (MaybeError failed = WritePushCsv(folder + "/" + csv, made.recording.pushes[0].force)) {
+        return failed;
+      }
     }
     manifest.recordings.push_back(Entry(made, bvh, csv));
   }

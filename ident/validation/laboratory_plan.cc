@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
@@ -16,30 +17,7 @@ namespace {
 using Eigen::MatrixXd;
 
 constexpr double kPlannedShear = 5.0, kPlannedCentre = 0.003;  // N, m
-constexpr double kStep = 0.04, kStepSeconds = 0.4;             // m, s
-constexpr double kSway = 0.01;                                 // m, of each sine
-constexpr double kSines[] = {0.15, 0.35, 0.65, 1.05, 1.55};    // Hz
-
-enum class Platform { kStill, kStep, kSines };
-
-// Shifted along the direction of the recorded pushes.
-GroundMotion PlatformMotion(Platform platform, int frames, double dt,
-                            const Eigen::Vector2d& along) {
-  std::vector<GroundPose> poses(frames, GroundPose::Zero());
-  for (int t = 0; t < frames; ++t) {
-    const double seconds = t * dt;
-    double shift = 0.0;
-    if (platform == Platform::kStep) {
-      const double u = std::clamp(seconds / kStepSeconds, 0.0, 1.0);
-      shift = kStep * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
-    } else {
-      const double begin = std::min(1.0, seconds);  // from rest
-      for (double f : kSines) shift += kSway * begin * std::sin(2.0 * M_PI * f * seconds);
-    }
-    poses[t].head<2>() = shift * along;
-  }
-  return GroundThrough(std::move(poses), dt);
-}
+constexpr double kStep = 0.04, kSway = 0.01;                   // m, of each sine
 
 void AddPlates(PendulumRecording* r) {
   r->plates.assign(r->num_people(), {});
@@ -51,11 +29,14 @@ void AddPlates(PendulumRecording* r) {
 }
 
 // The recording as it would be on the platform; nothing where somebody falls.
-bool OnPlatform(const FitProblem& problem, const FitPoint& estimate, Platform platform,
+bool OnPlatform(const FitProblem& problem, const FitPoint& estimate, GroundKind platform,
                 PendulumRecording* r) {
   const Eigen::Vector2d along = PushDirection(*r);
   r->scene.pushes.clear();
-  r->scene.ground = PlatformMotion(platform, r->num_frames(), r->scene.dt, along);
+  r->scene.ground =
+      GroundThrough(SyntheticGround(platform, platform == GroundKind::kStep ? kStep : kSway,
+                                    r->num_frames(), r->scene.dt, along),
+                    r->scene.dt);
   IdentifiedModel model;
   model.options = problem.options().model;
   model.options.directions = Directions::kAxes;  // the problem's are turned already
@@ -131,14 +112,14 @@ std::vector<EquipmentRow> PlanEquipment(const FitProblem& problem, const FitPoin
     add("force platforms under the same recordings",
         Information(problem, estimate, same) - without);
   }
-  for (Platform platform : {Platform::kStep, Platform::kSines}) {
+  for (GroundKind platform : {GroundKind::kStep, GroundKind::kSumOfSines}) {
     std::vector<PendulumRecording> moved = problem.recordings();
     bool stand = true;
     for (PendulumRecording& r : moved) {
       stand = stand && OnPlatform(problem, estimate, platform, &r);
     }
     if (!stand) continue;
-    const std::string name = platform == Platform::kStep
+    const std::string name = platform == GroundKind::kStep
                                  ? "as many recordings on ground that steps 4 cm"
                                  : "as many recordings on ground that sways (five sines of 1 cm)";
     if (!plates) add(name, Information(problem, estimate, moved));

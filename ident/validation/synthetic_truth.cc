@@ -7,11 +7,13 @@
 namespace pushid {
 
 Result<IdentifiedModel> SyntheticTruth(const SyntheticOptions& study, const std::string& set) {
-  const bool groups = study.people_in_row > 1, slide = study.model.stance == Stance::kSlide;
+  const Stance stance = study.model.stance;
+  const bool groups = study.people_in_row > 1, slide = stance == Stance::kSlide;
   const Result<FitOptions> made =
       MakeFitOptions({{"preset", groups ? "group" : "tail"},
                       {"stance", NameOf(study.model.stance)},
-                      {"process_noise", NameOf(study.model.process_noise)}});
+                      {"process_noise", NameOf(study.model.process_noise)},
+                      {"delay", NameOf(study.model.delay)}});
   if (!made.ok()) return made.error();
   const FitOptions& preset = made.value();
   const ParameterSet<double> published =
@@ -23,6 +25,9 @@ Result<IdentifiedModel> SyntheticTruth(const SyntheticOptions& study, const std:
   model.parameters = preset.table.Values();
   for (Parameter id : preset.table.Free()) {
     // Standing people touch as the preset has it.
+    // Who holds on, and who is late, are as the preset has them.
+    const bool of_delay = id >= kReactionDelay && id <= kPassiveDamping;
+    if (stance == Stance::kFixed || of_delay) continue;
     if (!IsPairParameter(id) || slide) model.parameters[id] = published[id];
   }
   model.table.SetTied(&model.parameters);

@@ -40,14 +40,11 @@ void PerceivedSensitivities::Update(const Scene& scene, const ModelOptions& opti
       (1.0 - stiffness) * ankle_.middleRows<2>(2) + stiffness * of_now.middleRows<2>(2);
   ankle_.bottomRows<2>() =
       (1.0 - damping) * ankle_.bottomRows<2>() + damping * of_now.bottomRows<2>();
-  // Ankles ask for nothing of the cart.
-  ankle_.topRows<2>().setZero();
-  ankle_.middleRows<2>(4).setZero();
-  ankle_by_delay_.setZero();
+  ankle_by_delay_ << then.q_by_delay, then.qd_by_delay;
   by_stiffness_share_.setZero();
   by_damping_share_.setZero();
-  ankle_by_delay_.segment<2>(2) = (1.0 - stiffness) * then.q_by_delay.tail<2>();
-  ankle_by_delay_.tail<2>() = (1.0 - damping) * then.qd_by_delay.tail<2>();
+  ankle_by_delay_.segment<2>(2) *= 1.0 - stiffness;
+  ankle_by_delay_.tail<2>() *= 1.0 - damping;
   by_stiffness_share_.segment<2>(2) = now.q.tail<2>() - then.q.tail<2>();
   by_damping_share_.tail<2>() = now.qd.tail<2>() - then.qd.tail<2>();
   DelayedBlock(sensitivities, person, step, &step_);
