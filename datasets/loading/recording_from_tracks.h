@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/loading/motion_preparation.h"
+#include "datasets/loading/warning.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {

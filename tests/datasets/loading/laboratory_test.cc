@@ -1,0 +1,224 @@
+// Ground that moves and force platforms: from files to recordings and back, and what is wrong with
+// them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "datasets/loading/load_recordings.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "datasets/synthetic/synthetic_recordings.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+SyntheticOptions OnPlatform(GroundKind ground) {
+  SyntheticOptions options;
+  options.model.stance = Stance::kFixed;
+  options.model.push_tail = PushTail::kNone;
+  options.parameters = {};
+  options.parameters[kKpTheta] = options.parameters[kKpPhi] = 1250.0;
+  options.parameters[kKdTheta] = options.parameters[kKdPhi] = 300.0;
+  options.parameters[kComHeight] = 1.09;
+  options.subjects = 1;
+  options.recordings_per_subject = 1;
+  options.fps = 100.0;
+  options.frames = 150;
+  options.lean_sigma_rad = 0.0;
+  options.pushes = false;
+  options.ground = ground;
+  options.plates = true;
+  options.plate_noise_m = options.plate_noise_n = 0.0;
+  return options;
+}
+
+class LaboratoryTest : public TempDirTest {
+ protected:
+  // Writes the recording and what the manifest then says after `change`; loads it.
+  Result<std::vector<Recording>> Load(const SyntheticOptions& options,
+                                      const std::function<void(Json*)>& change = nullptr) {
+    made_ = MakeSyntheticRecordings(options).value();
+    EXPECT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made_));
+    if (change) {
+      Json json = Json::parse(ReadText(Path("manifest.json")));
+      change(&json["recordings"][0]);
+      WriteText("manifest.json", json.dump());
+    }
+    return LoadRecordings(Path("manifest.json"));
+  }
+  std::string Id() const { return made_[0].recording.id; }
+
+  std::vector<SyntheticRecording> made_;
+};
+
+TEST_F(LaboratoryTest, WhatWasRolledOutComesBack) {
+  SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  const auto loaded = Load(options);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const PendulumRecording seen = MakePendulumRecording(loaded.value()[0], SkeletonMapping::kExact);
+  ASSERT_TRUE(seen.scene.ground.moves());
+  ASSERT_TRUE(seen.HasPlates());
+  double shear = 0.0;
+  for (int t = 0; t < options.frames; ++t) {
+    EXPECT_LT((seen.scene.ground.poses[t] - made_[0].scene.ground.poses[t]).norm(), 1e-12) << t;
+    EXPECT_LT((seen.states[0][t].q - made_[0].path.At(t, 0).q).norm(), 1e-5) << t;
+    shear = std::max(shear, std::abs(seen.plates[0][t].shear[0]));
+  }
+  EXPECT_GT(shear, 20.0);
+  // Feet hold, and are seen to.
+  EXPECT_LT(std::abs(seen.states[0].back().q[0] - seen.states[0][0].q[0]), 1e-5);
+}
+
+TEST_F(LaboratoryTest, RatesAreSummedUpToWhatTheyWere) {
+  const SyntheticOptions options = OnPlatform(GroundKind::kSine);
+  for (const std::string quantity : {"velocity", "acceleration"}) {
+    const auto loaded = Load(options, [&](Json* entry) {
+      std::string text = "time,x\n";
+      const std::vector<GroundPose>& poses = made_[0].scene.ground.poses;
+      for (int t = 0; t < options.frames; ++t) {
+        const int next = std::min(t + 1, options.frames - 1);
+        const double rate = (poses[next][0] - poses[t][0]) * options.fps;
+        const double value =
+            quantity == "velocity" ? rate : made_[0].scene.ground.steps[t].acceleration[0];
+        text += std::to_string(t / options.fps) + "," + std::to_string(value) + "\n";
+      }
+      WriteText("rates.csv", text);
+      (*entry)["ground"] = {{"csv", "rates.csv"}, {"quantity", quantity}};
+    });
+    ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+    for (int t = 0; t + 1 < options.frames; ++t) {
+      EXPECT_NEAR(loaded.value()[0].ground[t][0], made_[0].scene.ground.poses[t][0], 1e-4)
+          << quantity << " " << t;
+    }
+  }
+}
+
+// Another rate, another clock.
+TEST_F(LaboratoryTest, FilesHaveTheirOwnClocks) {
+  const SyntheticOptions options = OnPlatform(GroundKind::kSine);
+  const auto loaded = Load(options, [&](Json* entry) {
+    std::string text = "time,x,theta\n";
+    const auto poses = SyntheticGround(GroundKind::kSine, options.ground_size_m, 400, 1.0 / 250.0,
+                                       Eigen::Vector2d::UnitX());
+    for (int i = -50; i < 400; ++i) {
+      const double x = i < 0 ? 0.0 : poses[i][0];
+      text += std::to_string(3.0 + i / 250.0) + "," + std::to_string(x) + ",0\n";
+    }
+    WriteText("own.csv", text);
+    (*entry)["ground"] = {{"csv", "own.csv"}, {"start", 3.0}};
+  });
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  for (int t = 0; t < options.frames; ++t) {
+    EXPECT_NEAR(loaded.value()[0].ground[t][0], made_[0].scene.ground.poses[t][0], 3e-5) << t;
+  }
+}
+
+std::string Plates(double vertical, double x, int frames) {
+  std::string text = "time,fx,fy,fz,px,py\n";
+  for (int t = 0; t < frames; ++t) {
+    text += std::to_string(t / 100.0) + ",0,0," + std::to_string(vertical) + "," +
+            std::to_string(x) + ",0\n";
+  }
+  return text;
+}
+
+class WrongLaboratory : public LaboratoryTest,
+                        public ::testing::WithParamInterface<
+                            std::tuple<std::string, std::string, std::string, std::string>> {};
+
+TEST_P(WrongLaboratory, IsToldOf) {
+  const auto& [name, entry_text, file, said] = GetParam();
+  SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  const auto loaded = Load(options, [&, this](Json* entry) {
+    if (!file.empty()) WriteText("wrong.csv", file);
+    entry->update(Json::parse(entry_text));
+  });
+  ASSERT_FALSE(loaded.ok()) << name;
+  EXPECT_TRUE(Contains(loaded.error().ToString(), said));
+  EXPECT_TRUE(Contains(loaded.error().ToString(), Id()));
+}
+
+std::string Moving(int frames, double speed) {
+  std::string text = "time,x\n";
+  for (int t = 0; t < frames; ++t) {
+    text += std::to_string(t / 100.0) + "," + std::to_string(speed * t / 100.0) + "\n";
+  }
+  return text;
+}
+
+constexpr char kGround[] = R"({"ground": {"csv": "wrong.csv"}})";
+constexpr char kPlates[] = R"({"force_plates": {"file": "wrong.csv"}})";
+
+INSTANTIATE_TEST_SUITE_P(
+    Table, WrongLaboratory,
+    ::testing::Values(
+        std::tuple("ends_early", kGround, Moving(40, 0.0),
+                   "wrong.csv:41: the record of the ground"),
+        std::tuple("moves_at_first", kGround, Moving(400, 0.3), "at frame 0, where people are"),
+        std::tuple("no_columns", kGround, "time,a\n0,1\n0.01,2\n0.02,3\n",
+                   "none of the columns x, y, theta and phi"),
+        std::tuple("no_time", kGround, "x,y\n0,1\n1,2\n2,3\n", "no column called time"),
+        std::tuple("neither", R"({"ground": {"start": 1}})", "", "needs either \"csv\""),
+        std::tuple("two_markers", R"({"ground": {"markers": ["a", "b"]}})", "", "three or more"),
+        std::tuple("quantity", R"({"ground": {"csv": "wrong.csv", "quantity": "jerk"}})", "",
+                   "quantity"),
+        std::tuple("unknown_key", R"({"ground": {"csv": "wrong.csv", "star": 1}})", "", "star"),
+        std::tuple("use", R"({"force_plates": {"use": "guess"}})", "", "use"),
+        std::tuple("not_the_weight", kPlates, Plates(3000.0, 0.0, 200),
+                   "correct mass_kg, the platform's gain or axes"),
+        std::tuple("not_pressed", kPlates, Plates(1.0, 0.0, 200), "pressed with less than"),
+        std::tuple("plates_end_early", kPlates, Plates(800.0, 0.0, 60),
+                   "wrong.csv:61: the platforms were recorded"),
+        std::tuple("no_plate_columns", kPlates, "time,a\n0,1\n0.01,2\n0.02,3\n",
+                   "no columns of a force platform"),
+        std::tuple("no_centre", kPlates, "time,fx,fy,fz\n0,1,2,3\n0.01,1,2,3\n0.02,1,2,3\n",
+                   "no columns of a force platform")),
+    [](const auto& test) { return std::get<0>(test.param); });
+
+// Far from the feet of someone who stands at the origin, on ground that does not move.
+TEST_F(LaboratoryTest, CentresFarFromTheFeetAreRefused) {
+  SyntheticOptions options = OnPlatform(GroundKind::kNone);
+  options.pushes = true;
+  options.push_kind = PushKind::kExternal;
+  options.strengths = {{"weak", 0.3}};
+  const auto loaded = Load(options, [&, this](Json* entry) {
+    const double weight = made_[0].recording.people[0].mass_kg * kGravity;
+    WriteText("far.csv", Plates(weight, 2.0, 200));
+    (*entry)["force_plates"] = {{"file", "far.csv"}};
+  });
+  ASSERT_FALSE(loaded.ok());
+  EXPECT_TRUE(Contains(loaded.error().ToString(), "2 m from the ankles on average"));
+}
+
+// Two platforms, one foot each, are one.
+TEST_F(LaboratoryTest, PlatformsAddUp) {
+  SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  const auto loaded = Load(options, [&, this](Json* entry) {
+    std::string text = "time,l_fx,l_fy,l_fz,l_px,l_py,r_fx,r_fy,r_fz,r_px,r_py\n";
+    for (int t = 0; t < options.frames; ++t) {
+      const PlateSample& s = made_[0].recording.people[0].plates[t];
+      text += std::to_string(t / 100.0);
+      for (const auto& [share, side] : {std::pair(0.25, 0.3), std::pair(0.75, -0.1)}) {
+        for (double f : s.force) text += "," + std::to_string(share * f);
+        text += "," + std::to_string(s.centre[0]) + "," + std::to_string(s.centre[1] + side);
+      }
+      text += "\n";
+    }
+    WriteText("two.csv", text);
+    (*entry)["force_plates"] = {{"file", "two.csv"}, {"plates", {"l", "r"}}, {"lowpass_hz", 45}};
+  });
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const std::vector<PlateSample>& plates = loaded.value()[0].people[0].plates;
+  for (int t = 5; t + 5 < options.frames; ++t) {
+    const PlateSample& s = made_[0].recording.people[0].plates[t];
+    EXPECT_LT((plates[t].force - s.force).norm(), 1.0) << t;
+    EXPECT_LT((plates[t].centre - s.centre).norm(), 1e-3) << t;
+  }
+}
+
+}  // namespace
+}  // namespace pushid
