@@ -241,6 +241,10 @@ void Adviser::Recordings() {
 }
 
 void Adviser::Intervals() {
+  if (model_.profiles.empty() && Acts(kReactionDelay, result_.options.model)) {
+    Add("Its profile shows how well the delay is told from damping.",
+        Check().Set("profile", "reaction_delay"));
+  }
   if (model_.profiles.empty()) {
     Add("The intervals assume a quadratic cost; profiles show its true shape.",
         Check().Set("profile", "all").Set("num_threads", "2"));
