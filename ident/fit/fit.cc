@@ -145,6 +145,7 @@ FitResult Judge(const SolvedFit& fit) {
                          result.uncertainty.estimates.end());
   result.derived = TableOfCombinations(problem, optimum, result.uncertainty);
   AddUnitErrors(problem, optimum, &result);
+  result.contrast = ContrastAt(problem, optimum, result.uncertainty);
 
   // The recordings that it was fitted to: their pushes, steps and effects.
   AddTakeover(problem.recordings(), &result);
