@@ -94,8 +94,8 @@ struct PlateSample {
   double weight = 0.0;  // in [0, 1]: 0 where nothing was measured
 };
 
-// What a manifest says of a person beside the mass, under keys of the user's own: numbers that a fit
-// may take as covariates (age, height), and texts by which people are compared (group).
+// What a manifest says of a person beside the mass, under keys of the user's own: numbers that a
+// fit may take as covariates (age, height), and texts by which people are compared (group).
 struct PersonFacts {
   std::map<std::string, double> numbers;
   std::map<std::string, std::string> texts;

@@ -127,8 +127,8 @@ class SlopeRows {
       return Error{"--covariate names " + key + ", which has " + std::to_string(distinct.size()) +
                    " distinct value" + (distinct.size() == 1 ? "" : "s") + " among " +
                    std::to_string(of_people.size()) +
-                   (of_people.size() == 1 ? " person" : " people") +
-                   "; a slope needs at least " + std::to_string(kLeastDistinctValues) + " of both"};
+                   (of_people.size() == 1 ? " person" : " people") + "; a slope needs at least " +
+                   std::to_string(kLeastDistinctValues) + " of both"};
     }
     Covariate covariate{key};
     std::vector<double> means;
@@ -157,8 +157,7 @@ class SlopeRows {
         if (!value.empty()) {
           values.insert(value);
         } else if (!lacking) {
-          lacking = Error{"--contrast is " + Quoted(label) + ", a label that " +
-                          Who(recording, n) +
+          lacking = Error{"--contrast is " + Quoted(label) + ", a label that " + Who(recording, n) +
                           " lacks; give it in the manifest, or leave the recording out"};
         }
       }
@@ -172,8 +171,7 @@ class SlopeRows {
         }
       }
       return Error{"--contrast is " + Quoted(label) + ", a label that no recording or person has" +
-                   MeantText(label, {known.begin(), known.end()}) + "; there are " +
-                   Listed(known)};
+                   MeantText(label, {known.begin(), known.end()}) + "; there are " + Listed(known)};
     }
     if (lacking) return *lacking;
     if (values.size() != 2) {

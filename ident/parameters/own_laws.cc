@@ -18,9 +18,10 @@ MaybeError AddForceLaw(std::shared_ptr<const ForceLaw> law, ModelOptions* model,
   const int free_slots = kNumOwnParameters - NumOwnParameters(*model);
   const int wanted = static_cast<int>(law->parameters().size());
   if (wanted > free_slots) {
-    return Error{who + " has " + std::to_string(wanted) + " parameters; there is room for " +
-                 std::to_string(free_slots) +
-                 " (kNumOwnParameters in models/parameters.h is the room for all laws and covariates)"};
+    return Error{
+        who + " has " + std::to_string(wanted) + " parameters; there is room for " +
+        std::to_string(free_slots) +
+        " (kNumOwnParameters in models/parameters.h is the room for all laws and covariates)"};
   }
   ParameterTable with = *table;
   for (const ParameterFacts& facts : law->parameters()) {

@@ -28,12 +28,12 @@ class FitProblem;
 struct FitPoint;
 
 struct ContrastRow {
-  std::string name, unit;           // of the parameter
+  std::string name, unit;            // of the parameter
   double first = 0.0, second = 0.0;  // its values, natural unit
   double difference = 0.0;           // second less first, natural unit
   double lower95 = 0.0, upper95 = 0.0;
   double p = 1.0, p_holm = 1.0;
-  std::optional<double> effect;  // in standard deviations between people
+  std::optional<double> effect;                         // in standard deviations between people
   EstimateStatus status = EstimateStatus::kIdentified;  // of the slope
 };
 
