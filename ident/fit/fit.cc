@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "ident/fit/contrast_effects.h"
 #include "ident/fit/estimates_table.h"
 #include "ident/fit/push_range.h"
 #include "ident/fit/recording_effect.h"
@@ -169,7 +170,11 @@ FitResult Judge(const SolvedFit& fit) {
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
               const SolveProgress& progress) {
   const Result<SolvedFit> fit = SolveFit(recordings, options, progress);
-  if (fit.ok()) return Judge(fit.value());
+  if (fit.ok()) {
+    FitResult result = Judge(fit.value());
+    AddContrastEffects(recordings, &result);
+    return result;
+  }
   FitResult none;
   none.options = options;
   none.message = fit.error().ToString();

@@ -1,8 +1,6 @@
 // ident: a contrast in words.
 #include "ident/report/contrast_text.h"
 
-#include <algorithm>
-
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/report/value_text.h"
@@ -51,16 +49,18 @@ std::string FoundText(const Contrast& c) {
 
 std::string EffectNote(const FitResult& result) {
   const Contrast& c = *result.contrast;
-  const auto told = [](const ContrastRow& row) { return row.effect.has_value(); };
-  if (std::all_of(c.rows.begin(), c.rows.end(), told)) return "";
-  const bool some = std::any_of(c.rows.begin(), c.rows.end(), told);
+  std::string untold;
+  for (const ContrastRow& row : c.rows) {
+    if (!row.effect) untold += (untold.empty() ? "" : ", ") + row.name;
+  }
   const FitOptions& o = result.options;
   const bool by_person = AnyPooled(o.table) && o.pool_by == kSubjectUnit;
-  return std::string(some ? "some effects" : "effects") +
-         " in standard deviations between people cannot be told: " +
-         (by_person ? "the fit finds no such spread, or lets people not differ in it"
-                    : "the fit does not let people differ (--pool=all --pool_by=subject)") +
-         "\n";
+  std::string text = "effects are in standard deviations between people";
+  if (!by_person) text += ", by a second fit that lets them differ";
+  if (!untold.empty()) {
+    text += "; not told, for want of people, of repeated recordings or of a spread: " + untold;
+  }
+  return text + "\n";
 }
 
 }  // namespace

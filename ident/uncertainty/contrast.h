@@ -11,9 +11,9 @@
 //   Holm's p     the same, corrected for all parameters of the contrast (Holm 1979): with the m
 //                p values in ascending order, the largest of (m - k + 1) p_k up to each, at most 1.
 //                The chance of any false positive among them is then at most the level.
-//   effect       b over the standard deviation between people, both on the fitted scale. That
-//                spread is told by a fit that lets people differ (--pool=... --pool_by=subject);
-//                elsewhere, and where such a fit finds none, it cannot be told.
+//   effect       b over the standard deviation between people, both on the fitted scale; of fits
+//                in which people differ (--pool=... --pool_by=subject) that of the fit, of others
+//                that of a second one (fit/contrast_effects.h)
 #pragma once
 
 #include <optional>
