@@ -130,7 +130,8 @@ class SlopeRows {
                    (of_people.size() == 1 ? " person" : " people") + "; a slope needs at least " +
                    std::to_string(kLeastDistinctValues) + " of both"};
     }
-    Covariate covariate{key};
+    Covariate covariate;
+    covariate.key = key;
     std::vector<double> means;
     for (const auto& [person, values] : of_people) {
       double mean = 0.0;
@@ -179,7 +180,8 @@ class SlopeRows {
                    std::to_string(values.size()) + " (" + Listed(values) +
                    "); choose recordings of two (--setting, --leave_out), or another label"};
     }
-    Covariate covariate{label};
+    Covariate covariate;
+    covariate.key = label;
     covariate.first = *values.begin();
     covariate.second = *values.rbegin();
     return covariate;

@@ -31,7 +31,7 @@ TEST(ParameterMap, ASlopeMovesItsTargetAndWhatFollowsIt) {
   ParameterMap map;
   map.values[kAx] = -9.0;
   map.fitted = {{kKpTheta, Transform::kLog, -1, kKpPhi}, {kSlope, Transform::kIdentity, -1}};
-  map.covariates = {{"age", 40.0}};
+  map.covariates = {{"age", 40.0, "", ""}};
   map.shifts = {{kSlope, kKpTheta, Transform::kLog, 0, kKpPhi}};
   const double shared[] = {std::log(1500.0), std::log(0.99)};
   const std::vector<double> ten_years = {10.0};
@@ -55,7 +55,7 @@ TEST(ParameterMap, AHeldSlopeActs) {
   ParameterMap map;
   map.values[kAx] = -9.0;
   map.values[kSlope] = 0.5;
-  map.covariates = {{"age", 40.0}};
+  map.covariates = {{"age", 40.0, "", ""}};
   map.shifts = {{kSlope, kAx, Transform::kIdentity, 0}};
   const std::vector<double> x = {-4.0};
   EXPECT_EQ(map.Apply<double>(nullptr, nullptr, &x)[kAx], -11.0);
@@ -69,8 +69,9 @@ TEST(CovariatesOf, AreCentredNumbersAndHalvesOfLabels) {
   recording.known = {{{{"age", 30.0}}, {{"group", "patients"}}},
                      {{{"age", 44.0}}, {{"group", "controls"}}},
                      {{}, {}}};
-  const std::vector<Covariate> covariates = {
-      {"age", 40.0}, {"group", 0.0, "controls", "patients"}, {"eyes", 0.0, "closed", "open"}};
+  const std::vector<Covariate> covariates = {{"age", 40.0, "", ""},
+                                             {"group", 0.0, "controls", "patients"},
+                                             {"eyes", 0.0, "closed", "open"}};
   using Rows = std::vector<std::vector<double>>;
   EXPECT_EQ(CovariatesOf(recording, covariates),
             (Rows{{-10.0, 0.5, 0.5}, {4.0, -0.5, 0.5}, {0.0, 0.0, 0.5}}));
@@ -83,7 +84,7 @@ TEST(CovariatesOf, AreCentredNumbersAndHalvesOfLabels) {
 // Every parameter fitted, some by subject, and slopes of every transform.
 ParameterMap MapWithSlopes() {
   ParameterMap map = EveryParameterMap({kMu, kKpTheta, kTailTorque});
-  map.covariates = {{"age", 40.0}, {"group", 0.0, "controls", "patients"}};
+  map.covariates = {{"age", 40.0, "", ""}, {"group", 0.0, "controls", "patients"}};
   map.shifts = {{Slot(0), kKpTheta, Transform::kLog, 0},
                 {Slot(1), kAx, Transform::kIdentity, 0},
                 {Slot(2), kTailTorque, Transform::kLogit, 1},
@@ -137,7 +138,7 @@ TEST(Covariates, LikelihoodsAgreeWithNumericDifferentiation) {
   map.values[kSigmaTheta] = map.values[kSigmaPhi] = 12.0;
   map.values[kMeasuredCart] = map.values[kMeasuredHip] = 0.003;
   map.fitted = {{kKpTheta, Transform::kLog, -1}, {Slot(0), Transform::kIdentity, -1}};
-  map.covariates = {{"age", 40.0}};
+  map.covariates = {{"age", 40.0, "", ""}};
   map.shifts = {{Slot(0), kKpTheta, Transform::kLog, 0}};
   ModelOptions options;
   options.process_noise = {true, false, false, false};
