@@ -14,8 +14,9 @@
 
 namespace pushid {
 
-// Slots for the parameters of a user's own force laws (force_law.h), after those with a row.
-inline constexpr int kNumOwnParameters = 6;
+// Slots after those with a row: for the parameters of a user's own force laws (force_law.h), then
+// for the slopes by which covariates shift other parameters (residuals/covariate.h).
+inline constexpr int kNumOwnParameters = 16;
 
 enum Parameter : int {
 #define PUSHID_PARAMETER(id, ...) id,
@@ -80,6 +81,23 @@ inline double ToFitted(Transform transform, double natural) {
   if (transform == Transform::kLog) return std::log(natural);
   if (transform == Transform::kLogit) return std::log(natural / (1.0 - natural));
   return natural;
+}
+
+// A natural value after a step on the fitted scale; without its logarithm, which may not exist.
+template <typename T>
+T Shifted(Transform transform, const T& natural, const T& by) {
+  using std::exp;
+  switch (transform) {
+    case Transform::kLog:
+      return natural * exp(by);
+    case Transform::kLogit: {
+      const T odds = natural * exp(by);
+      return odds / (odds + 1.0 - natural);
+    }
+    case Transform::kIdentity:
+      break;
+  }
+  return natural + by;
 }
 
 // d natural / d fitted, at a natural value.

@@ -2,17 +2,20 @@
 #include "residuals/parameter_map.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace pushid {
 
 BlockLayout::BlockLayout(const ParameterMap& map,
-                         const std::vector<std::string>& unit_of_each_person, bool free_velocity)
+                         const std::vector<std::string>& unit_of_each_person, bool free_velocity,
+                         std::vector<std::vector<double>> covariates_of_each_person)
     : free_initial_velocity(free_velocity),
       num_shared(map.num_shared()),
       num_deviations(map.num_deviations),
       num_weights(map.num_weights),
       first_acting(1, 0),
-      of_deviation(map.num_deviations, 0) {
+      of_deviation(map.num_deviations, 0),
+      covariates(std::move(covariates_of_each_person)) {
   for (const std::string& unit : unit_of_each_person) {
     const auto found = std::find(units.begin(), units.end(), unit);
     unit_of_person.push_back(static_cast<int>(found - units.begin()));
@@ -50,7 +53,8 @@ int BlockLayout::WeightColumn() const { return num_weights > 0 ? num_acting() - 
 
 std::vector<ColumnEntry> BlockLayout::Entries(const ParameterMap& map,
                                               const ParameterSet<double>& set, int person) const {
-  std::vector<ColumnEntry> entries = map.Entries(set, -1);
+  std::vector<ColumnEntry> entries =
+      map.Entries(set, -1, CovariatesOf(static_cast<size_t>(person)));
   for (ColumnEntry& entry : entries) {
     const size_t fitted = static_cast<size_t>(entry.column);
     const bool by_unit = num_deviations > 0 && map.fitted[fitted].deviation >= 0;

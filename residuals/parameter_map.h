@@ -9,6 +9,7 @@
 //   last     weights of what is learned, self force and rod (only when there is any)
 // A person's value is natural(shared + deviation); with no deviation, natural(shared). Adding on
 // the fitted scale makes a pooled positive parameter vary by factors and never change sign.
+// Covariates add to it in the same way (covariate.h); their slopes are among the shared values.
 #pragma once
 
 #include <optional>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "models/parameters.h"
+#include "residuals/covariate.h"
 
 namespace pushid {
 
@@ -47,12 +49,45 @@ struct ParameterMap {
   int num_deviations = 0;               // length of a unit's block; 0: no such blocks
   std::string pool_by = kSubjectUnit;
   int num_weights = 0;  // of what is learned
+  std::vector<Covariate> covariates;
+  std::vector<CovariateShift> shifts;  // by every slope, fitted or held
 
   int num_shared() const { return static_cast<int>(fitted.size()); }
 
-  // deviation may be null.
+  // Moves a set without covariates to a person's, whose slots hold the slopes. x: a value for each
+  // of the covariates.
   template <typename T>
-  ParameterSet<T> Apply(const T* shared, const T* deviation) const {
+  void Shift(const std::vector<double>& x, ParameterSet<T>* set) const {
+    for (const CovariateShift& shift : shifts) {
+      T& target = (*set)[shift.target];
+      target = Shifted<T>(shift.transform, target, (*set)[shift.slope] * x[shift.covariate]);
+      if (shift.also) (*set)[*shift.also] = target;
+    }
+  }
+
+  // What the shared value of an index acts through: itself, or the target that a slope moves, `by`
+  // so much of the target's fitted scale.
+  struct Action {
+    Parameter parameter;
+    Transform transform;
+    std::optional<Parameter> also;
+    double by = 1.0;
+  };
+  // x may be null: a slope moves nothing then.
+  Action ActionOf(size_t index, const std::vector<double>* x) const {
+    const FittedParameter& f = fitted[index];
+    for (const CovariateShift& shift : shifts) {
+      if (shift.slope != f.parameter) continue;
+      return {shift.target, shift.transform, shift.also,
+              x != nullptr ? (*x)[shift.covariate] : 0.0};
+    }
+    return {f.parameter, f.transform, f.also};
+  }
+
+  // deviation may be null, and so may x, a person's value of each covariate: zero then.
+  template <typename T>
+  ParameterSet<T> Apply(const T* shared, const T* deviation,
+                        const std::vector<double>* x = nullptr) const {
     ParameterSet<T> set;
     for (int i = 0; i < kNumParameters; ++i) set[i] = T(values[i]);
     for (size_t i = 0; i < fitted.size(); ++i) {
@@ -61,24 +96,27 @@ struct ParameterMap {
       set[fitted[i].parameter] = ToNatural(fitted[i].transform, value);
       if (fitted[i].also) set[*fitted[i].also] = set[fitted[i].parameter];
     }
+    if (x != nullptr) Shift(*x, &set);
     return set;
   }
 
   // Entries of one person alone whose shared block starts at column 0 and whose unit's block starts
-  // at `deviation_column` (negative: none).
-  std::vector<ColumnEntry> Entries(const ParameterSet<double>& set, int deviation_column) const {
+  // at `deviation_column` (negative: none). x as that of Apply.
+  std::vector<ColumnEntry> Entries(const ParameterSet<double>& set, int deviation_column,
+                                   const std::vector<double>* x = nullptr) const {
     std::vector<ColumnEntry> entries;
     for (size_t i = 0; i < fitted.size(); ++i) {
       const FittedParameter& f = fitted[i];
-      const double slope = TransformSlope(f.transform, set[f.parameter]);
+      const Action a = ActionOf(i, x);
+      const double slope = a.by * TransformSlope(a.transform, set[a.parameter]);
       const auto add = [&](Parameter parameter) {
         entries.push_back({static_cast<int>(i), parameter, slope});
         if (deviation_column >= 0 && f.deviation >= 0) {
           entries.push_back({deviation_column + f.deviation, parameter, slope});
         }
       };
-      add(f.parameter);
-      if (f.also) add(*f.also);
+      add(a.parameter);
+      if (a.also) add(*a.also);
     }
     return entries;
   }
@@ -99,10 +137,12 @@ struct BlockLayout {
   int num_weights = 0;
   std::vector<int> first_acting;  // of each fitted parameter, then the end of the last
   std::vector<int> of_deviation;  // the fitted parameter of each
+  // Of each person, the value of each covariate; empty: no particular people.
+  std::vector<std::vector<double>> covariates;
 
   BlockLayout() = default;
   BlockLayout(const ParameterMap& map, const std::vector<std::string>& unit_of_each_person,
-              bool free_velocity);
+              bool free_velocity, std::vector<std::vector<double>> covariates_of_each_person = {});
 
   int num_people() const { return static_cast<int>(unit_of_person.size()); }
   std::vector<int> BlockSizes() const;
@@ -121,10 +161,15 @@ struct BlockLayout {
   template <typename T>
   std::vector<ParameterSet<T>> Parameters(const ParameterMap& map, T const* const* blocks) const {
     std::vector<ParameterSet<T>> sets;
-    for (int unit : unit_of_person) {
-      sets.push_back(map.Apply<T>(blocks[0], num_deviations > 0 ? blocks[1 + unit] : nullptr));
+    for (size_t n = 0; n < unit_of_person.size(); ++n) {
+      const T* const deviation = num_deviations > 0 ? blocks[1 + unit_of_person[n]] : nullptr;
+      sets.push_back(map.Apply<T>(blocks[0], deviation, CovariatesOf(n)));
     }
     return sets;
+  }
+  // Of a person; null where they are of no particular one.
+  const std::vector<double>* CovariatesOf(size_t person) const {
+    return covariates.empty() ? nullptr : &covariates[person];
   }
   // nullptr when the initial velocities are not fitted.
   template <typename T>

@@ -20,6 +20,8 @@ template <class Archive>
 void Fields(Archive& a, RecordedPerson& p) {
   a("subject_id", p.subject_id);
   a("mass_kg", p.mass_kg);
+  a("numbers", p.known.numbers);
+  a("texts", p.known.texts);
   a("file", p.file);
   a("file_clock_s", p.file_clock_s);
   a("skipped_s", p.skipped_s);

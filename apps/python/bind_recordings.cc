@@ -207,6 +207,19 @@ void BindRecordings(py::module_* module) {
                                for (const RecordedPerson& p : r.people) masses.push_back(p.mass_kg);
                                return masses;
                              })
+      .def_property_readonly("known",
+                             [](const Recording& r) {
+                               py::list people;
+                               for (const RecordedPerson& p : r.people) {
+                                 py::dict known;
+                                 for (const auto& [key, number] : p.known.numbers)
+                                   known[py::str(key)] = number;
+                                 for (const auto& [key, text] : p.known.texts)
+                                   known[py::str(key)] = text;
+                                 people.append(known);
+                               }
+                               return people;
+                             })
       .def_property_readonly(
           "hip",
           [](const std::shared_ptr<Recording>& r) { return TrackArray(r, &RecordedPerson::hip); })

@@ -55,6 +55,7 @@ class PersonLoader {
     RecordedPerson& person = loaded.person;
     person.subject_id = entry_.subjects[index_].id;
     person.mass_kg = entry_.subjects[index_].mass_kg;
+    person.known = entry_.subjects[index_].known;
     person.file = path_;
     person.skipped_s =
         entry_.first_frame * (motion.frame_time_s > 0.0 ? motion.frame_time_s : 1.0 / fps_);

@@ -133,6 +133,7 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     }
     states[0].qd = in_scene.start.qd;
     result.subject_ids.push_back(person.subject_id);
+    result.known.push_back(person.known);
     result.scene.people.push_back(in_scene);
     result.states.push_back(std::move(states));
     result.rod_length.push_back(std::move(lengths));

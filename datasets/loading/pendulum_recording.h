@@ -26,6 +26,7 @@ struct PendulumRecording {
   double facing = 0.0;  // of its people before the push, rad from x; by the ankles
   InitialVelocity initial_velocity = InitialVelocity::kZero;
   std::vector<std::string> subject_ids;  // one per person
+  std::vector<PersonFacts> known;        // one per person; empty: nothing is known of anybody
   Scene scene;
   // [person][frame]; velocities are backward differences, which is what semi-implicit Euler's qd
   // is.

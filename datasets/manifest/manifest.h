@@ -55,6 +55,7 @@ struct ManifestSubject {
   std::string id;
   double mass_kg = 0.0;
   JointMapping joints{};  // before those of the recording
+  PersonFacts known{};    // under keys that no program knows
 };
 
 struct ManifestPush {

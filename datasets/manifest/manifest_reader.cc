@@ -21,6 +21,19 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kAnyFrame = 1 << 30;
 
+// Numbers and texts under keys that no program knows.
+PersonFacts FactsOf(const Json& object, const JsonFields& fields) {
+  PersonFacts facts;
+  if (!object.is_object()) return facts;
+  const std::vector<std::string>& asked = fields.asked();
+  for (const auto& [key, value] : object.items()) {
+    if (std::find(asked.begin(), asked.end(), key) != asked.end()) continue;
+    if (value.is_number()) facts.numbers[key] = value.get<double>();
+    if (value.is_string()) facts.texts[key] = value.get<std::string>();
+  }
+  return facts;
+}
+
 void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestRecording* recording) {
   if (!fields->Require("subjects", "a list of {\"id\", \"mass_kg\"}")) return;
   int index = 0;
@@ -36,6 +49,7 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
                                   Rounded(kHeaviestPerson));
     }
     read.joints = ReadJointMapping(document, &subject);
+    read.known = FactsOf(item, subject);
     fields->Add(subject);
     recording->subjects.push_back(read);
     ++index;

@@ -95,9 +95,17 @@ struct PlateSample {
   double weight = 0.0;  // in [0, 1]: 0 where nothing was measured
 };
 
+// What a manifest says of a person beside the mass, under keys of the user's own: numbers that a
+// fit may take as covariates (age, height), and texts by which people are compared (group).
+struct PersonFacts {
+  std::map<std::string, double> numbers;
+  std::map<std::string, std::string> texts;
+};
+
 struct RecordedPerson {
   std::string subject_id;
   double mass_kg = 0.0;
+  PersonFacts known;
   std::string file;  // of the motion
   // That file's own clock at frame 0, s, how much of it is before frame 0 (first_frame), and its
   // axes: for forces that were recorded in it or beside it.

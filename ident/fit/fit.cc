@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 
+#include "ident/fit/contrast_effects.h"
 #include "ident/fit/estimates_table.h"
 #include "ident/fit/push_range.h"
 #include "ident/fit/recording_effect.h"
@@ -145,6 +146,7 @@ FitResult Judge(const SolvedFit& fit) {
                          result.uncertainty.estimates.end());
   result.derived = TableOfCombinations(problem, optimum, result.uncertainty);
   AddUnitErrors(problem, optimum, &result);
+  result.contrast = ContrastAt(problem, optimum, result.uncertainty);
 
   // The recordings that it was fitted to: their pushes, steps and effects.
   AddTakeover(problem.recordings(), &result);
@@ -168,7 +170,11 @@ FitResult Judge(const SolvedFit& fit) {
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
               const SolveProgress& progress) {
   const Result<SolvedFit> fit = SolveFit(recordings, options, progress);
-  if (fit.ok()) return Judge(fit.value());
+  if (fit.ok()) {
+    FitResult result = Judge(fit.value());
+    AddContrastEffects(recordings, &result);
+    return result;
+  }
   FitResult none;
   none.options = options;
   none.message = fit.error().ToString();

@@ -14,8 +14,9 @@
 namespace pushid {
 
 // Makes options fit for these recordings: holds what can have no effect on any of them (the tail,
-// where every push is measured whole), and pools nothing where all belong to one unit. Errors:
-// invalid options, nothing left to fit, a free parameter without effect. warnings (may be null):
+// where every push is measured whole), pools nothing where all belong to one unit, and adds the
+// slopes of covariates and contrasts to the table (covariates.h). Errors: invalid options, nothing
+// left to fit, a free parameter without effect, those of AddCovariates. warnings (may be null):
 // people who touch without any term between them; masses, rods, pushes and motions that no person
 // has. Every fit begins with it: of the programs, of cross-validation, of users of the library.
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,

@@ -13,8 +13,11 @@ std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model
                                                     const PendulumRecording& recording,
                                                     double effect) {
   std::vector<ParameterSet<double>> sets;
+  const ParameterMap map = model.table.Map();
+  const std::vector<std::vector<double>> covariates = CovariatesOf(recording, map.covariates);
   for (const std::string& unit : PoolingUnits(recording, model.pool_by)) {
     sets.push_back(model.For(unit));
+    if (!covariates.empty()) map.Shift(covariates[sets.size() - 1], &sets.back());
     sets.back()[kTailGain] *= std::exp(effect);
   }
   return sets;

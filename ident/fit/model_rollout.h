@@ -13,7 +13,8 @@ namespace pushid {
 using HipPath = std::vector<Vector3<double>>;
 using HipPaths = std::vector<HipPath>;
 
-// One set for each person of the recording. effect: log factor on the tail's gain
+// One set for each person of the recording, moved by what is known of them where the model has
+// covariates: those of a mean person where it is not. effect: log factor on the tail's gain
 // (recording_effect.h).
 std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
                                                     const PendulumRecording& recording,

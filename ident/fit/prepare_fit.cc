@@ -5,6 +5,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/diagnostics/diagnostics.h"
+#include "ident/fit/covariates.h"
 #include "ident/fit/fit.h"
 #include "ident/fit/laboratory_checks.h"
 #include "ident/parameters/presets.h"
@@ -193,6 +194,7 @@ MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptio
   std::string invalid;
   if (!options->IsValid(&invalid)) return Error{invalid};
   HoldUnusedTail(recordings, options);
+  if (MaybeError error = AddCovariates(recordings, options, &told)) return error;
   if (options->table.Free().empty()) {
     return Error{"every parameter that acts on these recordings is fixed: nothing is left to fit"};
   }

@@ -2,8 +2,8 @@
 #include "ident/fit/push_range.h"
 
 #include "datasets/files/number_text.h"
+#include "ident/fit/model_rollout.h"
 #include "ident/model/identified_model.h"
-#include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
 namespace {
@@ -14,7 +14,7 @@ double Duration(const PendulumRecording& recording, const ScenePush& push) {
 
 double ImpulsePerMass(const IdentifiedModel& model, const PendulumRecording& recording,
                       const ScenePush& push) {
-  ParameterSet<double> p = model.For(PoolingUnits(recording, model.pool_by)[push.person]);
+  ParameterSet<double> p = PeoplesParameters(model, recording)[push.person];
   if (model.options.push_tail == PushTail::kNone) p[kTailGain] = 0.0;
   return WholeImpulse(push, p, recording.scene.dt) / recording.scene.people[push.person].body.mass;
 }

@@ -72,6 +72,31 @@ void Fields(Archive& a, Combination& c) {
 }
 
 template <class Archive>
+void Fields(Archive& a, ContrastRow& r) {
+  a("name", r.name);
+  a("first", r.first);
+  a("second", r.second);
+  a("difference", r.difference);
+  a.Pair("interval_95", r.lower95, r.upper95);
+  a("p", r.p);
+  a("p_holm", r.p_holm);
+  a.Optional("effect", r.effect);
+  a("unit", r.unit);
+  a("status", r.status);
+}
+
+template <class Archive>
+void Fields(Archive& a, Contrast& c) {
+  a("label", c.label);
+  a("first", c.first);
+  a("second", c.second);
+  a("people_first", c.only_first);
+  a("people_second", c.only_second);
+  a("people_both", c.both);
+  a("rows", c.rows);
+}
+
+template <class Archive>
 void Fields(Archive& a, NullDirection& n) {
   a("parameters", n.parameters);
   a("coefficients", n.coefficients);

@@ -14,6 +14,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/bootstrap.h"
+#include "ident/uncertainty/contrast.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "ident/uncertainty/profile.h"
 #include "ident/uncertainty/refit_checks.h"
@@ -49,6 +50,7 @@ struct FitResult {
   std::map<std::string, SubjectParameters> subjects;
   // Value of each pooled parameter in each setting or condition, where these differ.
   std::map<std::string, std::map<std::string, Estimate>> settings;
+  std::optional<Contrast> contrast;     // none where --contrast did not ask for one
   std::optional<PushedFeet> feet;       // none in older files
   std::optional<PushRange> push_range;  // none in files that are older than it
   // None where nobody stepped or everybody did, and in older files.

@@ -80,6 +80,7 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
     g.Written("total_seconds", [&] { return run.total_seconds; });
     g.Written("num_threads", [&] { return run.num_threads; });
   });
+  a.Optional("contrast", fit.contrast);
   a.Optional("feet", fit.feet);
   a.Optional("push_range", fit.push_range);
   a.Optional("step_probability", fit.step_probability);

@@ -140,6 +140,16 @@ Json TableJson(const ParameterTable& table) {
                 {"meaning", spec.meaning}};
     if (spec.prior) row["prior"] = {{"mean", spec.prior->mean}, {"sigma", spec.prior->sigma}};
     if (spec.tied_to) row["tied_to"] = table[*spec.tied_to].name;
+    if (spec.slope_of) {
+      const Covariate& c = spec.slope_of->covariate;
+      Json& slope = row["slope_of"] = {{"parameter", table[spec.slope_of->target].name},
+                                       {"covariate", c.key}};
+      if (c.is_contrast()) {
+        slope["values"] = {c.first, c.second};
+      } else {
+        slope["centre"] = c.centre;
+      }
+    }
     if (spec.pooled) row["pooling_sigma"] = spec.pooling_sigma;
     rows.push_back(row);
   }
@@ -165,6 +175,24 @@ Json SettingsJson(const FitOptions& options) {
   return json;
 }
 
+namespace {
+
+ParameterSpec::SlopeOf SlopeFrom(const Json& json, const ParameterTable& table) {
+  const ParameterSpec* target = table.Find(json.at("parameter"));
+  if (target == nullptr) throw std::runtime_error("a slope of an unknown parameter");
+  ParameterSpec::SlopeOf slope{target->id, {}};
+  slope.covariate.key = json.at("covariate");
+  if (json.contains("values")) {
+    slope.covariate.first = json.at("values").at(0);
+    slope.covariate.second = json.at("values").at(1);
+  } else {
+    slope.covariate.centre = json.at("centre");
+  }
+  return slope;
+}
+
+}  // namespace
+
 ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
   ParameterTable table = known;
   for (const Json& row : json) {
@@ -173,7 +201,16 @@ ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
       continue;
     }
     ParameterSpec* spec = table.Find(name);
+    if (spec == nullptr && row.contains("slope_of")) {
+      if (table.specs.size() >= static_cast<size_t>(kNumParameters)) {
+        throw std::runtime_error("there is no room for '" + name + "'");
+      }
+      ParameterFacts facts;
+      facts.name = name;
+      spec = &table.Add(facts);
+    }
     if (spec == nullptr) throw std::runtime_error("unknown parameter '" + name + "'");
+    if (row.contains("slope_of")) spec->slope_of = SlopeFrom(row.at("slope_of"), table);
     spec->unit = row.at("unit");
     spec->nominal = row.at("nominal");
     spec->lower = row.at("bounds").at(0);

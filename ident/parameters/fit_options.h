@@ -127,6 +127,11 @@ struct FitOptions {
   // fitted scale; of units not named: zero. Set where a fit goes on from another.
   std::map<std::string, std::vector<double>> start_deviations;
 
+  // A label, between whose two values every free parameter is compared; empty: none. And
+  // covariates as --covariate spells them: "Kp_theta ~ age + height; Kd_theta ~ age". PrepareFit
+  // makes their slopes rows of the table (fit/covariates.h).
+  std::string contrast, covariates;
+
   // What is learned in `model` (whose weights are the start): standard deviation of the
   // prior that ties its weights to zero; 0: none. Smaller where it does not predict better than
   // none.

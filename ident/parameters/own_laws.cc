@@ -11,12 +11,17 @@ MaybeError AddForceLaw(std::shared_ptr<const ForceLaw> law, ModelOptions* model,
   for (const std::string& name : LawNames(*model)) {
     if (name == law->name()) return Error{who + ": the model has one of that name; rename it"};
   }
+  if (std::any_of(table->specs.begin(), table->specs.end(),
+                  [](const ParameterSpec& spec) { return spec.slope_of.has_value(); })) {
+    return Error{who + ": add force laws before the fit is prepared, which adds covariates"};
+  }
   const int free_slots = kNumOwnParameters - NumOwnParameters(*model);
   const int wanted = static_cast<int>(law->parameters().size());
   if (wanted > free_slots) {
-    return Error{who + " has " + std::to_string(wanted) + " parameters; there is room for " +
-                 std::to_string(free_slots) +
-                 " (kNumOwnParameters in models/parameters.h is the room for all laws)"};
+    return Error{
+        who + " has " + std::to_string(wanted) + " parameters; there is room for " +
+        std::to_string(free_slots) +
+        " (kNumOwnParameters in models/parameters.h is the room for all laws and covariates)"};
   }
   ParameterTable with = *table;
   for (const ParameterFacts& facts : law->parameters()) {

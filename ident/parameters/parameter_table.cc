@@ -74,6 +74,18 @@ ParameterMap ParameterTable::Map() const {
       if (spec.tied_to == id) map.fitted.back().also = spec.id;
     }
   }
+  for (const ParameterSpec& spec : specs) {
+    if (!spec.slope_of) continue;
+    const auto& [target, covariate] = *spec.slope_of;
+    const auto known = std::find(map.covariates.begin(), map.covariates.end(), covariate);
+    CovariateShift shift{spec.id, target, specs[target].transform,
+                         static_cast<int>(known - map.covariates.begin())};
+    if (known == map.covariates.end()) map.covariates.push_back(covariate);
+    for (const ParameterSpec& other : specs) {
+      if (other.tied_to == target) shift.also = other.id;
+    }
+    map.shifts.push_back(shift);
+  }
   return map;
 }
 

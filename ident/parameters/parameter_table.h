@@ -39,6 +39,12 @@ struct ParameterSpec {
   std::optional<Prior> prior;
   // Whose value it has; none where a flag names the parameter itself.
   std::optional<Parameter> tied_to;
+  // Of a slope: which parameter it moves, and by what (residuals/covariate.h).
+  struct SlopeOf {
+    Parameter target;
+    Covariate covariate;
+  };
+  std::optional<SlopeOf> slope_of;
   bool named = false;   // by a flag
   std::string meaning;  // one line for people
 };
@@ -76,7 +82,7 @@ struct ParameterTable {
   const ParameterSpec* Find(const std::string& name) const;
   std::vector<Parameter> Free() const;
   ParameterSet<double> Values() const;               // nominal values
-  ParameterMap Map() const;                          // fitted = free, in table order
+  ParameterMap Map() const;  // fitted = free, in table order; with the covariates of all slopes
   void SetTied(ParameterSet<double>* values) const;  // to the values of what they are tied to
 };
 

@@ -216,7 +216,7 @@ size_t FitProblem::NumMotionRows(int recording) const {
 
 std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording) const {
   std::vector<double*> blocks = {point->shared.data()};
-  const BlockLayout layout(map_, PoolingUnits(recordings()[recording], map_.pool_by), false);
+  const BlockLayout layout = LayoutOf(recordings()[recording], map_, false);
   if (map_.num_deviations > 0) {
     for (const std::string& unit : layout.units) blocks.push_back(point->unit[unit].data());
   }

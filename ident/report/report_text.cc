@@ -12,6 +12,7 @@
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_names.h"
 #include "ident/report/confidence_text.h"
+#include "ident/report/contrast_text.h"
 #include "ident/report/refits_text.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/value_text.h"
@@ -134,6 +135,9 @@ std::string ReportText(const FittedModel& model) {
   if (model.horizon_check) text += HorizonCheckText(*model.horizon_check) + "\n";
   if (const std::string network = NetworkText(result); !network.empty()) text += network + "\n";
   text += CorrelationText(result);
+  if (result.contrast) {
+    text += "\n" + ContrastTable(*result.contrast).ToString() + ContrastText(result) + "\n";
+  }
   const TextTable pooled = PooledTable(result);
   if (!pooled.empty()) {
     text += "\n" + pooled.ToString() + "\n" + SpreadTable(result).ToString() + "\n";

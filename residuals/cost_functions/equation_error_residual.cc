@@ -11,8 +11,7 @@ EquationErrorResidual::EquationErrorResidual(const PendulumRecording& recording,
     : recording_(recording),
       options_(options),
       map_(map),
-      layout_(map, PoolingUnits(recording, map.pool_by),
-              recording.initial_velocity == InitialVelocity::kFree) {
+      layout_(LayoutOf(recording, map, recording.initial_velocity == InitialVelocity::kFree)) {
   for (int size : layout_.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
   set_num_residuals(4 * recording.num_frames() * recording.num_people());
   for (const auto& states : recording.states) {

@@ -132,7 +132,7 @@ LikelihoodProblem MakeLikelihoodProblem(Likelihood likelihood, const PendulumRec
   problem.recording = &recording;
   problem.options = options;
   problem.map = map;
-  problem.layout = BlockLayout(map, PoolingUnits(recording, map.pool_by), false);
+  problem.layout = LayoutOf(recording, map, false);
   problem.weight = weight;
   problem.seed = seed;
   return problem;
@@ -231,9 +231,10 @@ bool LikelihoodResidual::ByJets(const std::vector<ParameterSet<double>>& values,
       for (int i = 0; i < kNumParameters; ++i) parameters[n][i] = LaneJet(values[n][i]);
       for (size_t s = first; s < end; ++s) {
         if (!Moves(problem_, seeds[s], n)) continue;
-        const FittedParameter& f = problem_.map.fitted[seeds[s].fitted];
-        parameters[n][f.parameter].v[s - first] =
-            TransformSlope(f.transform, values[n][f.parameter]);
+        const ParameterMap::Action a =
+            problem_.map.ActionOf(seeds[s].fitted, problem_.layout.CovariatesOf(n));
+        parameters[n][a.parameter].v[s - first] =
+            a.by * TransformSlope(a.transform, values[n][a.parameter]);
       }
     }
     std::vector<LaneJet> rows;
@@ -250,14 +251,16 @@ bool LikelihoodResidual::ByDifferences(const std::vector<ParameterSet<double>>& 
                                        const std::vector<double>& rows,
                                        RowMajorMatrix* jacobian) const {
   for (const Seed& seed : SeedsOf(problem_)) {
-    const FittedParameter& f = problem_.map.fitted[seed.fitted];
-    const double size = std::abs(ToFitted(f.transform, values[0][f.parameter]));
+    const ParameterMap::Action of_all = problem_.map.ActionOf(seed.fitted, nullptr);
+    const double size = std::abs(ToFitted(of_all.transform, values[0][of_all.parameter]));
     const double step = kDifference * std::max(1.0, size);
     std::vector<ParameterSet<double>> moved = values;
     for (size_t n = 0; n < values.size(); ++n) {
       if (!Moves(problem_, seed, n)) continue;
-      double& value = moved[n][f.parameter];
-      value = ToNatural(f.transform, ToFitted(f.transform, value) + step);
+      const ParameterMap::Action a =
+          problem_.map.ActionOf(seed.fitted, problem_.layout.CovariatesOf(n));
+      double& value = moved[n][a.parameter];
+      value = ToNatural(a.transform, ToFitted(a.transform, value) + step * a.by);
     }
     std::vector<double> beside;
     if (!Rows(moved, &beside)) return false;

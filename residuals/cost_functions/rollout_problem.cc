@@ -15,6 +15,53 @@ std::vector<std::string> PoolingUnits(const PendulumRecording& recording,
   return std::vector<std::string>(recording.scene.people.size(), unit);
 }
 
+std::optional<double> NumberOf(const PendulumRecording& recording, int person,
+                               const std::string& key) {
+  if (person < static_cast<int>(recording.known.size())) {
+    const auto& numbers = recording.known[person].numbers;
+    const auto found = numbers.find(key);
+    if (found != numbers.end()) return found->second;
+  }
+  const Body& body = recording.scene.people[person].body;
+  if (key == kMassCovariate) return body.mass;
+  if (key == kRodCovariate) return body.rod_length;
+  return std::nullopt;
+}
+
+std::string LabelOf(const PendulumRecording& recording, int person, const std::string& key) {
+  if (const std::string& label = recording.labels.Of(key); !label.empty()) return label;
+  if (person >= static_cast<int>(recording.known.size())) return "";
+  const auto& texts = recording.known[person].texts;
+  const auto found = texts.find(key);
+  return found != texts.end() ? found->second : "";
+}
+
+std::vector<std::vector<double>> CovariatesOf(const PendulumRecording& recording,
+                                              const std::vector<Covariate>& covariates) {
+  std::vector<std::vector<double>> of_each;
+  if (covariates.empty()) return of_each;
+  for (int n = 0; n < recording.scene.num_people(); ++n) {
+    std::vector<double>& own = of_each.emplace_back();
+    for (const Covariate& c : covariates) {
+      double x = 0.0;
+      if (c.is_contrast()) {
+        const std::string label = LabelOf(recording, n, c.key);
+        x = label == c.second ? 0.5 : label == c.first ? -0.5 : 0.0;
+      } else if (const std::optional<double> number = NumberOf(recording, n, c.key)) {
+        x = *number - c.centre;
+      }
+      own.push_back(x);
+    }
+  }
+  return of_each;
+}
+
+BlockLayout LayoutOf(const PendulumRecording& recording, const ParameterMap& map,
+                     bool free_velocity) {
+  return BlockLayout(map, PoolingUnits(recording, map.pool_by), free_velocity,
+                     CovariatesOf(recording, map.covariates));
+}
+
 std::shared_ptr<const RolloutProblem> MakeRolloutProblem(const PendulumRecording& recording,
                                                          const ModelOptions& options,
                                                          const ParameterMap& map,
@@ -24,8 +71,7 @@ std::shared_ptr<const RolloutProblem> MakeRolloutProblem(const PendulumRecording
   problem->recording = &recording;
   problem->options = options;
   problem->map = map;
-  problem->layout = BlockLayout(map, PoolingUnits(recording, map.pool_by),
-                                recording.initial_velocity == InitialVelocity::kFree);
+  problem->layout = LayoutOf(recording, map, recording.initial_velocity == InitialVelocity::kFree);
   problem->sigmas = sigmas;
   problem->weight = weight;
   const int frames = recording.num_frames();

@@ -10,6 +10,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -25,6 +26,19 @@ namespace pushid {
 // The unit of each person, by which pooled parameters differ.
 std::vector<std::string> PoolingUnits(const PendulumRecording& recording,
                                       const std::string& pool_by);
+
+// Each person's value of each covariate, as it moves parameters: 0 where it is not known. Empty
+// where there are no covariates.
+std::vector<std::vector<double>> CovariatesOf(const PendulumRecording& recording,
+                                              const std::vector<Covariate>& covariates);
+// A person's own number or label, of which a covariate is made; none where it is not known.
+std::optional<double> NumberOf(const PendulumRecording& recording, int person,
+                               const std::string& key);
+std::string LabelOf(const PendulumRecording& recording, int person, const std::string& key);
+
+// Of a recording's residuals. free_velocity: whether initial velocities are among the blocks.
+BlockLayout LayoutOf(const PendulumRecording& recording, const ParameterMap& map,
+                     bool free_velocity);
 
 // Everything a rollout residual needs; shared by the analytic cost function and its oracle.
 struct RolloutProblem {

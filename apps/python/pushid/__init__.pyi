@@ -32,6 +32,7 @@ class _Recording:
     initial_velocity: str
     subjects: list[str]
     mass: list[float]
+    known: list[dict[str, float | str]]  # of each person: what the manifest says beside the mass
     hip: ndarray
     left_ankle: ndarray
     right_ankle: ndarray
@@ -82,6 +83,7 @@ class Result:
     converged: bool
     warnings: list[str]
     advice: list[tuple[str, str]]
+    contrast: dict[str, Any] | None
     def __getitem__(self, name: str) -> Parameter: ...
     profiles: list[dict[str, Any]]
     def profile(self, *names: str, num_threads: int = ..., progress: _Jobs = ...) -> dict[str, Any]: ...

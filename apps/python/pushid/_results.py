@@ -117,6 +117,13 @@ class Result:
         """Suggested next steps: [(sentence, call)]."""
         return [(sentence, as_call(command)) for sentence, command in self._model.advice]
 
+    @property
+    def contrast(self):
+        """The differences between two values of a label, of a fit with contrast="LABEL": a dict with the label, its
+        values, the people of each and rows, one per parameter; None without."""
+        found = self.json.get("contrast")
+        return None if found is None else _numbers(found)
+
     def _part(self, name):
         """A part of the JSON that was just recomputed."""
         self._json = None

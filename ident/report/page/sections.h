@@ -26,18 +26,19 @@ struct SectionRow {
   RenderSection* render;
 };
 
-RenderSection LeadSection, SummarySection, ParameterSection, UnitSection, IdentifiabilitySection,
-    ProfileSection, BootstrapSection, PriorCheckSection, PushCheckSection, HorizonCheckSection,
-    BehaviourSection, PopulationSection, StepSection, GroupSection, FigureSection, MotionSection,
-    VisualCheckSection, RecordingSection, LeverageSection, ResidualSection, SolveSection,
-    DesignSection, AdviceSection, ProvenanceSection;
+RenderSection LeadSection, SummarySection, ParameterSection, ContrastSection, UnitSection,
+    IdentifiabilitySection, ProfileSection, BootstrapSection, PriorCheckSection, PushCheckSection,
+    HorizonCheckSection, BehaviourSection, PopulationSection, StepSection, GroupSection,
+    FigureSection, MotionSection, VisualCheckSection, RecordingSection, LeverageSection,
+    ResidualSection, SolveSection, DesignSection, AdviceSection, ProvenanceSection;
 
 // In the order of the report.
 inline constexpr SectionRow kSections[] = {
     {"short", "In short", LeadSection},
     {"summary", "What was fitted", SummarySection},
     {"parameters", "Parameters", ParameterSection},
-    {"units", "", UnitSection},  // "By subject"
+    {"contrast", "", ContrastSection},  // "By group: patients less controls"
+    {"units", "", UnitSection},         // "By subject"
     {"identifiability", "Identifiability", IdentifiabilitySection},
     {"profiles", "Profile likelihood", ProfileSection},
     {"bootstrap", "Bootstrap", BootstrapSection},

@@ -1,0 +1,254 @@
+// ident: slopes as rows of the table.
+#include "ident/fit/covariates.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
+#include "ident/parameters/covariate_choice.h"
+#include "residuals/cost_functions/rollout_problem.h"
+
+namespace pushid {
+namespace {
+
+// In prior standard deviations.
+constexpr double kSlopeBound = 10.0;
+
+using Recordings = std::vector<PendulumRecording>;
+
+std::string Who(const PendulumRecording& recording, int person) {
+  return "person " + Quoted(recording.subject_ids[person]) + " of recording " +
+         Quoted(recording.id);
+}
+
+std::string Listed(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+class SlopeRows {
+ public:
+  SlopeRows(const Recordings& recordings, ParameterTable* table, bool priors)
+      : recordings_(recordings), table_(*table), priors_(priors) {}
+
+  // spread: what x differs by between people.
+  MaybeError Add(Parameter target, const Covariate& covariate, double spread) {
+    const ParameterSpec of = table_[target];
+    const std::string name = of.name + "~" + covariate.key;
+    if (table_.Find(name) != nullptr) {
+      return Error{"--contrast and --covariate both name " + covariate.key +
+                   "; a label is compared, a number is a covariate"};
+    }
+    if (table_.specs.size() >= static_cast<size_t>(kNumParameters)) {
+      return Error{"there is no room for the slope " + name + ": a fit has at most " +
+                   std::to_string(kNumOwnParameters) +
+                   " (kNumOwnParameters in models/parameters.h); fix parameters that need not be "
+                   "compared (--fix)"};
+    }
+    const bool plain = of.transform == Transform::kIdentity;
+    const std::string per = covariate.is_contrast() ? "" : " per " + covariate.key;
+    const std::string unit = (plain ? of.unit : "1") + per;
+    ParameterFacts facts;
+    facts.name = name;
+    facts.unit = unit;
+    facts.scale = (plain ? of.scale : 1.0) / spread;
+    facts.lower = -kSlopeBound * facts.scale;
+    facts.upper = kSlopeBound * facts.scale;
+    const std::string meaning =
+        (plain ? "difference of " : "logarithm of the ratio of ") + of.name +
+        (covariate.is_contrast() ? ", " + covariate.second + " to " + covariate.first : per);
+    facts.meaning = meaning;
+    ParameterSpec& row = table_.Add(facts);
+    row.free = true;
+    row.slope_of = ParameterSpec::SlopeOf{target, covariate};
+    if (priors_) row.prior = Prior{0.0, facts.scale};
+    return std::nullopt;
+  }
+
+  MaybeError AddContrast(const std::string& label) {
+    const Result<Covariate> values = ContrastBetween(label);
+    if (!values.ok()) return values.error();
+    const bool shared = SharedByRecording(label);
+    for (Parameter target : table_.Free()) {
+      if (IsNoiseParameter(target) || (IsPairParameter(target) && !shared)) continue;
+      if (MaybeError error = Add(target, values.value(), 1.0)) return error;
+    }
+    return std::nullopt;
+  }
+
+  MaybeError AddNumber(const std::string& parameter, const std::string& key) {
+    const ParameterSpec* target = table_.Find(parameter);
+    if (target == nullptr || target->slope_of) {
+      std::vector<std::string> names;
+      for (Parameter id : table_.Free()) names.push_back(table_[id].name);
+      return Error{"--covariate names " + Quoted(parameter) + ", which is not a parameter" +
+                   MeantText(parameter, names) + "; free ones are " +
+                   ListOfNames(names, names.size())};
+    }
+    if (!target->free) {
+      return Error{"--covariate names " + parameter +
+                   ", which is fixed; free it first (--free=" + parameter + ")"};
+    }
+    if (IsPairParameter(target->id)) {
+      return Error{"--covariate names " + parameter +
+                   ", which two people share: it cannot follow what one person is like"};
+    }
+    std::set<double> distinct;
+    std::map<std::string, std::vector<double>> of_people;
+    std::optional<Error> lacking;
+    for (const PendulumRecording& recording : recordings_) {
+      for (int n = 0; n < recording.num_people(); ++n) {
+        const std::optional<double> number = NumberOf(recording, n, key);
+        if (number) {
+          distinct.insert(*number);
+          of_people[recording.subject_ids[n]].push_back(*number);
+        } else if (!lacking) {
+          lacking = Error{"--covariate names " + key + ", which is not known of " +
+                          Who(recording, n) + "; give it as a number in the manifest's subjects"};
+        }
+      }
+    }
+    if (of_people.empty()) {
+      std::set<std::string> known = {kMassCovariate, kRodCovariate};
+      for (const PendulumRecording& recording : recordings_) {
+        for (const PersonFacts& facts : recording.known) {
+          for (const auto& [name, value] : facts.numbers) known.insert(name);
+        }
+      }
+      return Error{"--covariate names " + Quoted(key) + ", a number that nobody has" +
+                   MeantText(key, {known.begin(), known.end()}) + "; there are " + Listed(known)};
+    }
+    if (lacking) return lacking;
+    if (std::min(distinct.size(), of_people.size()) < kLeastDistinctValues) {
+      return Error{"--covariate names " + key + ", which has " + std::to_string(distinct.size()) +
+                   " distinct value" + (distinct.size() == 1 ? "" : "s") + " among " +
+                   std::to_string(of_people.size()) +
+                   (of_people.size() == 1 ? " person" : " people") + "; a slope needs at least " +
+                   std::to_string(kLeastDistinctValues) + " of both"};
+    }
+    Covariate covariate;
+    covariate.key = key;
+    std::vector<double> means;
+    for (const auto& [person, values] : of_people) {
+      double mean = 0.0;
+      for (double value : values) mean += value / static_cast<double>(values.size());
+      means.push_back(mean);
+      covariate.centre += mean / static_cast<double>(of_people.size());
+    }
+    double squares = 0.0;
+    for (double mean : means) squares += (mean - covariate.centre) * (mean - covariate.centre);
+    const double spread = std::sqrt(squares / static_cast<double>(means.size() - 1));
+    if (!(spread > 0.0)) {
+      return Error{"--covariate names " + key + ", which differs within people, not between them"};
+    }
+    return Add(target->id, covariate, spread);
+  }
+
+ private:
+  Result<Covariate> ContrastBetween(const std::string& label) const {
+    std::set<std::string> values;
+    std::optional<Error> lacking;
+    for (const PendulumRecording& recording : recordings_) {
+      for (int n = 0; n < recording.num_people(); ++n) {
+        const std::string value = LabelOf(recording, n, label);
+        if (!value.empty()) {
+          values.insert(value);
+        } else if (!lacking) {
+          lacking = Error{"--contrast is " + Quoted(label) + ", a label that " + Who(recording, n) +
+                          " lacks; give it in the manifest, or leave the recording out"};
+        }
+      }
+    }
+    if (values.empty()) {
+      std::set<std::string> known;
+      for (const PendulumRecording& recording : recordings_) {
+        for (const std::string& key : recording.labels.Keys()) known.insert(key);
+        for (const PersonFacts& facts : recording.known) {
+          for (const auto& [key, text] : facts.texts) known.insert(key);
+        }
+      }
+      return Error{"--contrast is " + Quoted(label) + ", a label that no recording or person has" +
+                   MeantText(label, {known.begin(), known.end()}) + "; there are " + Listed(known)};
+    }
+    if (lacking) return *lacking;
+    if (values.size() != 2) {
+      return Error{"--contrast compares the two values of a label, and " + label + " has " +
+                   std::to_string(values.size()) + " (" + Listed(values) +
+                   "); choose recordings of two (--setting, --leave_out), or another label"};
+    }
+    Covariate covariate;
+    covariate.key = label;
+    covariate.first = *values.begin();
+    covariate.second = *values.rbegin();
+    return covariate;
+  }
+
+  // Whether nobody shares a recording with somebody of the other value.
+  bool SharedByRecording(const std::string& label) const {
+    for (const PendulumRecording& recording : recordings_) {
+      for (int n = 1; n < recording.num_people(); ++n) {
+        if (LabelOf(recording, n, label) != LabelOf(recording, 0, label)) return false;
+      }
+    }
+    return true;
+  }
+
+  const Recordings& recordings_;
+  ParameterTable& table_;
+  bool priors_;
+};
+
+// A label that is compared is not pooled by as well: deviations would take part of the difference.
+void UnpoolLabel(FitOptions* options, Warnings* told) {
+  if (options->contrast.empty() || options->pool_by != options->contrast) return;
+  std::string names;
+  for (ParameterSpec& spec : options->table.specs) {
+    if (!spec.pooled) continue;
+    spec.pooled = false;
+    if (spec.free) names += (names.empty() ? "" : ", ") + spec.name;
+  }
+  if (names.empty()) return;
+  told->push_back("--contrast=" + options->contrast + " compares " + names +
+                  ", which would be pooled by the same label: not pooled");
+}
+
+}  // namespace
+
+MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOptions* options,
+                         Warnings* told) {
+  if (options->contrast.empty() && options->covariates.empty()) return std::nullopt;
+  for (const ParameterSpec& spec : options->table.specs) {
+    if (spec.slope_of) return std::nullopt;
+  }
+  if (NeedsGradientTraining(*options)) {
+    return Error{std::string(options->contrast.empty() ? "--covariate" : "--contrast") +
+                 " does not go together with a network that is trained by its gradient"};
+  }
+  const Result<std::vector<CovariatesOfParameter>> chosen = ParseCovariates(options->covariates);
+  if (!chosen.ok()) return chosen.error();
+  UnpoolLabel(options, told);
+  SlopeRows rows(recordings, &options->table, options->preset_priors);
+  // Contrasts first: numbers are no targets of theirs.
+  if (!options->contrast.empty()) {
+    if (MaybeError error = rows.AddContrast(options->contrast)) return error;
+  }
+  for (const CovariatesOfParameter& one : chosen.value()) {
+    for (const std::string& key : one.keys) {
+      if (MaybeError error = rows.AddNumber(one.parameter, key)) return error;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Covariate> ContrastOf(const ParameterTable& table) {
+  for (const ParameterSpec& spec : table.specs) {
+    if (spec.slope_of && spec.slope_of->covariate.is_contrast()) return spec.slope_of->covariate;
+  }
+  return std::nullopt;
+}
+
+}  // namespace pushid

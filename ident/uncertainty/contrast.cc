@@ -1,0 +1,167 @@
+// ident: differences between two values of a label.
+#include "ident/uncertainty/contrast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "ident/problem/fit_problem.h"
+#include "ident/problem/pooling_spread.h"
+#include "ident/problem/statistics.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kLeastLevel = 1e-16;
+
+// P(|T| > t); normal where nothing is estimated.
+double TailOf(double t, double freedom) {
+  return std::isfinite(freedom) ? StudentTail(t, freedom) : std::erfc(t / std::sqrt(2.0));
+}
+
+double QuantileAt(double level, double freedom) {
+  double low = 0.0, high = 1.0;
+  while (TailOf(high, freedom) > level && high < 1e12) high *= 2.0;
+  for (int i = 0; i < 60; ++i) {
+    const double t = 0.5 * (low + high);
+    (TailOf(t, freedom) > level ? low : high) = t;
+  }
+  return 0.5 * (low + high);
+}
+
+// Of the units that a fit lets differ, on the fitted scale.
+std::optional<double> SpreadBetweenPeople(const FitOptions& options, const ParameterSpec& spec) {
+  if (!spec.pooled || options.pool_by != kSubjectUnit) return std::nullopt;
+  if (!options.pooling_sigma && spec.pooling_sigma <= kLeastPoolingSigma) return std::nullopt;
+  return PoolingSigma(spec);
+}
+
+void AddPeople(const std::vector<PendulumRecording>& recordings, Contrast* contrast) {
+  std::vector<std::string> order;
+  std::map<std::string, std::pair<bool, bool>> seen;
+  for (const PendulumRecording& recording : recordings) {
+    for (int n = 0; n < recording.num_people(); ++n) {
+      const std::string& id = recording.subject_ids[n];
+      const std::string value = LabelOf(recording, n, contrast->label);
+      if (seen.count(id) == 0) order.push_back(id);
+      seen[id].first = seen[id].first || value == contrast->first;
+      seen[id].second = seen[id].second || value == contrast->second;
+    }
+  }
+  for (const std::string& id : order) {
+    const auto& [first, second] = seen[id];
+    if (first && second) {
+      contrast->both.push_back(id);
+    } else if (first || second) {
+      (first ? contrast->only_first : contrast->only_second).push_back(id);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<double> HolmCorrected(const std::vector<double>& p) {
+  std::vector<size_t> order(p.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto known = [&p](size_t i) { return std::isnan(p[i]) ? 1.0 : p[i]; };
+  std::stable_sort(order.begin(), order.end(),
+                   [&known](size_t i, size_t j) { return known(i) < known(j); });
+  std::vector<double> corrected(p.size());
+  double largest = 0.0;
+  for (size_t k = 0; k < order.size(); ++k) {
+    const double times = static_cast<double>(order.size() - k);
+    largest = std::max(largest, std::min(1.0, times * known(order[k])));
+    corrected[order[k]] = largest;
+  }
+  return corrected;
+}
+
+double ProbabilityOfZero(const Scatter& scatter, const Eigen::VectorXd& coefficients,
+                         double value) {
+  struct Known {
+    double variance, freedom;
+  };
+  std::vector<Known> parts;
+  double sum = 0.0;
+  for (const Scatter::Part& part : scatter.parts) {
+    Scatter alone;
+    alone.parts = {part};
+    const ScatterOf of = alone.Of(coefficients);
+    parts.push_back({of.standard_error * of.standard_error, of.freedom});
+    sum += parts.back().variance;
+  }
+  if (!std::isfinite(sum) || !std::isfinite(value) || sum <= 0.0) return 1.0;
+  double low = std::log(kLeastLevel), high = 0.0;  // of the level
+  for (int i = 0; i < 60; ++i) {
+    const double level = std::exp(0.5 * (low + high));
+    double squared_width = 0.0;
+    for (const Known& part : parts) {
+      if (part.variance <= 0.0) continue;
+      const double quantile = QuantileAt(level, part.freedom);
+      squared_width += quantile * quantile * part.variance;
+    }
+    (squared_width > value * value ? low : high) = std::log(level);
+  }
+  return std::exp(0.5 * (low + high));
+}
+
+std::optional<Contrast> ContrastAt(const FitProblem& problem, const FitPoint& point,
+                                   const Uncertainty& u) {
+  const FitOptions& options = problem.options();
+  const auto& fitted = problem.map().fitted;
+  const Eigen::Index size = u.covariance.rows();
+  const auto column = [&fitted](Parameter id) {
+    const auto at = std::find_if(fitted.begin(), fitted.end(),
+                                 [id](const FittedParameter& f) { return f.parameter == id; });
+    return static_cast<Eigen::Index>(at - fitted.begin());
+  };
+  const ParameterSet<double> values = problem.Parameters(point, "");
+  Contrast contrast;
+  std::vector<double> p;
+  for (const ParameterSpec& slope : options.table.specs) {
+    if (!slope.free || !slope.slope_of || !slope.slope_of->covariate.is_contrast()) continue;
+    const Covariate& between = slope.slope_of->covariate;
+    contrast.label = between.key;
+    contrast.first = between.first;
+    contrast.second = between.second;
+    const ParameterSpec& of = options.table[slope.slope_of->target];
+    const Eigen::Index shared = column(of.id), own = column(slope.id);
+    if (own >= static_cast<Eigen::Index>(fitted.size())) continue;
+    const double b = values[slope.id];
+    ContrastRow row;
+    row.name = of.name;
+    row.unit = of.unit;
+    row.first = Shifted(of.transform, values[of.id], -0.5 * b);
+    row.second = Shifted(of.transform, values[of.id], 0.5 * b);
+    row.difference = row.second - row.first;
+    row.status = u.estimates[own].status;
+    if (row.status == EstimateStatus::kUnidentifiable) {
+      row.upper95 = std::numeric_limits<double>::infinity();
+      row.lower95 = -row.upper95;
+    } else {
+      const double to_first = TransformSlope(of.transform, row.first);
+      const double to_second = TransformSlope(of.transform, row.second);
+      Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
+      gradient[own] = 0.5 * (to_first + to_second);
+      if (shared < static_cast<Eigen::Index>(fitted.size())) {
+        gradient[shared] = to_second - to_first;
+      }
+      const double width = u.scatter.Of(gradient).HalfWidth();
+      row.lower95 = row.difference - width;
+      row.upper95 = row.difference + width;
+      row.p = ProbabilityOfZero(u.scatter, Eigen::VectorXd::Unit(size, own), b);
+    }
+    if (const auto spread = SpreadBetweenPeople(options, of)) row.effect = b / *spread;
+    p.push_back(row.p);
+    contrast.rows.push_back(std::move(row));
+  }
+  if (contrast.rows.empty()) return std::nullopt;
+  const std::vector<double> corrected = HolmCorrected(p);
+  for (size_t i = 0; i < p.size(); ++i) contrast.rows[i].p_holm = corrected[i];
+  AddPeople(problem.recordings(), &contrast);
+  return contrast;
+}
+
+}  // namespace pushid

@@ -1,0 +1,22 @@
+"""Do contrasts cover the truth, and how often do they find a difference where there is none?
+
+contrast  ident/uncertainty/README.md; 2 minutes on two cores
+
+Synthetic studies with and without a difference, between people and paired; tests/studies/contrast_study.cc says what
+varies.
+"""
+import studies
+
+STUDY = ["--studies=200", "--num_threads=2"]
+
+
+def contrast():
+    text = studies.run("pushid-contrast-study", *STUDY, out=None).text
+    lines = text.splitlines()
+    rows = [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in lines[1:-1]]
+    rows = [[study, "**all**" if name == "all" else f"`{name}`", *cells] for study, name, *cells in rows]
+    return f"{studies.table(['study', 'parameter', 'intervals that hold the truth, %', 'p < 0.05, %'], rows)}\n\n{lines[-1]}."
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"contrast": contrast})
