@@ -14,6 +14,7 @@
 #include "datasets/files/names.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
+#include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/prediction.h"
 
 DEFINE_string(id, "", "the recording to show");
@@ -113,7 +114,9 @@ int Run() {
       bodies = RestoreBodies(*restoration.value(), flags.value().postprocess,
                              PredictedPeople(recording.value(), prediction));
     }
-    AddPrediction(pendulum, prediction, bodies, &animation, one.what);
+    ToLaboratory(pendulum.scene, &bodies);
+    AddPrediction(InLaboratory(pendulum), InLaboratory(pendulum, prediction), bodies, &animation,
+                  one.what);
   }
   MaybeError error;
   if (!FLAGS_out.empty()) error = Write(FLAGS_out, AnimationHtml(animation));

@@ -20,6 +20,7 @@
 #include "ident/fit/model_rollout.h"
 #include "ident/prediction/changed_pushes.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
@@ -142,6 +143,7 @@ int WriteBodies(const RestorationFlags& flags, const Recording& recorded, Skelet
                                                  PredictedPeople(recording.value(), prediction));
   BodyScore score;
   if (IsThatOfTheRecording()) score = ScoreBodies(recording.value(), bodies);
+  ToLaboratory(recording.value().pendulum.scene, &bodies);
   const BodyScene scene = SceneOf(recording.value(), std::move(bodies));
   const Result<std::vector<std::string>> files = WriteScene(scene, recording.value(), prediction);
   if (!files.ok()) return Fail(files.error());

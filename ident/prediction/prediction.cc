@@ -10,6 +10,7 @@
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/push_range.h"
 #include "ident/fit/step_probability.h"
+#include "ident/prediction/laboratory_frame.h"
 #include "ident/problem/own_axes.h"
 #include "ident/problem/statistics.h"
 #include "models/learned_terms.h"
@@ -76,7 +77,10 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
 }
 
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
-                              const Prediction& prediction) {
+                              const Prediction& on_ground) {
+  const bool moves = recording.scene.ground.moves();
+  const Prediction in_laboratory = moves ? InLaboratory(recording, on_ground) : Prediction{};
+  const Prediction& prediction = moves ? in_laboratory : on_ground;
   std::string text =
       "frame,time_s,person,subject,x_m,y_m,theta_rad,phi_rad,xd_m_s,yd_m_s,thetad_rad_s,phid_rad_s,"
       "hip_x_m,hip_y_m,hip_z_m";
@@ -110,7 +114,7 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
       for (int i = 0; i < 4; ++i) add(state.qd[i]);
       const Body body = prediction.BodyAt(recording.scene, t, n);
       const Vector3<double> hip =
-          prediction.observed > 0 ? prediction.hip[n][t] : HipPosition(body, state.q);
+          prediction.observed > 0 || moves ? prediction.hip[n][t] : HipPosition(body, state.q);
       for (int i = 0; i < 3; ++i) add(hip[i]);
       const NetForce<double>& force = prediction.forces.At(t, n);
       for (ForcePart part : prediction.parts) {

@@ -56,7 +56,7 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
 
 // Writes frame, time and, per person, q, qd, hip and the net force with its parts as CSV, and the
 // rod's length and the cart's height where the model has a law for them;
-// after a failure, the frames before it.
+// after a failure, the frames before it. On ground that moves, as the laboratory sees it.
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
                               const Prediction& prediction);
 

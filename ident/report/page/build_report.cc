@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "ident/prediction/laboratory_frame.h"
 #include "ident/report/page/sections.h"
 
 namespace pushid {
@@ -55,6 +56,11 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
             ComputeBands(result, samples.value(), errors, views[i].run.recording, options.seed);
       },
       progress);
+  for (RecordingView& view : views) {
+    ToLaboratory(view.run.recording.scene, &view.bands);
+    view.run.prediction = InLaboratory(view.run.recording, std::move(view.run.prediction));
+    view.run.recording = InLaboratory(std::move(view.run.recording));
+  }
   return views;
 }
 
