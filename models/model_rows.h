@@ -133,7 +133,7 @@
   /* the body and its drive, of robots and rigs (mass_distribution.h) */ \
   X(kCartMassShare, "cart_share", "s_c", "1", 0.1, 0.001, 0.98, 0.1, kLogit, \
     m.body == BodyModel::kTable && m.stance != Stance::kFixed, false, \
-    "share of the mass in the cart", \
+    "share of the mass that is in the cart", \
     "with --body=table, where it is not known") \
   X(kGyrationRadius, "gyration_radius", "r", "1", 0, 0, 3, 0.3, kIdentity, \
     m.body == BodyModel::kTable && m.stance != Stance::kFixed, false, \
@@ -273,8 +273,8 @@
     "largest force of standing feet over the weight", \
     "never without slippery ground") \
   /* feet that hold, whatever happens (standing.h) */ \
-  X(kComHeight, "com_height", "k", "1", 1.09, 0.5, 2, 0.1, kLog, \
-    m.stance == Stance::kFixed, false, \
+  X(kComHeight, "com_height", "k", "1", 1.09, 0.1, 2, 0.1, kLog, \
+    m.stance == Stance::kFixed || m.body == BodyModel::kTable, false, \
     "height of the body's centre of mass above the ankles over the hip's", \
     "with known pushes on people who stand: it tells where their mass is") \
   /* process noise, and the noise of what is measured (process_noise.h); freed by a likelihood */ \

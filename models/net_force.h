@@ -80,7 +80,7 @@ void AddSlidingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveFor
 // The body of a rollout: of who slides or steps; where the table has its masses, those.
 template <typename T>
 BodyOf<T> TableBody(const Body& body, const ParameterSet<T>& p) {
-  return Distributed<T>(body, {p[kCartMassShare], T(1.0), p[kGyrationRadius]});
+  return Distributed<T>(body, {p[kCartMassShare], p[kComHeight], p[kGyrationRadius]});
 }
 
 // What holds the posture of a body with the table's masses, less what holds that of its own.

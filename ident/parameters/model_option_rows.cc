@@ -154,6 +154,21 @@ Row DelayRow() {
   return MayBeAbsent(row);
 }
 
+Row BodyRow() {
+  Row row = NameRow<BodyModel>(
+      "body", "/body", [](FitOptions & o) -> auto& { return o.model.body; },
+      "where a body's mass is: ldp (nine tenths at the hip; of who stands, an average body's), "
+      "anthropometric (by the recorded segments, de Leva 1996), or table (cart_share, com_height, "
+      "gyration_radius and push_gain, of robots and rigs: fixed or fitted)");
+  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
+    BodyModel body;
+    if (MaybeError error = ParseName("--body", text, &body)) return error;
+    SetBody(body, o);
+    return std::nullopt;
+  };
+  return MayBeAbsent(row);
+}
+
 std::string FrictionHelp() {
   std::string text;
   for (const auto& law : Names(FrictionKind{}))
@@ -259,11 +274,7 @@ std::vector<Row> ModelOptionRows() {
           "push_tail", "/push_tail", [](O & o) -> auto& { return o.model.push_tail; },
           "none or exponential")),
       DelayRow(),
-      MayBeAbsent(NameRow<BodyModel>(
-          "body", "/body", [](O & o) -> auto& { return o.model.body; },
-          "where a body's mass is: ldp (nine tenths at the hip; of who stands, an average body's), "
-          "anthropometric (by the recorded segments, de Leva 1996) or table (cart_share, "
-          "gyration_radius and push_gain, of robots and rigs: set, fitted or from --fix)")),
+      BodyRow(),
       NameRow<CartDerivative>(
           "cart_derivative", "/cart_derivative",
           [](O & o) -> auto& { return o.model.cart_derivative; },

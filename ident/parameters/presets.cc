@@ -32,9 +32,9 @@ FitOptions TailPreset() {
   // Round numbers, not fitted ones. Each is the centre of a weak prior as wide as itself: stiffness
   // and cross term slide along a ridge that fits no better and predicts unseen pushes worse (hipADE
   // 0.112 against 0.096 m in cross-validation); the prior's exact centre hardly matters.
-  for (const Start& start :
-       {Start{kMu, 40, 40}, Start{kKpTheta, 1400, 1400}, Start{kKdTheta, 140, 140},
-        Start{kAx, -10, 10}, Start{kTailGain, 1, 1}, Start{kTailTorque, 0.5, 0.5}, Start{kTailTime, 0.2, 0.2}}) {
+  for (const Start& start : {Start{kMu, 40, 40}, Start{kKpTheta, 1400, 1400},
+                             Start{kKdTheta, 140, 140}, Start{kAx, -10, 10}, Start{kTailGain, 1, 1},
+                             Start{kTailTorque, 0.5, 0.5}, Start{kTailTime, 0.2, 0.2}}) {
     Free(start, &o.table);
   }
   // Not by the push's duration (tail_exponent): in the published recordings that stands for the
@@ -157,6 +157,15 @@ void SetStance(Stance stance, FitOptions* options) {
   }
 }
 
+void SetBody(BodyModel body, FitOptions* options) {
+  options->model.body = body;
+  if (body != BodyModel::kTable) return;
+  ParameterSpec& com = options->table[kComHeight];
+  com.nominal = 1.0;
+  com.free = false;
+  com.prior.reset();
+}
+
 void SetDelay(Delay delay, FitOptions* options) {
   options->model.delay = delay;
   if (delay == Delay::kNone) return;
@@ -164,8 +173,9 @@ void SetDelay(Delay delay, FitOptions* options) {
   options->mode_weight = 0.0;
   options->start = FitStart::kNominal;
   // Weak priors: published delays are 0.10 to 0.16 s (median 0.134), passive shares 0 to 0.9.
-  for (const Start& start : {Start{kReactionDelay, 0.13, 0.1}, Start{kStepDelay, 0.2, 0.15},
-                             Start{kPassiveStiffness, 0.2, 0.2}, Start{kPassiveDamping, 0.2, 0.2}}) {
+  for (const Start& start :
+       {Start{kReactionDelay, 0.13, 0.1}, Start{kStepDelay, 0.2, 0.15},
+        Start{kPassiveStiffness, 0.2, 0.2}, Start{kPassiveDamping, 0.2, 0.2}}) {
     Free(start, &options->table);
   }
 }

@@ -62,6 +62,9 @@ inline constexpr char kAutoStance[] = "auto";
 bool TakesStanceFromFeet(const std::string& preset);
 void SetStance(Stance stance, FitOptions* options);
 
+// Masses by the table: those of LDP to start from, nothing free.
+void SetBody(BodyModel body, FitOptions* options);
+
 // With a delay its parameters are free, with weak priors.
 void SetDelay(Delay delay, FitOptions* options);
 

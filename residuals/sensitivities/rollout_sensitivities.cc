@@ -43,13 +43,14 @@ void LateJacobian(const SelfForce& self, const ParameterSet<double>& p,
   jacobian->by_parameter.bottomRows<2>() += of_angles.by_parameter.bottomRows<2>();
 }
 
-using BodyJet = ceres::Jet<double, 2>;
+constexpr Parameter kMasses[] = {kCartMassShare, kGyrationRadius, kComHeight};
+constexpr int kNumMasses = 3;
+using BodyJet = ceres::Jet<double, kNumMasses>;
 
-// Of functions of the table's masses: cart_share and gyration_radius.
+// Of functions of the table's masses.
 ParameterSet<BodyJet> MassJets(const ParameterSet<double>& p) {
   ParameterSet<BodyJet> jets{};
-  jets[kCartMassShare] = BodyJet(p[kCartMassShare], 0);
-  jets[kGyrationRadius] = BodyJet(p[kGyrationRadius], 1);
+  for (int k = 0; k < kNumMasses; ++k) jets[kMasses[k]] = BodyJet(p[kMasses[k]], k);
   return jets;
 }
 
@@ -57,8 +58,7 @@ void AddHoldOfTable(const SelfForce& self, const ParameterSet<double>& p,
                     SelfForce::Jacobian* jacobian) {
   const Eigen::Matrix<BodyJet, 2, 1> hold = HoldOfTable(self, MassJets(p));
   for (int i = 0; i < 2; ++i) {
-    jacobian->by_parameter(2 + i, kCartMassShare) += hold[i].v[0];
-    jacobian->by_parameter(2 + i, kGyrationRadius) += hold[i].v[1];
+    for (int k = 0; k < kNumMasses; ++k) jacobian->by_parameter(2 + i, kMasses[k]) += hold[i].v[k];
   }
 }
 
@@ -72,8 +72,7 @@ void SubtractInverseDynamicsByMasses(const Body& body, const ParameterSet<double
       InverseDynamics<BodyJet>(jets, still, a.cast<BodyJet>()) +
       BodyJet(gravity / kGravity - 1.0) * Gravity<BodyJet>(jets, still.q);
   for (int i = 0; i < 4; ++i) {
-    jacobian->by_parameter(i, kCartMassShare) -= value[i].v[0];
-    jacobian->by_parameter(i, kGyrationRadius) -= value[i].v[1];
+    for (int k = 0; k < kNumMasses; ++k) jacobian->by_parameter(i, kMasses[k]) -= value[i].v[k];
   }
 }
 
@@ -314,8 +313,8 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
                          forces.perceived(n), &by_perceived);
       }
       const bool holds_fast = forces.HoldsFast(force);
-      const Body now_body = rod_moves ? BodyNow(body, state.rod, 0.0)
-                                      : DynamicBody(options, body, p, holds_fast);
+      const Body now_body =
+          rod_moves ? BodyNow(body, state.rod, 0.0) : DynamicBody(options, body, p, holds_fast);
       const Matrix4<double> rigid =
           InverseDynamicsJacobian(now_body, force.angles, state.qd, felt, ground.gravity);
       if (options.body == BodyModel::kTable) {
