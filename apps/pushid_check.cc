@@ -11,6 +11,7 @@
 #include "ident/bodies/restoration_files.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_table.h"
+#include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"
 #include "ident/report/report_text.h"
 
@@ -35,7 +36,7 @@ Result<std::vector<PendulumRecording>> LoadFitted(FittedModel* model) {
   const std::map<std::string, std::string>& fit_flags = model->provenance.configuration;
   FitOptions& options = model->fit.options;
   LoadAs(fit_flags);
-  const auto loaded = LoadFlaggedRecordings(FittedIds(model->fit), options.body_weight > 0.0);
+  const auto loaded = LoadFlaggedRecordings(FittedIds(model->fit), NeedsJoints(options));
   if (!loaded.ok()) return loaded.error();
   if (options.body_weight > 0.0) {
     const auto folder = fit_flags.find("body_restoration");

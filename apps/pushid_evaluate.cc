@@ -17,6 +17,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/peers/peer_files.h"
+#include "ident/parameters/presets.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/score_groups.h"
 #include "ident/validation/held_out_spread.h"
@@ -83,7 +84,7 @@ int Run() {
   if (!model.ok()) return Fail(model.error());
   if (MaybeError error = CheckDraws(drawn.value(), model.value())) return Fail(*error);
   const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({}, restoration.value().given());
+      LoadFlaggedRecordings({}, restoration.value().given() || NeedsJoints(model.value().options));
   if (!recordings.ok()) return Fail(recordings.error());
   const std::vector<PendulumRecording> pendulums =
       MakePendulumRecordings(recordings.value(), model.value().mapping);

@@ -17,6 +17,7 @@
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/parameter_table.h"
+#include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/bootstrap.h"
@@ -70,7 +71,7 @@ int Run() {
   }
   Warnings file_warnings;  // a result says what it was made of
   const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({}, roughly.body_weight > 0.0, &file_warnings);
+      LoadFlaggedRecordings({}, NeedsJoints(roughly), &file_warnings);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const ClusterBy drawn_by =

@@ -18,6 +18,7 @@
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/fit/model_rollout.h"
+#include "ident/parameters/presets.h"
 #include "ident/prediction/changed_pushes.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/laboratory_frame.h"
@@ -180,7 +181,7 @@ int Run() {
   if (!model.ok()) return Fail(model.error());
   if (MaybeError error = CheckDraws(futures.value(), model.value())) return Fail(*error);
   const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({FLAGS_id}, restoration.given());
+      LoadFlaggedRecordings({FLAGS_id}, restoration.given() || NeedsJoints(model.value().options));
   if (!recordings.ok()) return Fail(recordings.error());
   const Result<PendulumRecording> pushed =
       PushedRecording(recordings.value().front(), model.value().mapping);

@@ -62,6 +62,14 @@ inline constexpr char kAutoStance[] = "auto";
 bool TakesStanceFromFeet(const std::string& preset);
 void SetStance(Stance stance, FitOptions* options);
 
+// Whether people's joints are needed besides hip and ankles: for masses by segments, and bodies.
+inline bool NeedsJoints(const ModelOptions& model) {
+  return model.body == BodyModel::kAnthropometric;
+}
+inline bool NeedsJoints(const FitOptions& options) {
+  return options.body_weight > 0.0 || NeedsJoints(options.model);
+}
+
 // Masses by the table: those of LDP to start from, nothing free.
 void SetBody(BodyModel body, FitOptions* options);
 
