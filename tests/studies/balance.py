@@ -193,5 +193,67 @@ def lag():
                           "`Kd_theta` called identified"], rows)
 
 
+RIG = ("--preset=ldp", "--body=table", "--friction=coulomb", "--stance=slide", "--fix=Kp_theta=0,Kp_phi=0,Kd_theta=0,Kd_phi=0,Kp_x=0",
+       "--settling_weight=0", "--start=nominal")
+RIG_FREE = "mu,mu_coulomb,cart_share,com_height,gyration_radius"
+
+
+def write_rig(folder, seed, gain=1.0):
+    """Recordings of a cart and a pole whose motor pushes `gain` times what is written; -> the truth."""
+    random = np.random.default_rng(7000 + seed)
+    rig, fps, recordings = lab.CartPole(), 200, []
+    for k in range(6):
+        tones = [(random.uniform(0.5, 1.2), f, random.uniform(0, 2 * math.pi)) for f in (0.4, 0.9, 1.7, 3.1)]
+        times, place, angle, force = rig.run(lambda t: sum(a * math.sin(2 * math.pi * f * t + p) for a, f, p in tones), 5.0, fps)
+        seen = place + 1e-4 * random.standard_normal(len(place)), angle + 5e-4 * random.standard_normal(len(angle))
+        feet = np.column_stack([seen[0], np.zeros_like(times)])
+        hip = np.column_stack([seen[0] + rig.length * np.sin(seen[1]), np.zeros_like(times), rig.length * np.cos(seen[1])])
+        people.write_points(f"{folder}/r{k}.csv", times, people.points_of(hip, feet, np.eye(3)), 0.0, random)
+        with open(f"{folder}/r{k}_push.csv", "w", encoding="utf-8") as file:
+            file.write("frame,fx,fy,ftheta,fphi\n" + "".join(f"{i},{f / gain:.6f},0,0,0\n" for i, f in enumerate(force[:-1])))
+        recordings.append({"id": f"r{k}", "setting": "single", "pushed_person": 0, "subjects": [{"id": "rig", "mass_kg": 0.7}],
+                           "csv": [f"r{k}.csv"], "length_unit": "m", "push_csv": f"r{k}_push.csv", "push_kind": "external"})
+    with open(f"{folder}/manifest.json", "w", encoding="utf-8") as file:
+        json.dump({"recordings": recordings}, file)
+    return {"mu": rig.drag, "mu_coulomb": rig.dry, "cart_share": rig.cart / (rig.cart + rig.pole), "com_height": 0.5,
+            "gyration_radius": 1 / math.sqrt(12.0), "push_gain": gain}
+
+
+def cartpole():
+    rows = []
+    for name, free, gain in (("masses, drag and dry friction", RIG_FREE, 1.0),
+                             ("and the motor's gain, true value 1.3", RIG_FREE + ",push_gain", 1.3),
+                             ("drag, dry friction and the motor's gain", "mu,mu_coulomb,push_gain", 1.3)):
+        with tempfile.TemporaryDirectory() as folder:
+            truth = write_rig(folder, 1, gain)
+            held = ",".join(f"{n}={truth[n]:.6g}" for n in ("cart_share", "com_height", "gyration_radius") if n not in free.split(","))
+            flags = [f if not f.startswith("--fix=") or not held else f"{f},{held}" for f in RIG]
+            report, model = fit(folder, f"--free={free}", *flags)
+        for e in model["parameters"]:
+            if e["name"] in free.split(","):
+                rows.append([name, f"`{e['name']}`", number(truth[e["name"]], 3), studies.with_error(e["value"], e["standard_error"]),
+                             e["status"]])
+                name = ""
+        told = [line for line in report.splitlines() if line.startswith(("not identifiable", "unidentifiable", "prior-dependent"))]
+        if told:
+            rows.append(["", "", "", "; ".join(told), ""])
+    return studies.table(["fitted", "parameter", "truth", "estimate", "status"], rows)
+
+
+def speed():
+    """20 recordings of 10 s: five of each of four people."""
+    rows = []
+    for name, flags in (("without a delay", ["--stance=fixed"]), ("`--delay=one`", list(LATE))):
+        with tempfile.TemporaryDirectory() as folder:
+            write(folder, Study(1, seconds=10.0, subjects=4, trials=5))
+            times = []
+            for _ in range(3):
+                begin = time.monotonic()
+                fit(folder, *flags)
+                times.append(time.monotonic() - begin)
+        rows.append([name, number(min(times), 2)])
+    return studies.table(["20 recordings of 10 s at 100 Hz, platforms, one thread", "s, with files and report"], rows)
+
+
 if __name__ == "__main__":
-    studies.main(__file__, {"delay": delay, "lag": lag})
+    studies.main(__file__, {"delay": delay, "lag": lag, "cartpole": cartpole, "speed": speed})
