@@ -8,24 +8,25 @@
 namespace pushid {
 namespace {
 
-constexpr double kLevel = 0.05;
+constexpr double kHolmLevel = 0.05;
 constexpr double kLeastShown = 1e-4;
 
 std::string ProbabilityText(double p) {
   return p < kLeastShown ? "<" + Rounded(kLeastShown) : Rounded(p, 2);
 }
 
-std::string People(size_t number) {
+std::string NumberOfPeople(size_t number) {
   return std::to_string(number) + (number == 1 ? " person" : " people");
 }
 
-std::string WhoText(const Contrast& c) {
+std::string ComparedText(const Contrast& c) {
   std::string text = c.label + ": " + c.second + " less " + c.first + "; ";
   if (c.both.empty()) {
-    return text + People(c.only_first.size()) + " with " + c.first + ", " +
-           People(c.only_second.size()) + " with " + c.second + ", nobody in both: not paired";
+    return text + NumberOfPeople(c.only_first.size()) + " with " + c.first + ", " +
+           NumberOfPeople(c.only_second.size()) + " with " + c.second +
+           ", nobody in both: not paired";
   }
-  text += People(c.both.size()) + " in both (" + ListOfNames(c.both, kNamesInErrors) +
+  text += NumberOfPeople(c.both.size()) + " in both (" + ListOfNames(c.both, kNamesInErrors) +
           "), compared with themselves";
   if (!c.only_first.empty()) {
     text += "; only with " + c.first + ": " + ListOfNames(c.only_first, kNamesInErrors);
@@ -36,10 +37,10 @@ std::string WhoText(const Contrast& c) {
   return text;
 }
 
-std::string FoundText(const Contrast& c) {
+std::string DifferText(const Contrast& c) {
   std::string found;
   for (const ContrastRow& row : c.rows) {
-    if (row.p_holm < kLevel) found += (found.empty() ? "" : ", ") + row.name;
+    if (row.p_holm < kHolmLevel) found += (found.empty() ? "" : ", ") + row.name;
   }
   const std::string of =
       std::to_string(c.rows.size()) + (c.rows.size() == 1 ? " parameter" : " parameters");
@@ -80,7 +81,8 @@ TextTable ContrastTable(const Contrast& c) {
 
 std::string ContrastText(const FitResult& result) {
   if (!result.contrast) return "";
-  return WhoText(*result.contrast) + "\n" + FoundText(*result.contrast) + "\n" + EffectNote(result);
+  return ComparedText(*result.contrast) + "\n" + DifferText(*result.contrast) + "\n" +
+         EffectNote(result);
 }
 
 }  // namespace pushid
