@@ -12,7 +12,6 @@
 namespace pushid {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr int kNodes = 24;  // of the past: growth to 1e-6 up to 30 1/s with a delay of 0.3 s
 // Where margins are looked for: beyond, neither ankles nor what feels their angle answer.
 constexpr double kLowestHz = 1e-3, kHighestHz = 100.0;
@@ -61,7 +60,7 @@ Eigen::RowVectorXd Interpolation(const Eigen::VectorXd& x, double at) {
 }
 
 // In (-pi, pi].
-double Wrapped(double angle) { return std::remainder(angle, 2.0 * kPi); }
+double Wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
 }  // namespace
 
@@ -128,7 +127,7 @@ Eigen::Matrix2cd LinearLoop::Impedance(const Complex& s, bool with_ankle) const 
 }
 
 LoopAnswer LinearLoop::Answer(Disturbance disturbance, double hz, double lever) const {
-  const Complex s(0.0, 2.0 * kPi * hz), s2 = s * s;
+  const Complex s(0.0, 2.0 * M_PI * hz), s2 = s * s;
   Eigen::Vector2cd felt = Eigen::Vector2cd::Zero(), force = Eigen::Vector2cd::Zero();
   Complex of_ground = 0.0;
   switch (disturbance) {
@@ -159,7 +158,7 @@ std::complex<double> LinearLoop::Controller(const Complex& s, const Eigen::Vecto
 }
 
 std::complex<double> LinearLoop::LoopGain(double hz) const {
-  const Complex s(0.0, 2.0 * kPi * hz);
+  const Complex s(0.0, 2.0 * M_PI * hz);
   const Eigen::Vector2cd torque{0.0, 1.0};
   return -Controller(s, Impedance(s, false).fullPivLu().solve(torque));
 }
@@ -179,7 +178,7 @@ std::vector<std::complex<double>> LinearLoop::Modes() const {
     generator = present + rates(ankle_) + rates(step_);
   } else {
     Eigen::VectorXd x(kNodes);
-    for (int i = 0; i < kNodes; ++i) x[i] = 0.5 * (std::cos(kPi * i / (kNodes - 1)) - 1.0);
+    for (int i = 0; i < kNodes; ++i) x[i] = 0.5 * (std::cos(M_PI * i / (kNodes - 1)) - 1.0);
     const Eigen::MatrixXd by = Differentiation(x) / longest;
     const Eigen::RowVectorXd of_ankle = Interpolation(x, -ankle_delay_ / longest);
     const Eigen::RowVectorXd of_step = Interpolation(x, -step_delay_ / longest);
@@ -219,7 +218,7 @@ void LinearLoop::FindMargins(LoopNumbers* numbers) const {
   double hz = kLowestHz;
   Complex gain = LoopGain(hz);
   // At rest L is real.
-  if (gain.real() < 0.0 && std::abs(std::remainder(std::arg(gain), kPi)) < 0.1) {
+  if (gain.real() < 0.0 && std::abs(std::remainder(std::arg(gain), M_PI)) < 0.1) {
     take_gain(1.0 / std::abs(gain));
   }
   for (int i = 0; i < kSteps; ++i) {
@@ -227,12 +226,12 @@ void LinearLoop::FindMargins(LoopNumbers* numbers) const {
     const Complex next = LoopGain(next_hz);
     if ((over_one(gain) > 0.0) != (over_one(next) > 0.0)) {
       const double at = root(hz, next_hz, over_one);
-      const double margin = Wrapped(std::arg(LoopGain(at)) + kPi);
+      const double margin = Wrapped(std::arg(LoopGain(at)) + M_PI);
       if (!numbers->phase_margin || std::abs(margin) < std::abs(*numbers->phase_margin)) {
         numbers->phase_margin = std::abs(margin);
         numbers->crossover_hz = at;
       }
-      const double later = (margin < 0.0 ? margin + 2.0 * kPi : margin) / (2.0 * kPi * at);
+      const double later = (margin < 0.0 ? margin + 2.0 * M_PI : margin) / (2.0 * M_PI * at);
       numbers->delay_margin = std::min(later, numbers->delay_margin.value_or(later));
     }
     if (gain.real() < 0.0 && next.real() < 0.0 && (side(gain) > 0.0) != (side(next) > 0.0)) {
@@ -254,7 +253,7 @@ LoopNumbers LinearLoop::Numbers() const {
     if (rate.imag() <= 1e-9 * std::abs(rate) || rate.real() <= slowest) continue;
     slowest = rate.real();
     numbers.damping_ratio = -rate.real() / std::abs(rate);
-    numbers.natural_hz = std::abs(rate) / (2.0 * kPi);
+    numbers.natural_hz = std::abs(rate) / (2.0 * M_PI);
   }
   numbers.stable = numbers.fastest_growth < 0.0;
   if (numbers.stable) FindMargins(&numbers);

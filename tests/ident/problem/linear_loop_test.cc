@@ -12,8 +12,6 @@
 namespace pushid {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 ModelOptions Fixed(Delay delay = Delay::kNone) {
   ModelOptions options;
   options.stance = Stance::kFixed;
@@ -40,10 +38,10 @@ TEST(LinearLoop, WithoutDelayByHand) {
   const LoopNumbers numbers = loop.Numbers();
   EXPECT_NEAR(numbers.stiffness_ratio, 1500.0 / (mh * kGravity), 1e-6);
   ASSERT_TRUE(numbers.damping_ratio && numbers.natural_hz);
-  EXPECT_NEAR(*numbers.natural_hz, std::sqrt(net / inertia) / (2.0 * kPi), 1e-6);
+  EXPECT_NEAR(*numbers.natural_hz, std::sqrt(net / inertia) / (2.0 * M_PI), 1e-6);
   EXPECT_NEAR(*numbers.damping_ratio, 300.0 / (2.0 * std::sqrt(net * inertia)), 1e-6);
   // E / x_g = -m h s^2 / (J s^2 + D s + K - m g h).
-  const std::complex<double> s(0.0, 2.0 * kPi * 0.7);
+  const std::complex<double> s(0.0, 2.0 * M_PI * 0.7);
   const std::complex<double> angle = -mh * s * s / (inertia * s * s + 300.0 * s + net);
   const LoopAnswer answer = loop.Answer(Disturbance::kGroundShift, 0.7);
   EXPECT_LT(std::abs(answer.angle - angle), 1e-6 * std::abs(angle));
@@ -58,12 +56,12 @@ TEST(LinearLoop, MarginsByHand) {
   const LoopNumbers numbers = loop.Numbers();
   ASSERT_TRUE(numbers.stable);
   ASSERT_TRUE(numbers.phase_margin && numbers.delay_margin && numbers.crossover_hz);
-  const double omega = 2.0 * kPi * *numbers.crossover_hz;
+  const double omega = 2.0 * M_PI * *numbers.crossover_hz;
   const std::complex<double> s(0.0, omega);
   const std::complex<double> gain =
       (1300.0 + 400.0 * s) * std::exp(-0.1 * s) / (inertia * s * s - mh * kGravity);
   EXPECT_NEAR(std::abs(gain), 1.0, 1e-6);
-  EXPECT_NEAR(*numbers.phase_margin, std::arg(gain) + kPi, 1e-6);
+  EXPECT_NEAR(*numbers.phase_margin, std::arg(gain) + M_PI, 1e-6);
   EXPECT_NEAR(*numbers.delay_margin, *numbers.phase_margin / omega, 1e-9);
   // At rest the stiffness must hold the body up.
   ASSERT_TRUE(numbers.gain_down && numbers.gain_up);
@@ -119,7 +117,7 @@ std::complex<double> Oscillation(const std::vector<double>& series, double hz, d
   const int first = static_cast<int>(series.size()) - frames;
   std::complex<double> sum = 0.0;
   for (int t = first; t < first + frames; ++t) {
-    sum += series[t] * std::exp(std::complex<double>(0.0, -2.0 * kPi * hz * t * dt));
+    sum += series[t] * std::exp(std::complex<double>(0.0, -2.0 * M_PI * hz * t * dt));
   }
   return 2.0 * sum / static_cast<double>(frames);
 }
@@ -135,7 +133,7 @@ RolledOut RollOut(const ModelOptions& options, const ParameterSet<double>& p, in
   scene.dt = 1.0 / rate;
   scene.people.push_back({Body{}, {}});
   const int frames = static_cast<int>(std::lround(rate * (20.0 + 4.0 / hz))) + 2;
-  const auto wave = [&](int t) { return amplitude * std::sin(2.0 * kPi * hz * t * scene.dt); };
+  const auto wave = [&](int t) { return amplitude * std::sin(2.0 * M_PI * hz * t * scene.dt); };
   if (disturbance == Disturbance::kForce) {
     std::vector<Vector4<double>> rows(frames, Vector4<double>::Zero());
     for (int t = 0; t < frames; ++t) {
@@ -174,7 +172,7 @@ void ExpectSame(const std::complex<double>& rolled, const std::complex<double>& 
                 const char* what) {
   const std::complex<double> ratio = rolled / closed;
   EXPECT_NEAR(std::abs(ratio), 1.0, 0.01) << what;
-  EXPECT_NEAR(std::arg(ratio) * 180.0 / kPi, 0.0, 1.0) << what;
+  EXPECT_NEAR(std::arg(ratio) * 180.0 / M_PI, 0.0, 1.0) << what;
 }
 
 struct Case {
