@@ -178,22 +178,23 @@ struct MeanResponse {
   }
 };
 
-std::optional<FrequencyBin> BinOf(const Group& group, const GroupKey& key, int bin) {
+// all: everybody's spectra, by which a bin is taken or left: to take those people alone whose
+// coherence is high would take those whose noise happens to be along their answer.
+std::optional<FrequencyBin> BinOf(const Group& group, const GroupKey& key, const CrossSpectra& all,
+                                  int bin) {
+  if (!IsCoherent(all, bin)) return std::nullopt;
   FrequencyBin result;
+  result.hz = bin * all.step_hz;
+  result.coherence = all.Coherence(bin);
   MeanResponse measured, model;
   double error = 0.0;
   for (const auto& [name, person] : group.people) {
     const CrossSpectra& spectra = person.spectra;
-    if (bin >= static_cast<int>(spectra.uu.size()) || !IsCoherent(spectra, bin)) continue;
-    result.hz = bin * spectra.step_hz;
-    result.coherence += spectra.Coherence(bin);
     error = spectra.RelativeError(bin);
     measured.Add(spectra.Response(bin));
     if (person.loop) model.Add(ModelAt(person, key, result.hz));
     ++result.people;
   }
-  if (result.people == 0) return std::nullopt;
-  result.coherence /= result.people;
   result.log_gain = measured.LogGain();
   result.phase = measured.Phase();
   result.log_gain_error = result.phase_error = error;
@@ -237,7 +238,7 @@ FrequencyResponse ResponseOf(const Group& group, const GroupKey& key) {
     all.Add(person.spectra);
   }
   for (int bin : BinsWithPower(all)) {
-    if (const auto one = BinOf(group, key, bin)) response.bins.push_back(*one);
+    if (const auto one = BinOf(group, key, all, bin)) response.bins.push_back(*one);
   }
   if (response.bins.empty()) return response;
   response.model = CurveOf(group, key, response.bins.front().hz, response.bins.back().hz);

@@ -33,8 +33,8 @@ constexpr EnumNames<LoopOutput, 2> Names(LoopOutput) {
 // Gains in the output's unit over the input's; phases in rad, negative where the output is late.
 struct FrequencyBin {
   double hz = 0.0;
-  int people = 0;                               // whose coherence is enough here
-  double coherence = 0.0;                       // mean over them
+  int people = 0;
+  double coherence = 0.0;                       // of their spectra together
   double log_gain = 0.0, log_gain_error = 0.0;  // natural logarithm
   double phase = 0.0, phase_error = 0.0;
   double model_log_gain = 0.0, model_phase = 0.0;  // 0 without a closed form
