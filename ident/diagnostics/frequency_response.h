@@ -1,13 +1,7 @@
 // ident: how people answer oscillations of the ground or of a push, frequency by frequency,
 // measured and by the model.
 //
-// Input u: of the ground's shift (m) or tilt (rad) and of external pushes (N), in both planes, what
-// accelerates a person most. Output y: the angle of the body in the laboratory (rad), and the
-// ankles' torque (N m),
-//   about theta  tau = -F_z (p_x - x) - h F_x,   about phi  tau = F_z (p_y - y) + h F_y
-// by platforms where these measured (plate_residual.h; less that at rest, F_z = M g_n), else by
-// inverse dynamics of the recorded motion with the model's body,
-//   tau = [M (a + A) + C + (g_n / g) G - Q_push] in the angle's row.
+// Inputs and outputs are those of loop_signals.h.
 // H = S_yu / S_uu (spectra.h) of each person, over all recordings of that person; then the mean of
 // log |H| and of the phase over people, with its standard error: from people to people, or of one
 // person by the coherence. The model's is in closed form (problem/linear_loop.h), averaged over the
@@ -18,17 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/error.h"
-#include "datasets/loading/pendulum_recording.h"
+#include "ident/diagnostics/loop_signals.h"
 #include "ident/figures/text_table.h"
-#include "ident/problem/linear_loop.h"
 
 namespace pushid {
-
-enum class LoopOutput { kAngle, kTorque };
-constexpr EnumNames<LoopOutput, 2> Names(LoopOutput) {
-  return {{{"angle", LoopOutput::kAngle}, {"torque", LoopOutput::kTorque}}};
-}
 
 // Gains in the output's unit over the input's; phases in rad, negative where the output is late.
 struct FrequencyBin {
@@ -62,16 +49,6 @@ struct FrequencyResponse {
   std::string Name() const;        // "theta by ground shift along x"
   std::string Key() const;         // "angle_theta_by_ground_shift_x"
 };
-
-// What moves a person on and on: none where nothing does, as pushes of a fraction of a second.
-struct ContinuousInput {
-  Disturbance kind = Disturbance::kGroundShift;
-  int plane = 0;
-  int person = 0;              // who is pushed
-  double lever = 0.0;          // m, of a force
-  std::vector<double> series;  // one per frame
-};
-std::optional<ContinuousInput> ContinuousInputOf(const PendulumRecording& recording);
 
 // recordings: as the files have them. parameters: [recording][person]. Recordings that last less
 // than 10 s, and those without a continuous input, have none. People whose rollouts would not be
