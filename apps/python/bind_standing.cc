@@ -82,11 +82,41 @@ py::dict SwayDict(const Model& model, const std::vector<SharedRecording>& record
   return dict;
 }
 
+py::object OrNone(const std::optional<double>& value) {
+  return value ? py::object(py::float_(*value)) : py::object(py::none());
+}
+
+py::dict LoopDict(const Model& model, double mass, double rod) {
+  if (!(mass > 0.0) || !(rod > 0.0)) Raise(Fault::kUsage, Error{"mass and rod must be above 0"});
+  const IdentifiedModel identified = IdentifiedOf(model);
+  const std::string without = WithoutLinearLoop(identified.options);
+  if (!without.empty()) Raise(Fault::kUsage, Error{"the model has no linear loop: " + without});
+  py::dict dict;
+  for (int plane = 0; plane < 2; ++plane) {
+    const LoopNumbers n =
+        LinearLoop(identified.options, {mass, rod, 0.0}, identified.parameters, plane).Numbers();
+    py::dict loop;
+    loop["stiffness_ratio"] = n.stiffness_ratio;
+    loop["stable"] = n.stable;
+    loop["fastest_growth"] = n.fastest_growth;
+    loop["damping_ratio"] = OrNone(n.damping_ratio);
+    loop["natural_hz"] = OrNone(n.natural_hz);
+    loop["phase_margin"] = OrNone(n.phase_margin);
+    loop["delay_margin"] = OrNone(n.delay_margin);
+    loop["crossover_hz"] = OrNone(n.crossover_hz);
+    loop["gain_up"] = OrNone(n.gain_up);
+    loop["gain_down"] = OrNone(n.gain_down);
+    dict[plane == 0 ? "theta" : "phi"] = loop;
+  }
+  return dict;
+}
+
 }  // namespace
 
 void BindStanding(py::module_* module) {
   module->def("frequency_response", &ResponsesOf);
   module->def("sway", &SwayDict);
+  module->def("loop", &LoopDict);
 }
 
 }  // namespace pushid

@@ -8,7 +8,6 @@
 // same people.
 #pragma once
 
-#include <complex>
 #include <string>
 #include <vector>
 

@@ -51,7 +51,7 @@ struct LoopNumbers {
   double stiffness_ratio = 0.0;  // of the ankles' whole stiffness to m g l of the body that turns
   bool stable = false;
   double fastest_growth = 0.0;  // 1/s, largest real part of the modes; not of the free place
-  // Of the oscillating pair that dies out last; none where nothing oscillates.
+  // Of the oscillating pair that dies out last (or grows fastest); none where nothing oscillates.
   std::optional<double> damping_ratio, natural_hz;
   // None where the loop is unstable, where |L| never is 1 (phase, delay), or is never real and
   // negative on that side (gain).

@@ -53,13 +53,16 @@ std::string Sentence(const NamedLoop& loop) {
   const LoopNumbers& n = loop.numbers;
   std::string text =
       "The loop, " + loop.name + ": stiffness " + Rounded(n.stiffness_ratio, 3) + " times m g l";
+  if (!n.stable) {
+    return text + "; UNSTABLE at rest, it grows at " + Rounded(n.fastest_growth, 2) +
+           " 1/s: there are no margins.";
+  }
   if (n.damping_ratio) {
     text += ", damping ratio " + Rounded(*n.damping_ratio, 2) + " of the oscillation at " +
             Rounded(*n.natural_hz, 2) + " Hz that dies out last";
   } else {
     text += ", no oscillation";
   }
-  if (!n.stable) return text + ". UNSTABLE at rest: there are no margins.";
   if (n.phase_margin) {
     text += "; phase margin " + Rounded(kDegrees * *n.phase_margin, 2) + " degrees at " +
             Rounded(*n.crossover_hz, 2) + " Hz";

@@ -173,6 +173,15 @@ def stood(push=None, seconds=30.0, fps=50.0):
                             **given)
 
 
+def test_loop(made, result):
+    standing = pushid.fit(made[0], stance="fixed", fix={"Kp_theta": 1500, "Kd_theta": 300})
+    loop = standing.loop()
+    assert set(loop) == {"theta", "phi"} and loop["theta"]["stable"]
+    assert loop["theta"]["phase_margin"] > 0 and loop["theta"]["gain_down"] < 1 < loop["theta"]["stiffness_ratio"]
+    with pytest.raises(pushid.UsageError, match="mass"):
+        standing.loop(mass=0.0)
+
+
 def test_frequency_response_and_sway(made, result, noisy):
     assert result.frequency_response(made[0]) == {}
     assert result.sway(made[0])["persons"] == []

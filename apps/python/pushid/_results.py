@@ -205,6 +205,16 @@ class Result:
         """Errors of the predictions and of two baselines, as pushid-evaluate writes them."""
         return self._model.evaluate(checked(recordings), observed)
 
+    def loop(self, *, mass=85.0, rod=0.95):
+        """The linearized loop of a person at rest, as a control engineer quotes it: {"theta": {...}, "phi": {...}}.
+
+        "stiffness_ratio" (of the ankles, over m g l), "stable", "fastest_growth" (1/s), "damping_ratio" and "natural_hz"
+        of the oscillation that dies out last, "phase_margin" (rad) at "crossover_hz", "delay_margin" (s), and
+        "gain_down" and "gain_up": the factors between which gains may change. None where there is none. Raises
+        UsageError for models with learned terms.
+        """
+        return _pushid.loop(self._model, mass, rod)
+
     def frequency_response(self, recordings):
         """How people answer ground that oscillates, or pushes that go on, frequency by frequency, beside the model.
 
