@@ -97,6 +97,7 @@ void BindFits(py::module_* module);
 void BindStudies(py::module_* module);
 void BindPredictions(py::module_* module);
 void BindFormations(py::module_* module);
+void BindStanding(py::module_* module);
 
 // What a model was fitted to.
 struct FittedTo {

@@ -132,6 +132,7 @@ PYBIND11_MODULE(_pushid, module) {
   BindStudies(&module);
   BindPredictions(&module);
   BindFormations(&module);
+  BindStanding(&module);
 }
 
 namespace pushid {

@@ -13,6 +13,7 @@
 #include "ident/parameters/option_names.h"
 #include "ident/report/confidence_text.h"
 #include "ident/report/contrast_text.h"
+#include "ident/report/loop_text.h"
 #include "ident/report/refits_text.h"
 #include "ident/report/report_tables.h"
 #include "ident/report/value_text.h"
@@ -145,6 +146,8 @@ std::string ReportText(const FittedModel& model) {
   text += BehaviourText(result);
   const TextTable lines = LinesTable(result);
   if (!lines.empty()) text += lines.ToString();
+  const TextTable loop = LoopTable(result);
+  if (!loop.empty()) text += loop.ToString();
   if (result.step_probability) text += StepProbabilityText(*result.step_probability) + "\n";
   text += "\n";
   text += "cost " + Rounded(result.cost, 6) + " after " +

@@ -152,3 +152,47 @@ def test_pictures(made, result):
         result.plot_profile("a_x")
     axes = pushid.simulate_formation(result, "line", 4, push=60.0, onset_bands=True).plot()
     assert axes.images[0].get_array().shape == (4, 241) and whole(axes)
+
+
+def random_push(frames, fps, seed):
+    """A force at the hip that goes on at random: (frames - 1, 4), N and N m."""
+    draws = np.random.default_rng(seed).normal(size=frames - 1)
+    slow = np.convolve(draws, np.hanning(15) / 7.0, mode="same") * 15.0
+    return np.stack([slow, 0 * slow, 0.95 * slow, 0 * slow], axis=1)
+
+
+def stood(push=None, seconds=30.0, fps=50.0):
+    """One person who stands, or answers as a spring would: hip 0.95 m above the ankles."""
+    frames = int(seconds * fps) + 1
+    time = np.arange(frames) / fps
+    x = 0.005 * np.sin(np.pi * time) if push is None else 1e-4 * np.concatenate([[0.0], np.cumsum(push[:, 0]) / fps])
+    hip = np.stack([x, np.zeros(frames), np.full(frames, 1.03)], axis=1)
+    ankle = np.tile([0.0, 0.0, 0.08], (frames, 1))
+    given = {} if push is None else {"push": push, "push_kind": "external"}
+    return pushid.Recording(hip=hip, left_ankle=ankle + [0, 0.1, 0], right_ankle=ankle - [0, 0.1, 0], mass=80.0, fps=fps,
+                            **given)
+
+
+def test_loop(made, result):
+    standing = pushid.fit(made[0], stance="fixed", fix={"Kp_theta": 1500, "Kd_theta": 300})
+    loop = standing.loop()
+    assert set(loop) == {"theta", "phi"} and loop["theta"]["stable"]
+    assert loop["theta"]["phase_margin"] > 0 and loop["theta"]["gain_down"] < 1 < loop["theta"]["stiffness_ratio"]
+    with pytest.raises(pushid.UsageError, match="mass"):
+        standing.loop(mass=0.0)
+
+
+def test_frequency_response_and_sway(made, result, noisy):
+    assert result.frequency_response(made[0]) == {}
+    assert result.sway(made[0])["persons"] == []
+    found = result.frequency_response([stood(random_push(1501, 50.0, 1))])
+    assert sorted(found) == ["angle_theta_by_force", "torque_theta_by_force"]
+    angle = found["angle_theta_by_force"]
+    assert angle["input_unit"] == "N" and angle["output_unit"] == "rad" and len(angle["frequency"]) > 5
+    assert {"gain", "phase", "coherence", "log_gain_error", "people", "model_gain"} <= set(angle)
+    assert np.all(angle["gain"] > 0) and len(angle["gain"]) == len(angle["model_phase"])
+    sway = result.sway([stood()])
+    assert sway["of"] == ["hip"] and "simulated_path" not in sway
+    assert sway["path"][0] == pytest.approx(30 * 0.5 * 4 * 0.005, rel=0.02)  # 15 periods of 4 amplitudes
+    assert sway["frequency_x"][0] == pytest.approx(0.5, abs=0.02)
+    assert noisy.sway([stood()], repeats=3)["spread_rms_x"][0] > 0

@@ -205,6 +205,37 @@ class Result:
         """Errors of the predictions and of two baselines, as pushid-evaluate writes them."""
         return self._model.evaluate(checked(recordings), observed)
 
+    def loop(self, *, mass=85.0, rod=0.95):
+        """The linearized loop of a person at rest, as a control engineer quotes it: {"theta": {...}, "phi": {...}}.
+
+        "stiffness_ratio" (of the ankles, over m g l), "stable", "fastest_growth" (1/s), "damping_ratio" and "natural_hz"
+        of the oscillation that dies out last, "phase_margin" (rad) at "crossover_hz", "delay_margin" (s), and
+        "gain_down" and "gain_up": the factors between which gains may change. None where there is none. Raises
+        UsageError for models with learned terms.
+        """
+        return _pushid.loop(self._model, mass, rod)
+
+    def frequency_response(self, recordings):
+        """How people answer ground that oscillates, or pushes that go on, frequency by frequency, beside the model.
+
+        {"angle_theta_by_ground_shift": {...}, ...}, empty if nothing in the recordings is continuous for 10 s. Each has
+        arrays with one value per frequency: "frequency" (Hz), "gain" ("output_unit" over "input_unit"),
+        "log_gain_error" (standard error of the gain's natural logarithm), "phase" and "phase_error" (rad),
+        "coherence", "people" (how many), and, where the model has a closed form, "model_gain" and "model_phase";
+        also "persons", "recordings" and "name".
+        """
+        return _pushid.frequency_response(self._model, checked(recordings))
+
+    def sway(self, recordings, *, repeats=20, seed=1):
+        """Sway of those recordings in which nobody is pushed and the ground rests, person by person.
+
+        "persons", "of" ("centre of pressure" or "hip"), and arrays with one value per person: "path" (m), "speed"
+        (m/s), "rms_x", "rms_y" (m), "frequency_x", "frequency_y" (mean power frequency, Hz), "ellipse" (m^2, 95 %); if the
+        model has process noise also "simulated_path", ... (means over `repeats` rollouts) and "spread_path", ...
+        (their standard deviations).
+        """
+        return _pushid.sway(self._model, checked(recordings), repeats, seed)
+
     def report(self, path):
         """Writes the report as one page of HTML (path ends in .html); returns its path."""
         self._model.report(os.fspath(path), self.advice)

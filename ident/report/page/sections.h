@@ -28,9 +28,10 @@ struct SectionRow {
 
 RenderSection LeadSection, SummarySection, ParameterSection, ContrastSection, UnitSection,
     IdentifiabilitySection, ProfileSection, BootstrapSection, PriorCheckSection, PushCheckSection,
-    HorizonCheckSection, BehaviourSection, PopulationSection, StepSection, GroupSection,
-    FigureSection, MotionSection, VisualCheckSection, RecordingSection, LeverageSection,
-    ResidualSection, SolveSection, DesignSection, AdviceSection, ProvenanceSection;
+    HorizonCheckSection, BehaviourSection, LoopSection, FrequencySection, SwaySection,
+    PopulationSection, StepSection, GroupSection, FigureSection, MotionSection, VisualCheckSection,
+    RecordingSection, LeverageSection, ResidualSection, SolveSection, DesignSection, AdviceSection,
+    ProvenanceSection;
 
 // In the order of the report.
 inline constexpr SectionRow kSections[] = {
@@ -46,6 +47,9 @@ inline constexpr SectionRow kSections[] = {
     {"push_check", "Sensitivity to the pushes", PushCheckSection},
     {"horizon_check", "Estimates from fewer frames", HorizonCheckSection},
     {"behaviour", "After a push", BehaviourSection},
+    {"loop", "The identified loop", LoopSection},
+    {"frequency", "Frequency response", FrequencySection},
+    {"sway", "Quiet stance", SwaySection},
     {"population", "How recordings differ", PopulationSection},
     {"steps", "Who steps", StepSection},
     {"groups", "Groups", GroupSection},

@@ -1,0 +1,163 @@
+// ident: people who stand: the identified loop, its frequency response, and how they sway.
+#include <cmath>
+
+#include "datasets/files/number_text.h"
+#include "ident/figures/bode.h"
+#include "ident/figures/chart.h"
+#include "ident/prediction/standing_checks.h"
+#include "ident/report/loop_text.h"
+#include "ident/report/page/sections.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+
+std::vector<PendulumRecording> Shown(const std::vector<RecordingView>& views) {
+  std::vector<PendulumRecording> recordings;
+  for (const RecordingView& view : views) recordings.push_back(view.run.recording);
+  return recordings;
+}
+
+BodePlot PlotOf(const FrequencyResponse& response) {
+  BodePlot plot;
+  plot.title = response.Name();
+  plot.gain_unit = response.OutputUnit() + "/" + response.InputUnit();
+  for (const FrequencyBin& bin : response.bins) {
+    BodePoint point;
+    point.hz = bin.hz;
+    point.gain = std::exp(bin.log_gain);
+    point.gain_lower = std::exp(bin.log_gain - bin.log_gain_error);
+    point.gain_upper = std::exp(bin.log_gain + bin.log_gain_error);
+    point.phase = kDegrees * bin.phase;
+    point.phase_error = kDegrees * bin.phase_error;
+    point.coherence = bin.coherence;
+    point.tooltip = Rounded(bin.hz, 3) + " Hz: gain " + Rounded(point.gain, 3) + ", phase " +
+                    Rounded(point.phase, 3) + " degrees, coherence " + Rounded(bin.coherence, 2) +
+                    ", people " + std::to_string(bin.people);
+    plot.measured.push_back(point);
+  }
+  plot.hz = response.model.hz;
+  for (double gain : response.model.log_gain) plot.gain.push_back(std::exp(gain));
+  for (double phase : response.model.phase) plot.phase.push_back(kDegrees * phase);
+  Unwrap(&plot);
+  return plot;
+}
+
+std::string CaptionOf(const FrequencyResponse& response) {
+  const size_t people = response.people.size();
+  std::string text = response.Name() + ": " + std::to_string(response.recordings) +
+                     (response.recordings == 1 ? " recording of " : " recordings of ") +
+                     std::to_string(people) + (people == 1 ? " person" : " people") + "; ";
+  text += response.periodic
+              ? "the excited frequencies, in periods of " + Rounded(response.segment_s, 3) + " s"
+              : "Welch's method, segments of " + Rounded(response.segment_s, 3) + " s";
+  if (response.output == LoopOutput::kTorque) {
+    text += response.by_plates ? "; torque by force platforms" : "; torque by inverse dynamics";
+  }
+  return text + (people == 1 ? "; errors by the coherence." : "; errors from person to person.");
+}
+
+// A panel for each measure, a row for each person.
+std::string SwayPicture(const std::vector<PersonSway>& people) {
+  std::vector<Chart> charts;
+  for (int i = 0; i < kNumSwayMeasures; ++i) {
+    Chart chart;
+    chart.title = kSwayMeasures[i].Title();
+    ChartLine measured{{}, kMeasuredLook, true};
+    for (size_t n = 0; n < people.size(); ++n) {
+      const double row = static_cast<double>(n);
+      chart.y_categories.push_back(people[n].person);
+      measured.points.emplace_back(people[n].measured[i], row);
+      if (people[n].repeats == 0) continue;
+      const double from = people[n].simulated[i] - people[n].spread[i];
+      const double to = people[n].simulated[i] + people[n].spread[i];
+      chart.lines.push_back({{{from, row}, {to, row}}, kPredictedLook, false});
+    }
+    chart.lines.push_back(measured);
+    charts.push_back(chart);
+  }
+  const double height = 70 + 18 * static_cast<double>(people.size());
+  return DrawCharts(charts, "sway of quiet stance", kPanelColumns, kPanelWidth, height);
+}
+
+// "0.12 +- 0.02"
+std::string SimulatedText(const PersonSway& one, int measure) {
+  return one.repeats > 0 ? WithError(one.simulated[measure], one.spread[measure]) : "-";
+}
+
+}  // namespace
+
+ReportSection LoopSection(const ReportSource& source) {
+  ReportSection section;
+  section.Say(LoopText(source.fit));
+  if (section.paragraphs.empty()) return section;
+  section.Say(
+      "Of the linearized model of a person of 85 kg with a rod of 0.95 m at rest. Phase and delay "
+      "margin: how much later feedback may come; the last column: between which factors its gains "
+      "may change.");
+  section.Show("", LoopTable(source.fit));
+  return section;
+}
+
+ReportSection FrequencySection(const ReportSource& source) {
+  ReportSection section;
+  const std::vector<FrequencyResponse> responses =
+      FrequencyResponses(ModelOf(source.fit), Shown(source.views));
+  if (responses.empty()) return section;
+  section.paragraphs = {
+      "How people answer what disturbs them on and on, frequency by frequency: the cross spectrum "
+      "of the answer and the disturbance over the spectrum of the disturbance, of each person "
+      "first, then the mean of log gain and phase over people. Frequencies whose coherence could "
+      "be chance are left out. The model's curve is the closed form of its linearized loop, with "
+      "the same people's parameters."};
+  section.Say(WithoutLinearLoop(source.fit.options.model).empty()
+                  ? ""
+                  : "There is no curve: " + WithoutLinearLoop(source.fit.options.model) + ".");
+  for (const FrequencyResponse& response : responses) {
+    section.figures.push_back({"frequency_" + response.Key(), CaptionOf(response),
+                               DrawBode(PlotOf(response)), FrequencyTable({response})});
+  }
+  return section;
+}
+
+ReportSection SwaySection(const ReportSource& source) {
+  ReportSection section;
+  const std::vector<PersonSway> people = SwayOfPeople(ModelOf(source.fit), Shown(source.views));
+  if (people.empty()) return section;
+  const bool simulated = source.fit.options.model.process_noise.Any();
+  section.paragraphs = {
+      std::string("Recordings in which nobody is pushed and the ground rests: path, root mean "
+                  "square, mean power frequency (0.15 to 5 Hz) and 95 % ellipse of the centre of "
+                  "pressure where platforms measured, else of the hip (Prieto et al. 1996), below "
+                  "5 Hz. ") +
+      (simulated ? "Simulated: mean and standard deviation of rollouts that the identified process "
+                   "noise drives."
+                 : "The model has no process noise to simulate them with "
+                   "(--likelihood=innovation).")};
+  std::vector<std::string> header = {"person", "of", ""};
+  for (const Metric& measure : kSwayMeasures) header.push_back(measure.Title());
+  std::vector<bool> left(header.size(), false);
+  left[0] = left[1] = left[2] = true;
+  TextTable table(header, left);
+  for (const PersonSway& one : people) {
+    std::vector<std::string> measured = {one.person, one.by_plates ? "pressure" : "hip",
+                                         "measured"};
+    std::vector<std::string> model = {"", "", "simulated"};
+    for (int i = 0; i < kNumSwayMeasures; ++i) {
+      measured.push_back(Rounded(one.measured[i], 3));
+      model.push_back(SimulatedText(one, i));
+    }
+    table.Add(measured);
+    if (one.repeats > 0) table.Add(model);
+  }
+  section.figures.push_back({"sway",
+                             simulated ? "Measured (dots) and simulated, one standard deviation "
+                                         "about the mean (lines)."
+                                       : "Measured.",
+                             SwayPicture(people), SwayTable(people)});
+  section.Show("sway of quiet stance", table);
+  return section;
+}
+
+}  // namespace pushid

@@ -1,0 +1,232 @@
+// Spectra of known series, and people whose loop is known.
+#include "ident/diagnostics/frequency_response.h"
+
+#include <gtest/gtest.h>
+
+#include "ident/diagnostics/spectra.h"
+#include "tests/ident/laboratory_samples.h"
+
+namespace pushid {
+namespace {
+
+std::vector<double> Sampled(int frames, double dt, double (*value)(double)) {
+  std::vector<double> series;
+  for (int t = 0; t < frames; ++t) series.push_back(value(t * dt));
+  return series;
+}
+
+TEST(Spectra, PeriodsByHand) {
+  EXPECT_EQ(PeriodOf(Sampled(6000, 0.01, SumOfSines)), 1000);
+  EXPECT_EQ(PeriodOf(Sampled(500, 0.01, [](double s) { return std::sin(2.0 * M_PI * s); })), 100);
+  EXPECT_EQ(PeriodOf(Sampled(1900, 0.01, SumOfSines)), 0);  // once
+  EXPECT_EQ(PeriodOf(std::vector<double>(1000, 2.0)), 0);
+  EXPECT_EQ(PeriodOf(Sampled(1000, 0.01, [](double s) { return s; })), 0);
+  Random random(1);
+  std::vector<double> noise;
+  for (int t = 0; t < 2000; ++t) noise.push_back(random.Normal());
+  EXPECT_EQ(PeriodOf(noise), 0);
+}
+
+// y is twice u, three frames late: a gain of 2 and a phase of -2 pi f 0.03 s.
+TEST(Spectra, ResponseOfALateSeries) {
+  Random random(2);
+  const int frames = 12000;
+  const double dt = 0.01;
+  std::vector<double> u, y;
+  for (int t = 0; t < frames; ++t) {
+    u.push_back(random.Normal());
+    y.push_back(t < 3 ? 0.0 : 2.0 * u[t - 3]);
+  }
+  const Segmenting segments = SegmentsOf(u, dt);
+  EXPECT_FALSE(segments.periodic);
+  EXPECT_EQ(segments.frames, 2400);
+  const CrossSpectra spectra = CrossSpectraOf(u, y, segments, dt);
+  EXPECT_NEAR(spectra.step_hz, 1.0 / 24.0, 1e-12);
+  EXPECT_NEAR(spectra.averages, 9.0 * 9.0 / 11.0, 1e-12);
+  for (int bin : {10, 50, 200}) {
+    const double hz = bin * spectra.step_hz;
+    EXPECT_NEAR(std::abs(spectra.Response(bin)), 2.0, 0.05);
+    EXPECT_NEAR(
+        std::remainder(std::arg(spectra.Response(bin)) + 2.0 * M_PI * hz * 0.03, 2.0 * M_PI), 0.0,
+        0.03);
+    EXPECT_GT(spectra.Coherence(bin), 0.99);
+    EXPECT_TRUE(IsCoherent(spectra, bin));
+  }
+}
+
+// Of two independent series one bin in 20 seems coherent, and none of them by a single segment.
+TEST(Spectra, ChanceIsNoCoherence) {
+  Random random(3);
+  std::vector<double> u, y;
+  for (int t = 0; t < 20000; ++t) u.push_back(random.Normal()), y.push_back(random.Normal());
+  const CrossSpectra spectra = CrossSpectraOf(u, y, {200, 0, false}, 0.01);
+  int coherent = 0;
+  for (int bin : BinsWithPower(spectra)) coherent += IsCoherent(spectra, bin);
+  EXPECT_LT(coherent, 3);
+  const CrossSpectra once = CrossSpectraOf(u, y, {20000, 0, true}, 0.01);
+  EXPECT_NEAR(once.Coherence(5), 1.0, 1e-9);
+  EXPECT_FALSE(IsCoherent(once, 5));
+}
+
+// White noise of variance 4 at 100 Hz: 4 / 50 Hz everywhere; a sine has its variance in its peak.
+TEST(Spectra, DensityOfKnownSeries) {
+  Random random(4);
+  std::vector<double> noise, sine;
+  for (int t = 0; t < 20000; ++t) {
+    noise.push_back(2.0 * random.Normal());
+    sine.push_back(3.0 * std::sin(2.0 * M_PI * 5.0 * t * 0.01));
+  }
+  const std::vector<double> density = PowerDensity(noise, 200, 0.01);
+  double mean = 0.0;
+  for (double value : density) mean += value / static_cast<double>(density.size());
+  EXPECT_NEAR(mean, 4.0 / 50.0, 0.02 * 4.0 / 50.0);
+  double power = 0.0;
+  for (double value : PowerDensity(sine, 200, 0.01)) power += value * 0.5;  // Hz a bin
+  EXPECT_NEAR(power, 4.5, 0.01);
+}
+
+// 60 s on ground that oscillates: the loop's own response at the six excited frequencies.
+TEST(FrequencyResponse, PeriodicGround) {
+  const double dt = 0.002;
+  const int frames = 30000;
+  const ModelOptions options = StandingOptions(Delay::kOne);
+  const ParameterSet<double> p = StandingGains(1500.0, 400.0, 0.1);
+  for (int row : {0, 3}) {
+    SCOPED_TRACE(row);
+    Scene scene = StandingScene(dt);
+    scene.ground =
+        OscillatingGround(row, frames, dt, [](double s) { return 2e-3 * SumOfSines(s); });
+    const PendulumRecording recording = RecordingOf(scene, options, p, frames, "A", true);
+    const auto responses = FrequencyResponses({recording}, options, {{p}});
+    ASSERT_EQ(responses.size(), 2u);
+    for (const FrequencyResponse& response : responses) {
+      SCOPED_TRACE(response.Name());
+      EXPECT_EQ(response.input, row == 0 ? Disturbance::kGroundShift : Disturbance::kGroundTilt);
+      EXPECT_EQ(response.plane, row == 0 ? 0 : 1);
+      EXPECT_TRUE(response.periodic);
+      EXPECT_EQ(response.by_plates, response.output == LoopOutput::kTorque);
+      ASSERT_EQ(response.bins.size(), 6u);
+      for (const FrequencyBin& bin : response.bins) {
+        EXPECT_NEAR(bin.log_gain, bin.model_log_gain, 0.01) << bin.hz;
+        EXPECT_NEAR(std::remainder(bin.phase - bin.model_phase, 2.0 * M_PI), 0.0, 1.0 / 57.3)
+            << bin.hz;
+        EXPECT_GT(bin.coherence, 0.999) << bin.hz;
+      }
+      EXPECT_NEAR(response.bins[5].hz, 1.7, 1e-9);
+      EXPECT_FALSE(response.model.hz.empty());
+    }
+  }
+}
+
+// Platforms and inverse dynamics tell the same torque of a model's motion.
+TEST(FrequencyResponse, TorqueByPlatformsAndByMotion) {
+  const double dt = 0.01;
+  const int frames = 4000;
+  const ModelOptions options = StandingOptions();
+  const ParameterSet<double> p = StandingGains(1500.0, 400.0);
+  Body body;
+  body.cart_height = 0.08;
+  Scene scene = StandingScene(dt, body);
+  scene.ground = OscillatingGround(1, frames, dt, [](double s) { return 2e-3 * SumOfSines(s); });
+  PendulumRecording recording = RecordingOf(scene, options, p, frames, "A", true);
+  const auto by_plates = FrequencyResponses({recording}, options, {{p}});
+  recording.plates.clear();
+  const auto by_motion = FrequencyResponses({recording}, options, {{p}});
+  ASSERT_EQ(by_plates.size(), 2u);
+  ASSERT_EQ(by_motion.size(), 2u);
+  EXPECT_TRUE(by_plates[1].by_plates);
+  EXPECT_FALSE(by_motion[1].by_plates);
+  ASSERT_EQ(by_plates[1].bins.size(), by_motion[1].bins.size());
+  for (size_t i = 0; i < by_plates[1].bins.size(); ++i) {
+    EXPECT_NEAR(by_plates[1].bins[i].log_gain, by_motion[1].bins[i].log_gain, 2e-3);
+    EXPECT_NEAR(by_plates[1].bins[i].phase, by_motion[1].bins[i].phase, 2e-3);
+  }
+}
+
+// Two people of different gains, two recordings each: means over people, errors from one to the
+// other.
+TEST(FrequencyResponse, MeansOverPeople) {
+  const double dt = 0.01;
+  const int frames = 4000;
+  const ModelOptions options = StandingOptions();
+  std::vector<PendulumRecording> recordings;
+  std::vector<std::vector<ParameterSet<double>>> parameters;
+  for (int i = 0; i < 4; ++i) {
+    const ParameterSet<double> p = StandingGains(i < 2 ? 1300.0 : 1800.0, 400.0);
+    Scene scene = StandingScene(dt);
+    scene.ground = OscillatingGround(0, frames, dt, [](double s) { return 2e-3 * SumOfSines(s); });
+    recordings.push_back(RecordingOf(scene, options, p, frames, i < 2 ? "A" : "B"));
+    parameters.push_back({p});
+  }
+  const auto both = FrequencyResponses(recordings, options, parameters);
+  const auto of_a = FrequencyResponses({recordings[0]}, options, {parameters[0]});
+  const auto of_b = FrequencyResponses({recordings[3]}, options, {parameters[3]});
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].people, (std::vector<std::string>{"A", "B"}));
+  EXPECT_EQ(both[0].recordings, 4);
+  for (size_t i = 0; i < both[0].bins.size(); ++i) {
+    const FrequencyBin& bin = both[0].bins[i];
+    const double a = of_a[0].bins[i].log_gain, b = of_b[0].bins[i].log_gain;
+    EXPECT_EQ(bin.people, 2);
+    EXPECT_NEAR(bin.log_gain, 0.5 * (a + b), 1e-9);
+    EXPECT_NEAR(bin.log_gain_error, 0.5 * std::abs(a - b), 1e-9);
+  }
+  EXPECT_EQ(FrequencyTable(both).rows().size(), 1 + both[0].bins.size() + both[1].bins.size());
+}
+
+// A push that goes on at random: by Welch, with errors that the coherence gives.
+TEST(FrequencyResponse, PushedAtRandom) {
+  const double dt = 0.01;
+  const int frames = 18000;
+  const ModelOptions options = StandingOptions();
+  const ParameterSet<double> p = StandingGains(1500.0, 400.0);
+  Scene scene = StandingScene(dt);
+  Random random(5);
+  std::vector<Vector4<double>> rows;
+  double slow = 0.0;
+  for (int t = 0; t < frames; ++t) {
+    slow += 0.1 * (random.Normal() - slow);
+    rows.push_back({3.0 * slow, 0.0, 0.95 * 3.0 * slow, 0.0});
+  }
+  scene.pushes.push_back(MakeScenePush(0, 0, PushKind::kExternal, rows));
+  const PendulumRecording recording = RecordingOf(scene, options, p, frames, "A");
+  const auto input = ContinuousInputOf(recording);
+  ASSERT_TRUE(input);
+  EXPECT_EQ(input->kind, Disturbance::kForce);
+  EXPECT_NEAR(input->lever, 0.95, 1e-12);
+  const auto responses = FrequencyResponses({recording}, options, {{p}});
+  ASSERT_EQ(responses.size(), 2u);
+  const FrequencyResponse& angle = responses[0];
+  EXPECT_FALSE(angle.periodic);
+  int compared = 0;
+  for (const FrequencyBin& bin : angle.bins) {
+    if (bin.hz < 0.1 || bin.hz > 2.0) continue;
+    EXPECT_NEAR(bin.log_gain, bin.model_log_gain, 0.15) << bin.hz;
+    EXPECT_NEAR(bin.phase, bin.model_phase, 0.15) << bin.hz;
+    ++compared;
+  }
+  EXPECT_GT(compared, 20);
+}
+
+// Pushes of a fraction of a second, quiet stance and short recordings have no response.
+TEST(FrequencyResponse, NothingContinuous) {
+  const ModelOptions options = StandingOptions();
+  const ParameterSet<double> p = StandingGains(1500.0, 400.0);
+  Scene scene = StandingScene(0.01);
+  scene.pushes.push_back(
+      MakeScenePush(0, 10, PushKind::kExternal, HalfSinePush(Body{}, 5.0, 20, 0.01)));
+  EXPECT_TRUE(
+      FrequencyResponses({RecordingOf(scene, options, p, 2000, "A")}, options, {{p}}).empty());
+  Scene quiet = StandingScene(0.01);
+  EXPECT_TRUE(
+      FrequencyResponses({RecordingOf(quiet, options, p, 2000, "A")}, options, {{p}}).empty());
+  Scene brief = StandingScene(0.01);
+  brief.ground = OscillatingGround(0, 800, 0.01, SumOfSines);
+  EXPECT_FALSE(ContinuousInputOf(PendulumRecording{}).has_value());
+  brief.ground = OscillatingGround(0, 800, 0.01, [](double s) { return 1e-3 * SumOfSines(s); });
+  EXPECT_TRUE(
+      FrequencyResponses({RecordingOf(brief, options, p, 800, "A")}, options, {{p}}).empty());
+}
+
+}  // namespace
+}  // namespace pushid

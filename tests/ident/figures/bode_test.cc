@@ -1,0 +1,51 @@
+// Bode plots: phases in sequence, and what is drawn.
+#include "ident/figures/bode.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+BodePlot Falling() {
+  BodePlot plot;
+  plot.title = "falling";
+  plot.gain_unit = "rad/m";
+  plot.hz = {0.1, 0.2, 0.5, 1.0, 2.0};
+  plot.gain = {10.0, 8.0, 2.0, 0.5, 0.02};
+  plot.phase = {-100.0, -150.0, 170.0, 120.0, 60.0};
+  plot.measured.push_back({0.5, 2.1, 1.9, 2.3, 165.0, 10.0, 0.9, "here"});
+  plot.measured.push_back({1.0, 0.5, 0.4, 0.6, -230.0, 12.0, 0.5, "there"});
+  return plot;
+}
+
+TEST(Bode, PhasesGoOn) {
+  BodePlot plot = Falling();
+  Unwrap(&plot);
+  EXPECT_EQ(plot.phase, (std::vector<double>{-100.0, -150.0, -190.0, -240.0, -300.0}));
+  EXPECT_DOUBLE_EQ(plot.measured[0].phase, -195.0);
+  EXPECT_DOUBLE_EQ(plot.measured[1].phase, -230.0);
+  BodePlot alone = Falling();
+  alone.hz.clear(), alone.gain.clear(), alone.phase.clear();
+  Unwrap(&alone);
+  EXPECT_DOUBLE_EQ(alone.measured[0].phase, 165.0);
+  EXPECT_DOUBLE_EQ(alone.measured[1].phase, 130.0);
+}
+
+TEST(Bode, DrawsThreePanels) {
+  BodePlot plot = Falling();
+  Unwrap(&plot);
+  const std::string svg = DrawBode(plot);
+  for (const char* part : {"gain, rad/m", "phase, degrees", "coherence", "frequency, Hz", "model",
+                           "here", ">0.1<", ">1<"}) {
+    EXPECT_TRUE(Contains(svg, part));
+  }
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  EXPECT_EQ(DrawBode({"alone", "1", {plot.measured[0]}, {}, {}, {}}).find("nan"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace pushid
