@@ -9,6 +9,9 @@
 namespace pushid {
 namespace {
 
+// Of a recording, the parts in which the input has to have a tenth of its spread.
+constexpr int kParts = 5, kMostParts = 4;
+constexpr double kLeastPart = 0.1;
 constexpr double kActiveShare = 0.5;         // of the frames, in which a push acts
 constexpr double kLeastAcceleration = 1e-3;  // m/s^2, root mean square
 
@@ -24,6 +27,20 @@ double Spread(std::vector<double> series) {
   for (double value : series) mean += value / static_cast<double>(series.size());
   for (double& value : series) value -= mean;
   return RootMeanSquare(series);
+}
+
+// Whether it goes on: in most parts of the recording, not in one as a step does.
+bool GoesOn(const std::vector<double>& series) {
+  const size_t part = series.size() / kParts;
+  if (part < 2) return false;
+  const double whole = Spread(series);
+  int moving = 0;
+  for (int i = 0; i < kParts; ++i) {
+    const auto from = series.begin() + static_cast<std::ptrdiff_t>(i * part);
+    const std::vector<double> own(from, from + static_cast<std::ptrdiff_t>(part));
+    moving += Spread(own) > kLeastPart * whole;
+  }
+  return moving >= kMostParts;
 }
 
 std::vector<double> GroundSeries(const GroundMotion& ground, int row, int frames) {
@@ -135,7 +152,7 @@ std::optional<ContinuousInput> ContinuousInputOf(const PendulumRecording& record
   double most = kLeastAcceleration;
   const int frames = recording.num_frames();
   const auto offer = [&](double acceleration, ContinuousInput input) {
-    if (acceleration <= most) return;
+    if (acceleration <= most || !GoesOn(input.series)) return;
     most = acceleration;
     best = std::move(input);
   };

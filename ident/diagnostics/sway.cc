@@ -9,8 +9,9 @@
 #include "datasets/loading/motion_preparation.h"
 #include "ident/diagnostics/spectra.h"
 #include "ident/problem/own_axes.h"
+#include "models/ground_reaction.h"
+#include "models/net_force.h"
 #include "models/rollout.h"
-#include "residuals/cost_functions/plate_residual.h"
 
 namespace pushid {
 namespace {

@@ -8,7 +8,7 @@
 //   ellipse   2 pi F_95(2, n - 2) sqrt(s_xx s_yy - s_xy^2), m^2: the area that holds 95 % of p
 // The model's are those of rollouts with process noise (process_noise.h) of the same length, after
 // 10 s in which they forget where they began: the platforms' centre of pressure is that which the
-// ground needs for such a motion (plate_residual.h).
+// ground needs for such a motion (ground_reaction.h).
 #pragma once
 
 #include <array>

@@ -9,8 +9,8 @@
 
 #include "datasets/files/random.h"
 #include "datasets/loading/pendulum_recording.h"
+#include "models/ground_reaction.h"
 #include "models/rollout.h"
-#include "residuals/cost_functions/plate_residual.h"
 
 namespace pushid {
 
@@ -73,13 +73,13 @@ inline PendulumRecording RecordingOf(Scene scene, const ModelOptions& options,
     recording.plates.resize(1);
     const BodyOf<double> turns =
         DynamicBody<double>(options, body, p, options.stance == Stance::kFixed);
-    const PlateVector<double> rest = GroundReaction<double>(
+    const GroundReactionOf<double> rest = GroundReaction<double>(
         turns, path.At(0, 0), Vector4<double>::Zero(), GroundStep{}, Vector4<double>::Zero());
     for (int t = 0; t < frames; ++t) {
       const int at = std::min(t, frames - 2);
       const PendulumState<double>& state = path.At(at, 0);
       const Vector4<double> a = (path.At(at + 1, 0).qd - state.qd) / scene.dt;
-      const PlateVector<double> f = GroundReaction<double>(
+      const GroundReactionOf<double> f = GroundReaction<double>(
           turns, state, a, scene.ground.moves() ? scene.ground.steps[at] : GroundStep{},
           PushForceAt(scene, 0, at));
       recording.plates[0].push_back({f.head<2>(), f.tail<2>() - rest.tail<2>(), 1.0});

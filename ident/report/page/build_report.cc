@@ -92,6 +92,11 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
       model.provenance.version;
   ReportSource source{model};
   source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
+  const IdentifiedModel identified = ModelOf(result);
+  const std::vector<PendulumRecording> on_ground =
+      MakePendulumRecordings(recordings, identified.mapping);
+  source.frequency = FrequencyResponses(identified, on_ground);
+  source.sway = SwayOfPeople(identified, on_ground);
   source.propagation = PropagationOf(result, source.views);
   std::vector<PendulumRecording> shown;
   for (const RecordingView& view : source.views) shown.push_back(view.run.recording);

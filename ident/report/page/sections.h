@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "ident/prediction/standing_checks.h"
 #include "ident/prediction/visual_check.h"
 #include "ident/report/page/build_report.h"
 
@@ -16,6 +17,9 @@ struct ReportSource {
   std::vector<RecordingView> views = {};  // of the recordings that are shown; may be none
   PropagationSummary propagation = {};    // of those
   VisualCheck check = {};                 // with those
+  // Of the recordings that are shown, on the ground that moves (prediction/standing_checks.h).
+  std::vector<FrequencyResponse> frequency = {};
+  std::vector<PersonSway> sway = {};
 };
 
 using RenderSection = ReportSection(const ReportSource& source);

@@ -4,7 +4,6 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/bode.h"
 #include "ident/figures/chart.h"
-#include "ident/prediction/standing_checks.h"
 #include "ident/report/loop_text.h"
 #include "ident/report/page/sections.h"
 
@@ -12,12 +11,6 @@ namespace pushid {
 namespace {
 
 constexpr double kDegrees = 180.0 / M_PI;
-
-std::vector<PendulumRecording> Shown(const std::vector<RecordingView>& views) {
-  std::vector<PendulumRecording> recordings;
-  for (const RecordingView& view : views) recordings.push_back(view.run.recording);
-  return recordings;
-}
 
 BodePlot PlotOf(const FrequencyResponse& response) {
   BodePlot plot;
@@ -102,8 +95,7 @@ ReportSection LoopSection(const ReportSource& source) {
 
 ReportSection FrequencySection(const ReportSource& source) {
   ReportSection section;
-  const std::vector<FrequencyResponse> responses =
-      FrequencyResponses(ModelOf(source.fit), Shown(source.views));
+  const std::vector<FrequencyResponse>& responses = source.frequency;
   if (responses.empty()) return section;
   section.paragraphs = {
       "How people answer what disturbs them on and on, frequency by frequency: the cross spectrum "
@@ -123,7 +115,7 @@ ReportSection FrequencySection(const ReportSource& source) {
 
 ReportSection SwaySection(const ReportSource& source) {
   ReportSection section;
-  const std::vector<PersonSway> people = SwayOfPeople(ModelOf(source.fit), Shown(source.views));
+  const std::vector<PersonSway>& people = source.sway;
   if (people.empty()) return section;
   const bool simulated = source.fit.options.model.process_noise.Any();
   section.paragraphs = {

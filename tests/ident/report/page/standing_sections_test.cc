@@ -1,7 +1,6 @@
 // What the report says of people who stand.
 #include <gtest/gtest.h>
 
-#include "ident/diagnostics/frequency_response.h"
 #include "ident/report/loop_text.h"
 #include "ident/report/page/sections.h"
 #include "tests/ident/laboratory_samples.h"
@@ -17,10 +16,11 @@ FittedModel Standing(Delay delay) {
   return model;
 }
 
-RecordingView ViewOf(PendulumRecording recording) {
-  RecordingView view;
-  view.run.recording = std::move(recording);
-  return view;
+ReportSource Seen(const FittedModel& model, const PendulumRecording& recording) {
+  ReportSource source{model};
+  source.frequency = FrequencyResponses(ModelOf(model.fit), {recording});
+  source.sway = SwayOfPeople(ModelOf(model.fit), {recording});
+  return source;
 }
 
 TEST(StandingSections, TheLoopInWords) {
@@ -53,7 +53,7 @@ TEST(StandingSections, FrequencyResponse) {
   scene.ground = OscillatingGround(0, kFrames, 0.01, [](double s) { return 2e-3 * SumOfSines(s); });
   const PendulumRecording recording =
       RecordingOf(scene, model.fit.options.model, model.fit.parameters, kFrames, "A");
-  const ReportSection section = FrequencySection({model, model.fit, {ViewOf(recording)}});
+  const ReportSection section = FrequencySection(Seen(model, recording));
   ASSERT_EQ(section.figures.size(), 2u);
   EXPECT_EQ(section.figures[0].name, "frequency_angle_theta_by_ground_shift");
   EXPECT_EQ(section.figures[0].numbers.rows().size(), 7u);
@@ -69,7 +69,7 @@ TEST(StandingSections, QuietStance) {
   for (int i = 0; i < 4; ++i) model.fit.parameters[kSigmaX + i] = 1.0;
   const PendulumRecording recording = RecordingOf(StandingScene(0.02), model.fit.options.model,
                                                   model.fit.parameters, 1000, "A", true);
-  const ReportSection section = SwaySection({model, model.fit, {ViewOf(recording)}});
+  const ReportSection section = SwaySection(Seen(model, recording));
   ASSERT_EQ(section.tables.size(), 1u);
   ASSERT_EQ(section.tables[0].table.rows().size(), 3u);
   EXPECT_EQ(section.tables[0].table.rows()[1][1], "pressure");
