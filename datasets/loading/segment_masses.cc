@@ -1,6 +1,7 @@
 // datasets: adding up segments.
 #include "datasets/loading/segment_masses.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "models/restoration/body.h"
