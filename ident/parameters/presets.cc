@@ -270,6 +270,14 @@ void FreeSideways(FitOptions* o) {
   }
 }
 
+// One passive share, unless that of the damping is named: apart, it and the damping hardly are.
+void TiePassive(FitOptions* o) {
+  ParameterSpec& damping = o->table[kPassiveDamping];
+  if (o->model.delay == Delay::kNone || damping.named) return;
+  damping.tied_to = kPassiveStiffness;
+  damping.free = damping.pooled = false;
+}
+
 void FreeTerms(FitOptions* o) {
   FreeSelfForce(o->self_force, &o->table);
   FreeByTerm(o->model, &o->table);
@@ -282,6 +290,7 @@ void FreeTerms(FitOptions* o) {
   }
   FreeSideways(o);
   TieSideways(o);
+  TiePassive(o);
   // These two cannot fail; names can.
   if (PoolsAllOrNone(o->pool)) (void)PoolParameters(o);
 }

@@ -182,13 +182,20 @@ namespace {
 // "Sideways as forwards: Kp_phi = Kp_theta, a_y = a_x (--directions=isotropic).\n"
 std::string TiedText(const FitResult& result) {
   const ParameterTable& specs = result.options.table;
-  std::string tied;
+  std::string tied, passive;
   for (const ParameterSpec& spec : specs.specs) {
     if (!spec.tied_to || !Acts(spec.id, result.options.model)) continue;
     if (result.parameters[spec.id] == 0.0) continue;
+    if (spec.id == kPassiveDamping) {
+      passive =
+          "One passive share: passive_damping = passive_stiffness (--free=passive_damping: its "
+          "own).\n";
+      continue;
+    }
     tied += (tied.empty() ? "" : ", ") + spec.name + " = " + specs[*spec.tied_to].name;
   }
-  return tied.empty() ? "" : "Sideways as forwards: " + tied + " (--directions=isotropic).\n";
+  return (tied.empty() ? "" : "Sideways as forwards: " + tied + " (--directions=isotropic).\n") +
+         passive;
 }
 
 // LDP's Kd multiply differences from frame to frame; empty for models that are not LDP's.

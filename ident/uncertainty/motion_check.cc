@@ -24,7 +24,7 @@ struct Motion {
 
 struct Compared {
   Motion recorded, predicted;
-  double way = 0.0, error = 0.0;  // of the hip, squared, m^2
+  double way = 0.0, error = 0.0;  // of the hip, squared, m^2, without the markers' white noise
   bool whole = true;              // every frame was seen
 };
 
@@ -34,6 +34,9 @@ Compared MotionOf(const PendulumRecording& r, const std::vector<double>& raw,
   const int n = r.pushed_person;
   Compared c;
   double feet = 0.0;  // predicted less recorded
+  double noise =
+      0.0;  // half the squared changes from frame to frame of errors: what is white of them
+  Eigen::Vector2d before = Eigen::Vector2d::Zero();
   for (int t = 0; t < r.num_frames(); ++t) {
     const Eigen::Vector2d hip = (r.hip[n][t] - r.hip[n][0]).head<2>();
     const Eigen::Vector2d at = (r.states[n][t].q - r.states[n][0].q).head<2>();
@@ -52,7 +55,11 @@ Compared MotionOf(const PendulumRecording& r, const std::vector<double>& raw,
     c.predicted.feet.push_back(along.dot(at) + feet);
     if (seen > 0.0) c.way += hip.squaredNorm();
     c.error += error.squaredNorm();
+    if (t > 1 && seen > 0.0) noise += 0.5 * (error - before).squaredNorm();
+    before = error;
   }
+  c.error = std::max(0.0, c.error - noise);
+  c.way -= noise;
   return c;
 }
 

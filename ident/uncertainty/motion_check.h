@@ -19,7 +19,9 @@ struct MotionTest {
 
 struct MotionComparison {
   std::vector<MotionTest> tests;
-  double explained = 1.0;  // share of the hip's squared way from its first place; median recording
+  // Share of the hip's squared way from its first place, without the markers' white noise, which is
+  // told by how errors change from frame to frame; median recording.
+  double explained = 1.0;
 };
 
 // Empty where a rollout fails.
