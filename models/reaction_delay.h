@@ -9,6 +9,11 @@
 // and is else as without a delay. Stepping (the rows of the cart, and where feet step the capture
 // point) has no passive share, and a delay of its own with Delay::kAnkleAndStep.
 //
+// The rates of semi-implicit Euler are those between two frames: qd of frame t is the rate at
+// t - dt / 2, and that at t is extrapolated from it and the one before. (Taken for those at frames,
+// they come half a frame late, and a fit makes up for it by a passive share that is dt / 2 d too
+// large.)
+//
 // Between frames the state is a cubic through its neighbours (Catmull and Rom 1974; at the present
 // end the tangent is one-sided): smooth in d, so that d can be fitted. Before frame 0 people were
 // at rest in the posture of frame 0. Source of the model: Masani et al., J. Neurophysiol. 2003;
@@ -54,25 +59,47 @@ struct DelayedFrames {
   }
 };
 
+// Of what a delayed pose is made, and a delayed rate; delays shorter than half a frame do not reach
+// the rates.
+template <typename T>
+struct DelayedPlace {
+  DelayedFrames<T> of_pose, of_rate;
+  bool rate_moves;  // with the delay
+
+  DelayedPlace(const T& delay, int now, double dt)
+      : of_pose(delay, now, dt),
+        of_rate(RealPart(delay) > 0.5 * dt ? T(delay - 0.5 * dt) : T(0.0), now, dt),
+        rate_moves(RealPart(delay) > 0.5 * dt) {}
+};
+
 // The state so long before `now`, and its derivative by the delay.
 template <typename T>
 struct DelayedState {
   Vector4<T> q, qd, q_by_delay, qd_by_delay;
 
-  DelayedState(const RolloutPath<T>& path, int person, const DelayedFrames<T>& frames) {
+  DelayedState(const RolloutPath<T>& path, int person, const DelayedPlace<T>& place) {
     q.setConstant(T(0.0));
     qd = q_by_delay = qd_by_delay = q;
     for (int i = 0; i < DelayedFrames<T>::kCount; ++i) {
-      const int at = frames.frame - i;
-      const PendulumState<T>& state = path.At(std::max(at, 0), person);
-      q += frames.weight[i] * state.q;
-      q_by_delay += frames.by_delay[i] * state.q;
-      if (at < 0) continue;
-      qd += frames.weight[i] * state.qd;
-      qd_by_delay += frames.by_delay[i] * state.qd;
+      const PendulumState<T>& pose = path.At(std::max(place.of_pose.frame - i, 0), person);
+      q += place.of_pose.weight[i] * pose.q;
+      q_by_delay += place.of_pose.by_delay[i] * pose.q;
+      const int at = place.of_rate.frame - i;
+      if (at < 0) continue;  // at rest
+      qd += place.of_rate.weight[i] * path.At(at, person).qd;
+      if (place.rate_moves) qd_by_delay += place.of_rate.by_delay[i] * path.At(at, person).qd;
     }
   }
 };
+
+// The rates at a frame: by so much those of the frame, less the rest of those before.
+inline constexpr double kRateAhead = 1.5;
+template <typename T>
+Vector4<T> PresentRate(const RolloutPath<T>& path, int now, int person) {
+  const Vector4<T>& qd = path.At(now, person).qd;
+  if (now == 0) return qd;
+  return kRateAhead * qd + (1.0 - kRateAhead) * path.At(now - 1, person).qd;
+}
 
 // What control acts on: of the ankles (angles and their rates), and of steps.
 template <typename T>
@@ -96,14 +123,15 @@ Perceived<T> Perceive(Delay delay, const ParameterSet<T>& p, const RolloutPath<T
   const PendulumState<T>& state = path.At(now, person);
   Perceived<T> perceived(state);
   if (delay == Delay::kNone) return perceived;
-  const DelayedState<T> ankle(path, person, DelayedFrames<T>(p[kReactionDelay], now, dt));
+  const DelayedState<T> ankle(path, person, DelayedPlace<T>(p[kReactionDelay], now, dt));
+  const Vector4<T> rate = PresentRate(path, now, person);
   perceived.ankle.q = ankle.q;
   perceived.ankle.qd = ankle.qd;
   for (int i = 2; i < 4; ++i) {
     perceived.ankle.q[i] = ankle.q[i] + p[kPassiveStiffness] * (state.q[i] - ankle.q[i]);
-    perceived.ankle.qd[i] = ankle.qd[i] + p[kPassiveDamping] * (state.qd[i] - ankle.qd[i]);
+    perceived.ankle.qd[i] = ankle.qd[i] + p[kPassiveDamping] * (rate[i] - ankle.qd[i]);
   }
-  const DelayedState<T> step(path, person, DelayedFrames<T>(p[StepDelayOf(delay)], now, dt));
+  const DelayedState<T> step(path, person, DelayedPlace<T>(p[StepDelayOf(delay)], now, dt));
   perceived.step.q = step.q;
   perceived.step.qd = step.qd;
   return perceived;

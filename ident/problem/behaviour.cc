@@ -129,20 +129,28 @@ struct LateVelocity {
     const double longest = std::max(p[kReactionDelay], p[StepDelayOf(options.delay)]);
     const int lags = static_cast<int>(longest / dt) + DelayedFrames<double>::kCount;
     by_past = Eigen::MatrixXd::Zero(4, 6 * lags);
-    const auto add = [&](RestInput input, Parameter delay, const Eigen::Array<double, 6, 1>& share) {
+    const auto add = [&](RestInput input, Parameter delay,
+                         const Eigen::Array<double, 6, 1>& share) {
       const Eigen::Matrix<double, 4, 6> by =
           inverse * LinearizeAtRest(options.stance, self, p, input).by_state;
-      by_now += by * share.matrix().asDiagonal();
-      const DelayedFrames<double> frames(p[delay], 0, dt);
-      for (int i = 0; i < DelayedFrames<double>::kCount; ++i) {
-        const int lag = i - frames.frame;
-        const Eigen::Matrix<double, 4, 6> part =
-            frames.weight[i] * by * (1.0 - share).matrix().asDiagonal();
+      const auto add_lag = [&](int lag, const Eigen::Array<double, 6, 1>& weight) {
+        const Eigen::Matrix<double, 4, 6> part = by * weight.matrix().asDiagonal();
         if (lag <= 0) {
           by_now += part;
         } else {
           by_past.middleCols<6>(6 * (lag - 1)) += part;
         }
+      };
+      // Two angles, and the rates of all four.
+      Eigen::Array<double, 6, 1> pose, rate;
+      pose << 1.0, 1.0, 0.0, 0.0, 0.0, 0.0;
+      rate = 1.0 - pose;
+      add_lag(0, share * (pose + kRateAhead * rate));
+      add_lag(1, share * (1.0 - kRateAhead) * rate);
+      const DelayedPlace<double> place(p[delay], 0, dt);
+      for (int i = 0; i < DelayedFrames<double>::kCount; ++i) {
+        add_lag(i - place.of_pose.frame, place.of_pose.weight[i] * (1.0 - share) * pose);
+        add_lag(i - place.of_rate.frame, place.of_rate.weight[i] * (1.0 - share) * rate);
       }
     };
     // What the ankles feel of the cart is not late (Perceive).
@@ -161,8 +169,8 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const Body& body = scene.people[0].body;
   const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
   const bool late = options.delay != Delay::kNone;
-  RestJacobian<double> rest = LinearizeAtRest(options.stance, self, parameters,
-                                              late ? RestInput::kState : RestInput::kAll);
+  RestJacobian<double> rest =
+      LinearizeAtRest(options.stance, self, parameters, late ? RestInput::kState : RestInput::kAll);
   const Body at_rest = BodyAtRest(options.stance, body, parameters);
   const Eigen::Matrix4d inverse =
       InverseMassMatrix<double>(at_rest, Angles<double>(), at_rest.mass + scene.dt * rest.ground);

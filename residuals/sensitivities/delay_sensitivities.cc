@@ -10,12 +10,18 @@ namespace {
 
 // d [q, qd] of a delayed state / d columns. Before frame 0 people are at rest where they started.
 void DelayedBlock(const RolloutSensitivities& sensitivities, int person,
-                  const DelayedFrames<double>& frames, RolloutSensitivities::Block* block) {
+                  const DelayedPlace<double>& place, RolloutSensitivities::Block* block) {
   block->setZero();
   for (int i = 0; i < DelayedFrames<double>::kCount; ++i) {
-    const int at = frames.frame - i;
-    if (at < 0 || frames.weight[i] == 0.0) continue;  // a start's pose has no derivatives
-    *block += frames.weight[i] * sensitivities.At(at, person);
+    const int pose = place.of_pose.frame - i, rate = place.of_rate.frame - i;
+    // A start's pose has no derivatives.
+    if (pose >= 0) {
+      block->topRows<4>() += place.of_pose.weight[i] * sensitivities.At(pose, person).topRows<4>();
+    }
+    if (rate >= 0) {
+      block->bottomRows<4>() +=
+          place.of_rate.weight[i] * sensitivities.At(rate, person).bottomRows<4>();
+    }
   }
 }
 
@@ -30,23 +36,27 @@ void PerceivedSensitivities::Update(const Scene& scene, const ModelOptions& opti
                                     int person) {
   const PendulumState<double>& now = path.At(frame, person);
   step_delay_ = StepDelayOf(options.delay);
-  const DelayedFrames<double> ankle(p[kReactionDelay], frame, scene.dt);
-  const DelayedFrames<double> step(p[step_delay_], frame, scene.dt);
+  const DelayedPlace<double> ankle(p[kReactionDelay], frame, scene.dt);
+  const DelayedPlace<double> step(p[step_delay_], frame, scene.dt);
   const DelayedState<double> then(path, person, ankle), then_step(path, person, step);
   DelayedBlock(sensitivities, person, ankle, &ankle_);
   const double stiffness = p[kPassiveStiffness], damping = p[kPassiveDamping];
   const auto of_now = sensitivities.At(frame, person);
   ankle_.middleRows<2>(2) =
       (1.0 - stiffness) * ankle_.middleRows<2>(2) + stiffness * of_now.middleRows<2>(2);
-  ankle_.bottomRows<2>() =
-      (1.0 - damping) * ankle_.bottomRows<2>() + damping * of_now.bottomRows<2>();
+  ankle_.bottomRows<2>() = (1.0 - damping) * ankle_.bottomRows<2>() +
+                           damping * (frame > 0 ? kRateAhead : 1.0) * of_now.bottomRows<2>();
+  if (frame > 0) {
+    ankle_.bottomRows<2>() +=
+        damping * (1.0 - kRateAhead) * sensitivities.At(frame - 1, person).bottomRows<2>();
+  }
   ankle_by_delay_ << then.q_by_delay, then.qd_by_delay;
   by_stiffness_share_.setZero();
   by_damping_share_.setZero();
   ankle_by_delay_.segment<2>(2) *= 1.0 - stiffness;
   ankle_by_delay_.tail<2>() *= 1.0 - damping;
   by_stiffness_share_.segment<2>(2) = now.q.tail<2>() - then.q.tail<2>();
-  by_damping_share_.tail<2>() = now.qd.tail<2>() - then.qd.tail<2>();
+  by_damping_share_.tail<2>() = (PresentRate(path, frame, person) - then.qd).tail<2>();
   DelayedBlock(sensitivities, person, step, &step_);
   step_by_delay_ << then_step.q_by_delay, then_step.qd_by_delay;
 }

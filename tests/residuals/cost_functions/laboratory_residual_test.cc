@@ -115,16 +115,18 @@ TEST(ReactionDelay, OfWholeFramesLooksBack) {
   }
   constexpr double kStep = 0.01;
   for (int back = 0; back <= 7; ++back) {
-    const DelayedState<double> then(path, 0, DelayedFrames<double>(back * kStep, 7, kStep));
+    const DelayedState<double> then(path, 0, DelayedPlace<double>(back * kStep, 7, kStep));
     EXPECT_NEAR(then.q[2], 0.1 * (7 - back) * (7 - back), 1e-12);
-    EXPECT_NEAR(then.qd[0], 7 - back, 1e-12);
+    // qd of a frame is the rate half a frame before it.
+    if (back > 0) EXPECT_NEAR(then.qd[0], 7.5 - back, back < 6 ? 1e-12 : 0.1);
   }
+  EXPECT_NEAR(PresentRate(path, 7, 0)[0], 7.5, 1e-12);
   // Between frames a straight line stays one.
-  const DelayedState<double> between(path, 0, DelayedFrames<double>(2.3 * kStep, 7, kStep));
+  const DelayedState<double> between(path, 0, DelayedPlace<double>(2.3 * kStep, 7, kStep));
   EXPECT_NEAR(between.q[3], -0.2 * 4.7, 1e-12);
   EXPECT_NEAR(between.q_by_delay[3], 0.2 / kStep, 1e-9);
   // Before frame 0: at rest in the first posture.
-  const DelayedState<double> before(path, 0, DelayedFrames<double>(50 * kStep, 7, kStep));
+  const DelayedState<double> before(path, 0, DelayedPlace<double>(50 * kStep, 7, kStep));
   EXPECT_EQ(before.q, path.At(0, 0).q);
   EXPECT_TRUE(before.qd.isZero(0.0));
 }
@@ -208,9 +210,9 @@ TEST(Ground, WithoutForcesThePersonStaysInTheLaboratory) {
   for (GroundPose& pose : scene.ground.poses) pose[2] = pose[3] = 0.0;
   scene.ground = GroundThrough(scene.ground.poses, scene.dt);
   RolloutPath<double> path;
-  ASSERT_TRUE(Rollout<double>(scene, {}, {ParameterSet<double>{}}, InitialVelocities(scene), kFrames,
-                              &path)
-                  .ok);
+  ASSERT_TRUE(
+      Rollout<double>(scene, {}, {ParameterSet<double>{}}, InitialVelocities(scene), kFrames, &path)
+          .ok);
   EXPECT_GT(scene.ground.poses.back().norm(), 0.01);
   for (int t = 0; t < kFrames; ++t) {
     EXPECT_LT(InLaboratory(scene.ground, t, path.At(t, 0)).q.head<2>().norm(), 1e-12) << t;
