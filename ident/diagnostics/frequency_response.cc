@@ -132,7 +132,7 @@ FrequencyResponse ResponseOf(const Group& group, const GroupKey& key) {
     response.by_plates = response.by_plates || person.by_plates;
     all.Add(person.spectra);
   }
-  for (int bin : BinsWithPower(all)) {
+  for (int bin : BinsWithPower(all, group.periodic)) {
     if (const auto one = BinOf(group, key, all, bin)) response.bins.push_back(*one);
   }
   if (response.bins.empty()) return response;

@@ -13,7 +13,7 @@ constexpr double kSegments = 9.0;                   // that overlap by half
 constexpr double kShortest = 4.0, kLongest = 30.0;  // s
 // Overlapping by half under Hann's window, segments are as good as so many independent ones.
 constexpr double kOverlapWorth = 9.0 / 11.0;
-constexpr double kLeastPower = 1e-6, kLeastCoherence = 0.3, kChance = 0.05;
+constexpr double kLeastPower = 1e-6, kLeastLine = 1e-4, kLeastCoherence = 0.3, kChance = 0.05;
 
 double MeanOf(const std::vector<double>& x, int first, int frames) {
   double sum = 0.0;
@@ -56,8 +56,8 @@ int PeriodOf(const std::vector<double>& series) {
   bool went_away = false;
   int best = 0;
   double least = kRepeats * kRepeats * variance;
-  for (int period = 2; period <= (frames - first) / 2; ++period) {
-    const int compared = frames - first - period;
+  for (int period = 2; period <= frames / 2; ++period) {
+    const int compared = frames - first - period;  // three tenths of the series at least
     const double far = kAway * kAway * variance * compared;
     double sum = 0.0;
     for (int t = frames - 1; t - period >= first && sum <= far; --t) {
@@ -76,14 +76,15 @@ Segmenting SegmentsOf(const std::vector<double>& input, double dt) {
   const int frames = static_cast<int>(input.size());
   Segmenting segments;
   if (const int period = PeriodOf(input); period > 0) {
-    const int periods = frames / period, left_out = periods > 2 ? 1 : 0;
-    segments.periodic = true;
-    segments.frames = period;
-    segments.first = frames - (periods - left_out) * period;
+    // What is left out of the beginning, where the answer is not yet periodic.
+    const bool twice = frames / period == 2;
+    const int used = twice ? period + period / 2 : (frames / period - 1) * period;
+    segments = {period, frames - used, twice ? period / 2 : period, true};
     return segments;
   }
   const double seconds = std::clamp(2.0 * frames * dt / (kSegments + 1.0), kShortest, kLongest);
   segments.frames = static_cast<int>(std::lround(seconds / dt));
+  segments.step = segments.frames / 2;
   if (frames < 2 * segments.frames) segments.frames = 0;  // three segments
   return segments;
 }
@@ -118,14 +119,13 @@ CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<
   CrossSpectra spectra;
   const int frames = segments.frames;
   if (frames < 2) return spectra;
-  const int step = segments.periodic ? frames : frames / 2;
   const std::vector<double> window = segments.periodic ? std::vector<double>() : HannWindow(frames);
   const size_t bins = frames / 2 + 1;
   spectra.step_hz = 1.0 / (frames * dt);
   spectra.uu.assign(bins, 0.0), spectra.yy.assign(bins, 0.0), spectra.yu.assign(bins, 0.0);
   int count = 0;
   const int end = static_cast<int>(std::min(input.size(), output.size()));
-  for (int first = segments.first; first + frames <= end; first += step, ++count) {
+  for (int first = segments.first; first + frames <= end; first += segments.step, ++count) {
     const auto u = Transformed(input, first, frames, window);
     const auto y = Transformed(output, first, frames, window);
     for (size_t i = 0; i < bins; ++i) {
@@ -134,16 +134,18 @@ CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<
       spectra.yu[i] += y[i] * std::conj(u[i]);
     }
   }
-  spectra.averages = segments.periodic || count < 2 ? count : kOverlapWorth * count;
+  const double periods = 1.0 + (count - 1.0) * segments.step / frames;
+  spectra.averages = segments.periodic ? periods : count < 2 ? count : kOverlapWorth * count;
   return spectra;
 }
 
-std::vector<int> BinsWithPower(const CrossSpectra& spectra) {
+std::vector<int> BinsWithPower(const CrossSpectra& spectra, bool periodic) {
+  const double least = periodic ? kLeastLine : kLeastPower;
   std::vector<int> bins;
   double most = 0.0;
   for (size_t i = 1; i < spectra.uu.size(); ++i) most = std::max(most, spectra.uu[i]);
   for (size_t i = 1; i < spectra.uu.size(); ++i) {
-    if (spectra.uu[i] > kLeastPower * most) bins.push_back(static_cast<int>(i));
+    if (spectra.uu[i] > least * most) bins.push_back(static_cast<int>(i));
   }
   return bins;
 }

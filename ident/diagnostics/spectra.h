@@ -18,6 +18,7 @@ namespace pushid {
 struct Segmenting {
   int frames = 0;  // of a segment
   int first = 0;   // frame at which the first begins
+  int step = 0;    // frames from one to the next
   bool periodic = false;
 };
 
@@ -25,8 +26,8 @@ struct Segmenting {
 // standard deviation (root mean square; its first tenth is left out), in frames; 0: none.
 int PeriodOf(const std::vector<double>& series);
 
-// By the input: its periods, the first one left out of more than two (the answer to it is
-// not yet periodic); else nine segments that overlap by half, of 4 to 30 s. frames 0: too short.
+// By the input: its periods, the first of them left out (the answer to it is not yet periodic), of
+// two half of it; else nine segments that overlap by half, of 4 to 30 s. frames 0: too short.
 Segmenting SegmentsOf(const std::vector<double>& input, double dt);
 
 struct CrossSpectra {
@@ -47,9 +48,10 @@ struct CrossSpectra {
 CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<double>& output,
                             const Segmenting& segments, double dt);
 
-// Bins that say something: where the input has at least 1e-6 of its largest power, and the
+// Bins that say something: where the input has at least 1e-6 of its largest power
+// (periodic: 1e-4, so that those between its lines are left out), and the
 // coherence is 0.3 and beyond what two independent series have in one of 20 cases.
-std::vector<int> BinsWithPower(const CrossSpectra& spectra);
+std::vector<int> BinsWithPower(const CrossSpectra& spectra, bool periodic);
 bool IsCoherent(const CrossSpectra& spectra, int bin);
 
 // One-sided power spectral density of a series less its mean, by Welch with segments of so many

@@ -88,8 +88,9 @@ TextTable LoopTable(const FitResult& result) {
                   {true, false, false, false, false, false, true});
   for (const NamedLoop& loop : LoopsOf(result)) {
     const LoopNumbers& n = loop.numbers;
+    const auto if_stable = [&n](const std::string& text) { return n.stable ? text : "-"; };
     table.Add({loop.name + (n.stable ? "" : ": UNSTABLE"), Rounded(n.stiffness_ratio, 3),
-               OrDash(n.damping_ratio, 2), OrDash(n.natural_hz, 2),
+               if_stable(OrDash(n.damping_ratio, 2)), if_stable(OrDash(n.natural_hz, 2)),
                OrDash(n.phase_margin, 3, kDegrees), OrDash(n.delay_margin, 2), GainRange(n)});
   }
   return table;

@@ -59,11 +59,11 @@ TEST(Spectra, ChanceIsNoCoherence) {
   Random random(3);
   std::vector<double> u, y;
   for (int t = 0; t < 20000; ++t) u.push_back(random.Normal()), y.push_back(random.Normal());
-  const CrossSpectra spectra = CrossSpectraOf(u, y, {200, 0, false}, 0.01);
+  const CrossSpectra spectra = CrossSpectraOf(u, y, {200, 0, 100, false}, 0.01);
   int coherent = 0;
-  for (int bin : BinsWithPower(spectra)) coherent += IsCoherent(spectra, bin);
+  for (int bin : BinsWithPower(spectra, false)) coherent += IsCoherent(spectra, bin);
   EXPECT_LT(coherent, 3);
-  const CrossSpectra once = CrossSpectraOf(u, y, {20000, 0, true}, 0.01);
+  const CrossSpectra once = CrossSpectraOf(u, y, {20000, 0, 20000, true}, 0.01);
   EXPECT_NEAR(once.Coherence(5), 1.0, 1e-9);
   EXPECT_FALSE(IsCoherent(once, 5));
 }
@@ -115,6 +115,34 @@ TEST(FrequencyResponse, PeriodicGround) {
       EXPECT_NEAR(response.bins[5].hz, 1.7, 1e-9);
       EXPECT_FALSE(response.model.hz.empty());
     }
+  }
+}
+
+// Ground that starts from rest within a second, and two periods of 10 s, of two people; steps of
+// 10 ms are late by half of that.
+TEST(FrequencyResponse, TwoPeriodsFromRest) {
+  const double dt = 0.01;
+  const int frames = 2001;
+  const ModelOptions options = StandingOptions(Delay::kOne);
+  const ParameterSet<double> p = StandingGains(1500.0, 400.0, 0.1);
+  Scene scene = StandingScene(dt);
+  scene.ground = OscillatingGround(0, frames, dt, [](double s) {
+    const double u = std::min(s, 1.0);
+    return 2e-3 * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u) * SumOfSines(s);
+  });
+  const auto responses = FrequencyResponses(
+      {RecordingOf(scene, options, p, frames, "A"), RecordingOf(scene, options, p, frames, "B")},
+      options, {{p}, {p}});
+  ASSERT_EQ(responses.size(), 2u);
+  EXPECT_TRUE(responses[0].periodic);
+  EXPECT_NEAR(responses[0].segment_s, 10.0, 1e-9);
+  for (int line : {3, 5, 9, 13, 17}) {
+    const auto bin =
+        std::find_if(responses[0].bins.begin(), responses[0].bins.end(),
+                     [line](const FrequencyBin& b) { return std::abs(b.hz - 0.1 * line) < 1e-9; });
+    ASSERT_NE(bin, responses[0].bins.end()) << line;
+    EXPECT_NEAR(bin->log_gain, bin->model_log_gain, 0.05) << line;
+    EXPECT_NEAR(bin->phase, bin->model_phase, 0.05) << line;
   }
 }
 
