@@ -153,9 +153,9 @@ struct LateVelocity {
         add_lag(i - place.of_rate.frame, place.of_rate.weight[i] * (1.0 - share) * rate);
       }
     };
-    // What the ankles feel of the cart is not late (Perceive).
+    // All that the ankles feel of the cart is late (Perceive).
     Eigen::Array<double, 6, 1> passive;
-    passive << p[kPassiveStiffness], p[kPassiveStiffness], 1.0, 1.0, p[kPassiveDamping],
+    passive << p[kPassiveStiffness], p[kPassiveStiffness], 0.0, 0.0, p[kPassiveDamping],
         p[kPassiveDamping];
     add(RestInput::kAnkle, kReactionDelay, passive);
     add(RestInput::kStep, StepDelayOf(options.delay), Eigen::Array<double, 6, 1>::Zero());

@@ -89,10 +89,10 @@ LinearLoop::LinearLoop(const ModelOptions& options, const Body& person,
   now_ = by(RestInput::kState);
   const Row ankle = by(RestInput::kAnkle);
   step_ = by(RestInput::kStep);
-  // What is felt of the cart's velocity by the ankles is not late (Perceive).
-  Eigen::Array3d at_once{0.0, 1.0, 0.0};
+  // All that the ankles feel of the cart's velocity is late (Perceive).
+  Eigen::Array3d at_once{0.0, 0.0, 0.0};
   if (late) {
-    at_once = {p[kPassiveStiffness], 1.0, p[kPassiveDamping]};
+    at_once = {p[kPassiveStiffness], 0.0, p[kPassiveDamping]};
     ankle_delay_ = p[kReactionDelay];
     step_delay_ = p[StepDelayOf(options.delay)];
   }

@@ -225,8 +225,8 @@ TEST(LinearLoop, SlidingFeetToo) {
   }
 }
 
-// What the ankles feel of the cart's velocity is not late, in rollouts, here and in the modes of
-// their steps.
+// What the ankles feel of the cart's velocity is as late as all else, in rollouts, here and in the
+// modes of their steps.
 TEST(LinearLoop, ModesAreThoseOfSteps) {
   ModelOptions options;
   options.posture = Posture::kUpright;
