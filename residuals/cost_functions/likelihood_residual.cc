@@ -60,19 +60,20 @@ void Transitions(const LikelihoodProblem& problem, const std::vector<ParameterSe
       if (!density.measured) continue;
       forces.Prepare(n, &scratch);
       const Body& body = scene.people[n].body;
+      const BodyOf<T> moving = DynamicBody<T>(problem.options, body, parameters[n], false);
       const PendulumState<T>& state = states[n];
       const NetForce<T> force = forces.On(n, t, states[n].qd);
       const Matrix4<T> noise = NoiseFactor<T>(problem.options.process_noise, body, parameters[n],
                                               state.qd, Pushed(scene, n, t));
       const Vector4<T> rate = r.states[n][t + 1].qd.template cast<T>() - state.qd;
       if (problem.likelihood == Likelihood::kTransition) {
-        density.v = InverseDynamics<T>(body, state, Vector4<T>(rate / dt)) - force.Total();
+        density.v = InverseDynamics<T>(moving, state, Vector4<T>(rate / dt)) - force.Total();
         density.lower = noise / T(std::sqrt(scene.dt));
         continue;
       }
       const Vector4<T> white = drawn.template cast<T>() / T(std::sqrt(scene.dt));
       const Vector4<T> driven = force.Total() + noise * white;
-      density.v = rate - dt * Acceleration<T>(body, state, driven);
+      density.v = rate - dt * Acceleration<T>(moving, state, driven);
       density.lower = T(kPrintedScale) * Matrix4<T>::Identity();
     }
   }

@@ -85,6 +85,8 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
                       PerceivedJacobian* by_perceived) {
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   if (by_perceived != nullptr) by_perceived->SetZero();
+  // Of no person's own forces elsewhere, and so never cleared (SelfJacobian).
+  if (options.body == BodyModel::kTable) jacobian->by_parameter.col(kComHeight).setZero();
   switch (active) {
     case ActiveForces::kAll:
       if (perceived == nullptr) {

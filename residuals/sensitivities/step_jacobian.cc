@@ -21,7 +21,11 @@ Vector4<double> StepJacobian::Velocity(int frame, int person,
   const Vector4<double> a = forces_.AccelerationOf(person, force);
   SelfForce::Jacobian jacobian;
   NetForceJacobian(scene_, options_, self, p, person, frame, state, state.qd, &jacobian);
-  const Matrix4<double> rigid = InverseDynamicsJacobian(body, force.angles, state.qd, a);
+  const Body now = DynamicBody(options_, body, p, false);
+  GroundStep ground;
+  if (scene_.ground.moves()) ground = scene_.ground.steps[frame];
+  const Matrix4<double> rigid = InverseDynamicsJacobian(
+      now, force.angles, state.qd, Vector4<double>(a + ground.acceleration), ground.gravity);
   Eigen::Matrix<double, 4, 8> of_force = jacobian.by_state;
   of_force.middleCols<2>(2) -= rigid.leftCols<2>();
   of_force.middleCols<2>(6) -= rigid.rightCols<2>();
@@ -43,7 +47,7 @@ Vector4<double> StepJacobian::Velocity(int frame, int person,
       of_force += pair.by_states.block<4, 8>(4 * at, 8 * at);
     }
   }
-  *by_state = scene_.dt * InverseMassMatrix(body, force.angles, body.mass) * of_force;
+  *by_state = scene_.dt * InverseMassMatrix(now, force.angles, now.mass) * of_force;
   by_state->rightCols<4>() += Matrix4<double>::Identity();
   return state.qd + scene_.dt * a;
 }

@@ -194,7 +194,7 @@ def lag():
 
 
 RIG = ("--preset=ldp", "--body=table", "--friction=coulomb", "--stance=slide", "--fix=Kp_theta=0,Kp_phi=0,Kd_theta=0,Kd_phi=0,Kp_x=0",
-       "--settling_weight=0", "--start=nominal")
+       "--settling_weight=0", "--start=nominal", "--marker_noise=0.0001")
 RIG_FREE = "mu,mu_coulomb,cart_share,com_height,gyration_radius"
 
 
@@ -202,9 +202,10 @@ def write_rig(folder, seed, gain=1.0):
     """Recordings of a cart and a pole whose motor pushes `gain` times what is written; -> the truth."""
     random = np.random.default_rng(7000 + seed)
     rig, fps, recordings = lab.CartPole(), 200, []
-    for k in range(6):
-        tones = [(random.uniform(0.5, 1.2), f, random.uniform(0, 2 * math.pi)) for f in (0.4, 0.9, 1.7, 3.1)]
-        times, place, angle, force = rig.run(lambda t: sum(a * math.sin(2 * math.pi * f * t + p) for a, f, p in tones), 5.0, fps)
+    for k in range(24):
+        # A pull to and fro, after which the pole is still up; who waits longer sees it fall.
+        size, turn = random.uniform(1.5, 4.0) * (1 if k % 2 else -1), random.uniform(0.12, 0.2)
+        times, place, angle, force = rig.run(lambda t: size if t < turn else -size if t < 2 * turn else 0.5 * size, 0.5, fps)
         seen = place + 1e-4 * random.standard_normal(len(place)), angle + 5e-4 * random.standard_normal(len(angle))
         feet = np.column_stack([seen[0], np.zeros_like(times)])
         hip = np.column_stack([seen[0] + rig.length * np.sin(seen[1]), np.zeros_like(times), rig.length * np.cos(seen[1])])
