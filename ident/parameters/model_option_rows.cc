@@ -140,35 +140,6 @@ Row PresetPriorsRow() {
       [](bool value, FitOptions* o) { o->preset_priors = value; });
 }
 
-Row DelayRow() {
-  Row row = NameRow<Delay>(
-      "delay", "/delay", [](FitOptions & o) -> auto& { return o.model.delay; },
-      "reaction delay of active feedback: none, one (of all of it) or ankle_and_step (the feet's "
-      "own); reaction_delay and the passive shares of stiffness and damping are then fitted");
-  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
-    Delay delay;
-    if (MaybeError error = ParseName("--delay", text, &delay)) return error;
-    SetDelay(delay, o);
-    return std::nullopt;
-  };
-  return MayBeAbsent(row);
-}
-
-Row BodyRow() {
-  Row row = NameRow<BodyModel>(
-      "body", "/body", [](FitOptions & o) -> auto& { return o.model.body; },
-      "where a body's mass is: ldp (nine tenths at the hip; of who stands, an average body's), "
-      "anthropometric (by the recorded segments, de Leva 1996), or table (cart_share, com_height, "
-      "gyration_radius and push_gain, of robots and rigs: fixed or fitted)");
-  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
-    BodyModel body;
-    if (MaybeError error = ParseName("--body", text, &body)) return error;
-    SetBody(body, o);
-    return std::nullopt;
-  };
-  return MayBeAbsent(row);
-}
-
 std::string FrictionHelp() {
   std::string text;
   for (const auto& law : Names(FrictionKind{}))
@@ -226,14 +197,6 @@ Row InteractionNetworkRow() {
         o->model.interaction_network = network.value();
         return std::nullopt;
       });
-}
-
-FitOptionRow EditRow(const char* name, std::string TableEdits::*list, const char* help) {
-  return WordsRow(name, OptionStage::kTable, help, [list](const std::string& text, FitOptions* o) {
-    TableEdits edits;
-    edits.*list = text;
-    return EditTable(edits, &o->table);
-  });
 }
 
 }  // namespace
@@ -329,29 +292,5 @@ Row CovariateRow() {
 }
 
 }  // namespace
-
-// Which parameters are fitted.
-std::vector<FitOptionRow> TableOptionRows() {
-  return {
-      ContrastRow(),
-      CovariateRow(),
-      WordsRow("self_from", OptionStage::kOtherModel,
-               "a model whose self parameters (all but those between people) are used and held "
-               "fixed, such as a model of single people",
-               nullptr),
-      EditRow("free", &TableEdits::free, "parameters fitted: name or name=start, comma-separated"),
-      EditRow("fix", &TableEdits::fix,
-              "parameters held fixed: name or name=value, comma-separated"),
-      EditRow("prior", &TableEdits::prior,
-              "priors: name:mean:sigma in the parameter's unit, comma-separated"),
-      Decided(WordsRow("pool", OptionStage::kModel,
-                       "parameters that may differ by unit, comma-separated, or all, or none; "
-                       "all,-mu: all but mu",
-                       [](const std::string& text, FitOptions* o) -> MaybeError {
-                         o->pool = text;
-                         return std::nullopt;
-                       })),
-  };
-}
 
 }  // namespace pushid

@@ -71,6 +71,9 @@ FitOptionRow MayBeAbsent(FitOptionRow row);  // in older files
 
 // What the model is: the rows with rules of their own.
 std::vector<FitOptionRow> ModelOptionRows();
+// Delay and bodies.
+FitOptionRow DelayRow();
+FitOptionRow BodyRow();
 // How networks are trained.
 std::vector<FitOptionRow> NetworkOptionRows();
 // Edits of the parameter table.

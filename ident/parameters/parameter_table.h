@@ -81,7 +81,7 @@ struct ParameterTable {
   ParameterSpec* Find(const std::string& name);
   const ParameterSpec* Find(const std::string& name) const;
   std::vector<Parameter> Free() const;
-  ParameterSet<double> Values() const;               // nominal values
+  ParameterSet<double> Values() const;  // nominal values
   ParameterMap Map() const;  // fitted = free, in table order; with the covariates of all slopes
   void SetTied(ParameterSet<double>* values) const;  // to the values of what they are tied to
 };

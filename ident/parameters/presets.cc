@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "datasets/manifest/recording.h"
+#include "ident/parameters/laboratory_presets.h"
 #include "ident/parameters/ldp_presets.h"
 #include "models/learned_terms.h"
 #include "models/parameters.h"
@@ -14,17 +15,6 @@
 namespace pushid {
 namespace {
 
-struct Start {
-  Parameter id;
-  double value, sigma;  // of a weak prior
-};
-
-void Free(const Start& start, ParameterTable* table) {
-  ParameterSpec& spec = (*table)[start.id];
-  spec.free = true;
-  spec.nominal = start.value;
-  spec.prior = Prior{start.value, start.sigma};
-}
 FitOptions TailPreset() {
   FitOptions o;
   o.preset = "tail";
@@ -32,10 +22,11 @@ FitOptions TailPreset() {
   // Round numbers, not fitted ones. Each is the centre of a weak prior as wide as itself: stiffness
   // and cross term slide along a ridge that fits no better and predicts unseen pushes worse (hipADE
   // 0.112 against 0.096 m in cross-validation); the prior's exact centre hardly matters.
-  for (const Start& start : {Start{kMu, 40, 40}, Start{kKpTheta, 1400, 1400},
-                             Start{kKdTheta, 140, 140}, Start{kAx, -10, 10}, Start{kTailGain, 1, 1},
-                             Start{kTailTorque, 0.5, 0.5}, Start{kTailTime, 0.2, 0.2}}) {
-    Free(start, &o.table);
+  for (const WeakStart& start :
+       {WeakStart{kMu, 40, 40}, WeakStart{kKpTheta, 1400, 1400}, WeakStart{kKdTheta, 140, 140},
+        WeakStart{kAx, -10, 10}, WeakStart{kTailGain, 1, 1}, WeakStart{kTailTorque, 0.5, 0.5},
+        WeakStart{kTailTime, 0.2, 0.2}}) {
+    FreeFrom(start, &o.table);
   }
   // Not by the push's duration (tail_exponent): in the published recordings that stands for the
   // condition, and it sends people away who are pushed weakly for long.
@@ -122,10 +113,10 @@ void SetFixed(FitOptions* options) {
   options->model.directions = Directions::kBody;
   options->start = FitStart::kNominal;
   options->settling_weight = options->mode_weight = 0.0;
-  for (const Start& start :
-       {Start{kKpTheta, 1250, 1250}, Start{kKpPhi, 1250, 1250}, Start{kKdTheta, 300, 300},
-        Start{kKdPhi, 300, 300}, Start{kComHeight, 1.09, 0.055}}) {
-    Free(start, &options->table);
+  for (const WeakStart& start : {WeakStart{kKpTheta, 1250, 1250}, WeakStart{kKpPhi, 1250, 1250},
+                                 WeakStart{kKdTheta, 300, 300}, WeakStart{kKdPhi, 300, 300},
+                                 WeakStart{kComHeight, 1.09, 0.055}}) {
+    FreeFrom(start, &options->table);
   }
 }
 
@@ -151,32 +142,9 @@ void SetStance(Stance stance, FitOptions* options) {
     table[id].free = true;
     table[id].prior = Prior{table[id].nominal, 0.3 * table[id].nominal};
   }
-  for (const Start& start : {Start{kMu, 80, 80}, Start{kAx, 15, 10}, Start{kTailGain, 2, 2},
-                             Start{kSupportFront, 0.1, 0.03}}) {
-    Free(start, &table);
-  }
-}
-
-void SetBody(BodyModel body, FitOptions* options) {
-  options->model.body = body;
-  if (body != BodyModel::kTable) return;
-  ParameterSpec& com = options->table[kComHeight];
-  com.nominal = 1.0;
-  com.free = false;
-  com.prior.reset();
-}
-
-void SetDelay(Delay delay, FitOptions* options) {
-  options->model.delay = delay;
-  if (delay == Delay::kNone) return;
-  // A hinge on the free modes knows none of it; settling simulations do.
-  options->mode_weight = 0.0;
-  options->start = FitStart::kNominal;
-  // Weak priors: published delays are 0.10 to 0.16 s (median 0.134), passive shares 0 to 0.9.
-  for (const Start& start :
-       {Start{kReactionDelay, 0.13, 0.1}, Start{kStepDelay, 0.2, 0.15},
-        Start{kPassiveStiffness, 0.2, 0.2}, Start{kPassiveDamping, 0.2, 0.2}}) {
-    Free(start, &options->table);
+  for (const WeakStart& start : {WeakStart{kMu, 80, 80}, WeakStart{kAx, 15, 10},
+                                 WeakStart{kTailGain, 2, 2}, WeakStart{kSupportFront, 0.1, 0.03}}) {
+    FreeFrom(start, &table);
   }
 }
 
@@ -268,14 +236,6 @@ void FreeSideways(FitOptions* o) {
     sideways.nominal = forward.nominal;
     sideways.prior = forward.prior;
   }
-}
-
-// One passive share, unless that of the damping is named: apart, it and the damping hardly are.
-void TiePassive(FitOptions* o) {
-  ParameterSpec& damping = o->table[kPassiveDamping];
-  if (o->model.delay == Delay::kNone || damping.named) return;
-  damping.tied_to = kPassiveStiffness;
-  damping.free = damping.pooled = false;
 }
 
 void FreeTerms(FitOptions* o) {

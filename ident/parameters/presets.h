@@ -70,12 +70,6 @@ inline bool NeedsJoints(const FitOptions& options) {
   return options.body_weight > 0.0 || NeedsJoints(options.model);
 }
 
-// Masses by the table: those of LDP to start from, nothing free.
-void SetBody(BodyModel body, FitOptions* options);
-
-// With a delay its parameters are free, with weak priors.
-void SetDelay(Delay delay, FitOptions* options);
-
 // What the fit maximizes. A likelihood of single steps has process noise, at least a diagonal one,
 // and demands nothing of people in simulations: these see rollouts, which it does not fit.
 void SetLikelihood(Likelihood likelihood, FitOptions* options);

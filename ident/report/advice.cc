@@ -10,7 +10,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/report/fit_command.h"
-#include "ident/uncertainty/assumptions.h"
+#include "ident/report/loop_text.h"
 
 namespace pushid {
 namespace {
@@ -20,7 +20,6 @@ constexpr double kStrongLeverage = 1.0;  // standard errors that one recording m
 constexpr int kFewRecordings = 10;
 constexpr double kTermLevel = 0.001;  // of a score test: seven terms are tested at once
 constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
-constexpr double kLeastDelay = 0.02, kLagLevel = 0.05;        // s; of a test of the delay
 constexpr int kManyIterations = 1000, kManyStarts = 8;
 constexpr int kReplicas = 199, kManyReplicas = 999;
 
@@ -30,7 +29,8 @@ class Adviser {
 
   std::vector<Advice> Run() {
     Solver();
-    Lag();
+    if (const std::string lag = LagText(result_); !lag.empty())
+      Add(lag, Same().Set("delay", "one"));
     Identifiability();
     Shares();
     Person();
@@ -67,7 +67,6 @@ class Adviser {
   FitCommand SettleHarder(double weight) const;
   FitCommand DecayingModes() const;
   void Solver();
-  void Lag();
   void Identifiability();
   void Person();
   void People();
@@ -90,21 +89,6 @@ void Adviser::Solver() {
             .Set("max_iterations",
                  std::to_string(std::max(kManyIterations, 2 * result_.options.max_iterations)))
             .Set("starts", std::to_string(std::max(kManyStarts, 2 * result_.options.num_starts))));
-  }
-}
-
-// A delay that is left out is taken for less damping.
-void Adviser::Lag() {
-  for (const AssumptionTest& test : result_.verdict.assumptions) {
-    if (test.name != kReactionDelayName || test.error <= 0.0) continue;
-    const double t = test.wanted / test.error;
-    // One-sided: nobody reacts before they are pushed.
-    const double p = 0.5 * StudentTail(t, result_.verdict.freedom);
-    if (test.wanted < kLeastDelay || p > kLagLevel) continue;
-    Add("The response lags (the residuals ask for a reaction delay of " + Rounded(test.wanted, 2) +
-            " +- " + Rounded(test.error, 1) +
-            " s), and damping comes out too low without it; try --delay=one.",
-        Same().Set("delay", "one"));
   }
 }
 
@@ -241,13 +225,11 @@ void Adviser::Recordings() {
 }
 
 void Adviser::Intervals() {
-  if (model_.profiles.empty() && Acts(kReactionDelay, result_.options.model)) {
-    Add("Its profile shows how well the delay is told from damping.",
-        Check().Set("profile", "reaction_delay"));
-  }
   if (model_.profiles.empty()) {
-    Add("The intervals assume a quadratic cost; profiles show its true shape.",
-        Check().Set("profile", "all").Set("num_threads", "2"));
+    const bool late = Acts(kReactionDelay, result_.options.model);
+    Add(late ? "Its profile shows how well the delay is told from damping."
+             : "The intervals assume a quadratic cost; profiles show its true shape.",
+        Check().Set("profile", late ? "reaction_delay" : "all").Set("num_threads", "2"));
   }
   const bool several = result_.recordings.size() > 1;  // a single one is its only resample
   if (!model_.bootstrap && several) {

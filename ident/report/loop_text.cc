@@ -7,6 +7,8 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/linear_loop.h"
+#include "ident/problem/statistics.h"
+#include "ident/uncertainty/assumptions.h"
 
 namespace pushid {
 namespace {
@@ -100,6 +102,20 @@ std::string LoopText(const FitResult& result) {
   std::string text;
   for (const NamedLoop& loop : LoopsOf(result)) text += Sentence(loop) + "\n";
   return text;
+}
+
+std::string LagText(const FitResult& result) {
+  constexpr double kLeastDelay = 0.02, kLevel = 0.05;  // s; of a one-sided test
+  for (const AssumptionTest& test : result.verdict.assumptions) {
+    if (test.name != kReactionDelayName || test.error <= 0.0) continue;
+    // One-sided: nobody reacts before they are pushed.
+    const double p = 0.5 * StudentTail(test.wanted / test.error, result.verdict.freedom);
+    if (test.wanted < kLeastDelay || p > kLevel) continue;
+    return "The response lags (the residuals ask for a reaction delay of " +
+           Rounded(test.wanted, 2) + " +- " + Rounded(test.error, 1) +
+           " s), and damping comes out too low without it; try --delay=one.";
+  }
+  return "";
 }
 
 }  // namespace pushid

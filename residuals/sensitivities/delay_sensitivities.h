@@ -1,5 +1,5 @@
-// residuals: derivatives of what control perceives (models/reaction_delay.h), and of the forces that
-// act on it.
+// residuals: derivatives of what control perceives (models/reaction_delay.h), and of the forces
+// that act on it.
 //
 // With S(t) = d [q, qd] / d columns and w_i the weights of a delayed state,
 //   S_p = s S(t) + (1 - s) sum_i w_i S(t_i)  row by row, s the passive shares,
@@ -24,7 +24,8 @@ class PerceivedSensitivities {
 
   // Adds what the forces change by through what was perceived: by_ankle and by_step are their
   // derivatives by the two perceived states, over [q, qd].
-  void AddTo(const Eigen::Matrix<double, 4, 8>& by_ankle, const Eigen::Matrix<double, 4, 8>& by_step,
+  void AddTo(const Eigen::Matrix<double, 4, 8>& by_ankle,
+             const Eigen::Matrix<double, 4, 8>& by_step,
              Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>* by_column) const;
   // The same through the delays and the shares.
   void AddParameters(const Eigen::Matrix<double, 4, 8>& by_ankle,
@@ -34,8 +35,7 @@ class PerceivedSensitivities {
   // The same of the next step state: its derivative by the delay, and what it changes by through
   // what steps perceive.
   void AddToStep(StanceJacobian* stance) const;
-  void AddToStepState(const StanceJacobian& stance,
-                      Eigen::Ref<Eigen::RowVectorXd> next) const;
+  void AddToStepState(const StanceJacobian& stance, Eigen::Ref<Eigen::RowVectorXd> next) const;
 
  private:
   using Block = RolloutSensitivities::Block;

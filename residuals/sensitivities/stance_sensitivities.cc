@@ -8,8 +8,8 @@ namespace {
 
 using Ids = StanceParameters<double>;
 
-// Inputs of the jets: theta, phi, qd, s, the cart's own forces, what ankles perceive (two angles and
-// their rates), what steps perceive (two angles, qd), then the parameters.
+// Inputs of the jets: theta, phi, qd, s, the cart's own forces, what ankles perceive (two angles
+// and their rates), what steps perceive (two angles, qd), then the parameters.
 constexpr int kVelocityAt = 2, kStepAt = 6, kCartForceAt = 7, kAnkleAt = 9, kFootAt = 13;
 constexpr int kParametersAt = 19;
 constexpr int kInputs = kParametersAt + Ids::kCount;
@@ -157,9 +157,8 @@ void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
       jacobian->by_parameter(2 + i, StandingIds::kIds[k]) = torque[i].v[kStandingAt + k];
     }
   }
-  jacobian->by_parameter.col(kComHeight) -=
-      InverseDynamicsByComHeight(self.body, p[kComHeight], state, a + ground.acceleration,
-                                 ground.gravity);
+  jacobian->by_parameter.col(kComHeight) -= InverseDynamicsByComHeight(
+      self.body, p[kComHeight], state, a + ground.acceleration, ground.gravity);
   self.AddOwnJacobian(p, state, jacobian);
 }
 
@@ -171,8 +170,8 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               PerceivedJacobian* by_perceived) {
   const Perceived<double> perceived = late != nullptr ? *late : Perceived<double>(state);
   const PendulumState<double>& of_step = perceived.step;
-  const Vector4<double> own = self.Friction(p, state.qd) + self.Balance(p, of_step, of_step.qd) +
-                              self.Linear(p, of_step);
+  const Vector4<double> own =
+      self.Friction(p, state.qd) + self.Balance(p, of_step, of_step.qd) + self.Linear(p, of_step);
   SelfForce::Jacobian of_friction, of_control;
   self.FrictionJacobian(p, state.qd, &of_friction);
   self.ControlJacobian(p, of_step, of_step.qd, &of_control);

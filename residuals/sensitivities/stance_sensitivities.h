@@ -15,10 +15,10 @@ namespace pushid {
 
 // Derivatives of one step of one person, the parts that depend on the step state.
 struct StanceJacobian {
-  Vector4<double> by_step;                    // of F - D v' at fixed a, by s
-  Eigen::Matrix<double, 1, 8> next_by_state;  // of s' by [q, qd]
+  Vector4<double> by_step;                                  // of F - D v' at fixed a, by s
+  Eigen::Matrix<double, 1, 8> next_by_state;                // of s' by [q, qd]
   Eigen::Matrix<double, 1, 8> next_by_ankle, next_by_foot;  // by what is perceived, where late
-  double next_by_step = 0.0;                  // by s
+  double next_by_step = 0.0;                                // by s
   Eigen::Matrix<double, 1, kNumParameters> next_by_parameter;
 };
 
