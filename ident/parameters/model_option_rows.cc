@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/names.h"
-#include "ident/parameters/covariate_choice.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/network_json.h"
 #include "ident/parameters/option_row_makers.h"
@@ -253,44 +252,5 @@ std::vector<Row> ModelOptionRows() {
       PresetPriorsRow(),
   };
 }
-
-namespace {
-
-Row ContrastRow() {
-  Row row = WordsRow(
-      "contrast", OptionStage::kTable,
-      "a label with two values (patients and controls, eyes open and closed, before and after), of "
-      "a recording or of a person in the manifest's subjects: the difference of every free "
-      "parameter between them is fitted",
-      [](const std::string& text, FitOptions* o) -> MaybeError {
-        o->contrast = text;
-        return std::nullopt;
-      });
-  row.text = [](const FitOptions& o) { return o.contrast; };
-  row.json = "/contrast";
-  row.write = [](const FitOptions& o) { return Json(o.contrast); };
-  row.read = [](const Json& json, FitOptions* o) { o->contrast = json.get<std::string>(); };
-  return MayBeAbsent(row);
-}
-
-Row CovariateRow() {
-  Row row = WordsRow(
-      "covariate", OptionStage::kTable,
-      "numbers of people that parameters follow, as in 'Kp_theta ~ age + height; Kd_theta ~ age': "
-      "keys of the manifest's subjects, mass (kg) or rod (m)",
-      [](const std::string& text, FitOptions* o) -> MaybeError {
-        const Result<std::vector<CovariatesOfParameter>> chosen = ParseCovariates(text);
-        if (!chosen.ok()) return chosen.error();
-        o->covariates = text;
-        return std::nullopt;
-      });
-  row.text = [](const FitOptions& o) { return o.covariates; };
-  row.json = "/covariate";
-  row.write = [](const FitOptions& o) { return Json(o.covariates); };
-  row.read = [](const Json& json, FitOptions* o) { o->covariates = json.get<std::string>(); };
-  return MayBeAbsent(row);
-}
-
-}  // namespace
 
 }  // namespace pushid

@@ -37,8 +37,7 @@ class Adviser {
     People();
     Recordings();
     Intervals();
-    Pushes();
-    Horizons();
+    Questions();
     Terms();
     return advice_;
   }
@@ -73,8 +72,7 @@ class Adviser {
   void Recordings();
   void Intervals();
   void Shares();
-  void Pushes();
-  void Horizons();
+  void Questions();
   void Terms();
 
   const FittedModel& model_;
@@ -249,8 +247,7 @@ void Adviser::Intervals() {
   }
 }
 
-// The data's word comes first: where priors or the demand to settle decide, more terms would only
-// give them more to decide.
+// Where priors or the demand to settle decide, more terms would only give them more to decide.
 void Adviser::Shares() {
   std::string held;
   for (const Estimate& e : result_.estimates) {
@@ -263,14 +260,12 @@ void Adviser::Shares() {
   }
 }
 
-void Adviser::Pushes() {
+void Adviser::Questions() {
   const bool measured = !result_.push_range || result_.push_range->net_s.empty();
-  if (measured || model_.push_check) return;
-  Add("The pushes are net forces from inverse dynamics; check how its window affects estimates.",
-      Check().Set("push_check", "true"));
-}
-
-void Adviser::Horizons() {
+  if (!measured && !model_.push_check) {
+    Add("The pushes are net forces from inverse dynamics; check how its window affects estimates.",
+        Check().Set("push_check", "true"));
+  }
   if (model_.horizon_check || OfSteps() || result_.verdict.checked()) return;
   Add("A parameter with physical meaning keeps its value when fewer frames are fitted; check which "
       "do.",
