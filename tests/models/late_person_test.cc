@@ -29,7 +29,7 @@ struct LatePerson {
         -(1.0 - share) * (k * then + d * rate_then) - share * (k * lean + d * rate);
     const double moment = 0.97 * mass * 1.09 * rod;
     const double load = moment * (9.81 * std::sin(lean + tilt) - ground * std::cos(lean));
-    return (load + torque + push * rod * std::cos(lean)) / Inertia() - turn;
+    return (load + torque + push * rod) / Inertia() - turn;
   }
 };
 
