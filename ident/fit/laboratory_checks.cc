@@ -38,6 +38,12 @@ MaybeError CheckBodyModel(const FitOptions& options) {
                  "; add --stance=slide, or take the masses from the segments "
                  "(--body=anthropometric)"};
   }
+  const ParameterSpec& gyration = options.table[kGyrationRadius];
+  if (gyration.free && gyration.nominal == 0.0) {
+    return Error{
+        "gyration_radius is free and starts at 0, where nothing depends on it at first order; give "
+        "a start, as in --free=gyration_radius=0.3"};
+  }
   if (RodMoves(model)) return Error{"--body=table and --rod do not go together; leave one out"};
   return std::nullopt;
 }
