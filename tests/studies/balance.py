@@ -27,7 +27,7 @@ import studies
 from studies import number
 
 SETS = int(os.environ.get("PUSHID_STUDIES", "100"))
-FPS, SECONDS, SUBJECTS, TRIALS = 100, 3.0, 6, 4
+FPS, SECONDS, SUBJECTS, TRIALS = 100, 3.0, 6, 6
 GAINS = ("Kp_theta", "Kd_theta", "reaction_delay")
 
 
