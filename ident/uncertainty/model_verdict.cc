@@ -265,14 +265,33 @@ size_t ModelVerdict::NumTested() const {
                                            [](const AssumptionTest& t) { return t.error > 0.0; }));
 }
 
+namespace {
+
+// Whether people may react late for all that the recordings say. Then damping is less by the delay
+// times the stiffness, which no error of the damping shows. The test tells a delay from none; how
+// long it is it underrates.
+bool MayBeLate(const ModelVerdict& verdict) {
+  constexpr double kExcluded = 0.03;  // s
+  for (const AssumptionTest& test : verdict.assumptions) {
+    if (test.name != kReactionDelayName) continue;
+    return test.error <= 0.0 || test.wanted > 2.0 * test.error ||
+           test.wanted + 2.0 * test.error > kExcluded;
+  }
+  return false;
+}
+
+}  // namespace
+
 ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point,
                         Uncertainty* uncertainty) {
   const ModelVerdict verdict = ModelJudge(problem, point).Run(uncertainty);
+  const bool late = MayBeLate(verdict);
   for (Estimate& e : uncertainty->estimates) {
     if (e.status != EstimateStatus::kIdentified) continue;
+    const bool damping = e.name == "Kd_theta" || e.name == "Kd_phi";
     if (e.total && !IsNarrow(e.value, e.total->lower95, e.total->upper95)) {
       e.status = EstimateStatus::kWeak;
-    } else if (verdict.fails()) {
+    } else if (verdict.fails() || (late && damping)) {
       e.status = EstimateStatus::kModelDependent;
     }
   }
