@@ -267,9 +267,8 @@ size_t ModelVerdict::NumTested() const {
 
 namespace {
 
-// Whether people may react late for all that the recordings say. Then damping is less by the delay
-// times the stiffness, which no error of the damping shows. The test tells a delay from none; how
-// long it is it underrates.
+// Whether people may react late for all that the recordings say: damping is then less by the delay
+// times the stiffness. The test tells a delay from none, and underrates how long it is.
 bool MayBeLate(const ModelVerdict& verdict) {
   constexpr double kExcluded = 0.03;  // s
   for (const AssumptionTest& test : verdict.assumptions) {
