@@ -216,8 +216,8 @@ TEST(Stance, IsFiniteAtTheEdges) {
       PendulumState<double> state;
       state.q[2] = std::asin(offset / 0.95 * 0.9);
       state.step = step;
-      const StanceForces<double> forces =
-          StanceAt<double>(self, Stances(p), Angles<double>(state.q), state, {0.0, 0.0});
+      const StanceForces<double> forces = StanceAt<double>(
+          self, Stances(p), Angles<double>(state.q), state, Perceived<double>(state), {0.0, 0.0});
       EXPECT_TRUE(forces.torque.allFinite());
       EXPECT_TRUE(std::isfinite(forces.ground) && std::isfinite(forces.next_step));
       EXPECT_GE(forces.next_step, 0.0);
