@@ -157,7 +157,7 @@ MaybeError CheckPushed(const std::vector<Recording>& recordings) {
     if (!recording.pushes.empty() || !recording.ground.empty()) continue;
     return Error{
         "recording " + recording.id +
-            " has neither a push nor ground that moves: estimate a push with pushid-push, or "
+            " has no push, and no ground that moves: estimate a push with pushid-push, or "
             "leave it out (--leave_out)",
         FLAGS_recordings};
   }

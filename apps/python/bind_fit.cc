@@ -80,7 +80,7 @@ Provenance From(const GivenOptions& given, const FitOptions& options) {
 void CheckRecordings(const std::vector<SharedRecording>& recordings) {
   if (recordings.empty()) Raise(Fault::kUsage, Error{"there are no recordings"});
   for (const SharedRecording& one : recordings) {
-    if (!one->pushes.empty()) continue;
+    if (!one->pushes.empty() || !one->ground.empty()) continue;
     Raise(Fault::kData, Error{"recording " + one->id +
                               " has no push: give one, or estimate it by "
                               "pushid.estimate_push"});

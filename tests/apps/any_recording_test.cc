@@ -196,7 +196,7 @@ TEST_F(AnyRecordingTest, Manifest) {
   run = RunApp("pushid-fit", {measured});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out, "warning: every push is external"));
-  run = RunApp("pushid-fit", {measured, "--fix=mu,Kp_theta,a_x"});
+  run = RunApp("pushid-fit", {measured, "--fix=mu,Kp_theta,Kd_theta,a_x"});
   EXPECT_TRUE(Refused(run, {"every parameter that acts on these recordings is fixed"}));
   const int files = CountFiles();
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> bad = {

@@ -19,7 +19,7 @@ struct UsageCase {
 };
 
 TEST_F(BadUsageTest, FitFlags) {
-  const std::string all_free = "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time";
+  const std::string all_free = "mu,Kp_theta,Kd_theta,a_x,tail_gain,tail_torque,tail_time";
   const std::vector<UsageCase> cases = {
       {{"--fix=mew"}, {"--fix", "'mew'", "not a parameter", "Kp_theta"}},
       {{"--free=mew"}, {"--free", "'mew'"}},
@@ -327,7 +327,7 @@ TEST_F(BadUsageTest, CrossValidationFlags) {
       {{"--compare=pd: --model_out=x"}, {"--compare", "'--model_out=x'"}},
       {{"--compare=pd: --json_out=x"}, {"--compare", "'--json_out=x'"}},
       {{"--compare=a: --seed=2; a: --seed=3"}, {"--compare", "'a'"}},
-      {{"--compare=held: --fix=mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time"},
+      {{"--compare=held: --fix=mu,Kp_theta,Kd_theta,a_x,tail_gain,tail_torque,tail_time"},
        {"--compare", "'held'", "nothing is left"}},
   };
   for (const UsageCase& one : cases) {

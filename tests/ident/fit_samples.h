@@ -19,6 +19,13 @@
 
 namespace pushid {
 
+// Damping held where the synthetic people have it, for studies of the other parameters.
+inline FitOptions HoldDamping(FitOptions options) {
+  ParameterSpec& spec = options.table[kKdTheta];
+  spec = BaseTable()[kKdTheta];
+  return options;
+}
+
 // 4 people, 6 pushes each, 70 frames: 24 recordings.
 inline SyntheticOptions SmallStudy() {
   SyntheticOptions options;

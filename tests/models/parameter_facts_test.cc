@@ -117,7 +117,8 @@ TEST(ForceParts, HaveNamesOfTheirOwnAndOwnIsTheLast) {
   std::set<std::string_view> names(std::begin(kForcePartNames), std::end(kForcePartNames));
   EXPECT_EQ(names.size(), static_cast<size_t>(kNumForceParts));
   EXPECT_EQ(NameOf(ForcePart::kInteraction), "interaction");
-  EXPECT_EQ(kForceParts.back(), ForcePart::kOwn);
+  EXPECT_EQ(kForceParts[kNumForceParts - 2], ForcePart::kOwn);
+  EXPECT_EQ(kForceParts.back(), ForcePart::kInertia);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ TEST(Standing, TorqueByHand) {
 // 85 kg: 82.45 kg above the ankles, 1.0355 m up, turn with 1.15 m h^2 = 101.7 kg m^2.
 TEST(Standing, BodyByHand) {
   const BodyOf<double> body = StandingBody(Body{}, 1.09);
-  const double l = body.rod_length;
+  const double l = body.pendulum_length();
   EXPECT_NEAR(body.point_mass() * l, 82.45 * 1.0355, 1e-9);
   EXPECT_NEAR(body.point_mass() * l * l, 1.15 * 82.45 * 1.0355 * 1.0355, 1e-9);
 }

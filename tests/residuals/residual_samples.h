@@ -39,12 +39,22 @@ inline ParameterSet<double> RecoveringParameters() {
   return p;
 }
 
+inline bool IsOfLaboratory(int id) {
+  return id == kCoulombFriction || (id >= kReactionDelay && id <= kPushGain);
+}
+
 // Each of them times a random factor within [1 - spread, 1 + spread]; a rollout feels no noise.
 inline ParameterSet<double> RandomRecoveringParameters(Random* random, double spread) {
   ParameterSet<double> p = RecoveringParameters();
-  for (int id = 0; id < kNumParameters; ++id) {
-    if (!IsNoiseParameter(static_cast<Parameter>(id)))
+  for (int id = 0; id < kFirstOwnParameter; ++id) {
+    if (!IsNoiseParameter(static_cast<Parameter>(id)) && !IsOfLaboratory(id))
       p[id] *= random->Uniform(1.0 - spread, 1.0 + spread);
+  }
+  // Six more, as many as own parameters there once were: what is drawn behind them stays.
+  Random late(random->Fork());
+  for (int i = 0; i < 5; ++i) random->Unit();
+  for (int id = 0; id < kFirstOwnParameter; ++id) {
+    if (IsOfLaboratory(id)) p[id] *= late.Uniform(1.0 - spread, 1.0 + spread);
   }
   return p;
 }

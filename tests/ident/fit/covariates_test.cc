@@ -156,7 +156,7 @@ TEST(Covariates, BadInputIsNamed) {
   const std::vector<Case> cases = {
       {"", "Kp_thet ~ age", "'Kp_thet', which is not a parameter; is Kp_theta meant?"},
       {"", "Kp_x ~ age", "Kp_x, which is fixed; free it first (--free=Kp_x)"},
-      {"", "mu ~ agee", "'agee', a number that nobody has; is age meant?"},
+      {"", "mu ~ agee", "'agee', a number that nobody has; there are age, height, mass, rod, shoe"},
       {"", "mu ~ weight", "there are age, height, mass, rod, shoe"},
       {"", "mu ~ height", "height, which is not known of " + last},
       {"", "mu ~ shoe", "shoe, which has 2 distinct values among 4 people"},

@@ -84,11 +84,12 @@ TEST(FitSetup, StanceBringsWhatGoesWithIt) {
   const FitOptions holds = MakeFitOptions({{"preset", "tail"}, {"stance", "threshold"}}).value();
   EXPECT_EQ(holds.model.push, PushUse::kAsRecorded);
   EXPECT_EQ(holds.start, FitStart::kNominal);
-  for (Parameter id : {kMu, kAx, kTailGain, kSupportFront, kStepOnset, kStepRelease}) {
+  for (Parameter id : {kMu, kAx, kTailGain, kSupportFront, kStepOnset, kStepRelease, kKpTheta,
+                       kKpPhi, kKdTheta, kKdPhi}) {
     EXPECT_TRUE(holds.table[id].free) << holds.table[id].name;
     EXPECT_TRUE(holds.table[id].prior.has_value()) << holds.table[id].name;
   }
-  for (Parameter id : {kKpTheta, kTailTorque, kSupportBack}) {
+  for (Parameter id : {kTailTorque, kSupportBack}) {
     EXPECT_FALSE(holds.table[id].free) << holds.table[id].name;
   }
   for (const auto& [flag, value] :
@@ -226,7 +227,7 @@ TEST(FitSetup, BadOptionsAreNamed) {
 TEST(FitSetup, OptionsOfGroupsAreNotRefusedTooEarly) {
   for (const GivenOptions& given :
        {GivenOptions{{"pool", "contact_stiffness"}},
-        GivenOptions{{"fix", "mu,Kp_theta,a_x,tail_gain,tail_torque,tail_time"}}}) {
+        GivenOptions{{"fix", "mu,Kp_theta,Kd_theta,a_x,tail_gain,tail_torque,tail_time"}}}) {
     EXPECT_EQ(Complaint(given), "") << given[0].first;
     EXPECT_FALSE(MakeFitOptions(Merged(given, {{"preset", "tail"}}), nullptr, given).ok());
   }
@@ -296,7 +297,7 @@ TEST(PrepareFit, HoldsWhatHasNoEffectAndSaysWhatIsLeft) {
   Warnings warnings;
   ASSERT_FALSE(PrepareFit(recordings, &options, &warnings));
   EXPECT_FALSE(options.table[kTailTime].free);
-  for (Parameter id : {kMu, kKpTheta, kAx}) options.table[id].free = false;
+  for (Parameter id : {kMu, kKpTheta, kKdTheta, kAx}) options.table[id].free = false;
   const MaybeError error = PrepareFit(recordings, &options);
   ASSERT_TRUE(error);
   EXPECT_TRUE(Contains(error->ToString(), "every parameter is fixed"));

@@ -41,7 +41,7 @@ FitOptions ByLikelihood(const SyntheticOptions& study, const std::string& likeli
 
 // Whole rollouts; nobody has set the noise.
 FitOptions NoisyRollouts(const SyntheticOptions& study) {
-  FitOptions options = DefaultFit(study);
+  FitOptions options = HoldDamping(DefaultFit(study));
   options.model.process_noise = {};
   options.model.process_noise.diagonal = true;
   for (ParameterSpec& spec : options.table.specs) {

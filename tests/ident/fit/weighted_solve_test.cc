@@ -111,7 +111,7 @@ TEST(WeightedSolve, ADemandThatCannotBeMetIsNotCalledHeld) {
 TEST(WeightedSolve, StartsAreComparedByTheSameWeights) {
   const SyntheticOptions study = Truth(34.0, 1800.0, -10.5);
   const auto recordings = MakePendulums(study);
-  FitOptions options = MakePreset("tail").value();
+  FitOptions options = HoldDamping(MakePreset("tail").value());
   options.num_starts = 4;
   ASSERT_FALSE(PrepareFit(recordings, &options));
   const FitResult result = Fit(recordings, options);

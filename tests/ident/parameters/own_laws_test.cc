@@ -86,7 +86,7 @@ TEST(OwnLaws, RefusalsSayWhatToDoAndAddNothing) {
   };
   refused(BrakeLaw("other"), "force law 'brake': the model has one of that name; rename it");
   refused(std::make_shared<Idle>("idle", kNumOwnParameters),
-          "has 6 parameters; there is room for 5");
+          "has 16 parameters; there is room for 15");
   refused(MakeForceLaw("again", {{"mu", "b", "1", 0.1, 0.0, 5.0, 0.1}}, Brake{}),
           "there is a parameter 'mu' already");
 }

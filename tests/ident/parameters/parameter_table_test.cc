@@ -25,8 +25,8 @@ std::set<std::string> FreeNames(const ParameterTable& table) {
 
 TEST(Presets, FreeWhatTheyPromise) {
   const FitOptions tail = MakePreset("tail").value(), ldp = MakePreset("ldp").value();
-  EXPECT_EQ(FreeNames(tail.table), (std::set<std::string>{"mu", "Kp_theta", "a_x", "tail_gain",
-                                                          "tail_torque", "tail_time"}));
+  EXPECT_EQ(FreeNames(tail.table), (std::set<std::string>{"mu", "Kp_theta", "Kd_theta", "a_x",
+                                                          "tail_gain", "tail_torque", "tail_time"}));
   EXPECT_EQ(tail.table[kTailExponent].nominal, 0.0);
   for (const ParameterSpec& spec : tail.table.specs) {
     EXPECT_EQ(spec.pooled, spec.id == kTailTime) << spec.name;
@@ -123,7 +123,7 @@ TEST(ParameterTable, MapHoldsTheFreeOnesInOrder) {
   ParameterTable table = Tail();
   table[kKpTheta].pooled = table[kTailTime].pooled = true;
   const ParameterMap map = table.Map();
-  ASSERT_EQ(map.fitted.size(), 6u);
+  ASSERT_EQ(map.fitted.size(), 7u);
   EXPECT_EQ(map.num_deviations, 2);
   for (size_t i = 1; i < map.fitted.size(); ++i) {
     EXPECT_LT(map.fitted[i - 1].parameter, map.fitted[i].parameter);

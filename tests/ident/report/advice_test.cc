@@ -24,9 +24,9 @@ SyntheticOptions Study(uint64_t seed) {
   return study;
 }
 
-FittedModel FitOf(const SyntheticOptions& study) {
+FittedModel FitOf(const SyntheticOptions& study,
+                  FitOptions options = MakePreset("tail").value()) {
   const auto recordings = MakePendulums(study);
-  FitOptions options = MakePreset("tail").value();
   EXPECT_FALSE(PrepareFit(recordings, &options));
   FittedModel model;
   model.fit = Fit(recordings, options);
@@ -58,7 +58,7 @@ TEST(Advice, ScoresFindAMissingTerm) {
   SyntheticOptions study = Study(3);
   study.subject_spread = 0.02;
   study.parameters[kTx] = 1.5;
-  const FittedModel model = FitOf(study);
+  const FittedModel model = FitOf(study, HoldDamping(MakePreset("tail").value()));
   const auto& tests = model.fit.verdict.assumptions;
   const auto least = std::find_if(tests.begin(), tests.end(),
                                   [](const AssumptionTest& t) { return t.name == "t_x"; });

@@ -39,7 +39,7 @@ TEST(Starts, SyntheticOneOptimum) {
   SyntheticOptions study = SmallStudy();
   study.joint_noise_m = 0.002;
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  const FitOptions options = DefaultFit(study);
+  const FitOptions options = HoldDamping(DefaultFit(study));
   ExpectOneOptimum(FitProblem(recordings, options));
 }
 
@@ -58,7 +58,7 @@ TEST(Starts, RealRecordingsOneOptimum) {
   const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", load);
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
   const std::vector<PendulumRecording> recordings = AsPendulums(loaded.value());
-  const FitOptions preset = MakePreset("tail").value();
+  const FitOptions preset = HoldDamping(MakePreset("tail").value());
   FitOptions options;
   options.model = preset.model;
   options.table = preset.table;

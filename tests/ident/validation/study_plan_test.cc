@@ -40,7 +40,7 @@ std::unique_ptr<Solved> SolveSet(const SyntheticOptions& study,
                                  std::vector<PendulumRecording> recordings) {
   auto solved = std::make_unique<Solved>();
   solved->recordings = std::move(recordings);
-  solved->options = UnbiasedFit(study);
+  solved->options = HoldDamping(UnbiasedFit(study));
   EXPECT_FALSE(PrepareFit(solved->recordings, &solved->options));
   solved->problem = std::make_unique<FitProblem>(solved->recordings, solved->options);
   solved->point = Solve(*solved->problem).Best().to;
