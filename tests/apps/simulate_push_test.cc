@@ -43,7 +43,7 @@ TEST_F(SimulateAppTest, TheDefaultFitFindsItsTruth) {
   }
   const AppRun report =
       RunApp("pushid-report", {"--model=" + Path("model.json"), "--truth=" + manifest});
-  EXPECT_TRUE(Contains(report.out, "6 of 6 intervals cover the truth"));
+  EXPECT_TRUE(Contains(report.out, "7 of 7 intervals cover the truth"));
 }
 
 // Rows of people who touch, as preset group fits them.
@@ -83,7 +83,7 @@ TEST_F(SimulateAppTest, TheTruthMayStand) {
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   const AppRun report =
       RunApp("pushid-report", {"--model=" + Path("model.json"), "--truth=" + manifest});
-  EXPECT_TRUE(Contains(report.out, "7 of 7 intervals cover the truth")) << report.out;
+  EXPECT_TRUE(Contains(report.out, "11 of 11 intervals cover the truth")) << report.out;
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--model=" + Path("model.json"),
                                                  "--truth_stance=slide", "--out=" + Path("again")}),
                       {"--truth_stance"}));

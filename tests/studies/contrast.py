@@ -7,7 +7,7 @@ varies.
 """
 import studies
 
-STUDY = ["--studies=200", "--num_threads=2"]
+STUDY = ["--studies=24", "--num_threads=2"]
 
 
 def contrast():

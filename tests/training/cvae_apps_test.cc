@@ -78,8 +78,8 @@ TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
 
 // Pendulums with rods that move, restored and fitted to bodies through the chain.
 TEST_F(CvaeAppTest, IsTrainedAsAWholeOnRodsThatMove) {
-  const std::string model =
-      "--model=" + FitModel("rod.json", {"--rod=linear", "--max_iterations=2"});
+  const std::string model = "--model=" + FitModel("rod.json", {"--rod=linear", "--max_iterations=2",
+                                                               "--fix=Kd_theta=70"});
   const AppRun run = RunApp(
       "pushid-train-restoration",
       {Recordings(), model, "--crossvalidate=2", "--kind=cvae", "--effort=0.001", "--body_weight=1",
