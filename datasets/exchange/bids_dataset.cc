@@ -114,6 +114,18 @@ MaybeError WriteRecording(const std::string& folder, const Recording& recording,
   return std::nullopt;
 }
 
+// What a data set would lose: read again, it would be another experiment.
+MaybeError CheckLaboratory(const Recording& recording) {
+  std::string lost = recording.ground.empty() ? "" : "ground that moves (\"ground\")";
+  for (const RecordedPerson& person : recording.people) {
+    if (lost.empty() && !person.plates.empty()) lost = "force platforms (\"force_plates\")";
+  }
+  if (lost.empty()) return std::nullopt;
+  return Error{"recording " + Quoted(recording.id) + " has " + lost +
+               ", which the exported data set would lose; leave the recording out "
+               "(--leave_out), or take the key out of its manifest"};
+}
+
 MaybeError WriteParticipants(const std::string& folder,
                              const std::map<std::string, double>& masses) {
   std::string text = "participant_id\tmass_kg\n";
@@ -145,6 +157,7 @@ MaybeError WriteBidsDataset(const std::string& folder, const std::vector<Recordi
   std::map<std::string, double> masses;
   for (const Recording& recording : recordings) {
     if (MaybeError failed = ids.Add(recording.id)) return failed;
+    if (MaybeError failed = CheckLaboratory(recording)) return failed;
     for (const RecordedPerson& person : recording.people) {
       if (MaybeError failed = subjects.Add(person.subject_id)) return failed;
       masses[person.subject_id] = person.mass_kg;

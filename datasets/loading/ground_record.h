@@ -3,9 +3,10 @@
 //   time,x,y,theta,phi
 //   0.00,0.000,0.0,0.0,0.0
 //   0.01,0.002,0.0,0.0,0.0
-// x, y: m, or m/s, or m/s^2; theta and phi: tilt about y and about x as the pendulum's angles are,
-// rad, or per s, or per s^2. Columns that lack are zero. Rates are summed up so that they are those
-// by which a rollout steps (models/ground.h), from rest.
+// x, y (x, z of a file whose y is up): m, or m/s, or m/s^2; theta and phi: tilt about y and about x
+// as the pendulum's angles are, whatever the file's axes, rad, or per s, or per s^2. Columns that
+// lack are zero. Rates are summed up so that they are those by which a rollout steps
+// (models/ground.h), from rest. Of markers, the shift is that of the ground under the first person.
 #pragma once
 
 #include <vector>
@@ -15,14 +16,23 @@
 
 namespace pushid {
 
-// A platform moves at frame 0 where it is faster than this, m/s or rad/s: people would not be at
-// rest.
+// A platform moves at frame 0 where it is faster than this, m/s or rad/s, by more than its noise:
+// people would not be at rest.
 inline constexpr double kGroundAtRest = 0.02;
+
+// How the recording's motion was read: the units and the rate of markers in its file, and the
+// low-pass of its positions, which the ground gets too. Nothing of it counts for a CSV but that.
+struct GroundReading {
+  double metres_per_unit = 1.0;
+  double file_fps = 0.0;    // before resampling
+  double lowpass_hz = 0.0;  // 0: none
+};
 
 // Poses at the recording's frames (its fps, its number of frames), counted from frame 0. Errors:
 // those of the files, a record that ends early or begins late, ground that does not start at rest,
-// markers that are not there or not seen.
+// markers that are not there, not seen or on a line.
 Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
-                                           const Recording& recording);
+                                           const Recording& recording,
+                                           const GroundReading& reading = {});
 
 }  // namespace pushid

@@ -51,6 +51,7 @@ class PersonLoader {
     if (MaybeError failed = SetRate(motion.frame_time_s)) return *std::move(failed);
     LoadedPerson loaded;
     loaded.fps = fps_;
+    loaded.metres_per_unit = motion.metres_per_unit;
     loaded.file_hash = mapping_hash_ + motion.content_hash;
     RecordedPerson& person = loaded.person;
     person.subject_id = entry_.subjects[index_].id;

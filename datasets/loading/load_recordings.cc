@@ -68,15 +68,15 @@ MaybeError LoadPushes(const std::string& manifest, const ManifestPush& entry, Co
 }
 
 // Ground and platforms, at the frames of the motion as it is now.
-MaybeError LoadLaboratory(const ManifestRecording& entry, const LoadOptions& options,
+MaybeError LoadLaboratory(const ManifestRecording& entry, const GroundReading& reading,
                           Recording* recording) {
   if (entry.ground.given()) {
-    Result<std::vector<GroundPose>> ground = LoadGround(entry, *recording);
+    Result<std::vector<GroundPose>> ground = LoadGround(entry, *recording, reading);
     if (!ground.ok()) return ground.error();
     recording->ground = std::move(ground.value());
   }
   for (const ManifestPlates& plates : entry.plates) {
-    if (MaybeError failed = LoadPlates(entry, plates, options.preparation.lowpass_hz, recording)) {
+    if (MaybeError failed = LoadPlates(entry, plates, reading.lowpass_hz, recording)) {
       return failed;
     }
   }
@@ -100,13 +100,17 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
     warnings->emplace_back("recording " + Quoted(entry.id) + " " + misspelt, entry.id, misspelt);
   }
 
+  GroundReading reading;
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
   for (std::size_t i = 0; i < entry.motion.size(); ++i) {
     Result<LoadedPerson> loaded = LoadPerson(manifest, entry, i, options, warnings);
     if (!loaded.ok()) return OfRecording(entry, loaded.error());
     hash.Add(loaded.value().file_hash);
     RecordedPerson& person = loaded.value().person;
-    if (i == 0) recording.fps = loaded.value().fps;
+    if (i == 0) {
+      recording.fps = loaded.value().fps;
+      reading = {loaded.value().metres_per_unit, recording.fps, options.preparation.lowpass_hz};
+    }
     if (loaded.value().fps != recording.fps) {
       return OfRecording(
           entry, {"the file gives " + Rounded(loaded.value().fps) + " frames per second, but " +
@@ -137,7 +141,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   if (MaybeError failed = PrepareMotion(options.preparation, &recording)) {
     return OfRecording(entry, *std::move(failed));
   }
-  if (MaybeError failed = LoadLaboratory(entry, options, &recording)) {
+  if (MaybeError failed = LoadLaboratory(entry, reading, &recording)) {
     return OfRecording(entry, *std::move(failed));
   }
   return recording;

@@ -61,8 +61,9 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
 
 struct LoadedPerson {
   RecordedPerson person;
-  double fps = 0.0;       // the manifest's, otherwise the file's
-  std::string file_hash;  // of the file (and of the mapping, where there is one)
+  double fps = 0.0;              // the manifest's, otherwise the file's
+  double metres_per_unit = 1.0;  // of the file
+  std::string file_hash;         // of the file (and of the mapping, where there is one)
 };
 
 // Reads the file of subject `index`, cuts it to the manifest's frames, closes gaps, turns it to the

@@ -7,6 +7,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/c3d.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/loading/motion_preparation.h"
 #include "datasets/sensors/force_platform.h"
 #include "datasets/sensors/timed_columns.h"
@@ -96,8 +97,10 @@ Result<PlateTracks> FromC3d(const std::string& path, const ManifestPlates& plate
 // Columns of one platform: fx, fy, fz, px, py, pz.
 struct PlateColumns {
   int index[6] = {-1, -1, -1, -1, -1, -1};
+  // With two coordinates of the centre, whichever of the file's axes are level.
   bool Complete() const {
-    return std::all_of(index, index + 5, [](int i) { return i >= 0; });
+    const auto there = [](int i) { return i >= 0; };
+    return std::all_of(index, index + 3, there) && std::count_if(index + 3, index + 6, there) >= 2;
   }
 };
 
@@ -140,8 +143,7 @@ Result<PlateTracks> FromTable(const std::string& path, const ManifestPlates& pla
         std::vector<int> chosen;
         for (const std::string& prefix : wanted) {
           PlateColumns columns = ColumnsOf(prefix, names);
-          // The centre's height over the file's ground is not needed.
-          columns.index[3 + up] = std::max(columns.index[3 + up], -1);
+          columns.index[3 + up] = -1;  // the centre's height is not needed, and may be empty
           for (int i = 0; i < 6; ++i) {
             if (columns.index[i] >= 0 || i == 3 + up) continue;
             return Error{"a column of " + (prefix.empty() ? "the platform" : Quoted(prefix)) +
@@ -240,13 +242,20 @@ MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plat
   RecordedPerson& person = recording->people[plates.person];
   const bool of_motion = plates.file.empty();
   const std::string path = of_motion ? person.file : ResolvePath(entry.manifest, plates.file);
+  const std::optional<MotionFormat> format = MotionFormatOfFile(path);
+  if (format == MotionFormat::kBvh || format == MotionFormat::kTrc) {
+    return Error{std::string("a ") + RowOf(*format).title +
+                     " file holds no force platforms; name the one that does as \"file\" of "
+                     "force_plates (C3D, CSV, OpenSim storage, Motion-BIDS)",
+                 path};
+  }
   const bool own_axes = of_motion && plates.up.empty() && plates.forward.empty();
   const std::string up = own_axes ? person.file_up : plates.up.empty() ? "z" : plates.up;
   const std::string forward = own_axes                 ? person.file_forward
                               : plates.forward.empty() ? "x"
                                                        : plates.forward;
   const Eigen::Matrix3d axes = AxesRotation(up, forward).value();
-  const bool c3d = MotionFormatOfFile(path) == MotionFormat::kC3d;
+  const bool c3d = format == MotionFormat::kC3d;
   Result<PlateTracks> read =
       c3d ? FromC3d(path, plates, axes) : FromTable(path, plates, axes, UpAxis(axes));
   if (!read.ok()) return read.error();

@@ -6,6 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "datasets/exchange/bids_dataset.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/synthetic/synthetic_recordings.h"
@@ -175,9 +176,46 @@ INSTANTIATE_TEST_SUITE_P(
                    "the platforms were recorded from 0 to 0.59 s"),
         std::tuple("no_plate_columns", kPlates, "time,a\n0,1\n0.01,2\n0.02,3\n",
                    "no columns of a force platform"),
+        std::tuple("plates_in_bvh", R"({"force_plates": {"use": "measure"}})", "",
+                   "BVH file holds no force platforms"),
+        std::tuple("only_lifted", R"({"ground": {"csv": "wrong.csv", "up": "y", "forward": "x"}})",
+                   "time,y\n0,0\n0.01,0\n0.02,0\n", "none of the columns x, z, theta and phi"),
         std::tuple("no_centre", kPlates, "time,fx,fy,fz\n0,1,2,3\n0.01,1,2,3\n0.02,1,2,3\n",
                    "no columns of a force platform")),
     [](const auto& test) { return std::get<0>(test.param); });
+
+// y up and z forward, as laboratories of gait have it: x is to the left.
+TEST_F(LaboratoryTest, FilesHaveTheirOwnAxes) {
+  const SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  const auto loaded = Load(options, [&](Json* entry) {
+    std::string ground = "time,x,z\n", plates = "time,fx,fy,fz,px,pz\n";
+    for (int t = 0; t < options.frames; ++t) {
+      const std::string time = std::to_string(t / options.fps);
+      const PlateSample& s = made_[0].recording.people[0].plates[t];
+      ground += time + ",0," + std::to_string(made_[0].scene.ground.poses[t][0]) + "\n";
+      plates += time;
+      for (double value : {s.force[1], s.force[2], s.force[0], s.centre[1], s.centre[0]}) {
+        plates += "," + std::to_string(value);
+      }
+      plates += "\n";
+    }
+    WriteText("ground.csv", ground);
+    WriteText("plates.csv", plates);
+    const Json axes = {{"up", "y"}, {"forward", "z"}};
+    (*entry)["ground"] = axes;
+    (*entry)["ground"]["csv"] = "ground.csv";
+    (*entry)["force_plates"] = axes;
+    (*entry)["force_plates"].update({{"file", "plates.csv"}, {"lowpass_hz", 45}});
+  });
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const Recording& recording = loaded.value()[0];
+  for (int t = 5; t + 5 < options.frames; ++t) {
+    const PlateSample& s = made_[0].recording.people[0].plates[t];
+    EXPECT_NEAR(recording.ground[t][0], made_[0].scene.ground.poses[t][0], 1e-6) << t;
+    EXPECT_LT((recording.people[0].plates[t].force - s.force).norm(), 1.0) << t;
+    EXPECT_LT((recording.people[0].plates[t].centre - s.centre).norm(), 1e-3) << t;
+  }
+}
 
 // Far from the feet of someone who stands at the origin, on ground that does not move.
 TEST_F(LaboratoryTest, CentresFarFromTheFeetAreRefused) {
@@ -192,6 +230,15 @@ TEST_F(LaboratoryTest, CentresFarFromTheFeetAreRefused) {
   });
   ASSERT_FALSE(loaded.ok());
   EXPECT_TRUE(Contains(loaded.error().ToString(), "2 m from the ankles on average"));
+}
+
+// Exported without its ground, a trial would be another.
+TEST_F(LaboratoryTest, IsNotLostInExports) {
+  const auto loaded = Load(OnPlatform(GroundKind::kStep));
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const MaybeError refused = WriteBidsDataset(Path("bids"), loaded.value(), "0");
+  ASSERT_TRUE(refused);
+  EXPECT_TRUE(Contains(refused->ToString(), "ground that moves"));
 }
 
 // Two platforms, one foot each, are one.
