@@ -36,7 +36,7 @@ FitOptions ByLikelihood(const SyntheticOptions& study, const std::string& likeli
   }
   options.model.gain_scaling = study.model.gain_scaling;
   options.model.push = study.model.push;
-  return options;
+  return HoldDamping(options);
 }
 
 // Whole rollouts; nobody has set the noise.

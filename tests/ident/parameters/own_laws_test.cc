@@ -41,7 +41,9 @@ class Idle : public ForceLaw {
 
  private:
   static std::vector<ParameterFacts> Rows(int count) {
-    static constexpr std::string_view kNames[] = {"i0", "i1", "i2", "i3", "i4", "i5", "i6", "i7"};
+    static constexpr std::string_view kNames[] = {"i0",  "i1",  "i2",  "i3", "i4",  "i5",
+                                                  "i6",  "i7",  "i8",  "i9", "i10", "i11",
+                                                  "i12", "i13", "i14", "i15"};
     std::vector<ParameterFacts> rows;
     for (int i = 0; i < count; ++i) rows.push_back({kNames[i], "i", "1", 1.0, 0.0, 2.0, 1.0});
     return rows;
