@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "the record of the ground lasts from 0 to 0.39 s"),
         std::tuple("moves_at_first", kGround, Moving(400, 0.3), "at frame 0, where people are"),
         std::tuple("no_columns", kGround, "time,a\n0,1\n0.01,2\n0.02,3\n",
-                   "none of the columns x, y, theta and phi"),
+                   "none of the columns x, y, theta, phi"),
         std::tuple("no_time", kGround, "x,y\n0,1\n1,2\n2,3\n", "no column called time"),
         std::tuple("neither", R"({"ground": {"start": 1}})", "", "needs either \"csv\""),
         std::tuple("two_markers", R"({"ground": {"markers": ["a", "b"]}})", "", "three or more"),
@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
         std::tuple("plates_in_bvh", R"({"force_plates": {"use": "measure"}})", "",
                    "BVH file holds no force platforms"),
         std::tuple("only_lifted", R"({"ground": {"csv": "wrong.csv", "up": "y", "forward": "x"}})",
-                   "time,y\n0,0\n0.01,0\n0.02,0\n", "none of the columns x, z, theta and phi"),
+                   "time,y\n0,0\n0.01,0\n0.02,0\n", "none of the columns x, z, theta, phi"),
         std::tuple("no_centre", kPlates, "time,fx,fy,fz\n0,1,2,3\n0.01,1,2,3\n0.02,1,2,3\n",
                    "no columns of a force platform")),
     [](const auto& test) { return std::get<0>(test.param); });
