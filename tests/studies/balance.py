@@ -7,7 +7,7 @@ design     what --design promises of platforms, and what came
 cartpole   mass share, drag, dry friction and motor gain of a cart and a pole
 speed      a fit of 20 recordings of 10 s at 100 Hz with platforms
 
-Needs NumPy. PUSHID_STUDIES is the number of studies of `delay` (default 100; a tenth of them elsewhere).
+Needs NumPy. PUSHID_STUDIES is the number of studies of `delay` (default 100, half of them for `lag`, a tenth for `design`).
 """
 import concurrent.futures
 import dataclasses
