@@ -1,13 +1,13 @@
 """Do contrasts cover the truth, and how often do they find a difference where there is none?
 
-contrast  ident/uncertainty/README.md; 2 minutes on two cores
+contrast  ident/uncertainty/README.md; two minutes on two cores
 
 Synthetic studies with and without a difference, between people and paired; tests/studies/contrast_study.cc says what
 varies.
 """
 import studies
 
-STUDY = ["--studies=24", "--num_threads=2"]
+STUDY = ["--studies=40", "--num_threads=2"]
 
 
 def contrast():
