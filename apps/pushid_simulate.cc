@@ -116,7 +116,8 @@ Result<SyntheticOptions> StudyFromCommandLine() {
   const std::optional<PushKind> kind =
       study.pushes ? FromName<PushKind>(FLAGS_push_kind) : PushKind::kExternal;
   if (!kind || *kind == PushKind::kNetWithoutFriction) {
-    return Error{"--push_kind is '" + FLAGS_push_kind + "'; it must be net or external, or none with --ground"};
+    return Error{"--push_kind is '" + FLAGS_push_kind +
+                 "'; it must be net or external, or none with --ground"};
   }
   for (MaybeError error :
        {ParseName("--truth_stance", FLAGS_truth_stance, &study.model.stance),

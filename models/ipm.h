@@ -35,11 +35,11 @@ inline constexpr double kReferenceRod = 0.95;  // m
 // (mass_distribution.h) moves like a pendulum of another length and mass.
 template <typename L>
 struct BodyOf {
-  L mass = L(kReferenceMass);             // kg
-  L rod_length = L(kReferenceRod);        // m
-  L cart_height = L(0.0);                 // m
-  L point_share = L(1.0 - kCartShare);    // of the mass, in the pendulum's point
-  L pendulum_ratio = L(1.0);              // of the pendulum's length to the rod's
+  L mass = L(kReferenceMass);           // kg
+  L rod_length = L(kReferenceRod);      // m
+  L cart_height = L(0.0);               // m
+  L point_share = L(1.0 - kCartShare);  // of the mass, in the pendulum's point
+  L pendulum_ratio = L(1.0);            // of the pendulum's length to the rod's
 
   L point_mass() const { return point_share * mass; }
   L pendulum_length() const { return pendulum_ratio * rod_length; }
@@ -219,8 +219,7 @@ Vector4<T> InverseDynamics(const BodyOf<L>& body, const PendulumState<T>& state,
 // derivatives of these four rows took a tenth of a Jacobian. g: m/s^2, of the ground (ground.h).
 template <typename T>
 Matrix4<T> InverseDynamicsJacobian(const BodyOf<T>& body, const Angles<T>& angles,
-                                   const Vector4<T>& qd, const Vector4<T>& a,
-                                   double g = kGravity) {
+                                   const Vector4<T>& qd, const Vector4<T>& a, double g = kGravity) {
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
   const T l = body.pendulum_length(), ml = body.point_mass() * l;
   const T thd = qd[2], phd = qd[3], both = thd * thd + phd * phd;
@@ -231,10 +230,10 @@ Matrix4<T> InverseDynamicsJacobian(const BodyOf<T>& body, const Angles<T>& angle
       c_s * a[2] + s_c * a[3] + 2.0 * c_c * thd * phd - s_s * both,
       s_c * a[2] + c_s * a[3] - 2.0 * s_s * thd * phd + c_c * both, 2.0 * (s_c * phd + c_s * thd),
       2.0 * (s_c * thd + c_s * phd),  //
-      -s_th * a[0] + c_s * a[1] + l * c2 * phd * phd - g * c_c, s_c * a[1] + g * s_s,
-      T(0.0), l * s2 * phd,  //
-      s_c * a[1] - l * s2 * a[3] - 2.0 * l * c2 * thd * phd + g * s_s,
-      c_s * a[1] - g * c_c, -l * s2 * phd, -l * s2 * thd;
+      -s_th * a[0] + c_s * a[1] + l * c2 * phd * phd - g * c_c, s_c * a[1] + g * s_s, T(0.0),
+      l * s2 * phd,  //
+      s_c * a[1] - l * s2 * a[3] - 2.0 * l * c2 * thd * phd + g * s_s, c_s * a[1] - g * c_c,
+      -l * s2 * phd, -l * s2 * thd;
   return ml * by;
 }
 

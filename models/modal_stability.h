@@ -57,8 +57,8 @@ Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSe
   } else if (stance == Stance::kThreshold) {
     force.template tail<2>() += AnkleTorque(self, StanceParameters<T>(value), perceived.ankle);
   } else {
-    force.template tail<2>() += StandingTorque(
-        self, StandingParameters<T>(value), Angles<T>(perceived.ankle.q), perceived.ankle.qd);
+    force.template tail<2>() += StandingTorque(self, StandingParameters<T>(value),
+                                               Angles<T>(perceived.ankle.q), perceived.ankle.qd);
   }
   return force;
 }

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "models/interaction.h"
-#include "models/options.h"
 #include "models/mass_distribution.h"
+#include "models/options.h"
 #include "models/parameters.h"
 #include "models/reaction_delay.h"
 #include "models/scene.h"
@@ -124,8 +124,8 @@ void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForc
   (*force)[ForcePart::kLinear] = {s * linear[0], s * linear[1], T(0.0), T(0.0)};
 }
 
-// The same of feet that hold, whatever happens; felt: by the ankles. While a push is the whole force, its rows hold the
-// feet's reaction.
+// The same of feet that hold, whatever happens; felt: by the ankles. While a push is the whole
+// force, its rows hold the feet's reaction.
 template <typename T>
 void AddStandingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
                        const PendulumState<T>& state, const PendulumState<T>& felt,
@@ -166,8 +166,8 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
       AddSlidingForces(self, p, active, state, qd_previous, &force, perceived);
       break;
     case Stance::kThreshold:
-      AddStanceForces(self, p, active, state, perceived != nullptr ? *perceived : Perceived<T>(state),
-                      &force);
+      AddStanceForces(self, p, active, state,
+                      perceived != nullptr ? *perceived : Perceived<T>(state), &force);
       break;
     case Stance::kFixed:
       AddStandingForces<T>(self, p, active, state, perceived != nullptr ? perceived->ankle : state,
@@ -176,9 +176,9 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   }
   if (scene.ground.moves()) {
     const bool holds = options.stance == Stance::kFixed && RealPart(force.ground) > 0.0;
-    force[ForcePart::kInertia] =
-        GroundForce<T, T>(DynamicBody(options, self.body, p, holds), force.angles,
-                          scene.ground.steps[std::min<size_t>(frame, scene.ground.steps.size() - 1)]);
+    force[ForcePart::kInertia] = GroundForce<T, T>(
+        DynamicBody(options, self.body, p, holds), force.angles,
+        scene.ground.steps[std::min<size_t>(frame, scene.ground.steps.size() - 1)]);
   }
   if (options.body == BodyModel::kTable && active == ActiveForces::kAll) {
     force[ForcePart::kBalance].template tail<2>() += HoldOfTable(self, p);

@@ -204,8 +204,7 @@ enum class Delay {
   kAnkleAndStep  // ankles after reaction_delay, feet after step_delay
 };
 constexpr EnumNames<Delay, 3> Names(Delay) {
-  return {
-      {{"none", Delay::kNone}, {"one", Delay::kOne}, {"ankle_and_step", Delay::kAnkleAndStep}}};
+  return {{{"none", Delay::kNone}, {"one", Delay::kOne}, {"ankle_and_step", Delay::kAnkleAndStep}}};
 }
 
 // Where a body's mass is (mass_distribution.h).

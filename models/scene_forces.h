@@ -47,8 +47,7 @@ class SceneForces {
     if (options_->delay == Delay::kNone) return;
     perceived_.clear();
     for (int n = 0; n < scene_->num_people(); ++n) {
-      perceived_.push_back(
-          Perceive<T>(options_->delay, Parameters(n), path, frame, n, scene_->dt));
+      perceived_.push_back(Perceive<T>(options_->delay, Parameters(n), path, frame, n, scene_->dt));
     }
   }
 

@@ -86,9 +86,7 @@ Eigen::Matrix<T, 2, 1> StandingTorque(const SelfForce& self, const StandingParam
   const T stretch = self.scale.stiffness * AngleOverSine<T>(1.0 - cosine * cosine);
   const T gains[] = {stretch * p.Kp[0], stretch * p.Kp[1], stretch * 0.5 * (p.Kp[0] + p.Kp[1])};
   const bool holds = !self.hold.isZero(0.0);
-  const T moment =
-      (holds ? kGravity * MomentPerComHeight(self.body) / u0[2] : 0.0) *
-      p.com_height;
+  const T moment = (holds ? kGravity * MomentPerComHeight(self.body) / u0[2] : 0.0) * p.com_height;
   Eigen::Matrix<T, 2, 1> torque;
   for (int i = 0; i < 2; ++i) {
     torque[i] = -moment * (u0[0] * by[i][0] + u0[1] * by[i][1]);

@@ -155,11 +155,10 @@ Provenance ProvenanceOfRun() {
 MaybeError CheckPushed(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings) {
     if (!recording.pushes.empty() || !recording.ground.empty()) continue;
-    return Error{
-        "recording " + recording.id +
-            " has no push, and no ground that moves: estimate a push with pushid-push, or "
-            "leave it out (--leave_out)",
-        FLAGS_recordings};
+    return Error{"recording " + recording.id +
+                     " has no push, and no ground that moves: estimate a push with pushid-push, or "
+                     "leave it out (--leave_out)",
+                 FLAGS_recordings};
   }
   return std::nullopt;
 }

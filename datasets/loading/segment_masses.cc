@@ -28,7 +28,8 @@ constexpr Segment kSegments[] = {{kNeck, kBodyHead, 0.0681, 0.5, 0.29},
                                  {kRightKnee, kRightAnkle, 0.0457, 0.444, 0.26},
                                  {kLeftKnee, kLeftAnkle, 0.0457, 0.444, 0.26}};
 
-// Of an average body, over the rod: thigh and shank together, their first moment, and what is above.
+// Of an average body, over the rod: thigh and shank together, their first moment, and what is
+// above.
 constexpr double kLegs = 0.3808, kLegsMoment = 0.2595, kAbove = 0.5926, kOfShoulders = 0.6;
 
 MassDistribution Average() {
@@ -79,8 +80,8 @@ MassDistribution MassesOf(const RecordedPerson& person) {
   const Eigen::Vector3d com = moment / mass;
   // About the axis from ankle to ankle, about which people sway.
   const Eigen::Vector3d across = person.left_ankle[0] - person.right_ankle[0];
-  const Eigen::Vector3d axis = across.norm() > 0.0 ? Eigen::Vector3d(across.normalized())
-                                                   : Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d axis =
+      across.norm() > 0.0 ? Eigen::Vector3d(across.normalized()) : Eigen::Vector3d::UnitY();
   double inertia = 0.0;
   for (const Segment& s : kSegments) {
     const Eigen::Vector3d from_com = centre(s) - ankles - com;

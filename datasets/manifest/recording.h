@@ -87,12 +87,12 @@ struct FileSkeleton {
   Eigen::Matrix3d world_from_file = Eigen::Matrix3d::Identity();
 };
 
-// What force platforms under a person measured at one frame: the sum of them all, in the axes of the
-// ground, with which they move.
+// What force platforms under a person measured at one frame: the sum of them all, in the axes of
+// the ground, with which they move.
 struct PlateSample {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  // on the person, N
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   // on the person, N
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of pressure, m
-  double weight = 0.0;  // in [0, 1]: 0 where nothing was measured
+  double weight = 0.0;                               // in [0, 1]: 0 where nothing was measured
 };
 
 // What a manifest says of a person beside the mass, under keys of the user's own: numbers that a

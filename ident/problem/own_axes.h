@@ -1,5 +1,5 @@
-// ident: how a model sees a recording: in its axes (Directions: turned about the vertical, along the
-// push on a person alone, or along what the people face), and with the masses where it has them
+// ident: how a model sees a recording: in its axes (Directions: turned about the vertical, along
+// the push on a person alone, or along what the people face), and with the masses where it has them
 // (BodyModel).
 #pragma once
 

@@ -188,8 +188,9 @@ const std::vector<ResidualFamily>& ResidualFamilies() {
        [](const Options& o, const Stage& s) { return AllFrames(s) && o.settling_weight > 0.0; },
        AddSettling},
       {"modes", Family::kUnit, FitProblem::kSettlingCluster,
-       [](const Options& o, const Stage& s) { return AllFrames(s) && o.mode_weight > 0.0 &&
-                o.model.delay == Delay::kNone; },
+       [](const Options& o, const Stage& s) {
+         return AllFrames(s) && o.mode_weight > 0.0 && o.model.delay == Delay::kNone;
+       },
        AddModes},
   };
   return families;

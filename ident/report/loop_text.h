@@ -17,8 +17,8 @@ TextTable LoopTable(const FitResult& result);
 // The same in sentences; empty where the table is.
 std::string LoopText(const FitResult& result);
 
-// What the residuals say of a delay that the model leaves out, which is taken for less damping; empty:
-// nothing.
+// What the residuals say of a delay that the model leaves out, which is taken for less damping;
+// empty: nothing.
 std::string LagText(const FitResult& result);
 
 }  // namespace pushid

@@ -40,8 +40,7 @@ bool HasLanes(const RolloutProblem& problem) {
   return problem.recording->num_people() == 1 && options.stance == Stance::kSlide &&
          options.learned == nullptr && options.own_laws.empty() && options.delay == Delay::kNone &&
          options.body != BodyModel::kTable && !problem.recording->scene.ground.moves() &&
-         !problem.recording->HasPlates() &&
-         problem.sigmas.loss == FrameLoss::kHip;
+         !problem.recording->HasPlates() && problem.sigmas.loss == FrameLoss::kHip;
 }
 
 LaneGroup::LaneGroup(std::vector<const RolloutProblem*> problems, const PersonLanes& lanes)

@@ -268,15 +268,16 @@ RolloutStatus VisitFrames(const RolloutProblem& p, double const* const* blocks,
 
 bool RolloutResiduals(const RolloutProblem& problem, double const* const* blocks,
                       double* residuals) {
-  return VisitFrames(problem, blocks, Derivatives::kNone,
-                     [&residuals](int, int, const FrameVector<double>& r, FrameRows*) {
-                       Eigen::Map<FrameVector<double>>{residuals} = r;
-                       residuals += kFrameResiduals;
-                     },
-                     [&residuals](int, int, const PlateVector<double>& r, PlateRows*) {
-                       Eigen::Map<PlateVector<double>>{residuals} = r;
-                       residuals += kPlateResiduals;
-                     })
+  return VisitFrames(
+             problem, blocks, Derivatives::kNone,
+             [&residuals](int, int, const FrameVector<double>& r, FrameRows*) {
+               Eigen::Map<FrameVector<double>>{residuals} = r;
+               residuals += kFrameResiduals;
+             },
+             [&residuals](int, int, const PlateVector<double>& r, PlateRows*) {
+               Eigen::Map<PlateVector<double>>{residuals} = r;
+               residuals += kPlateResiduals;
+             })
       .ok;
 }
 

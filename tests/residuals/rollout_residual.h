@@ -22,19 +22,18 @@ class RolloutResidual : public ceres::CostFunction {
   // false when the rollout leaves the model's domain; last_failure then says where.
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     int row = 0;
-    last_failure_ = VisitFrames(*problem_, blocks, WantedDerivatives(*problem_, jacobians),
-                                [&](int, int, const FrameVector<double>& r, FrameRows* by_column) {
-                                  Eigen::Map<FrameVector<double>>(residuals + row) = r;
-                                  if (jacobians != nullptr)
-                                    columns_.Scatter(*by_column, row, num_residuals(), jacobians);
-                                  row += kFrameResiduals;
-                                },
-                                [&](int, int, const PlateVector<double>& r, PlateRows* by_column) {
-                                  Eigen::Map<PlateVector<double>>(residuals + row) = r;
-                                  if (jacobians != nullptr)
-                                    columns_.Scatter(*by_column, row, num_residuals(), jacobians);
-                                  row += kPlateResiduals;
-                                });
+    last_failure_ = VisitFrames(
+        *problem_, blocks, WantedDerivatives(*problem_, jacobians),
+        [&](int, int, const FrameVector<double>& r, FrameRows* by_column) {
+          Eigen::Map<FrameVector<double>>(residuals + row) = r;
+          if (jacobians != nullptr) columns_.Scatter(*by_column, row, num_residuals(), jacobians);
+          row += kFrameResiduals;
+        },
+        [&](int, int, const PlateVector<double>& r, PlateRows* by_column) {
+          Eigen::Map<PlateVector<double>>(residuals + row) = r;
+          if (jacobians != nullptr) columns_.Scatter(*by_column, row, num_residuals(), jacobians);
+          row += kPlateResiduals;
+        });
     return last_failure_.ok;
   }
 

@@ -25,8 +25,9 @@ std::set<std::string> FreeNames(const ParameterTable& table) {
 
 TEST(Presets, FreeWhatTheyPromise) {
   const FitOptions tail = MakePreset("tail").value(), ldp = MakePreset("ldp").value();
-  EXPECT_EQ(FreeNames(tail.table), (std::set<std::string>{"mu", "Kp_theta", "Kd_theta", "a_x",
-                                                          "tail_gain", "tail_torque", "tail_time"}));
+  EXPECT_EQ(FreeNames(tail.table),
+            (std::set<std::string>{"mu", "Kp_theta", "Kd_theta", "a_x", "tail_gain", "tail_torque",
+                                   "tail_time"}));
   EXPECT_EQ(tail.table[kTailExponent].nominal, 0.0);
   for (const ParameterSpec& spec : tail.table.specs) {
     EXPECT_EQ(spec.pooled, spec.id == kTailTime) << spec.name;

@@ -24,8 +24,7 @@ SyntheticOptions Study(uint64_t seed) {
   return study;
 }
 
-FittedModel FitOf(const SyntheticOptions& study,
-                  FitOptions options = MakePreset("tail").value()) {
+FittedModel FitOf(const SyntheticOptions& study, FitOptions options = MakePreset("tail").value()) {
   const auto recordings = MakePendulums(study);
   EXPECT_FALSE(PrepareFit(recordings, &options));
   FittedModel model;
