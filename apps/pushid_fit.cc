@@ -71,7 +71,7 @@ int Run() {
   }
   Warnings file_warnings;  // a result says what it was made of
   const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({}, NeedsJoints(roughly), &file_warnings);
+      LoadFlaggedRecordings({}, NeedsJoints(roughly), &file_warnings, true);
   if (!recordings.ok()) return Fail(recordings.error());
   if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
   const ClusterBy drawn_by =

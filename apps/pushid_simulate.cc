@@ -38,7 +38,8 @@ DEFINE_string(
     "motion of the ground along x: none, step (within 0.4 s), sine (0.5 Hz), sum_of_sines (five "
     "of 0.15 to 1.55 Hz), or a CSV file time,x,y,theta,phi (m, rad)");
 DEFINE_double(ground_size, pushid::SyntheticOptions{}.ground_size_m,
-              "displacement of a step, or of each sine, m");
+              "displacement of a step, or of each sine, m; of sum_of_sines 0.0036 where it is not "
+              "given, 25 mm from peak to peak");
 DEFINE_bool(plates, false, "also write what force platforms under the feet measure");
 DEFINE_double(plate_noise, pushid::SyntheticOptions{}.plate_noise_m,
               "with --plates, standard deviation of the centre of pressure, m");
@@ -86,6 +87,11 @@ MaybeError SetGround(SyntheticOptions* study) {
   const std::optional<GroundKind> kind = FromName<GroundKind>(FLAGS_ground);
   if (kind && *kind != GroundKind::kFile) {
     study->ground = *kind;
+    // As platforms sway in experiments: 20 to 30 mm from peak to peak, five sines together.
+    constexpr double kSwayOfEach = 0.0036;
+    if (*kind == GroundKind::kSumOfSines && !Given("ground_size")) {
+      study->ground_size_m = kSwayOfEach;
+    }
     if (study->pushes || study->ground != GroundKind::kNone) return std::nullopt;
     return Error{"--push_kind=none leaves nothing that moves anybody; add --ground=step"};
   }

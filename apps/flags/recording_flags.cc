@@ -90,7 +90,8 @@ const Result<Manifest>& FlaggedManifest() {
 }
 
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
-                                                     bool keep_all_joints, Warnings* warnings) {
+                                                     bool keep_all_joints, Warnings* warnings,
+                                                     bool plates_alone) {
   if (MaybeError missing =
           Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
     return *missing;
@@ -98,6 +99,7 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   Result<LoadOptions> options = LoadOptionsOfFlags();
   if (!options.ok()) return options.error();
   options.value().keep_all_joints = keep_all_joints;
+  options.value().plates_alone = plates_alone;
   if (!ids.empty()) {
     options.value().ids = ids;
     options.value().leave_out.clear();
@@ -155,6 +157,13 @@ Provenance ProvenanceOfRun() {
 MaybeError CheckPushed(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings) {
     if (!recording.pushes.empty() || !recording.ground.empty()) continue;
+    if (recording.people[0].weight == std::vector<double>(recording.num_frames(), 0.0)) {
+      return Error{"recording " + recording.id +
+                       " was measured by force plates alone, on ground that does not move: nothing "
+                       "in it tells what moved the person; give its \"ground\", or leave it out "
+                       "(--leave_out)",
+                   FLAGS_recordings};
+    }
     return Error{"recording " + recording.id +
                      " has no push, and no ground that moves: estimate a push with pushid-push, or "
                      "leave it out (--leave_out)",

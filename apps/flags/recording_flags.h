@@ -28,11 +28,12 @@ RecordingFlags RecordingFlagsFromCommandLine();
 const Result<Manifest>& FlaggedManifest();
 
 // The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr, and to
-// `warnings` too. Other ids than the flags' may be asked for, and all joints instead of hip and
-// ankles.
+// `warnings` too. Other ids than the flags' may be asked for, all joints instead of hip and ankles,
+// and people whom force plates alone measured.
 Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
                                                      bool keep_all_joints = false,
-                                                     Warnings* warnings = nullptr);
+                                                     Warnings* warnings = nullptr,
+                                                     bool plates_alone = false);
 
 // How files are read: the flags of that by name.
 inline constexpr const char* kLoadFlags[] = {"length_unit", "length_scale", "max_gap_s",

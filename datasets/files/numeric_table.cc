@@ -132,7 +132,9 @@ class TableReader {
       return reader_.ErrorHere("the header declares " + std::to_string(announced_columns_) +
                                " columns, but there are " + std::to_string(table_.names.size()));
     }
-    return Choose();
+    MaybeError wrong = Choose();
+    if (wrong && wrong->line == 0) wrong->line = reader_.line_number();
+    return wrong;
   }
 
   MaybeError Choose() {

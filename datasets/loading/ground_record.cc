@@ -1,35 +1,52 @@
-// datasets: the ground from a table of numbers, and from markers.
+// datasets: the ground from a table of numbers, and at the frames of a recording.
 #include "datasets/loading/ground_record.h"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "datasets/loading/ground_tracks.h"
 #include "datasets/loading/motion_preparation.h"
 #include "datasets/sensors/timed_columns.h"
 
 namespace pushid {
 namespace {
 
-using Track = std::vector<Eigen::Vector3d>;
-
 constexpr char kColumns[][6] = {"x", "y", "z", "theta", "phi"};
 constexpr int kNumColumns = 5;
-constexpr double kRestSeconds = 0.1;    // over which the speed at frame 0 is taken
-constexpr double kMarkersApart = 0.01;  // m, rms about a line: less tells no tilt about it
+constexpr double kRestSeconds = 0.1;  // over which the speed at frame 0 is taken
 
-// Shift and tilt, evenly sampled.
-struct GroundTracks {
-  std::string file;
-  double rate_hz = 0.0, first_s = 0.0;
-  Track shift, tilt;         // z: nothing
-  std::vector<int> lines{};  // of a file's rows
-  double last_s() const { return first_s + (static_cast<double>(shift.size()) - 1.0) / rate_hz; }
-};
+// By name; -1 for what is not there. up: of the column whose motion lifts, which is not read.
+Result<std::vector<int>> ChooseColumns(const std::string& path, int up,
+                                       const std::vector<std::string>& names) {
+  std::vector<int> columns;
+  std::vector<std::string> wanted, known = {"time"};
+  for (int i = 0; i < kNumColumns; ++i) {
+    const auto found = std::find(names.begin(), names.end(), kColumns[i]);
+    known.push_back(kColumns[i]);
+    if (i != up) wanted.push_back(kColumns[i]);
+    columns.push_back(found == names.end() || i == up ? -1
+                                                      : static_cast<int>(found - names.begin()));
+  }
+  if (std::all_of(columns.begin(), columns.end(), [](int c) { return c < 0; })) {
+    return Error{"none of the columns " + ListOfNames(wanted) + " is there; it has " +
+                     ListOfNames(names) +
+                     ". Name how the ground moves so: time,x,y,theta,phi (of level axes, "
+                     "which \"up\" and \"forward\" name)",
+                 path};
+  }
+  for (const std::string& name : names) {
+    const std::string meant = MeantText(name, known);
+    if (meant.empty()) continue;
+    return Error{"the column " + Quoted(name) + " is not known, and would be read as none" + meant +
+                     " Columns of the ground are " + ListOfNames(known),
+                 path};
+  }
+  return columns;
+}
 
 Result<GroundTracks> FromCsv(const ManifestRecording& entry) {
   const ManifestGround& ground = entry.ground;
@@ -41,23 +58,7 @@ Result<GroundTracks> FromCsv(const ManifestRecording& entry) {
   axes.row(2).cwiseAbs().maxCoeff(&up);
   const Result<TimedColumns> read = ReadTimedColumns(
       path, [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-        std::vector<int> columns;
-        std::vector<std::string> wanted;
-        for (int i = 0; i < kNumColumns; ++i) {
-          const auto found = std::find(names.begin(), names.end(), kColumns[i]);
-          const bool lifts = i == up;
-          if (!lifts) wanted.push_back(kColumns[i]);
-          columns.push_back(
-              found == names.end() || lifts ? -1 : static_cast<int>(found - names.begin()));
-        }
-        if (std::all_of(columns.begin(), columns.end(), [](int c) { return c < 0; })) {
-          return Error{"none of the columns " + ListOfNames(wanted) + " is there; it has " +
-                           ListOfNames(names) +
-                           ". Name how the ground moves so: time,x,y,theta,phi (of level axes, "
-                           "which \"up\" and \"forward\" name)",
-                       path};
-        }
-        return columns;
+        return ChooseColumns(path, static_cast<int>(up), names);
       });
   if (!read.ok()) return read.error();
   const TimedColumns& table = read.value();
@@ -73,89 +74,6 @@ Result<GroundTracks> FromCsv(const ManifestRecording& entry) {
     tracks.shift.push_back(axes * Eigen::Vector3d(value[0], value[1], value[2]));
     tracks.tilt.emplace_back(value[3], value[4], 0.0);
   }
-  return tracks;
-}
-
-Eigen::Matrix3Xd AboutMiddle(const std::vector<Eigen::Vector3d>& marks, Eigen::Vector3d* middle) {
-  Eigen::Matrix3Xd about(3, marks.size());
-  for (size_t i = 0; i < marks.size(); ++i) about.col(i) = marks[i];
-  *middle = about.rowwise().mean();
-  return about.colwise() - *middle;
-}
-
-// Marks on one line, or one named twice, leave the tilt about it open.
-MaybeError CheckApart(const std::vector<Eigen::Vector3d>& marks, const ManifestGround& ground,
-                      const std::string& path) {
-  Eigen::Vector3d middle;
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(AboutMiddle(marks, &middle));
-  const double off = svd.singularValues()[1] / std::sqrt(static_cast<double>(marks.size()));
-  if (off >= kMarkersApart) return std::nullopt;
-  return Error{"the markers of the ground (" + ListOfNames(ground.markers) +
-                   ") lie on a line within " + Rounded(1000.0 * off, 2) +
-                   " mm, which leaves the tilt about it open; name one beside it, " +
-                   Rounded(1000.0 * kMarkersApart) + " mm or more",
-               path};
-}
-
-// The turn that takes the marks of frame 0 to those of a frame best (Kabsch 1976), and where it and
-// the shift of their middle take the point `under` the person, about which the ground tilts.
-void AddRigid(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen::Vector3d>& to,
-              const Eigen::Vector3d& under, GroundTracks* tracks) {
-  Eigen::Vector3d a, b;
-  const Eigen::Matrix3Xd before = AboutMiddle(from, &a), now = AboutMiddle(to, &b);
-  const Eigen::Matrix3d h = before * now.transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(h, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d flip(1.0, 1.0, (svd.matrixV() * svd.matrixU().transpose()).determinant());
-  const Eigen::Matrix3d turn = svd.matrixV() * flip.asDiagonal() * svd.matrixU().transpose();
-  const Eigen::Vector3d normal = turn.col(2);  // where the ground's z points
-  tracks->shift.push_back(b + turn * (under - a) - under);
-  tracks->tilt.emplace_back(std::asin(std::clamp(normal[0], -1.0, 1.0)),
-                            std::atan2(-normal[1], normal[2]), 0.0);
-}
-
-Result<GroundTracks> FromMarkers(const ManifestRecording& entry, const Recording& recording,
-                                 const GroundReading& reading) {
-  const std::string path = ResolvePath(entry.manifest, entry.motion[0]);
-  PointReadOptions options;
-  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-    std::vector<int> chosen;
-    for (const std::string& marker : entry.ground.markers) {
-      const auto found = std::find(names.begin(), names.end(), marker);
-      if (found == names.end()) return UnknownNameError(path, "marker", names, marker);
-      chosen.push_back(static_cast<int>(found - names.begin()));
-    }
-    return chosen;
-  };
-  const Result<PointMotion> read = ReadPointMotion(path, entry.motion_format, options);
-  if (!read.ok()) return read.error();
-  const PointMotion& motion = read.value();
-  const RecordedPerson& person = recording.people[0];
-  const Eigen::Matrix3d axes = AxesRotation(person.file_up, person.file_forward).value();
-  const double rate = reading.file_fps;
-  GroundTracks tracks{path, rate, motion.first_time_s, {}, {}, {}};
-  std::vector<Track> marks = motion.positions;
-  for (size_t m = 0; m < marks.size(); ++m) {
-    std::vector<double> weight(marks[m].size(), 1.0);
-    FillGaps(static_cast<int>(std::lround(0.1 * rate)), &marks[m], &weight);
-    const auto gap = std::find(weight.begin(), weight.end(), 0.0);
-    if (gap != weight.end()) {
-      return Error{"the marker " + entry.ground.markers[m] +
-                       " of the ground is not seen at frame " +
-                       std::to_string(gap - weight.begin()) +
-                       " for longer than 0.1 s; fill the gap, or leave the marker out",
-                   path};
-    }
-    for (Eigen::Vector3d& v : marks[m]) v = reading.metres_per_unit * (axes * v);
-  }
-  const auto at = [&](int frame) {
-    std::vector<Eigen::Vector3d> now;
-    for (const Track& mark : marks) now.push_back(mark[frame]);
-    return now;
-  };
-  const int first = std::clamp(entry.first_frame, 0, motion.num_frames() - 1);
-  if (MaybeError failed = CheckApart(at(first), entry.ground, path)) return *std::move(failed);
-  const Eigen::Vector3d under = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);
-  for (int t = 0; t < motion.num_frames(); ++t) AddRigid(at(first), at(t), under, &tracks);
   return tracks;
 }
 
@@ -194,59 +112,54 @@ double SpeedAtFirst(const std::vector<GroundPose>& poses, double dt) {
   return slope.cwiseMin(first).maxCoeff();
 }
 
-}  // namespace
-
-Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
-                                           const Recording& recording,
-                                           const GroundReading& reading) {
-  const ManifestGround& ground = entry.ground;
-  Result<GroundTracks> read =
-      ground.csv.empty() ? FromMarkers(entry, recording, reading) : FromCsv(entry);
-  if (!read.ok()) return read.error();
-  GroundTracks& tracks = read.value();
-  const RecordedPerson& person = recording.people[0];
+// The tracks' clock at frame 0, and that they last as long as the motion from there.
+Result<double> StartOf(const GroundTracks& tracks, const ManifestRecording& entry,
+                       const Recording& recording) {
   // Of markers by the rate that counts for the motion, whatever the file says.
-  const double start = ground.start_s.value_or(
-      ground.csv.empty() ? tracks.first_s + entry.first_frame / tracks.rate_hz : person.skipped_s);
+  const double start = entry.ground.start_s.value_or(
+      entry.ground.csv.empty() ? tracks.first_s + entry.first_frame / tracks.rate_hz
+                               : recording.people[0].skipped_s);
   const double fps = recording.fps, seconds = (recording.num_frames() - 1) / fps;
   // Half a frame less is none.
-  if (tracks.last_s() < start + seconds - 0.5 / fps || tracks.first_s > start + 0.5 / fps) {
-    return Error{"the record of the ground lasts from " + Rounded(tracks.first_s, 4) + " to " +
-                     Rounded(tracks.last_s(), 4) + " s, but the motion from " + Rounded(start, 4) +
-                     " to " + Rounded(start + seconds, 4) +
-                     " s of its clock; record it longer, cut the motion (end_frame), or give the "
-                     "right clock at frame 0 as \"start\"",
-                 tracks.file, tracks.lines.empty() ? 0 : tracks.lines.back()};
+  if (tracks.last_s() >= start + seconds - 0.5 / fps && tracks.first_s <= start + 0.5 / fps) {
+    return start;
   }
-  double cutoff = tracks.rate_hz > 1.05 * fps
-                      ? std::min(0.4 * fps, 0.9 * HighestCutoff(tracks.rate_hz))
-                      : HighestCutoff(tracks.rate_hz);
-  if (reading.lowpass_hz > 0.0) cutoff = std::min(cutoff, reading.lowpass_hz);
-  if (cutoff < HighestCutoff(tracks.rate_hz)) {
-    LowPass(cutoff, tracks.rate_hz, &tracks.shift);
-    LowPass(cutoff, tracks.rate_hz, &tracks.tilt);
-  }
-  const auto sampled = [&](double at) {
-    const Eigen::Vector3d shift = ValueBetween(tracks.shift, at),
-                          tilt = ValueBetween(tracks.tilt, at);
-    return GroundPose(shift[0], shift[1], tilt[0], tilt[1]);
-  };
-  std::vector<GroundPose> poses;
-  for (int t = 0; t < recording.num_frames(); ++t) {
-    poses.push_back(sampled((start + t / fps - tracks.first_s) * tracks.rate_hz));
-  }
-  Integrate(ground.quantity, 1.0 / fps, &poses);
-  const GroundPose first = poses[0];
-  for (GroundPose& pose : poses) pose -= first;
+  return Error{"the record of the ground lasts from " + Rounded(tracks.first_s, 4) + " to " +
+                   Rounded(tracks.last_s(), 4) + " s, but the motion from " + Rounded(start, 4) +
+                   " to " + Rounded(start + seconds, 4) +
+                   " s of its clock; record it longer, cut the motion (end_frame), or give the "
+                   "right clock at frame 0 as \"start\"",
+               tracks.file, tracks.lines.empty() ? 0 : tracks.lines.back()};
+}
+
+void LowPassTo(double fps, double lowpass_hz, GroundTracks* tracks) {
+  const double highest = HighestCutoff(tracks->rate_hz);
+  double cutoff = tracks->rate_hz > 1.05 * fps ? std::min(0.4 * fps, 0.9 * highest) : highest;
+  if (lowpass_hz > 0.0) cutoff = std::min(cutoff, lowpass_hz);
+  if (cutoff >= highest) return;
+  LowPass(cutoff, tracks->rate_hz, &tracks->shift);
+  LowPass(cutoff, tracks->rate_hz, &tracks->tilt);
+}
+
+// at: in samples, from 0.
+GroundPose Sampled(const GroundTracks& tracks, double at) {
+  const Eigen::Vector3d shift = ValueBetween(tracks.shift, at),
+                        tilt = ValueBetween(tracks.tilt, at);
+  return {shift[0], shift[1], tilt[0], tilt[1]};
+}
+
+// poses: at the recording's frames; start: the tracks' clock at the first of them.
+MaybeError CheckAtRest(const GroundTracks& tracks, bool displacement, double start, double fps,
+                       const std::vector<GroundPose>& poses) {
   // By what was before frame 0, where the file has it: ground may start quickly at frame 0.
   const double first_at = (start - tracks.first_s) * tracks.rate_hz;
   const int rest = std::max(5, 1 + static_cast<int>(std::lround(kRestSeconds * tracks.rate_hz)));
   std::vector<GroundPose> about_first;
   double step = 1.0 / fps;
-  if (first_at >= 4.0 && ground.quantity == GroundQuantity::kDisplacement) {
+  if (first_at >= 4.0 && displacement) {
     step = 1.0 / tracks.rate_hz;
     for (int i = 0; i < rest && first_at - i >= 0.0; ++i) {
-      about_first.push_back(sampled(first_at - i));
+      about_first.push_back(Sampled(tracks, first_at - i));
     }
   } else {
     const int frames = std::max(5, 1 + static_cast<int>(std::lround(kRestSeconds * fps)));
@@ -254,12 +167,38 @@ Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
                        poses.begin() + std::min(frames, static_cast<int>(poses.size())));
   }
   const double speed = SpeedAtFirst(about_first, step);
-  if (speed > kGroundAtRest) {
-    return Error{"the ground moves by " + Rounded(speed, 2) +
-                     " per second (m or rad) at frame 0, where people are taken to be at rest; "
-                     "start the recording earlier (first_frame), or give the right clock at frame "
-                     "0 as \"start\"",
-                 tracks.file, tracks.lines.empty() ? 0 : tracks.lines.front()};
+  if (speed <= kGroundAtRest) return std::nullopt;
+  return Error{"the ground moves by " + Rounded(speed, 2) +
+                   " per second (m or rad) at frame 0, where people are taken to be at rest; "
+                   "start the recording earlier (first_frame), or give the right clock at frame "
+                   "0 as \"start\"",
+               tracks.file, tracks.lines.empty() ? 0 : tracks.lines.front()};
+}
+
+}  // namespace
+
+Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
+                                           const Recording& recording, const GroundReading& reading,
+                                           Warnings* warnings) {
+  const ManifestGround& ground = entry.ground;
+  Result<GroundTracks> read =
+      ground.csv.empty() ? GroundOfMarkers(entry, recording, reading, warnings) : FromCsv(entry);
+  if (!read.ok()) return read.error();
+  GroundTracks& tracks = read.value();
+  const Result<double> start = StartOf(tracks, entry, recording);
+  if (!start.ok()) return start.error();
+  const double fps = recording.fps;
+  LowPassTo(fps, reading.lowpass_hz, &tracks);
+  std::vector<GroundPose> poses;
+  for (int t = 0; t < recording.num_frames(); ++t) {
+    poses.push_back(Sampled(tracks, (start.value() + t / fps - tracks.first_s) * tracks.rate_hz));
+  }
+  Integrate(ground.quantity, 1.0 / fps, &poses);
+  const GroundPose first = poses[0];
+  for (GroundPose& pose : poses) pose -= first;
+  const bool displacement = ground.quantity == GroundQuantity::kDisplacement;
+  if (MaybeError moves = CheckAtRest(tracks, displacement, start.value(), fps, poses)) {
+    return *std::move(moves);
   }
   return poses;
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/loading/warning.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {
@@ -19,6 +20,10 @@ namespace pushid {
 // A platform moves at frame 0 where it is faster than this, m/s or rad/s, by more than its noise:
 // people would not be at rest.
 inline constexpr double kGroundAtRest = 0.02;
+
+// Markers of the ground are one body: the distance of two may scatter by this about its mean, m
+// (rms); 5 mm of noise of each are 7 mm.
+inline constexpr double kRigidMarkers = 0.01;
 
 // How the recording's motion was read: the units and the rate of markers in its file, and the
 // low-pass of its positions, which the ground gets too. Nothing of it counts for a CSV but that.
@@ -29,10 +34,12 @@ struct GroundReading {
 };
 
 // Poses at the recording's frames (its fps, its number of frames), counted from frame 0. Errors:
-// those of the files, a record that ends early or begins late, ground that does not start at rest,
-// markers that are not there, not seen or on a line.
+// those of the files, a column that is misspelt, a record that ends early or begins late, ground
+// that does not start at rest, markers that are not there, not seen, on a line or not rigid. A
+// warning where gaps of markers were filled.
 Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
                                            const Recording& recording,
-                                           const GroundReading& reading = {});
+                                           const GroundReading& reading = {},
+                                           Warnings* warnings = nullptr);
 
 }  // namespace pushid

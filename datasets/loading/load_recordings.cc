@@ -69,9 +69,9 @@ MaybeError LoadPushes(const std::string& manifest, const ManifestPush& entry, Co
 
 // Ground and platforms, at the frames of the motion as it is now.
 MaybeError LoadLaboratory(const ManifestRecording& entry, const GroundReading& reading,
-                          Recording* recording) {
+                          Recording* recording, Warnings* warnings) {
   if (entry.ground.given()) {
-    Result<std::vector<GroundPose>> ground = LoadGround(entry, *recording, reading);
+    Result<std::vector<GroundPose>> ground = LoadGround(entry, *recording, reading, warnings);
     if (!ground.ok()) return ground.error();
     recording->ground = std::move(ground.value());
   }
@@ -102,8 +102,16 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
 
   GroundReading reading;
   ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
-  for (std::size_t i = 0; i < entry.motion.size(); ++i) {
-    Result<LoadedPerson> loaded = LoadPerson(manifest, entry, i, options, warnings);
+  if (entry.plates_alone && !options.plates_alone) {
+    return OfRecording(entry, {"was measured by force plates alone (\"motion\": \"none\"), which "
+                               "only pushid-fit (--stance=fixed) and pushid-inspect can use; leave "
+                               "it out (--leave_out), or name the files of its motion",
+                               entry.manifest, entry.line});
+  }
+  for (std::size_t i = 0; i < entry.subjects.size(); ++i) {
+    Result<LoadedPerson> loaded = entry.plates_alone
+                                      ? LoadPersonOnPlates(entry)
+                                      : LoadPerson(manifest, entry, i, options, warnings);
     if (!loaded.ok()) return OfRecording(entry, loaded.error());
     hash.Add(loaded.value().file_hash);
     RecordedPerson& person = loaded.value().person;
@@ -141,7 +149,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
   if (MaybeError failed = PrepareMotion(options.preparation, &recording)) {
     return OfRecording(entry, *std::move(failed));
   }
-  if (MaybeError failed = LoadLaboratory(entry, reading, &recording)) {
+  if (MaybeError failed = LoadLaboratory(entry, reading, &recording, warnings)) {
     return OfRecording(entry, *std::move(failed));
   }
   return recording;

@@ -35,6 +35,9 @@ struct LoadOptions {
   // Also keep the positions of all joints (RecordedPerson::joints), for full-body work; without it
   // only hip and ankles stay in memory.
   bool keep_all_joints = false;
+  // Also people whom force plates alone measured ("motion": "none"), who stand still in what is
+  // returned, with no weight; only a fit and an inspection know them. Else they are errors.
+  bool plates_alone = false;
   // Gaps, filter, frame rate.
   PreparationOptions preparation{};
 };
@@ -65,6 +68,9 @@ struct LoadedPerson {
   double metres_per_unit = 1.0;  // of the file
   std::string file_hash;         // of the file (and of the mapping, where there is one)
 };
+
+// The person of a recording without motion, for as long as their platforms measured.
+Result<LoadedPerson> LoadPersonOnPlates(const ManifestRecording& entry);
 
 // Reads the file of subject `index`, cuts it to the manifest's frames, closes gaps, turns it to the
 // project's units and axes and checks that it can be a person.

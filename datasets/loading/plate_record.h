@@ -4,7 +4,9 @@
 // (vx, vy, vz in OpenSim's) and px, py (and pz, which is not needed), for each platform behind a
 // prefix of its own:
 //   time,fx,fy,fz,px,py             time,left_fx,...,left_py,right_fx,...,right_py
-// N on the person, m, in the axes that are said. Forces of several platforms add up, and their
+//   time,fx,fy,fz,mx,my,mz          N m about the entry's `origin`, instead of a centre
+// N on the person (with moments also on the platform, which can only be pressed), m, in the axes
+// that are said. Forces of several platforms add up, and their
 // moments do. Low-passed without delay below half the frame rate before frames are taken.
 #pragma once
 
@@ -16,7 +18,6 @@
 namespace pushid {
 
 inline constexpr double kWeightTolerance = 0.05;  // of the mean vertical force about m g
-inline constexpr double kOffPlate = 0.02;         // m beyond the edge, of most frames: a wrong one
 inline constexpr double kFarFromFeet = 0.6;       // m, of the centre of pressure
 
 // Into the person's `plates`. Errors: those of the files, no such platform or column, a record that

@@ -37,6 +37,19 @@ std::optional<double> ReadStart(JsonFields* given) {
   return given->Number("start", "the file's clock at frame 0 in s");
 }
 
+std::optional<Eigen::Vector3d> ReadOrigin(JsonFields* given) {
+  constexpr const char* kKey = "origin";
+  if (!given->Has(kKey)) return std::nullopt;
+  Eigen::Vector3d origin;
+  int count = 0;
+  for (const Json& item : given->List(kKey)) {
+    if (item.is_number() && count < 3) origin[count] = item.get<double>();
+    count += item.is_number() ? 1 : 4;
+  }
+  if (count != 3) given->Fail(kKey, "must be three numbers, [x, y, z] in m");
+  return origin;
+}
+
 ManifestPlates ReadPlates(JsonFields* given, int people) {
   ManifestPlates plates;
   plates.use = given->Choice("use", PlateUse::kMeasure);
@@ -50,6 +63,7 @@ ManifestPlates ReadPlates(JsonFields* given, int people) {
     given->Fail("lowpass_hz", "must be a cut-off in Hz, or 0 for 0.4 of the frame rate");
   }
   ReadAxes(given, &plates.up, &plates.forward);
+  plates.origin = ReadOrigin(given);
   given->OnlyAsked();
   return plates;
 }
@@ -99,6 +113,13 @@ std::vector<ManifestPlates> ReadPlatesKey(const JsonDocument& document, JsonFiel
   for (size_t i = 0; i < value.size(); ++i) {
     read(value[i], fields->Pointer(std::string(kKey) + "/" + std::to_string(i)),
          label + " " + std::to_string(i));
+    for (size_t k = 0; k < i; ++k) {
+      const bool both = plates[k].use == PlateUse::kMeasure && plates[i].use == PlateUse::kMeasure;
+      if (!both || plates[k].person != plates[i].person) continue;
+      fields->Fail(kKey, "names person " + std::to_string(plates[i].person) +
+                             " twice; platforms of one file under one person are one entry "
+                             "(\"plates\"), and each entry needs its \"person\"");
+    }
   }
   return plates;
 }

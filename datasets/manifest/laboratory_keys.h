@@ -6,6 +6,7 @@
 // The room's README has the tables of their keys.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,6 +47,8 @@ struct ManifestPlates {
   std::optional<double> start_s;    // the file's clock at frame 0
   double lowpass_hz = 0.0;          // 0: 0.4 of the frame rate
   std::string up, forward;          // axes of the file; empty: z and x, of a motion's file its own
+  // What columns of moments are about, m, in the file's axes; the surface is at height 0.
+  std::optional<Eigen::Vector3d> origin{};
 };
 
 // The keys `ground` and `force_plates` of a recording of so many people, where it has them.

@@ -51,11 +51,16 @@ inline constexpr char kOldConditionKey[] = "condition_code";
 
 inline constexpr double kHeaviestPerson = 400.0;  // kg
 
+// Of the ankles above the ground, m, of an adult, where nobody measured it.
+inline constexpr double kAnkleHeight = 0.08;
+
 struct ManifestSubject {
   std::string id;
   double mass_kg = 0.0;
   JointMapping joints{};  // before those of the recording
-  PersonFacts known{};    // under keys that no program knows
+  // Of a person whom platforms alone measured, m.
+  double rod_m = 0.0, ankle_height_m = kAnkleHeight;
+  PersonFacts known{};  // under keys that no program knows
 };
 
 struct ManifestPush {
@@ -72,6 +77,7 @@ struct ManifestRecording {
   int pushed_person = 0;
   MotionFormat motion_format = MotionFormat::kBvh;
   std::vector<std::string> motion;  // files, one per subject, relative to the manifest
+  bool plates_alone = false;        // "motion": "none": there are no such files
   std::string mapping;              // relative to the manifest; empty: none
   std::string push_csv;             // relative to the manifest; empty: no push at frame 0
   PushKind push_kind = PushKind::kExternal;

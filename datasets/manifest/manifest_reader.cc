@@ -12,6 +12,7 @@
 #include "datasets/formats/units.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/manifest.h"
+#include "datasets/manifest/plates_alone.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {
@@ -48,6 +49,11 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
                                   "; a mass in kg is above 0 and at most " +
                                   Rounded(kHeaviestPerson));
     }
+    if (recording->plates_alone) {
+      read.rod_m = subject.Number("rod_m", "the distance between ankles and hips in m");
+      read.ankle_height_m =
+          subject.OptionalNumber("ankle_height_m", "the ankles' height in m", kAnkleHeight);
+    }
     read.joints = ReadJointMapping(document, &subject);
     read.known = FactsOf(item, subject);
     fields->Add(subject);
@@ -58,6 +64,7 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
 }
 
 void ReadMotionNames(JsonFields* fields, ManifestRecording* recording) {
+  if (recording->plates_alone) return;
   std::string key;
   for (const MotionFormatRow& row : kMotionFormats) {
     if (!fields->Has(row.name)) continue;
@@ -146,6 +153,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
     const std::string problem = FrameRateProblem(recording.fps);
     if (!problem.empty()) fields.Fail("fps", problem);
   }
+  recording.plates_alone = ReadPlatesAlone(&fields);
   ReadSubjects(document, &fields, &recording);
   const int people = static_cast<int>(recording.subjects.size());
   recording.pushed_person =
@@ -170,6 +178,7 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   recording.initial_velocity = fields.Choice("initial_velocity", InitialVelocity::kZero);
   recording.ground = ReadGroundKey(document, &fields);
   recording.plates = ReadPlatesKey(document, &fields, people);
+  CheckPlatesAlone(recording, &fields);
   recording.stated_errors = ReadStatedErrors(document, &fields, stated);
   if (fields.Has("frames")) {
     recording.frames = fields.Whole("frames", "the number of frames", 0, kAnyFrame);

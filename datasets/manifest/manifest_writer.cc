@@ -88,7 +88,11 @@ Json RecordingJson(const ManifestRecording& recording) {
   }
   json["subjects"] = subjects;
   json["pushed_person"] = recording.pushed_person;
-  json[NameOf(recording.motion_format)] = recording.motion;
+  if (recording.plates_alone) {
+    json["motion"] = "none";
+  } else {
+    json[NameOf(recording.motion_format)] = recording.motion;
+  }
   SetUnless(recording.mapping.empty(), "mapping", recording.mapping, &json);
   SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
   json["push_kind"] = NameOf(recording.push_kind);

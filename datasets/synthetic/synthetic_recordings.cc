@@ -132,6 +132,16 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
   return person;
 }
 
+// How the ground presses a person up: what is pushed at a torque more moves the centre of pressure
+// by the torque over the vertical force.
+double VerticalForce(const BodyOf<double>& body, const PendulumState<double>& state,
+                     const Vector4<double>& a, const GroundStep& ground,
+                     const Vector4<double>& push, double centre) {
+  constexpr double kTorque = 1000.0;  // N m
+  const Vector4<double> more = push + Vector4<double>(0.0, 0.0, kTorque, 0.0);
+  return kTorque / (GroundReaction<double>(body, state, a, ground, more)[2] - centre);
+}
+
 // What platforms under the person measure, which move with the ground.
 std::vector<PlateSample> ObservePlates(const SyntheticOptions& options,
                                        const SyntheticRecording& made, int n, Random* noise) {
@@ -139,17 +149,19 @@ std::vector<PlateSample> ObservePlates(const SyntheticOptions& options,
   const Scene& scene = made.scene;
   const BodyOf<double> body = DynamicBody(options.model, scene.people[n].body, made.parameters[n],
                                           options.model.stance == Stance::kFixed);
-  const double weight = scene.people[n].body.mass * kGravity;
   for (int t = 0; t < options.frames; ++t) {
     const int at = std::min(t, options.frames - 2);  // the last frame has no step
     const Vector4<double> a = (made.path.At(at + 1, n).qd - made.path.At(at, n).qd) / scene.dt;
     const GroundStep ground = scene.ground.moves() ? scene.ground.steps[at] : GroundStep{};
+    const Vector4<double> push = PushForceAt(scene, n, at);
     const GroundReactionOf<double> reaction =
-        GroundReaction<double>(body, made.path.At(at, n), a, ground, PushForceAt(scene, n, at));
+        GroundReaction<double>(body, made.path.At(at, n), a, ground, push);
+    const double vertical = VerticalForce(body, made.path.At(at, n), a, ground, push, reaction[2]);
     const auto err = [&](double sigma) { return sigma * noise->Normal(); };
     PlateSample sample;
     sample.force = {reaction[0] + err(options.plate_noise_n),
-                    reaction[1] + err(options.plate_noise_n), weight + err(options.plate_noise_n)};
+                    reaction[1] + err(options.plate_noise_n),
+                    vertical + err(options.plate_noise_n)};
     sample.centre = {reaction[2] + err(options.plate_noise_m),
                      reaction[3] + err(options.plate_noise_m), 0.0};
     sample.weight = 1.0;

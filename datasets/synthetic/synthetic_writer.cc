@@ -32,7 +32,13 @@ BvhMotion Motion(const SyntheticRecording& made, int n) {
 }
 
 std::string GroundFile(const Recording& recording) { return "ground/" + recording.id + ".csv"; }
-std::string PlatesFile(const Recording& recording) { return "plates/" + recording.id + ".csv"; }
+// As the motion's: of a row one for each person.
+std::string OfPerson(const Recording& recording, size_t n) {
+  return recording.id + (recording.people.size() > 1 ? "_" + std::to_string(n) : "");
+}
+std::string PlatesFile(const Recording& recording, size_t n) {
+  return "plates/" + OfPerson(recording, n) + ".csv";
+}
 
 // A row for each frame: its time, then the numbers.
 template <typename Row>
@@ -47,7 +53,7 @@ MaybeError WriteTimed(const std::string& path, const std::string& names, double 
   return WriteFileAtomically(path, text);
 }
 
-// The ground's and the platforms' files, where the recording has them; of the first person.
+// The ground's and the platforms' files, where the recording has them.
 MaybeError WriteLaboratory(const std::string& folder, const SyntheticRecording& made) {
   const Recording& recording = made.recording;
   const int frames = recording.num_frames();
@@ -61,14 +67,21 @@ MaybeError WriteLaboratory(const std::string& folder, const SyntheticRecording& 
       return failed;
     }
   }
-  const std::vector<PlateSample>& plates = recording.people[0].plates;
-  if (plates.empty()) return std::nullopt;
-  if (MaybeError failed = MakeFolder(folder + "/plates")) return failed;
-  return WriteTimed(
-      folder + "/" + PlatesFile(recording), "fx,fy,fz,px,py", recording.fps, frames, [&](int t) {
-        const PlateSample& s = plates[t];
-        return std::vector<double>{s.force[0], s.force[1], s.force[2], s.centre[0], s.centre[1]};
-      });
+  for (size_t n = 0; n < recording.people.size(); ++n) {
+    const std::vector<PlateSample>& plates = recording.people[n].plates;
+    if (plates.empty()) continue;
+    if (MaybeError failed = MakeFolder(folder + "/plates")) return failed;
+    if (MaybeError failed = WriteTimed(folder + "/" + PlatesFile(recording, n), "fx,fy,fz,px,py",
+                                       recording.fps, frames, [&plates](int t) {
+                                         const PlateSample& s = plates[t];
+                                         return std::vector<double>{s.force[0], s.force[1],
+                                                                    s.force[2], s.centre[0],
+                                                                    s.centre[1]};
+                                       })) {
+      return failed;
+    }
+  }
+  return std::nullopt;
 }
 
 ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::string>& bvh,
@@ -84,9 +97,15 @@ ManifestRecording Entry(const SyntheticRecording& made, const std::vector<std::s
   entry.joints.left_ankle = JointReference{joints[kLeftAnkleJoint].name};
   entry.joints.right_ankle = JointReference{joints[kRightAnkleJoint].name};
   if (made.scene.ground.moves()) (*entry.json)["ground"] = {{"csv", GroundFile(recording)}};
-  for (const RecordedPerson& person : recording.people) {
-    if (person.plates.empty()) continue;
-    (*entry.json)["force_plates"] = {{"use", "measure"}, {"file", PlatesFile(recording)}};
+  for (size_t n = 0; n < recording.people.size(); ++n) {
+    if (recording.people[n].plates.empty()) continue;
+    nlohmann::ordered_json plates = {{"use", "measure"}, {"file", PlatesFile(recording, n)}};
+    if (recording.people.size() == 1) {
+      (*entry.json)["force_plates"] = plates;
+      continue;
+    }
+    plates["person"] = n;
+    (*entry.json)["force_plates"].push_back(plates);
   }
   if (recording.pushes.empty()) return entry;
   const int start = recording.pushes[0].start_frame;
@@ -128,8 +147,7 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
     const int people = made.scene.num_people();
     std::vector<std::string> bvh;
     for (int n = 0; n < people; ++n) {
-      const std::string suffix = people > 1 ? "_" + std::to_string(n) : "";
-      bvh.push_back("bvh/" + made.recording.id + suffix + ".bvh");
+      bvh.push_back("bvh/" + OfPerson(made.recording, static_cast<size_t>(n)) + ".bvh");
       if (MaybeError failed = WriteBvh(folder + "/" + bvh.back(), Motion(made, n), kUnit)) {
         return failed;
       }

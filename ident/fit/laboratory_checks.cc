@@ -59,6 +59,29 @@ MaybeError CheckPlates(const PendulumRecording& r, const ModelOptions& model) {
   return std::nullopt;
 }
 
+// Where nobody saw the motion (not even at frame 0, from which others are rolled out), only what
+// platforms measure is compared.
+MaybeError CheckPlatesAlone(const PendulumRecording& r, const FitOptions& options) {
+  if (r.Weight(0, 0) > 0.0) return std::nullopt;
+  const ModelOptions& model = options.model;
+  const std::string whose =
+      "recording " + r.id + " was measured by force plates alone (\"motion\": \"none\")";
+  if (model.stance != Stance::kFixed) {
+    return Error{whose + ", which tell nothing of feet that slide or step; add --stance=fixed"};
+  }
+  if (model.process_noise.Any()) {
+    return Error{whose +
+                 ", and --process_noise compares positions, which nobody measured; leave it out"};
+  }
+  if (model.body != BodyModel::kLdp || RodMoves(model) || options.body_weight > 0.0 ||
+      NeedsGradientTraining(options)) {
+    return Error{whose +
+                 ", from which neither bodies, rods nor large networks are learnt; leave --body, "
+                 "--rod, --body_weight and the network out"};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 MaybeError CheckLaboratory(const std::vector<PendulumRecording>& recordings,
@@ -73,6 +96,7 @@ MaybeError CheckLaboratory(const std::vector<PendulumRecording>& recordings,
   }
   for (const PendulumRecording& r : recordings) {
     if (MaybeError error = CheckPlates(r, options.model)) return error;
+    if (MaybeError error = CheckPlatesAlone(r, options)) return error;
     if (large && (r.scene.ground.moves() || r.HasPlates())) {
       return Error{"recording " + r.id +
                    " has moving ground or force_plates, and the network is of a size that is "
