@@ -8,6 +8,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/json_file.h"
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/column_mapping.h"
 #include "ident/formations/measured_wave.h"
@@ -15,6 +16,7 @@
 
 DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");
 DEFINE_string(svg_out, "", "draw hip, gaps and forces here (SVG); for one file");
+DEFINE_string(json_out, "", "write what was found of all files here (JSON)");
 DEFINE_bool(wave, false,
             "instead: how a push travels through the people of trajectories, of a table with a "
             "point for each person, or of a manifest's groups; no model and no fit");
@@ -29,13 +31,16 @@ MaybeError CheckFlags() {
   if (g_files.empty()) {
     return Error{"name one or more files to inspect; see pushid-inspect --help"};
   }
-  if (FLAGS_svg_out.empty()) return std::nullopt;
-  if (FLAGS_wave) return Error{"--wave draws nothing; leave --svg_out out"};
+  if (FLAGS_svg_out.empty() && FLAGS_json_out.empty()) return std::nullopt;
+  if (FLAGS_wave) return Error{"--wave writes no files; leave --svg_out and --json_out out"};
+  for (const std::string& file : g_files) {
+    if (MaybeError error = OutputFiles().CheckNotRead("the command line", file)) return error;
+  }
+  if (FLAGS_svg_out.empty()) return CheckOutputFiles({FLAGS_json_out});
   if (g_files.size() > 1) {
     return Error{"--svg_out draws one file, not " + std::to_string(g_files.size())};
   }
-  if (MaybeError error = OutputFiles().CheckNotRead("the command line", g_files[0])) return error;
-  return CheckOutputFiles({FLAGS_svg_out});
+  return CheckOutputFiles({FLAGS_svg_out, FLAGS_json_out});
 }
 
 int RunWaves() {
@@ -64,6 +69,7 @@ int Run() {
   if (!mapping.ok()) return Fail(mapping.error());
   // A file that cannot be read does not keep the others from being told about.
   int outcome = kDone;
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const std::string& file : g_files) {
     const Result<Inspection> found = Inspect(file, mapping.value());
     if (!found.ok()) {
@@ -71,6 +77,7 @@ int Run() {
       continue;
     }
     std::printf("%s", InspectionText(found.value()).c_str());
+    all.push_back(InspectionJson(found.value()));
     if (FLAGS_svg_out.empty()) continue;
     const Inspection& seen = found.value();
     if (seen.hip.empty() && seen.seen.empty() && seen.forces.empty()) {
@@ -82,6 +89,8 @@ int Run() {
     }
     std::printf("  picture         %s\n", FLAGS_svg_out.c_str());
   }
+  if (FLAGS_json_out.empty()) return outcome;
+  if (MaybeError error = WriteJson(FLAGS_json_out, all, 1)) return Fail(*error);
   return outcome;
 }
 

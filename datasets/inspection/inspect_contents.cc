@@ -135,14 +135,17 @@ MaybeError InspectManifest(Inspection* found) {
   std::vector<Finding> facing;
   for (const ManifestRecording& entry : manifest.value().recordings) {
     ++settings[entry.labels.setting()];
-    ++formats[Title(entry.motion_format)];
+    ++formats[entry.plates_alone ? "force plates alone" : Title(entry.motion_format)];
     for (const ManifestSubject& subject : entry.subjects) subjects.insert(subject.id);
     pushed += entry.push_csv.empty() && entry.pushes.empty() ? 0 : 1;
     Warnings warnings;
-    const Result<Recording> recording = LoadRecording(manifest.value(), entry, {}, &warnings);
+    LoadOptions options;
+    options.plates_alone = true;
+    const Result<Recording> recording = LoadRecording(manifest.value(), entry, options, &warnings);
     for (const Warning& warning : warnings) found->Warn(warning.text);
     if (recording.ok()) ++read;
     if (recording.ok()) {
+      InspectLaboratory(entry, recording.value(), found);
       pendulums.push_back(MakePendulumRecording(recording.value(), SkeletonMapping::kExact));
       const std::vector<Finding> more = FacingFindings(recording.value());
       facing.insert(facing.end(), more.begin(), more.end());

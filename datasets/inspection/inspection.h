@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "datasets/loading/foot_steps.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/joint_choice.h"
+#include "datasets/manifest/manifest.h"
 
 namespace pushid {
 
@@ -27,11 +29,30 @@ struct InspectedSignal {
   std::vector<double> values;
 };
 
+// What a laboratory adds to a recording of a manifest.
+struct InspectedGround {
+  std::string recording, kind;  // "displacement", "velocity", "acceleration" or "markers"
+  double rate_hz = 0.0;         // of its file
+  double farthest_m = 0.0, peak_acceleration = 0.0;  // m/s^2; horizontal, at the frames
+  double peak_tilt_rad = 0.0;
+};
+struct InspectedPlates {
+  std::string recording, person, use;  // "measure" or "none"
+  int platforms = 0;
+  double rate_hz = 0.0;                             // of their file
+  double weight_ratio = 0.0;                        // mean vertical force over m g
+  Eigen::Vector2d least = Eigen::Vector2d::Zero();  // of the centre of pressure, m
+  Eigen::Vector2d most = Eigen::Vector2d::Zero();
+};
+
 struct Inspection {
   std::string path;
   std::string format;  // "BVH", "C3D", "TRC", "STO", "CSV", "manifest", ...
   std::vector<std::pair<std::string, std::string>> facts;  // "frames", "580 at 100 per second"
   std::vector<std::string> warnings;
+
+  std::vector<InspectedGround> grounds;  // of a manifest's recordings
+  std::vector<InspectedPlates> plates;
 
   // For the picture; empty where the file has no such thing.
   double rate_hz = 0.0;                  // of hip and seen
@@ -54,6 +75,9 @@ Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping
 // "file: format", the facts and the warnings, one a line.
 std::string InspectionText(const Inspection& inspection);
 
+// The same with names and numbers: {"file", "format", "facts", "warnings", "ground", "plates"}.
+nlohmann::ordered_json InspectionJson(const Inspection& inspection);
+
 // The parts of Inspect.
 
 // A motion: unit, axes, rate, gaps, jumps, standing height, a static start, the onset of the push,
@@ -72,6 +96,10 @@ void LookAtPlatforms(const C3dFile& file, Inspection* found);
 
 // People, times, how close they stand. motion: of every person, as trajectories.h reads them.
 void InspectCrowd(const PointMotion& motion, Inspection* found);
+
+// Ground and platforms of a recording as it was read from its entry, with a fact for each.
+void InspectLaboratory(const ManifestRecording& entry, const Recording& recording,
+                       Inspection* found);
 
 // Adds facts about the manifest at inspection->path, and a warning for every recording that cannot
 // be read and everything unusual about the others.

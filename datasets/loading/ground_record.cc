@@ -20,7 +20,7 @@ constexpr int kNumColumns = 5;
 constexpr double kRestSeconds = 0.1;  // over which the speed at frame 0 is taken
 
 // By name; -1 for what is not there. up: of the column whose motion lifts, which is not read.
-Result<std::vector<int>> ChooseColumns(const std::string& path, int up,
+Result<std::vector<int>> GroundColumns(const std::string& path, int up,
                                        const std::vector<std::string>& names) {
   std::vector<int> columns;
   std::vector<std::string> wanted, known = {"time"};
@@ -46,35 +46,6 @@ Result<std::vector<int>> ChooseColumns(const std::string& path, int up,
                  path};
   }
   return columns;
-}
-
-Result<GroundTracks> FromCsv(const ManifestRecording& entry) {
-  const ManifestGround& ground = entry.ground;
-  const std::string path = ResolvePath(entry.manifest, ground.csv);
-  const Eigen::Matrix3d axes = AxesRotation(ground.up.empty() ? "z" : ground.up,
-                                            ground.forward.empty() ? "x" : ground.forward)
-                                   .value();
-  Eigen::Index up;  // the column of the file's axis that points up: lifting is not read
-  axes.row(2).cwiseAbs().maxCoeff(&up);
-  const Result<TimedColumns> read = ReadTimedColumns(
-      path, [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-        return ChooseColumns(path, static_cast<int>(up), names);
-      });
-  if (!read.ok()) return read.error();
-  const TimedColumns& table = read.value();
-  GroundTracks tracks{path, table.rate_hz, table.first_s, {}, {}, table.lines};
-  for (int row = 0; row < table.num_rows(); ++row) {
-    double value[kNumColumns];
-    for (int i = 0; i < kNumColumns; ++i) {
-      value[i] = table.values[i].empty() ? 0.0 : table.values[i][row];
-      if (std::isfinite(value[i])) continue;
-      return Error{std::string(kColumns[i]) + " of the ground is missing; fill the gap", path,
-                   table.lines[row]};
-    }
-    tracks.shift.push_back(axes * Eigen::Vector3d(value[0], value[1], value[2]));
-    tracks.tilt.emplace_back(value[3], value[4], 0.0);
-  }
-  return tracks;
 }
 
 // Rates into what they add up to, as GroundThrough takes it apart; at frames.
@@ -113,8 +84,8 @@ double SpeedAtFirst(const std::vector<GroundPose>& poses, double dt) {
 }
 
 // The tracks' clock at frame 0, and that they last as long as the motion from there.
-Result<double> StartOf(const GroundTracks& tracks, const ManifestRecording& entry,
-                       const Recording& recording) {
+Result<double> GroundStart(const GroundTracks& tracks, const ManifestRecording& entry,
+                           const Recording& recording) {
   // Of markers by the rate that counts for the motion, whatever the file says.
   const double start = entry.ground.start_s.value_or(
       entry.ground.csv.empty() ? tracks.first_s + entry.first_frame / tracks.rate_hz
@@ -177,15 +148,45 @@ MaybeError CheckAtRest(const GroundTracks& tracks, bool displacement, double sta
 
 }  // namespace
 
+Result<GroundTracks> GroundOfCsv(const ManifestRecording& entry) {
+  const ManifestGround& ground = entry.ground;
+  const std::string path = ResolvePath(entry.manifest, ground.csv);
+  const Eigen::Matrix3d axes = AxesRotation(ground.up.empty() ? "z" : ground.up,
+                                            ground.forward.empty() ? "x" : ground.forward)
+                                   .value();
+  Eigen::Index up;  // the column of the file's axis that points up: lifting is not read
+  axes.row(2).cwiseAbs().maxCoeff(&up);
+  const Result<TimedColumns> read = ReadTimedColumns(
+      path, [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+        return GroundColumns(path, static_cast<int>(up), names);
+      });
+  if (!read.ok()) return read.error();
+  const TimedColumns& table = read.value();
+  GroundTracks tracks{path, table.rate_hz, table.first_s, {}, {}, table.lines};
+  for (int row = 0; row < table.num_rows(); ++row) {
+    double value[kNumColumns];
+    for (int i = 0; i < kNumColumns; ++i) {
+      value[i] = table.values[i].empty() ? 0.0 : table.values[i][row];
+      if (std::isfinite(value[i])) continue;
+      return Error{std::string(kColumns[i]) + " of the ground is missing; fill the gap", path,
+                   table.lines[row]};
+    }
+    tracks.shift.push_back(axes * Eigen::Vector3d(value[0], value[1], value[2]));
+    tracks.tilt.emplace_back(value[3], value[4], 0.0);
+  }
+  return tracks;
+}
+
 Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
                                            const Recording& recording, const GroundReading& reading,
                                            Warnings* warnings) {
   const ManifestGround& ground = entry.ground;
-  Result<GroundTracks> read =
-      ground.csv.empty() ? GroundOfMarkers(entry, recording, reading, warnings) : FromCsv(entry);
+  Result<GroundTracks> read = ground.csv.empty()
+                                  ? GroundOfMarkers(entry, recording, reading, warnings)
+                                  : GroundOfCsv(entry);
   if (!read.ok()) return read.error();
   GroundTracks& tracks = read.value();
-  const Result<double> start = StartOf(tracks, entry, recording);
+  const Result<double> start = GroundStart(tracks, entry, recording);
   if (!start.ok()) return start.error();
   const double fps = recording.fps;
   LowPassTo(fps, reading.lowpass_hz, &tracks);

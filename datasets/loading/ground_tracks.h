@@ -21,6 +21,9 @@ struct GroundTracks {
   double last_s() const { return first_s + (static_cast<double>(shift.size()) - 1.0) / rate_hz; }
 };
 
+// From the table that the entry names.
+Result<GroundTracks> GroundOfCsv(const ManifestRecording& entry);
+
 // From the markers that the entry names, in the first person's file: the rigid motion of what is
 // under that person. Errors and warnings: those of ground_record.h.
 Result<GroundTracks> GroundOfMarkers(const ManifestRecording& entry, const Recording& recording,

@@ -12,7 +12,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kHalfStance = 0.1;  // m, of ankles that nobody saw
+constexpr double kUnseenStance = 0.1;  // m, of ankles that nobody saw
 
 }  // namespace
 
@@ -51,8 +51,8 @@ Result<LoadedPerson> LoadPersonOnPlates(const ManifestRecording& entry) {
     return std::vector<Eigen::Vector3d>(static_cast<size_t>(frames), place);
   };
   person.hip = stays(ankles + Eigen::Vector3d(0.0, 0.0, subject.rod_m));
-  person.left_ankle = stays(ankles + Eigen::Vector3d(0.0, kHalfStance, 0.0));
-  person.right_ankle = stays(ankles - Eigen::Vector3d(0.0, kHalfStance, 0.0));
+  person.left_ankle = stays(ankles + Eigen::Vector3d(0.0, kUnseenStance, 0.0));
+  person.right_ankle = stays(ankles - Eigen::Vector3d(0.0, kUnseenStance, 0.0));
   person.weight.assign(static_cast<size_t>(frames), 0.0);
   const Result<std::string> hash = HashFile(tracks.file);
   if (!hash.ok()) return hash.error();

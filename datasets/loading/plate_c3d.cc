@@ -43,6 +43,7 @@ Result<PlateTracks> PlatesOfC3d(const std::string& path, const ManifestPlates& p
   PlateTracks tracks;
   tracks.file = path;
   tracks.rate_hz = file.analog_rate_hz;
+  tracks.platforms = static_cast<int>(wanted.size());
   for (const std::string& name : wanted) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end()) return UnknownNameError(path, "platform", known, name);

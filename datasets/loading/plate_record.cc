@@ -85,8 +85,8 @@ MaybeError CheckCentre(const PlateTracks& tracks, const RecordedPerson& person) 
 }
 
 // The tracks' clock at frame 0, and that they last as long as the motion from there.
-Result<double> StartOf(const PlateTracks& tracks, const ManifestPlates& plates,
-                       const RecordedPerson& person, double fps, double seconds) {
+Result<double> PlatesStart(const PlateTracks& tracks, const ManifestPlates& plates,
+                           const RecordedPerson& person, double fps, double seconds) {
   const bool of_motion = plates.file.empty() || tracks.file == person.file;
   const bool c3d = MotionFormatOfFile(tracks.file) == MotionFormat::kC3d;
   const double start =
@@ -130,7 +130,7 @@ MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plat
   if (!read.ok()) return read.error();
   PlateTracks& tracks = read.value();
   const double fps = recording->fps, seconds = (recording->num_frames() - 1) / fps;
-  const Result<double> start = StartOf(tracks, plates, person, fps, seconds);
+  const Result<double> start = PlatesStart(tracks, plates, person, fps, seconds);
   if (!start.ok()) return start.error();
   double cutoff = plates.lowpass_hz > 0.0 ? plates.lowpass_hz : 0.4 * fps;
   if (lowpass_hz > 0.0) cutoff = std::min(cutoff, lowpass_hz);

@@ -52,9 +52,9 @@ std::vector<std::string> PrefixesIn(const std::vector<std::string>& names) {
 }
 
 // The columns of each platform that are read; up: the file's axis that points there.
-Result<std::vector<PlateColumns>> ChooseColumns(const std::string& path,
-                                                const ManifestPlates& plates, int up,
-                                                const std::vector<std::string>& names) {
+Result<std::vector<PlateColumns>> PlateColumnsIn(const std::string& path,
+                                                 const ManifestPlates& plates, int up,
+                                                 const std::vector<std::string>& names) {
   std::vector<PlateColumns> all;
   for (const std::string& prefix : plates.plates.empty() ? PrefixesIn(names) : plates.plates) {
     PlateColumns columns = ColumnsOf(prefix, names);
@@ -106,7 +106,7 @@ Result<PlateTracks> PlatesOfTable(const std::string& path, const ManifestPlates&
   std::vector<PlateColumns> all;
   const Result<TimedColumns> read = ReadTimedColumns(
       path, [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-        const auto chosen = ChooseColumns(path, plates, static_cast<int>(up), names);
+        const auto chosen = PlateColumnsIn(path, plates, static_cast<int>(up), names);
         if (!chosen.ok()) return chosen.error();
         all = chosen.value();
         std::vector<int> columns;
@@ -122,6 +122,7 @@ Result<PlateTracks> PlatesOfTable(const std::string& path, const ManifestPlates&
   tracks.rate_hz = table.rate_hz;
   tracks.first_s = table.first_s;
   tracks.last_line = table.lines.back();
+  tracks.platforms = static_cast<int>(all.size());
   const auto at = [&](size_t plate, int first, int row) {
     Eigen::Vector3d value;
     for (int i = 0; i < 3; ++i) {

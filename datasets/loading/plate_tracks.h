@@ -17,6 +17,7 @@ struct PlateTracks {
   std::string file;
   double rate_hz = 0.0, first_s = 0.0;
   int last_line = 0;
+  int platforms = 0;  // that were added up
   std::vector<Eigen::Vector3d> force, moment;
 
   void Add(size_t at, const Eigen::Vector3d& on_person, const Eigen::Vector3d& centre) {

@@ -52,14 +52,14 @@ inline constexpr char kOldConditionKey[] = "condition_code";
 inline constexpr double kHeaviestPerson = 400.0;  // kg
 
 // Of the ankles above the ground, m, of an adult, where nobody measured it.
-inline constexpr double kAnkleHeight = 0.08;
+inline constexpr double kUsualAnkleHeight = 0.08;
 
 struct ManifestSubject {
   std::string id;
   double mass_kg = 0.0;
   JointMapping joints{};  // before those of the recording
   // Of a person whom platforms alone measured, m.
-  double rod_m = 0.0, ankle_height_m = kAnkleHeight;
+  double rod_m = 0.0, ankle_height_m = kUsualAnkleHeight;
   PersonFacts known{};  // under keys that no program knows
 };
 

@@ -52,7 +52,7 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
     if (recording->plates_alone) {
       read.rod_m = subject.Number("rod_m", "the distance between ankles and hips in m");
       read.ankle_height_m =
-          subject.OptionalNumber("ankle_height_m", "the ankles' height in m", kAnkleHeight);
+          subject.OptionalNumber("ankle_height_m", "the ankles' height in m", kUsualAnkleHeight);
     }
     read.joints = ReadJointMapping(document, &subject);
     read.known = FactsOf(item, subject);

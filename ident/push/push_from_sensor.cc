@@ -88,7 +88,7 @@ Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording&
   const double dt = recording.scene.dt, zero = options.frame_zero_time_s;
   std::vector<Vector3<double>> rows;
   for (int t = 0; t + 1 < recording.num_frames(); ++t) {
-    rows.push_back(Impulse(record, zero + t * dt, zero + (t + 1) * dt) / dt);
+    rows.push_back(Impulse(record, zero + (t - 0.5) * dt, zero + (t + 0.5) * dt) / dt);
   }
   double largest = 0.0;
   for (const Vector3<double>& row : rows) largest = std::max(largest, row.norm());

@@ -2,7 +2,10 @@
 // frames, so that the impulse is kept, and turned into a generalized force at the contact point.
 //
 // Between samples the force is taken as linear, outside them as zero. Row t is the mean over
-// [t dt, (t + 1) dt). Rejected: sampling the force at the frames, which loses part of a short push.
+// [(t - 1/2) dt, (t + 1/2) dt): a step changes the rates, which are those between two frames, from
+// half a frame before frame t to half a frame after it (models/reaction_delay.h). Positions are
+// then of second order. Rejected: the mean over [t dt, (t + 1) dt), which pushes half a frame
+// early; sampling the force at the frames, which loses part of a short push.
 #pragma once
 
 #include <optional>

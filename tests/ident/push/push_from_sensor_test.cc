@@ -63,10 +63,48 @@ TEST(PushFromSensor, KeepsTheImpulseAtAnySamplingRate) {
     EXPECT_NEAR(impulse[1], -0.8 * expected, 1e-11);
     if (step < 0.01) {
       EXPECT_NEAR(expected, 300.0 * 0.11 * 2.0 / M_PI, 0.05);
-      EXPECT_EQ(push.value().start_frame, 12);  // 0.213 s
+      EXPECT_EQ(push.value().start_frame, 13);  // 0.213 s, nearest to its 12.8
       EXPECT_EQ(push.value().EndFrame(), 20);   // 0.323 s
     }
   }
+}
+
+// A mass that the half-sine pushes, in closed form, against the same mass stepped as people are:
+// where it is afterwards is wrong by a quarter with frames half as long.
+TEST(PushFromSensor, PositionsAreOfSecondOrder) {
+  constexpr double kBegin = 0.213, kSeconds = 0.11, kPeak = 300.0, kMass = 80.0;
+  const SensorRecord record = HalfSine(1e-4);
+  double error[2] = {0.0, 0.0};
+  for (int i = 0; i < 2; ++i) {
+    SyntheticOptions options;
+    options.strengths = {{"none", 0.0}};
+    options.fps = i == 0 ? 30.0 : 60.0;
+    options.frames = i == 0 ? 31 : 61;
+    // The mean of both signs: where in a frame a push begins is not of any order.
+    for (int shift = 0; shift < 20; ++shift) {
+      const PendulumRecording recording = MakePendulumRecording(
+          MakeSyntheticRecordings(options).value()[0].recording, SkeletonMapping::kExact);
+      SensorPushOptions given;
+      given.frame_zero_time_s = -0.005 * shift;
+      const Result<Push> push = PushFromSensor(record, recording, given);
+      ASSERT_TRUE(push.ok()) << push.error().ToString();
+      const double dt = recording.scene.dt;
+      double x = 0.0, v = 0.0;
+      for (int t = 0; t + 1 < recording.num_frames(); ++t) {
+        const int row = t - push.value().start_frame;
+        const bool pushed = row >= 0 && row < static_cast<int>(push.value().force.size());
+        v += pushed ? dt * push.value().force[row][0] / kMass : 0.0;
+        x += dt * v;
+      }
+      const double end = (recording.num_frames() - 1) * dt;
+      const double middle = kBegin + 0.005 * shift + 0.5 * kSeconds;
+      const double impulse = kPeak * kSeconds * 2.0 / M_PI;
+      error[i] += std::abs(x - impulse / kMass * (end - middle)) / 20.0;
+    }
+  }
+  // Half a frame early would be impulse / mass * dt / 2: 4.4 mm at 30 frames per second.
+  EXPECT_LT(error[0], 4e-4);
+  EXPECT_LT(error[1], 0.35 * error[0] + 1e-6);
 }
 
 TEST(PushFromSensor, RowsAreTheForceAtItsPoint) {
@@ -106,7 +144,7 @@ TEST(PushFromSensor, ClockAndIdlingAreHonoured) {
   options.idle_force = 5.0;
   const Result<Push> push = PushFromSensor(record, recording, options);
   ASSERT_TRUE(push.ok()) << push.error().ToString();
-  // 0.113 s is in frame 6, but what little falls into it is no more than the idling.
+  // 0.113 s, nearest to frame 7.
   EXPECT_EQ(push.value().start_frame, 7);
   EXPECT_EQ(push.value().EndFrame(), 14);
   EXPECT_EQ(push.value().file, "sensor.csv");
