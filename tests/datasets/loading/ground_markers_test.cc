@@ -26,7 +26,7 @@ class GroundMarkers : public TempDirTest {
     return {0.03 * s, 0.0, 0.05 * s, -0.02 * s};
   }
   Result<std::vector<Recording>> LoadMarkers(const std::vector<Eigen::Vector3d>& marks,
-                                             double noise) {
+                                             double noise, double slide = 0.0, int hidden = -1) {
     Random random(5);
     const Eigen::Vector3d ankles(0.0, 0.0, 0.09);
     const auto row = [&](const Eigen::Vector3d& point, int t, double sigma) {
@@ -47,7 +47,15 @@ class GroundMarkers : public TempDirTest {
             Eigen::Vector3d(0.0, -0.1, 0.09)}) {
         text += row(p, t, 0.0);
       }
-      for (const Eigen::Vector3d& p : marks) text += row(p, t, noise);
+      for (const Eigen::Vector3d& p : marks) {
+        const bool first = &p == marks.data();
+        if (first && t == hidden) {
+          text += ",,,";
+          continue;
+        }
+        const double slid = first && t > kFrames / 2 ? slide : 0.0;
+        text += row(p + Eigen::Vector3d(0.0, slid, 0.0), t, noise);
+      }
       text += "\n";
     }
     WriteText("marked.csv", text);
@@ -59,8 +67,10 @@ class GroundMarkers : public TempDirTest {
     manifest["length_unit"] = "m";
     manifest["recordings"] = Json::array({entry});
     WriteText("marked.json", manifest.dump());
-    return LoadRecordings(Path("marked.json"));
+    warnings_.clear();
+    return LoadRecordings(Path("marked.json"), {}, &warnings_);
   }
+  Warnings warnings_;
 };
 
 TEST_F(GroundMarkers, GiveTheGroundUnderThePerson) {
@@ -78,6 +88,25 @@ TEST_F(GroundMarkers, MayBeNoisy) {
   const auto loaded = LoadMarkers({{0.4, 0.3, 0.0}, {0.4, -0.3, 0.0}, {-0.4, 0.3, 0.0}}, 2e-4);
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
   EXPECT_LT((loaded.value()[0].ground.back() - Pose(kFrames - 1)).norm(), 3e-3);
+}
+
+TEST_F(GroundMarkers, ThatAreNotRigidAreRefused) {
+  const std::vector<Eigen::Vector3d> marks = {{0.4, 0.3, 0.0}, {0.4, -0.3, 0.0}, {-0.4, 0.3, 0.0}};
+  const auto still = LoadMarkers(marks, 0.0, 0.015);
+  EXPECT_TRUE(still.ok()) << still.error().ToString();
+  const auto slid = LoadMarkers(marks, 0.0, 0.03);
+  ASSERT_FALSE(slid.ok());
+  EXPECT_TRUE(
+      Contains(slid.error().ToString(), "the markers p0 and p1 of the ground are not rigid"));
+  EXPECT_TRUE(Contains(slid.error().ToString(), "may by 10 mm"));
+}
+
+TEST_F(GroundMarkers, FilledGapsAreTold) {
+  const std::vector<Eigen::Vector3d> marks = {{0.4, 0.3, 0.0}, {0.4, -0.3, 0.0}, {-0.4, 0.3, 0.0}};
+  const auto loaded = LoadMarkers(marks, 0.0, 0.0, 60);
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_TRUE(Contains(warnings_[0].text, "the marker p0 of the ground has 1 gap, 1 frames"));
 }
 
 TEST_F(GroundMarkers, OnALineLeaveATiltOpen) {

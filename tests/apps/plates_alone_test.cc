@@ -1,0 +1,78 @@
+// Somebody who stands on force plates and is seen by nothing else: a fit finds the gains.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "datasets/loading/load_recordings.h"
+#include "tests/apps/app_fixture.h"
+
+namespace pushid {
+namespace {
+
+class PlatesAloneApp : public AppTest {
+ protected:
+  // Three people on ground that sways, whom plates alone measure.
+  std::string Simulated() {
+    const AppRun run = RunApp(
+        "pushid-simulate", {"--out=" + Path("swaying"), "--people=3", "--recordings_per_person=2",
+                            "--truth_stance=fixed", "--ground=sum_of_sines", "--push_kind=none",
+                            "--plates", "--plate_noise=0.0005", "--frames=1000", "--fps=50"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    nlohmann::ordered_json json = Json(Path("swaying/manifest.json"));
+    truth_ = json["synthetic"]["truth"];
+    for (auto& entry : json["recordings"]) {
+      for (const char* key : {"bvh", "joints", "frames", "fps"}) entry.erase(key);
+      entry["motion"] = "none";
+      // As the skeletons of the simulation have them.
+      entry["subjects"][0]["rod_m"] = RodOf(entry["id"]);
+    }
+    return "--recordings=" + WriteText("swaying/plates.json", json.dump(1));
+  }
+  double RodOf(const std::string& id) {
+    if (rods_.empty()) {
+      const auto loaded = LoadRecordings(Path("swaying/manifest.json"));
+      EXPECT_TRUE(loaded.ok());
+      for (const Recording& r : loaded.value()) {
+        const RecordedPerson& p = r.people[0];
+        rods_[r.id] = (p.hip[0] - 0.5 * (p.left_ankle[0] + p.right_ankle[0])).norm();
+      }
+    }
+    return rods_[id];
+  }
+  nlohmann::ordered_json truth_;
+  std::map<std::string, double> rods_;
+};
+
+TEST_F(PlatesAloneApp, AreFittedWhereFeetStand) {
+  const std::string recordings = Simulated();
+  const AppRun fit = RunApp(
+      "pushid-fit", {recordings, "--stance=fixed", "--model_out=" + Path("plates_fit.json")});
+  ASSERT_EQ(fit.exit_code, 0) << fit.err << fit.out;
+  EXPECT_FALSE(Contains(fit.out, "nan"));
+  const auto model = Json(Path("plates_fit.json"));
+  for (const char* name : {"Kp_theta", "Kd_theta"}) {
+    const double truth = truth_[name], found = model["values"][name];
+    EXPECT_NEAR(found / truth, 1.0, 0.1) << name;
+  }
+}
+
+TEST_F(PlatesAloneApp, AreRefusedElsewhere) {
+  const std::string recordings = Simulated();
+  const auto told = [&](const std::string& program, std::vector<std::string> flags) {
+    flags.insert(flags.begin(), recordings);
+    const AppRun run = RunApp(program, flags);
+    EXPECT_EQ(run.exit_code, 2) << program;
+    return run.err;
+  };
+  EXPECT_TRUE(Contains(told("pushid-fit", {"--stance=slide"}), "add --stance=fixed"));
+  EXPECT_TRUE(Contains(told("pushid-fit", {"--stance=fixed", "--process_noise=diagonal"}),
+                       "which nobody measured"));
+  EXPECT_TRUE(Contains(told("pushid-export", {"--out=" + Path("bids")}),
+                       "was measured by force plates alone"));
+}
+
+}  // namespace
+}  // namespace pushid

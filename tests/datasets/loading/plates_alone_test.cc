@@ -1,0 +1,255 @@
+// People whom force plates alone measured, platforms that give moments, and whose they are.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "datasets/files/number_text.h"
+#include "datasets/inspection/inspection.h"
+#include "datasets/loading/load_recordings.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "datasets/synthetic/synthetic_recordings.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMass = 70.0, kRate = 100.0;
+constexpr int kRows = 200;
+
+// What a platform measured: force on the person and centre of pressure.
+struct Pressed {
+  Eigen::Vector3d force;
+  Eigen::Vector2d centre;
+};
+Pressed At(int row) {
+  const double phase = 2.0 * M_PI * 0.5 * row / kRate;
+  return {{5.0 * std::sin(phase), -3.0 * std::sin(phase), kMass * kGravity},
+          {0.31 + 0.01 * std::sin(phase), 0.12 + 0.02 * std::cos(phase)}};
+}
+
+class PlatesAlone : public TempDirTest {
+ protected:
+  Result<std::vector<Recording>> Load(const std::function<void(Json*)>& change = nullptr,
+                                      bool allowed = true) {
+    std::string text = "time,fx,fy,fz,px,py\n";
+    for (int row = 0; row < kRows; ++row) {
+      const Pressed at = At(row);
+      text += DoubleText(2.0 + row / kRate);
+      for (double value : at.force) text += "," + DoubleText(value);
+      text += "," + DoubleText(at.centre[0]) + "," + DoubleText(at.centre[1]) + "\n";
+    }
+    WriteText("quiet.csv", text);
+    Json entry = {{"id", "a"}, {"setting", "single"}, {"pushed_person", 0}, {"motion", "none"}};
+    entry["subjects"] = Json::array({{{"id", "S"}, {"mass_kg", kMass}, {"rod_m", 0.9}}});
+    entry["force_plates"] = {{"use", "measure"}, {"file", "quiet.csv"}, {"lowpass_hz", 45}};
+    if (change) change(&entry);
+    Json manifest;
+    manifest["recordings"] = Json::array({entry});
+    WriteText("manifest.json", manifest.dump(1));
+    LoadOptions options;
+    options.plates_alone = allowed;
+    return LoadRecordings(Path("manifest.json"), options);
+  }
+  std::string Problem(const std::function<void(Json*)>& change, bool allowed = true) {
+    const auto loaded = Load(change, allowed);
+    return loaded.ok() ? "no error" : loaded.error().ToString();
+  }
+};
+
+TEST_F(PlatesAlone, StandForAsLongAsTheyMeasuredAndHaveNoWeight) {
+  const auto loaded = Load();
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const Recording& recording = loaded.value()[0];
+  EXPECT_DOUBLE_EQ(recording.fps, kRate);
+  ASSERT_EQ(recording.num_frames(), kRows);
+  const PendulumRecording seen = MakePendulumRecording(recording, SkeletonMapping::kExact);
+  EXPECT_NEAR(seen.scene.people[0].body.rod_length, 0.9, 1e-12);
+  EXPECT_NEAR(seen.scene.people[0].body.cart_height, kUsualAnkleHeight, 1e-12);
+  for (int t = 0; t < kRows; ++t) EXPECT_EQ(seen.Weight(0, t), 0.0) << t;
+  ASSERT_TRUE(seen.HasPlates(0));
+  const std::vector<PlateSample>& plates = recording.people[0].plates;
+  for (int t = 10; t + 10 < kRows; ++t) {
+    EXPECT_LT((plates[t].force - At(t).force).norm(), 0.05) << t;
+    EXPECT_LT((plates[t].centre.head<2>() - At(t).centre).norm(), 1e-4) << t;
+  }
+}
+
+TEST_F(PlatesAlone, MayHaveAnotherRateAndStart) {
+  const auto loaded = Load([](Json* entry) {
+    (*entry)["fps"] = 50;
+    (*entry)["force_plates"]["start"] = 2.5;
+  });
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  EXPECT_EQ(loaded.value()[0].num_frames(), 75);
+  EXPECT_LT((loaded.value()[0].people[0].plates[20].centre.head<2>() - At(90).centre).norm(), 2e-4);
+}
+
+TEST_F(PlatesAlone, AreRefusedWhereTheyAreNotUnderstood) {
+  EXPECT_TRUE(Contains(Problem(nullptr, false), "force plates alone (\"motion\": \"none\")"));
+  EXPECT_TRUE(Contains(Problem(nullptr, false), "manifest.json:3"));
+  const std::string missing = Problem([](Json* entry) {
+    (*entry)["subjects"][0].erase("rod_m");
+    (*entry)["subjects"][0].erase("mass_kg");
+  });
+  EXPECT_TRUE(Contains(missing, "rod_m"));
+  EXPECT_TRUE(Contains(missing, "mass_kg"));
+  EXPECT_TRUE(Contains(Problem([](Json* entry) { entry->erase("force_plates"); }), "force_plates"));
+  EXPECT_TRUE(Contains(Problem([](Json* entry) { (*entry)["force_plates"]["use"] = "none"; }),
+                       "needs \"use\": \"measure\""));
+  EXPECT_TRUE(Contains(Problem([](Json* entry) { (*entry)["motion"] = "some"; }), "\"none\""));
+  EXPECT_TRUE(Contains(Problem([](Json* entry) { (*entry)["push_csv"] = "p.csv"; }),
+                       "push_csv is given together with"));
+  EXPECT_TRUE(Contains(Problem([](Json* entry) { (*entry)["bvh"] = Json::array({"m.bvh"}); }),
+                       "bvh is given together with"));
+  EXPECT_TRUE(
+      Contains(Problem([](Json* entry) { (*entry)["subjects"][0]["rod_m"] = 9.0; }), "quiet.csv"));
+  EXPECT_TRUE(Contains(Problem([](Json* entry) { (*entry)["force_plates"]["start"] = 9.0; }),
+                       "leaves nothing after"));
+}
+
+TEST_F(PlatesAlone, AreWrittenAgain) {
+  ASSERT_TRUE(Load().ok());
+  const Result<Manifest> manifest = ReadManifest(Path("manifest.json"));
+  ASSERT_TRUE(manifest.ok());
+  ASSERT_FALSE(WriteManifest(Path("again.json"), manifest.value()));
+  const Result<Manifest> again = ReadManifest(Path("again.json"));
+  ASSERT_TRUE(again.ok()) << again.error().ToString();
+  EXPECT_TRUE(again.value().recordings[0].plates_alone);
+  EXPECT_DOUBLE_EQ(again.value().recordings[0].subjects[0].rod_m, 0.9);
+}
+
+// Moments about a point below the surface, of the force on the person or on the platform.
+class Moments : public PlatesAlone, public ::testing::WithParamInterface<double> {};
+
+TEST_P(Moments, GiveTheCentreOfPressure) {
+  const Eigen::Vector3d origin(0.2, -0.1, -0.04);
+  std::string text = "time,l_fx,l_fy,l_fz,l_mx,l_my,l_mz\n";
+  for (int row = 0; row < kRows; ++row) {
+    const Pressed at = At(row);
+    const Eigen::Vector3d arm = Eigen::Vector3d(at.centre[0], at.centre[1], 0.0) - origin;
+    const Eigen::Vector3d moment = arm.cross(at.force) + Eigen::Vector3d(0.0, 0.0, 1.5);
+    text += DoubleText(2.0 + row / kRate);
+    for (double value : at.force) text += "," + DoubleText(GetParam() * value);
+    for (double value : moment) text += "," + DoubleText(GetParam() * value);
+    text += "\n";
+  }
+  WriteText("wrench.csv", text);
+  const auto named = [](bool with_origin) {
+    return [with_origin](Json* entry) {
+      (*entry)["force_plates"]["file"] = "wrench.csv";
+      if (with_origin) (*entry)["force_plates"]["origin"] = {0.2, -0.1, -0.04};
+    };
+  };
+  const auto loaded = Load(named(true));
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const std::vector<PlateSample>& plates = loaded.value()[0].people[0].plates;
+  for (int t = 10; t + 10 < kRows; ++t) {
+    EXPECT_LT((plates[t].force - At(t).force).norm(), 0.05) << t;
+    EXPECT_LT((plates[t].centre.head<2>() - At(t).centre).norm(), 1e-4) << t;
+  }
+  EXPECT_TRUE(Contains(Problem(named(false)), "as \"origin\" of force_plates"));
+  EXPECT_TRUE(Contains(Problem([&](Json* entry) {
+                         named(true)(entry);
+                         (*entry)["force_plates"]["origin"] = {1, 2};
+                       }),
+                       "origin must be three numbers"));
+}
+INSTANTIATE_TEST_SUITE_P(OnPersonOrPlatform, Moments, ::testing::Values(1.0, -1.0));
+
+// Two people, each on a platform of their own.
+class PlatesOfPeople : public TempDirTest {
+ protected:
+  Result<std::vector<Recording>> Load(const std::function<void(Json*)>& change = nullptr) {
+    SyntheticOptions options;
+    options.model.stance = Stance::kFixed;
+    options.model.push_tail = PushTail::kNone;
+    options.parameters = {};
+    options.parameters[kKpTheta] = options.parameters[kKpPhi] = 1250.0;
+    options.parameters[kKdTheta] = options.parameters[kKdPhi] = 300.0;
+    options.parameters[kComHeight] = 1.09;
+    options.subjects = options.people_in_row = 2;
+    options.recordings_per_subject = 1;
+    options.frames = 120;
+    options.lean_sigma_rad = 0.0;
+    options.pushes = false;
+    options.ground = GroundKind::kStep;
+    options.plates = true;
+    options.plate_noise_m = options.plate_noise_n = 0.0;
+    made_ = MakeSyntheticRecordings(options).value();
+    EXPECT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made_));
+    Json json = Json::parse(ReadText(Path("manifest.json")));
+    if (change) change(&json["recordings"][0]);
+    WriteText("manifest.json", json.dump());
+    return LoadRecordings(Path("manifest.json"));
+  }
+  std::vector<SyntheticRecording> made_;
+};
+
+TEST_F(PlatesOfPeople, GoToWhoStandsOnThem) {
+  const auto loaded = Load();
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  for (size_t n = 0; n < 2; ++n) {
+    const RecordedPerson& person = loaded.value()[0].people[n];
+    ASSERT_FALSE(person.plates.empty());
+    const PlateSample& truth = made_[0].recording.people[n].plates[0];
+    EXPECT_LT((person.plates[0].centre - truth.centre).norm(), 1e-3);
+  }
+}
+
+// With people of one weight nothing but the place tells.
+TEST_F(PlatesOfPeople, OfSomebodyElseAreRefused) {
+  const auto loaded = Load([](Json* entry) {
+    for (int n = 0; n < 2; ++n) (*entry)["force_plates"][n]["person"] = 1 - n;
+    const double first = (*entry)["subjects"][0]["mass_kg"];
+    (*entry)["subjects"][0]["mass_kg"] = (*entry)["subjects"][1]["mass_kg"];
+    (*entry)["subjects"][1]["mass_kg"] = first;
+  });
+  ASSERT_FALSE(loaded.ok());
+  EXPECT_TRUE(Contains(loaded.error().ToString(), "give force_plates the right \"person\""));
+  const auto twice = Load([](Json* entry) { (*entry)["force_plates"][1].erase("person"); });
+  ASSERT_FALSE(twice.ok());
+  EXPECT_TRUE(Contains(twice.error().ToString(), "names person 0 twice"));
+}
+
+// The ground carries the weight on average, and no constant where somebody sways.
+TEST_F(PlatesOfPeople, OfSyntheticPeopleCarryTheirWeight) {
+  ASSERT_TRUE(Load().ok());
+  for (const RecordedPerson& person : made_[0].recording.people) {
+    double sum = 0.0, least = 1e9, most = 0.0;
+    for (const PlateSample& sample : person.plates) {
+      sum += sample.force.z();
+      least = std::min(least, sample.force.z());
+      most = std::max(most, sample.force.z());
+    }
+    const double weight = person.mass_kg * kGravity;
+    EXPECT_NEAR(sum / static_cast<double>(person.plates.size()) / weight, 1.0, 5e-3);
+    EXPECT_GT(most - least, 1e-3 * weight);
+  }
+}
+
+TEST_F(PlatesOfPeople, AreInspected) {
+  ASSERT_TRUE(Load().ok());
+  const Result<Inspection> found = Inspect(Path("manifest.json"));
+  ASSERT_TRUE(found.ok()) << found.error().ToString();
+  ASSERT_FALSE(found.value().grounds.empty());
+  EXPECT_EQ(found.value().grounds[0].kind, "displacement");
+  EXPECT_NEAR(found.value().grounds[0].rate_hz, 60.0, 1e-6);
+  EXPECT_NEAR(found.value().grounds[0].farthest_m, 0.03, 1e-6);
+  ASSERT_GE(found.value().plates.size(), 2u);
+  EXPECT_NEAR(found.value().plates[1].weight_ratio, 1.0, 5e-3);
+  EXPECT_EQ(found.value().plates[1].platforms, 1);
+  const std::string text = InspectionText(found.value());
+  EXPECT_TRUE(Contains(text, "displacement at 60 per second, up to 30 mm"));
+  EXPECT_TRUE(Contains(text, "1 at 60 per second, measured: mean vertical force"));
+  const Json json = InspectionJson(found.value());
+  EXPECT_EQ(json["ground"][0]["kind"], "displacement");
+  EXPECT_EQ(json["plates"][1]["use"], "measure");
+}
+
+}  // namespace
+}  // namespace pushid
