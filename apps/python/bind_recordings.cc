@@ -1,5 +1,7 @@
 // apps: recordings in Python: read from manifests, made by the model itself, as arrays.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "apps/python/bindings.h"
 #include "datasets/inspection/findings.h"
@@ -49,6 +51,32 @@ Array PushArray(const SharedRecording& recording) {
     }
   }
   return TableArray(recording->num_frames(), people, 4, [&](int t, int n) { return force[n][t]; });
+}
+
+py::object GroundArray(const SharedRecording& recording) {
+  if (recording->ground.empty()) return py::none();
+  Array array({static_cast<py::ssize_t>(recording->ground.size()), py::ssize_t{4}});
+  auto cells = array.mutable_unchecked<2>();
+  for (size_t t = 0; t < recording->ground.size(); ++t) {
+    for (int i = 0; i < 4; ++i) cells(t, i) = recording->ground[t][i];
+  }
+  array.attr("flags").attr("writeable") = false;
+  return std::move(array);
+}
+
+// NaN where nothing was measured.
+py::object PlatesArray(const SharedRecording& recording) {
+  const auto& people = recording->people;
+  const auto measured = [](const RecordedPerson& person) { return !person.plates.empty(); };
+  if (std::none_of(people.begin(), people.end(), measured)) return py::none();
+  return TableArray(recording->num_frames(), static_cast<int>(people.size()), 5, [&](int t, int n) {
+    Eigen::Matrix<double, 5, 1> row;
+    row.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (people[n].plates.empty() || people[n].plates[t].weight <= 0.0) return row;
+    const PlateSample& sample = people[n].plates[t];
+    row << sample.force, sample.centre.head<2>();
+    return row;
+  });
 }
 
 py::tuple Read(const std::string& manifest, const std::string& setting,
@@ -234,7 +262,11 @@ void BindRecordings(py::module_* module) {
       .def_property_readonly("states",
                              [](const std::shared_ptr<Recording>& r) { return StatesArray(r); })
       .def_property_readonly("push",
-                             [](const std::shared_ptr<Recording>& r) { return PushArray(r); });
+                             [](const std::shared_ptr<Recording>& r) { return PushArray(r); })
+      .def_property_readonly("ground",
+                             [](const std::shared_ptr<Recording>& r) { return GroundArray(r); })
+      .def_property_readonly("plates",
+                             [](const std::shared_ptr<Recording>& r) { return PlatesArray(r); });
   module->attr("defaults") = Defaults();
   module->def("read", &Read);
   module->def("simulate", &Simulate);

@@ -90,6 +90,13 @@ Array TableArray(int frames, int people, int size, Value value) {
 // A document as Python has it; the texts that stand for numbers JSON does not know are numbers.
 py::object FromJson(const nlohmann::ordered_json& json);
 
+// "push has the shape (3, 7); it must be ...".
+Error WrongShape(const std::string& what, const Array& array, const std::string& must);
+
+// Ground and platforms from arrays, or None.
+struct TrackedRecording;
+void TakeLaboratory(const py::object& ground, const py::object& plates, TrackedRecording* tracks);
+
 void BindArrays(py::module_* module);
 void BindRecordings(py::module_* module);
 void BindPickle(py::module_* module);

@@ -140,14 +140,6 @@ namespace {
 
 using Track = std::vector<Eigen::Vector3d>;
 
-Error WrongShape(const std::string& what, const Array& array, const std::string& must) {
-  std::string shape;
-  for (int i = 0; i < array.ndim(); ++i) {
-    shape += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
-  }
-  return Error{what + " has the shape (" + shape + "); it must be " + must};
-}
-
 // (frames, 3) or (frames, people, 3), whatever its strides.
 std::vector<Track> TracksOf(const std::string& what, const Array& array) {
   const bool alone = array.ndim() == 2 && array.shape(1) == 3;
@@ -224,7 +216,8 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
                            int pushed_person, int push_start, double push_height,
                            std::optional<double> push_height_m, const std::string& push_kind,
                            const std::string& initial_velocity, const std::string& setting,
-                           const std::string& magnitude, const std::string& condition) {
+                           const std::string& magnitude, const std::string& condition,
+                           const py::object& ground, const py::object& plates) {
   TrackedRecording tracks;
   tracks.id = id;
   tracks.fps = fps;
@@ -249,6 +242,7 @@ SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Arra
     tracks.people.push_back({subjects.empty() ? "person " + std::to_string(n) : subjects[n],
                              mass[n], hips[n], left[n], right[n]});
   }
+  TakeLaboratory(ground, plates, &tracks);
   const PushHeight height{push_height, push_height_m};
   CheckHeight(height);
   // The rod and the angles, which turn forces into generalized ones, come with the motion.

@@ -60,29 +60,6 @@ void Integrate(GroundQuantity quantity, double dt, std::vector<GroundPose>* pose
   }
 }
 
-// How fast the ground is at the first of some poses, in the fastest coordinate, m/s or rad/s: the
-// slope there of a parabola through them, less what the scatter about it explains (three standard
-// errors), and no more than the first step, which is short where ground starts quickly from rest.
-double SpeedAtFirst(const std::vector<GroundPose>& poses, double dt) {
-  const int n = static_cast<int>(poses.size());
-  if (n < 2) return 0.0;
-  const Eigen::RowVector4d first = (poses[1] - poses[0]).cwiseAbs().transpose() / dt;
-  if (n < 5) return first.maxCoeff();
-  Eigen::MatrixX3d by(n, 3);
-  Eigen::MatrixX4d values(n, 4);
-  for (int i = 0; i < n; ++i) {
-    by.row(i) << 1.0, i * dt, i * dt * i * dt;
-    values.row(i) = poses[i].transpose();
-  }
-  const Eigen::Matrix<double, 3, 4> parabola = by.colPivHouseholderQr().solve(values);
-  const Eigen::RowVector4d variance =
-      (values - by * parabola).colwise().squaredNorm() / static_cast<double>(n - 3);
-  const double by_scatter = std::sqrt((by.transpose() * by).inverse()(1, 1));
-  const Eigen::RowVector4d slope =
-      parabola.row(1).cwiseAbs() - 3.0 * by_scatter * variance.cwiseSqrt();
-  return slope.cwiseMin(first).maxCoeff();
-}
-
 // The tracks' clock at frame 0, and that they last as long as the motion from there.
 Result<double> GroundStart(const GroundTracks& tracks, const ManifestRecording& entry,
                            const Recording& recording) {
@@ -137,7 +114,7 @@ MaybeError CheckAtRest(const GroundTracks& tracks, bool displacement, double sta
     about_first.assign(poses.begin(),
                        poses.begin() + std::min(frames, static_cast<int>(poses.size())));
   }
-  const double speed = SpeedAtFirst(about_first, step);
+  const double speed = GroundSpeedAtFirst(about_first, step);
   if (speed <= kGroundAtRest) return std::nullopt;
   return Error{"the ground moves by " + Rounded(speed, 2) +
                    " per second (m or rad) at frame 0, where people are taken to be at rest; "
@@ -147,6 +124,26 @@ MaybeError CheckAtRest(const GroundTracks& tracks, bool displacement, double sta
 }
 
 }  // namespace
+
+double GroundSpeedAtFirst(const std::vector<GroundPose>& poses, double dt) {
+  const int n = static_cast<int>(poses.size());
+  if (n < 2) return 0.0;
+  const Eigen::RowVector4d first = (poses[1] - poses[0]).cwiseAbs().transpose() / dt;
+  if (n < 5) return first.maxCoeff();
+  Eigen::MatrixX3d by(n, 3);
+  Eigen::MatrixX4d values(n, 4);
+  for (int i = 0; i < n; ++i) {
+    by.row(i) << 1.0, i * dt, i * dt * i * dt;
+    values.row(i) = poses[i].transpose();
+  }
+  const Eigen::Matrix<double, 3, 4> parabola = by.colPivHouseholderQr().solve(values);
+  const Eigen::RowVector4d variance =
+      (values - by * parabola).colwise().squaredNorm() / static_cast<double>(n - 3);
+  const double by_scatter = std::sqrt((by.transpose() * by).inverse()(1, 1));
+  const Eigen::RowVector4d slope =
+      parabola.row(1).cwiseAbs() - 3.0 * by_scatter * variance.cwiseSqrt();
+  return slope.cwiseMin(first).maxCoeff();
+}
 
 Result<GroundTracks> GroundOfCsv(const ManifestRecording& entry) {
   const ManifestGround& ground = entry.ground;

@@ -25,6 +25,11 @@ inline constexpr double kGroundAtRest = 0.02;
 // (rms); 5 mm of noise of each are 7 mm.
 inline constexpr double kRigidMarkers = 0.01;
 
+// How fast the ground is at the first of some poses, in the fastest coordinate, m/s or rad/s: the
+// slope there of a parabola through them, less what the scatter about it explains (three standard
+// errors), and no more than the first step, which is short where ground starts quickly from rest.
+double GroundSpeedAtFirst(const std::vector<GroundPose>& poses, double dt);
+
 // How the recording's motion was read: the units and the rate of markers in its file, and the
 // low-pass of its positions, which the ground gets too. Nothing of it counts for a CSV but that.
 struct GroundReading {

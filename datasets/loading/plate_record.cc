@@ -15,7 +15,7 @@
 namespace pushid {
 namespace {
 
-MaybeError CheckWeight(const PlateTracks& tracks, const RecordedPerson& person) {
+MaybeError CheckWeight(const std::string& file, const RecordedPerson& person) {
   double vertical = 0.0;
   int seen = 0;
   for (const PlateSample& sample : person.plates) {
@@ -26,7 +26,7 @@ MaybeError CheckWeight(const PlateTracks& tracks, const RecordedPerson& person) 
   if (seen == 0) {
     return Error{"the platforms are pressed with less than " + Rounded(kPressed) +
                      " N at every frame; are up and forward right, and the platforms named?",
-                 tracks.file};
+                 file};
   }
   vertical /= seen;
   const double weight = person.mass_kg * kGravity;
@@ -36,7 +36,7 @@ MaybeError CheckWeight(const PlateTracks& tracks, const RecordedPerson& person) 
                    Rounded(100.0 * (vertical / weight - 1.0), 2) +
                    " %): correct mass_kg, the platform's gain or axes, or name the platform under "
                    "the other foot (\"plates\")",
-               tracks.file};
+               file};
 }
 
 double MeanDistance(const std::vector<PlateSample>& plates, const RecordedPerson& person) {
@@ -52,7 +52,7 @@ double MeanDistance(const std::vector<PlateSample>& plates, const RecordedPerson
 }
 
 // Of several people, the one who is named stands nearest to where the platforms are pressed.
-MaybeError CheckPerson(const PlateTracks& tracks, const Recording& recording, int named) {
+MaybeError CheckPerson(const std::string& file, const Recording& recording, int named) {
   const std::vector<PlateSample>& plates = recording.people[named].plates;
   const double own = MeanDistance(plates, recording.people[named]);
   for (size_t n = 0; n < recording.people.size(); ++n) {
@@ -64,7 +64,7 @@ MaybeError CheckPerson(const PlateTracks& tracks, const Recording& recording, in
                      recording.people[n].subject_id +
                      "); give force_plates the right \"person\", or name their platforms "
                      "(\"plates\")",
-                 tracks.file};
+                 file};
   }
   return std::nullopt;
 }
@@ -122,6 +122,11 @@ std::vector<PlateSample> SampledAt(const PlateTracks& tracks, double start, doub
 
 }  // namespace
 
+MaybeError CheckPlates(const std::string& file, const Recording& recording, int person) {
+  if (MaybeError error = CheckWeight(file, recording.people[person])) return error;
+  return CheckPerson(file, recording, person);
+}
+
 MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
                       double lowpass_hz, Recording* recording) {
   if (plates.use == PlateUse::kNone) return std::nullopt;
@@ -139,8 +144,7 @@ MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plat
     LowPass(cutoff, tracks.rate_hz, &tracks.moment);
   }
   person.plates = SampledAt(tracks, start.value(), fps, recording->num_frames());
-  if (MaybeError error = CheckWeight(tracks, person)) return error;
-  if (MaybeError error = CheckPerson(tracks, *recording, plates.person)) return error;
+  if (MaybeError error = CheckPlates(tracks.file, *recording, plates.person)) return error;
   // Of platforms alone the feet are not seen; on ground that moves they go with it.
   const bool feet_seen = recording->ground.empty() && !entry.plates_alone;
   return feet_seen ? CheckCentre(tracks, person) : std::nullopt;

@@ -10,7 +10,7 @@
 // moments do. Low-passed without delay below half the frame rate before frames are taken.
 #pragma once
 
-#include <vector>
+#include <string>
 
 #include "datasets/files/error.h"
 #include "datasets/manifest/manifest.h"
@@ -19,6 +19,10 @@ namespace pushid {
 
 inline constexpr double kWeightTolerance = 0.05;  // of the mean vertical force about m g
 inline constexpr double kFarFromFeet = 0.6;       // m, of the centre of pressure
+
+// Whether who stands on the platforms of `file` weighs what these measure, and stands nearest to
+// where they are pressed.
+MaybeError CheckPlates(const std::string& file, const Recording& recording, int person);
 
 // Into the person's `plates`. Errors: those of the files, no such platform or column, a record that
 // ends early, a mean vertical force that is not the weight, a centre of pressure off the platform

@@ -7,7 +7,9 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
+#include "datasets/loading/ground_record.h"
 #include "datasets/loading/motion_preparation.h"
+#include "datasets/loading/plate_record.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {
@@ -42,6 +44,7 @@ Result<RecordedPerson> PersonFrom(TrackedPerson tracks, int max_gap, const std::
     return Of(id, "at frame 0, where the fit starts, hip or ankles of " + Quoted(tracks.id) +
                       " are missing; leave out the frames before they are visible");
   }
+  person.plates = std::move(tracks.plates);
   person.hip = std::move(tracks.hip);
   person.left_ankle = std::move(tracks.left_ankle);
   person.right_ankle = std::move(tracks.right_ankle);
@@ -67,6 +70,56 @@ MaybeError CheckPush(const TrackedRecording& tracks, const Push& push, int frame
   }
   for (const Eigen::Vector4d& row : push.force) {
     if (!row.allFinite()) return Of(tracks.id, "the push has a value that is not finite");
+  }
+  return std::nullopt;
+}
+
+// Ground and platforms share the motion's frames.
+MaybeError TakeLaboratory(std::vector<GroundPose> ground, const PreparationOptions& preparation,
+                          Recording* recording, ContentHash* hash) {
+  const auto frames = static_cast<size_t>(recording->num_frames());
+  const auto differ = [&](const std::string& what, size_t rows) {
+    return Of(recording->id, what + " has " + std::to_string(rows) + " rows, the motion " +
+                                 std::to_string(frames) + " frames; they share them");
+  };
+  bool any = !ground.empty();
+  if (any && ground.size() != frames) return differ("ground", ground.size());
+  AddRows(ground, hash);
+  for (GroundPose& pose : ground) {
+    if (!pose.allFinite()) return Of(recording->id, "ground has a value that is not finite");
+  }
+  const GroundPose first = ground.empty() ? GroundPose(GroundPose::Zero()) : ground[0];
+  for (GroundPose& pose : ground) pose -= first;
+  const auto some = static_cast<size_t>(std::max(5.0, 1.0 + std::round(0.1 * recording->fps)));
+  const double speed = GroundSpeedAtFirst(
+      {ground.begin(), ground.begin() + static_cast<std::ptrdiff_t>(std::min(some, ground.size()))},
+      1.0 / recording->fps);
+  if (speed > kGroundAtRest) {
+    return Of(recording->id, "the ground moves by " + Rounded(speed, 2) +
+                                 " per second (m or rad) at frame 0, where people are taken to be "
+                                 "at rest; start the recording earlier");
+  }
+  recording->ground = std::move(ground);
+  for (size_t n = 0; n < recording->people.size(); ++n) {
+    const std::vector<PlateSample>& plates = recording->people[n].plates;
+    if (plates.empty()) continue;
+    any = true;
+    const std::string whose = "plates of " + Quoted(recording->people[n].subject_id);
+    if (plates.size() != frames) return differ(whose, plates.size());
+    for (const PlateSample& sample : plates) {
+      if (!sample.force.allFinite() || !sample.centre.allFinite()) {
+        return Of(recording->id, whose + " have a value that is not finite");
+      }
+      hash->Add(sample.force.data(), 3);
+      hash->Add(sample.centre.data(), 3);
+    }
+    if (MaybeError wrong = CheckPlates("", *recording, static_cast<int>(n))) {
+      return Of(recording->id, wrong->message);
+    }
+  }
+  if (any && preparation.resample_fps > 0.0) {
+    return Of(recording->id,
+              "ground and plates are taken at the motion's frames; leave resampling out");
   }
   return std::nullopt;
 }
@@ -107,6 +160,9 @@ Result<Recording> RecordingFromTracks(TrackedRecording tracks,
   for (const Push& push : tracks.pushes) {
     if (MaybeError wrong = CheckPush(tracks, push, recording.num_frames())) return *wrong;
     AddRows(push.force, &hash);
+  }
+  if (MaybeError wrong = TakeLaboratory(std::move(tracks.ground), preparation, &recording, &hash)) {
+    return *std::move(wrong);
   }
   recording.pushes = std::move(tracks.pushes);
   recording.content_hash = hash.Hex();

@@ -18,6 +18,7 @@ struct TrackedPerson {
   std::string id;
   double mass_kg = 0.0;
   std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
+  std::vector<PlateSample> plates{};  // one per frame; empty: nothing measured
 };
 
 struct TrackedRecording {
@@ -29,13 +30,16 @@ struct TrackedRecording {
   PushKind push_kind = PushKind::kExternal;
   InitialVelocity initial_velocity = InitialVelocity::kZero;
   RecordingLabels labels;
+  std::vector<GroundPose> ground{};  // one per frame, from rest; empty: it does not move
 };
 
 // Gaps are filled as those of files are, and the motion filtered and resampled; what looks unusual
 // but can be lived with is appended to `warnings`. Errors: a mass not
 // in (0, 400] kg, a rate not in [1, 10000], people with different numbers of frames or fewer than
 // three, a first frame that is not seen, what CheckMotion says, pushes on nobody or beyond the
-// motion.
+// motion; ground or platforms with other frames than the motion, with numbers that are not finite,
+// or together with another rate; ground that moves at frame 0, and platforms that do not measure
+// the person's weight.
 Result<Recording> RecordingFromTracks(TrackedRecording tracks,
                                       const PreparationOptions& preparation = {},
                                       Warnings* warnings = nullptr);

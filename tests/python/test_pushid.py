@@ -40,6 +40,29 @@ def test_recordings_are_read_only_arrays(made):
     assert "person" in repr(made[0]) or "people" in repr(made[0])
 
 
+def test_ground_and_plates_are_made_from_arrays_and_read_back(made):
+    recording = made[0][0]
+    assert recording.ground is None and recording.plates is None
+    frames, weight = recording.num_frames, recording.mass[0] * 9.81
+    seconds = np.arange(frames) / recording.fps
+    ground = np.zeros((frames, 4))
+    ground[:, 0] = 0.03 * np.clip(seconds - 0.3, 0.0, 0.4) ** 2
+    ground[:, 2] = 0.1 * ground[:, 0]
+    feet = 0.5 * (recording.left_ankle[0, 0] + recording.right_ankle[0, 0])
+    plates = np.tile([1.0, -2.0, weight, feet[0], feet[1]], (frames, 1))
+    plates[10] = np.nan
+    again = from_arrays(recording, ground=ground, plates=plates)
+    assert again.ground.shape == (frames, 4) and again.plates.shape == (frames, 1, 5)
+    assert np.array_equal(again.ground, ground) and np.array_equal(again.plates[:, 0], plates, equal_nan=True)
+    assert np.array_equal(from_arrays(recording, ground=ground[:, :2]).ground[:, 0], ground[:, 0])
+    assert again.content_hash != from_arrays(recording).content_hash
+    for changed, said in ((dict(ground=ground[1:]), "rows"), (dict(ground=ground[:, :3]), "theta and phi"),
+                          (dict(plates=plates[:, :4]), "px, py"), (dict(plates=1.2 * plates), "kg weigh"),
+                          (dict(ground=0.3 * np.stack([seconds, seconds], 1)), "at frame 0")):
+        with pytest.raises(pushid.DataError, match=said):
+            from_arrays(recording, **changed)
+
+
 def test_arrays_outlive_their_recording():
     hip = pushid.simulate(people=1, recordings_per_person=1)[0][0].hip
     gc.collect()

@@ -38,6 +38,8 @@ class _Recording:
     right_ankle: ndarray
     states: ndarray
     push: ndarray
+    ground: ndarray | None
+    plates: ndarray | None
 
 class Recordings(list[_Recording]):
     warnings: list[str]
@@ -63,7 +65,8 @@ _Jobs = Callable[[int, int], Any] | None
 def Recording(hip: ArrayLike, left_ankle: ArrayLike, right_ankle: ArrayLike, mass: float | Sequence[float], fps: float,
               push: ArrayLike | None = ..., *, id: str = ..., subjects: _Names = ..., pushed_person: int = ...,
               push_start: int = ..., push_height: float = ..., push_height_m: float | None = ..., push_kind: str = ..., initial_velocity: str = ...,
-              setting: str = ..., magnitude: str = ..., condition: str = ..., length_unit: str = ...) -> _Recording: ...
+              setting: str = ..., magnitude: str = ..., condition: str = ..., length_unit: str = ...,
+              ground: ArrayLike | None = ..., plates: ArrayLike | None = ...) -> _Recording: ...
 def read(manifest: _Path | Sequence[_Path], setting: str = ..., *, ids: _Names = ..., leave_out: _Names = ...,
          all_joints: bool = ..., max_gap_s: float = ..., lowpass_hz: float = ..., resample_fps: float = ...,
          length_unit: str = ...) -> Recordings: ...

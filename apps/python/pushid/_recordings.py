@@ -59,9 +59,13 @@ def _positions(name, values, metres):
     return array * metres if metres != 1.0 else array.astype(float, copy=False)
 
 
+def _numbers(values):
+    return None if values is None else np.asarray(values, dtype=float)
+
+
 def Recording(hip, left_ankle, right_ankle, mass, fps, push=None, *, id="recording", subjects=(), pushed_person=0,
               push_start=0, push_height=1.0, push_height_m=None, push_kind="external", initial_velocity="zero",
-              setting="single", magnitude="unknown", condition="", length_unit="m"):
+              setting="single", magnitude="unknown", condition="", length_unit="m", ground=None, plates=None):
     """A recording from arrays, with the same checks as one from files.
 
     hip, left_ankle, right_ankle: (frames, 3), or (frames, people, 3), in length_unit ("mm", "cm" or "m"), z up and x
@@ -72,15 +76,20 @@ def Recording(hip, left_ankle, right_ankle, mass, fps, push=None, *, id="recordi
     push_kind: what the push means: "external" (measured, the whole push), "net" (from inverse dynamics: the sum of all
     forces on the person) or "net_without_friction" (that sum without the friction of the feet). initial_velocity: "zero",
     "estimated" or "free". subjects: ids of the people, by which errors are clustered. setting, magnitude, condition:
-    labels to group results by. id: of this recording alone among those of a fit. Raises DataError; warns where much
-    of hip or ankles is missing, and where the ankles look exchanged.
+    labels to group results by. ground: how the ground moves under the people, from rest: (frames, 2), x and y in m, or
+    (frames, 4) with the tilts theta and phi in rad. plates: what force platforms under them measured, which move with
+    the ground: (frames, 5) or (frames, people, 5), fx, fy, fz in N on the person and the centre of pressure px, py in
+    m; NaN where nothing was measured. A recording's `ground` is (frames, 4) and its `plates` (frames, people, 5), or
+    None. id: of this recording alone among those of a fit. Raises DataError; warns where much of hip or ankles is
+    missing, and where the ankles look exchanged.
     """
-    rows = None if push is None else np.asarray(push, dtype=float)
+    rows = _numbers(push)
     metres = _pushid.metres_per(length_unit)
     return _pushid.from_arrays(_positions("hip", hip, metres), _positions("left_ankle", left_ankle, metres),
                                _positions("right_ankle", right_ankle, metres), [float(m) for m in np.atleast_1d(mass)],
                                float(fps), rows, str(id), _listed(subjects), pushed_person, push_start, push_height,
-                               push_height_m, push_kind, initial_velocity, setting, magnitude, condition)
+                               push_height_m, push_kind, initial_velocity, setting, magnitude, condition,
+                               _numbers(ground), _numbers(plates))
 
 
 def simulate(*, people=_DEFAULT["people"], recordings_per_person=_DEFAULT["recordings_per_person"],

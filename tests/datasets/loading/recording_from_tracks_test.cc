@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 
 #include "tests/test_support.h"
@@ -42,6 +44,38 @@ TEST(RecordingFromTracks, GapsAreFilledAndLongOnesDoNotCount) {
   // The same tracks have the same hash, others another.
   EXPECT_EQ(RecordingFromTracks(tracks).value().content_hash, made.value().content_hash);
   EXPECT_NE(RecordingFromTracks(Standing(60)).value().content_hash, made.value().content_hash);
+}
+
+TEST(RecordingFromTracks, GroundAndPlatformsShareItsFrames) {
+  const auto made = [](const std::function<void(TrackedRecording*)>& change) {
+    TrackedRecording tracks = Standing(60);
+    PlateSample sample{{1.0, 2.0, 62.0 * 9.81}, {0.01, 0.0, 0.0}, 1.0};
+    tracks.people[0].plates.assign(60, sample);
+    for (int t = 0; t < 60; ++t) {
+      const double u = std::max(0, t - 20) / 60.0;
+      tracks.ground.emplace_back(0.02 + 0.1 * u * u, 0.0, 0.0, 0.0);
+    }
+    if (change) change(&tracks);
+    return RecordingFromTracks(tracks);
+  };
+  const Result<Recording> both = made(nullptr);
+  ASSERT_TRUE(both.ok()) << both.error().ToString();
+  EXPECT_EQ(both.value().ground[0], GroundPose(GroundPose::Zero()));
+  EXPECT_NEAR(both.value().ground[50][0], 0.025, 1e-12);
+  EXPECT_EQ(both.value().people[0].plates[7].centre.x(), 0.01);
+  EXPECT_NE(both.value().content_hash, RecordingFromTracks(Standing(60)).value().content_hash);
+  const auto told = [&](const std::function<void(TrackedRecording*)>& change) {
+    const Result<Recording> one = made(change);
+    return one.ok() ? "no error" : one.error().ToString();
+  };
+  EXPECT_TRUE(Contains(told([](auto* t) { t->ground.pop_back(); }), "59 rows, the motion 60"));
+  EXPECT_TRUE(Contains(told([](auto* t) { t->people[0].plates.pop_back(); }), "59 rows"));
+  EXPECT_TRUE(Contains(told([](auto* t) { t->people[0].mass_kg = 80.0; }), "80 kg weigh"));
+  EXPECT_TRUE(Contains(told([](auto* t) {
+                         for (int i = 0; i < 60; ++i) t->ground[i][0] = 0.01 * i;
+                       }),
+                       "at frame 0"));
+  EXPECT_TRUE(Contains(told([](auto* t) { t->ground[3][2] = NAN; }), "not finite"));
 }
 
 // Every third frame without a hip: interpolated frames count by the two thirds that were seen.
