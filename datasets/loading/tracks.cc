@@ -220,19 +220,23 @@ std::vector<double> ResampleWeights(const std::vector<double>& weight, double fr
 Push ResamplePush(const Push& push, double from_hz, double to_hz) {
   Push result = push;
   result.force.clear();
-  const double begin_s = push.start_frame / from_hz, end_s = push.EndFrame() / from_hz;
-  result.start_frame = static_cast<int>(std::floor(begin_s * to_hz + kRounding));
-  const int end = static_cast<int>(std::ceil(end_s * to_hz - kRounding));
+  // A row is the mean over half a frame before and after its own; what is before the first new
+  // row's goes to that row.
+  const auto new_frame = [&](double old_edge) { return (old_edge - 0.5) * to_hz / from_hz + 0.5; };
+  const auto old_edge = [&](int new_row) { return (new_row - 0.5) * from_hz / to_hz + 0.5; };
+  const int first = static_cast<int>(std::floor(new_frame(push.start_frame) + kRounding));
+  const int end = static_cast<int>(std::ceil(new_frame(push.EndFrame()) - kRounding));
+  result.start_frame = std::max(0, first);
   for (int i = result.start_frame; i < end; ++i) {
-    Eigen::Vector4d impulse = Eigen::Vector4d::Zero();  // over the new frame, in old frames
-    const double from = OldFrame(i, from_hz, to_hz), to = OldFrame(i + 1, from_hz, to_hz);
-    for (int row = std::max(0, static_cast<int>(std::floor(from)) - push.start_frame);
-         row < static_cast<int>(push.force.size()) && row + push.start_frame < to; ++row) {
+    Eigen::Vector4d impulse = Eigen::Vector4d::Zero();  // over the new row, in old frames
+    const double from = i == 0 ? std::min<double>(old_edge(0), push.start_frame) : old_edge(i);
+    const double to = old_edge(i + 1);
+    for (int row = 0; row < static_cast<int>(push.force.size()); ++row) {
       const double left = std::max<double>(from, row + push.start_frame);
       const double right = std::min<double>(to, row + push.start_frame + 1.0);
       if (right > left) impulse += (right - left) * push.force[row];
     }
-    result.force.push_back(impulse / (to - from));
+    result.force.push_back(impulse * to_hz / from_hz);
   }
   return result;
 }

@@ -159,6 +159,15 @@ TEST(ResampleTest, PushesKeepTheirImpulse) {
     for (const Eigen::Vector4d& row : other.force) sum += row / rate;
     EXPECT_LT((sum - impulse).norm(), 1e-12) << rate;
     EXPECT_NEAR(other.start_frame / rate, 0.07, 1.0 / rate);
+    // And their middle: a row acts at its frame (push_from_sensor.h).
+    double before = 0.0, after = 0.0;
+    for (size_t i = 0; i < push.force.size(); ++i) {
+      before += (push.start_frame + static_cast<double>(i)) / 100.0 * push.force[i][0] / 100.0;
+    }
+    for (size_t i = 0; i < other.force.size(); ++i) {
+      after += (other.start_frame + static_cast<double>(i)) / rate * other.force[i][0] / rate;
+    }
+    EXPECT_NEAR(after / sum[0], before / impulse[0], 1.5e-3) << rate;
   }
   EXPECT_EQ(ResamplePush(push, 100.0, 100.0).force, push.force);
 }
