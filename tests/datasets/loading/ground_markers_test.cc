@@ -105,8 +105,8 @@ TEST_F(GroundMarkers, FilledGapsAreTold) {
   const std::vector<Eigen::Vector3d> marks = {{0.4, 0.3, 0.0}, {0.4, -0.3, 0.0}, {-0.4, 0.3, 0.0}};
   const auto loaded = LoadMarkers(marks, 0.0, 0.0, 60);
   ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  ASSERT_EQ(warnings_.size(), 1u);
-  EXPECT_TRUE(Contains(warnings_[0].text, "the marker p0 of the ground has 1 gap, 1 frames"));
+  ASSERT_FALSE(warnings_.empty());  // the rate that the manifest corrects is told too
+  EXPECT_TRUE(Contains(warnings_.back().text, "the marker p0 of the ground has 1 gap, 1 frames"));
 }
 
 TEST_F(GroundMarkers, OnALineLeaveATiltOpen) {

@@ -162,9 +162,10 @@ INSTANTIATE_TEST_SUITE_P(
         std::tuple("moves_at_first", kGround, Moving(400, 0.3), "at frame 0, where people are"),
         std::tuple("no_columns", kGround, "time,a\n0,1\n0.01,2\n0.02,3\n",
                    "none of the columns x, y, theta, phi"),
-        std::tuple("misspelt", kGround, "time,x,tehta\n0,0,0\n0.01,0,0\n0.02,0,0\n",
-                   "wrong.csv:1: the column 'tehta' is not known, and would be read as none; is "
-                   "theta meant?"),
+        std::tuple(
+            "misspelt", kGround, "time,x,tehta\n0,0,0\n0.01,0,0\n0.02,0,0\n",
+            "wrong.csv:1: recording 'S01_00_weak': the column 'tehta' is not known, and would "
+            "be read as none; is theta meant?"),
         std::tuple("no_time", kGround, "x,y\n0,1\n1,2\n2,3\n", "no column called time"),
         std::tuple("neither", R"({"ground": {"start": 1}})", "", "needs either \"csv\""),
         std::tuple("two_markers", R"({"ground": {"markers": ["a", "b"]}})", "", "three or more"),
