@@ -28,16 +28,16 @@
 
 namespace pushid {
 
-// What a delayed state is made of: `weight[i]` times the state at `frame - i`, and the same of its
-// derivative by the delay, 1/s.
+// What a delayed state is made of: `weight[i]` times the state `back + i` frames ago, and the same
+// of its derivative by the delay, 1/s.
 template <typename T>
 struct DelayedFrames {
   static constexpr int kCount = 4;
-  int frame;
+  int back;
   T weight[kCount];
   T by_delay[kCount];
 
-  DelayedFrames(const T& delay, int now, double dt) {
+  DelayedFrames(const T& delay, double dt) {
     const double whole = std::floor(RealPart(delay) / dt);
     const int k = static_cast<int>(whole);
     const T u = delay * (1.0 / dt) - whole;
@@ -48,11 +48,11 @@ struct DelayedFrames {
     const T w2 = 0.5 * (u + 4.0 * u2 - 3.0 * u3), s2 = 0.5 * (1.0 + 8.0 * u - 9.0 * u2);
     const T w3 = 0.5 * (-u2 + u3), s3 = 0.5 * (-2.0 * u + 3.0 * u2);
     const T w[] = {w0, w1, w2, w3}, s[] = {s0, s1, s2, s3};
-    frame = now - k + 1;
+    back = k - 1;
     for (int i = 0; i < kCount; ++i) weight[i] = w[i], by_delay[i] = s[i] * (1.0 / dt);
     if (k > 0) return;
     // What is later than now is on the line through the two before: twice the one less the other.
-    frame = now;
+    back = 0;
     const T first[] = {w1 + 2.0 * w0, w2 - w0, w3, T(0.0)};
     const T slope[] = {s1 + 2.0 * s0, s2 - s0, s3, T(0.0)};
     for (int i = 0; i < kCount; ++i) weight[i] = first[i], by_delay[i] = slope[i] * (1.0 / dt);
@@ -66,25 +66,25 @@ struct DelayedPlace {
   DelayedFrames<T> of_pose, of_rate;
   bool rate_moves;  // with the delay
 
-  DelayedPlace(const T& delay, int now, double dt)
-      : of_pose(delay, now, dt),
-        of_rate(RealPart(delay) > 0.5 * dt ? T(delay - 0.5 * dt) : T(0.0), now, dt),
+  DelayedPlace(const T& delay, double dt)
+      : of_pose(delay, dt),
+        of_rate(RealPart(delay) > 0.5 * dt ? T(delay - 0.5 * dt) : T(0.0), dt),
         rate_moves(RealPart(delay) > 0.5 * dt) {}
 };
 
-// The state so long before `now`, and its derivative by the delay.
+// The state so long before frame `now`, and its derivative by the delay.
 template <typename T>
 struct DelayedState {
   Vector4<T> q, qd, q_by_delay, qd_by_delay;
 
-  DelayedState(const RolloutPath<T>& path, int person, const DelayedPlace<T>& place) {
+  DelayedState(const RolloutPath<T>& path, int now, int person, const DelayedPlace<T>& place) {
     q.setConstant(T(0.0));
     qd = q_by_delay = qd_by_delay = q;
     for (int i = 0; i < DelayedFrames<T>::kCount; ++i) {
-      const PendulumState<T>& pose = path.At(std::max(place.of_pose.frame - i, 0), person);
+      const PendulumState<T>& pose = path.At(std::max(now - place.of_pose.back - i, 0), person);
       q += place.of_pose.weight[i] * pose.q;
       q_by_delay += place.of_pose.by_delay[i] * pose.q;
-      const int at = place.of_rate.frame - i;
+      const int at = now - place.of_rate.back - i;
       if (at < 0) continue;  // at rest
       qd += place.of_rate.weight[i] * path.At(at, person).qd;
       if (place.rate_moves) qd_by_delay += place.of_rate.by_delay[i] * path.At(at, person).qd;
@@ -116,14 +116,22 @@ constexpr Parameter StepDelayOf(Delay delay) {
   return delay == Delay::kAnkleAndStep ? kStepDelay : kReactionDelay;
 }
 
+// Of the ankles and of steps: the same in all frames of a rollout.
+template <typename T>
+struct DelayedPlaces {
+  DelayedPlace<T> ankle, step;
+
+  DelayedPlaces(Delay delay, const ParameterSet<T>& p, double dt)
+      : ankle(p[kReactionDelay], dt), step(p[StepDelayOf(delay)], dt) {}
+};
+
 // now: the path's last known frame.
 template <typename T>
-Perceived<T> Perceive(Delay delay, const ParameterSet<T>& p, const RolloutPath<T>& path, int now,
-                      int person, double dt) {
+Perceived<T> Perceive(const DelayedPlaces<T>& places, const ParameterSet<T>& p,
+                      const RolloutPath<T>& path, int now, int person) {
   const PendulumState<T>& state = path.At(now, person);
   Perceived<T> perceived(state);
-  if (delay == Delay::kNone) return perceived;
-  const DelayedState<T> ankle(path, person, DelayedPlace<T>(p[kReactionDelay], now, dt));
+  const DelayedState<T> ankle(path, now, person, places.ankle);
   const Vector4<T> rate = PresentRate(path, now, person);
   perceived.ankle.q = ankle.q;
   perceived.ankle.qd = ankle.qd;
@@ -131,7 +139,7 @@ Perceived<T> Perceive(Delay delay, const ParameterSet<T>& p, const RolloutPath<T
     perceived.ankle.q[i] = ankle.q[i] + p[kPassiveStiffness] * (state.q[i] - ankle.q[i]);
     perceived.ankle.qd[i] = ankle.qd[i] + p[kPassiveDamping] * (rate[i] - ankle.qd[i]);
   }
-  const DelayedState<T> step(path, person, DelayedPlace<T>(p[StepDelayOf(delay)], now, dt));
+  const DelayedState<T> step(path, now, person, places.step);
   perceived.step.q = step.q;
   perceived.step.qd = step.qd;
   return perceived;

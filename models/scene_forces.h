@@ -33,6 +33,10 @@ class SceneForces {
         finder_(scene, options.interaction),
         received_(scene.people.size(), Vector4<T>::Zero()) {
     if (options.learned != nullptr) StartNetworks(network_weights);
+    if (options.delay == Delay::kNone) return;
+    for (int n = 0; n < scene.num_people(); ++n) {
+      delayed_.emplace_back(options.delay, Parameters(n), scene.dt);
+    }
   }
 
   // states: of everybody at the next frame, the first one at the first call. Of a model without a
@@ -44,10 +48,9 @@ class SceneForces {
   // The same from a path that is known up to this frame.
   void Update(const RolloutPath<T>& path, int frame) {
     Update(path.Frame(frame));
-    if (options_->delay == Delay::kNone) return;
     perceived_.clear();
-    for (int n = 0; n < scene_->num_people(); ++n) {
-      perceived_.push_back(Perceive<T>(options_->delay, Parameters(n), path, frame, n, scene_->dt));
+    for (int n = 0; n < static_cast<int>(delayed_.size()); ++n) {
+      perceived_.push_back(Perceive<T>(delayed_[n], Parameters(n), path, frame, n));
     }
   }
 
@@ -131,6 +134,8 @@ class SceneForces {
   const Perceived<T>* perceived(int person) const {
     return perceived_.empty() ? nullptr : &perceived_[person];
   }
+  // Of a model with a delay.
+  const DelayedPlaces<T>& delayed(int person) const { return delayed_[person]; }
   const SelfForce& self(int person) const { return self_[person]; }
   const Vector4<T>& received(int person) const { return received_[person]; }
   // As Prepare left it; only where options have a network.
@@ -211,6 +216,7 @@ class SceneForces {
   std::vector<T> own_weights_;
   const T* network_weights_ = nullptr;
   std::vector<PosedPendulum<T>> states_;
+  std::vector<DelayedPlaces<T>> delayed_;
   std::vector<Perceived<T>> perceived_;
   std::vector<std::pair<int, int>> acting_;
 };

@@ -23,7 +23,8 @@ struct SelfForce : SelfTerms<double> {
   double capture_rate;
   Eigen::Vector2d rest_offset;
   double foot_rate;
-  std::vector<std::shared_ptr<const ForceLaw>> laws;  // the user's own
+  Vector3<double> rest_direction = Vector3<double>::UnitZ();  // along the rod, of the posture
+  std::vector<std::shared_ptr<const ForceLaw>> laws;          // the user's own
 
   // q0: the pose at frame 0.
   SelfForce(const ModelOptions& options, const Body& person, const Vector4<double>& q0, double step)
@@ -40,6 +41,8 @@ struct SelfForce : SelfTerms<double> {
       posture = q0.tail<2>();
       hold = Gravity(person, q0).tail<2>();
       rest_offset = (HipPosition(person, q0).head<2>() - q0.head<2>());
+      const Angles<double> rest(q0);
+      rest_direction = {rest.s_th, -rest.c_th * rest.s_ph, rest.c_th * rest.c_ph};
     }
   }
 

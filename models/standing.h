@@ -64,10 +64,19 @@ inline double MomentPerComHeight(const Body& body) {
   return share * body.mass * body.rod_length;
 }
 
-// asin(s) / s by s^2: within 1e-4 up to 0.6 rad.
+// asin(s) / s by s^2: within 1e-4 up to 0.6 rad; and its derivative.
 template <typename T>
 T AngleOverSine(const T& s2) {
   return 1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0 + s2 * (5.0 / 112.0 + s2 * (35.0 / 1152.0))));
+}
+inline double AngleOverSineSlope(double s2) {
+  return 1.0 / 6.0 + s2 * (3.0 / 20.0 + s2 * (15.0 / 112.0 + s2 * (35.0 / 288.0)));
+}
+
+// What holds the posture, by com_height: N m over the sine of the lean.
+inline double HoldPerComHeight(const SelfForce& self) {
+  if (self.hold.isZero(0.0)) return 0.0;
+  return kGravity * MomentPerComHeight(self.body) / self.rest_direction[2];
 }
 
 // About both axes, N m.
@@ -75,18 +84,14 @@ template <typename T>
 Eigen::Matrix<T, 2, 1> StandingTorque(const SelfForce& self, const StandingParameters<T>& p,
                                       const Angles<T>& angles, const Vector4<T>& qd) {
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
-  Vector4<double> q0 = Vector4<double>::Zero();
-  q0.tail<2>() = self.posture;
-  const Angles<double> rest(q0);
-  const Vector3<double> u0{rest.s_th, -rest.c_th * rest.s_ph, rest.c_th * rest.c_ph};
+  const Vector3<double>& u0 = self.rest_direction;
   const Vector3<T> u{s_th, -c_th * s_ph, c_th * c_ph};
   const Vector3<T> by[2] = {{c_th, s_th * s_ph, -s_th * c_ph},
                             {T(0.0), -c_th * c_ph, -c_th * s_ph}};
   const T cosine = u[0] * u0[0] + u[1] * u0[1] + u[2] * u0[2];
   const T stretch = self.scale.stiffness * AngleOverSine<T>(1.0 - cosine * cosine);
   const T gains[] = {stretch * p.Kp[0], stretch * p.Kp[1], stretch * 0.5 * (p.Kp[0] + p.Kp[1])};
-  const bool holds = !self.hold.isZero(0.0);
-  const T moment = (holds ? kGravity * MomentPerComHeight(self.body) / u0[2] : 0.0) * p.com_height;
+  const T moment = HoldPerComHeight(self) * p.com_height;
   Eigen::Matrix<T, 2, 1> torque;
   for (int i = 0; i < 2; ++i) {
     torque[i] = -moment * (u0[0] * by[i][0] + u0[1] * by[i][1]);

@@ -147,10 +147,10 @@ struct LateVelocity {
       rate = 1.0 - pose;
       add_lag(0, share * (pose + kRateAhead * rate));
       add_lag(1, share * (1.0 - kRateAhead) * rate);
-      const DelayedPlace<double> place(p[delay], 0, dt);
+      const DelayedPlace<double> place(p[delay], dt);
       for (int i = 0; i < DelayedFrames<double>::kCount; ++i) {
-        add_lag(i - place.of_pose.frame, place.of_pose.weight[i] * (1.0 - share) * pose);
-        add_lag(i - place.of_rate.frame, place.of_rate.weight[i] * (1.0 - share) * rate);
+        add_lag(place.of_pose.back + i, place.of_pose.weight[i] * (1.0 - share) * pose);
+        add_lag(place.of_rate.back + i, place.of_rate.weight[i] * (1.0 - share) * rate);
       }
     };
     // All that the ankles feel of the cart is late (Perceive).

@@ -61,6 +61,9 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
   solver.function_tolerance = options.function_tolerance;
   solver.gradient_tolerance = options.gradient_tolerance;
   solver.parameter_tolerance = options.parameter_tolerance;
+  // Between bounds a step is searched for: cubic interpolation would ask for a Jacobian at every
+  // trial.
+  solver.line_search_interpolation_type = ceres::QUADRATIC;
   solver.num_threads = 1;  // evaluations have threads of their own (parallel_evaluation.h)
   solver.logging_type = ceres::SILENT;
   return solver;

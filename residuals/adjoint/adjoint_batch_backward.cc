@@ -1,5 +1,6 @@
 // residuals: the way back over the rollouts of a batch.
 #include "residuals/adjoint/adjoint_batch.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 
@@ -47,7 +48,10 @@ AdjointGradient::Batch::ForceAdjoint AdjointGradient::Batch::StepBack(
   }
 
   if (by_rod != nullptr) {
-    adjoint->rod -= f.dot(InverseDynamicsByRod(body, state, walker.acceleration[step]));
+    adjoint->rod -= f.dot(InverseDynamicsByBody(body, Angles<double>(state.q), state.qd,
+                                                walker.acceleration[step])
+                              .col(1)) /
+                    body.rod_length;
     adjoint->rod += (*by_rod)[RodShape::kRodInput] / kNetworkRod;
     const Vector4<double> seen =
         by_rod->segment<4>(RodShape::kForceInputs) / (kNetworkAcceleration * walker.body().mass);

@@ -2,6 +2,7 @@
 #include "residuals/cost_functions/equation_error_residual.h"
 
 #include "residuals/cost_functions/rollout_problem.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 

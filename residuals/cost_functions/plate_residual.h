@@ -11,6 +11,7 @@
 #include "models/ground_reaction.h"
 #include "models/net_force.h"
 #include "residuals/frame_residual.h"
+#include "residuals/sensitivities/body_sensitivities.h"
 
 namespace pushid {
 
@@ -31,54 +32,88 @@ struct PlatePlace {
   }
 };
 
-// r before the robust weight; next_qd: the velocity one frame on.
+// What platforms see of a person in all frames of a rollout alike: the body, and where the centre
+// of pressure is at rest in the start posture.
 template <typename T>
-PlateVector<T> RawPlateResidual(const PlatePlace& place, const ParameterSet<T>& p,
-                                const PendulumState<T>& state, const Vector4<T>& next_qd,
-                                const PlateFrame& measured, const ResidualSigmas& sigmas) {
-  const Scene& scene = *place.scene;
-  const ScenePerson& person = scene.people[place.person];
-  const BodyOf<T> body =
-      DynamicBody<T>(*place.options, person.body, p, place.options->stance == Stance::kFixed);
+struct BodyOnPlates {
+  BodyOf<T> body;
+  GroundReactionOf<T> at_rest;
+
+  BodyOnPlates(const Scene& scene, const ModelOptions& options, int person,
+               const ParameterSet<T>& p)
+      : body(DynamicBody<T>(options, scene.people[person].body, p,
+                            options.stance == Stance::kFixed)) {
+    const Vector4<T> none = Vector4<T>::Zero();
+    PendulumState<T> rest;
+    rest.q = scene.people[person].start.q.template cast<T>();
+    at_rest = GroundReaction<T>(body, rest, none, GroundStep{}, none);
+  }
+};
+
+// What acts on the ground during a step: the motion of the ground and the pushes.
+template <typename T>
+struct PlateStep {
   GroundStep ground;
-  if (scene.ground.moves()) ground = scene.ground.steps[place.frame];
-  Vector4<T> push = PushForceAt(scene, place.person, place.frame).template cast<T>();
-  if (place.options->body == BodyModel::kTable) push *= p[kPushGain];
-  const Vector4<T> a = (next_qd - state.qd) * T(1.0 / scene.dt);
-  PendulumState<T> rest;
-  rest.q = person.start.q.template cast<T>();
-  const Vector4<T> none = Vector4<T>::Zero();
-  const PlateVector<T> now = GroundReaction<T>(body, state, a, ground, push);
-  const PlateVector<T> before = GroundReaction<T>(body, rest, none, GroundStep{}, none);
+  Vector4<double> measured_push;
+  Vector4<T> push;
+
+  PlateStep(const PlatePlace& place, const ParameterSet<T>& p)
+      : measured_push(PushForceAt(*place.scene, place.person, place.frame)),
+        push(measured_push.template cast<T>()) {
+    if (place.scene->ground.moves()) ground = place.scene->ground.steps[place.frame];
+    if (place.options->body == BodyModel::kTable) push *= p[kPushGain];
+  }
+};
+
+// now less at rest, less what was measured, in standard deviations.
+template <typename T>
+PlateVector<T> RawPlateResidual(const GroundReactionOf<T>& now, const GroundReactionOf<T>& at_rest,
+                                const PlateFrame& measured, const ResidualSigmas& sigmas) {
   PlateVector<T> r;
   for (int i = 0; i < 2; ++i) {
     r[i] = (now[i] - measured.shear[i]) / sigmas.shear;
-    r[2 + i] = (now[2 + i] - before[2 + i] - measured.centre[i]) / sigmas.centre;
+    r[2 + i] = (now[2 + i] - at_rest[2 + i] - measured.centre[i]) / sigmas.centre;
   }
   return r;
 }
 
+// next_qd: the velocity one frame on.
 template <typename T>
-PlateVector<T> PlateResidual(const PlatePlace& place, const ParameterSet<T>& p,
-                             const PendulumState<T>& state, const Vector4<T>& next_qd,
-                             const PlateFrame& measured, const ResidualSigmas& sigmas) {
-  const PlateVector<T> r = RawPlateResidual<T>(place, p, state, next_qd, measured, sigmas);
+PlateVector<T> PlateResidual(const PlatePlace& place, const BodyOnPlates<T>& on_plates,
+                             const ParameterSet<T>& p, const PendulumState<T>& state,
+                             const Vector4<T>& next_qd, const PlateFrame& measured,
+                             const ResidualSigmas& sigmas) {
+  const PlateStep<T> step(place, p);
+  const Vector4<T> a = (next_qd - state.qd) * T(1.0 / place.scene->dt);
+  const PlateVector<T> r =
+      RawPlateResidual<T>(GroundReaction<T>(on_plates.body, state, a, step.ground, step.push),
+                          on_plates.at_rest, measured, sigmas);
   const double weight = place.Known() ? measured.weight : 0.0;
   return T(weight) * RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
 }
 
-// Parameters that decide a body, and hence what platforms see of its motion.
-inline constexpr Parameter kPlateParameters[] = {kComHeight, kCartMassShare, kGyrationRadius,
-                                                 kPushGain};
-inline constexpr int kNumPlateParameters = 4;
-// Columns: q, qd, the next qd, then kPlateParameters.
+// Parameters that platforms see: those of the body, then the gain of a push.
+inline constexpr int kNumPlateParameters = kNumBodyParameters + 1;
+constexpr Parameter PlateParameter(int k) {
+  return k < kNumBodyParameters ? kBodyParameters[k] : kPushGain;
+}
+// Columns: q, qd, the next qd, then the parameters.
 inline constexpr int kPlateColumns = 12 + kNumPlateParameters;
 using PlateJacobian = Eigen::Matrix<double, kPlateResiduals, kPlateColumns, Eigen::RowMajor>;
 
+// BodyOnPlates with its derivatives by kBodyParameters.
+struct BodyOnPlatesJacobian : BodyOnPlates<double> {
+  BodyByParameters by;
+  Eigen::Matrix<double, kPlateResiduals, kNumBodyParameters> at_rest_by;
+
+  BodyOnPlatesJacobian(const Scene& scene, const ModelOptions& options, int person,
+                       const ParameterSet<double>& p);
+};
+
 // PlateResidual with its derivatives.
 PlateVector<double> PlateResidualWithJacobian(
-    const PlatePlace& place, const ParameterSet<double>& p, const PendulumState<double>& state,
-    const Vector4<double>& next_qd, const PlateFrame& measured, const ResidualSigmas& sigmas,
-    PlateJacobian* jacobian);
+    const PlatePlace& place, const BodyOnPlatesJacobian& on_plates, const ParameterSet<double>& p,
+    const PendulumState<double>& state, const Vector4<double>& next_qd, const PlateFrame& measured,
+    const ResidualSigmas& sigmas, PlateJacobian* jacobian);
 
 }  // namespace pushid

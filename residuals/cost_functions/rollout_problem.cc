@@ -174,36 +174,49 @@ RolloutStatus RollOut(const RolloutProblem& p, double const* const* blocks, Deri
 
 namespace {
 
-// Rows of platforms, of a rollout that is there.
-void VisitPlates(const RolloutProblem& p, const SensitivityInputs& inputs,
-                 const RolloutPath<double>& path, const RolloutSensitivities& sensitivities,
-                 bool with_rows, const PlateVisitor& visit) {
-  const Scene& scene = p.recording->scene;
-  PlateRows by_column(kPlateResiduals, with_rows ? inputs.num_columns : 0);
-  PlateJacobian jacobian;
+// Rows of platforms without derivatives, of a rollout that is there.
+void VisitPlateValues(const RolloutProblem& p, const SensitivityInputs& inputs,
+                      const RolloutPath<double>& path, const PlateVisitor& visit) {
   const std::vector<int> people = p.PeopleOnPlates();
+  const auto bodies = BodiesOnPlates<BodyOnPlates<double>>(p, inputs.parameters);
+  PlateRows none(kPlateResiduals, 0);
   for (int t = 0; t + 1 < p.horizon; ++t) {
-    for (int n : people) {
-      const PlatePlace place{&scene, &p.options, n, t};
-      const PlateFrame& measured = p.recording->plates[n][t];
-      const ParameterSet<double>& set = inputs.parameters[n];
-      if (!with_rows) {
-        visit(t, n,
-              p.weight * PlateResidual<double>(place, set, path.At(t, n), path.At(t + 1, n).qd,
-                                               measured, p.sigmas),
-              &by_column);
-        continue;
-      }
+    for (size_t k = 0; k < people.size(); ++k) {
+      const int n = people[k];
+      const PlatePlace place{&p.recording->scene, &p.options, n, t};
+      visit(t, n,
+            p.weight * PlateResidual<double>(place, bodies[k], inputs.parameters[n], path.At(t, n),
+                                             path.At(t + 1, n).qd, p.recording->plates[n][t],
+                                             p.sigmas),
+            &none);
+    }
+  }
+}
+
+// The same with derivatives.
+void VisitPlateRows(const RolloutProblem& p, const SensitivityInputs& inputs,
+                    const RolloutPath<double>& path, const RolloutSensitivities& sensitivities,
+                    const PlateVisitor& visit) {
+  const std::vector<int> people = p.PeopleOnPlates();
+  const auto bodies = BodiesOnPlates<BodyOnPlatesJacobian>(p, inputs.parameters);
+  PlateRows by_column(kPlateResiduals, inputs.num_columns);
+  PlateJacobian jacobian;
+  for (int t = 0; t + 1 < p.horizon; ++t) {
+    for (size_t k = 0; k < people.size(); ++k) {
+      const int n = people[k];
+      const PlatePlace place{&p.recording->scene, &p.options, n, t};
       const PlateVector<double> r =
-          p.weight * PlateResidualWithJacobian(place, set, path.At(t, n), path.At(t + 1, n).qd,
-                                               measured, p.sigmas, &jacobian);
+          p.weight * PlateResidualWithJacobian(place, bodies[k], inputs.parameters[n],
+                                               path.At(t, n), path.At(t + 1, n).qd,
+                                               p.recording->plates[n][t], p.sigmas, &jacobian);
       jacobian *= p.weight;
-      by_column.noalias() = jacobian.leftCols<8>() * sensitivities.At(t, n);
-      by_column.noalias() += jacobian.middleCols<4>(8) * sensitivities.At(t + 1, n).bottomRows<4>();
+      SetNarrowProduct(jacobian.leftCols<8>(), sensitivities.At(t, n), by_column);
+      AddNarrowProduct(jacobian.middleCols<4>(8), sensitivities.At(t + 1, n).bottomRows<4>(),
+                       by_column);
       for (const ColumnEntry& entry : inputs.entries[n]) {
-        for (int k = 0; k < kNumPlateParameters; ++k) {
-          if (entry.parameter != kPlateParameters[k]) continue;
-          by_column.col(entry.column) += entry.derivative * jacobian.col(12 + k);
+        for (int i = 0; i < kNumPlateParameters; ++i) {
+          if (entry.parameter != PlateParameter(i)) continue;
+          by_column.col(entry.column) += entry.derivative * jacobian.col(12 + i);
         }
       }
       visit(t, n, r, &by_column);
@@ -262,7 +275,8 @@ RolloutStatus VisitFrames(const RolloutProblem& p, double const* const* blocks,
       visit(t, n, r, &by_column);
     }
   }
-  if (plates) VisitPlates(p, inputs, path, sensitivities, with_rows, plates);
+  if (plates && with_rows) VisitPlateRows(p, inputs, path, sensitivities, plates);
+  if (plates && !with_rows) VisitPlateValues(p, inputs, path, plates);
   return status;
 }
 

@@ -138,6 +138,16 @@ RolloutStatus VisitFrames(const RolloutProblem& problem, double const* const* bl
 bool RolloutResiduals(const RolloutProblem& problem, double const* const* blocks,
                       double* residuals);
 
+// Of PeopleOnPlates, in this order.
+template <typename OnPlates, typename Sets>
+std::vector<OnPlates> BodiesOnPlates(const RolloutProblem& p, const Sets& parameters) {
+  std::vector<OnPlates> bodies;
+  for (int n : p.PeopleOnPlates()) {
+    bodies.emplace_back(p.recording->scene, p.options, n, parameters[n]);
+  }
+  return bodies;
+}
+
 // The oracle: the same residuals for ceres::DynamicAutoDiffCostFunction.
 struct RolloutResidualFunctor {
   std::shared_ptr<const RolloutProblem> problem;
@@ -173,12 +183,15 @@ struct RolloutResidualFunctor {
                                : FrameResidual<T>(body, state, p.Measured(t, n), p.sigmas));
       }
     }
+    const std::vector<int> on_plates = p.PeopleOnPlates();
+    const std::vector<BodyOnPlates<T>> bodies = BodiesOnPlates<BodyOnPlates<T>>(p, parameters);
     for (int t = 0; t + 1 < p.horizon; ++t) {
-      for (int n : p.PeopleOnPlates()) {
+      for (size_t k = 0; k < on_plates.size(); ++k) {
+        const int n = on_plates[k];
         Eigen::Map<PlateVector<T>> r(residuals);
-        r = T(p.weight) * PlateResidual<T>({&scene, &p.options, n, t}, parameters[n], path.At(t, n),
-                                           path.At(t + 1, n).qd, p.recording->plates[n][t],
-                                           p.sigmas);
+        r = T(p.weight) * PlateResidual<T>({&scene, &p.options, n, t}, bodies[k], parameters[n],
+                                           path.At(t, n), path.At(t + 1, n).qd,
+                                           p.recording->plates[n][t], p.sigmas);
         residuals += kPlateResiduals;
       }
     }

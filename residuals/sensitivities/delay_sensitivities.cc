@@ -9,11 +9,11 @@ namespace pushid {
 namespace {
 
 // d [q, qd] of a delayed state / d columns. Before frame 0 people are at rest where they started.
-void DelayedBlock(const RolloutSensitivities& sensitivities, int person,
+void DelayedBlock(const RolloutSensitivities& sensitivities, int now, int person,
                   const DelayedPlace<double>& place, RolloutSensitivities::Block* block) {
   block->setZero();
   for (int i = 0; i < DelayedFrames<double>::kCount; ++i) {
-    const int pose = place.of_pose.frame - i, rate = place.of_rate.frame - i;
+    const int pose = now - place.of_pose.back - i, rate = now - place.of_rate.back - i;
     // A start's pose has no derivatives.
     if (pose >= 0) {
       block->topRows<4>() += place.of_pose.weight[i] * sensitivities.At(pose, person).topRows<4>();
@@ -30,16 +30,16 @@ void DelayedBlock(const RolloutSensitivities& sensitivities, int person,
 PerceivedSensitivities::PerceivedSensitivities(int num_columns)
     : ankle_(8, num_columns), step_(8, num_columns) {}
 
-void PerceivedSensitivities::Update(const Scene& scene, const ModelOptions& options,
-                                    const ParameterSet<double>& p, const RolloutPath<double>& path,
+void PerceivedSensitivities::Update(const ModelOptions& options, const ParameterSet<double>& p,
+                                    const DelayedPlaces<double>& delayed,
+                                    const RolloutPath<double>& path,
                                     const RolloutSensitivities& sensitivities, int frame,
                                     int person) {
   const PendulumState<double>& now = path.At(frame, person);
   step_delay_ = StepDelayOf(options.delay);
-  const DelayedPlace<double> ankle(p[kReactionDelay], frame, scene.dt);
-  const DelayedPlace<double> step(p[step_delay_], frame, scene.dt);
-  const DelayedState<double> then(path, person, ankle), then_step(path, person, step);
-  DelayedBlock(sensitivities, person, ankle, &ankle_);
+  steps_ = options.stance != Stance::kFixed;
+  const DelayedState<double> then(path, frame, person, delayed.ankle);
+  DelayedBlock(sensitivities, frame, person, delayed.ankle, &ankle_);
   const double stiffness = p[kPassiveStiffness], damping = p[kPassiveDamping];
   const auto of_now = sensitivities.At(frame, person);
   ankle_.middleRows<2>(2) =
@@ -57,7 +57,9 @@ void PerceivedSensitivities::Update(const Scene& scene, const ModelOptions& opti
   ankle_by_delay_.tail<2>() *= 1.0 - damping;
   by_stiffness_share_.segment<2>(2) = now.q.tail<2>() - then.q.tail<2>();
   by_damping_share_.tail<2>() = (PresentRate(path, frame, person) - then.qd).tail<2>();
-  DelayedBlock(sensitivities, person, step, &step_);
+  if (!steps_) return;
+  const DelayedState<double> then_step(path, frame, person, delayed.step);
+  DelayedBlock(sensitivities, frame, person, delayed.step, &step_);
   step_by_delay_ << then_step.q_by_delay, then_step.qd_by_delay;
 }
 
@@ -65,7 +67,7 @@ void PerceivedSensitivities::AddTo(
     const Eigen::Matrix<double, 4, 8>& by_ankle, const Eigen::Matrix<double, 4, 8>& by_step,
     Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>* by_column) const {
   by_column->noalias() += by_ankle * ankle_;
-  if (!by_step.isZero(0.0)) by_column->noalias() += by_step * step_;
+  if (steps_) by_column->noalias() += by_step * step_;
 }
 
 void PerceivedSensitivities::AddParameters(const Eigen::Matrix<double, 4, 8>& by_ankle,
@@ -73,7 +75,7 @@ void PerceivedSensitivities::AddParameters(const Eigen::Matrix<double, 4, 8>& by
                                            SelfForce::Jacobian* jacobian) const {
   auto& by_parameter = jacobian->by_parameter;
   by_parameter.col(kReactionDelay) += by_ankle * ankle_by_delay_;
-  by_parameter.col(step_delay_) += by_step * step_by_delay_;
+  if (steps_) by_parameter.col(step_delay_) += by_step * step_by_delay_;
   by_parameter.col(kPassiveStiffness) += by_ankle * by_stiffness_share_;
   by_parameter.col(kPassiveDamping) += by_ankle * by_damping_share_;
 }

@@ -18,9 +18,9 @@ class PerceivedSensitivities {
   // Prepared for a rollout of so many columns.
   explicit PerceivedSensitivities(int num_columns);
 
-  void Update(const Scene& scene, const ModelOptions& options, const ParameterSet<double>& p,
-              const RolloutPath<double>& path, const RolloutSensitivities& sensitivities, int frame,
-              int person);
+  void Update(const ModelOptions& options, const ParameterSet<double>& p,
+              const DelayedPlaces<double>& delayed, const RolloutPath<double>& path,
+              const RolloutSensitivities& sensitivities, int frame, int person);
 
   // Adds what the forces change by through what was perceived: by_ankle and by_step are their
   // derivatives by the two perceived states, over [q, qd].
@@ -43,6 +43,7 @@ class PerceivedSensitivities {
   Block ankle_, step_;
   State ankle_by_delay_, step_by_delay_, by_stiffness_share_, by_damping_share_;
   Parameter step_delay_ = kReactionDelay;
+  bool steps_ = true;  // feet that hold ask for no cart
 };
 
 }  // namespace pushid

@@ -1,123 +1,18 @@
 // residuals: the chained forward sensitivities.
 #include "residuals/sensitivities/rollout_sensitivities.h"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <optional>
 
 #include "residuals/packed/packed_matrix.h"
 #include "residuals/sensitivities/body_sensitivities.h"
 #include "residuals/sensitivities/delay_sensitivities.h"
-#include "residuals/sensitivities/learned_pair_jacobian.h"
 #include "residuals/sensitivities/network_sensitivities.h"
+#include "residuals/sensitivities/received_sensitivities.h"
 #include "residuals/sensitivities/stance_sensitivities.h"
 
 namespace pushid {
-
-Vector4<double> InverseDynamicsByRod(const Body& body, const PendulumState<double>& state,
-                                     const Vector4<double>& a) {
-  using Jet = ceres::Jet<double, 1>;
-  const BodyOf<Jet> jets{Jet(body.mass), Jet(body.rod_length, 0), Jet(0.0), Jet(body.point_share),
-                         Jet(body.pendulum_ratio)};
-  const PendulumState<Jet> still{state.q.cast<Jet>(), state.qd.cast<Jet>()};
-  const Vector4<Jet> value = InverseDynamics<Jet>(jets, still, a.cast<Jet>());
-  return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
-}
-
 namespace {
-
-using Columns = NetworkSensitivities::ForceColumns;
-
-// A force's derivative by a parameter, onto the column that depends on it: most parameters act on
-// one row or two.
-template <typename Vector>
-void AddWhereAny(const ColumnEntry& entry, const Vector& by_parameter, Columns* by_column) {
-  for (int row = 0; row < 4; ++row) {
-    if (by_parameter[row] == 0.0) continue;
-    (*by_column)(row, entry.column) += entry.derivative * by_parameter[row];
-  }
-}
-
-const double* Weights(const ModelOptions& options, const SensitivityInputs& inputs) {
-  return inputs.network_weights != nullptr ? inputs.network_weights
-                                           : options.learned->weights.data();
-}
-
-// Derivatives of what everybody gets from others.
-class ReceivedSensitivities {
- public:
-  ReceivedSensitivities(const Scene& scene, const ModelOptions& options,
-                        const SensitivityInputs& inputs)
-      : options_(options),
-        inputs_(inputs),
-        weights_(options.interaction.learned ? Weights(options, inputs) : nullptr),
-        now_(scene.people.size(), Columns::Zero(4, inputs.num_columns)) {
-    for (const ColumnEntry& entry : inputs.entries[0]) {
-      if (IsPairParameter(entry.parameter)) pair_entries_.push_back(entry);
-    }
-    if (weights_ == nullptr || inputs.weight_column >= 0) return;
-    held_.emplace(options.learned->pair, weights_ + options.learned->pair_at());
-  }
-
-  // Of the interaction at one frame; forces: prepared for it.
-  void Update(const RolloutSensitivities& sensitivities, int frame,
-              const SceneForces<double>& forces) {
-    if (!options_.interaction.Any()) return;
-    for (Columns& columns : now_) columns.setZero();
-    if (held_) held_->Ask(forces);
-    for (size_t k = 0; k < forces.acting().size(); ++k) {
-      const auto& [n, j] = forces.acting()[k];
-      const PairJacobian jacobian = Of(k, forces);
-      for (int side = 0; side < 2; ++side) {
-        Columns& target = now_[side == 0 ? n : j];
-        const auto by_states = jacobian.by_states.middleRows<4>(4 * side);
-        AddNarrowProduct(by_states.leftCols<8>(), sensitivities.At(frame, n), target);
-        AddNarrowProduct(by_states.rightCols<8>(), sensitivities.At(frame, j), target);
-        for (const ColumnEntry& entry : pair_entries_) {
-          AddWhereAny(
-              entry,
-              jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kFirstPairParameter),
-              &target);
-        }
-        if (weights_ == nullptr || held_) continue;
-        target.middleCols(inputs_.weight_column + options_.learned->pair_at(), by_weight_.cols()) +=
-            by_weight_.middleRows<4>(4 * side);
-      }
-    }
-  }
-
-  // Adds what person n feels of it.
-  void AddTo(int n, Columns* by_column) const {
-    if (options_.interaction.Any()) *by_column += now_[n];
-  }
-
- private:
-  // Of the k-th two who act on each other; by_weight_ as well where weights are fitted.
-  PairJacobian Of(size_t k, const SceneForces<double>& forces) {
-    const auto& [n, j] = forces.acting()[k];
-    const Pair pair = forces.pairs().Of(n, j);
-    PairJacobian jacobian =
-        ComputePairJacobian(options_.interaction, options_.interaction_network.get(), pair,
-                            forces.Parameters(0), forces.state(n), forces.state(j));
-    if (held_) {
-      held_->AddTo(k, forces, &jacobian);
-    } else if (weights_ != nullptr) {
-      const LearnedTerms& learned = *options_.learned;
-      AddLearnedPairJacobian(learned.pair, weights_ + learned.pair_at(), pair, forces.Parameters(0),
-                             forces.state(n), forces.state(j), &jacobian, &by_weight_);
-    }
-    return jacobian;
-  }
-
-  const ModelOptions& options_;
-  const SensitivityInputs& inputs_;
-  std::vector<ColumnEntry> pair_entries_;
-  const double* weights_;  // of what is learned; null where no interaction is
-  PairByWeight by_weight_;
-  std::optional<HeldPairs> held_;  // where weights are, and are not fitted
-  std::vector<Columns> now_;
-};
 
 // Without what a person alone does not have.
 std::vector<std::vector<ColumnEntry>> WithoutPairs(std::vector<std::vector<ColumnEntry>> entries) {
@@ -135,7 +30,7 @@ std::vector<NetworkSensitivities> StartNetworks(const Scene& scene, const ModelO
   std::vector<NetworkSensitivities> networks;
   if (options.learned == nullptr || !options.learned->shape.any()) return networks;
   const LearnedTerms& network = *options.learned;
-  const double* weights = Weights(options, inputs);
+  const double* weights = LearnedWeights(options, inputs);
   for (const ScenePerson& person : scene.people) {
     networks.emplace_back(network.shape, weights, person.body.mass, inputs.num_columns,
                           inputs.weight_column);
@@ -155,137 +50,234 @@ void AdvanceStepState(const StanceJacobian& stance, const std::vector<ColumnEntr
   }
 }
 
+// What one person does in one step.
+struct PersonStep {
+  int frame, person;
+  const SelfForce& self;
+  const ParameterSet<double>& p;
+  const PendulumState<double>& state;
+  const Vector4<double>& previous;  // velocity, one frame before
+  NetForce<double> force;
+  Vector4<double> a;
+  bool holds_fast;
+  GroundStep ground;
+};
+
+// A rollout and its sensitivities, frame by frame.
+class SensitivityRollout {
+ public:
+  SensitivityRollout(const Scene& scene, const ModelOptions& options,
+                     const SensitivityInputs& inputs, int num_frames, RolloutPath<double>* path,
+                     RolloutSensitivities* sensitivities)
+      : scene_(scene),
+        options_(options),
+        inputs_(inputs),
+        path_(*path),
+        sensitivities_(*sensitivities),
+        stands_(options.stance == Stance::kThreshold),
+        late_(options.delay != Delay::kNone),
+        forces_(scene, options, inputs.parameters, inputs.network_weights),
+        received_(scene, options, inputs),
+        networks_(StartNetworks(scene, options, inputs)),
+        own_entries_(WithoutPairs(inputs.entries)),
+        perceived_(late_ ? inputs.num_columns : 0),
+        by_column_(4, inputs.num_columns) {
+    if (RodMoves(options)) {
+      rod_.emplace(*options.learned, LearnedWeights(options, inputs), inputs.num_columns,
+                   inputs.weight_column);
+    }
+    path_ = RolloutPath<double>(num_frames, scene.num_people());
+    sensitivities_.Resize(num_frames, scene.num_people(), inputs.num_columns, rod_.has_value(),
+                          stands_);
+    for (int n = 0; n < scene.num_people(); ++n) Start(n);
+  }
+
+  RolloutStatus Run() {
+    const int people = scene_.num_people(), last = path_.num_frames() - 1;
+    for (int t = 0; t < last; ++t) {
+      forces_.Update(path_, t);
+      forces_.PrepareAll();
+      received_.Update(sensitivities_, t, forces_);
+      for (int n = 0; n < people; ++n) {
+        const PersonStep step = StepOf(t, n);
+        sensitivities_.AnglesAt(t, n) = step.force.angles;
+        path_.At(t + 1, n) = forces_.Next(n, step.a, step.force, step.previous);
+        const std::string_view outside = OutsideDomain(scene_.people[n].body, path_.At(t + 1, n));
+        if (!outside.empty()) return {false, t + 1, n, outside};
+        Advance(step);
+      }
+    }
+    for (int n = 0; n < people; ++n) {
+      sensitivities_.AnglesAt(last, n) = Angles<double>(path_.At(last, n).q);
+    }
+    return {};
+  }
+
+ private:
+  void Start(int n) {
+    path_.At(0, n) = {scene_.people[n].start.q, inputs_.initial_velocity[n]};
+    auto start = sensitivities_.At(0, n);
+    start.setZero();
+    sensitivities_.Rod(0, n).setZero();
+    sensitivities_.StepState(0, n).setZero();
+    if (inputs_.velocity_column >= 0) {
+      start.block<4, 4>(4, inputs_.velocity_column + 4 * n).setIdentity();
+    }
+  }
+
+  PersonStep StepOf(int t, int n) const {
+    const Vector4<double>& previous = path_.At(std::max(t - 1, 0), n).qd;
+    PersonStep step{t,
+                    n,
+                    forces_.self(n),
+                    inputs_.parameters[n],
+                    path_.At(t, n),
+                    previous,
+                    forces_.On(n, t, previous),
+                    {},
+                    false,
+                    {}};
+    step.a = forces_.AccelerationOf(n, step.force);
+    step.holds_fast = forces_.HoldsFast(step.force);
+    if (scene_.ground.moves()) step.ground = scene_.ground.steps[t];
+    return step;
+  }
+
+  // Of the force, at fixed acceleration, by the person's own state and parameters.
+  void ForceJacobian(const PersonStep& step) {
+    const auto& [t, n, self, p, state, previous, force, a, holds_fast, ground] = step;
+    const Perceived<double>* perceived = forces_.perceived(n);
+    switch (options_.stance) {
+      case Stance::kThreshold:
+        NetForceJacobianOfStance(scene_, options_, self, p, n, t, state, a, &jacobian_, &stance_,
+                                 perceived, &by_perceived_);
+        break;
+      case Stance::kFixed:
+        NetForceJacobianOfStanding(scene_, options_, self, p, n, t, state, &jacobian_, perceived,
+                                   &by_perceived_);
+        break;
+      case Stance::kSlide:
+        NetForceJacobian(scene_, options_, self, p, n, t, state, previous, &jacobian_, perceived,
+                         &by_perceived_);
+        break;
+    }
+  }
+
+  // Less what the equations of motion of `body` change by. Ground that moves is one more
+  // acceleration, and another gravity (models/ground.h).
+  void SubtractInverseDynamics(const PersonStep& step, const Body& body) {
+    const Vector4<double> felt = step.a + step.ground.acceleration;
+    const Angles<double>& angles = step.force.angles;
+    const double gravity = step.ground.gravity;
+    const Matrix4<double> rigid =
+        InverseDynamicsJacobian(body, angles, step.state.qd, felt, gravity);
+    jacobian_.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
+    jacobian_.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
+    if (rod_) {
+      by_rod_ = -1.0 / body.rod_length *
+                InverseDynamicsByBody(body, angles, step.state.qd, felt, gravity).col(1);
+    }
+    if (!step.holds_fast && options_.body != BodyModel::kTable) return;
+    const Eigen::Matrix<double, 4, kNumBodyParameters> by =
+        InverseDynamicsByBody(body, angles, step.state.qd, felt, gravity) *
+        BodyJacobian(options_, step.self.body, step.p, step.holds_fast);
+    for (int k = 0; k < kNumBodyParameters; ++k) {
+      jacobian_.by_parameter.col(kBodyParameters[k]) -= by.col(k);
+    }
+  }
+
+  // by_column_: of the force less that of the equations of motion, by the columns.
+  void ForceByColumns(const PersonStep& step) {
+    const int t = step.frame, n = step.person;
+    const auto now = sensitivities_.At(t, n);
+    if (jacobian_.by_state.leftCols<2>().isZero(0.0)) {  // only a user's law asks where one is
+      SetNarrowProduct(jacobian_.by_state.rightCols<6>(), now.bottomRows<6>(), by_column_);
+    } else {
+      SetNarrowProduct(jacobian_.by_state, now, by_column_);
+    }
+    if (late_) {
+      perceived_.Update(options_, step.p, forces_.delayed(n), path_, sensitivities_, t, n);
+      perceived_.AddTo(by_perceived_.by_ankle, by_perceived_.by_step, &by_column_);
+      perceived_.AddParameters(by_perceived_.by_ankle, by_perceived_.by_step, &jacobian_);
+    }
+    if (step.self.cart_derivative) {
+      by_column_.topRows<2>() += jacobian_.by_previous.asDiagonal() *
+                                 sensitivities_.At(std::max(t - 1, 0), n).middleRows<2>(4);
+    }
+    for (const ColumnEntry& entry : own_entries_[n]) {
+      AddWhereAny(entry, jacobian_.by_parameter.col(entry.parameter), &by_column_);
+    }
+    if (stands_) AddStepState(t, n);
+    if (rod_) by_column_.noalias() += by_rod_ * sensitivities_.Rod(t, n);
+    if (!networks_.empty()) networks_[n].Advance(forces_.network(n), now);
+    if (ForcesAt(scene_, options_.push, n, t) != ActiveForces::kAll) return;
+    received_.AddTo(n, &by_column_);
+    if (!networks_.empty()) networks_[n].AddTo(&by_column_);
+  }
+
+  void AddStepState(int t, int n) {
+    if (late_) perceived_.AddToStep(&stance_);
+    const auto now = sensitivities_.StepState(t, n);
+    AdvanceStepState(stance_, inputs_.entries[n], sensitivities_.At(t, n), now,
+                     sensitivities_.StepState(t + 1, n));
+    if (late_) perceived_.AddToStepState(stance_, sensitivities_.StepState(t + 1, n));
+    by_column_.noalias() += stance_.by_step * now;
+  }
+
+  void AdvanceRod(const PersonStep& step) {
+    const int t = step.frame, n = step.person;
+    step.self.TotalJacobian(step.p, step.state, step.previous, &jacobian_);
+    const RodStep rod{forces_.rod(n), step.self.body.mass, jacobian_,
+                      networks_.empty() ? nullptr : &networks_[n], inputs_.entries[n]};
+    const auto now = sensitivities_.Rod(t, n);
+    sensitivities_.Rod(t + 1, n) =
+        now + scene_.dt * rod_->Velocity(rod, sensitivities_.At(t, n),
+                                         sensitivities_.At(std::max(t - 1, 0), n), now);
+  }
+
+  void Advance(const PersonStep& step) {
+    const Body body = rod_ ? BodyNow(step.self.body, step.state.rod, 0.0)
+                           : DynamicBody(options_, step.self.body, step.p, step.holds_fast);
+    ForceJacobian(step);
+    SubtractInverseDynamics(step, body);
+    ForceByColumns(step);
+    const auto now = sensitivities_.At(step.frame, step.person);
+    auto next = sensitivities_.At(step.frame + 1, step.person);
+    next.bottomRows<4>() = now.bottomRows<4>();
+    const double dt = scene_.dt;
+    const Matrix4<double> inverse =
+        dt * InverseMassMatrix(body, step.force.angles, body.mass + dt * step.force.ground);
+    AddNarrowProduct(inverse, by_column_, next.bottomRows<4>());
+    next.topRows<4>() = now.topRows<4>() + dt * next.bottomRows<4>();
+    if (rod_) AdvanceRod(step);
+  }
+
+  const Scene& scene_;
+  const ModelOptions& options_;
+  const SensitivityInputs& inputs_;
+  RolloutPath<double>& path_;
+  RolloutSensitivities& sensitivities_;
+  const bool stands_, late_;
+  SceneForces<double> forces_;
+  ReceivedSensitivities received_;
+  std::vector<NetworkSensitivities> networks_;
+  std::optional<RodSensitivities> rod_;
+  const std::vector<std::vector<ColumnEntry>> own_entries_;
+  PerceivedSensitivities perceived_;
+  SelfForce::Jacobian jacobian_;
+  StanceJacobian stance_;
+  PerceivedJacobian by_perceived_;
+  Vector4<double> by_rod_;
+  ForceColumns by_column_;
+};
+
 }  // namespace
 
 RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& options,
                                        const SensitivityInputs& inputs, int num_frames,
                                        RolloutPath<double>* path,
                                        RolloutSensitivities* sensitivities) {
-  const int people = scene.num_people();
-  SceneForces<double> forces(scene, options, inputs.parameters, inputs.network_weights);
-  std::vector<NetworkSensitivities> networks = StartNetworks(scene, options, inputs);
-  const bool rod_moves = RodMoves(options);
-  std::optional<RodSensitivities> rod;
-  if (rod_moves) {
-    rod.emplace(*options.learned, Weights(options, inputs), inputs.num_columns,
-                inputs.weight_column);
-  }
-  ReceivedSensitivities received(scene, options, inputs);
-  *path = RolloutPath<double>(num_frames, people);
-  const bool stands = options.stance == Stance::kThreshold;
-  sensitivities->Resize(num_frames, people, inputs.num_columns, rod_moves, stands);
-  for (int n = 0; n < people; ++n) {
-    path->At(0, n) = {scene.people[n].start.q, inputs.initial_velocity[n]};
-    auto start = sensitivities->At(0, n);
-    start.setZero();
-    sensitivities->Rod(0, n).setZero();
-    sensitivities->StepState(0, n).setZero();
-    if (inputs.velocity_column >= 0) {
-      start.block<4, 4>(4, inputs.velocity_column + 4 * n).setIdentity();
-    }
-  }
-
-  Columns by_column(4, inputs.num_columns);
-  SelfForce::Jacobian jacobian;
-  const std::vector<std::vector<ColumnEntry>> own_entries = WithoutPairs(inputs.entries);
-  StanceJacobian stance;
-  const bool late = options.delay != Delay::kNone;
-  PerceivedJacobian by_perceived;
-  std::optional<PerceivedSensitivities> perceived;
-  if (late) perceived.emplace(inputs.num_columns);
-  for (int t = 0; t + 1 < num_frames; ++t) {
-    const int before = t > 0 ? t - 1 : 0;
-    forces.Update(*path, t);
-    forces.PrepareAll();
-    received.Update(*sensitivities, t, forces);
-    for (int n = 0; n < people; ++n) {
-      const Body& body = scene.people[n].body;
-      const SelfForce& self = forces.self(n);
-      const ParameterSet<double>& p = inputs.parameters[n];
-      const PendulumState<double>& state = path->At(t, n);
-      const Vector4<double>& previous = path->At(before, n).qd;
-      const NetForce<double> force = forces.On(n, t, previous);
-      const Vector4<double> a = forces.AccelerationOf(n, force);
-      sensitivities->AnglesAt(t, n) = force.angles;
-      path->At(t + 1, n) = forces.Next(n, a, force, previous);
-      const std::string_view outside = OutsideDomain(body, path->At(t + 1, n));
-      if (!outside.empty()) return {false, t + 1, n, outside};
-
-      // Ground that moves is one more acceleration, and another gravity (models/ground.h).
-      GroundStep ground;
-      if (scene.ground.moves()) ground = scene.ground.steps[t];
-      const Vector4<double> felt = a + ground.acceleration;
-      if (stands) {
-        NetForceJacobianOfStance(scene, options, self, p, n, t, state, a, &jacobian, &stance,
-                                 forces.perceived(n), &by_perceived);
-      } else if (options.stance == Stance::kFixed) {
-        NetForceJacobianOfStanding(scene, options, self, p, n, t, state, a, ground, &jacobian,
-                                   forces.perceived(n), &by_perceived);
-      } else {
-        NetForceJacobian(scene, options, self, p, n, t, state, previous, &jacobian,
-                         forces.perceived(n), &by_perceived);
-      }
-      const bool holds_fast = forces.HoldsFast(force);
-      const Body now_body =
-          rod_moves ? BodyNow(body, state.rod, 0.0) : DynamicBody(options, body, p, holds_fast);
-      const Matrix4<double> rigid =
-          InverseDynamicsJacobian(now_body, force.angles, state.qd, felt, ground.gravity);
-      if (options.body == BodyModel::kTable) {
-        SubtractInverseDynamicsByMasses(body, p, state, felt, ground.gravity, &jacobian);
-      }
-      jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
-      jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
-      const auto now = sensitivities->At(t, n);
-      if (jacobian.by_state.leftCols<2>().isZero(0.0)) {  // only a user's law asks where one is
-        SetNarrowProduct(jacobian.by_state.rightCols<6>(), now.bottomRows<6>(), by_column);
-      } else {
-        SetNarrowProduct(jacobian.by_state, now, by_column);
-      }
-      if (late) {
-        perceived->Update(scene, options, p, *path, *sensitivities, t, n);
-        perceived->AddTo(by_perceived.by_ankle, by_perceived.by_step, &by_column);
-        perceived->AddParameters(by_perceived.by_ankle, by_perceived.by_step, &jacobian);
-      }
-      if (self.cart_derivative) {
-        by_column.topRows<2>() +=
-            jacobian.by_previous.asDiagonal() * sensitivities->At(before, n).middleRows<2>(4);
-      }
-      for (const ColumnEntry& entry : own_entries[n]) {
-        AddWhereAny(entry, jacobian.by_parameter.col(entry.parameter), &by_column);
-      }
-      if (stands) {
-        if (late) perceived->AddToStep(&stance);
-        AdvanceStepState(stance, inputs.entries[n], now, sensitivities->StepState(t, n),
-                         sensitivities->StepState(t + 1, n));
-        if (late) perceived->AddToStepState(stance, sensitivities->StepState(t + 1, n));
-        by_column.noalias() += stance.by_step * sensitivities->StepState(t, n);
-      }
-      const auto rod_now = sensitivities->Rod(t, n);
-      if (rod_moves) by_column.noalias() -= InverseDynamicsByRod(now_body, state, felt) * rod_now;
-      if (!networks.empty()) networks[n].Advance(forces.network(n), now);
-      if (ForcesAt(scene, options.push, n, t) == ActiveForces::kAll) {
-        received.AddTo(n, &by_column);
-        if (!networks.empty()) networks[n].AddTo(&by_column);
-      }
-      auto next = sensitivities->At(t + 1, n);
-      next.bottomRows<4>() = now.bottomRows<4>();
-      const Matrix4<double> inverse =
-          scene.dt *
-          InverseMassMatrix(now_body, force.angles, now_body.mass + scene.dt * force.ground);
-      AddNarrowProduct(inverse, by_column, next.bottomRows<4>());
-      next.topRows<4>() = now.topRows<4>() + scene.dt * next.bottomRows<4>();
-      if (!rod_moves) continue;
-      self.TotalJacobian(p, state, previous, &jacobian);
-      const RodStep step{forces.rod(n), body.mass, jacobian,
-                         networks.empty() ? nullptr : &networks[n], inputs.entries[n]};
-      sensitivities->Rod(t + 1, n) =
-          rod_now + scene.dt * rod->Velocity(step, now, sensitivities->At(before, n), rod_now);
-    }
-  }
-  for (int n = 0; n < people; ++n) {
-    sensitivities->AnglesAt(num_frames - 1, n) = Angles<double>(path->At(num_frames - 1, n).q);
-  }
-  return {};
+  return SensitivityRollout(scene, options, inputs, num_frames, path, sensitivities).Run();
 }
 
 }  // namespace pushid

@@ -74,40 +74,54 @@ struct OutputJacobian {
   }
 };
 
-// Inputs of the jets of standing: theta, phi, their rates, then the parameters.
+// StandingTorque's derivatives, and the order of its parameters.
 using StandingIds = StandingParameters<double>;
-constexpr int kStandingAt = 4;
-using StandingJet = ceres::Jet<double, kStandingAt + StandingIds::kCount>;
+struct StandingJacobian {
+  Eigen::Matrix2d by_angle, by_rate;
+  Eigen::Matrix<double, 2, StandingIds::kCount> by_parameter;
 
-Eigen::Matrix<StandingJet, 2, 1> JetsOfStanding(const SelfForce& self,
-                                                const ParameterSet<double>& p,
-                                                const PendulumState<double>& state) {
-  Vector4<StandingJet> q, qd;
-  for (int i = 0; i < 2; ++i) {
-    q[i] = StandingJet(state.q[i]);
-    qd[i] = StandingJet(state.qd[i]);
-    q[2 + i] = StandingJet(state.q[2 + i], i);
-    qd[2 + i] = StandingJet(state.qd[2 + i], 2 + i);
+  StandingJacobian(const SelfForce& self, const ParameterSet<double>& p,
+                   const PendulumState<double>& state) {
+    const Angles<double> angles(state.q);
+    const auto& [s_th, c_th, s_ph, c_ph] = angles;
+    const Vector3<double>& u0 = self.rest_direction;
+    const Vector3<double> u{s_th, -c_th * s_ph, c_th * c_ph};
+    const Vector3<double> by[2] = {{c_th, s_th * s_ph, -s_th * c_ph},
+                                   {0.0, -c_th * c_ph, -c_th * s_ph}};
+    const Vector3<double> twice[2][2] = {
+        {{-s_th, c_th * s_ph, -c_th * c_ph}, {0.0, s_th * c_ph, s_th * s_ph}},
+        {{0.0, s_th * c_ph, s_th * s_ph}, {0.0, c_th * s_ph, -c_th * c_ph}}};
+    const double cosine = u.dot(u0), s2 = 1.0 - cosine * cosine;
+    const double stretch = self.scale.stiffness * AngleOverSine(s2);
+    const double slope = -2.0 * cosine * self.scale.stiffness * AngleOverSineSlope(s2);
+    const Vector3<double> gains{p[kKpTheta], p[kKpPhi], 0.5 * (p[kKpTheta] + p[kKpPhi])};
+    const Vector3<double> turned = cosine * u - u0, pull = gains.cwiseProduct(turned);
+    const double hold = HoldPerComHeight(self), moment = hold * p[kComHeight];
+    const Eigen::Vector2d flat = u0.head<2>();
+    const double damping = self.scale.damping;
+    by_rate.setZero();
+    by_parameter.setZero();
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j < 2; ++j) {
+        const double nearer = by[j].dot(u0);
+        const Vector3<double> more = gains.cwiseProduct(cosine * by[j] + nearer * u);
+        by_angle(i, j) = -moment * flat.dot(twice[i][j].head<2>()) -
+                         slope * nearer * pull.dot(by[i]) -
+                         stretch * (more.dot(by[i]) + pull.dot(twice[i][j]));
+      }
+      const Vector3<double> lever = turned.cwiseProduct(by[i]);
+      by_parameter(i, 0) = -stretch * (lever[0] + 0.5 * lever[2]);
+      by_parameter(i, 1) = -stretch * (lever[1] + 0.5 * lever[2]);
+      by_parameter(i, 4) = -hold * flat.dot(by[i].head<2>());
+    }
+    const double reach2 = c_th * c_th;
+    by_rate(0, 0) = -damping * p[kKdTheta];
+    by_rate(1, 1) = -damping * p[kKdPhi] * reach2;
+    by_angle(1, 0) += 2.0 * damping * p[kKdPhi] * c_th * s_th * state.qd[3];
+    by_parameter(0, 2) = -damping * state.qd[2];
+    by_parameter(1, 3) = -damping * reach2 * state.qd[3];
   }
-  int input = kStandingAt;
-  // In the order of kIds, which is that of the members.
-  const StandingParameters<StandingJet> parameters(
-      [&](Parameter id) { return StandingJet(p[id], input++); });
-  return StandingTorque(self, parameters, Angles<StandingJet>(q), qd);
-}
-
-// Of M a + C + G of the body that stands, by the height of its centre of mass.
-// a, gravity: with those of ground that moves.
-Vector4<double> InverseDynamicsByComHeight(const Body& body, double com_height,
-                                           const PendulumState<double>& state,
-                                           const Vector4<double>& a, double gravity) {
-  using Jet = ceres::Jet<double, 1>;
-  const PendulumState<Jet> still{state.q.cast<Jet>(), state.qd.cast<Jet>()};
-  const BodyOf<Jet> standing = StandingBody(body, Jet(com_height, 0));
-  const Vector4<Jet> value = InverseDynamics<Jet>(standing, still, a.cast<Jet>()) +
-                             Jet(gravity / kGravity - 1.0) * Gravity<Jet>(standing, still.q);
-  return {value[0].v[0], value[1].v[0], value[2].v[0], value[3].v[0]};
-}
+};
 
 // By q and by the parameters of the tail.
 void AddTailJacobianAtHip(const ScenePush& push, const SelfForce& self,
@@ -136,7 +150,6 @@ void AddPublishedFriction(SelfForce::Jacobian* jacobian) {
 void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
                                 const SelfForce& self, const ParameterSet<double>& p, int person,
                                 int frame, const PendulumState<double>& state,
-                                const Vector4<double>& a, const GroundStep& ground,
                                 SelfForce::Jacobian* jacobian, const Perceived<double>* perceived,
                                 PerceivedJacobian* by_perceived) {
   if (by_perceived != nullptr) by_perceived->SetZero();
@@ -146,19 +159,16 @@ void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(jacobian);
   if (active != ActiveForces::kAll) return;
-  const Eigen::Matrix<StandingJet, 2, 1> torque =
-      JetsOfStanding(self, p, perceived != nullptr ? perceived->ankle : state);
+  const StandingJacobian torque(self, p, perceived != nullptr ? perceived->ankle : state);
   auto& by_felt = perceived != nullptr ? by_perceived->by_ankle : jacobian->by_state;
   for (int i = 0; i < 2; ++i) {
     jacobian->by_state(i, 4 + i) = -kHeldFast * self.body.mass;
-    by_felt.row(2 + i).segment<2>(2) = torque[i].v.head<2>().transpose();
-    by_felt.row(2 + i).tail<2>() = torque[i].v.segment<2>(2).transpose();
+    by_felt.row(2 + i).segment<2>(2) = torque.by_angle.row(i);
+    by_felt.row(2 + i).tail<2>() = torque.by_rate.row(i);
     for (int k = 0; k < StandingIds::kCount; ++k) {
-      jacobian->by_parameter(2 + i, StandingIds::kIds[k]) = torque[i].v[kStandingAt + k];
+      jacobian->by_parameter(2 + i, StandingIds::kIds[k]) = torque.by_parameter(i, k);
     }
   }
-  jacobian->by_parameter.col(kComHeight) -= InverseDynamicsByComHeight(
-      self.body, p[kComHeight], state, a + ground.acceleration, ground.gravity);
   self.AddOwnJacobian(p, state, jacobian);
 }
 

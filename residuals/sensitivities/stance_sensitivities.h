@@ -8,8 +8,7 @@
 // with the Jacobian of the self force, which is written out.
 #pragma once
 
-#include "models/scene_forces.h"
-#include "residuals/sensitivities/rollout_sensitivities.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 
@@ -24,6 +23,7 @@ struct StanceJacobian {
 
 // The analytic twin of NetForceAt where feet stand and step, without what others do: jacobian: of
 // F - D v' at fixed acceleration a. All but by_previous (zero) and the stance's are overwritten.
+// perceived, by_perceived: as NetForceJacobian has them.
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
                               int frame, const PendulumState<double>& state,
@@ -31,14 +31,11 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               StanceJacobian* stance, const Perceived<double>* perceived = nullptr,
                               PerceivedJacobian* by_perceived = nullptr);
 
-// perceived, by_perceived: as NetForceJacobian has them. ground: of the step.
-//
-// The same where feet hold, whatever happens; jacobian: all of F - M a - C - G - D v' that the
-// parameters and the state decide by the ankles, the ground and the height of the centre of mass.
+// The same where feet hold, whatever happens; jacobian: of what the ankles and the ground do,
+// without what the height of the centre of mass changes of M a + C + G (body_sensitivities.h).
 void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
                                 const SelfForce& self, const ParameterSet<double>& p, int person,
                                 int frame, const PendulumState<double>& state,
-                                const Vector4<double>& a, const GroundStep& ground,
                                 SelfForce::Jacobian* jacobian,
                                 const Perceived<double>* perceived = nullptr,
                                 PerceivedJacobian* by_perceived = nullptr);

@@ -2,6 +2,7 @@
 #include "residuals/sensitivities/step_jacobian.h"
 
 #include "residuals/sensitivities/learned_pair_jacobian.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 #include "residuals/sensitivities/rollout_sensitivities.h"
 
 namespace pushid {

@@ -115,18 +115,18 @@ TEST(ReactionDelay, OfWholeFramesLooksBack) {
   }
   constexpr double kStep = 0.01;
   for (int back = 0; back <= 7; ++back) {
-    const DelayedState<double> then(path, 0, DelayedPlace<double>(back * kStep, 7, kStep));
+    const DelayedState<double> then(path, 7, 0, DelayedPlace<double>(back * kStep, kStep));
     EXPECT_NEAR(then.q[2], 0.1 * (7 - back) * (7 - back), 1e-12);
     // qd of a frame is the rate half a frame before it.
     if (back > 0) EXPECT_NEAR(then.qd[0], 7.5 - back, back < 6 ? 1e-12 : 0.1);
   }
   EXPECT_NEAR(PresentRate(path, 7, 0)[0], 7.5, 1e-12);
   // Between frames a straight line stays one.
-  const DelayedState<double> between(path, 0, DelayedPlace<double>(2.3 * kStep, 7, kStep));
+  const DelayedState<double> between(path, 7, 0, DelayedPlace<double>(2.3 * kStep, kStep));
   EXPECT_NEAR(between.q[3], -0.2 * 4.7, 1e-12);
   EXPECT_NEAR(between.q_by_delay[3], 0.2 / kStep, 1e-9);
   // Before frame 0: at rest in the first posture.
-  const DelayedState<double> before(path, 0, DelayedPlace<double>(50 * kStep, 7, kStep));
+  const DelayedState<double> before(path, 7, 0, DelayedPlace<double>(50 * kStep, kStep));
   EXPECT_EQ(before.q, path.At(0, 0).q);
   EXPECT_TRUE(before.qd.isZero(0.0));
 }
