@@ -1,9 +1,9 @@
 // residuals: the rows of a rollout, by sensitivities or by the oracle.
 #include "residuals/cost_functions/condensed_rollout.h"
 
-#include <ceres/dynamic_autodiff_cost_function.h>
-
 #include <cmath>
+
+#include "residuals/cost_functions/rollout_by_jets.h"
 
 namespace pushid {
 
@@ -11,12 +11,7 @@ CondensedRollout::CondensedRollout(std::shared_ptr<const RolloutProblem> problem
                                    JacobianMethod method)
     : CondensedRows(problem), method_(method) {
   if (method != JacobianMethod::kAutodiff) return;
-  constexpr int kStride = 8;  // columns per sweep: seven parameters, the default fit's, take one
-  using Cost = ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, kStride>;
-  auto oracle = std::make_unique<Cost>(new RolloutResidualFunctor{problem});
-  for (int size : problem->layout.BlockSizes()) oracle->AddParameterBlock(size);
-  oracle->SetNumResiduals(problem->num_residuals());
-  oracle_ = std::move(oracle);
+  oracle_ = RolloutByJets(std::move(problem));
 }
 
 RolloutSums CondensedRollout::Alone(double const* const* blocks, LaneSums sums) const {

@@ -148,57 +148,6 @@ std::vector<OnPlates> BodiesOnPlates(const RolloutProblem& p, const Sets& parame
   return bodies;
 }
 
-// The oracle: the same residuals for ceres::DynamicAutoDiffCostFunction.
-struct RolloutResidualFunctor {
-  std::shared_ptr<const RolloutProblem> problem;
-
-  template <typename T>
-  bool operator()(T const* const* blocks, T* residuals) const {
-    const RolloutProblem& p = *problem;
-    const Scene& scene = p.recording->scene;
-    std::vector<Vector4<T>> velocities;
-    for (const ScenePerson& person : scene.people) {
-      velocities.push_back(person.start.qd.template cast<T>());
-    }
-    if (const T* free = p.layout.VelocityBlock(blocks)) {
-      for (int n = 0; n < scene.num_people(); ++n) {
-        velocities[n] = Eigen::Map<const Vector4<T>>(free + 4 * n);
-      }
-    }
-    RolloutPath<T> path;
-    const std::vector<ParameterSet<T>> parameters = p.layout.Parameters<T>(p.map, blocks);
-    if (!Rollout<T>(scene, p.options, parameters, velocities, p.horizon, &path, nullptr,
-                    p.layout.WeightBlock(blocks))
-             .ok) {
-      return false;
-    }
-    for (int t = 1; t < p.horizon; ++t) {
-      for (int n = 0; n < scene.num_people(); ++n, residuals += kFrameResiduals) {
-        Eigen::Map<FrameVector<T>> r(residuals);
-        const PendulumState<T>& state = path.At(t, n);
-        const Body& body = scene.people[n].body;
-        r = T(p.weight) * (RodMoves(p.options)
-                               ? FrameResidual<T>(BodyNow(body, state.rod, parameters[n][kRodLift]),
-                                                  state, p.Measured(t, n), p.sigmas)
-                               : FrameResidual<T>(body, state, p.Measured(t, n), p.sigmas));
-      }
-    }
-    const std::vector<int> on_plates = p.PeopleOnPlates();
-    const std::vector<BodyOnPlates<T>> bodies = BodiesOnPlates<BodyOnPlates<T>>(p, parameters);
-    for (int t = 0; t + 1 < p.horizon; ++t) {
-      for (size_t k = 0; k < on_plates.size(); ++k) {
-        const int n = on_plates[k];
-        Eigen::Map<PlateVector<T>> r(residuals);
-        r = T(p.weight) * PlateResidual<T>({&scene, &p.options, n, t}, bodies[k], parameters[n],
-                                           path.At(t, n), path.At(t + 1, n).qd,
-                                           p.recording->plates[n][t], p.sigmas);
-        residuals += kPlateResiduals;
-      }
-    }
-    return true;
-  }
-};
-
 // Writes `jacobian` (rows x all columns) into the blocks that Ceres asks for.
 void ScatterJacobian(const Eigen::Ref<const RowMajorMatrix>& jacobian,
                      const std::vector<int>& block_sizes, int first_row, int total_rows,

@@ -1,13 +1,11 @@
 // All rows of a recording's rollout as a Ceres cost function, which a fit condenses
-// (condensed_rollout.h): by sensitivities, and by Jets through the whole rollout, their oracle.
+// (condensed_rollout.h), by sensitivities; their oracle is RolloutByJets.
 #pragma once
-
-#include <ceres/dynamic_autodiff_cost_function.h>
 
 #include <memory>
 #include <utility>
 
-#include "residuals/cost_functions/rollout_problem.h"
+#include "residuals/cost_functions/rollout_by_jets.h"
 
 namespace pushid {
 
@@ -44,14 +42,5 @@ class RolloutResidual : public ceres::CostFunction {
   ActingColumns columns_;
   mutable RolloutStatus last_failure_;
 };
-
-inline std::unique_ptr<ceres::CostFunction> RolloutByJets(
-    std::shared_ptr<const RolloutProblem> problem) {
-  using Cost = ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, 16>;
-  auto cost = std::make_unique<Cost>(new RolloutResidualFunctor{problem});
-  for (int size : problem->layout.BlockSizes()) cost->AddParameterBlock(size);
-  cost->SetNumResiduals(problem->num_residuals());
-  return cost;
-}
 
 }  // namespace pushid
