@@ -14,7 +14,9 @@ SymmetricEigen DecomposeSymmetric(const Eigen::MatrixXd& a) {
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
-double SpectralRadius(const Eigen::MatrixXd& a) { return a.eigenvalues().cwiseAbs().maxCoeff(); }
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& a) { return a.eigenvalues(); }
+
+double SpectralRadius(const Eigen::MatrixXd& a) { return Eigenvalues(a).cwiseAbs().maxCoeff(); }
 
 Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.ldlt().solve(b);
@@ -32,6 +34,12 @@ Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> SolveSymm
 bool IsPositiveDefinite(const Eigen::MatrixXd& a) {
   const Eigen::LDLT<Eigen::MatrixXd> factor(a);
   return factor.isPositive() && factor.rcond() > 1e-12;
+}
+
+Eigen::MatrixXd CholeskyFactor(const Eigen::MatrixXd& a) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(a);
+  if (factor.info() != Eigen::Success) return {};
+  return factor.matrixL();
 }
 
 Eigen::MatrixXd SolveGeneral(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -69,6 +77,14 @@ RightSingular DecomposeRight(const Eigen::MatrixXd& a) {
   }
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixV()};
+}
+
+Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& a) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d u = svd.matrixU(), v = svd.matrixV();
+  Eigen::Vector3d sign(1.0, 1.0, 1.0);
+  if ((u * v.transpose()).determinant() < 0.0) sign.z() = -1.0;
+  return u * sign.asDiagonal() * v.transpose();
 }
 
 }  // namespace pushid

@@ -15,7 +15,9 @@ struct SymmetricEigen {
 };
 SymmetricEigen DecomposeSymmetric(const Eigen::MatrixXd& a);
 
-// The largest absolute eigenvalue of any square matrix.
+// Of any square matrix.
+Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& a);
+// The largest absolute one.
 double SpectralRadius(const Eigen::MatrixXd& a);
 
 // A^-1 b of a symmetric semi-definite A, by LDLT.
@@ -27,6 +29,10 @@ Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> SolveSymm
     const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 // Whether A is positive definite, beyond what rounding may hide.
 bool IsPositiveDefinite(const Eigen::MatrixXd& a);
+
+// L of A = L L', a symmetric one of which the lower triangle is read; empty where A is not positive
+// definite.
+Eigen::MatrixXd CholeskyFactor(const Eigen::MatrixXd& a);
 
 // A^-1 b of any regular A, by LU.
 Eigen::MatrixXd SolveGeneral(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
@@ -49,5 +55,9 @@ struct RightSingular {
   Eigen::MatrixXd vectors;
 };
 RightSingular DecomposeRight(const Eigen::MatrixXd& a);
+
+// The rotation R for which the trace of R' A is largest: with A the sum of to from' it turns `from`
+// to `to` with the least squares (Kabsch 1976).
+Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& a);
 
 }  // namespace pushid

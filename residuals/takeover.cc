@@ -1,12 +1,13 @@
 // residuals: regressions of learned forces.
 #include "residuals/takeover.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "models/contact.h"
+#include "models/decompositions.h"
 #include "models/learned_terms.h"
 #include "models/neighbours.h"
 #include "models/self_force.h"
@@ -27,7 +28,7 @@ class ForceRegression {
   }
 
   Eigen::Matrix<double, kGains, 1> Solve() const {
-    const Gram inverse = gram_.completeOrthogonalDecomposition().pseudoInverse();
+    const Gram inverse = PseudoInverse(gram_);
     Eigen::Matrix<double, kGains, 1> sum = Eigen::Matrix<double, kGains, 1>::Zero();
     for (const auto& [unit, force] : rows_) sum += (inverse * unit).eval() * force;
     return sum;

@@ -228,6 +228,22 @@ TEST(RoomsTest, LibTorchStaysInItsFiles) {
   }
 }
 
+// Each of Eigen's decompositions takes the compiler seconds in every source that uses one
+// (models/decompositions.h); closed forms of small matrices (LU) do not.
+TEST(RoomsTest, DecompositionsStayInOneFile) {
+  for (const auto& [room, allowed] : kMayInclude) {
+    for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / room)) {
+      const std::string name = file.filename().string();
+      if (name == "decompositions.cc" || name.find("_torch.") != std::string::npos) continue;
+      ForEachInclude(file, [&](int line, const std::string& included) {
+        for (const char* header : {"Dense", "Cholesky", "Eigenvalues", "QR", "SVD"}) {
+          EXPECT_NE(included, std::string("Eigen/") + header) << file << ":" << line;
+        }
+      });
+    }
+  }
+}
+
 // Flags that programs share are read in one folder, those of one program alone in its own file:
 // support, batches and Python know none.
 TEST(RoomsTest, FlagsStayWithPrograms) {

@@ -1,6 +1,5 @@
 // datasets: the ground from markers on it.
-#include <Eigen/LU>
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +7,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/loading/ground_tracks.h"
 #include "datasets/loading/motion_preparation.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -28,8 +28,8 @@ Eigen::Matrix3Xd AboutMiddle(const std::vector<Eigen::Vector3d>& marks, Eigen::V
 MaybeError CheckApart(const std::vector<Eigen::Vector3d>& marks, const ManifestGround& ground,
                       const std::string& path) {
   Eigen::Vector3d middle;
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(AboutMiddle(marks, &middle));
-  const double off = svd.singularValues()[1] / std::sqrt(static_cast<double>(marks.size()));
+  const Eigen::VectorXd spread = DecomposeRight(AboutMiddle(marks, &middle)).values;
+  const double off = spread[1] / std::sqrt(static_cast<double>(marks.size()));
   if (off >= kMarkersApart) return std::nullopt;
   return Error{"the markers of the ground (" + ListOfNames(ground.markers) +
                    ") lie on a line within " + Rounded(1000.0 * off, 2) +
@@ -44,10 +44,7 @@ void AddRigid(const std::vector<Eigen::Vector3d>& from, const std::vector<Eigen:
               const Eigen::Vector3d& under, GroundTracks* tracks) {
   Eigen::Vector3d a, b;
   const Eigen::Matrix3Xd before = AboutMiddle(from, &a), now = AboutMiddle(to, &b);
-  const Eigen::Matrix3d h = before * now.transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(h, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d flip(1.0, 1.0, (svd.matrixV() * svd.matrixU().transpose()).determinant());
-  const Eigen::Matrix3d turn = svd.matrixV() * flip.asDiagonal() * svd.matrixU().transpose();
+  const Eigen::Matrix3d turn = NearestRotation(now * before.transpose());
   const Eigen::Vector3d normal = turn.col(2);  // where the ground's z points
   tracks->shift.push_back(b + turn * (under - a) - under);
   tracks->tilt.emplace_back(std::asin(std::clamp(normal[0], -1.0, 1.0)),

@@ -2,7 +2,6 @@
 #include "datasets/loading/ground_record.h"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -11,6 +10,7 @@
 #include "datasets/loading/ground_tracks.h"
 #include "datasets/loading/motion_preparation.h"
 #include "datasets/sensors/timed_columns.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -136,7 +136,8 @@ double GroundSpeedAtFirst(const std::vector<GroundPose>& poses, double dt) {
     by.row(i) << 1.0, i * dt, i * dt * i * dt;
     values.row(i) = poses[i].transpose();
   }
-  const Eigen::Matrix<double, 3, 4> parabola = by.colPivHouseholderQr().solve(values);
+  const Eigen::Matrix<double, 3, 4> parabola =
+      SolveLeastNorm(Eigen::MatrixXd(by), Eigen::MatrixXd(values));
   const Eigen::RowVector4d variance =
       (values - by * parabola).colwise().squaredNorm() / static_cast<double>(n - 3);
   const double by_scatter = std::sqrt((by.transpose() * by).inverse()(1, 1));

@@ -1,7 +1,7 @@
 // ident: logistic regression of stepping on the predicted margin.
 #include "ident/fit/step_probability.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -38,7 +38,7 @@ Eigen::Vector2d MostLikelyCoefficients(const std::vector<StepOutcome>& outcomes,
       gradient += ((outcome.stepped ? 1.0 : 0.0) - p) * x;
       *hessian += p * (1.0 - p) * x * x.transpose();
     }
-    Eigen::Vector2d step = hessian->ldlt().solve(gradient);
+    Eigen::Vector2d step = hessian->inverse() * gradient;
     // Far from the optimum the curvature says too little.
     step *= std::min(1.0, 50.0 / std::max(std::abs(step[0]) * 10.0, std::abs(step[1])));
     coefficients += step;

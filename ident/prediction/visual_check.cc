@@ -1,7 +1,7 @@
 // ident: percentiles of recorded and simulated motions, and their probability integral transform.
 #include "ident/prediction/visual_check.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +11,7 @@
 #include "ident/fit/push_range.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/uncertainty/bootstrap.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -177,7 +178,7 @@ UniformityTest TestUniformity(const std::vector<std::vector<double>>& values) {
   const Eigen::Matrix<double, kFree, 1> off = shares.head<kFree>().array() - 1.0 / kBins;
   Eigen::Matrix<double, kFree, kFree> c = covariance.topLeftCorner<kFree, kFree>();
   c.diagonal().array() += 0.05 * (1.0 / kBins) * (1.0 - 1.0 / kBins) / total;
-  const double t2 = off.dot(c.ldlt().solve(off));
+  const double t2 = off.dot(SolveSymmetric(Eigen::MatrixXd(c), Eigen::VectorXd(off)));
   const double freedom = clusters - kFree;
   test.f = t2 * freedom / ((clusters - 1.0) * kFree);
   test.p = Eigen::numext::betainc(0.5 * freedom, 0.5 * kFree, freedom / (freedom + kFree * test.f));

@@ -1,11 +1,11 @@
 // ident: the linearized loop of a person at rest.
 #include "ident/problem/linear_loop.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "models/decompositions.h"
 #include "models/modal_stability.h"
 #include "models/net_force.h"
 
@@ -144,7 +144,7 @@ LoopAnswer LinearLoop::Answer(Disturbance disturbance, double hz, double lever) 
   }
   const Eigen::Vector2cd of_ground_motion = -mass_.cast<Complex>() * felt;
   const Eigen::Vector2cd at =
-      Impedance(s, true).fullPivLu().solve(Eigen::Vector2cd(of_ground_motion + force));
+      Impedance(s, true).inverse() * Eigen::Vector2cd(of_ground_motion + force);
   const Complex torque = s2 * (mass_(1, 0) * at[0] + mass_(1, 1) * at[1]) - of_ground_motion[1] -
                          mgl_ * at[1] - force[1];
   return {at[1] + of_ground, torque};
@@ -160,7 +160,7 @@ std::complex<double> LinearLoop::Controller(const Complex& s, const Eigen::Vecto
 std::complex<double> LinearLoop::LoopGain(double hz) const {
   const Complex s(0.0, 2.0 * M_PI * hz);
   const Eigen::Vector2cd torque{0.0, 1.0};
-  return -Controller(s, Impedance(s, false).fullPivLu().solve(torque));
+  return -Controller(s, Impedance(s, false).inverse() * torque);
 }
 
 std::vector<std::complex<double>> LinearLoop::Modes() const {
@@ -191,7 +191,7 @@ std::vector<std::complex<double>> LinearLoop::Modes() const {
     }
     generator.topLeftCorner<3, 3>() += present;
   }
-  const Eigen::VectorXcd found = generator.eigenvalues();
+  const Eigen::VectorXcd found = Eigenvalues(generator);
   return {found.data(), found.data() + found.size()};
 }
 

@@ -1,10 +1,11 @@
 // ident: the offset between the clocks of force and motion.
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
 #include "ident/push/push_from_sensor.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -90,7 +91,7 @@ class OffsetFit {
       regressors.row(t) << 1.0, t * dt_, lean_twice, way;
       target_[t] = 0.9 * hip + 0.1 * x;
     }
-    qr_.compute(weight_.asDiagonal() * regressors);
+    pseudo_inverse_ = PseudoInverse(weight_.asDiagonal() * regressors);
     regressors_ = regressors;
   }
 
@@ -129,14 +130,13 @@ class OffsetFit {
 
   VectorXd Projected(const VectorXd& value) const {
     const VectorXd weighted = weight_.cwiseProduct(value);
-    return weighted - weight_.asDiagonal() * (regressors_ * qr_.solve(weighted));
+    return weighted - weight_.asDiagonal() * (regressors_ * (pseudo_inverse_ * weighted));
   }
 
   double dt_, mass_;
   std::vector<Integrals> integrals_;
   VectorXd target_, weight_;
-  Eigen::MatrixXd regressors_;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  Eigen::MatrixXd regressors_, pseudo_inverse_;
 };
 
 // Where 99 % of the force's impulse has passed, on the cameras' clock; the net direction.

@@ -2,13 +2,14 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/solver/likelihood_solve.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -110,12 +111,10 @@ class WhitenedCost : public ceres::FirstOrderFunction {
 MatrixXd RootOfInverse(const MatrixXd& information, const std::vector<int>& moving) {
   MatrixXd own = information(moving, moving);
   own.diagonal() *= 1.0 + kRidge;
-  const Eigen::LLT<MatrixXd> cholesky(own);
-  if (cholesky.info() != Eigen::Success) return {};
-  const Eigen::Index size = static_cast<Eigen::Index>(moving.size());
-  const MatrixXd inverse = cholesky.matrixL().solve(MatrixXd::Identity(size, size));
-  MatrixXd root = MatrixXd::Zero(information.rows(), size);
-  root(moving, Eigen::all) = inverse.transpose();
+  const MatrixXd factor = CholeskyFactor(own);
+  if (factor.size() == 0) return {};
+  MatrixXd root = MatrixXd::Zero(information.rows(), factor.cols());
+  root(moving, Eigen::all) = Inverse(factor).transpose();
   return root;
 }
 

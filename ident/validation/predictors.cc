@@ -1,10 +1,11 @@
 // ident: the model, the baselines and the ridge baseline.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "ident/fit/fit.h"
 #include "ident/validation/crossvalidation.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 
@@ -100,8 +101,8 @@ FoldPrediction RidgePredictor::FitAndScore(const std::vector<PendulumRecording>&
   x.array().rowwise() /= spread.array();
   const Eigen::RowVectorXd level = targets.colwise().mean();
   targets.rowwise() -= level;
-  const Eigen::Matrix4d gram = x.transpose() * x + strength_ * Eigen::Matrix4d::Identity();
-  const Eigen::MatrixXd weights = gram.ldlt().solve(x.transpose() * targets);
+  const Eigen::MatrixXd gram = x.transpose() * x + strength_ * Eigen::Matrix4d::Identity();
+  const Eigen::MatrixXd weights = SolveSymmetric(gram, Eigen::MatrixXd(x.transpose() * targets));
 
   FoldPrediction prediction;
   for (int i : test) {

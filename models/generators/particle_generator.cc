@@ -1,9 +1,11 @@
 // models: particles averaged and blended.
 #include "models/generators/particle_generator.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <cmath>
 #include <utility>
+
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -230,7 +232,8 @@ RidgeForecast RidgeFit::Solve(double penalty) const {
   Eigen::MatrixXd squared = features_squared_ - count_ * mean_x * mean_x.transpose();
   squared.diagonal().array() += penalty;
   const Eigen::MatrixXd products = targets_by_features_ - count_ * mean_y * mean_x.transpose();
-  const Eigen::MatrixXd weights = squared.llt().solve(products.transpose()).transpose();
+  const Eigen::MatrixXd weights =
+      SolveSymmetric(squared, Eigen::MatrixXd(products.transpose())).transpose();
   return {weights.cast<float>(), (mean_y - weights * mean_x).cast<float>()};
 }
 

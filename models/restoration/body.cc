@@ -1,10 +1,12 @@
 // models: symmetry and measures of the body.
 #include "models/restoration/body.h"
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "models/decompositions.h"
 
 namespace pushid {
 
@@ -163,11 +165,7 @@ Eigen::Matrix3d FitRotation(const std::vector<Eigen::Vector3d>& from,
                             const std::vector<Eigen::Vector3d>& to) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (size_t i = 0; i < from.size(); ++i) covariance += to[i] * from[i].transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d sign(1.0, 1.0, 1.0);
-  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0) sign.z() = -1.0;
-  return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  return NearestRotation(covariance);
 }
 
 }  // namespace pushid

@@ -5,9 +5,10 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 #include <complex>
 
+#include "models/decompositions.h"
 #include "tests/models/model_samples.h"
 
 namespace pushid {
@@ -39,7 +40,7 @@ Eigen::VectorXcd Eigenvalues(const ModelOptions& options, const Body& body,
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(6, 6);
   matrix(0, 4) = matrix(1, 5) = 1.0;
   for (int i = 0; i < 4; ++i) matrix.row(2 + i) = a[i].v.transpose();
-  return matrix.eigenvalues();
+  return pushid::Eigenvalues(matrix);
 }
 
 // A pendulum with no forces but gravity on a cart that rolls freely: the cart runs back under it,

@@ -4,8 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "models/decompositions.h"
 #include "tests/models/model_samples.h"
 
 namespace pushid {
@@ -103,12 +104,11 @@ TEST(PendulumFilter, ItsDensitiesMultiplyToTheDenseGaussian) {
   }
 
   Random random(8);
-  const Eigen::LLT<MatrixXd> cholesky(covariance);
+  const MatrixXd factor = CholeskyFactor(covariance);
   VectorXd white(mean.size());
   for (double& w : white) w = random.Normal();
-  const VectorXd apart = cholesky.matrixL() * white, measured = mean + apart;
-  const double dense =
-      white.squaredNorm() + 2.0 * cholesky.matrixLLT().diagonal().array().log().sum();
+  const VectorXd apart = factor * white, measured = mean + apart;
+  const double dense = white.squaredNorm() + 2.0 * factor.diagonal().array().log().sum();
 
   PendulumFilter<double> filter(e.scene, e.options, e.parameters);
   double factored = 0.0;

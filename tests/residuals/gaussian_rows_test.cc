@@ -5,11 +5,12 @@
 #include <ceres/solver.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <memory>
 #include <vector>
 
 #include "datasets/files/random.h"
+#include "models/decompositions.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
@@ -163,7 +164,7 @@ void ClosedForm(const std::vector<Vector2d>& path, double dt, Matrix2d* k, Vecto
     inputs.row(t) << 1.0, path[t].transpose();
     rates.row(t) = (path[t + 1] - path[t]).transpose() / dt;
   }
-  const MatrixXd drift = inputs.colPivHouseholderQr().solve(rates);
+  const MatrixXd drift = SolveLeastNorm(inputs, rates);
   *k = -drift.bottomRows<2>().transpose();
   *m = k->inverse() * drift.row(0).transpose();
   const MatrixXd left = rates - inputs * drift;

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "models/decompositions.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/test_support.h"
 
@@ -117,7 +118,7 @@ TEST(ForcePlatformTest, Type4) {
   platform.calibration.setIdentity();
   for (int i = 0; i < 6; ++i) platform.calibration(i, (i + 1) % 6) = 0.1 * (i + 1);
   platform.calibration *= 50.0;
-  const Eigen::Matrix<double, 6, 1> volts = platform.calibration.inverse() * wrench;
+  const Eigen::Matrix<double, 6, 1> volts = Inverse(platform.calibration) * wrench;
   ExpectLoad(WithChannels(platform, {volts.data(), volts.data() + 6}), load);
 }
 

@@ -1,11 +1,12 @@
 // The filter of a rollout's error against the covariance that it stands for.
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 
 #include "datasets/files/random.h"
 #include "ident/fit/recording_filter.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -69,15 +70,15 @@ TEST(ErrorProcess, EqualsTheDenseCovariance) {
     state.velocity += gains.velocity * innovation;
     misfit += innovation * innovation / gains.variance;
   }
-  const Eigen::LLT<Eigen::MatrixXd> factor(k.topLeftCorner(kSeen, kSeen) + noise);
-  EXPECT_NEAR(misfit, y.dot(factor.solve(y)), 1e-8 * misfit);
+  const Eigen::MatrixXd inverse = Inverse(k.topLeftCorner(kSeen, kSeen) + noise);
+  EXPECT_NEAR(misfit, y.dot(inverse * y), 1e-8 * misfit);
   const std::vector<double> variances = process.VariancesAhead(kFrames - kSeen);
   for (int t = kSeen; t < kFrames; ++t) {
     const Eigen::VectorXd row = k.row(t).head(kSeen).transpose();
     EXPECT_NEAR(state.position + process.Reach(t - kSeen + 1) * state.velocity,
-                row.dot(factor.solve(y)), 1e-9)
+                row.dot(inverse * y), 1e-9)
         << t;
-    EXPECT_NEAR(variances[t - kSeen], k(t, t) - row.dot(factor.solve(row)) + 0.0025, 1e-9) << t;
+    EXPECT_NEAR(variances[t - kSeen], k(t, t) - row.dot(inverse * row) + 0.0025, 1e-9) << t;
   }
 }
 

@@ -3,10 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 
 #include "ident/prediction/evaluation.h"
+#include "models/decompositions.h"
 #include "tests/ident/effect_samples.h"
 #include "tests/test_support.h"
 
@@ -72,7 +73,7 @@ TEST_F(OnlinePredictorTest, EqualsTheDenseComputation) {
   }
   const Eigen::MatrixXd with_noise =
       k.topLeftCorner(seen, seen) + 0.0025 * Eigen::MatrixXd::Identity(seen, seen);
-  const Eigen::LLT<Eigen::MatrixXd> factor(with_noise);
+  const Eigen::MatrixXd inverse = Inverse(with_noise);
   const Eigen::Vector2d u = PushDirection(r);
   Eigen::Matrix3d axes;
   axes << u.x(), -u.y(), 0, u.y(), u.x(), 0, 0, 0, 1;
@@ -90,7 +91,7 @@ TEST_F(OnlinePredictorTest, EqualsTheDenseComputation) {
   for (int j = 0; j < 33; ++j) {
     const double b = -1.6 + 0.1 * j;
     const Eigen::MatrixXd e = errors(b);
-    const double q = (e.transpose() * factor.solve(e)).trace();
+    const double q = (e.transpose() * inverse * e).trace();
     const double weight = std::exp(-0.5 * (b * b / 0.16 + q / 0.01));
     sum += weight;
     mean += weight * b;
@@ -102,7 +103,7 @@ TEST_F(OnlinePredictorTest, EqualsTheDenseComputation) {
   const Prediction prediction = predictor.Predict();
   const Prediction rollout = Predict(model_, r, 0, mean);
   const Eigen::MatrixXd kriged =
-      k.bottomLeftCorner(frames - 1 - seen, seen) * factor.solve(errors(mean));
+      k.bottomLeftCorner(frames - 1 - seen, seen) * inverse * errors(mean);
   for (int t = kObserved; t < frames; ++t) {
     const Vector3<double> error = kriged.row(t - kObserved).transpose();
     const Vector3<double> expected = rollout.hip[0][t] + axes * (g * a.cwiseProduct(error));

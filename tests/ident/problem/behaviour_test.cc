@@ -4,7 +4,7 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include "datasets/files/random.h"
 #include "datasets/loading/load_recordings.h"
@@ -13,6 +13,7 @@
 #include "ident/model/fitted_model.h"
 #include "ident/parameters/presets.h"
 #include "ident/report/report_tables.h"
+#include "models/decompositions.h"
 #include "models/modal_stability.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -152,7 +153,7 @@ double FastestFreeMode(const ModelOptions& options, const ParameterSet<double>& 
     const ModePolynomial<double> c = FreeModes(UprightRest<double>(options, body, p), plane);
     Eigen::Matrix3d companion;
     companion << 0, 0, -c.c0, 1, 0, -c.c1, 0, 1, -c.c2;
-    fastest = std::max(fastest, companion.eigenvalues().real().maxCoeff());
+    fastest = std::max(fastest, Eigenvalues(companion).real().maxCoeff());
   }
   return fastest;
 }
@@ -202,7 +203,7 @@ double GrowthOfTheRollout(const ModelOptions& options, const ParameterSet<double
   for (int i = 0; i < 2; ++i) step.row(i) = next.q[2 + i].v.transpose();
   for (int i = 0; i < 4; ++i) step.row(2 + i) = next.qd[i].v.transpose();
   step(6, 2) = step(7, 3) = 1.0;
-  return std::log(step.eigenvalues().cwiseAbs().maxCoeff()) / scene.dt;
+  return std::log(SpectralRadius(step)) / scene.dt;
 }
 
 TEST(Behaviour, GrowthIsThatOfTheLinearizedRollout) {

@@ -3,11 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 
 #include "ident/fit/fit.h"
 #include "ident/fit/weighted_solve.h"
 #include "ident/problem/jacobian_blocks.h"
+#include "models/decompositions.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -84,7 +85,7 @@ TEST(PoolingSpread, EndsWhereEmStandsStill) {
   FitPoint point = SolveWeighted(&problem).solution.Best().to;
   const double sigma = problem.options().table[kKpTheta].pooling_sigma;
   const JacobianBlocks blocks = EvaluateJacobianBlocks(problem.Build(&point, 0));
-  const Eigen::MatrixXd covariance = (blocks.jacobian.transpose() * blocks.jacobian).inverse();
+  const Eigen::MatrixXd covariance = Inverse(blocks.jacobian.transpose() * blocks.jacobian);
   double mean = 0.0;
   Eigen::Index column = static_cast<Eigen::Index>(point.shared.size());
   for (const auto& [unit, deviations] : point.unit) {

@@ -1,9 +1,10 @@
 // Whose errors are independent, and how well the scatter over them is known.
 #include "ident/uncertainty/clusters.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "ident/uncertainty/covariance.h"
+#include "models/decompositions.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -91,7 +92,7 @@ TEST(Clusters, FreedomIsSatterthwaites) {
   }
   score.num_data_rows = n;
   const Eigen::MatrixXd& j = score.jacobian;
-  const Eigen::MatrixXd inverse = (j.transpose() * j).inverse();
+  const Eigen::MatrixXd inverse = Inverse(j.transpose() * j);
   const Eigen::MatrixXd rest =
       Eigen::MatrixXd::Identity(n, n) - j * inverse * j.transpose();  // 1 - P
   const Covariance c =
@@ -101,9 +102,8 @@ TEST(Clusters, FreedomIsSatterthwaites) {
     int first = 0;
     for (int g = 0; g < 4; first += sizes[g++]) {
       const Eigen::MatrixXd own = rest.block(first, first, sizes[g], sizes[g]);
-      p.col(g).segment(first, sizes[g]) =
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(own).operatorInverseSqrt() *
-          j.middleRows(first, sizes[g]) * inverse.col(coefficient);
+      p.col(g).segment(first, sizes[g]) = DecomposeSymmetric(own).InverseSqrt() *
+                                          j.middleRows(first, sizes[g]) * inverse.col(coefficient);
     }
     const Eigen::MatrixXd w = p.transpose() * rest * p;
     EXPECT_NEAR(c.scatter.parts[0].freedom[coefficient], w.trace() * w.trace() / w.squaredNorm(),

@@ -3,12 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "ident/fit/fit.h"
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/covariance.h"
+#include "models/decompositions.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -78,7 +79,7 @@ TEST(Uncertainty, HessianIsThatOfTheCost) {
   const auto s = SolveSmall(6, 0.5);
   const Covariance c = CovarianceAt(*s->problem, s->point);
   ASSERT_TRUE(c.full_hessian);
-  const Eigen::MatrixXd hessian = c.inverse_hessian.inverse();
+  const Eigen::MatrixXd hessian = Inverse(c.inverse_hessian);
   Eigen::Vector3d step;
   for (int i = 0; i < 3; ++i) step[i] = 1e-2 * std::sqrt(1.0 / hessian(i, i));
   const auto cost = [&](int i, double a, int j, double b) {
@@ -111,8 +112,7 @@ TEST(Uncertainty, ClusteredIsBiasReduced) {
       const Eigen::MatrixXd own = s->score.jacobian(rows, Eigen::all);
       const Eigen::MatrixXd hat = own * inverse * own.transpose();
       const Eigen::MatrixXd rest = Eigen::MatrixXd::Identity(hat.rows(), hat.cols()) - hat;
-      moves.col(g) = inverse * own.transpose() *
-                     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(rest).operatorInverseSqrt() *
+      moves.col(g) = inverse * own.transpose() * DecomposeSymmetric(rest).InverseSqrt() *
                      s->score.residuals(rows);
     }
     moves.colwise() -= moves.rowwise().mean().eval();
@@ -149,7 +149,7 @@ TEST(Uncertainty, NaiveIsTheTextbookOne) {
   const double variance = s->score.residuals.squaredNorm() / (rows - 3.0);
   EXPECT_NEAR(s->uncertainty.sigma, std::sqrt(variance), 1e-12);
   EXPECT_EQ(s->uncertainty.num_residuals, rows);
-  const Eigen::MatrixXd expected = variance * (j.transpose() * j).inverse();
+  const Eigen::MatrixXd expected = variance * Inverse(j.transpose() * j);
   const auto& fitted = s->problem->map().fitted;
   for (int i = 0; i < 3; ++i) {
     const Estimate& e = s->uncertainty.estimates[i];

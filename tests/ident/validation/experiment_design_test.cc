@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/solver.h"

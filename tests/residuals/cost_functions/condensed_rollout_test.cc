@@ -1,7 +1,7 @@
 // A rollout in few rows: J'J, J'r and cost are those of all rows, by sensitivities and by Jets.
 #include "residuals/cost_functions/condensed_rollout.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "tests/residuals/residual_samples.h"
 #include "tests/residuals/rollout_residual.h"

@@ -1,8 +1,9 @@
 // Equation error: forces against inverse dynamics at smoothed states.
 #include "residuals/cost_functions/equation_error_residual.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
+#include "models/decompositions.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {
@@ -138,7 +139,7 @@ TEST(EquationError, OneLinearSolveFindsTheGains) {
   const CostEvaluation at_start =
       EvaluateCost(EquationErrorResidual(recording, options, map), {start}, {true});
   const Eigen::MatrixXd jacobian = at_start.jacobians[0];
-  const Eigen::VectorXd found = jacobian.colPivHouseholderQr().solve(-at_start.residuals);
+  const Eigen::VectorXd found = SolveLeastNorm(jacobian, Eigen::VectorXd(-at_start.residuals));
   for (size_t i = 0; i < map.fitted.size(); ++i) {
     const Parameter p = map.fitted[i].parameter;
     EXPECT_NEAR(found[i], truth[p], 1e-6 * std::max(1.0, std::abs(truth[p]))) << kParameterNames[p];
