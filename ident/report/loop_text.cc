@@ -105,7 +105,7 @@ std::string LoopText(const FitResult& result) {
 }
 
 std::string LagText(const FitResult& result) {
-  constexpr double kLeastDelay = 0.02, kLevel = 0.05;  // s; of a one-sided test
+  constexpr double kLeastDelay = 0.01, kLevel = 0.05;  // s; of a one-sided test
   for (const AssumptionTest& test : result.verdict.assumptions) {
     if (test.name != kReactionDelayName || test.error <= 0.0) continue;
     // One-sided: nobody reacts before they are pushed.

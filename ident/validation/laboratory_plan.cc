@@ -82,6 +82,22 @@ MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
   return jacobian.transpose() * jacobian;
 }
 
+// B of the header, its diagonal: zero where nobody was recorded twice.
+Eigen::VectorXd EvidentSpread(const ErrorParts& parts, const std::vector<int>& known) {
+  Eigen::VectorXd spread = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(known.size()));
+  if (parts.by_person.size() == 0 || parts.by_recording.size() == 0) return spread;
+  const double freedom = *std::max_element(parts.person.begin(), parts.person.end());
+  if (freedom + 1 == parts.num_recordings()) return spread;
+  // The 95 % quantile of chi^2 over its freedom (Wilson and Hilferty 1931).
+  const double ninth = 2.0 / (9.0 * freedom);
+  const double quantile = std::pow(1.0 - ninth + 1.645 * std::sqrt(ninth), 3);
+  for (Eigen::Index k = 0; k < spread.size(); ++k) {
+    const int at = known[static_cast<size_t>(k)];
+    spread[k] = std::max(0.0, parts.by_person(at, at) / quantile - parts.by_recording(at, at));
+  }
+  return spread;
+}
+
 }  // namespace
 
 std::vector<EquipmentRow> PlanEquipment(const FitProblem& problem, const FitPoint& estimate,
@@ -90,16 +106,17 @@ std::vector<EquipmentRow> PlanEquipment(const FitProblem& problem, const FitPoin
   if (known.empty() || parts.sigma <= 0.0) return rows;
   const MatrixXd& clustered = parts.by_person.size() > 0 ? parts.by_person : parts.by_recording;
   if (clustered.size() == 0) return rows;
-  const MatrixXd noise = parts.naive(known, known);
-  const MatrixXd present = Inverse(noise);
-  const auto add = [&](const std::string& equipment, const MatrixXd& more) {
-    const MatrixXd then = Inverse(present + more(known, known) / (parts.sigma * parts.sigma));
+  const MatrixXd noise = parts.naive(known, known), now = clustered(known, known);
+  const MatrixXd present = Inverse(noise), today = present * now * present;
+  const Eigen::VectorXd differ = EvidentSpread(parts, known);
+  const auto add = [&](const std::string& equipment, const MatrixXd& rows_to_come) {
+    const MatrixXd more = rows_to_come(known, known) / (parts.sigma * parts.sigma);
+    const MatrixXd inverse = Inverse(present + more);
+    const MatrixXd then = inverse * (today + more) * inverse;
     EquipmentRow row{equipment, {}};
-    for (size_t k = 0; k < known.size(); ++k) {
-      const int at = static_cast<int>(k);
-      const double now = clustered(known[k], known[k]);
-      const double stays = std::max(0.0, now - noise(at, at));
-      row.error_ratio.push_back(std::sqrt((stays + then(at, at)) / std::max(now, noise(at, at))));
+    for (Eigen::Index k = 0; k < differ.size(); ++k) {
+      row.error_ratio.push_back(
+          std::sqrt((then(k, k) + differ[k]) / std::max(now(k, k), noise(k, k))));
     }
     rows.push_back(std::move(row));
   };
