@@ -6,6 +6,36 @@
 #include <cmath>
 
 namespace pushid {
+namespace {
+
+Eigen::Matrix3d Tilt(const GroundPose& pose) {
+  return (Eigen::AngleAxisd(pose[3], Vector3<double>::UnitX()) *
+          Eigen::AngleAxisd(pose[2], Vector3<double>::UnitY()))
+      .toRotationMatrix();
+}
+
+// Of ground that rests there: gravity along its axes.
+GroundStep Still(const GroundPose& pose) {
+  const Vector3<double> gravity = -kGravity * Tilt(pose).row(2).transpose();
+  GroundStep step;
+  step.acceleration.head<2>() = -gravity.head<2>();
+  step.gravity = -gravity[2];
+  return step;
+}
+
+// q as the laboratory sees it.
+Vector4<double> PlaceInLaboratory(const GroundPose& pose, const Vector3<double>& origin,
+                                  const Vector4<double>& q) {
+  const Vector3<double> cart = PointInLaboratory(pose, origin, {q[0], q[1], origin[2]});
+  const Angles<double> angles(q);
+  const Vector3<double> along =
+      Tilt(pose) *
+      Vector3<double>(angles.s_th, -angles.c_th * angles.s_ph, angles.c_th * angles.c_ph);
+  return {cart[0], cart[1], std::asin(std::clamp(along[0], -1.0, 1.0)),
+          std::atan2(-along[1], along[2])};
+}
+
+}  // namespace
 
 GroundMotion GroundThrough(std::vector<GroundPose> poses, double dt) {
   GroundMotion ground;
@@ -18,27 +48,16 @@ GroundMotion GroundThrough(std::vector<GroundPose> poses, double dt) {
       const GroundPose& before = poses[std::max(at - 1, 0)];
       step.acceleration = (poses[at + 1] - 2.0 * poses[at] + before) / (dt * dt);
     }
-    // Of a frame turned by theta about y and phi about x: gravity along its axes.
-    const double theta = poses[t][2], phi = poses[t][3];
-    step.acceleration[0] -= kGravity * std::sin(theta);
-    step.acceleration[1] += kGravity * std::cos(theta) * std::sin(phi);
-    step.gravity = kGravity * std::cos(theta) * std::cos(phi);
+    const GroundStep still = Still(poses[t]);
+    step.acceleration += still.acceleration;
+    step.gravity = still.gravity;
     ground.steps.push_back(step);
   }
+  if (frames > 0) ground.after = Still(poses.back());
   ground.dt = dt;
   ground.poses = std::move(poses);
   return ground;
 }
-
-namespace {
-
-Eigen::Matrix3d Tilt(const GroundPose& pose) {
-  return (Eigen::AngleAxisd(pose[3], Vector3<double>::UnitX()) *
-          Eigen::AngleAxisd(pose[2], Vector3<double>::UnitY()))
-      .toRotationMatrix();
-}
-
-}  // namespace
 
 Vector3<double> OnGround(const GroundPose& pose, const Vector3<double>& origin,
                          const Vector3<double>& point) {
@@ -52,11 +71,15 @@ Vector3<double> PointInLaboratory(const GroundPose& pose, const Vector3<double>&
 }
 
 PendulumState<double> InLaboratory(const GroundMotion& ground, int frame,
-                                   PendulumState<double> state) {
+                                   const Vector3<double>& origin,
+                                   const PendulumState<double>& state) {
   if (!ground.moves()) return state;
-  state.q += ground.poses[frame];
-  if (frame > 0) state.qd += (ground.poses[frame] - ground.poses[frame - 1]) / ground.dt;
-  return state;
+  const Vector4<double> before = PlaceInLaboratory(ground.PoseAt(std::max(frame - 1, 0)), origin,
+                                                   state.q - ground.dt * state.qd);
+  PendulumState<double> seen = state;
+  seen.q = PlaceInLaboratory(ground.PoseAt(frame), origin, state.q);
+  seen.qd = (seen.q - before) / ground.dt;
+  return seen;
 }
 
 }  // namespace pushid

@@ -176,9 +176,8 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   }
   if (scene.ground.moves()) {
     const bool holds = options.stance == Stance::kFixed && RealPart(force.ground) > 0.0;
-    force[ForcePart::kInertia] = GroundForce<T, T>(
-        DynamicBody(options, self.body, p, holds), force.angles,
-        scene.ground.steps[std::min<size_t>(frame, scene.ground.steps.size() - 1)]);
+    force[ForcePart::kInertia] = GroundForce<T, T>(DynamicBody(options, self.body, p, holds),
+                                                   force.angles, scene.ground.StepAt(frame));
   }
   if (options.body == BodyModel::kTable && active == ActiveForces::kAll) {
     force[ForcePart::kBalance].template tail<2>() += HoldOfTable(self, p);

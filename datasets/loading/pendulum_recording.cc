@@ -201,12 +201,7 @@ Scene TurnedScene(const PendulumRecording& recording, double angle) {
     push = MakeScenePush(push.person, push.start_frame, push.kind, std::move(push.force));
   }
   if (scene.ground.moves()) {
-    // Small tilts add up as vectors do: theta leans towards x, phi towards -y.
-    for (GroundPose& pose : scene.ground.poses) {
-      const Eigen::Vector2d shift = axes.Horizontal(pose.head<2>());
-      const Eigen::Vector2d lean = axes.Horizontal({pose[2], -pose[3]});
-      pose = {shift[0], shift[1], lean[0], -lean[1]};
-    }
+    for (GroundPose& pose : scene.ground.poses) pose = axes.Pose(pose);  // tilts as rods do
     scene.ground = GroundThrough(std::move(scene.ground.poses), scene.dt);
   }
   for (ScenePerson& person : scene.people) {

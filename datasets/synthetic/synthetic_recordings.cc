@@ -119,7 +119,7 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
       const double x = noise->Normal(), y = noise->Normal(), z = noise->Normal();
       const Vector3<double> seen =
           made.scene.ground.moves()
-              ? PointInLaboratory(made.scene.ground.poses[t],
+              ? PointInLaboratory(made.scene.ground.PoseAt(t),
                                   {start[0], start[1], body.cart_height}, position)
               : position;
       return Vector3<double>(seen + sigma * Vector3<double>(x, y, z));
@@ -132,16 +132,6 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
   return person;
 }
 
-// How the ground presses a person up: what is pushed at a torque more moves the centre of pressure
-// by the torque over the vertical force.
-double VerticalForce(const BodyOf<double>& body, const PendulumState<double>& state,
-                     const Vector4<double>& a, const GroundStep& ground,
-                     const Vector4<double>& push, double centre) {
-  constexpr double kTorque = 1000.0;  // N m
-  const Vector4<double> more = push + Vector4<double>(0.0, 0.0, kTorque, 0.0);
-  return kTorque / (GroundReaction<double>(body, state, a, ground, more)[2] - centre);
-}
-
 // What platforms under the person measure, which move with the ground.
 std::vector<PlateSample> ObservePlates(const SyntheticOptions& options,
                                        const SyntheticRecording& made, int n, Random* noise) {
@@ -151,17 +141,18 @@ std::vector<PlateSample> ObservePlates(const SyntheticOptions& options,
                                           options.model.stance == Stance::kFixed);
   for (int t = 0; t < options.frames; ++t) {
     const int at = std::min(t, options.frames - 2);  // the last frame has no step
-    const Vector4<double> a = (made.path.At(at + 1, n).qd - made.path.At(at, n).qd) / scene.dt;
-    const GroundStep ground = scene.ground.moves() ? scene.ground.steps[at] : GroundStep{};
-    const Vector4<double> push = PushForceAt(scene, n, at);
-    const GroundReactionOf<double> reaction =
-        GroundReaction<double>(body, made.path.At(at, n), a, ground, push);
-    const double vertical = VerticalForce(body, made.path.At(at, n), a, ground, push, reaction[2]);
+    const PendulumState<double>& state = made.path.At(at, n);
+    const GroundStep& ground = scene.ground.StepAt(at);
+    const Vector4<double> felt =
+        (made.path.At(at + 1, n).qd - state.qd) / scene.dt + ground.acceleration;
+    const ReactionForce<double> force(body, Angles<double>(state.q), state.qd, felt, ground.gravity,
+                                      PushForceAt(scene, n, at));
+    const GroundReactionOf<double> reaction = ReactionOn(force, body.cart_height, state.q);
     const auto err = [&](double sigma) { return sigma * noise->Normal(); };
     PlateSample sample;
     sample.force = {reaction[0] + err(options.plate_noise_n),
                     reaction[1] + err(options.plate_noise_n),
-                    vertical + err(options.plate_noise_n)};
+                    force.vertical + err(options.plate_noise_n)};
     sample.centre = {reaction[2] + err(options.plate_noise_m),
                      reaction[3] + err(options.plate_noise_m), 0.0};
     sample.weight = 1.0;

@@ -23,7 +23,9 @@ BvhMotion Motion(const SyntheticRecording& made, int n) {
   motion.frame_time_s = 1.0 / made.recording.fps;
   const RecordedPerson& person = made.recording.people[n];
   for (int t = 0; t < made.recording.num_frames(); ++t) {
-    const Vector4<double> q = InLaboratory(made.scene.ground, t, made.path.At(t, n)).q;
+    const PendulumState<double>& state = made.path.At(t, n);
+    // Of it the angles are asked for, which know no origin.
+    const Vector4<double> q = InLaboratory(made.scene.ground, t, Vector3<double>::Zero(), state).q;
     made.skeletons[n].AppendFrame(
         {q[2], q[3], person.hip[t], person.left_ankle[t], person.right_ankle[t]}, kUnit,
         &motion.values);

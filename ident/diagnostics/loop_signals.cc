@@ -45,8 +45,7 @@ bool GoesOn(const std::vector<double>& series) {
 
 std::vector<double> GroundSeries(const GroundMotion& ground, int row, int frames) {
   std::vector<double> series;
-  const int last = static_cast<int>(ground.poses.size()) - 1;
-  for (int t = 0; t < frames; ++t) series.push_back(ground.poses[std::min(t, last)][row]);
+  for (int t = 0; t < frames; ++t) series.push_back(ground.PoseAt(t)[row]);
   return series;
 }
 
@@ -96,7 +95,7 @@ std::vector<double> TorqueByPlates(const PendulumRecording& recording, int perso
       Hold(&torque);
       continue;
     }
-    const double g = ground.moves() ? ground.steps[t].gravity : kGravity;
+    const double g = ground.StepAt(t).gravity;
     const double arm = frame.centre[plane] - (recording.states[person][t].q[plane] - place);
     const double sum = body.mass * g * arm + body.cart_height * frame.shear[plane];
     torque.push_back(plane == 0 ? -sum : sum);
@@ -118,8 +117,7 @@ std::vector<double> TorqueByMotion(const PendulumRecording& recording, int perso
       continue;
     }
     const PendulumState<double>& state = recording.states[person][t];
-    GroundStep ground;
-    if (scene.ground.moves()) ground = scene.ground.steps[t];
+    const GroundStep& ground = scene.ground.StepAt(t);
     Vector4<double> push = PushForceAt(scene, person, t);
     if (options.body == BodyModel::kTable) push *= p[kPushGain];
     const Vector4<double> a =
@@ -133,6 +131,7 @@ std::vector<double> TorqueByMotion(const PendulumRecording& recording, int perso
 }
 
 std::vector<double> AngleInLaboratory(const PendulumRecording& recording, int person, int plane) {
+  const Vector3<double> origin = Vector3<double>::Zero();  // angles do not ask for it
   std::vector<double> angle;
   for (int t = 0; t < recording.num_frames(); ++t) {
     if (recording.Weight(person, t) <= 0.0) {
@@ -140,7 +139,7 @@ std::vector<double> AngleInLaboratory(const PendulumRecording& recording, int pe
       continue;
     }
     const PendulumState<double>& state = recording.states[person][t];
-    angle.push_back(InLaboratory(recording.scene.ground, t, state).q[2 + plane]);
+    angle.push_back(InLaboratory(recording.scene.ground, t, origin, state).q[2 + plane]);
   }
   return angle;
 }

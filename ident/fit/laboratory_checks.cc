@@ -1,6 +1,8 @@
 // ident: what a delay, moving ground, platforms and other bodies ask of recordings.
 #include "ident/fit/laboratory_checks.h"
 
+#include <algorithm>
+
 #include "datasets/files/number_text.h"
 #include "ident/parameters/option_names.h"
 #include "models/learned_terms.h"
@@ -13,6 +15,11 @@ constexpr double kDelaysInRecording = 2.0;
 
 MaybeError CheckDelay(const std::vector<PendulumRecording>& recordings, const FitOptions& options) {
   if (options.model.delay == Delay::kNone) return std::nullopt;
+  if (options.model.cart_derivative != CartDerivative::kNone) {
+    return Error{
+        "--delay and --cart_derivative do not go together: a late difference of velocities has no "
+        "meaning in short steps; leave one of the two out"};
+  }
   for (Parameter id : {kReactionDelay, kStepDelay}) {
     if (!Acts(id, options.model)) continue;
     const ParameterSpec& spec = options.table[id];
@@ -48,8 +55,38 @@ MaybeError CheckBodyModel(const FitOptions& options) {
   return std::nullopt;
 }
 
-MaybeError CheckPlates(const PendulumRecording& r, const ModelOptions& model) {
+MaybeError CheckGround(const PendulumRecording& r, const ModelOptions& model) {
+  const GroundMotion& ground = r.scene.ground;
+  if (!ground.moves()) return std::nullopt;
+  if (RodMoves(model)) {
+    return Error{"recording " + r.id +
+                 " is on moving ground, whose inertia no law of --rod has; leave --rod out, or the "
+                 "recording"};
+  }
+  const bool tilts = std::any_of(ground.poses.begin(), ground.poses.end(),
+                                 [](const GroundPose& pose) { return !pose.tail<2>().isZero(); });
+  if (tilts && model.interaction.Any() && r.num_people() > 1) {
+    return Error{"recording " + r.id +
+                 " has several people who touch on ground that tilts, about where each of them "
+                 "stands; fit with --interaction=none, or leave the recording out"};
+  }
+  return std::nullopt;
+}
+
+MaybeError CheckPlates(const PendulumRecording& r, const FitOptions& options) {
   if (!r.HasPlates()) return std::nullopt;
+  const ModelOptions& model = options.model;
+  const std::string where = "recording " + r.id + " has force_plates to be measured against";
+  if (RodMoves(model)) {
+    return Error{where +
+                 ", which know nothing of a rod that moves; leave --rod out, or set \"use\": "
+                 "\"none\" there"};
+  }
+  if (options.likelihood != Likelihood::kTrajectory) {
+    return Error{where + ", which --likelihood=" + NameOf(options.likelihood) +
+                 " does not have: it knows positions alone; set \"use\": \"none\" there, or fit "
+                 "with --likelihood=trajectory"};
+  }
   if (model.interaction.Any() && r.num_people() > 1) {
     return Error{"recording " + r.id +
                  " has force_plates and several people who touch: platforms cannot tell what they "
@@ -95,7 +132,8 @@ MaybeError CheckLaboratory(const std::vector<PendulumRecording>& recordings,
         "--body=table; leave them out, or take a smaller network"};
   }
   for (const PendulumRecording& r : recordings) {
-    if (MaybeError error = CheckPlates(r, options.model)) return error;
+    if (MaybeError error = CheckGround(r, options.model)) return error;
+    if (MaybeError error = CheckPlates(r, options)) return error;
     if (MaybeError error = CheckPlatesAlone(r, options)) return error;
     if (large && (r.scene.ground.moves() || r.HasPlates())) {
       return Error{"recording " + r.id +

@@ -1,8 +1,6 @@
 // ident: from the ground's frame to the laboratory's.
 #include "ident/prediction/laboratory_frame.h"
 
-#include <algorithm>
-
 namespace pushid {
 namespace {
 
@@ -12,17 +10,12 @@ Vector3<double> Origin(const Scene& scene, int person) {
   return {who.start.q[0], who.start.q[1], who.body.cart_height};
 }
 
-const GroundPose& PoseAt(const Scene& scene, int frame) {
-  const std::vector<GroundPose>& poses = scene.ground.poses;
-  return poses[std::min(static_cast<size_t>(frame), poses.size() - 1)];
-}
-
 void Move(const Scene& scene, HipPaths* hips) {
   for (size_t n = 0; n < hips->size(); ++n) {
     for (size_t t = 0; t < (*hips)[n].size(); ++t) {
       Vector3<double>& hip = (*hips)[n][t];
       const int frame = static_cast<int>(t);
-      hip = PointInLaboratory(PoseAt(scene, frame), Origin(scene, static_cast<int>(n)), hip);
+      hip = PointInLaboratory(scene.ground.PoseAt(frame), Origin(scene, static_cast<int>(n)), hip);
     }
   }
 }
@@ -32,11 +25,10 @@ void Move(const Scene& scene, HipPaths* hips) {
 Prediction InLaboratory(const PendulumRecording& recording, Prediction prediction) {
   const Scene& scene = recording.scene;
   if (!scene.ground.moves()) return prediction;
-  const int known = static_cast<int>(scene.ground.poses.size()) - 1;
   for (int t = 0; t < prediction.path.num_frames(); ++t) {
     for (int n = 0; n < prediction.path.num_people(); ++n) {
       PendulumState<double>& state = prediction.path.At(t, n);
-      state = InLaboratory(scene.ground, std::min(t, known), state);
+      state = InLaboratory(scene.ground, t, Origin(scene, n), state);
     }
   }
   Move(scene, &prediction.hip);
@@ -47,9 +39,10 @@ Prediction InLaboratory(const PendulumRecording& recording, Prediction predictio
 PendulumRecording InLaboratory(PendulumRecording recording) {
   const Scene& scene = recording.scene;
   if (!scene.ground.moves()) return recording;
-  for (auto& states : recording.states) {
-    for (size_t t = 0; t < states.size(); ++t) {
-      states[t] = InLaboratory(scene.ground, static_cast<int>(t), states[t]);
+  for (int n = 0; n < recording.num_people(); ++n) {
+    for (int t = 0; t < recording.num_frames(); ++t) {
+      PendulumState<double>& state = recording.states[n][t];
+      state = InLaboratory(scene.ground, t, Origin(scene, n), state);
     }
   }
   Move(scene, &recording.hip);
@@ -64,7 +57,7 @@ void ToLaboratory(const Scene& scene, std::vector<BodyMotion>* bodies) {
       Pose& pose = (*bodies)[n][t];
       for (int joint = 0; joint < kBodyJoints; ++joint) {
         pose.col(joint) =
-            PointInLaboratory(PoseAt(scene, static_cast<int>(t)), origin, pose.col(joint));
+            PointInLaboratory(scene.ground.PoseAt(static_cast<int>(t)), origin, pose.col(joint));
       }
     }
   }
@@ -77,7 +70,7 @@ void ToLaboratory(const Scene& scene, PredictiveBands* bands) {
     PathBand& band = bands->people[n];
     for (auto* line : {&band.lower90, &band.lower50, &band.median, &band.upper50, &band.upper90}) {
       for (size_t t = 0; t < line->size(); ++t) {
-        const GroundPose& pose = PoseAt(scene, static_cast<int>(t));
+        const GroundPose& pose = scene.ground.PoseAt(static_cast<int>(t));
         BandPoint& point = (*line)[t];
         point.head<3>() = PointInLaboratory(pose, origin, point.head<3>());
         point.tail<2>() += pose.tail<2>();

@@ -101,6 +101,7 @@ void Hasten(double eta, ChangedProblem* p) {
     for (auto& states : r.states) {
       for (PendulumState<double>& state : states) state.qd *= 1.0 + eta;
     }
+    if (r.scene.ground.moves()) r.scene.ground = GroundThrough(r.scene.ground.poses, r.scene.dt);
   }
 }
 

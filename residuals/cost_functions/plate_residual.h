@@ -53,14 +53,14 @@ struct BodyOnPlates {
 // What acts on the ground during a step: the motion of the ground and the pushes.
 template <typename T>
 struct PlateStep {
-  GroundStep ground;
+  const GroundStep& ground;
   Vector4<double> measured_push;
   Vector4<T> push;
 
   PlateStep(const PlatePlace& place, const ParameterSet<T>& p)
-      : measured_push(PushForceAt(*place.scene, place.person, place.frame)),
+      : ground(place.scene->ground.StepAt(place.frame)),
+        measured_push(PushForceAt(*place.scene, place.person, place.frame)),
         push(measured_push.template cast<T>()) {
-    if (place.scene->ground.moves()) ground = place.scene->ground.steps[place.frame];
     if (place.options->body == BodyModel::kTable) push *= p[kPushGain];
   }
 };

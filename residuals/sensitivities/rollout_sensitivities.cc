@@ -139,7 +139,7 @@ class SensitivityRollout {
                     {}};
     step.a = forces_.AccelerationOf(n, step.force);
     step.holds_fast = forces_.HoldsFast(step.force);
-    if (scene_.ground.moves()) step.ground = scene_.ground.steps[t];
+    step.ground = scene_.ground.StepAt(t);
     return step;
   }
 

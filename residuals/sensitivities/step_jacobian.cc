@@ -23,8 +23,7 @@ Vector4<double> StepJacobian::Velocity(int frame, int person,
   SelfForce::Jacobian jacobian;
   NetForceJacobian(scene_, options_, self, p, person, frame, state, state.qd, &jacobian);
   const Body now = DynamicBody(options_, body, p, false);
-  GroundStep ground;
-  if (scene_.ground.moves()) ground = scene_.ground.steps[frame];
+  const GroundStep& ground = scene_.ground.StepAt(frame);
   const Matrix4<double> rigid = InverseDynamicsJacobian(
       now, force.angles, state.qd, Vector4<double>(a + ground.acceleration), ground.gravity);
   Eigen::Matrix<double, 4, 8> of_force = jacobian.by_state;

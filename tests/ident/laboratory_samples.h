@@ -80,8 +80,7 @@ inline PendulumRecording RecordingOf(Scene scene, const ModelOptions& options,
       const PendulumState<double>& state = path.At(at, 0);
       const Vector4<double> a = (path.At(at + 1, 0).qd - state.qd) / scene.dt;
       const GroundReactionOf<double> f = GroundReaction<double>(
-          turns, state, a, scene.ground.moves() ? scene.ground.steps[at] : GroundStep{},
-          PushForceAt(scene, 0, at));
+          turns, state, a, scene.ground.StepAt(at), PushForceAt(scene, 0, at));
       recording.plates[0].push_back({f.head<2>(), f.tail<2>() - rest.tail<2>(), 1.0});
     }
   }

@@ -154,10 +154,10 @@ RolledOut RollOut(const ModelOptions& options, const ParameterSet<double>& p, in
   std::vector<double> angle, torque;
   for (int t = 0; t + 1 < frames; ++t) {
     const PendulumState<double>& state = path.At(t, 0);
-    angle.push_back(InLaboratory(scene.ground, t, state).q[2 + plane]);
+    angle.push_back(InLaboratory(scene.ground, t, Vector3<double>::Zero(), state).q[2 + plane]);
     Vector4<double> a = (path.At(t + 1, 0).qd - state.qd) / scene.dt;
     Vector4<double> push = Vector4<double>::Zero();
-    if (scene.ground.moves()) a += scene.ground.steps[t].acceleration;
+    a += scene.ground.StepAt(t).acceleration;
     if (!scene.pushes.empty()) push = scene.pushes[0].force[t];
     torque.push_back((InverseDynamics(body, state, a) - push)[2 + plane]);
   }
