@@ -14,6 +14,13 @@ void Fields(Archive& a, Push& p) {
   a("file", p.file);
 }
 
+template <class Archive>
+void Fields(Archive& a, PlateSample& sample) {
+  a("force", sample.force);
+  a("centre", sample.centre);
+  a("weight", sample.weight);
+}
+
 // Roles are of the joints, and go with them. A BVH file's skeleton stays behind: only the programs
 // write motions back into such files.
 template <class Archive>
@@ -35,6 +42,7 @@ void Fields(Archive& a, RecordedPerson& p) {
   a("left_heel", p.left_heel);
   a("right_heel", p.right_heel);
   a("weight", p.weight);
+  a("plates", p.plates);
   a("joints", p.joints);
   a("joint_names", p.joint_names);
   a("joint_parents", p.joint_parents);
@@ -64,6 +72,7 @@ void Fields(Archive& a, Recording& r) {
   a("initial_velocity", r.initial_velocity);
   a("people", r.people);
   a("pushes", r.pushes);
+  a("ground", r.ground);
   a("stated_errors", r.stated_errors);
   a("content_hash", r.content_hash);
 }

@@ -56,6 +56,8 @@ def test_ground_and_plates_are_made_from_arrays_and_read_back(made):
     assert np.array_equal(again.ground, ground) and np.array_equal(again.plates[:, 0], plates, equal_nan=True)
     assert np.array_equal(from_arrays(recording, ground=ground[:, :2]).ground[:, 0], ground[:, 0])
     assert again.content_hash != from_arrays(recording).content_hash
+    pickled = pickle.loads(pickle.dumps(again))
+    assert np.array_equal(pickled.ground, ground) and np.array_equal(pickled.plates, again.plates, equal_nan=True)
     for changed, said in ((dict(ground=ground[1:]), "rows"), (dict(ground=ground[:, :3]), "theta and phi"),
                           (dict(plates=plates[:, :4]), "px, py"), (dict(plates=1.2 * plates), "kg weigh"),
                           (dict(ground=0.3 * np.stack([seconds, seconds], 1)), "at frame 0")):
