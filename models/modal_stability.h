@@ -19,8 +19,7 @@
 #include <array>
 
 #include "models/dual.h"
-#include "models/stance.h"
-#include "models/standing.h"
+#include "models/net_force.h"
 
 namespace pushid {
 
@@ -34,9 +33,8 @@ struct RestJacobian {
 
 // The pendulum that a person is at rest.
 template <typename T>
-BodyOf<T> BodyAtRest(Stance stance, const Body& body, const ParameterSet<T>& p) {
-  if (stance == Stance::kFixed) return StandingBody<T>(body, p[kComHeight]);
-  return BodyNow<T>(body, T(0.0), T(0.0));
+BodyOf<T> BodyAtRest(const ModelOptions& options, const Body& body, const ParameterSet<T>& p) {
+  return DynamicBody(options, body, p, options.stance == Stance::kFixed);
 }
 
 // The self force near rest: that of sliding feet, or of feet that stand.
@@ -68,8 +66,9 @@ Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSe
 enum class RestInput { kAll, kState, kAnkle, kStep };
 
 template <typename T>
-RestJacobian<T> LinearizeAtRest(Stance stance, const SelfForce& self, const ParameterSet<T>& p,
-                                RestInput by = RestInput::kAll) {
+RestJacobian<T> LinearizeAtRest(const ModelOptions& options, const SelfForce& self,
+                                const ParameterSet<T>& p, RestInput by = RestInput::kAll) {
+  const Stance stance = options.stance;
   using RestDual = Dual<T, 8>;
   ParameterSet<RestDual> parameters;
   for (int i = 0; i < kNumParameters; ++i) parameters[i] = RestDual::Constant(p[i]);
@@ -90,7 +89,7 @@ RestJacobian<T> LinearizeAtRest(Stance stance, const SelfForce& self, const Para
   perceived.step = input(RestInput::kStep);
   const Vector4<RestDual> force =
       ForceNearRest(stance, self, parameters, state, perceived, previous) -
-      Gravity<RestDual>(BodyAtRest(stance, self.body, parameters), state.q);
+      Gravity<RestDual>(BodyAtRest(options, self.body, parameters), state.q);
   RestJacobian<T> jacobian;
   if (stance == Stance::kFixed) jacobian.ground = T(kHeldFast * self.body.mass);
   for (int row = 0; row < 4; ++row) {
@@ -127,13 +126,13 @@ struct UprightRest {
   RestJacobian<T> jacobian;
 
   UprightRest(const ModelOptions& options, const Body& person, const ParameterSet<T>& p)
-      : body(BodyAtRest(options.stance, person, p)) {
+      : body(BodyAtRest(options, person, p)) {
     // Quadratic damping vanishes at rest: the floor under its norm, there for the rollout's
     // derivatives, is nothing to rely on.
     ParameterSet<T> linear = p;
     linear[kCq] = linear[kDq] = T(0.0);
     const SelfForce self(options, person, Vector4<double>::Zero(), kStep);
-    jacobian = LinearizeAtRest(options.stance, self, linear);
+    jacobian = LinearizeAtRest(options, self, linear);
   }
 };
 

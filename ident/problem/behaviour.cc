@@ -132,7 +132,7 @@ struct LateVelocity {
     const auto add = [&](RestInput input, Parameter delay,
                          const Eigen::Array<double, 6, 1>& share) {
       const Eigen::Matrix<double, 4, 6> by =
-          inverse * LinearizeAtRest(options.stance, self, p, input).by_state;
+          inverse * LinearizeAtRest(options, self, p, input).by_state;
       const auto add_lag = [&](int lag, const Eigen::Array<double, 6, 1>& weight) {
         const Eigen::Matrix<double, 4, 6> part = by * weight.matrix().asDiagonal();
         if (lag <= 0) {
@@ -170,8 +170,8 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
   const SelfForce self(options, body, scene.people[0].start.q, scene.dt);
   const bool late = options.delay != Delay::kNone;
   RestJacobian<double> rest =
-      LinearizeAtRest(options.stance, self, parameters, late ? RestInput::kState : RestInput::kAll);
-  const Body at_rest = BodyAtRest(options.stance, body, parameters);
+      LinearizeAtRest(options, self, parameters, late ? RestInput::kState : RestInput::kAll);
+  const Body at_rest = BodyAtRest(options, body, parameters);
   const Eigen::Matrix4d inverse =
       InverseMassMatrix<double>(at_rest, Angles<double>(), at_rest.mass + scene.dt * rest.ground);
   for (int i = 0; i < 2; ++i) rest.by_state(i, 2 + i) -= rest.ground;

@@ -84,7 +84,7 @@ LinearLoop::LinearLoop(const ModelOptions& options, const Body& person,
   const bool late = options.delay != Delay::kNone;
   // Of the whole person at once, to be taken apart below.
   const auto by = [&](RestInput input) {
-    return InPlane(LinearizeAtRest(options.stance, self, linear, input), plane);
+    return InPlane(LinearizeAtRest(options, self, linear, input), plane);
   };
   now_ = by(RestInput::kState);
   const Row ankle = by(RestInput::kAnkle);
@@ -99,17 +99,12 @@ LinearLoop::LinearLoop(const ModelOptions& options, const Body& person,
   now_ += ankle * at_once.matrix().asDiagonal();
   ankle_ = ankle * (1.0 - at_once).matrix().asDiagonal();
 
-  const bool holds = options.stance == Stance::kFixed;
-  const BodyOf<double> body = DynamicBody<double>(options, person, p, holds);
+  const Body& body = rest.body;
   if (options.body == BodyModel::kTable) push_gain_ = p[kPushGain];
   const Matrix4<double> mass = MassMatrix(body, Angles<double>());
   mass_ << mass(plane, plane), mass(plane, 2 + plane), mass(2 + plane, plane),
       mass(2 + plane, 2 + plane);
-  const auto weight = [](const BodyOf<double>& of) {
-    return kGravity * of.point_mass() * of.pendulum_length();
-  };
-  mgl_ = weight(body);
-  now_(1, 0) += mgl_ - weight(rest.body);  // the table's body is heavier or lighter there
+  mgl_ = kGravity * body.point_mass() * body.pendulum_length();
   // A backward difference of the cart's velocity: in short steps a mass.
   const double by_previous = rest.jacobian.by_previous[plane];
   inertia_ = mass_;

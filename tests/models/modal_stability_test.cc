@@ -98,6 +98,22 @@ TEST(FreeModes, AreThoseOfTheEquationsOnPaper) {
   }
 }
 
+// Of a pole on a cart that rolls freely: g M / (l' (M - m')), with the point and the length of the
+// table's masses.
+TEST(FreeModes, OfTheTablesBodyFallAsItDoes) {
+  ModelOptions options;
+  options.body = BodyModel::kTable;
+  ParameterSet<double> p{};
+  p[kCartMassShare] = 0.3, p[kComHeight] = 0.6, p[kGyrationRadius] = 0.2;
+  const Body body{2.0, 0.8, 0.0};
+  const double inertia = 0.6 * 0.6 + 0.2 * 0.2;
+  const double length = 0.8 * inertia / 0.6, point = 2.0 * 0.7 * 0.6 * 0.6 / inertia;
+  for (int plane = 0; plane < 2; ++plane) {
+    const ModePolynomial<double> c = FreeModes(UprightRest<double>(options, body, p), plane);
+    EXPECT_NEAR(c.c1, -kGravity * 2.0 / (length * (2.0 - point)), 1e-9);
+  }
+}
+
 TEST(FreeModes, RootsAreTheEigenvalues) {
   Random random(4);
   for (int trial = 0; trial < 200; ++trial) {
