@@ -100,7 +100,9 @@ int Run() {
   AddPushes(pendulum, &animation);
   if (recording.ok()) animation.title += ", " + std::string(restoration.value()->kind());
   if (recording.ok() && FLAGS_recorded) {
-    AddRecorded(pendulum.subject_ids, recording.value().bodies, &animation);
+    std::vector<BodyMotion> seen = recording.value().bodies;
+    ToLaboratory(pendulum.scene, &seen);
+    AddRecorded(pendulum.subject_ids, seen, &animation);
   }
   for (const WhatIf& one : what_ifs.value()) {
     const Prediction prediction = Predict(one.model, pendulum);

@@ -6,6 +6,7 @@
 
 #include "datasets/files/names.h"
 #include "datasets/formats/bvh.h"
+#include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/predicted_steps.h"
 
 namespace pushid {
@@ -60,6 +61,7 @@ Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapp
     result.bodies.push_back(std::move(motion));
     result.skeletons.push_back(SkeletonOf(person));
   }
+  ToGround(result.pendulum.scene, &result.bodies);
   result.joint_names = RoleJointNames(recording.people.front());
   return result;
 }

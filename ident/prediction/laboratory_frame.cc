@@ -20,6 +20,22 @@ void Move(const Scene& scene, HipPaths* hips) {
   }
 }
 
+// moved(pose of the ground, origin, point).
+template <typename Moved>
+void MoveJoints(const Scene& scene, const Moved& moved, std::vector<BodyMotion>* bodies) {
+  if (!scene.ground.moves()) return;
+  for (size_t n = 0; n < bodies->size(); ++n) {
+    const Vector3<double> origin = Origin(scene, static_cast<int>(n));
+    for (size_t t = 0; t < (*bodies)[n].size(); ++t) {
+      const GroundPose& ground = scene.ground.PoseAt(static_cast<int>(t));
+      Pose& pose = (*bodies)[n][t];
+      for (int joint = 0; joint < kBodyJoints; ++joint) {
+        pose.col(joint) = moved(ground, origin, pose.col(joint));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Prediction InLaboratory(const PendulumRecording& recording, Prediction prediction) {
@@ -50,17 +66,11 @@ PendulumRecording InLaboratory(PendulumRecording recording) {
 }
 
 void ToLaboratory(const Scene& scene, std::vector<BodyMotion>* bodies) {
-  if (!scene.ground.moves()) return;
-  for (size_t n = 0; n < bodies->size(); ++n) {
-    const Vector3<double> origin = Origin(scene, static_cast<int>(n));
-    for (size_t t = 0; t < (*bodies)[n].size(); ++t) {
-      Pose& pose = (*bodies)[n][t];
-      for (int joint = 0; joint < kBodyJoints; ++joint) {
-        pose.col(joint) =
-            PointInLaboratory(scene.ground.PoseAt(static_cast<int>(t)), origin, pose.col(joint));
-      }
-    }
-  }
+  MoveJoints(scene, PointInLaboratory, bodies);
+}
+
+void ToGround(const Scene& scene, std::vector<BodyMotion>* bodies) {
+  MoveJoints(scene, OnGround, bodies);
 }
 
 void ToLaboratory(const Scene& scene, PredictiveBands* bands) {

@@ -14,6 +14,7 @@ namespace pushid {
 Prediction InLaboratory(const PendulumRecording& recording, Prediction prediction);
 PendulumRecording InLaboratory(PendulumRecording recording);
 void ToLaboratory(const Scene& scene, std::vector<BodyMotion>* bodies);
+void ToGround(const Scene& scene, std::vector<BodyMotion>* bodies);  // and back
 void ToLaboratory(const Scene& scene, PredictiveBands* bands);
 
 }  // namespace pushid

@@ -7,6 +7,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/body_recording.h"
+#include "ident/prediction/laboratory_frame.h"
 #include "models/restoration/restoration.h"
 #include "tests/datasets/named_skeletons.h"
 #include "tests/datasets/recording_folder.h"
@@ -21,7 +22,8 @@ class BodySkeletonTest : public RecordingFolderTest {
  protected:
   // One person of such a skeleton who is carried forward, all joints but the root's turned by 5
   // degrees about the file's z axis (to the side).
-  BodyRecording Recorded(const std::vector<NamedJoint>& joints) {
+  BodyRecording Recorded(const std::vector<NamedJoint>& joints,
+                         const std::vector<GroundPose>& ground = {}) {
     std::vector<Eigen::Vector3d> roots;
     for (int t = 0; t < 20; ++t) {
       roots.push_back(joints[0].place + Eigen::Vector3d(0.01 * t, 0.002 * t, 0.0));
@@ -36,7 +38,9 @@ class BodySkeletonTest : public RecordingFolderTest {
     const auto loaded = Load(options);
     EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
     recorded_ = loaded.value()[0].people[0];
-    const auto made = MakeBodyRecording(loaded.value()[0], SkeletonMapping::kExact);
+    Recording recording = loaded.value()[0];
+    recording.ground = ground;
+    const auto made = MakeBodyRecording(recording, SkeletonMapping::kExact);
     EXPECT_TRUE(made.ok()) << made.error().ToString();
     return made.value();
   }
@@ -53,6 +57,23 @@ class BodySkeletonTest : public RecordingFolderTest {
 
   RecordedPerson recorded_;
 };
+
+// On ground that moves, bodies are where the ground sees them, as pendulums are; the laboratory
+// sees them where they were recorded.
+TEST_F(BodySkeletonTest, BodiesStandInTheFrameOfTheirPendulums) {
+  std::vector<GroundPose> ground;
+  for (int t = 0; t < 20; ++t) ground.emplace_back(0.01 * t, -0.02 * t, 0.01 * t, 0.005 * t);
+  const BodyRecording recording = Recorded(PlainSkeleton(), ground);
+  std::vector<BodyMotion> bodies = recording.bodies;
+  for (int t = 0; t < 20; ++t) {
+    EXPECT_LT((bodies[0][t].col(kBodyHip) - recording.pendulum.hip[0][t]).norm(), 1e-9) << t;
+  }
+  ToLaboratory(recording.pendulum.scene, &bodies);
+  for (int t = 0; t < 20; ++t) {
+    const Pose seen = PoseOf(recorded_.roles, recorded_.joints[t]);
+    EXPECT_LT((bodies[0][t] - seen).norm(), 1e-9) << t;
+  }
+}
 
 // The hip moves by m: so does every joint, whether it plays a role or not, and the file that is
 // written is the source's in all but the numbers of its frames.
