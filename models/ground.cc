@@ -59,6 +59,17 @@ GroundMotion GroundThrough(std::vector<GroundPose> poses, double dt) {
   return ground;
 }
 
+int FirstMotion(const std::vector<GroundPose>& poses) {
+  constexpr double kLeft = 0.05;
+  double farthest = 0.0;
+  for (const GroundPose& pose : poses) farthest = std::max(farthest, (pose - poses[0]).norm());
+  const int frames = static_cast<int>(poses.size());
+  for (int t = 1; t < frames; ++t) {
+    if ((poses[t] - poses[0]).norm() > kLeft * farthest) return t - 1;
+  }
+  return frames;
+}
+
 Vector3<double> OnGround(const GroundPose& pose, const Vector3<double>& origin,
                          const Vector3<double>& point) {
   const Vector3<double> shift(pose[0], pose[1], 0.0);

@@ -48,6 +48,10 @@ struct GroundMotion {
 // Euler steps along them, from rest. dt: s.
 GroundMotion GroundThrough(std::vector<GroundPose> poses, double dt);
 
+// The frame before the ground leaves its place, by a twentieth of how far it goes: what was
+// measured is never quite at rest. As many as there are where it goes nowhere.
+int FirstMotion(const std::vector<GroundPose>& poses);
+
 // A state as the laboratory sees it, its rates as those by which semi-implicit Euler comes there:
 // from where the laboratory saw it a frame before. origin: below.
 PendulumState<double> InLaboratory(const GroundMotion& ground, int frame,

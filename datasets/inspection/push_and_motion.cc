@@ -40,7 +40,8 @@ double NoiseOf(const Vectors& path, int axis) {
 struct Force {
   Vectors rows;  // by frame of the recording
   PushKind kind = PushKind::kExternal;
-  int next = 0;  // the frame where a later push begins, or the recording ends
+  bool turns = false;  // whether any row has a torque about the ankles
+  int next = 0;        // the frame where a later push begins, or the recording ends
 };
 
 // The first push on a person and all that overlap it.
@@ -63,7 +64,9 @@ Force FirstPush(const PendulumRecording& recording, int person) {
     end = std::max(end, push->EndFrame());
     const int rows = std::min(push->EndFrame(), recording.num_frames());
     for (int t = push->start_frame; t < rows; ++t) {
-      force.rows[t] += push->force[t - push->start_frame].head<2>();
+      const Vector4<double>& row = push->force[t - push->start_frame];
+      force.rows[t] += row.head<2>();
+      force.turns = force.turns || !row.tail<2>().isZero(0.0);
     }
   }
   return force;
@@ -75,7 +78,8 @@ class Comparison {
       : recording_(recording), person_(person), force_(std::move(force)), dt_(recording.scene.dt) {}
 
   std::optional<PushAndMotion> Compare() {
-    if (!FindPush() || !FindPath()) return std::nullopt;
+    // On ground that moves, who sets off when is not the push's to say.
+    if (recording_.scene.ground.moves() || !FindPush() || !FindPath()) return std::nullopt;
     PushAndMotion found;
     found.speed = impulse_.norm() / Mass();
     Gain(&found);
@@ -108,8 +112,10 @@ class Comparison {
     return true;
   }
 
-  // The point that carries the mass, smoothed, and its velocity, around the push.
+  // The point that carries the mass, smoothed, and its velocity, around the push; of a cart that is
+  // pushed by itself the cart, behind which a pole lags.
   bool FindPath() {
+    const double hip = force_.turns ? 1.0 - kCartShare : 0.0;
     const int frames = recording_.num_frames();
     half_ = std::max(1, static_cast<int>(std::lround(kHalfSmoothing / dt_)));
     first_ = std::max(0, start_ - static_cast<int>(kLookBefore / dt_));
@@ -117,8 +123,8 @@ class Comparison {
     if (last_ - first_ < 2 * half_ + kSustained) return false;
     for (int t = 0; t < frames; ++t) {
       if (t >= first_ && t < last_ && !(recording_.Weight(person_, t) > 0.0)) return false;
-      path_.push_back(0.9 * recording_.hip[person_][t].head<2>() +
-                      0.1 * recording_.states[person_][t].q.head<2>());
+      path_.push_back(hip * recording_.hip[person_][t].head<2>() +
+                      (1.0 - hip) * recording_.states[person_][t].q.head<2>());
     }
     noise_ = std::max(NoiseOf(path_, 0), NoiseOf(path_, 1));
     smooth_.resize(frames);
@@ -234,12 +240,10 @@ class Comparison {
   const int person_;
   const Force force_;
   const double dt_;
-  Eigen::Vector2d impulse_, along_;
+  Eigen::Vector2d impulse_, along_, rest_;
   int start_ = 0, end_ = 0, first_ = 0, last_ = 0, half_ = 1;  // frames; of the impulse, looked at
   Vectors path_, smooth_, velocity_;
-  double noise_ = 0.0, speed_error_ = 0.0;
-  Eigen::Vector2d rest_;
-  double distance_ = 0.0;
+  double noise_ = 0.0, speed_error_ = 0.0, distance_ = 0.0;
   bool before_ = false;  // moved before the push began
 };
 
@@ -253,9 +257,8 @@ constexpr int kFewestRows = 5;
 double Length(const Vector4<double>& row) { return row.head<2>().norm(); }
 
 double Peak(const ScenePush& push) {
-  double peak = 0.0;
-  for (const Vector4<double>& row : push.force) peak = std::max(peak, Length(row));
-  return peak;
+  return std::accumulate(push.force.begin(), push.force.end(), 0.0,
+                         [](double peak, const auto& row) { return std::max(peak, Length(row)); });
 }
 
 Eigen::Vector2d MeanForce(const ScenePush& push, size_t from, size_t to) {
@@ -283,8 +286,8 @@ double RestingForce(const ScenePush& push, double dt) {
     squares += (push.force[t].head<2>() - mean).squaredNorm();
   }
   const double error = std::sqrt(squares) / static_cast<double>(at_rest);
-  const double drift = (MeanForce(push, from, middle) - MeanForce(push, middle, rows)).norm();
-  const double rest = mean.norm();
+  const double drift = (MeanForce(push, from, middle) - MeanForce(push, middle, rows)).norm(),
+               rest = mean.norm();
   const bool some = rest > kLeastShare * peak && rest > kNoise * error;
   return some && drift <= kSteady * rest && largest < kRestShare * peak ? rest : 0.0;
 }

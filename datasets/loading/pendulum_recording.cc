@@ -77,10 +77,8 @@ size_t FirstDisturbance(const Recording& recording) {
   for (const Push& push : recording.pushes) {
     first = std::min(first, static_cast<size_t>(push.start_frame));
   }
-  for (size_t t = 1; t < recording.ground.size(); ++t) {
-    if (recording.ground[t] != recording.ground[0]) return std::min(first, t - 1);
-  }
-  return first;
+  if (recording.ground.empty()) return first;
+  return std::min(first, static_cast<size_t>(FirstMotion(recording.ground)));
 }
 
 // The centre of pressure counts from where it was before anything happened (of quiet stance: on

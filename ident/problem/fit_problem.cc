@@ -227,9 +227,11 @@ std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording)
 }
 
 int PushFrame(const PendulumRecording& recording) {
+  const Scene& scene = recording.scene;
   int first = recording.num_frames();
-  for (const ScenePush& push : recording.scene.pushes) first = std::min(first, push.start_frame);
-  return recording.scene.pushes.empty() ? 0 : first;
+  for (const ScenePush& push : scene.pushes) first = std::min(first, push.start_frame);
+  if (scene.ground.moves()) first = std::min(first, FirstMotion(scene.ground.poses));
+  return first == recording.num_frames() ? 0 : first;
 }
 
 double FitProblem::Weight(int recording, int horizon) const {

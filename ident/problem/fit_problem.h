@@ -20,7 +20,7 @@
 
 namespace pushid {
 
-// The frame at which the first push begins; 0 where nobody is pushed.
+// The frame at which the first push begins, or the ground leaves its place; 0 where nothing happens.
 int PushFrame(const PendulumRecording& recording);
 
 // What is minimized at a time.

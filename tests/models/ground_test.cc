@@ -58,6 +58,17 @@ TEST(Ground, AfterItsRecordItRests) {
   EXPECT_EQ(GroundMotion{}.StepAt(3).gravity, kGravity);
 }
 
+// What was measured trembles before it goes.
+TEST(Ground, LeavesItsPlaceByATwentieth) {
+  std::vector<GroundPose> poses;
+  for (int t = 0; t < 40; ++t) {
+    poses.emplace_back(t < 20 ? 0.0005 * (t % 2) : 0.04, 0.0, 0.0, 0.0);
+  }
+  EXPECT_EQ(FirstMotion(poses), 19);
+  EXPECT_EQ(FirstMotion(std::vector<GroundPose>(7, poses[0])), 7);
+  EXPECT_EQ(FirstMotion({}), 0);
+}
+
 // The hip of a state in the laboratory is where the ground's hip is seen, and its rates are those
 // of what is seen, tilted as far as one likes.
 TEST(Ground, StatesInTheLaboratoryAreExact) {

@@ -56,7 +56,8 @@ PendulumRecording Make(const Pushed& how, uint64_t seed = 1) {
     state.qd.setZero();
     r.states[0].push_back(state);
     const double said = how.scale * ForceAt(how, (t + 0.5) * kDt - how.late) + how.rest;
-    rows.push_back({said * std::cos(how.turned), said * std::sin(how.turned), 0.0, 0.0});
+    const Eigen::Vector2d row = said * Eigen::Vector2d(std::cos(how.turned), std::sin(how.turned));
+    rows.push_back({row.x(), row.y(), 0.9 * row.x(), -0.9 * row.y()});  // at the hip
     const int steps = 20;
     for (int k = 0; k < steps; ++k) {
       const double held = how.stands ? 8.0 * x + 1.5 * v : 0.5 * v;
@@ -150,6 +151,29 @@ TEST(Findings, APushWithoutAnEnd) {
   EXPECT_FALSE(HasNoEnd(MakeScenePush(0, 0, PushKind::kExternal, rows), 120));
   EXPECT_TRUE(
       HasNoEnd(MakeScenePush(0, 0, PushKind::kExternal, rows), static_cast<int>(rows.size())));
+}
+
+// A motor pushes the cart, and the pole lags behind: its end goes back at first.
+TEST(Findings, ACartThatIsPushedIsLookedAtItself) {
+  PendulumRecording recording = Make({});
+  for (int t = 0; t < recording.num_frames(); ++t) {
+    recording.states[0][t].q[0] = recording.hip[0][t].x();
+    recording.hip[0][t].x() *= -1.0;
+  }
+  EXPECT_EQ(KindsOf(recording), Kinds{FindingKind::kAgainst});
+  std::vector<Vector4<double>> rows = recording.scene.pushes[0].force;
+  for (Vector4<double>& row : rows) row.tail<2>().setZero();
+  recording.scene.pushes = {MakeScenePush(0, 0, PushKind::kExternal, rows)};
+  EXPECT_EQ(KindsOf(recording), Kinds{});
+}
+
+TEST(Findings, OnGroundThatMovesNoPushIsJudged) {
+  Pushed how;
+  how.scale = -1.0;
+  PendulumRecording recording = Make(how);
+  EXPECT_EQ(KindsOf(recording), Kinds{FindingKind::kAgainst});
+  recording.scene.ground = GroundThrough(std::vector<GroundPose>(120, GroundPose::Zero()), kDt);
+  EXPECT_FALSE(ComparePush(recording, 0));
 }
 
 // A net push is the beginning of one, and what it reads while it lasts is the motion's.
