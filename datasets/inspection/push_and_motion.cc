@@ -18,13 +18,12 @@ constexpr double kNoise = 4.0;                         // standard errors
 constexpr double kShareOfSpeed = 0.25;                 // of the largest, at the onset
 constexpr double kSwayTime = 0.25;                     // s: what sway before the push goes on for
 // Before a push people sway; who is faster than this, and half as fast as ever after, is moved.
-constexpr double kSway = 0.05, kFast = 0.08;               // m/s
-constexpr double kMostGain = 2.0, kUsualGain = 0.9;        // of those who are quickest to move
-constexpr double kSlowToMove = 0.5;                        // of the largest speed, at first
-constexpr double kLeastGain = 0.3, kSlideGain = 1.0;       // whom that is looked at for
-constexpr double kSurelyLate = 0.08, kSurelyEarly = 0.15;  // s
-constexpr int kSustained = 3;                              // frames
-constexpr double kImpulseEnds = 0.01;                      // of the impulse, at both ends
+constexpr double kSway = 0.05, kFast = 0.08;         // m/s
+constexpr double kMostGain = 2.0, kUsualGain = 0.9;  // of those who are quickest to move
+constexpr double kSlowToMove = 0.5, kLeastGain = 0.3, kSlideGain = 1.0;  // of who is looked at
+constexpr double kSurelyLate = 0.08, kSurelyEarly = 0.15;                // s
+constexpr int kSustained = 3, kFewestRows = 5;                           // frames
+constexpr double kImpulseEnds = 0.01;  // of the impulse, at both ends
 
 // Standard deviation of white noise: of second differences, by their median.
 double NoiseOf(const Vectors& path, int axis) {
@@ -252,7 +251,6 @@ constexpr double kLeastShare = 0.01, kRestShare = 0.3;  // of the peak, of what 
 constexpr double kSteady = 0.3;                         // of it: by how much its halves may differ
 // Of the peak: a force still on; who starts more slowly does not stop so at once.
 constexpr double kStillOn = 0.5, kSlowStart = 0.25;
-constexpr int kFewestRows = 5;
 
 double Length(const Vector4<double>& row) { return row.head<2>().norm(); }
 
