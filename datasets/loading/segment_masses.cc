@@ -91,4 +91,9 @@ MassDistribution MassesOf(const RecordedPerson& person) {
   return {2.0 * kFoot, com.dot(rod) / (length * length), std::sqrt(inertia / mass) / length};
 }
 
+bool IsAverage(const MassDistribution& masses) {
+  const MassDistribution average = Average();
+  return masses.com == average.com && masses.gyration == average.gyration;
+}
+
 }  // namespace pushid

@@ -16,4 +16,7 @@ namespace pushid {
 // person: its joints where they were asked for (LoadOptions::keep_all_joints).
 MassDistribution MassesOf(const RecordedPerson& person);
 
+// Whether the body is the average one, for want of joints.
+bool IsAverage(const MassDistribution& masses);
+
 }  // namespace pushid

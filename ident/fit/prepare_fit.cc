@@ -4,6 +4,7 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
+#include "datasets/loading/segment_masses.h"
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/covariates.h"
 #include "ident/fit/fit.h"
@@ -30,6 +31,15 @@ Warnings WarningsBefore(const std::vector<PendulumRecording>& recordings,
     warnings.emplace_back(
         "recordings contain several people, but the model has no interaction between them "
         "(--preset=group or --interaction=contact adds one)");
+  }
+  if (options.model.body != BodyModel::kAnthropometric) return warnings;
+  for (const PendulumRecording& recording : recordings) {
+    if (std::none_of(recording.masses.begin(), recording.masses.end(), IsAverage)) continue;
+    const std::string what =
+        "neither segments nor shoulders were read, so that --body=anthropometric takes the body of "
+        "an average person; name them in the manifest (\"joints\"), or enter com_height with "
+        "--body=ldp";
+    warnings.emplace_back("recording " + recording.id + ": " + what, recording.id, what);
   }
   return warnings;
 }

@@ -13,6 +13,7 @@ void FreeFrom(const WeakStart& start, ParameterTable* table) {
 void SetBody(BodyModel body, FitOptions* options) {
   options->model.body = body;
   if (body != BodyModel::kTable) return;
+  options->start = FitStart::kNominal;  // the equation errors' Jacobian knows no masses
   ParameterSpec& com = options->table[kComHeight];
   com.nominal = 1.0;
   com.free = false;
