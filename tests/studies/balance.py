@@ -1,10 +1,9 @@
-"""Balance as a laboratory measures it: reaction delay, moving ground, force platforms, a cart and a pole. People and rig are those of
-lab_people.py, which has no code of pushid (tests/models/late_person_test.cc holds rollouts against such code).
+"""Balance as a laboratory measures it: reaction delay, moving ground, force platforms. People are those of lab_people.py,
+which has no code of pushid (tests/models/late_person_test.cc holds rollouts against such code).
 
 delay      fits of people who react late, with platforms and without; half an hour on two cores
 lag        the same people fitted without a delay: is it named; and people who do not react late: is it not
 design     what --design promises of platforms, and what came
-cartpole   mass share, drag, dry friction and motor gain of a cart and a pole
 speed      a fit of 20 recordings of 10 s at 100 Hz with platforms
 
 Needs NumPy. PUSHID_STUDIES is the number of studies of `delay` (default 100, half of them for `lag`, a tenth for `design`).
@@ -234,60 +233,6 @@ def design():
                           "came"], rows)
 
 
-RIG = ("--preset=ldp", "--body=table", "--friction=coulomb", "--stance=slide", "--fix=Kp_theta=0,Kp_phi=0,Kd_theta=0,Kd_phi=0,Kp_x=0",
-       "--settling_weight=0", "--start=nominal", "--marker_noise=0.0001",
-       "--resample_fps=1000")  # a falling pole: steps of 5 ms are too long for semi-implicit Euler
-RIG_FREE = "mu=0.5,mu_coulomb,cart_share=0.65"
-
-
-def names_of(free):
-    return [name.split("=")[0] for name in free.split(",")]
-
-
-def write_rig(folder, seed, gain=1.0):
-    """Recordings of a cart and a pole whose motor pushes `gain` times what is written; -> the truth."""
-    random = np.random.default_rng(7000 + seed)
-    rig, fps, recordings = lab.CartPole(), 200, []
-    for k in range(24):
-        # A pull to and fro, after which the pole is still up; who waits longer sees it fall.
-        size, turn = random.uniform(1.0, 2.0) * (1 if k % 2 else -1), random.uniform(0.1, 0.16)
-        times, place, angle, force = rig.run(lambda t: size if t < turn else -size if t < 2 * turn else 0.5 * size, 0.5, fps)
-        seen = place + 1e-4 * random.standard_normal(len(place)), angle + 5e-4 * random.standard_normal(len(angle))
-        feet = np.column_stack([seen[0], np.zeros_like(times)])
-        hip = np.column_stack([seen[0] + rig.length * np.sin(seen[1]), np.zeros_like(times), rig.length * np.cos(seen[1])])
-        people.write_points(f"{folder}/r{k}.csv", times, people.points_of(hip, feet, np.eye(3)), 0.0, random)
-        with open(f"{folder}/r{k}_push.csv", "w", encoding="utf-8") as file:
-            file.write("frame,fx,fy,ftheta,fphi\n" + "".join(f"{i},{f / gain:.6f},0,0,0\n" for i, f in enumerate(force[:-1])))
-        recordings.append({"id": f"r{k}", "setting": "single", "pushed_person": 0, "subjects": [{"id": "rig", "mass_kg": 0.7}],
-                           "csv": [f"r{k}.csv"], "length_unit": "m", "push_csv": f"r{k}_push.csv", "push_kind": "external"})
-    with open(f"{folder}/manifest.json", "w", encoding="utf-8") as file:
-        json.dump({"recordings": recordings}, file)
-    return {"mu": rig.drag, "mu_coulomb": rig.dry, "cart_share": rig.cart / (rig.cart + rig.pole), "com_height": 0.5,
-            "gyration_radius": 1 / math.sqrt(12.0), "push_gain": gain}
-
-
-def cartpole():
-    rows = []
-    for name, free, gain in (("mass share, drag and dry friction of a uniform pole", RIG_FREE, 1.0),
-                             ("and the motor's gain", RIG_FREE + ",push_gain", 1.3),
-                             ("and where the pole's mass is", RIG_FREE + ",com_height=0.52,gyration_radius=0.3", 1.0)):
-        with tempfile.TemporaryDirectory() as folder:
-            truth = write_rig(folder, 1, gain)
-            held = ",".join(f"{n}={truth[n]:.6g}" for n in ("cart_share", "com_height", "gyration_radius") if n not in names_of(free))
-            flags = [f if not f.startswith("--fix=") or not held else f"{f},{held}" for f in RIG]
-            report, model = fit(folder, f"--free={free}", *flags)
-        for e in model["parameters"]:
-            if e["name"] in names_of(free):
-                error = e["standard_error"]
-                value = number(e["value"], 3) if isinstance(error, str) else studies.with_error(e["value"], error)
-                rows.append([name, f"`{e['name']}`", number(truth[e["name"]], 3), value, e["status"]])
-                name = ""
-        told = [line for line in report.splitlines() if line.startswith(("not identifiable", "unidentifiable", "prior-dependent"))]
-        if told:
-            rows.append(["", "", "", "; ".join(told), ""])
-    return studies.table(["fitted", "parameter", "truth", "estimate", "status"], rows)
-
-
 def speed():
     """20 recordings of 10 s: five of each of four people."""
     rows = []
@@ -304,4 +249,4 @@ def speed():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"delay": delay, "lag": lag, "design": design, "cartpole": cartpole, "speed": speed})
+    studies.main(__file__, {"delay": delay, "lag": lag, "design": design, "speed": speed})
