@@ -79,8 +79,8 @@ def rigs():
             statuses = [estimates[parameter]["status"] for _, estimates, _ in found]
             status = max(sorted(set(statuses)), key=statuses.count)
             mean, deviation = float(np.mean(values)), float(np.std(values, ddof=1))
-            rows.append([name, f"`{parameter}`", number(truth, 3), studies.with_error(mean, deviation), f"{sum(hold)} of {len(hold)}", f"{status} ({statuses.count(status)})",
-                         f"{named} of {len(found)}" if name else ""])
+            rows.append([name, f"`{parameter}`", number(truth, 3), studies.with_error(mean, deviation),
+                         f"{sum(hold)} of {len(hold)}", f"{status} ({statuses.count(status)})", f"{named} of {len(found)}" if name else ""])
             name = ""
     return studies.table(["fitted", "parameter", "truth", f"mean and deviation of {RIGS} rigs", "intervals that hold it", "status (rigs)",
                           "inseparable ones named"], rows)
