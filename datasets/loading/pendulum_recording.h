@@ -51,6 +51,8 @@ struct PendulumRecording {
     return given ? weight[person][frame] : 1.0;
   }
   int num_people() const { return static_cast<int>(hip.size()); }
+  // false: platforms alone measured it, and nobody saw the motion.
+  bool IsSeen() const { return Weight(0, 0) > 0.0; }
   // Of the rod's length since frame 0, m.
   double RodChange(int person, int frame) const {
     return rod_length[person][frame] - rod_length[person][0];

@@ -112,6 +112,7 @@ std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem, const FitPoi
   std::vector<std::vector<double>> raw;
   for (size_t g = 0; g < recordings.size(); ++g) {
     raw.push_back(problem.RawResiduals(point, static_cast<int>(g)));
+    if (!recordings[g].IsSeen()) raw.back().clear();
     if (raw.back().empty()) continue;
     lags = std::min(lags, LagsOf(recordings[g]));
     frames += recordings[g].num_frames() - 1;

@@ -96,10 +96,9 @@ MaybeError CheckPlates(const PendulumRecording& r, const FitOptions& options) {
   return std::nullopt;
 }
 
-// Where nobody saw the motion (not even at frame 0, from which others are rolled out), only what
-// platforms measure is compared.
+// Where nobody saw the motion, only what platforms measure is compared.
 MaybeError CheckPlatesAlone(const PendulumRecording& r, const FitOptions& options) {
-  if (r.Weight(0, 0) > 0.0) return std::nullopt;
+  if (r.IsSeen()) return std::nullopt;
   const ModelOptions& model = options.model;
   const std::string whose =
       "recording " + r.id + " was measured by force plates alone (\"motion\": \"none\")";

@@ -59,6 +59,7 @@ std::string LargestMove(const Leverage& leverage, const std::string& recording) 
 
 std::string RecordingsText(const Diagnostics& d) {
   std::vector<const RecordingDiagnostics*> worst;
+  if (d.whiteness.empty()) return "";  // nobody saw the motion
   for (const RecordingDiagnostics& r : d.recordings) worst.push_back(&r);
   std::sort(worst.begin(), worst.end(),
             [](const auto* a, const auto* b) { return a->explained < b->explained; });

@@ -126,9 +126,12 @@ std::string ModelVerdictText(const ModelVerdict& v) {
          " scores of parts of the data (p = " + Rounded(v.p_parts, 2) + ") and " +
          std::to_string(v.motion.tests.size()) +
          " measures of feet and hips (p = " + Rounded(v.p_motion, 2) + "; each after all tests, " +
-         std::to_string(v.freedom) + " degrees of freedom); it explains " +
-         Rounded(100.0 * v.motion.explained, 3) +
-         " % of the hip's squared way in the median recording.";
+         std::to_string(v.freedom) + " degrees of freedom)" +
+         (std::isnan(v.motion.explained)
+              ? std::string("; nobody saw the motion.")
+              : "; it explains " + Rounded(100.0 * v.motion.explained, 3) +
+                    " % of the hip's squared way in the median "
+                    "recording.");
 }
 
 TextTable AssumptionTable(const FitResult& result) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -133,7 +134,7 @@ MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
   std::vector<double> explained;
   for (size_t i = 0; i < problem.recordings().size(); ++i) {
     const PendulumRecording& r = problem.recordings()[i];
-    if (problem.Count(static_cast<int>(i)) == 0) continue;
+    if (problem.Count(static_cast<int>(i)) == 0 || !r.IsSeen()) continue;
     const std::vector<double> raw = problem.RawResiduals(point, static_cast<int>(i));
     if (raw.empty()) return {};
     const Compared c = MotionOf(r, raw, problem.options().sigmas);
@@ -156,7 +157,7 @@ MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
         turns.Test("number of turns of the hip", "", 0.0)}) {
     if (test) found.tests.push_back(*test);
   }
-  found.explained = explained.empty() ? 1.0 : Median(explained);
+  found.explained = explained.empty() ? std::numeric_limits<double>::quiet_NaN() : Median(explained);
   return found;
 }
 

@@ -20,7 +20,7 @@ struct MotionTest {
 struct MotionComparison {
   std::vector<MotionTest> tests;
   // Share of the hip's squared way from its first place, without the markers' white noise, which is
-  // told by how errors change from frame to frame; median recording.
+  // told by how errors change from frame to frame; median recording; NaN: nobody saw the motion.
   double explained = 1.0;
 };
 

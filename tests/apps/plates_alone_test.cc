@@ -52,6 +52,8 @@ TEST_F(PlatesAloneApp, AreFittedWhereFeetStand) {
                                            "--model_out=" + Path("plates_fit.json")});
   ASSERT_EQ(fit.exit_code, 0) << fit.err << fit.out;
   EXPECT_FALSE(Contains(fit.out, "nan"));
+  EXPECT_FALSE(Contains(fit.out, "The model does not fit"));
+  EXPECT_FALSE(Contains(fit.out, "lag-1"));
   const auto model = Json(Path("plates_fit.json"));
   for (const char* name : {"Kp_theta", "Kd_theta"}) {
     const double truth = truth_[name], found = model["values"][name];
