@@ -97,6 +97,17 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
   return RollOn<T>(scene, options, &forces, 0, path, trace, noise);
 }
 
+// Of doubles, compiled once (rollout.cc): it takes the compiler seconds.
+extern template RolloutStatus RollOn<double>(const Scene&, const ModelOptions&,
+                                             SceneForces<double>*, int, RolloutPath<double>*,
+                                             FrameTable<NetForce<double>>*,
+                                             const FrameTable<Vector4<double>>*);
+extern template RolloutStatus Rollout<double>(const Scene&, const ModelOptions&,
+                                              const std::vector<ParameterSet<double>>&,
+                                              const std::vector<Vector4<double>>&, int,
+                                              RolloutPath<double>*, FrameTable<NetForce<double>>*,
+                                              const double*, const FrameTable<Vector4<double>>*);
+
 // The initial velocities that the scene itself holds.
 inline std::vector<Vector4<double>> InitialVelocities(const Scene& scene) {
   std::vector<Vector4<double>> velocities;

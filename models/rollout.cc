@@ -1,0 +1,15 @@
+// models: rollouts of doubles.
+#include "models/rollout.h"
+
+namespace pushid {
+
+template RolloutStatus RollOn<double>(const Scene&, const ModelOptions&, SceneForces<double>*, int,
+                                      RolloutPath<double>*, FrameTable<NetForce<double>>*,
+                                      const FrameTable<Vector4<double>>*);
+template RolloutStatus Rollout<double>(const Scene&, const ModelOptions&,
+                                       const std::vector<ParameterSet<double>>&,
+                                       const std::vector<Vector4<double>>&, int,
+                                       RolloutPath<double>*, FrameTable<NetForce<double>>*,
+                                       const double*, const FrameTable<Vector4<double>>*);
+
+}  // namespace pushid
