@@ -179,9 +179,11 @@ def delay():
 
 def lag():
     rows = []
-    for name, each in (("late, ground steps, platforms", Study(0)), ("late, ground steps, markers", Study(0, plates=False)),
+    for name, each in (("late, ground steps, platforms", Study(0)), ("late, pushes, platforms", Study(0, platform=False)),
+                       ("late, ground steps, markers", Study(0, plates=False)),
                        ("late, pushes, markers", Study(0, platform=False, plates=False)),
                        ("not late, ground steps, platforms", Study(0, late=False)),
+                       ("not late, pushes, platforms", Study(0, platform=False, late=False)),
                        ("not late, pushes, markers", Study(0, platform=False, plates=False, late=False))):
         found = all_fitted(each, max(10, SETS // 2), "--stance=fixed")
         named = sum("The response lags" in report for _, _, report in found)

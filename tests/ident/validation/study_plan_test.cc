@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "ident/fit/fit.h"
+#include "ident/fit/fit_setup.h"
+#include "ident/fit/weighted_solve.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -200,6 +202,65 @@ TEST(StudyPlanTest, PredictsWhatASensorBrings) {
     EXPECT_LT(expected, 0.95) << name;
   }
   EXPECT_TRUE(std::isnan(planned["tail_gain"][0]));
+}
+
+// Standard errors by name of people who stand on ground that steps; equipment: as it was planned
+// before there were platforms.
+std::map<std::string, double> ErrorsOnSteps(uint64_t seed, bool platforms, EquipmentRow* planned,
+                                            std::vector<std::string>* names) {
+  SyntheticOptions study = Study(6, 4, seed);
+  study.model.stance = Stance::kFixed;
+  study.pushes = false;
+  study.ground = GroundKind::kStep;
+  study.plates = platforms;
+  study.parameters[kKpTheta] = study.parameters[kKpPhi] = 1500.0;
+  study.parameters[kKdTheta] = study.parameters[kKdPhi] = 350.0;
+  study.parameters[kComHeight] = 1.09;
+  study.fps = 100.0;
+  study.frames = 200;
+  study.joint_noise_m = 0.003;
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options =
+      MakeFitOptions({{"stance", "fixed"}, {"fix", "Kp_phi,Kd_phi"}}, &recordings).value();
+  EXPECT_FALSE(PrepareFit(recordings, &options));
+  FitProblem problem(recordings, options);
+  const FitPoint point = SolveWeighted(&problem).solution.Best().to;
+  if (!platforms) {
+    std::vector<int> all(point.shared.size());
+    std::iota(all.begin(), all.end(), 0);
+    const StudyPlan plan = PlanStudies(problem, point, ErrorPartsAt(problem, point), all);
+    *names = plan.parameters;
+    for (const EquipmentRow& row : plan.equipment) {
+      if (row.equipment == "force platforms under the same recordings") *planned = row;
+    }
+  }
+  std::map<std::string, double> errors;
+  for (const Estimate& e : Fit(recordings, options).estimates) errors[e.name] = e.standard_error;
+  return errors;
+}
+
+// Platforms make errors smaller than markers alone leave them, by as much as was planned.
+TEST(StudyPlanTest, PredictsWhatPlatformsBring) {
+  std::map<std::string, std::vector<double>> planned, done;
+  for (uint64_t seed = 1; seed <= 7; ++seed) {
+    EquipmentRow row;
+    std::vector<std::string> names;
+    const std::map<std::string, double> without = ErrorsOnSteps(seed, false, &row, &names);
+    std::map<std::string, double> with = ErrorsOnSteps(seed, true, nullptr, nullptr);
+    ASSERT_EQ(row.error_ratio.size(), names.size());
+    for (size_t i = 0; i < names.size(); ++i) {
+      planned[names[i]].push_back(row.error_ratio[i]);
+      done[names[i]].push_back(with[names[i]] / without.at(names[i]));
+    }
+  }
+  for (const char* name : {"Kp_theta", "Kd_theta"}) {
+    const double ratio = Median(planned[name]) / Median(done[name]);
+    RecordProperty(name, std::to_string(Median(planned[name])) + " planned, " +
+                             std::to_string(Median(done[name])) + " done");
+    EXPECT_GT(ratio, 0.5) << name;
+    EXPECT_LT(ratio, 2.0) << name;
+    EXPECT_LT(Median(done[name]), 0.9) << name;
+  }
 }
 
 TEST(StudyPlanTest, SaysWhyThereIsNone) {
