@@ -16,7 +16,8 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr double kPlannedShear = 5.0, kPlannedCentre = 0.003;  // N, m
+constexpr double kPlannedShear = 3.0, kPlannedCentre = 0.002;  // N, m
+constexpr double kUsualSpread = 0.05;                          // of people's values
 constexpr double kStep = 0.04, kSway = 0.01;                   // m, of each sine
 
 void AddPlates(PendulumRecording* r) {
@@ -83,7 +84,8 @@ MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
 }
 
 // B of the header, its diagonal: zero where nobody was recorded twice.
-Eigen::VectorXd EvidentSpread(const ErrorParts& parts, const std::vector<int>& known) {
+Eigen::VectorXd SpreadOfPeople(const FitProblem& problem, const FitPoint& estimate,
+                               const ErrorParts& parts, const std::vector<int>& known) {
   Eigen::VectorXd spread = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(known.size()));
   if (parts.by_person.size() == 0 || parts.by_recording.size() == 0) return spread;
   const double freedom = *std::max_element(parts.person.begin(), parts.person.end());
@@ -93,7 +95,12 @@ Eigen::VectorXd EvidentSpread(const ErrorParts& parts, const std::vector<int>& k
   const double quantile = std::pow(1.0 - ninth + 1.645 * std::sqrt(ninth), 3);
   for (Eigen::Index k = 0; k < spread.size(); ++k) {
     const int at = known[static_cast<size_t>(k)];
-    spread[k] = std::max(0.0, parts.by_person(at, at) / quantile - parts.by_recording(at, at));
+    const FittedParameter& f = problem.map().fitted[at];
+    const double value = ToNatural(f.transform, estimate.shared[at]);
+    const double usual = kUsualSpread * value / TransformSlope(f.transform, value);
+    const double all = parts.by_person(at, at), own = parts.by_recording(at, at);
+    const double evident = std::max(0.0, all / quantile - own);
+    spread[k] = std::clamp(all - own, evident, std::max(evident, usual * usual / (freedom + 1.0)));
   }
   return spread;
 }
@@ -108,7 +115,7 @@ std::vector<EquipmentRow> PlanEquipment(const FitProblem& problem, const FitPoin
   if (clustered.size() == 0) return rows;
   const MatrixXd noise = parts.naive(known, known), now = clustered(known, known);
   const MatrixXd present = Inverse(noise), today = present * now * present;
-  const Eigen::VectorXd differ = EvidentSpread(parts, known);
+  const Eigen::VectorXd differ = SpreadOfPeople(problem, estimate, parts, known);
   const auto add = [&](const std::string& equipment, const MatrixXd& rows_to_come) {
     const MatrixXd more = rows_to_come(known, known) / (parts.sigma * parts.sigma);
     const MatrixXd inverse = Inverse(present + more);

@@ -6,11 +6,11 @@
 // come (their J'J, rolled out at the estimate, over sigma^2), what scatters today's estimate has
 // today's weight among all rows, and the rows to come scatter by their noise:
 //   V' = (H + I)^-1 (H V H + I) (H + I)^-1 + B
-// B: what people evidently differ by, over their number, which no equipment makes smaller: a 95 %
-// lower bound, since the estimate itself is mostly noise where little is known yet. Rejected:
-// V - N + (N^-1 + I)^-1, which keeps all that is not noise today (promised 0.9 where 0.03 came).
-// Platforms are taken as exact to 5 N and 3 mm of the centre of pressure, or as those of the fit
-// are.
+// B: what people differ by, over their number, which no equipment makes smaller: V less that by
+// recording, but no more than 5 % of the value unless more is evident (a 95 % lower bound), since
+// it is mostly noise where little is known yet. Rejected: V - N + (N^-1 + I)^-1, which keeps all
+// that is not noise today (promised 0.9 where 0.03 came). Platforms are taken as exact to 3 N and 2
+// mm of the centre of pressure, or as those of the fit are.
 #pragma once
 
 #include <string>

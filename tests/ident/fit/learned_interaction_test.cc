@@ -78,7 +78,7 @@ TEST(LearnedInteraction, PredictsUnseenPushesAsTheTruthDoes) {
   const double without = rows.HeldOutAde(rows.Fitted({}));
   const FitResult learned = rows.Fitted({{3}});
   EXPECT_GT(without, 0.002);
-  EXPECT_LT(rows.HeldOutAde(learned), 0.2 * without);
+  EXPECT_LT(rows.HeldOutAde(learned), 0.25 * without);
   EXPECT_TRUE(Contains(NetworkText(learned), "interaction network:3 (49 weights"));
   ASSERT_TRUE(learned.contact_takeover.has_value());
   EXPECT_GT(learned.contact_takeover->rms_force, 0.1);
