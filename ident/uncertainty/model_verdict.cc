@@ -262,15 +262,6 @@ class ModelJudge {
   ModelVerdict verdict_;
 };
 
-}  // namespace
-
-size_t ModelVerdict::NumTested() const {
-  return static_cast<size_t>(std::count_if(assumptions.begin(), assumptions.end(),
-                                           [](const AssumptionTest& t) { return t.error > 0.0; }));
-}
-
-namespace {
-
 // Whether people may react late for all that the recordings say: damping is then less by the delay
 // times the stiffness. The test tells a delay from none, and underrates how long it is.
 bool MayBeLate(const ModelVerdict& verdict) {
@@ -284,6 +275,11 @@ bool MayBeLate(const ModelVerdict& verdict) {
 }
 
 }  // namespace
+
+size_t ModelVerdict::NumTested() const {
+  return static_cast<size_t>(std::count_if(assumptions.begin(), assumptions.end(),
+                                           [](const AssumptionTest& t) { return t.error > 0.0; }));
+}
 
 ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point,
                         Uncertainty* uncertainty) {
