@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "datasets/files/input_file.h"
@@ -81,22 +82,32 @@ size_t FirstDisturbance(const Recording& recording) {
   return std::min(first, static_cast<size_t>(FirstMotion(recording.ground)));
 }
 
-// The centre of pressure counts from where it was before anything happened (of quiet stance: on
-// average), since neither ankles nor hip are seen where they are: what is compared is how it moves.
-std::vector<PlateFrame> PlateFrames(const Recording& recording, const RecordedPerson& person) {
-  std::vector<PlateFrame> frames;
-  const size_t before = std::max<size_t>(1, FirstDisturbance(recording));
-  Eigen::Vector2d rest = Eigen::Vector2d::Zero();
+// Where the centre of pressure was on average over the frames before `end`; none: nobody pressed.
+std::optional<Eigen::Vector2d> MeanCentre(const std::vector<PlateSample>& plates, size_t end) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double weights = 0.0;
-  for (size_t t = 0; t < person.plates.size(); ++t) {
-    const PlateSample& sample = person.plates[t];
-    frames.push_back({sample.force.head<2>(), sample.centre.head<2>(), sample.weight});
-    if (t >= before || sample.weight <= 0.0) continue;
-    rest += frames.back().centre;
+  for (size_t t = 0; t < std::min(end, plates.size()); ++t) {
+    if (plates[t].weight <= 0.0) continue;
+    sum += plates[t].centre.head<2>();
     weights += 1.0;
   }
-  if (weights > 0.0) rest /= weights;
-  for (PlateFrame& frame : frames) frame.centre -= rest;
+  if (weights == 0.0) return std::nullopt;
+  return Eigen::Vector2d(sum / weights);
+}
+
+// The centre of pressure counts from where it was before anything happened (of quiet stance, or
+// where nobody pressed a platform before: on average), since neither ankles nor hip are seen where
+// they are: what is compared is how it moves.
+std::vector<PlateFrame> PlateFrames(const Recording& recording, const RecordedPerson& person) {
+  const std::vector<PlateSample>& plates = person.plates;
+  std::optional<Eigen::Vector2d> rest =
+      MeanCentre(plates, std::max<size_t>(1, FirstDisturbance(recording)));
+  if (!rest) rest = MeanCentre(plates, plates.size());
+  std::vector<PlateFrame> frames;
+  for (const PlateSample& sample : plates) {
+    const Eigen::Vector2d centre = sample.centre.head<2>() - rest.value_or(Eigen::Vector2d::Zero());
+    frames.push_back({sample.force.head<2>(), centre, sample.weight});
+  }
   return frames;
 }
 

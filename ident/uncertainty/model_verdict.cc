@@ -67,7 +67,7 @@ std::vector<std::string> OfMostPushes(const std::vector<PendulumRecording>& reco
 // The smallest p-value after `num` tests of a family.
 template <typename Test>
 double Least(const std::vector<Test>& tests, size_t num) {
-  if (tests.empty()) return 1.0;
+  if (num == 0) return 1.0;  // nothing could be tested
   double least = 1.0;
   for (const Test& test : tests) least = std::min(least, test.p);
   return std::min(1.0, least * static_cast<double>(num));

@@ -74,6 +74,23 @@ TEST_F(LaboratoryTest, WhatWasRolledOutComesBack) {
   EXPECT_LT(std::abs(seen.states[0].back().q[0] - seen.states[0][0].q[0]), 1e-5);
 }
 
+// Who steps onto the platform when it moves already has no rest there: centres count from their
+// mean.
+TEST_F(LaboratoryTest, CentresOfWhoPressedNothingBeforeCountFromTheirMean) {
+  const auto loaded = Load(OnPlatform(GroundKind::kStep));
+  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  Recording recording = loaded.value()[0];
+  std::vector<PlateSample>& plates = recording.people[0].plates;
+  for (size_t t = 0; t < plates.size(); ++t) {
+    plates[t].centre.x() += 7.0;
+    if (t < plates.size() / 2) plates[t].weight = 0.0;
+  }
+  const PendulumRecording seen = MakePendulumRecording(recording, SkeletonMapping::kExact);
+  double sum = 0.0;
+  for (const PlateFrame& frame : seen.plates[0]) sum += frame.weight > 0.0 ? frame.centre.x() : 0.0;
+  EXPECT_NEAR(sum, 0.0, 1e-9);
+}
+
 TEST_F(LaboratoryTest, RatesAreSummedUpToWhatTheyWere) {
   const SyntheticOptions options = OnPlatform(GroundKind::kSine);
   for (const std::string quantity : {"velocity", "acceleration"}) {
