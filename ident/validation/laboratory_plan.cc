@@ -8,6 +8,7 @@
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
+#include "ident/uncertainty/covariance.h"
 #include "ident/validation/study_plan.h"
 #include "models/decompositions.h"
 
@@ -17,7 +18,6 @@ namespace {
 using Eigen::MatrixXd;
 
 constexpr double kPlannedShear = 3.0, kPlannedCentre = 0.002;  // N, m
-constexpr double kUsualSpread = 0.05;                          // of people's values
 constexpr double kStep = 0.04, kSway = 0.01;                   // m, of each sine
 
 void AddPlates(PendulumRecording* r) {
@@ -84,23 +84,17 @@ MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
 }
 
 // B of the header, its diagonal: zero where nobody was recorded twice.
-Eigen::VectorXd SpreadOfPeople(const FitProblem& problem, const FitPoint& estimate,
-                               const ErrorParts& parts, const std::vector<int>& known) {
+Eigen::VectorXd SpreadOfPeople(const ErrorParts& parts, const std::vector<int>& known) {
   Eigen::VectorXd spread = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(known.size()));
   if (parts.by_person.size() == 0 || parts.by_recording.size() == 0) return spread;
   const double freedom = *std::max_element(parts.person.begin(), parts.person.end());
   if (freedom + 1 == parts.num_recordings()) return spread;
-  // The 95 % quantile of chi^2 over its freedom (Wilson and Hilferty 1931).
+  // The 80 % quantile of chi^2 over its freedom (Wilson and Hilferty 1931).
   const double ninth = 2.0 / (9.0 * freedom);
-  const double quantile = std::pow(1.0 - ninth + 1.645 * std::sqrt(ninth), 3);
+  const double quantile = std::pow(1.0 - ninth + 0.8416 * std::sqrt(ninth), 3);
   for (Eigen::Index k = 0; k < spread.size(); ++k) {
     const int at = known[static_cast<size_t>(k)];
-    const FittedParameter& f = problem.map().fitted[at];
-    const double value = ToNatural(f.transform, estimate.shared[at]);
-    const double usual = kUsualSpread * value / TransformSlope(f.transform, value);
-    const double all = parts.by_person(at, at), own = parts.by_recording(at, at);
-    const double evident = std::max(0.0, all / quantile - own);
-    spread[k] = std::clamp(all - own, evident, std::max(evident, usual * usual / (freedom + 1.0)));
+    spread[k] = std::max(0.0, parts.by_person(at, at) / quantile - parts.by_recording(at, at));
   }
   return spread;
 }
@@ -113,17 +107,21 @@ std::vector<EquipmentRow> PlanEquipment(const FitProblem& problem, const FitPoin
   if (known.empty() || parts.sigma <= 0.0) return rows;
   const MatrixXd& clustered = parts.by_person.size() > 0 ? parts.by_person : parts.by_recording;
   if (clustered.size() == 0) return rows;
-  const MatrixXd noise = parts.naive(known, known), now = clustered(known, known);
-  const MatrixXd present = Inverse(noise), today = present * now * present;
-  const Eigen::VectorXd differ = SpreadOfPeople(problem, estimate, parts, known);
+  // In units of the rows' weights, of which noise has the variance sigma^2.
+  const double noise = parts.sigma * parts.sigma;
+  const MatrixXd present = noise * Inverse(parts.naive(known, known));
+  const MatrixXd data = clustered(known, known);
+  const MatrixXd priors = InformationBeside(parts.score)(known, known);
+  const MatrixXd scatter = present * data * present + priors, now_inverse = Inverse(present);
+  const MatrixXd now = now_inverse * scatter * now_inverse;
+  const Eigen::VectorXd differ = SpreadOfPeople(parts, known);
   const auto add = [&](const std::string& equipment, const MatrixXd& rows_to_come) {
-    const MatrixXd more = rows_to_come(known, known) / (parts.sigma * parts.sigma);
+    const MatrixXd more = rows_to_come(known, known);
     const MatrixXd inverse = Inverse(present + more);
-    const MatrixXd then = inverse * (today + more) * inverse;
+    const MatrixXd then = inverse * (scatter + noise * more) * inverse;
     EquipmentRow row{equipment, {}};
     for (Eigen::Index k = 0; k < differ.size(); ++k) {
-      row.error_ratio.push_back(
-          std::sqrt((then(k, k) + differ[k]) / std::max(now(k, k), noise(k, k))));
+      row.error_ratio.push_back(std::sqrt((then(k, k) + differ[k]) / now(k, k)));
     }
     rows.push_back(std::move(row));
   };
