@@ -184,10 +184,4 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
   return bootstrap;
 }
 
-double DistinctResamples(int units) {
-  double number = 1.0;
-  for (int i = 1; i < units; ++i) number *= static_cast<double>(units + i) / i;
-  return number;
-}
-
 }  // namespace pushid

@@ -69,7 +69,11 @@ std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& r
                                          ClusterBy by, uint64_t seed, int replica);
 
 // Resamples that differ, whatever the order: (2n - 1 choose n) of n units.
-double DistinctResamples(int units);
+inline double DistinctResamples(int units) {
+  double number = 1.0;
+  for (int i = 1; i < units; ++i) number *= static_cast<double>(units + i) / i;
+  return number;
+}
 
 // Linear between the sorted values, the i-th of n standing for i / (n + 1).
 double Quantile(std::vector<double> values, double share);

@@ -276,11 +276,6 @@ bool MayBeLate(const ModelVerdict& verdict) {
 
 }  // namespace
 
-size_t ModelVerdict::NumTested() const {
-  return static_cast<size_t>(std::count_if(assumptions.begin(), assumptions.end(),
-                                           [](const AssumptionTest& t) { return t.error > 0.0; }));
-}
-
 ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point,
                         Uncertainty* uncertainty) {
   const ModelVerdict verdict = ModelJudge(problem, point).Run(uncertainty);

@@ -25,6 +25,7 @@
 // are what the total error is for.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -61,7 +62,11 @@ struct ModelVerdict {
   double p_assumptions = 1.0, p_parts = 1.0, p_motion = 1.0;
 
   // Of the assumptions: others look like estimates, or are told by nothing here.
-  size_t NumTested() const;
+  size_t NumTested() const {
+    return static_cast<size_t>(
+        std::count_if(assumptions.begin(), assumptions.end(),
+                      [](const AssumptionTest& test) { return test.error > 0.0; }));
+  }
   bool checked() const { return not_checked.empty(); }
   bool fails() const {
     return checked() &&
