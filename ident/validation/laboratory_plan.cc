@@ -89,9 +89,9 @@ Eigen::VectorXd SpreadOfPeople(const ErrorParts& parts, const std::vector<int>& 
   if (parts.by_person.size() == 0 || parts.by_recording.size() == 0) return spread;
   const double freedom = *std::max_element(parts.person.begin(), parts.person.end());
   if (freedom + 1 == parts.num_recordings()) return spread;
-  // The 80 % quantile of chi^2 over its freedom (Wilson and Hilferty 1931).
+  // The 90 % quantile of chi^2 over its freedom (Wilson and Hilferty 1931).
   const double ninth = 2.0 / (9.0 * freedom);
-  const double quantile = std::pow(1.0 - ninth + 0.8416 * std::sqrt(ninth), 3);
+  const double quantile = std::pow(1.0 - ninth + 1.2816 * std::sqrt(ninth), 3);
   for (Eigen::Index k = 0; k < spread.size(); ++k) {
     const int at = known[static_cast<size_t>(k)];
     spread[k] = std::max(0.0, parts.by_person(at, at) / quantile - parts.by_recording(at, at));

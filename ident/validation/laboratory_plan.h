@@ -7,7 +7,7 @@
 // what scatters today's estimate has today's weight among all rows, and the rows to come scatter by
 // their noise:
 //   V' = (H + I)^-1 (H V H + P + sigma^2 I) (H + I)^-1 + B,   over the same without I and B
-// B: what people evidently differ by, over their number, which no equipment makes smaller: an 80 %
+// B: what people evidently differ by, over their number, which no equipment makes smaller: a 90 %
 // lower bound, since the estimate itself is mostly noise where little is known yet. Rejected: V - N
 // + (N^-1 + I)^-1, N = H^-1, which keeps all that is not noise today (promised 0.9 where 0.03
 // came). Platforms are taken as exact to 3 N and 2 mm of the centre of pressure, or as those of the
