@@ -106,7 +106,7 @@ void Hasten(double eta, ChangedProblem* p) {
 }
 
 // What cameras see moves along the push, by eta metres over a recording.
-void Drift(double eta, ChangedProblem* p) {
+void DriftAlong(double eta, ChangedProblem* p) {
   for (PendulumRecording& r : p->recordings) {
     const Eigen::Vector2d along = eta * PushDirection(r);
     const double last = std::max(1, r.num_frames() - 1);
@@ -190,7 +190,7 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
   }
   all.push_back({"masses", "", stated.mass, 1e-4, Weigh});
   all.push_back({"frame rate", "", stated.frame_rate, 1e-4, Hasten, {}, true});
-  all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, Drift});
+  all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, DriftAlong});
   const FitOptions& options = problem.options();
   if (options.model.stance == Stance::kFixed && options.model.delay == Delay::kNone) {
     all.push_back(Delayed(problem, point));
