@@ -1,0 +1,84 @@
+// What of a laboratory does not go together is refused, with what to leave out.
+#include "ident/fit/laboratory_checks.h"
+
+#include <gtest/gtest.h>
+
+#include "models/learned_terms.h"
+#include "tests/ident/laboratory_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kStep = 0.02;
+constexpr int kFrames = 100;
+
+// One person who stands on ground that moves (tilt: rad, beside a shift), over platforms.
+PendulumRecording OnPlatform(double tilt) {
+  Scene scene = StandingScene(kStep);
+  std::vector<GroundPose> poses;
+  for (int t = 0; t < kFrames; ++t) {
+    const double moved = 0.5 - 0.5 * std::cos(M_PI * t / kFrames);
+    poses.emplace_back(0.02 * moved, 0.0, tilt * moved, 0.0);
+  }
+  scene.ground = GroundThrough(poses, kStep);
+  return RecordingOf(scene, StandingOptions(), StandingGains(1500.0, 350.0), kFrames, "anna", true);
+}
+
+std::string Refused(const PendulumRecording& recording, const FitOptions& options) {
+  const MaybeError error = CheckLaboratory({recording}, options);
+  return error ? error->ToString() : "";
+}
+
+TEST(LaboratoryChecks, WhatGoesTogetherIsNotRefused) {
+  FitOptions options;
+  options.model.stance = Stance::kFixed;
+  options.model.delay = Delay::kOne;
+  EXPECT_EQ(Refused(OnPlatform(0.01), options), "");
+}
+
+TEST(LaboratoryChecks, ALateDifferenceOfVelocities) {
+  FitOptions options;
+  options.model.delay = Delay::kOne;
+  options.model.cart_derivative = CartDerivative::kBackward;
+  EXPECT_TRUE(Contains(Refused(OnPlatform(0.0), options), "--delay and --cart_derivative"));
+}
+
+TEST(LaboratoryChecks, PlatformsAreNoSingleSteps) {
+  FitOptions options;
+  options.likelihood = Likelihood::kTransition;
+  const std::string told = Refused(OnPlatform(0.0), options);
+  EXPECT_TRUE(Contains(told, "recording anna has force_plates")) << told;
+  EXPECT_TRUE(Contains(told, "--likelihood=transition")) << told;
+  PendulumRecording without = OnPlatform(0.0);
+  without.plates.clear();
+  EXPECT_EQ(Refused(without, options), "");
+}
+
+TEST(LaboratoryChecks, RodsThatMove) {
+  FitOptions options;
+  LearnedTerms learned;
+  learned.rod.kind = RodKind::kLinear;
+  options.model.learned = std::make_shared<const LearnedTerms>(learned);
+  ASSERT_TRUE(RodMoves(options.model));
+  EXPECT_TRUE(Contains(Refused(OnPlatform(0.0), options), "no law of --rod"));
+  PendulumRecording still = OnPlatform(0.0);
+  still.scene.ground = {};
+  EXPECT_TRUE(Contains(Refused(still, options), "leave --rod out"));
+}
+
+TEST(LaboratoryChecks, PeopleWhoTouch) {
+  FitOptions options;
+  options.model.interaction.spring = true;
+  ASSERT_TRUE(options.model.interaction.Any());
+  PendulumRecording pair = OnPlatform(0.02);
+  pair.hip.push_back(pair.hip[0]);
+  EXPECT_TRUE(Contains(Refused(pair, options), "on ground that tilts"));
+  pair.scene.ground = OnPlatform(0.0).scene.ground;
+  EXPECT_TRUE(Contains(Refused(pair, options), "force_plates and several people"));
+  pair.plates.clear();
+  EXPECT_EQ(Refused(pair, options), "");
+}
+
+}  // namespace
+}  // namespace pushid
