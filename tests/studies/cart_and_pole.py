@@ -41,8 +41,10 @@ def write_rig(folder, seed, gain=1.0):
         feet = np.column_stack([seen[0], np.zeros_like(times)])
         hip = np.column_stack([seen[0] + rig.length * np.sin(seen[1]), np.zeros_like(times), rig.length * np.cos(seen[1])])
         people.write_points(f"{folder}/r{k}.csv", times, people.points_of(hip, feet, np.eye(3)), 0.0, random)
+        # The motor holds a force from frame to frame; a row is the mean over half a frame before and after its own.
+        rows = 0.5 * (force + np.concatenate([[0.0], force[:-1]]))[:-1]
         with open(f"{folder}/r{k}_push.csv", "w", encoding="utf-8") as file:
-            file.write("frame,fx,fy,ftheta,fphi\n" + "".join(f"{i},{f / gain:.6f},0,0,0\n" for i, f in enumerate(force[:-1])))
+            file.write("frame,fx,fy,ftheta,fphi\n" + "".join(f"{i},{f / gain:.6f},0,0,0\n" for i, f in enumerate(rows)))
         recordings.append({"id": f"r{k}", "setting": "single", "pushed_person": 0, "subjects": [{"id": "rig", "mass_kg": 0.7}],
                            "csv": [f"r{k}.csv"], "length_unit": "m", "push_csv": f"r{k}_push.csv", "push_kind": "external"})
     with open(f"{folder}/manifest.json", "w", encoding="utf-8") as file:
