@@ -25,27 +25,33 @@ PendulumRecording OnPlatform(double tilt) {
   return RecordingOf(scene, StandingOptions(), StandingGains(1500.0, 350.0), kFrames, "anna", true);
 }
 
+FitOptions WithTable() {
+  FitOptions options;
+  options.table = BaseTable();
+  return options;
+}
+
 std::string Refused(const PendulumRecording& recording, const FitOptions& options) {
   const MaybeError error = CheckLaboratory({recording}, options);
   return error ? error->ToString() : "";
 }
 
 TEST(LaboratoryChecks, WhatGoesTogetherIsNotRefused) {
-  FitOptions options;
+  FitOptions options = WithTable();
   options.model.stance = Stance::kFixed;
   options.model.delay = Delay::kOne;
   EXPECT_EQ(Refused(OnPlatform(0.01), options), "");
 }
 
 TEST(LaboratoryChecks, ALateDifferenceOfVelocities) {
-  FitOptions options;
+  FitOptions options = WithTable();
   options.model.delay = Delay::kOne;
   options.model.cart_derivative = CartDerivative::kBackward;
   EXPECT_TRUE(Contains(Refused(OnPlatform(0.0), options), "--delay and --cart_derivative"));
 }
 
 TEST(LaboratoryChecks, PlatformsAreNoSingleSteps) {
-  FitOptions options;
+  FitOptions options = WithTable();
   options.likelihood = Likelihood::kTransition;
   const std::string told = Refused(OnPlatform(0.0), options);
   EXPECT_TRUE(Contains(told, "recording anna has force_plates")) << told;
@@ -56,7 +62,7 @@ TEST(LaboratoryChecks, PlatformsAreNoSingleSteps) {
 }
 
 TEST(LaboratoryChecks, RodsThatMove) {
-  FitOptions options;
+  FitOptions options = WithTable();
   LearnedTerms learned;
   learned.rod.kind = RodKind::kLinear;
   options.model.learned = std::make_shared<const LearnedTerms>(learned);
@@ -68,7 +74,7 @@ TEST(LaboratoryChecks, RodsThatMove) {
 }
 
 TEST(LaboratoryChecks, PeopleWhoTouch) {
-  FitOptions options;
+  FitOptions options = WithTable();
   options.model.interaction.spring = true;
   ASSERT_TRUE(options.model.interaction.Any());
   PendulumRecording pair = OnPlatform(0.02);
