@@ -74,8 +74,9 @@ void InspectLaboratory(const ManifestRecording& entry, const Recording& recordin
   if (entry.ground.given()) {
     const InspectedGround ground = GroundOf(entry, recording);
     found->Fact("ground", entry.id + ": " + ground.kind + " at " + Rounded(ground.rate_hz, 5) +
-                              " per second, up to " + Rounded(kInMillimetres * ground.farthest_m, 3) +
-                              " mm, " + Rounded(ground.peak_acceleration, 3) + " m/s^2 and " +
+                              " per second, up to " +
+                              Rounded(kInMillimetres * ground.farthest_m, 3) + " mm, " +
+                              Rounded(ground.peak_acceleration, 3) + " m/s^2 and " +
                               Rounded(kDegrees * ground.peak_tilt_rad, 3) + " degrees of tilt");
     found->grounds.push_back(ground);
   }

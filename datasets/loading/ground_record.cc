@@ -69,15 +69,11 @@ Result<double> GroundStart(const GroundTracks& tracks, const ManifestRecording& 
                                : recording.people[0].skipped_s);
   const double fps = recording.fps, seconds = (recording.num_frames() - 1) / fps;
   // Half a frame less is none.
-  if (tracks.last_s() >= start + seconds - 0.5 / fps && tracks.first_s <= start + 0.5 / fps) {
-    return start;
-  }
-  return Error{"the record of the ground lasts from " + Rounded(tracks.first_s, 4) + " to " +
-                   Rounded(tracks.last_s(), 4) + " s, but the motion from " + Rounded(start, 4) +
-                   " to " + Rounded(start + seconds, 4) +
-                   " s of its clock; record it longer, cut the motion (end_frame), or give the "
-                   "right clock at frame 0 as \"start\"",
-               tracks.file, tracks.lines.empty() ? 0 : tracks.lines.back()};
+  const RecordTimes times = {"the record of the ground lasts", tracks.first_s, tracks.last_s(), start,
+                             seconds, fps, 0.5};
+  const int line = tracks.lines.empty() ? 0 : tracks.lines.back();
+  if (MaybeError error = CheckLasts(times, tracks.file, line)) return *std::move(error);
+  return start;
 }
 
 void LowPassTo(double fps, double lowpass_hz, GroundTracks* tracks) {

@@ -91,15 +91,10 @@ Result<double> PlatesStart(const PlateTracks& tracks, const ManifestPlates& plat
   const bool c3d = MotionFormatOfFile(tracks.file) == MotionFormat::kC3d;
   const double start =
       plates.start_s.value_or(of_motion && !c3d ? person.file_clock_s : person.skipped_s);
-  if (tracks.last_s() >= start + seconds - 1.5 / fps && tracks.first_s <= start + 0.5 / fps) {
-    return start;
-  }
-  return Error{"the platforms were recorded from " + Rounded(tracks.first_s, 4) + " to " +
-                   Rounded(tracks.last_s(), 4) + " s, the motion from " + Rounded(start, 4) +
-                   " to " + Rounded(start + seconds, 4) +
-                   " s of that clock; cut the motion (end_frame), or give the right clock at "
-                   "frame 0 as \"start\"",
-               tracks.file, tracks.last_line};
+  const RecordTimes times = {"the platforms were recorded", tracks.first_s, tracks.last_s(), start,
+                             seconds, fps, 1.5};
+  if (MaybeError error = CheckLasts(times, tracks.file, tracks.last_line)) return *std::move(error);
+  return start;
 }
 
 // At the frames, from the tracks' time `start` on.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
@@ -59,6 +60,18 @@ Result<TimedColumns> ReadTimedColumns(
     read.values.push_back(column >= 0 ? table.value().data[next++] : std::vector<double>());
   }
   return read;
+}
+
+MaybeError CheckLasts(const RecordTimes& times, const std::string& file, int line) {
+  const double frame = 1.0 / times.fps, end_s = times.start_s + times.seconds;
+  const bool begins = times.first_s <= times.start_s + 0.5 * frame;
+  if (begins && times.last_s >= end_s - times.spare * frame) return {};
+  return Error{std::string(times.lasts) + " from " + Rounded(times.first_s, 4) + " to " +
+                   Rounded(times.last_s, 4) + " s, but the motion from " +
+                   Rounded(times.start_s, 4) + " to " + Rounded(end_s, 4) +
+                   " s of that clock; record it longer, cut the motion (end_frame), or give the "
+                   "right clock at frame 0 as \"start\"",
+               file, line};
 }
 
 Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at) {

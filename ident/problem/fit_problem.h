@@ -20,7 +20,8 @@
 
 namespace pushid {
 
-// The frame at which the first push begins, or the ground leaves its place; 0 where nothing happens.
+// The frame at which the first push begins, or the ground leaves its place; 0 where nothing
+// happens.
 int PushFrame(const PendulumRecording& recording);
 
 // What is minimized at a time.

@@ -157,7 +157,8 @@ MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
         turns.Test("number of turns of the hip", "", 0.0)}) {
     if (test) found.tests.push_back(*test);
   }
-  found.explained = explained.empty() ? std::numeric_limits<double>::quiet_NaN() : Median(explained);
+  found.explained =
+      explained.empty() ? std::numeric_limits<double>::quiet_NaN() : Median(explained);
   return found;
 }
 

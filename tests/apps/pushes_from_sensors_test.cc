@@ -1,0 +1,107 @@
+// Pushes measured by force sensors, from the user's side.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "datasets/formats/c3d.h"
+#include "datasets/loading/load_recordings.h"
+#include "tests/apps/app_fixture.h"
+#include "tests/datasets/c3d_writer.h"
+
+namespace pushid {
+namespace {
+
+class PushesFromSensorsTest : public AppTest {};
+
+// The push of a recording through a C3D channel, a list of two halves, and with its clock wrong.
+TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
+  SyntheticOptions options;
+  options.subjects = 1;
+  options.recordings_per_subject = 1;
+  options.frames = 90;
+  options.push_kind = PushKind::kExternal;
+  options.push_start_frame = 15;
+  options.direction_sigma_rad = 0.0;
+  options.min_height = options.max_height = 1.0;
+  options.model.push_tail = PushTail::kNone;
+  const auto made = MakeSyntheticRecordings(options);
+  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  ASSERT_FALSE(WriteSyntheticRecordings(Path("external"), options, made.value()));
+  const Recording& recording = made.value()[0].recording;
+  const Push& push = recording.pushes[0];
+  C3dFile c3d;
+  c3d.point_rate_hz = 60.0;
+  c3d.point_unit = "mm";
+  c3d.point_names = {"spare"};
+  c3d.points = {std::vector<Eigen::Vector3d>(90, Eigen::Vector3d::Ones())};
+  c3d.analog = {{"rod", "V", {}}};
+  for (int i = 0; i < 90 * 20; ++i) {
+    const int row = i / 20 - push.start_frame;
+    const bool pushed = row >= 0 && row < static_cast<int>(push.force.size());
+    c3d.analog[0].samples.push_back(pushed ? push.force[row].x() / -50.0 : 0.0);
+  }
+  ASSERT_FALSE(WriteC3d(Path("rod.c3d"), c3d));
+  const std::vector<std::string> common = {"--recordings=" + Path("external/manifest.json"),
+                                           "--id=" + recording.id, "--out=" + Path("p.csv"),
+                                           "--overwrite"};
+  const auto with = [&common](std::vector<std::string> flags) {
+    flags.insert(flags.end(), common.begin(), common.end());
+    return RunApp("pushid-push", flags);
+  };
+  const std::string c3d_flag = "--sensor=" + Path("rod.c3d");
+  AppRun run = with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  double impulse = 0.0;
+  for (const Eigen::Vector4d& row : push.force) impulse += row.x() / 60.0;
+  char said[64];
+  std::snprintf(said, sizeof said, "impulse %.3g N s forwards", impulse);
+  EXPECT_TRUE(Contains(run.out, said));
+  const std::string alone = ReadText(Path("p.csv"));
+
+  WriteText("halves.json",
+            "[{\"file\": \"rod.c3d\", \"column\": \"rod\", \"gain\": -25},"
+            " {\"file\": \"rod.c3d\", \"column\": \"rod\", \"gain\": -25}]");
+  run = with({"--sensors=" + Path("halves.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(ReadText(Path("p.csv")), alone);
+  EXPECT_TRUE(Contains(run.out, "from 2 sensors together"));
+
+  // Its clock a fifth of a second late: found from the motion.
+  run = with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50", "--sensor_start=-0.2",
+              "--estimate_offset"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::size_t at = run.out.find("clock at frame 0 moved by ");
+  ASSERT_NE(at, std::string::npos) << run.out;
+  EXPECT_NEAR(std::stod(run.out.substr(at + 26)), 0.2, 0.6 / 60.0) << run.out;
+
+  // On clocks that agree nothing is moved.
+  run = with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50", "--estimate_offset"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "the clocks agree")) << run.out;
+  EXPECT_EQ(ReadText(Path("p.csv")), alone);
+
+  // Every recording its own file, into a folder that is made; one that breaks off is told of.
+  run = RunApp("pushid-push", {common[0], "--ids=" + recording.id, "--sensor_column=rod",
+                               "--sensor=" + Path("{id}.c3d"), "--out=" + Path("made/{id}.csv")});
+  EXPECT_TRUE(Refused(run, {recording.id + ".c3d"}));
+  auto& samples = c3d.analog[0].samples;
+  samples.resize(20 * (push.start_frame + push.force.size() / 2));
+  c3d.points[0].resize(samples.size() / 20);
+  ASSERT_FALSE(WriteC3d(Path(recording.id + ".c3d"), c3d));
+  run = RunApp("pushid-push",
+               {common[0], "--ids=" + recording.id, "--sensor_column=rod", "--sensor_gain=-50",
+                "--sensor=" + Path("{id}.c3d"), "--out=" + Path("made/{id}.csv")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(Path("made/" + recording.id + ".csv")));
+  EXPECT_TRUE(Contains(run.err, "part of the push is missing"));
+
+  EXPECT_TRUE(Refused(with({c3d_flag}), {"--sensor_column", "it has rod"}));
+  EXPECT_TRUE(Refused(with({c3d_flag, "--sensor_column=x"}), {"no analog channel 'x'", "rod"}));
+  EXPECT_TRUE(Refused(with({"--sensor_column=rod"}), {"--sensor_column needs --sensor"}));
+  EXPECT_TRUE(Refused(with({"--estimate_offset"}), {"--estimate_offset needs --sensor"}));
+  EXPECT_TRUE(Refused(with({c3d_flag, "--sensors=x.json"}), {"not both"}));
+  EXPECT_TRUE(Refused(with({c3d_flag, "--resample_fps=30"}), {"leave --resample_fps out"}));
+}
+}  // namespace
+}  // namespace pushid
