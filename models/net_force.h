@@ -190,7 +190,7 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
       if (push.person != person) continue;
       force[ForcePart::kTail] +=
           stands ? TailForceAtHip(push, p, self.body, force.angles, frame, scene.dt)
-                 : TailForce(push, p, frame, scene.dt);
+                 : TailForce(push, self.body.mass, p, frame, scene.dt);
     }
   }
   if (!self.laws.empty()) force[ForcePart::kOwn] = self.Own(p, state);

@@ -147,6 +147,10 @@
     m.push_tail == PushTail::kExponential && m.stance != Stance::kFixed, false, \
     "growth of that time with the push's duration", \
     "with pushes of different duration") \
+  X(kTailBase, "tail_base", "b", "m/s", 0, -5, 5, 0.5, kIdentity, \
+    m.push_tail == PushTail::kExponential && m.stance != Stance::kFixed, false, \
+    "speed from the tail's part that does not depend on the push", \
+    "with pushes of different strength that cover only their first part") \
   /* between people: contact first, in one piece (residuals/sensitivities/pair_jacobian.cc) */ \
   X(kContactStiffness, "contact_stiffness", "A", "N/m", 2000, 1, 1e5, 2000, kLog, \
     m.interaction.spring, m.interaction.spring, \

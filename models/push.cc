@@ -9,14 +9,17 @@ double LogTailDuration(double push_duration) {
   return std::log(std::min(push_duration, kLongestTailDuration) / kTailReferenceDuration);
 }
 
-double WholeImpulse(const ScenePush& push, const ParameterSet<double>& p, double dt) {
-  const double duration = static_cast<double>(push.force.size()) * dt;
-  const double force = push.mean.head<2>().norm();
-  if (push.kind == PushKind::kExternal || push.force.empty()) return force * duration;
+double TailImpulse(const ScenePush& push, double mass, const ParameterSet<double>& p, double dt) {
+  if (push.kind == PushKind::kExternal || push.force.empty()) return 0.0;
+  const TailOf<double> tail = TailAt(push, mass, push.EndFrame(), dt);
   // The sum of TailForce over all frames to come, a geometric series.
-  const double tail =
-      p[kTailGain] * dt / -std::expm1(-dt / TailDecayTime(p, LogTailDuration(duration)));
-  return force * (duration + tail);
+  return push.mean.head<2>().norm() * tail.Gain(p) * dt /
+         -std::expm1(-dt / TailDecayTime(p, tail.log_duration));
+}
+
+double WholeImpulse(const ScenePush& push, double mass, const ParameterSet<double>& p, double dt) {
+  const double duration = static_cast<double>(push.force.size()) * dt;
+  return push.mean.head<2>().norm() * duration + TailImpulse(push, mass, p, dt);
 }
 
 std::vector<Vector4<double>> HalfSinePush(const Body& body, double impulse, int frames, double dt) {

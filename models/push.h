@@ -1,12 +1,15 @@
 // models: pushes as generalized forces [N, N, N m, N m] on one person, frame by frame.
 //
 // A `net` push covers only the first part of the real one. Its tail goes on after the last row as
-//   F(k) = [g Fx, g Fy, r Ftheta, r Fphi] exp(-k dt / tau),  tau = t (d / 0.1 s)^e,
+//   F(k) = [(g + s) Fx, (g + s) Fy, r (1 + s) Ftheta, r (1 + s) Fphi] exp(-k dt / tau),
+//   tau = t (d / 0.1 s)^e,   s = b M / (tau |F|),   |F| = |[Fx, Fy]|,
 // with F the mean of the n rows, k = frames since the end, g = tail_gain, r = tail_torque,
 // t = tail_time, e = tail_exponent, d = n dt, at most 0.4 s: the published pushes are no longer,
-// and a tail that kept growing would send people away who are pushed weakly for long. An external
-// push has no tail. Where feet stand (stance.h) the tail goes on as what it is, a horizontal force
-// [g Fx, g Fy] exp(-k dt / tau) at the hip: r is what sliding feet make of it.
+// and a tail that kept growing would send people away who are pushed weakly for long. b = tail_base
+// is what does not depend on how hard the rows push: who pushes goes on until the person, of mass
+// M, goes. Together its force gives the person the speed b. An external push has no tail. Where
+// feet stand (stance.h) the tail goes on as what it is, a horizontal force
+// [(g + s) Fx, (g + s) Fy] exp(-k dt / tau) at the hip: r is what sliding feet make of it.
 #pragma once
 
 #include <cmath>
@@ -72,8 +75,9 @@ inline bool TailActs(const ScenePush& push, int frame) {
 template <typename L>
 struct TailOf {
   Vector4<L> mean;
-  L log_duration;  // LogTailDuration of the push
-  L elapsed;       // s, since the push ended
+  L mass_per_force;  // M / |F|; 0 of a push without horizontal force
+  L log_duration;    // LogTailDuration of the push
+  L elapsed;         // s, since the push ended
 
   // What is left of it.
   template <typename T>
@@ -81,50 +85,75 @@ struct TailOf {
     using std::exp;
     return exp(-elapsed / TailDecayTime(p, log_duration));
   }
+  // s above.
+  template <typename T>
+  T BaseShare(const ParameterSet<T>& p) const {
+    return p[kTailBase] * mass_per_force / TailDecayTime(p, log_duration);
+  }
+  // What is left over the mean of the rows' horizontal force.
+  template <typename T>
+  T Gain(const ParameterSet<T>& p) const {
+    return (p[kTailGain] + BaseShare(p)) * Decay(p);
+  }
   template <typename T>
   Vector4<T> Force(const ParameterSet<T>& p) const {
-    const T decay = Decay(p);
-    const T gain = p[kTailGain] * decay, torque = p[kTailTorque] * decay;
+    const T decay = Decay(p), share = BaseShare(p);
+    const T gain = (p[kTailGain] + share) * decay;
+    const T torque = p[kTailTorque] * (1.0 + share) * decay;
     return {gain * mean[0], gain * mean[1], torque * mean[2], torque * mean[3]};
   }
   // Adds the derivatives of Force to a 4 x kNumParameters matrix; written out: 2.5 times as fast
   // as Jets (tests/benchmarks, Jacobian_OfTail).
   template <typename T, typename Matrix>
   void AddJacobian(const ParameterSet<T>& p, Matrix* by_parameter) const {
-    const T tau = TailDecayTime(p, log_duration), decay = Decay(p);
-    // d decay / d tau = decay elapsed / tau^2; tau is proportional to tail_time.
-    const T by_time = decay * elapsed / (tau * p[kTailTime]);
-    const T by_exponent = decay * elapsed / tau * log_duration;
+    const T tau = TailDecayTime(p, log_duration), decay = Decay(p), share = BaseShare(p);
+    const T by_base = mass_per_force / tau;  // of the share
+    // d decay / d log tau = decay elapsed / tau, d share / d log tau = -share.
+    const T decay_by_tau = decay * elapsed / tau;
+    const T gain_by_tau = (p[kTailGain] + share) * decay_by_tau - share * decay;
+    const T torque_by_tau = p[kTailTorque] * ((1.0 + share) * decay_by_tau - share * decay);
     for (int row = 0; row < 4; ++row) {
-      const Parameter amplitude = row < 2 ? kTailGain : kTailTorque;
-      (*by_parameter)(row, amplitude) += decay * mean[row];
-      (*by_parameter)(row, kTailTime) += p[amplitude] * mean[row] * by_time;
-      (*by_parameter)(row, kTailExponent) += p[amplitude] * mean[row] * by_exponent;
+      const T by_tau = (row < 2 ? gain_by_tau : torque_by_tau) * mean[row];
+      if (row < 2) {
+        (*by_parameter)(row, kTailGain) += decay * mean[row];
+        (*by_parameter)(row, kTailBase) += decay * by_base * mean[row];
+      } else {
+        (*by_parameter)(row, kTailTorque) += decay * (1.0 + share) * mean[row];
+        (*by_parameter)(row, kTailBase) += p[kTailTorque] * decay * by_base * mean[row];
+      }
+      (*by_parameter)(row, kTailTime) += by_tau / p[kTailTime];
+      (*by_parameter)(row, kTailExponent) += by_tau * log_duration;
     }
   }
 };
 
-// The tail of a push that has one at `frame` (TailActs).
-inline TailOf<double> TailAt(const ScenePush& push, int frame, double dt) {
-  return {push.mean, LogTailDuration(static_cast<double>(push.force.size()) * dt),
+// The tail of a push on a person of so many kg that has one at `frame` (TailActs).
+inline TailOf<double> TailAt(const ScenePush& push, double mass, int frame, double dt) {
+  const double force = push.mean.head<2>().norm();
+  return {push.mean, force > 0.0 ? mass / force : 0.0,
+          LogTailDuration(static_cast<double>(push.force.size()) * dt),
           (frame - push.EndFrame()) * dt};
 }
 
 // Adds the derivatives of TailForce.
-inline void AddTailJacobian(const ScenePush& push, const ParameterSet<double>& p, int frame,
-                            double dt, Eigen::Matrix<double, 4, kNumParameters>* by_parameter) {
-  if (TailActs(push, frame)) TailAt(push, frame, dt).AddJacobian(p, by_parameter);
+inline void AddTailJacobian(const ScenePush& push, double mass, const ParameterSet<double>& p,
+                            int frame, double dt,
+                            Eigen::Matrix<double, 4, kNumParameters>* by_parameter) {
+  if (TailActs(push, frame)) TailAt(push, mass, frame, dt).AddJacobian(p, by_parameter);
 }
 
 // The tail's force at `frame`; zero where it does not act.
 template <typename T>
-Vector4<T> TailForce(const ScenePush& push, const ParameterSet<T>& p, int frame, double dt) {
+Vector4<T> TailForce(const ScenePush& push, double mass, const ParameterSet<T>& p, int frame,
+                     double dt) {
   if (!TailActs(push, frame)) return Vector4<T>::Zero();
-  return TailAt(push, frame, dt).Force(p);
+  return TailAt(push, mass, frame, dt).Force(p);
 }
 
+// The horizontal impulse of a push's tail, N s; 0 of a push without one.
+double TailImpulse(const ScenePush& push, double mass, const ParameterSet<double>& p, double dt);
 // The horizontal impulse of a push with its tail, N s.
-double WholeImpulse(const ScenePush& push, const ParameterSet<double>& p, double dt);
+double WholeImpulse(const ScenePush& push, double mass, const ParameterSet<double>& p, double dt);
 
 // A force f (N, world) at the fraction `height` of the rod, as a generalized force.
 template <typename T>
@@ -147,7 +176,7 @@ template <typename T>
 Vector4<T> TailForceAtHip(const ScenePush& push, const ParameterSet<T>& p, const Body& body,
                           const Angles<T>& angles, int frame, double dt) {
   if (!TailActs(push, frame)) return Vector4<T>::Zero();
-  const T gain = p[kTailGain] * TailAt(push, frame, dt).Decay(p);
+  const T gain = TailAt(push, body.mass, frame, dt).Gain(p);
   return GeneralizedForce<T>(body, angles, {gain * push.mean[0], gain * push.mean[1], T(0.0)}, 1.0);
 }
 

@@ -59,7 +59,7 @@ bool TailCannotAct(const std::vector<PendulumRecording>& recordings) {
 
 void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions* options) {
   if (!TailCannotAct(recordings)) return;
-  for (Parameter id : {kTailGain, kTailTorque, kTailTime, kTailExponent}) {
+  for (Parameter id : {kTailGain, kTailTorque, kTailTime, kTailExponent, kTailBase}) {
     options->table[id].free = options->table[id].pooled = false;
   }
 }

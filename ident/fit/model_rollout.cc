@@ -18,7 +18,7 @@ std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model
   for (const std::string& unit : PoolingUnits(recording, model.pool_by)) {
     sets.push_back(model.For(unit));
     if (!covariates.empty()) map.Shift(covariates[sets.size() - 1], &sets.back());
-    sets.back()[kTailGain] *= std::exp(effect);
+    for (Parameter id : {kTailGain, kTailBase}) sets.back()[id] *= std::exp(effect);
   }
   return sets;
 }

@@ -15,8 +15,9 @@ double Duration(const PendulumRecording& recording, const ScenePush& push) {
 double ImpulsePerMass(const IdentifiedModel& model, const PendulumRecording& recording,
                       const ScenePush& push) {
   ParameterSet<double> p = PeoplesParameters(model, recording)[push.person];
-  if (model.options.push_tail == PushTail::kNone) p[kTailGain] = 0.0;
-  return WholeImpulse(push, p, recording.scene.dt) / recording.scene.people[push.person].body.mass;
+  if (model.options.push_tail == PushTail::kNone) p[kTailGain] = p[kTailBase] = 0.0;
+  const double mass = recording.scene.people[push.person].body.mass;
+  return WholeImpulse(push, mass, p, recording.scene.dt) / mass;
 }
 
 // The pushes of some recordings that lie outside of a range.

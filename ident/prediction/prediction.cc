@@ -67,7 +67,7 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
     ModelOptions options = model.options;
     options.learned = member.network;
     ParameterSet<double> parameters = member.parameters;
-    parameters[kTailGain] *= std::exp(effect);
+    for (Parameter id : {kTailGain, kTailBase}) parameters[id] *= std::exp(effect);
     add(PredictOne(options, {parameters}, recording, frames));
   }
   if (left.size() >= stayed.size()) return left.front();

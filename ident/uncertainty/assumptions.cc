@@ -196,7 +196,7 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
     all.push_back(Delayed(problem, point));
   }
   for (const ParameterSpec& spec : options.table.specs) {
-    const bool of_tail = spec.id >= kTailGain && spec.id <= kTailExponent;
+    const bool of_tail = spec.id >= kTailGain && spec.id <= kTailBase;
     const bool tested = !spec.free && !spec.tied_to && !HeldByConvention(spec.id) &&
                         !IsNoiseParameter(spec.id) && spec.id != kPushGain &&
                         Acts(spec.id, options.model) && !(of_tail && only_measured);

@@ -75,7 +75,7 @@ MatrixXd SharedCovariance(const MixedModel& model, const std::vector<OwnInformat
   return inverse * scores * inverse;
 }
 
-bool IsTail(Parameter id) { return id >= kTailGain && id <= kTailExponent; }
+bool IsTail(Parameter id) { return id >= kTailGain && id <= kTailBase; }
 
 void AddSensor(const FitProblem& problem, const std::vector<int>& known, const ErrorParts& parts,
                StudyPlan* plan) {

@@ -104,9 +104,10 @@ void LaneGroup::SetTails(int lane) {
   const TailPushes pushes = PushesWithTails(problem);
   for (size_t k = 0; k < pushes.size(); ++k) {
     double* const tail = tails_.data() + k * kLaneTails * width_ + lane;
-    const TailOf<double> at_end =
-        TailAt(*pushes[k], pushes[k]->EndFrame(), problem.recording->scene.dt);
+    const TailOf<double> at_end = TailAt(*pushes[k], problem.recording->scene.people[0].body.mass,
+                                         pushes[k]->EndFrame(), problem.recording->scene.dt);
     for (int i = 0; i < 4; ++i) tail[(kLaneMean + i) * width_] = at_end.mean[i];
+    tail[kLaneMassPerForce * width_] = at_end.mass_per_force;
     tail[kLaneLogDuration * width_] = at_end.log_duration;
     tail[kLaneEnd * width_] = pushes[k]->EndFrame();
   }

@@ -39,7 +39,7 @@ enum LaneConstant {
   kLaneConstants = kLaneStart + 8
 };
 // Of one tail.
-enum LaneTail { kLaneMean = 0, kLaneLogDuration = 4, kLaneEnd = 5, kLaneTails };
+enum LaneTail { kLaneMean = 0, kLaneMassPerForce = 4, kLaneLogDuration, kLaneEnd, kLaneTails };
 inline constexpr int kLaneParameters = kContactStiffness;  // those of a person alone come first
 
 struct LaneEntry {

@@ -87,6 +87,7 @@ class Roller {
     const Lanes since = static_cast<double>(frame) - LoadLanes(tail + kLaneEnd * kWidth);
     const Lanes acts = Select(0.0 > since, 0.0, 1.0);
     return {acts * LoadVector<4>(tail + kLaneMean * kWidth),
+            LoadLanes(tail + kLaneMassPerForce * kWidth),
             LoadLanes(tail + kLaneLogDuration * kWidth), acts * since * self_.dt};
   }
 

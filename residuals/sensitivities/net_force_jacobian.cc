@@ -61,7 +61,7 @@ void NetForceJacobian(const Scene& scene, const ModelOptions& options, const Sel
   if (options.push_tail == PushTail::kNone || active != ActiveForces::kAll) return;
   for (const ScenePush& push : scene.pushes) {
     if (push.person == person) {
-      AddTailJacobian(push, p, frame, scene.dt, &jacobian->by_parameter);
+      AddTailJacobian(push, self.body.mass, p, frame, scene.dt, &jacobian->by_parameter);
     }
   }
 }

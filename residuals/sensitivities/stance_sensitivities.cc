@@ -128,16 +128,16 @@ void AddTailJacobianAtHip(const ScenePush& push, const SelfForce& self,
                           const ParameterSet<double>& p, int frame, double dt,
                           const Vector4<double>& q, SelfForce::Jacobian* jacobian) {
   if (!TailActs(push, frame)) return;
-  constexpr Parameter kTail[] = {kTailGain, kTailTime, kTailExponent};
-  using TailJet = ceres::Jet<double, 5>;
+  constexpr Parameter kTail[] = {kTailGain, kTailTime, kTailExponent, kTailBase};
+  using TailJet = ceres::Jet<double, 6>;
   ParameterSet<TailJet> parameters;
-  for (int i = 0; i < 3; ++i) parameters[kTail[i]] = TailJet(p[kTail[i]], 2 + i);
+  for (int i = 0; i < 4; ++i) parameters[kTail[i]] = TailJet(p[kTail[i]], 2 + i);
   const Vector4<TailJet> angles{TailJet(q[0]), TailJet(q[1]), TailJet(q[2], 0), TailJet(q[3], 1)};
   const Vector4<TailJet> force =
       TailForceAtHip(push, parameters, self.body, Angles<TailJet>(angles), frame, dt);
   for (int row = 0; row < 4; ++row) {
     jacobian->by_state.row(row).segment<2>(2) += force[row].v.head<2>().transpose();
-    for (int i = 0; i < 3; ++i) jacobian->by_parameter(row, kTail[i]) += force[row].v[2 + i];
+    for (int i = 0; i < 4; ++i) jacobian->by_parameter(row, kTail[i]) += force[row].v[2 + i];
   }
 }
 

@@ -76,7 +76,7 @@ void Jacobian_OfTail_Written(benchmark::State& state) {
   jacobian.setZero();
   for (auto _ : state) {
     benchmark::DoNotOptimize(walker);
-    AddTailJacobian(push, walker.p, 12, kDt, &jacobian);
+    AddTailJacobian(push, 80.0, walker.p, 12, kDt, &jacobian);
     benchmark::DoNotOptimize(jacobian);
   }
 }
@@ -85,7 +85,7 @@ BENCHMARK(Jacobian_OfTail_Written)->Unit(benchmark::kNanosecond);
 void Jacobian_OfTail_ByJets(benchmark::State& state) {
   Walker walker(2);
   const ScenePush push = NetPush();
-  constexpr int kTail = kTailExponent - kTailGain + 1;
+  constexpr int kTail = kTailBase - kTailGain + 1;
   using Jet = ceres::Jet<double, kTail>;
   Eigen::Matrix<double, 4, kNumParameters> jacobian;
   jacobian.setZero();
@@ -93,7 +93,7 @@ void Jacobian_OfTail_ByJets(benchmark::State& state) {
     benchmark::DoNotOptimize(walker);
     ParameterSet<Jet> p;
     for (int i = 0; i < kTail; ++i) p[kTailGain + i] = Jet(walker.p[kTailGain + i], i);
-    const Vector4<Jet> force = TailForce(push, p, 12, kDt);
+    const Vector4<Jet> force = TailForce(push, 80.0, p, 12, kDt);
     for (int row = 0; row < 4; ++row) {
       jacobian.row(row).segment<kTail>(kTailGain) += force[row].v.transpose();
     }

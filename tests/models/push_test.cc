@@ -11,6 +11,7 @@ namespace pushid {
 namespace {
 
 using ParameterJet = ceres::Jet<double, kNumParameters>;
+constexpr double kMass = 80.0;  // kg, of who is pushed
 using TailJacobian = Eigen::Matrix<double, 4, kNumParameters>;
 
 ScenePush RandomPush(Random* random, int rows, PushKind kind, int start_frame = 3) {
@@ -25,17 +26,19 @@ TEST(PushTail, FollowsItsFormula) {
   ParameterSet<double> p = RandomParameters(&random);
   p[kTailTime] = 0.2;
   ASSERT_EQ(push.EndFrame(), 9);
-  EXPECT_EQ(TailForce(push, p, 8, kSampleDt), Vector4<double>(Vector4<double>::Zero()));
+  EXPECT_EQ(TailForce(push, kMass, p, 8, kSampleDt), Vector4<double>(Vector4<double>::Zero()));
   Vector4<double> mean = Vector4<double>::Zero();
   for (const Vector4<double>& row : push.force) mean += row / 6.0;
-  const Vector4<double> gain(p[kTailGain], p[kTailGain], p[kTailTorque], p[kTailTorque]);
+  const double share = p[kTailBase] * kMass / (0.2 * mean.head<2>().norm());
+  const double force = p[kTailGain] + share, torque = p[kTailTorque] * (1.0 + share);
+  const Vector4<double> gain(force, force, torque, torque);
   // A push of six frames lasts the reference duration, whatever the exponent.
   EXPECT_NEAR(TailDecayTime(p, LogTailDuration(6 * kSampleDt)), 0.2, 1e-15);
   EXPECT_NEAR(TailDecayTime(p, LogTailDuration(12 * kSampleDt)),
               0.2 * std::pow(2.0, p[kTailExponent]), 1e-14);
   for (int k : {0, 1, 12}) {
     const Vector4<double> expected = gain.cwiseProduct(mean) * std::exp(-k * kSampleDt / 0.2);
-    ExpectClose(TailForce(push, p, 9 + k, kSampleDt), expected, 1e-13, 1.0);
+    ExpectClose(TailForce(push, kMass, p, 9 + k, kSampleDt), expected, 1e-13, 1.0);
   }
 }
 
@@ -45,10 +48,32 @@ TEST(PushTail, ExternalAndEmptyPushesHaveNone) {
   for (const ScenePush& push :
        {RandomPush(&random, 6, PushKind::kExternal), RandomPush(&random, 0, PushKind::kNet)}) {
     TailJacobian jacobian = TailJacobian::Zero();
-    AddTailJacobian(push, p, 20, kSampleDt, &jacobian);
+    AddTailJacobian(push, kMass, p, 20, kSampleDt, &jacobian);
     EXPECT_EQ(jacobian, TailJacobian(TailJacobian::Zero()));
-    EXPECT_EQ(TailForce(push, p, 20, kSampleDt), Vector4<double>(Vector4<double>::Zero()));
+    EXPECT_EQ(TailForce(push, kMass, p, 20, kSampleDt), Vector4<double>(Vector4<double>::Zero()));
   }
+}
+
+// The part that does not depend on the push gives everybody the same speed, along the push.
+TEST(PushTail, ItsBaseIsASpeed) {
+  ParameterSet<double> p{};
+  p[kTailBase] = 0.8, p[kTailTime] = 0.25;
+  const double frame = 1e-3;
+  for (double mass : {50.0, 100.0}) {
+    for (double strength : {1.0, 7.0}) {
+      const Vector4<double> force(30.0 * strength, -40.0 * strength, 9.0, 2.0);
+      const ScenePush push = MakeScenePush(0, 0, PushKind::kNet, {force, force});
+      Eigen::Vector2d impulse = Eigen::Vector2d::Zero();
+      for (int t = 0; t < 10000; ++t) {
+        impulse += frame * TailForce(push, mass, p, t, frame).head<2>();
+      }
+      EXPECT_NEAR(impulse[0] / mass, 0.8 * 0.6, 2e-3);
+      EXPECT_NEAR(impulse[1] / mass, -0.8 * 0.8, 2e-3);
+      EXPECT_NEAR(TailImpulse(push, mass, p, frame), impulse.norm(), 1e-9 * mass);
+    }
+  }
+  const ScenePush none = MakeScenePush(0, 0, PushKind::kNet, {{0.0, 0.0, 5.0, 0.0}});
+  EXPECT_EQ(TailForce(none, 80.0, p, 3, frame).norm(), 0.0);
 }
 
 // The same impulse over ever more frames: the tail brings an ever smaller share of it, also with an
@@ -66,8 +91,8 @@ TEST(PushTail, StaysInProportionToTheWholePush) {
           0, 2, PushKind::kNet, std::vector<Vector4<double>>(static_cast<size_t>(frames), force));
       double tail = 0.0;
       for (int frame = 0; frame < 20000; ++frame)
-        tail += TailForce(push, p, frame, kSampleDt)[0] * kSampleDt;
-      EXPECT_NEAR(WholeImpulse(push, p, kSampleDt), kImpulse + tail, 1e-9 * tail) << frames;
+        tail += TailForce(push, kMass, p, frame, kSampleDt)[0] * kSampleDt;
+      EXPECT_NEAR(WholeImpulse(push, kMass, p, kSampleDt), kImpulse + tail, 1e-9 * tail) << frames;
       const double share = tail / kImpulse;
       if (exponent == 0.0 || frames > 24) {
         EXPECT_LT(share, last_share) << frames;
@@ -84,8 +109,8 @@ TEST(PushTail, WholeImpulseOfAnExternalPushIsItsOwn) {
   p[kTailGain] = 1.0, p[kTailTime] = 0.25;
   const ScenePush push =
       MakeScenePush(0, 0, PushKind::kExternal, {{30, 40, 7, 0}, {30, 40, 0, 0}, {0, 0, 0, 0}});
-  EXPECT_NEAR(WholeImpulse(push, p, 0.1), 10.0, 1e-12);
-  EXPECT_EQ(WholeImpulse(MakeScenePush(0, 0, PushKind::kNet, {}), p, 0.1), 0.0);
+  EXPECT_NEAR(WholeImpulse(push, kMass, p, 0.1), 10.0, 1e-12);
+  EXPECT_EQ(WholeImpulse(MakeScenePush(0, 0, PushKind::kNet, {}), kMass, p, 0.1), 0.0);
 }
 
 TEST(PushTail, JacobianEqualsAutomaticDerivatives) {
@@ -99,12 +124,12 @@ TEST(PushTail, JacobianEqualsAutomaticDerivatives) {
     ParameterSet<ParameterJet> jets;
     for (int i = 0; i < kNumParameters; ++i) jets[i] = ParameterJet(p[i], i);
     for (int frame : {0, push.EndFrame() - 1, push.EndFrame(), push.EndFrame() + 17}) {
-      const Vector4<ParameterJet> force = TailForce(push, jets, frame, kSampleDt);
+      const Vector4<ParameterJet> force = TailForce(push, kMass, jets, frame, kSampleDt);
       TailJacobian expected;
       for (int i = 0; i < 4; ++i) expected.row(i) = force[i].v.transpose();
       // The Jacobian is added to what is there.
       TailJacobian jacobian = TailJacobian::Constant(7.0);
-      AddTailJacobian(push, p, frame, kSampleDt, &jacobian);
+      AddTailJacobian(push, kMass, p, frame, kSampleDt, &jacobian);
       ExpectClose((jacobian - TailJacobian::Constant(7.0)).eval(), expected, 1e-12, 7.0);
     }
   }
@@ -153,12 +178,13 @@ TEST(Scene, ScaledPushesScaleTheTailToo) {
   Scene scene = SettlingScene(80.0, 25.0);
   scene.pushes.push_back(RandomPush(&random, 5, PushKind::kNet));
   const Scene scaled = ScalePushes(scene, 1.4);
-  const ParameterSet<double> p = RandomParameters(&random);
+  ParameterSet<double> p = RandomParameters(&random);
+  p[kTailBase] = 0.0;
   EXPECT_EQ(scene.LastPushEnd(), 12);
   for (int i : {0, 1}) {
     ExpectClose(scaled.pushes[i].force[2], (1.4 * scene.pushes[i].force[2]).eval(), 1e-14);
-    ExpectClose(TailForce(scaled.pushes[i], p, 30, kSampleDt),
-                (1.4 * TailForce(scene.pushes[i], p, 30, kSampleDt)).eval(), 1e-14);
+    ExpectClose(TailForce(scaled.pushes[i], kMass, p, 30, kSampleDt),
+                (1.4 * TailForce(scene.pushes[i], kMass, p, 30, kSampleDt)).eval(), 1e-14);
   }
 }
 

@@ -17,7 +17,7 @@ ParameterSet<double> UprightParameters() {
   p[kTailGain] = 1.1;
   p[kTailTorque] = 0.3;
   p[kTailTime] = 0.2;
-  p[kTailExponent] = 1.5;
+  p[kTailExponent] = 1.5, p[kTailBase] = 0.3;
   return p;
 }
 
@@ -129,11 +129,11 @@ TEST(Rollout, LaterNetPushReplacesTheTailOfAnEarlierOne) {
   EXPECT_EQ(tail(PushUse::kAsRecorded, 11).norm(), 0.0);
   EXPECT_GT(tail(PushUse::kAdded, 11).norm(), 0.0);
   // Afterwards both tails act.
-  ExpectClose(
-      tail(PushUse::kAsRecorded, 14),
-      (TailForce(scene.pushes[0], p, 14, scene.dt) + TailForce(scene.pushes[1], p, 14, scene.dt))
-          .eval(),
-      1e-14);
+  ExpectClose(tail(PushUse::kAsRecorded, 14),
+              (TailForce(scene.pushes[0], scene.people[0].body.mass, p, 14, scene.dt) +
+               TailForce(scene.pushes[1], scene.people[0].body.mass, p, 14, scene.dt))
+                  .eval(),
+              1e-14);
 }
 
 TEST(Rollout, OverlappingPushesAddUp) {

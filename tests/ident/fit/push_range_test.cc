@@ -42,7 +42,8 @@ TEST(PushRange, HoldsDurationsByKindAndWholeImpulses) {
   EXPECT_DOUBLE_EQ(range.net_s.upper, 0.1);
   EXPECT_DOUBLE_EQ(range.impulse_per_mass.upper, 160.0 * 0.5 / kMass);
   EXPECT_NEAR(range.impulse_per_mass.lower,
-              WholeImpulse(part.scene.pushes[0], model.parameters, 1.0 / kRate) / kMass, 1e-12);
+              WholeImpulse(part.scene.pushes[0], kMass, model.parameters, 1.0 / kRate) / kMass,
+              1e-12);
   // 200 N for 0.1 s, and after it a tail of 0.25 s: less than for so long altogether.
   EXPECT_GT(range.impulse_per_mass.lower, 200.0 * 0.1 / kMass);
   EXPECT_LT(range.impulse_per_mass.lower, 200.0 * 0.4 / kMass);

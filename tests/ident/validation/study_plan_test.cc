@@ -69,7 +69,8 @@ std::vector<PendulumRecording> Measured(const SyntheticOptions& study) {
     ScenePush& push = r.scene.pushes[0];
     std::vector<Vector4<double>> rows = push.force;
     for (int t = push.EndFrame(); t < r.num_frames(); ++t) {
-      rows.push_back(TailForce(one.scene.pushes[0], one.parameters[0], t, r.scene.dt));
+      rows.push_back(TailForce(one.scene.pushes[0], one.scene.people[0].body.mass,
+                               one.parameters[0], t, r.scene.dt));
     }
     push = MakeScenePush(0, push.start_frame, PushKind::kExternal, rows);
     recordings.push_back(r);
