@@ -6,8 +6,8 @@
 // with F the mean of the n rows, k = frames since the end, g = tail_gain, r = tail_torque,
 // t = tail_time, e = tail_exponent, d = n dt, at most 0.4 s: the published pushes are no longer,
 // and a tail that kept growing would send people away who are pushed weakly for long. b = tail_base
-// is what does not depend on how hard the rows push: who pushes goes on until the person, of mass
-// M, goes. Together its force gives the person the speed b. An external push has no tail. Where
+// is what does not depend on how hard the rows push: a pusher pushes on until the person, of mass
+// M, moves. Together its force gives the person the speed b. An external push has no tail. Where
 // feet stand (stance.h) the tail goes on as what it is, a horizontal force
 // [(g + s) Fx, (g + s) Fy] exp(-k dt / tau) at the hip: r is what sliding feet make of it.
 #pragma once
@@ -148,6 +148,12 @@ Vector4<T> TailForce(const ScenePush& push, double mass, const ParameterSet<T>& 
                      double dt) {
   if (!TailActs(push, frame)) return Vector4<T>::Zero();
   return TailAt(push, mass, frame, dt).Force(p);
+}
+
+// Makes the tail's force so many times as large, and its torque at least (the base's torque is a
+// product of two of these).
+inline void ScaleTail(double factor, ParameterSet<double>* p) {
+  for (Parameter id : {kTailGain, kTailTorque, kTailBase}) (*p)[id] *= factor;
 }
 
 // The horizontal impulse of a push's tail, N s; 0 of a push without one.

@@ -3,6 +3,9 @@
 
 namespace pushid {
 
+template RolloutStatus StepOn<double>(const Scene&, const ModelOptions&, SceneForces<double>*, int,
+                                      RolloutPath<double>*, FrameTable<NetForce<double>>*,
+                                      const FrameTable<Vector4<double>>*);
 template RolloutStatus RollOn<double>(const Scene&, const ModelOptions&, SceneForces<double>*, int,
                                       RolloutPath<double>*, FrameTable<NetForce<double>>*,
                                       const FrameTable<Vector4<double>>*);

@@ -39,6 +39,38 @@ std::string_view OutsideDomain(const Body& body, const PendulumState<T>& state) 
   return {};
 }
 
+// The step from frame t of a path to the next, or of the last frame the forces alone; arguments as
+// RollOn has them.
+template <typename T>
+RolloutStatus StepOn(const Scene& scene, const ModelOptions& options, SceneForces<T>* forces, int t,
+                     RolloutPath<T>* path, FrameTable<NetForce<T>>* trace = nullptr,
+                     const FrameTable<Vector4<double>>* noise = nullptr) {
+  const bool last = t + 1 == path->num_frames();
+  forces->Update(*path, t);
+  forces->PrepareAll();
+  for (int n = 0; n < scene.num_people(); ++n) {
+    const Vector4<T>& qd_previous = path->At(t > 0 ? t - 1 : 0, n).qd;
+    NetForce<T> force = forces->On(n, t, qd_previous);
+    if (noise != nullptr) {
+      const Vector4<double> white = noise->At(t, n) / std::sqrt(scene.dt);
+      force[ForcePart::kNoise] =
+          NoiseFactor<T>(options.process_noise, scene.people[n].body, forces->Parameters(n),
+                         path->At(t, n).qd, Pushed(scene, n, t)) *
+          white.template cast<T>();
+    }
+    const Vector4<T> qdd = forces->AccelerationOf(n, force);
+    if (trace != nullptr) {
+      trace->At(t, n) = force;
+      trace->At(t, n).AddGround(path->At(t, n).qd + scene.dt * qdd);
+    }
+    if (last) continue;
+    path->At(t + 1, n) = forces->Next(n, qdd, force, qd_previous);
+    const std::string_view outside = OutsideDomain(scene.people[n].body, path->At(t + 1, n));
+    if (!outside.empty()) return {false, t + 1, n, outside};
+  }
+  return {};
+}
+
 // Goes on from frame `from` of a path, whose states up to there are given; the posture stays that
 // of the scene's start. On failure the path holds the frames before the named one. trace may be
 // null. noise: standard normal draws by frame and person that drive the process noise
@@ -47,32 +79,10 @@ template <typename T>
 RolloutStatus RollOn(const Scene& scene, const ModelOptions& options, SceneForces<T>* forces,
                      int from, RolloutPath<T>* path, FrameTable<NetForce<T>>* trace = nullptr,
                      const FrameTable<Vector4<double>>* noise = nullptr) {
-  const int people = scene.num_people(), num_frames = path->num_frames();
-  for (int t = from; t < num_frames; ++t) {
-    const bool last = t + 1 == num_frames;
-    if (last && trace == nullptr) break;
-    forces->Update(*path, t);
-    forces->PrepareAll();
-    for (int n = 0; n < people; ++n) {
-      const Vector4<T>& qd_previous = path->At(t > 0 ? t - 1 : 0, n).qd;
-      NetForce<T> force = forces->On(n, t, qd_previous);
-      if (noise != nullptr) {
-        const Vector4<double> white = noise->At(t, n) / std::sqrt(scene.dt);
-        force[ForcePart::kNoise] =
-            NoiseFactor<T>(options.process_noise, scene.people[n].body, forces->Parameters(n),
-                           path->At(t, n).qd, Pushed(scene, n, t)) *
-            white.template cast<T>();
-      }
-      const Vector4<T> qdd = forces->AccelerationOf(n, force);
-      if (trace != nullptr) {
-        trace->At(t, n) = force;
-        trace->At(t, n).AddGround(path->At(t, n).qd + scene.dt * qdd);
-      }
-      if (last) continue;
-      path->At(t + 1, n) = forces->Next(n, qdd, force, qd_previous);
-      const std::string_view outside = OutsideDomain(scene.people[n].body, path->At(t + 1, n));
-      if (!outside.empty()) return {false, t + 1, n, outside};
-    }
+  const int steps = path->num_frames() - (trace == nullptr ? 1 : 0);
+  for (int t = from; t < steps; ++t) {
+    const RolloutStatus status = StepOn<T>(scene, options, forces, t, path, trace, noise);
+    if (!status.ok) return status;
   }
   return {};
 }
@@ -98,6 +108,10 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
 }
 
 // Of doubles, compiled once (rollout.cc): it takes the compiler seconds.
+extern template RolloutStatus StepOn<double>(const Scene&, const ModelOptions&,
+                                             SceneForces<double>*, int, RolloutPath<double>*,
+                                             FrameTable<NetForce<double>>*,
+                                             const FrameTable<Vector4<double>>*);
 extern template RolloutStatus RollOn<double>(const Scene&, const ModelOptions&,
                                              SceneForces<double>*, int, RolloutPath<double>*,
                                              FrameTable<NetForce<double>>*,
