@@ -17,12 +17,6 @@ double StepProbability::ErrorAt(double margin) const {
   return p * (1.0 - p) * std::sqrt(std::max(0.0, x.dot(covariance * x)));
 }
 
-double RecordingEffect::Blend(double seconds) const { return std::min(1.0, blend_rate * seconds); }
-
-Vector3<double> RecordingEffect::Widening(double seconds) const {
-  return Vector3<double>::Ones() + seconds * seconds * widening;
-}
-
 IdentifiedModel ModelOf(const FitResult& result) {
   IdentifiedModel model;
   model.options = result.options.model;
@@ -34,6 +28,7 @@ IdentifiedModel ModelOf(const FitResult& result) {
   model.push_range = result.push_range;
   model.step_probability = result.step_probability;
   model.recording_effect = result.recording_effect;
+  model.forecasts = result.forecasts;
   model.behaviour = result.behaviour;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
     if (pooled.empty()) return;

@@ -164,13 +164,61 @@ void Fields(Archive& a, RecordingEffect& e) {
   a("spread_standard_error", e.spread_error);
   a("error_scale_m", e.error_scale);
   a("explained", e.explained);
-  a("blend_rate_per_s", e.blend_rate);
-  a("widening_per_s2", e.widening);
   a("clusters", e.clusters);
   a("recordings", e.recordings);
-  a.Check(e.spread >= 0.0 && e.error_scale > 0.0 && e.blend_rate >= 0.0 &&
-              (e.widening.array() >= 0.0).all(),
-          "recording_effect has numbers that cannot be");
+  a.Check(e.spread >= 0.0 && e.error_scale > 0.0, "recording_effect has numbers that cannot be");
+}
+
+template <class Archive>
+void Fields(Archive& a, ErrorScale& e) {
+  a("coefficients", e.coefficients);
+  a("quantiles", e.quantiles);
+  a.Check(e.coefficients.allFinite() &&
+              (e.quantiles.empty() || e.quantiles.size() == std::size(kErrorShares)) &&
+              std::is_sorted(e.quantiles.begin(), e.quantiles.end()) &&
+              (e.quantiles.empty() || e.quantiles.front() > 0.0),
+          "an error scale has numbers that cannot be");
+}
+
+template <class Archive>
+void Fields(Archive& a, ForecasterErrors& e) {
+  a("seconds", e.seconds);
+  for (int i = 0; i < kNumForecasters; ++i) {
+    a((std::string(NameOf(static_cast<Forecaster>(i))) + "_m").c_str(), e.mean[i]);
+  }
+  a("stack_m", e.stack);
+  a("recordings", e.recordings);
+}
+
+template <class Archive>
+void Fields(Archive& a, InputNoise& n) {
+  a("force_time_s", n.force_time);
+  a("force_m_s2", n.force);
+  a("measured_m", n.measured);
+  a("measured_time_s", n.measured_time);
+  a.Check(n.force_time > 0.0 && n.force > 0.0 && n.measured > 0.0 && n.measured_time > 0.0,
+          "a filter of unknown forces has numbers that cannot be");
+}
+
+template <class Archive>
+void Fields(Archive& a, ForecastStack& f) {
+  a("input", f.noise);
+  a("tail_strength", f.tail_strength);
+  a("tail_time", f.tail_time);
+  a("likeliest_input", f.likeliest);
+  a.Group("logits", [&f](auto& g) {
+    for (int i = 0; i < kNumForecasters; ++i) {
+      g(std::string(NameOf(static_cast<Forecaster>(i))).c_str(), f.logits[i]);
+    }
+  });
+  a.Group("errors", [&f](auto& g) {
+    constexpr const char* kAxes[] = {"along", "across", "upwards"};
+    for (int i = 0; i < 3; ++i) g(kAxes[i], f.errors[i]);
+  });
+  a("scores", f.scores);
+  a("folds", f.folds);
+  a("recordings", f.recordings);
+  a.Check(f.tail_strength > 0.0 && f.tail_time > 0.0, "forecasts have numbers that cannot be");
 }
 
 template <class Archive>

@@ -86,6 +86,7 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
   a.Optional("step_probability", fit.step_probability);
   a.Optional("likelihood", fit.likelihood);
   a.Optional("recording_effect", fit.recording_effect);
+  a.Optional("forecasts", fit.forecasts);
   if (options.learned != nullptr) {
     a.Written("self_network", [&] { return ToJson(*options.learned); });
   }

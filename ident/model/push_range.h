@@ -1,0 +1,30 @@
+// ident: the pushes that a model was fitted to, and predictions beyond them.
+//
+// What a push does to a person is its impulse over the person's mass: of its rows and of the tail
+// that the model gives it, so that a measured push and the part of one compare. How long it lasts
+// compares among pushes of one kind only: the rows of a net push cover its beginning.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/model/identified_model.h"
+
+namespace pushid {
+
+// What the recorded rows alone give people, m/s; tails not counted.
+double PushSpeed(const PendulumRecording& recording);
+PushRange FittedPushRange(const IdentifiedModel& model,
+                          const std::vector<PendulumRecording>& recordings);
+
+// Farther outside the range than this, a prediction is an extrapolation.
+inline constexpr double kBeyondFittedRange = 1.25;
+
+// What to warn of: one sentence on the durations and one on the impulses that lie outside; none
+// where the model's file is older than the range.
+std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
+                                               const std::vector<PendulumRecording>& recordings);
+
+}  // namespace pushid

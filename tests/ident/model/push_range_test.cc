@@ -1,0 +1,100 @@
+// The pushes that a model was fitted to, and warnings of predictions beyond them.
+#include "ident/model/push_range.h"
+
+#include <gtest/gtest.h>
+
+#include "ident/model/identified_model.h"
+#include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kMass = 80.0, kRate = 60.0;
+
+// One person, pushed along x for so many frames with so many newtons.
+PendulumRecording PushedPerson(const std::string& id, PushKind kind, int frames, double force) {
+  PendulumRecording recording;
+  recording.id = id;
+  recording.labels.Set(kSettingLabel, "single");
+  recording.subject_ids = {"a"};
+  recording.scene.dt = 1.0 / kRate;
+  recording.scene.people.resize(1);
+  recording.scene.people[0].body = {kMass, 0.95, 0.0};
+  recording.scene.pushes = {
+      MakeScenePush(0, 0, kind, std::vector<Vector4<double>>(frames, {force, 0.0, 0.0, 0.0}))};
+  return recording;
+}
+
+IdentifiedModel Model() {
+  IdentifiedModel model;
+  model.parameters = PublishedTailParameters();
+  return model;
+}
+
+TEST(PushRange, HoldsDurationsByKindAndWholeImpulses) {
+  const IdentifiedModel model = Model();
+  const PendulumRecording measured = PushedPerson("e", PushKind::kExternal, 30, 160.0);
+  const PendulumRecording part = PushedPerson("n", PushKind::kNet, 6, 200.0);
+  const PushRange range = FittedPushRange(model, {measured, part});
+  EXPECT_DOUBLE_EQ(range.external_s.lower, 0.5);
+  EXPECT_DOUBLE_EQ(range.external_s.upper, 0.5);
+  EXPECT_DOUBLE_EQ(range.net_s.upper, 0.1);
+  EXPECT_DOUBLE_EQ(range.impulse_per_mass.upper, 160.0 * 0.5 / kMass);
+  EXPECT_NEAR(range.impulse_per_mass.lower,
+              WholeImpulse(part.scene.pushes[0], kMass, model.parameters, 1.0 / kRate) / kMass,
+              1e-12);
+  // 200 N for 0.1 s, and after it a tail of 0.25 s: less than for so long altogether.
+  EXPECT_GT(range.impulse_per_mass.lower, 200.0 * 0.1 / kMass);
+  EXPECT_LT(range.impulse_per_mass.lower, 200.0 * 0.4 / kMass);
+}
+
+TEST(PushRange, WithoutATailThePushIsItsRows) {
+  IdentifiedModel model = Model();
+  model.options.push_tail = PushTail::kNone;
+  const PushRange range = FittedPushRange(model, {PushedPerson("n", PushKind::kNet, 6, 200.0)});
+  EXPECT_DOUBLE_EQ(range.impulse_per_mass.upper, 200.0 * 0.1 / kMass);
+}
+
+TEST(PushRange, WarnsOfWhatLiesOutsideByMoreThanAQuarter) {
+  IdentifiedModel model = Model();
+  const std::vector<PendulumRecording> fitted = {PushedPerson("a", PushKind::kExternal, 20, 60.0),
+                                                 PushedPerson("b", PushKind::kExternal, 40, 60.0)};
+  EXPECT_TRUE(ExtrapolationWarnings(model, fitted).empty());  // a file without a range
+  model.push_range = FittedPushRange(model, fitted);
+  EXPECT_TRUE(ExtrapolationWarnings(model, fitted).empty());
+  EXPECT_TRUE(
+      ExtrapolationWarnings(model, {PushedPerson("c", PushKind::kExternal, 48, 60.0)}).empty());
+  // As long as the others and twice as strong.
+  const auto strong =
+      ExtrapolationWarnings(model, {PushedPerson("c", PushKind::kExternal, 40, 120.0)});
+  ASSERT_EQ(strong.size(), 1u);
+  EXPECT_EQ(strong[0],
+            "the push's impulse over mass of c is 1 m/s; the model was fitted to 0.25 to 0.5 m/s: "
+            "an extrapolation");
+  // Weak and long; the farther of two is named.
+  const auto late =
+      ExtrapolationWarnings(model, {fitted[0], PushedPerson("c", PushKind::kExternal, 60, 30.0),
+                                    PushedPerson("d", PushKind::kExternal, 120, 10.0)});
+  ASSERT_EQ(late.size(), 1u);
+  EXPECT_TRUE(Contains(late[0], "duration of 2 of 3 recordings, farthest d is 2 s")) << late[0];
+  // The rows of a net push are its beginning: their durations do not compare.
+  IdentifiedModel no_tail = model;
+  no_tail.options.push_tail = PushTail::kNone;
+  EXPECT_TRUE(
+      ExtrapolationWarnings(no_tail, {PushedPerson("e", PushKind::kNet, 6, 200.0)}).empty());
+}
+
+TEST(PushRange, AUnitsOwnTailCounts) {
+  IdentifiedModel model = Model();
+  model.pool_by = kConditionLabel;
+  model.by_unit["m"] = model.parameters;
+  model.by_unit["m"][kTailTime] *= 4.0;
+  PendulumRecording of_m = PushedPerson("m", PushKind::kNet, 6, 200.0), plain = of_m;
+  of_m.labels.Set(kConditionLabel, "m");
+  const double longer = FittedPushRange(model, {of_m}).impulse_per_mass.upper;
+  EXPECT_GT(longer, 2.0 * FittedPushRange(model, {plain}).impulse_per_mass.upper);
+}
+
+}  // namespace
+}  // namespace pushid
