@@ -11,9 +11,9 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/fit/model_rollout.h"
 #include "ident/forecasts/group_forecasts.h"
 #include "ident/model/model_json.h"
+#include "ident/model/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
 
 namespace pushid {

@@ -42,7 +42,8 @@ DEFINE_string(compare, "",
               "further candidates, semicolon-separated: name: --flag=value ... added to the flags "
               "given, as in 'pd: --preset=ldp; linear: --self_force=linear'");
 DEFINE_bool(yardsticks, true,
-            "also score the baselines: static, constant velocity and ridge regression");
+            "also score the baselines: static, constant velocity, ridge regression and the mean "
+            "displacement by condition; with --observed those that start from the last frame");
 DEFINE_bool(bands, false,
             "also score how often predictive 50 and 90 % bands contain the held-out recordings");
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
@@ -129,19 +130,22 @@ Result<Candidates> NoisyModels(const Candidates& candidates) {
   return noisy;
 }
 
-// Where first frames are seen, the model started anew takes the place of ridge regression, which
-// could not use them.
+// Where first frames are seen, the model started anew takes the place of ridge regression and
+// template, which could not use them.
 void AddBaselines(const FitOptions& options, Predictors* predictors) {
   const int observed = ObservedFrames();
   if (observed > 0) {
-    predictors->push_back(std::make_unique<ModelPredictor>("re-anchored", options, observed,
-                                                           FirstFrames::kReanchored));
+    predictors->push_back(
+        std::make_unique<ModelPredictor>("re-anchored", options, observed, FramesUse::kReanchored));
   } else {
     predictors->push_back(std::make_unique<RidgePredictor>("ridge"));
+    predictors->push_back(std::make_unique<TemplatePredictor>("template"));
   }
-  predictors->push_back(std::make_unique<BaselinePredictor>("static", StaticBaseline, observed));
-  predictors->push_back(
-      std::make_unique<BaselinePredictor>("constant velocity", ConstantVelocityBaseline, observed));
+  for (const Baseline& baseline : kBaselines) {
+    if (baseline.needs_frames && observed == 0) continue;
+    predictors->push_back(
+        std::make_unique<BaselinePredictor>(baseline.name, baseline.predict, observed));
+  }
 }
 
 // Two of one name could not be told apart in the tables.
@@ -170,7 +174,8 @@ Result<Predictors> MakePredictors(const Candidates& candidates) {
                    "' has no push tail, which --observed estimates from the first frames; give it "
                    "--push_tail=exponential (the presets tail and group have it)"};
     }
-    predictors.push_back(std::make_unique<ModelPredictor>(name, candidate, observed));
+    predictors.push_back(std::make_unique<ModelPredictor>(name, candidate, observed,
+                                                          FramesUse::kForecast, ForecastUseFlag()));
   }
   if (FLAGS_yardsticks) AddBaselines(candidates[0].second, &predictors);
   return predictors;

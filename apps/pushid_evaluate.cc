@@ -63,7 +63,7 @@ Result<std::optional<BodyEvaluation>> Bodies(const RestorationFlags& flags,
   BodyScores scores;
   for (const BodyRecording& body : bodies.value()) {
     ScoreRestoration(model, *restoration.value(), flags.postprocess, body, &scores,
-                     ObservedFrames());
+                     ObservedFrames(), ForecastUseFlag());
   }
   if (!FLAGS_peer.empty()) {
     const Result<std::unique_ptr<Peer>> peer = LoadPeer(FLAGS_peer);
@@ -95,7 +95,8 @@ int Run() {
       Bodies(restoration.value(), model.value(), recordings.value());
   if (!bodies.ok()) return Fail(bodies.error());
   WarnGrouped(InputWarnings(model.value(), pendulums));
-  const Evaluation evaluation = Evaluate(model.value(), pendulums, ObservedFrames(), group_by);
+  const Evaluation evaluation =
+      Evaluate(model.value(), pendulums, ObservedFrames(), group_by, ForecastUseFlag());
   std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
   std::printf("\n%s", StepsReport(pendulums, FLAGS_per_recording).c_str());
   nlohmann::ordered_json json = ToJson(evaluation);

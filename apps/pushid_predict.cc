@@ -17,7 +17,7 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/body_recording.h"
-#include "ident/fit/model_rollout.h"
+#include "ident/model/model_rollout.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/changed_pushes.h"
 #include "ident/prediction/evaluation.h"
@@ -195,7 +195,7 @@ int Run() {
                 "--observed=" + std::to_string(ObservedFrames()) + "; it must be larger");
   }
   const Result<Prediction> predicted =
-      PredictFrom(model.value(), recording, ObservedFrames(), FLAGS_frames);
+      PredictFrom(model.value(), recording, ObservedFrames(), FLAGS_frames, ForecastUseFlag());
   if (!predicted.ok()) return Fail(predicted.error());
   const Prediction& prediction = predicted.value();
   if (!prediction.status.ok) {

@@ -14,7 +14,7 @@
 #include "datasets/loading/ground_record.h"
 #include "datasets/manifest/recording.h"
 #include "ident/figures/text_table.h"
-#include "ident/fit/push_range.h"
+#include "ident/model/push_range.h"
 #include "ident/parameters/option_names.h"
 #include "ident/validation/synthetic_truth.h"
 

@@ -39,6 +39,7 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
       "uncertainty",
       "diagnostics",
       "model",
+      "observed",
       "fit",
       "prediction",
       "validation",

@@ -12,7 +12,10 @@ namespace pushid {
 // How many first frames are seen; 0: none.
 int ObservedFrames();
 
-// What is wrong with it, by itself.
+// Who forecasts then.
+ForecastUse ForecastUseFlag();
+
+// What is wrong with them, by themselves.
 MaybeError CheckObservedFlag();
 // For these recordings.
 MaybeError CheckObservedFlag(const std::vector<PendulumRecording>& recordings);

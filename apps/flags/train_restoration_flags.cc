@@ -143,6 +143,9 @@ MaybeError ReadOptions(RestorationRunOptions* options) {
   } else if (FLAGS_crossvalidate < 2) {
     return Error{"--crossvalidate must be 0 or at least 2 folds"};
   }
+  if (Given("forecast")) {
+    return Error{"--forecast: restorations are scored on all forecasters together; leave it out"};
+  }
   options->observed = ObservedFrames();
   if (options->observed > 0 && FLAGS_crossvalidate == 0) {
     return Error{"--observed needs --crossvalidate: training uses whole recordings"};

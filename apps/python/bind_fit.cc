@@ -169,14 +169,14 @@ void WriteReport(const Model& model, const std::string& path, const Advised& cal
 }
 
 py::object EvaluateOn(const Model& model, const std::vector<SharedRecording>& recordings,
-                      int observed) {
+                      int observed, const std::string& forecast) {
   const IdentifiedModel identified = IdentifiedOf(model);
   const auto pendulums = Pendulums(recordings, identified.mapping);
   if (observed > 0) Check(CheckObserved(pendulums, observed), Fault::kUsage);
   nlohmann::ordered_json json;
   {
     const py::gil_scoped_release no_gil;
-    json = ToJson(Evaluate(identified, pendulums, observed));
+    json = ToJson(Evaluate(identified, pendulums, observed, UsualGroups(), ForecastFrom(forecast)));
   }
   return FromJson(json);
 }
@@ -184,8 +184,8 @@ py::object EvaluateOn(const Model& model, const std::vector<SharedRecording>& re
 py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
                             const std::vector<std::pair<std::string, GivenOptions>>& candidates,
                             const std::string& scheme, int num_folds, int repeats, uint64_t seed,
-                            int observed, bool baselines, int num_threads,
-                            const py::object& progress) {
+                            int observed, const std::string& forecast, bool baselines,
+                            int num_threads, const py::object& progress) {
   CheckRecordings(recordings);
   FoldScheme how = FoldScheme::kStratified;
   Check(ParseName("scheme", scheme, &how), Fault::kUsage);
@@ -195,13 +195,16 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
     const FitSetup setup = Setup(given);
     mapping = setup.roughly().mapping;
     const auto pendulums = Pendulums(recordings, mapping);
-    predictors.push_back(std::make_unique<ModelPredictor>(
-        name, Unwrapped(setup.For(pendulums), Fault::kUsage), observed));
+    predictors.push_back(
+        std::make_unique<ModelPredictor>(name, Unwrapped(setup.For(pendulums), Fault::kUsage),
+                                         observed, FramesUse::kForecast, ForecastFrom(forecast)));
   }
   if (baselines) {
-    predictors.push_back(std::make_unique<BaselinePredictor>("static", StaticBaseline, observed));
-    predictors.push_back(std::make_unique<BaselinePredictor>("constant velocity",
-                                                             ConstantVelocityBaseline, observed));
+    for (const Baseline& baseline : kBaselines) {
+      if (baseline.needs_frames && observed == 0) continue;
+      predictors.push_back(
+          std::make_unique<BaselinePredictor>(baseline.name, baseline.predict, observed));
+    }
   }
   const auto pendulums = Pendulums(recordings, mapping);
   const auto folds = Unwrapped(MakeFolds(pendulums, how, num_folds, repeats, seed), Fault::kUsage);

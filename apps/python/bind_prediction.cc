@@ -85,8 +85,8 @@ std::vector<HipPaths> HipsOf(const std::vector<std::vector<std::vector<BandPoint
 // with the errors of the fitted recordings.
 Result<std::vector<HipPaths>> Drawn(const Model& model, const IdentifiedModel& identified,
                                     const PendulumRecording& seen, int observed, int frames,
-                                    int samples, uint64_t seed) {
-  if (observed > 0) return DrawFrom(identified, seen, observed, samples, seed, frames);
+                                    int samples, uint64_t seed, ForecastUse use) {
+  if (observed > 0) return DrawFrom(identified, seen, observed, samples, seed, frames, use);
   if (identified.options.process_noise.Any()) {
     Result<Futures> futures = DrawFutures(identified, seen, samples, seed, frames);
     if (!futures.ok()) return futures.error();
@@ -115,8 +115,9 @@ PendulumRecording PushedAs(const ChangedPushes& changed, const PendulumRecording
 
 py::dict PredictOn(const Model& model, const SharedRecording& recording, int observed, int frames,
                    int samples, uint64_t seed, const std::string& set, double push_scale,
-                   const std::vector<int>& push_again) {
+                   const std::vector<int>& push_again, const std::string& forecast) {
   const IdentifiedModel identified = With(model, set);
+  const ForecastUse use = ForecastFrom(forecast);
   const PendulumRecording seen =
       PushedAs({push_scale, push_again}, MakePendulumRecording(*recording, identified.mapping),
                observed, frames);
@@ -136,10 +137,10 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
   }
   WarnOfInputs(identified, seen);
   py::dict dict =
-      DictOf(Unwrapped(PredictFrom(identified, seen, observed, frames), Fault::kUsage), seen);
+      DictOf(Unwrapped(PredictFrom(identified, seen, observed, frames, use), Fault::kUsage), seen);
   if (samples > 0) {
-    dict["samples"] = DrawsArray(
-        Unwrapped(Drawn(model, identified, seen, observed, frames, samples, seed), Fault::kUsage));
+    dict["samples"] = DrawsArray(Unwrapped(
+        Drawn(model, identified, seen, observed, frames, samples, seed, use), Fault::kUsage));
   }
   return dict;
 }
@@ -147,13 +148,15 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
 // Everybody's frames as they come; states need the frame before.
 class Online {
  public:
-  Online(const Model& model, const SharedRecording& recording, int frames)
+  Online(const Model& model, const SharedRecording& recording, int frames,
+         const std::string& forecast)
       : model_(std::make_unique<IdentifiedModel>(IdentifiedOf(model))),
         recording_(std::make_unique<PendulumRecording>(
             MakePendulumRecording(*recording, model_->mapping))),
         last_(*recording),
         predictor_(std::make_unique<OnlinePredictor>(
-            Unwrapped(OnlinePredictor::Make(*model_, *recording_, frames), Fault::kUsage))) {
+            Unwrapped(OnlinePredictor::Make(*model_, *recording_, frames, ForecastFrom(forecast)),
+                      Fault::kUsage))) {
     for (RecordedPerson& person : last_.people) {
       for (auto* track : {&person.hip, &person.left_ankle, &person.right_ankle}) track->resize(1);
       person.left_toe.clear(), person.right_toe.clear();
@@ -192,6 +195,23 @@ class Online {
   py::dict Predict() const { return DictOf(predictor_->Predict(), *recording_); }
   int observed() const { return predictor_->observed(); }
 
+  // The force that nobody measured and its standard deviation, each (people, 4); none without a
+  // filter.
+  py::object UnknownForce() const {
+    const SceneFilter* filter = predictor_->unknown_force();
+    if (filter == nullptr) return py::none();
+    const size_t people = recording_->states.size();
+    Array force(std::vector<size_t>{people, 4}), deviation(std::vector<size_t>{people, 4});
+    for (size_t n = 0; n < people; ++n) {
+      const int person = static_cast<int>(n);
+      for (int i = 0; i < 4; ++i) {
+        force.mutable_at(n, i) = filter->Force(person)[i];
+        deviation.mutable_at(n, i) = filter->ForceDeviation(person)[i];
+      }
+    }
+    return py::make_tuple(force, deviation);
+  }
+
  private:
   std::unique_ptr<IdentifiedModel> model_;
   std::unique_ptr<PendulumRecording> recording_;
@@ -229,10 +249,11 @@ Array Restored(const Restoration& restoration, const Model& model, const SharedR
 void BindPredictions(py::module_* module) {
   module->def("predict", &PredictOn);
   py::class_<Online>(*module, "Online")
-      .def(py::init<const Model&, const SharedRecording&, int>())
+      .def(py::init<const Model&, const SharedRecording&, int, const std::string&>())
       .def("observe", &Online::Observe)
       .def("predict", &Online::Predict)
-      .def_property_readonly("observed", &Online::observed);
+      .def_property_readonly("observed", &Online::observed)
+      .def_property_readonly("unknown_force", &Online::UnknownForce);
   py::class_<Restoration, std::shared_ptr<Restoration>>(*module, "Restoration")
       .def("apply", [](const std::shared_ptr<Restoration>& r, const Model& model,
                        const SharedRecording& recording,

@@ -15,6 +15,7 @@
 #include "datasets/formats/units.h"
 #include "datasets/loading/warning.h"
 #include "ident/fit.h"
+#include "ident/parameters/option_names.h"
 #include "ident/prediction/prediction.h"
 
 namespace pushid {
@@ -126,6 +127,13 @@ IdentifiedModel IdentifiedOf(const Model& model);
 
 // (frames, people, 8): q, then qd.
 Array StatesOf(const RolloutPath<double>& path, int people);
+
+// Who forecasts after observed frames. Raises on another name.
+inline ForecastUse ForecastFrom(const std::string& name) {
+  ForecastUse use = ForecastUse::kStack;
+  Check(ParseName("forecast", name, &use), Fault::kUsage);
+  return use;
+}
 
 // hip, states, observed, and bands where there are any. Raises where the rollout left the domain.
 py::dict DictOf(const Prediction& prediction, const PendulumRecording& recording);

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "ident/figures/text_table.h"
-#include "ident/fit/model_rollout.h"
+#include "ident/model/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
 #include "models/learned_terms.h"
 
@@ -58,7 +58,7 @@ std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording, i
 
 void ScoreRestoration(const IdentifiedModel& model, const Restoration& restoration,
                       const PostprocessOptions& options, const BodyRecording& recording,
-                      BodyScores* scores, int observed) {
+                      BodyScores* scores, int observed, ForecastUse use) {
   const auto add = [&](const char* name, const std::vector<BodyMotion>& bodies,
                        int first_frame = 1) {
     (*scores)[name].push_back(ScoreBodies(recording, bodies, first_frame));
@@ -69,7 +69,7 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
   add("static", StaticBodies(recording, observed));
   add("constant_velocity", ConstantVelocityBodies(recording, observed));
   add("recorded", recording.bodies);
-  const Result<Prediction> predicted = PredictFrom(model, recording.pendulum, observed);
+  const Result<Prediction> predicted = PredictFrom(model, recording.pendulum, observed, 0, use);
   if (!predicted.ok() || !predicted.value().status.ok) {
     const std::string failure =
         predicted.ok() ? OutsideText(predicted.value().status) : predicted.error().message;

@@ -5,12 +5,13 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/fit/recording_effect.h"
+#include "ident/observed/recording_effect.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/push/push_check.h"
 #include "ident/report/advice.h"
 #include "ident/report/confidence_text.h"
 #include "ident/report/design_text.h"
+#include "ident/report/forecast_text.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/refit_checks.h"
 
@@ -165,8 +166,10 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
 Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordings,
                                   const ModelChecks& checks, const FitResult& fit) {
   std::string text;
-  if (checks.population && fit.recording_effect)
+  if (checks.population && fit.recording_effect) {
     text = "\n" + PopulationText(*fit.recording_effect);
+    if (fit.forecasts) text += "\n" + ForecastText(*fit.forecasts);
+  }
   if (checks.design.empty()) return text;
   const Result<std::string> design = DesignText(DesignExperiments(recordings, fit), checks.design);
   if (!design.ok()) return Error{"--design: " + design.error().message};

@@ -16,7 +16,6 @@ using ChartPoints = std::vector<std::pair<double, double>>;
 // classes of SvgStyle.
 inline constexpr char kMeasuredLook[] = "ink";
 inline constexpr char kPredictedLook[] = "predicted";
-inline constexpr char kMedianLook[] = "fill:none;stroke-dasharray:4 3;stroke:#3b82f6";  // of bands
 inline constexpr char kWideBandLook[] = "band wide";
 inline constexpr char kNarrowBandLook[] = "band narrow";
 inline constexpr char kLiftedLook[] = "lifted";  // a foot off the ground

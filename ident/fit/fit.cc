@@ -5,9 +5,11 @@
 #include <optional>
 
 #include "ident/fit/contrast_effects.h"
+#include "ident/fit/cross_fit.h"
 #include "ident/fit/estimates_table.h"
-#include "ident/fit/push_range.h"
-#include "ident/fit/recording_effect.h"
+#include "ident/model/push_range.h"
+#include "ident/observed/learn_forecasts.h"
+#include "ident/observed/recording_effect.h"
 #include "ident/fit/step_probability.h"
 #include "ident/fit/weighted_solve.h"
 #include "ident/solver/likelihood_solve.h"
@@ -88,16 +90,28 @@ void AddTakeover(const std::vector<PendulumRecording>& recordings, FitResult* re
   }
 }
 
+// How recordings differ, and what is known of forecasts that see them begin.
+template <typename Fitted>
+void AddForecasts(const SolvedFit& fit, const std::vector<PendulumRecording>& recordings,
+                  IdentifiedModel model, Fitted* fitted) {
+  const int threads = fit.problem.options().num_threads;
+  model.recording_effect = fitted->recording_effect =
+      FitRecordingEffect(model, recordings, threads);
+  if (!model.recording_effect) return;
+  const std::vector<FoldModel> folds = CrossFit(fit.problem, fit.Best().to, model, threads);
+  fitted->forecasts = LearnForecasts(model, recordings, folds, threads);
+}
+
 // What predictions need to know of the recordings.
-void AddFittedTo(const std::vector<PendulumRecording>& recordings, FitResult* result) {
+void AddFittedTo(const SolvedFit& fit, const std::vector<PendulumRecording>& recordings,
+                 FitResult* result) {
   if (const PushedFeet feet = FeetOf(recordings); feet.seen > 0) result->feet = feet;
   result->push_range = FittedPushRange(ModelOf(*result), recordings);
   const auto steps = FitStepProbability(ModelOf(*result), recordings);
   if (steps && steps->stepped > 0 && steps->stepped < steps->tracks) {
     result->step_probability = steps;
   }
-  result->recording_effect =
-      FitRecordingEffect(ModelOf(*result), recordings, result->options.num_threads);
+  AddForecasts(fit, recordings, ModelOf(*result), result);
 }
 
 void AddWarnings(const SolvedFit& fit, FitResult* result) {
@@ -150,7 +164,7 @@ FitResult Judge(const SolvedFit& fit) {
 
   // The recordings that it was fitted to: their pushes, steps and effects.
   AddTakeover(problem.recordings(), &result);
-  AddFittedTo(problem.recordings(), &result);
+  AddFittedTo(fit, problem.recordings(), &result);
 
   // Residuals: what the model leaves unexplained, recording by recording.
   result.diagnostics = Diagnose(problem, fit.Best(), result.uncertainty);
@@ -182,13 +196,15 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
 }
 
 Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
-                                   FitOptions options) {
+                                   FitOptions options, bool forecasts) {
   if (MaybeError error = PrepareFit(recordings, &options)) return *error;
   const Result<SolvedFit> fit = SolveFit(recordings, options, nullptr);
   if (!fit.ok()) return fit.error();
   if (!fit.value().ok()) return Error{"no usable optimum was found"};
   IdentifiedModel model = ModelOf(ResultOf(fit.value()));
+  model.push_range = FittedPushRange(model, recordings);
   model.step_probability = FitStepProbability(model, recordings);
+  if (forecasts) AddForecasts(fit.value(), recordings, model, &model);
   return model;
 }
 

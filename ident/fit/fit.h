@@ -28,8 +28,9 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
               const SolveProgress& progress = nullptr);
 
 // The same solve without a judgement: for folds, whose models only predict. It prepares the options
-// itself. Errors: those of PrepareFit; no usable optimum.
+// itself. forecasts: whether the model is to predict from first frames, which it learns from folds
+// of its own. Errors: those of PrepareFit; no usable optimum.
 Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
-                                   FitOptions options);
+                                   FitOptions options, bool forecasts = false);
 
 }  // namespace pushid

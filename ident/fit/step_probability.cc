@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "ident/fit/model_rollout.h"
+#include "ident/model/model_rollout.h"
 #include "ident/problem/own_axes.h"
 #include "ident/uncertainty/clusters.h"
 #include "models/stance.h"

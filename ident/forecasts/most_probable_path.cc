@@ -9,7 +9,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
-#include "ident/fit/model_rollout.h"
+#include "ident/model/model_rollout.h"
 #include "residuals/cost_functions/path_residual.h"
 
 namespace pushid {

@@ -1,7 +1,7 @@
 // ident: settings of the models, and what follows from a model: which parameters are fitted.
 //
-//   tail:  one person: push tail, posture-relative recovery, one cross term; six free parameters,
-//          the tail's time partially pooled by condition
+//   tail:  one person: push tail, posture-relative recovery, one cross term; eight free
+//          parameters, the tail's base partially pooled by condition
 //   ldp:   one person: plain PD balance and one friction from upright; five free parameters
 //   group: people who touch: tail with all linear self forces and contact, every parameter
 //          partially pooled by setting (condition); eighteen shared parameters

@@ -1,4 +1,4 @@
-// ident: scores and their means.
+// ident: scores of recordings; score_summary.cc has their means.
 #include "ident/prediction/evaluation.h"
 
 #include <algorithm>
@@ -8,53 +8,40 @@
 #include "ident/uncertainty/clusters.h"
 
 namespace pushid {
-namespace {
-
-using Group = std::vector<const RecordingScore*>;
-
-MeanScore Mean(const Group& scores, bool by_frames) {
-  MeanScore mean;
-  const auto weight = [by_frames](const RecordingScore* s) {
-    return by_frames ? s->frames - 1 : 1.0;
-  };
-  double total = 0.0;
-  for (const RecordingScore* s : scores) total += weight(s);
-  mean.recordings = static_cast<int>(scores.size());
-  if (scores.empty()) return mean;
-  std::vector<std::string> pushed;
-  for (const RecordingScore* s : scores) pushed.push_back(s->pushed);
-  const ScoreClusters clusters = ClustersOf(pushed);
-  mean.clustered_by = clusters.by;
-  mean.clusters = clusters.count;
-  for (const HipMetric& metric : AllHipMetrics()) {
-    const auto value = metric.value;
-    for (const RecordingScore* s : scores) mean.*value += weight(s) * s->*value;
-    mean.*value /= total;
-    std::vector<double> deviations;
-    for (const RecordingScore* s : scores) {
-      deviations.push_back(weight(s) / total * (s->*value - mean.*value));
-    }
-    mean.error.*value = clusters.ErrorOfMean(deviations);
-  }
-  return mean;
-}
-
-}  // namespace
 
 std::string MetricsText(const HipMetrics& metrics, int digits, int observed) {
   std::string text;
-  for (const HipMetric& metric : MetricsOf(observed, false)) {
+  for (const HipMetric& metric : TableMetrics(observed)) {
     text += (text.empty() ? "" : ", ") + metric.Text(metrics.*metric.value, digits);
   }
   return text;
 }
 
-ShownMetrics MetricsOf(int observed, bool bands) {
+ShownMetrics TableMetrics(int observed) {
   ShownMetrics metrics(std::begin(kHipMetrics), std::end(kHipMetrics));
   if (observed > 0) metrics.push_back(kAfterMetric);
+  return metrics;
+}
+
+ShownMetrics MetricsOf(int observed, bool bands) {
+  ShownMetrics metrics = TableMetrics(observed);
+  if (observed > 0) {
+    metrics.insert(metrics.end(), std::begin(kThirdMetrics), std::end(kThirdMetrics));
+  }
   if (bands) metrics.insert(metrics.end(), std::begin(kBandMetrics), std::end(kBandMetrics));
   return metrics;
 }
+
+namespace {
+
+// Mean errors over frames, weighted as the recording has them.
+struct WeightedError {
+  double sum = 0.0, weight = 0.0;
+  void Add(double w, double error) { sum += w * error, weight += w; }
+  double Mean() const { return weight > 0.0 ? sum / weight : 0.0; }
+};
+
+}  // namespace
 
 RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& predicted,
                         int observed) {
@@ -63,21 +50,26 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
   score.frames = recording.num_frames();
   const int people = recording.num_people();
   for (int n = 0; n < people; ++n) {
-    double sum = 0.0, total = 0.0, final = 0.0;  // frames that were not seen do not count
-    double after = 0.0, total_after = 0.0;
+    WeightedError all, after, thirds[3];
+    double final = 0.0;  // frames that were not seen do not count
+    const int behind = std::max(1, observed);
     for (int t = 1; t < score.frames; ++t) {
       const double weight = recording.Weight(n, t);
       const double error = (predicted[n][t] - recording.hip[n][t]).norm();
-      sum += weight * error;
-      total += weight;
+      all.Add(weight, error);
       if (weight > 0.0) final = error;
-      if (t < observed) continue;
-      after += weight * error;
-      total_after += weight;
+      if (t < behind) continue;
+      after.Add(weight, error);
+      const int rest = score.frames - behind;
+      for (int i = 0; i < 3; ++i) {  // a frame at least
+        const int begin = i * rest / 3, end = std::max(begin + 1, (i + 1) * rest / 3);
+        if (begin <= t - behind && t - behind < end) thirds[i].Add(weight, error);
+      }
     }
-    score.hip_ade += total > 0.0 ? sum / total / people : 0.0;
+    score.hip_ade += all.Mean() / people;
     score.hip_fde += final / people;
-    score.after_hip_ade += total_after > 0.0 ? after / total_after / people : 0.0;
+    score.after_hip_ade += after.Mean() / people;
+    for (int i = 0; i < 3; ++i) score.*kThirdMetrics[i].value += thirds[i].Mean() / people;
   }
   score.propagation = ScorePropagation(recording, predicted);
   if (people > 1) score.predicted = predicted;
@@ -165,26 +157,29 @@ RecordingScore ScoreOf(const IdentifiedModel& model, const PendulumRecording& re
 void AddInside(const PendulumRecording& recording, const HipDistribution& hips, int observed,
                RecordingScore* score) {
   const int person = recording.pushed_person;
-  double inside[2] = {0.0, 0.0}, frames = 0.0;
+  double frames = 0.0;
   for (int t = observed; t < recording.num_frames(); ++t) {
     if (recording.Weight(person, t) == 0.0) continue;
     frames += 1.0;
     for (int axis : {0, 1}) {
-      const double below = hips.Cdf(person, t - observed, axis, recording.hip[person][t][axis]);
-      inside[axis] += 0.05 <= below && below <= 0.95 ? 1.0 : 0.0;
+      const double value = recording.hip[person][t][axis];
+      const double off = std::abs(hips.Cdf(person, t - observed, axis, value) - 0.5);
+      (axis == 0 ? score->inside90_x : score->inside90_y) += off <= 0.45 ? 1.0 : 0.0;
+      (axis == 0 ? score->inside50_x : score->inside50_y) += off <= 0.25 ? 1.0 : 0.0;
+      score->crps += 0.5 * hips.Crps(person, t - observed, axis, value);
     }
   }
   if (frames == 0.0) return;
-  score->inside90_x = inside[0] / frames;
-  score->inside90_y = inside[1] / frames;
+  for (const HipMetric& metric : kBandMetrics) score->*metric.value /= frames;
 }
 
 }  // namespace
 
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
-                          int observed) {
+                          int observed, ForecastUse use) {
   if (observed == 0) return ScoreOf(model, recording, Predict(model, recording), 0);
-  Result<OnlinePredictor> made = OnlinePredictor::Make(model, recording, recording.num_frames());
+  Result<OnlinePredictor> made =
+      OnlinePredictor::Make(model, recording, recording.num_frames(), use);
   if (!made.ok()) return FailedScore(recording, made.error().message);
   OnlinePredictor& predictor = made.value();
   for (int t = 1; t < observed; ++t) predictor.Observe(FrameAt(recording, t));
@@ -217,59 +212,36 @@ bool FallsWhenPushedHarder(const IdentifiedModel& model, const PendulumRecording
   return !prediction.status.ok || AnybodyFalls(prediction);
 }
 
-ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
-                       std::vector<RecordingScore> scores, int observed, bool bands,
-                       const LabelKeys& group_by) {
-  ScoreSummary summary;
-  summary.observed = observed;
-  summary.bands = bands;
-  summary.recordings = std::move(scores);
-  Group all;
-  std::vector<StepPrediction> steps;
-  for (size_t i = 0; i < recordings.size(); ++i) {
-    RecordingScore& score = summary.recordings[i];
-    score.pushed = PersonKey(recordings[i], recordings[i].pushed_person);
-    if (!score.failure.empty()) continue;
-    all.push_back(&score);
-    steps.insert(steps.end(), score.steps.begin(), score.steps.end());
-  }
-  summary.steps = ScoreSteps(steps);
-  const auto propagation = [](const Group& group) {
-    std::vector<const PropagationScore*> of_group;
-    for (const RecordingScore* score : group) of_group.push_back(&score->propagation);
-    return SummarizePropagation(of_group);
-  };
-  summary.propagation = propagation(all);
-  const auto by_setting = GroupScores(recordings, summary.recordings, {kSettingLabel}, propagation);
-  for (const auto& [name, of_setting] : by_setting.at(kSettingLabel)) {
-    if (of_setting.recordings > 0) summary.propagation_by_setting[name] = of_setting;
-  }
-  summary.mean = Mean(all, false);
-  summary.frame_weighted = Mean(all, true);
-  summary.by = GroupScores(recordings, summary.recordings, group_by,
-                           [](const Group& group) { return Mean(group, false); });
-  LabelKeys keys = group_by;
-  if (!summary.propagation_by_setting.empty()) keys.push_back(kSettingLabel);
-  summary.without_label = CountWithoutLabel(recordings, summary.recordings, keys);
-  return summary;
+const ScoreSummary& Evaluation::Baseline(const std::string& key) const {
+  return std::find_if(baselines.begin(), baselines.end(),
+                      [&key](const BaselineSummary& baseline) { return baseline.key == key; })
+      ->summary;
 }
 
 Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
-                    int observed, const LabelKeys& group_by) {
-  std::vector<RecordingScore> of_model, of_static, of_velocity, reanchored;
-  for (const PendulumRecording& recording : recordings) {
-    of_model.push_back(ScoreModel(model, recording, observed));
-    of_static.push_back(ScoreHip(recording, StaticBaseline(recording, observed), observed));
-    of_velocity.push_back(
-        ScoreHip(recording, ConstantVelocityBaseline(recording, observed), observed));
-    if (observed > 0) reanchored.push_back(ScoreReanchored(model, recording, observed));
-  }
-  const auto summary = [&](std::vector<RecordingScore>& scores, bool bands) {
+                    int observed, const LabelKeys& group_by, ForecastUse use) {
+  const auto summary = [&](bool bands, const auto& score) {
+    std::vector<RecordingScore> scores;
+    for (const PendulumRecording& recording : recordings) scores.push_back(score(recording));
     return Summarize(recordings, std::move(scores), observed, bands, group_by);
   };
-  Evaluation evaluation{summary(of_model, observed > 0), summary(of_static, false),
-                        summary(of_velocity, false)};
-  if (observed > 0) evaluation.reanchored = summary(reanchored, false);
+  Evaluation evaluation;
+  evaluation.model = summary(observed > 0, [&](const PendulumRecording& recording) {
+    return ScoreModel(model, recording, observed, use);
+  });
+  for (const pushid::Baseline& baseline : kBaselines) {
+    if (baseline.needs_frames && observed == 0) continue;
+    evaluation.baselines.push_back(
+        {baseline.name, baseline.key, summary(false, [&](const PendulumRecording& recording) {
+           return ScoreHip(recording, baseline.predict(recording, observed), observed);
+         })});
+  }
+  if (observed > 0) {
+    evaluation.baselines.push_back(
+        {"re-anchored", "reanchored", summary(false, [&](const PendulumRecording& recording) {
+           return ScoreReanchored(model, recording, observed);
+         })});
+  }
   return evaluation;
 }
 

@@ -1,14 +1,13 @@
 // ident: prediction errors of a model and of the baselines.
 //
 // hipADE: mean over frames 1 .. T-1 and people of |hip predicted - hip measured|, in m; hipFDE: of
-// the last frame. Means over recordings and, beside them, weighted by frames. Baselines: static
-// (no person moves) and constant velocity (the recording until the last push ends, then on with the
-// last hip velocity).
+// the last frame. Means over recordings and, beside them, weighted by frames. Baselines:
+// baselines.h, and where first frames were seen the model started anew there.
 //
 // Where the first k frames were seen (online_predictor.h), frame 0 among them, they are in every
 // prediction as they were. after_hipADE is the mean over the frames behind them; inside90_x and
 // inside90_y are the share of these in which the pushed person's hip lies in the 90 % band. The
-// baselines then go on from frame k - 1, and there is a third one: the model, started there anew.
+// baselines then go on from frame k - 1.
 #pragma once
 
 #include <map>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "ident/figures/text_table.h"
+#include "ident/prediction/baselines.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
@@ -29,8 +29,10 @@ namespace pushid {
 // tables, cross-validation and batches take it from there.
 struct HipMetrics {
   double hip_ade = 0.0, hip_fde = 0.0;
-  // Where first frames were seen.
-  double after_hip_ade = 0.0, inside90_x = 0.0, inside90_y = 0.0;
+  // Where first frames were seen; behind them, and in each third of these.
+  double after_hip_ade = 0.0, first_third = 0.0, second_third = 0.0, last_third = 0.0;
+  // Of the pushed person's bands.
+  double inside90_x = 0.0, inside90_y = 0.0, inside50_x = 0.0, inside50_y = 0.0, crps = 0.0;
 };
 
 struct HipMetric : Metric {
@@ -45,15 +47,24 @@ inline constexpr HipMetric kHipMetrics[] = {
 
 // Those of predictions that have seen first frames, and of their bands.
 inline constexpr HipMetric kAfterMetric = {{"after_hipADE", "m"}, &HipMetrics::after_hip_ade};
+inline constexpr HipMetric kThirdMetrics[] = {
+    {{"first_third_hipADE", "m"}, &HipMetrics::first_third},
+    {{"second_third_hipADE", "m"}, &HipMetrics::second_third},
+    {{"last_third_hipADE", "m"}, &HipMetrics::last_third},
+};
 inline constexpr HipMetric kBandMetrics[] = {
     {{"inside90_x", "share"}, &HipMetrics::inside90_x},
     {{"inside90_y", "share"}, &HipMetrics::inside90_y},
+    {{"inside50_x", "share"}, &HipMetrics::inside50_x},
+    {{"inside50_y", "share"}, &HipMetrics::inside50_y},
+    {{"crps", "m"}, &HipMetrics::crps},
 };
 
 using ShownMetrics = std::vector<HipMetric>;
 
-// The metrics to show. observed: frames that were seen, 0: none; bands: of models,
-// not of baselines.
+// The metrics of tables. observed: frames that were seen, 0: none.
+ShownMetrics TableMetrics(int observed);
+// Those of files. bands: of models, not of baselines.
 ShownMetrics MetricsOf(int observed, bool bands);
 inline ShownMetrics AllHipMetrics() { return MetricsOf(1, true); }
 
@@ -106,7 +117,7 @@ std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
 // Scores in the order of recordings; a failed rollout is a named failure.
 // observed: frames seen first, 0: none; the model must say how recordings differ.
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
-                          int observed = 0);
+                          int observed = 0, ForecastUse use = ForecastUse::kStack);
 RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed);
 
@@ -117,11 +128,20 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
                        std::vector<RecordingScore> scores, int observed = 0, bool bands = false,
                        const LabelKeys& group_by = UsualGroups());
 
+// What a model has to beat.
+struct BaselineSummary {
+  std::string name, key;
+  ScoreSummary summary;
+};
+
 struct Evaluation {
-  ScoreSummary model, static_baseline, constant_velocity;
-  std::optional<ScoreSummary> reanchored = {};  // where first frames were seen
+  ScoreSummary model;
+  // kBaselines, and where first frames were seen the model started there anew.
+  std::vector<BaselineSummary> baselines;
+  const ScoreSummary& Baseline(const std::string& key) const;  // one that there is
 };
 Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
-                    int observed = 0, const LabelKeys& group_by = UsualGroups());
+                    int observed = 0, const LabelKeys& group_by = UsualGroups(),
+                    ForecastUse use = ForecastUse::kStack);
 
 }  // namespace pushid

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
-#include "ident/fit/push_range.h"
+#include "ident/model/push_range.h"
 
 namespace pushid {
 namespace {

@@ -8,7 +8,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/figures/text_table.h"
-#include "ident/fit/model_rollout.h"
+#include "ident/model/model_rollout.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 

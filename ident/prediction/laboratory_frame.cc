@@ -78,7 +78,7 @@ void ToLaboratory(const Scene& scene, PredictiveBands* bands) {
   for (size_t n = 0; n < bands->people.size(); ++n) {
     const Vector3<double> origin = Origin(scene, static_cast<int>(n));
     PathBand& band = bands->people[n];
-    for (auto* line : {&band.lower90, &band.lower50, &band.median, &band.upper50, &band.upper90}) {
+    for (auto* line : {&band.lower90, &band.lower50, &band.middle, &band.upper50, &band.upper90}) {
       for (size_t t = 0; t < line->size(); ++t) {
         const GroundPose& pose = scene.ground.PoseAt(static_cast<int>(t));
         BandPoint& point = (*line)[t];

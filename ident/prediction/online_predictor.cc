@@ -18,17 +18,11 @@ Eigen::Vector2d CartUnder(const Body& body, const Vector3<double>& hip, const Ve
 
 }  // namespace
 
-SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
-  SeenFrame seen{HipsAt(recording, frame), {}};
-  for (const auto& states : recording.states) seen.states.push_back(states[frame]);
-  return seen;
-}
-
 MaybeError CheckLearnsFromFrames(const IdentifiedModel& model) {
-  if (model.recording_effect) return std::nullopt;
+  if (model.recording_effect && model.forecasts) return std::nullopt;
   const bool tail = model.options.push_tail != PushTail::kNone;
   return Error{
-      tail ? "the model has no estimate of how recordings differ, which predictions from observed "
+      tail ? "the model has nothing to put forecasts together by, which predictions from observed "
              "frames need: it was fitted by an older version; fit it again with pushid-fit"
            : "the model has no push tail, which predictions from observed frames need: fit one "
              "with --push_tail=exponential (the presets tail and group have it)",
@@ -36,74 +30,115 @@ MaybeError CheckLearnsFromFrames(const IdentifiedModel& model) {
 }
 
 OnlinePredictor::OnlinePredictor(const IdentifiedModel& model, const PendulumRecording& recording,
-                                 int num_frames)
+                                 int num_frames, ForecastUse use)
     : model_(&model),
       recording_(&recording),
-      filter_(std::make_unique<RecordingFilter>(model, recording, num_frames)) {}
+      use_(use),
+      frames_(std::make_unique<FirstFrames>(model, *model.forecasts, recording, num_frames)) {
+  auto filter = UnknownForceFilter(model, model.forecasts->likeliest, recording, num_frames);
+  if (filter) unknown_force_ = std::make_unique<SceneFilter>(*std::move(filter));
+}
 
 Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
-                                              const PendulumRecording& recording, int num_frames) {
+                                              const PendulumRecording& recording, int num_frames,
+                                              ForecastUse use) {
   if (MaybeError error = CheckLearnsFromFrames(model)) return *error;
-  OnlinePredictor predictor(model, recording, num_frames);
-  if (predictor.filter_->ok()) return Result<OnlinePredictor>(std::move(predictor));
+  OnlinePredictor predictor(model, recording, num_frames, use);
+  if (use == ForecastUse::kInput && !predictor.frames_->HasInput()) {
+    return Error{
+        "the model has a network, whose memory no measurement corrects: there is no filter of "
+        "unknown forces; leave --forecast=input out",
+        model.source};
+  }
+  if (predictor.frames_->filter().ok()) return Result<OnlinePredictor>(std::move(predictor));
   return Error{"recording " + recording.id +
                ": people leave the model's domain with any push tail"};
 }
 
 void OnlinePredictor::Observe(SeenFrame frame) {
-  if (observed() >= filter_->frames()) return;
-  filter_->Observe(frame.hips);
-  seen_.push_back(std::move(frame));
+  if (unknown_force_) {
+    std::vector<bool> seen = frame.hips.seen;
+    seen.resize(frame.hips.hip.size(), true);
+    unknown_force_->Observe(frame.states, seen);
+  }
+  frames_->Observe(std::move(frame));
 }
 
 EffectEstimate OnlinePredictor::effect() const {
-  return filter_->Effect(*model_->recording_effect);
+  return frames_->filter().Effect(*model_->recording_effect);
 }
 
-Prediction OnlinePredictor::Predict() const {
-  const int frames = filter_->frames(), from = observed();
-  Prediction prediction = pushid::Predict(*model_, *recording_, frames, effect().mean);
-  prediction.observed = from;
-  prediction.effect = effect();
-  if (!prediction.status.ok || from == 1) return prediction;
-  const HipPaths hips = filter_->ForecastOf(prediction.hip)
-                            .Blended(model_->recording_effect->Blend(filter_->seconds()));
+void OnlinePredictor::SetForecast(const RolloutPath<double>& input_path,
+                                  const std::vector<ForecastWeights>& weights, const HipPaths& hips,
+                                  Prediction* prediction) const {
+  const std::vector<SeenFrame>& seen = frames_->seen();
+  const int from = observed();
   const double dt = recording_->scene.dt;
-  for (size_t n = 0; n < hips.size(); ++n) {
-    const int person = static_cast<int>(n);
-    const Vector4<double> off = seen_.back().states[n].q - prediction.path.At(from - 1, person).q;
-    for (int t = 1; t < frames; ++t) {
-      PendulumState<double>& state = prediction.path.At(t, person);
-      Vector3<double>& hip = prediction.hip[n][t];
+  for (int n = 0; n < recording_->num_people(); ++n) {
+    // Of the lean, where it was seen.
+    Eigen::Vector2d off = Eigen::Vector2d::Zero();
+    if (seen.back().hips.Sees(n)) {
+      off = (seen.back().states[n].q - prediction->path.At(from - 1, n).q).tail<2>();
+    }
+    for (int t = 1; t < frames_->frames(); ++t) {
+      PendulumState<double>& state = prediction->path.At(t, n);
+      Vector3<double>& hip = prediction->hip[n][t];
       if (t < from) {
-        state.q = seen_[t - 1].states[n].q;
-        state.qd = seen_[t - 1].states[n].qd;
-        hip = seen_[t - 1].hips.hip[n];
+        state.q = seen[t - 1].states[n].q;
+        state.qd = seen[t - 1].states[n].qd;
+        hip = seen[t - 1].hips.hip[n];
         continue;
       }
       hip = hips[n][t - from];
-      state.q.tail<2>() += std::exp(-(t - from + 1) * dt / kErrorTime) * off.tail<2>();
-      state.q.head<2>() = CartUnder(prediction.BodyAt(recording_->scene, t, person), hip, state.q);
-      state.qd = (state.q - prediction.path.At(t - 1, person).q) / dt;
+      // The rollout's lean, to which it comes back as an error of velocity dies out, and the
+      // filter's.
+      const double physics = weights[t - from][static_cast<int>(Forecaster::kPhysics)];
+      const double input = weights[t - from][static_cast<int>(Forecaster::kInput)];
+      const double share = input > 0.0 ? input / (physics + input) : 0.0;
+      state.q.tail<2>() += std::exp(-(t - from + 1) * dt / kErrorTime) * off;
+      if (share > 0.0) {
+        state.q.tail<2>() += share * (input_path.At(t, n).q - state.q).tail<2>();
+      }
+      state.q.head<2>() = CartUnder(prediction->BodyAt(recording_->scene, t, n), hip, state.q);
+      state.qd = (state.q - prediction->path.At(t - 1, n).q) / dt;
     }
   }
+}
+
+Prediction OnlinePredictor::Predict() const {
+  Prediction prediction = pushid::Predict(*model_, *recording_, frames_->frames(), effect().mean);
+  prediction.observed = observed();
+  prediction.effect = effect();
+  if (!prediction.status.ok || observed() == 1) return prediction;
+  InputForecast input;
+  const ForecastsOfAll forecasts = frames_->Forecasts(prediction.hip, &input);
+  const std::vector<ForecastWeights> weights =
+      WeightsAhead(*model_->forecasts, forecasts, frames_->seconds(), recording_->scene.dt, use_);
+  if (weights.empty() && observed() < frames_->frames()) {
+    prediction.status = input.status;  // asked alone, and left the domain
+    prediction.hip.clear();
+    return prediction;
+  }
+  SetForecast(input.path, weights, Stacked(weights, forecasts), &prediction);
   return prediction;
 }
 
 HipDistribution OnlinePredictor::Distribution(const Prediction& prediction) const {
   HipPaths centre;
-  for (const HipPath& hip : prediction.hip)
+  for (const HipPath& hip : prediction.hip) {
     centre.emplace_back(hip.begin() + observed(), hip.end());
-  return HipDistribution(*filter_, *model_->recording_effect, centre);
+  }
+  return HipDistribution(*model_->forecasts, frames_->filter().Axes(), std::move(centre),
+                         frames_->LastHips(), frames_->seconds(), recording_->scene.dt);
 }
 
 namespace {
 
 // A predictor that has seen the first frames.
 Result<OnlinePredictor> After(const IdentifiedModel& model, const PendulumRecording& recording,
-                              int observed, int num_frames) {
-  Result<OnlinePredictor> made =
-      OnlinePredictor::Make(model, recording, num_frames > 0 ? num_frames : recording.num_frames());
+                              int observed, int num_frames, ForecastUse use) {
+  Result<OnlinePredictor> made = OnlinePredictor::Make(
+      model, recording, num_frames > 0 ? num_frames : recording.num_frames(), use);
   for (int t = 1; made.ok() && t < observed; ++t) made.value().Observe(FrameAt(recording, t));
   return made;
 }
@@ -111,9 +146,9 @@ Result<OnlinePredictor> After(const IdentifiedModel& model, const PendulumRecord
 }  // namespace
 
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
-                               int observed, int num_frames) {
+                               int observed, int num_frames, ForecastUse use) {
   if (observed == 0) return Predict(model, recording, num_frames);
-  const Result<OnlinePredictor> made = After(model, recording, observed, num_frames);
+  const Result<OnlinePredictor> made = After(model, recording, observed, num_frames, use);
   if (!made.ok()) return made.error();
   Prediction prediction = made.value().Predict();
   if (!prediction.status.ok) return prediction;
@@ -135,8 +170,8 @@ Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecor
 
 Result<std::vector<HipPaths>> DrawFrom(const IdentifiedModel& model,
                                        const PendulumRecording& recording, int observed, int draws,
-                                       uint64_t seed, int num_frames) {
-  const Result<OnlinePredictor> made = After(model, recording, observed, num_frames);
+                                       uint64_t seed, int num_frames, ForecastUse use) {
+  const Result<OnlinePredictor> made = After(model, recording, observed, num_frames, use);
   if (!made.ok()) return made.error();
   const Prediction prediction = made.value().Predict();
   if (!prediction.status.ok) return Error{OutsideText(prediction.status)};
@@ -161,78 +196,6 @@ std::string EffectText(const Prediction& prediction) {
          Rounded(b.mean, 2) + " +- " + Rounded(b.error, 2) + "), from " +
          std::to_string(prediction.observed) + " frame" + (prediction.observed == 1 ? "" : "s") +
          "\n";
-}
-
-namespace {
-
-constexpr double kReach = 8.0;  // standard deviations in which a component lies
-constexpr int kHalvings = 50;
-
-}  // namespace
-
-double NormalCdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
-
-HipDistribution::HipDistribution(const RecordingFilter& filter, const RecordingEffect& effect,
-                                 const HipPaths& centre) {
-  points_ = filter.Mixture(effect, &weights_);
-  const Vector3<double> wider = effect.Widening(filter.seconds());
-  const Eigen::Matrix3d& axes = filter.Axes();
-  for (size_t n = 0; n < points_.size(); ++n) {
-    for (size_t t = 0; t < points_[n].size(); ++t) {
-      MixturePoint& point = points_[n][t];
-      Vector3<double> mean = Vector3<double>::Zero();
-      for (size_t j = 0; j < weights_.size(); ++j) mean += weights_[j] * point.mean[j];
-      for (Vector3<double>& component : point.mean) {
-        component = centre[n][t] + axes * wider.cwiseProduct(component - mean);
-      }
-      const Vector3<double> variance = wider.cwiseProduct(point.deviation).cwiseAbs2();
-      point.deviation = (axes.cwiseAbs2() * variance).cwiseSqrt();
-    }
-  }
-}
-
-double HipDistribution::Cdf(int person, int frame, int axis, double value) const {
-  const MixturePoint& point = points_[person][frame];
-  double sum = 0.0;
-  for (size_t j = 0; j < weights_.size(); ++j) {
-    sum += weights_[j] * NormalCdf((value - point.mean[j][axis]) / point.deviation[axis]);
-  }
-  return sum;
-}
-
-double HipDistribution::Quantile(int person, int frame, int axis, double share) const {
-  const MixturePoint& point = points_[person][frame];
-  double low = point.mean[0][axis], high = low;
-  for (const Vector3<double>& mean : point.mean) {
-    low = std::min(low, mean[axis]);
-    high = std::max(high, mean[axis]);
-  }
-  low -= kReach * point.deviation[axis];
-  high += kReach * point.deviation[axis];
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = 0.5 * (low + high);
-    (Cdf(person, frame, axis, middle) < share ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
-
-HipPaths HipDistribution::Draw(Random* random) const {
-  size_t component = 0;
-  double left = random->Unit();
-  for (size_t j = 0; j < weights_.size() && left >= 0.0; ++j) {
-    if (weights_[j] > 0.0) component = j;  // rounding never ends in one that cannot be
-    left -= weights_[j];
-  }
-  HipPaths paths;
-  for (const std::vector<MixturePoint>& person : points_) {
-    Vector3<double> out;
-    for (double& deviations : out) deviations = random->Normal();
-    paths.emplace_back();
-    for (const MixturePoint& point : person) {
-      paths.back().push_back(point.mean[component] + point.deviation.cwiseProduct(out));
-    }
-  }
-  return paths;
 }
 
 }  // namespace pushid

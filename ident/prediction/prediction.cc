@@ -8,8 +8,8 @@
 
 #include "datasets/files/atomic_file.h"
 #include "ident/diagnostics/diagnostics.h"
-#include "ident/fit/push_range.h"
 #include "ident/fit/step_probability.h"
+#include "ident/model/push_range.h"
 #include "ident/prediction/laboratory_frame.h"
 #include "ident/problem/own_axes.h"
 #include "ident/problem/statistics.h"
@@ -67,7 +67,7 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
     ModelOptions options = model.options;
     options.learned = member.network;
     ParameterSet<double> parameters = member.parameters;
-    for (Parameter id : {kTailGain, kTailBase}) parameters[id] *= std::exp(effect);
+    ApplyEffect(effect, &parameters);
     add(PredictOne(options, {parameters}, recording, frames));
   }
   if (left.size() >= stayed.size()) return left.front();
@@ -186,36 +186,6 @@ Prediction MedianPrediction(const PendulumRecording& recording,
     }
   }
   return median;
-}
-
-HipPaths StaticBaseline(const PendulumRecording& recording, int observed) {
-  HipPaths paths;
-  for (const auto& hip : recording.hip) {
-    HipPath path(hip.begin(), hip.begin() + std::max(1, observed));
-    path.resize(hip.size(), Vector3<double>(path.back()));
-    paths.push_back(std::move(path));
-  }
-  return paths;
-}
-
-// Frames.
-constexpr int kLeastPredicted = 10;
-
-HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed) {
-  HipPaths paths;
-  // A push may last as long as its recording: something must be left to predict.
-  const int frames = recording.num_frames();
-  const int latest = std::max(frames / 2, frames - 1 - kLeastPredicted);
-  const int known = observed > 0 ? observed - 1 : std::min(recording.scene.LastPushEnd(), latest);
-  const int last = std::min(known, frames - 1);
-  for (const auto& hip : recording.hip) {
-    std::vector<Vector3<double>> path(hip.begin(), hip.begin() + last + 1);
-    const Vector3<double> step =
-        last > 0 ? Vector3<double>(hip[last] - hip[last - 1]) : Vector3<double>::Zero();
-    while (path.size() < hip.size()) path.push_back(path.back() + step);
-    paths.push_back(std::move(path));
-  }
-  return paths;
 }
 
 Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
-#include "ident/fit/model_rollout.h"
-#include "ident/fit/recording_effect.h"
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
+#include "ident/model/model_rollout.h"
+#include "ident/observed/recording_effect.h"
 #include "models/rollout.h"
 
 namespace pushid {
@@ -50,7 +50,7 @@ struct Prediction {
 };
 
 // From frame 0 and the push alone. num_frames: 0 means as many as the recording has. effect: the
-// recording's own (fit/recording_effect.h).
+// recording's own (observed/recording_effect.h).
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames = 0, double effect = 0.0);
 
@@ -60,10 +60,6 @@ Prediction Predict(const IdentifiedModel& model, const PendulumRecording& record
 MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& recording,
                               const Prediction& prediction);
 
-// Baselines. observed: frames seen first; 0: until the last push ends, or the last frame but ten
-// (half of a short recording), for constant velocity; frame 0 for the static one.
-HipPaths StaticBaseline(const PendulumRecording& recording, int observed = 0);
-HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed = 0);
 // The model on from the state of the last frame seen.
 Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
                              int observed);

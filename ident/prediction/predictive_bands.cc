@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "datasets/files/random.h"
-#include "ident/fit/push_range.h"
+#include "ident/model/push_range.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "models/decompositions.h"
 
@@ -70,10 +70,21 @@ BandPoint PointOf(const Prediction& prediction, int frame, int person) {
   return PointOf(prediction.hip[person][frame], prediction.path.At(frame, person));
 }
 
+// Moves a band so that its middle is the rollout at the estimate.
+void MoveTo(const Prediction& rollout, int person, PathBand* band) {
+  for (size_t t = 0; t < band->middle.size(); ++t) {
+    const BandPoint by = PointOf(rollout, static_cast<int>(t), person) - band->middle[t];
+    for (auto* row :
+         {&band->lower90, &band->lower50, &band->middle, &band->upper50, &band->upper90}) {
+      (*row)[t] += by;
+    }
+  }
+}
+
 // Quantiles over samples of one person's path.
 PathBand QuantilesOf(const std::vector<std::vector<BandPoint>>& paths) {
   PathBand band;
-  std::vector<BandPoint>* const rows[] = {&band.lower90, &band.lower50, &band.median, &band.upper50,
+  std::vector<BandPoint>* const rows[] = {&band.lower90, &band.lower50, &band.middle, &band.upper50,
                                           &band.upper90};
   const size_t frames = paths[0].size();
   for (auto* row : rows) row->assign(frames, BandPoint::Zero());
@@ -118,15 +129,6 @@ Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& resu
         "the model's bootstrap has no replicas; repeat it by pushid-check --bootstrap=199"};
   }
   return FromBootstrap(result, *options.bootstrap, options);
-}
-
-std::vector<std::vector<Vector3<double>>> MedianHip(const PredictiveBands& bands) {
-  std::vector<std::vector<Vector3<double>>> hip;
-  for (const PathBand& band : bands.people) {
-    hip.emplace_back();
-    for (const BandPoint& point : band.median) hip.back().push_back(point.head<3>());
-  }
-  return hip;
 }
 
 std::vector<ErrorPath> ErrorPaths(const FitResult& result,
@@ -194,10 +196,12 @@ PredictiveBands ComputeBands(const FitResult& result,
   bands.samples = static_cast<int>(samples.size());
   bands.failed = bands.samples - static_cast<int>(draws.size());
   if (draws.empty()) return bands;
+  const Prediction rollout = Predict(ModelOf(result), recording);
   for (int n = 0; n < recording.scene.num_people(); ++n) {
     std::vector<std::vector<BandPoint>> paths;
     for (const auto& draw : draws) paths.push_back(draw[n]);
     bands.people.push_back(QuantilesOf(paths));
+    if (rollout.status.ok) MoveTo(rollout, n, &bands.people.back());
   }
   return bands;
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "ident/fit/push_range.h"
+#include "ident/model/push_range.h"
 #include "ident/prediction/force_story.h"
 
 namespace pushid {

@@ -1,7 +1,7 @@
 // ident: each person's own parameters.
 #include "ident/prediction/standing_checks.h"
 
-#include "ident/fit/model_rollout.h"
+#include "ident/model/model_rollout.h"
 
 namespace pushid {
 namespace {

@@ -8,7 +8,7 @@
 #include <unsupported/Eigen/SpecialFunctions>
 
 #include "datasets/files/random.h"
-#include "ident/fit/push_range.h"
+#include "ident/model/push_range.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "models/decompositions.h"
@@ -21,6 +21,8 @@ constexpr int kReplicas = 200;
 constexpr size_t kFewest = 3, kFewestForAll = 10;     // recordings
 constexpr double kSpacing = 0.05;                     // s, of the percentiles
 constexpr double kPitSpacing = 0.25, kLastPit = 1.0;  // s
+
+double NormalCdf(double x) { return 0.5 * std::erfc(-x / std::sqrt(2.0)); }
 
 // One recording as far as it is looked at.
 struct Checked {

@@ -230,7 +230,7 @@ std::string PopulationSentence(const RecordingEffect& effect) {
            "tail. " +
            scale + ".";
   }
-  return "Recordings differ by a factor exp(b) on tail_gain, b ~ N(0, w^2): w = " +
+  return "Recordings differ by a factor exp(b) on the push tail, b ~ N(0, w^2): w = " +
          Rounded(effect.spread, 3) + " +- " + Rounded(effect.spread_error, 2) + " (" +
          std::to_string(effect.clusters) +
          " clusters, left out one at a time). Each recording's own b removes " +
@@ -238,7 +238,8 @@ std::string PopulationSentence(const RecordingEffect& effect) {
          " % of the mean squared error of the hip, divided by the push's speed; without it " +
          scale +
          ". Effects are shrunk towards 0 where a recording contains little information; alone: the "
-         "estimate without shrinkage.";
+         "estimate without shrinkage, looked for between -" +
+         Rounded(kWidestEffect, 2) + " and " + Rounded(kWidestEffect, 2) + ".";
 }
 
 std::vector<EffectOfRecording> SortedEffects(const RecordingEffect& effect) {
@@ -264,7 +265,8 @@ TextTable EffectsTable(const RecordingEffect& effect) {
                   {true, true, true, false, true, false, false});
   for (const EffectOfRecording& r : SortedEffects(effect)) {
     table.Add({r.id, r.person, r.condition, Rounded(r.mean, 2), "+- " + Rounded(r.error, 2),
-               Rounded(std::exp(r.mean), 3), Rounded(r.alone, 2)});
+               Rounded(std::exp(r.mean), 3),
+               Rounded(r.alone, 2) + (AtEffectEdge(r) ? " or beyond" : "")});
   }
   return table;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ident/figures/text_table.h"
-#include "ident/fit/recording_effect.h"
+#include "ident/observed/recording_effect.h"
 #include "ident/model/fitted_model.h"
 
 namespace pushid {

@@ -8,7 +8,7 @@
 #include "datasets/files/random.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/figures/text_table.h"
-#include "ident/fit/model_rollout.h"
+#include "ident/model/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
 #include "ident/validation/crossvalidation.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "ident/bodies/body_recording.h"
-#include "ident/fit/recording_effect.h"
 #include "ident/peers/peer_files.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
@@ -127,7 +126,9 @@ Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
   now.fit.body_weight = 0.0;
   now.training.checkpoint.clear();  // one would be of one training, not of the whole
   std::optional<IdentifiedModel> model = IdentifiedModel();  // a peer has no pendulum
-  if (RowOf(options.training.kind).follows_pendulum) model = FitTo(pendulums, among, now.fit);
+  if (RowOf(options.training.kind).follows_pendulum) {
+    model = FitTo(pendulums, among, now.fit, options.observed > 0);
+  }
   if (!model) return Error{"the pendulum's fit found no usable optimum"};
   Result<TrainedRestoration> trained = TrainFromRecordings(recordings, among, now, progress);
   if (!trained.ok()) return trained.error();
@@ -140,7 +141,7 @@ Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
     const auto body = MakeBodyData(*restoration.value(), Picked(recordings, among));
     if (!body.ok()) return body.error();
     now.fit.body = body.value();
-    model = FitTo(pendulums, among, now.fit);
+    model = FitTo(pendulums, among, now.fit, options.observed > 0);
     if (!model) return Error{"the pendulum's fit to bodies found no usable optimum"};
     moves = LargestChange(chain.model, *model) > kWholeTolerance;
     trained = TrainFromRecordings(recordings, among, now, progress);
@@ -172,7 +173,6 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
     validation.rounds.push_back(chain.value().rounds);
     IdentifiedModel& model = chain.value().model;
     if (options.observed > 0 && RowOf(options.training.kind).follows_pendulum) {
-      model.recording_effect = FitRecordingEffect(model, Picked(pendulums, train));
       if (MaybeError error = CheckLearnsFromFrames(model)) return *error;
     }
     for (int i : fold.held_out) {

@@ -220,8 +220,9 @@ Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>
 }
 
 std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
-                                     const std::vector<int>& train, const FitOptions& options) {
-  Result<IdentifiedModel> model = SolveModel(Picked(recordings, train), options);
+                                     const std::vector<int>& train, const FitOptions& options,
+                                     bool forecasts) {
+  Result<IdentifiedModel> model = SolveModel(Picked(recordings, train), options, forecasts);
   if (!model.ok()) return std::nullopt;
   return std::move(model.value());
 }

@@ -39,7 +39,8 @@ std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>
 // The model of `options` fitted to some recordings (indices), without the uncertainty; nothing when
 // no start found a usable optimum.
 std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
-                                     const std::vector<int>& train, const FitOptions& options);
+                                     const std::vector<int>& train, const FitOptions& options,
+                                     bool forecasts = false);
 
 // For every recording of `among` (indices) what a model predicts which was fitted to the other
 // folds of `among`, without forces and hips; an empty path where the rollout failed. Fewer

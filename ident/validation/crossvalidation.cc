@@ -80,6 +80,8 @@ FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums
       sum.*metric.value += score.*metric.value;
       result.*metric.value += score.*metric.value;
     }
+    sum.effect.mean += score.effect.mean;
+    sum.effect.error += score.effect.error;
     sum.propagation.Add(score.propagation);
     AddMargins(score.steps, &sum.steps);
     propagation.push_back(&score.propagation);
@@ -126,6 +128,8 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const P
     if (sums.counts[i] == 0 && mean.failure.empty()) continue;  // never held out
     if (sums.counts[i] > 0) {
       for (const HipMetric& metric : AllHipMetrics()) mean.*metric.value /= sums.counts[i];
+      mean.effect.mean /= sums.counts[i];
+      mean.effect.error /= sums.counts[i];
       mean.propagation.Divide(sums.counts[i]);
       for (StepPrediction& step : mean.steps) step.margin /= sums.counts[i];
     }

@@ -80,34 +80,45 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b);
 // The predictors compared: an identified model, and the baselines that any model has to beat.
 
 // How first frames are used.
-enum class FirstFrames { kForecast, kReanchored };
+enum class FramesUse { kForecast, kReanchored };
 
 // Fits the pendulum model to the training recordings, and to them what first frames tell. observed:
 // as in ScoreModel.
 class ModelPredictor : public Predictor {
  public:
   ModelPredictor(std::string label, FitOptions options, int observed = 0,
-                 FirstFrames use = FirstFrames::kForecast);
+                 FramesUse use = FramesUse::kForecast, ForecastUse forecast = ForecastUse::kStack);
   FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
                              const std::vector<int>& train,
                              const std::vector<int>& test) const override;
 
  private:
   FitOptions options_;
-  FirstFrames use_;
+  FramesUse use_;
+  ForecastUse forecast_;
 };
 
-// StaticBaseline or ConstantVelocityBaseline; nothing is fitted.
+// One of kBaselines; nothing is fitted.
 class BaselinePredictor : public Predictor {
  public:
-  using Baseline = HipPaths (*)(const PendulumRecording&, int observed);
-  BaselinePredictor(std::string label, Baseline baseline, int observed = 0);
+  using Predict = HipPaths (*)(const PendulumRecording&, int observed);
+  BaselinePredictor(std::string label, Predict predict, int observed = 0);
   FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
                              const std::vector<int>& train,
                              const std::vector<int>& test) const override;
 
  private:
-  Baseline baseline_;
+  Predict predict_;
+};
+
+// The mean displacement of the pushed hip by condition and frame, along the push, across and
+// upwards: where a push takes people, however hard it is.
+class TemplatePredictor : public Predictor {
+ public:
+  explicit TemplatePredictor(std::string label);
+  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train,
+                             const std::vector<int>& test) const override;
 };
 
 // Ridge regression from the pushed person's mass, rod length, x-impulse over mass and push frames

@@ -54,7 +54,7 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   std::string text;
   if (candidates.empty()) return text;
   const bool groups = candidates[0].summary.propagation.recordings > 0;
-  const ShownMetrics shown = MetricsOf(candidates[0].summary.observed, false);
+  const ShownMetrics shown = TableMetrics(candidates[0].summary.observed);
   std::vector<std::string> header = {"fold", "held out"};
   Append(Titles(shown), &header);
   Append({"failed", "fell"}, &header);

@@ -20,7 +20,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/figures/text_table.h"
-#include "ident/fit/model_rollout.h"
+#include "ident/model/model_rollout.h"
 #include "models/restoration/group_motion.h"
 
 namespace pushid {

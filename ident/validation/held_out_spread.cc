@@ -152,10 +152,10 @@ nlohmann::ordered_json ToJson(const FuturesSummary& summary) {
 namespace {
 
 // The figures of BandCoverage, in the order of a recording's values.
-constexpr int kBandFigures = 8;
+constexpr int kBandFigures = 6;
 std::array<MeanAndError*, kBandFigures> FiguresOf(BandCoverage* c) {
-  return {&c->inside50[0], &c->inside50[1], &c->inside90[0], &c->inside90[1],
-          &c->width90[0],  &c->width90[1],  &c->median_ade,  &c->rollout_ade};
+  return {&c->inside50[0], &c->inside50[1], &c->inside90[0],
+          &c->inside90[1], &c->width90[0],  &c->width90[1]};
 }
 
 // Of the pushed person: bystanders of a single recording stand still, and groups err by contact.
@@ -178,8 +178,6 @@ std::vector<double> CountInside(const PredictiveBands& bands, const IdentifiedMo
       values[4 + axis] += share * (band.upper90[t][axis] - band.lower90[t][axis]);
     }
   }
-  values[6] = ScoreHip(recording, MedianHip(bands)).hip_ade;
-  values[7] = ScoreHip(recording, rollout.hip).hip_ade;
   return values;
 }
 
@@ -248,18 +246,10 @@ std::string BandCoverageText(const std::vector<BandCoverage>& coverage) {
                  PlusMinus(c.inside90[axis], 100.0, "%"), Rounded(c.width90[axis].mean, 3)});
     }
   }
-  std::string text =
-      table.ToString() + "share of held-out frames of " +
-      std::to_string(coverage.empty() ? 0 : coverage[0].recordings) +
-      " recordings whose measured hip lies in the predictive bands; standard errors over " +
-      (coverage.empty() ? "" : coverage[0].clusters) + "\n";
-  for (const BandCoverage& c : coverage) {
-    if (!c.model_error) continue;
-    text += kHipMetrics[0].name + std::string(" of their median ") +
-            PlusMinus(c.median_ade, 1.0, "m") + ", of the rollout at the estimate " +
-            PlusMinus(c.rollout_ade, 1.0, "m") + "\n";
-  }
-  return text;
+  return table.ToString() + "share of held-out frames of " +
+         std::to_string(coverage.empty() ? 0 : coverage[0].recordings) +
+         " recordings whose measured hip lies in the predictive bands; standard errors over " +
+         (coverage.empty() ? "" : coverage[0].clusters) + "\n";
 }
 
 }  // namespace pushid

@@ -47,8 +47,6 @@ struct BandCoverage {
   std::string clusters;  // "4 people"
   MeanAndError inside50[2], inside90[2];
   MeanAndError width90[2];  // m
-  // hipADE of the bands' median, and of the rollout at the estimate, m.
-  MeanAndError median_ade, rollout_ade;
 };
 
 // Of recordings that were not fitted, with and without model error.

@@ -4,16 +4,18 @@
 #include <cmath>
 
 #include "ident/fit/fit.h"
+#include "ident/observed/recording_filter.h"
 #include "ident/validation/crossvalidation.h"
 #include "models/decompositions.h"
 
 namespace pushid {
 
-ModelPredictor::ModelPredictor(std::string label, FitOptions options, int seen, FirstFrames use)
-    : options_(std::move(options)), use_(use) {
+ModelPredictor::ModelPredictor(std::string label, FitOptions options, int seen, FramesUse use,
+                               ForecastUse forecast)
+    : options_(std::move(options)), use_(use), forecast_(forecast) {
   name = std::move(label);
   observed = seen;
-  bands = seen > 0 && use == FirstFrames::kForecast;
+  bands = seen > 0 && use == FramesUse::kForecast;
   options_.num_threads = 1;  // the folds run in parallel
 }
 
@@ -22,11 +24,9 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
                                            const std::vector<int>& test) const {
   std::vector<PendulumRecording> training;
   for (int i : train) training.push_back(recordings[i]);
-  Result<IdentifiedModel> solved = SolveModel(training, options_);
-  if (solved.ok() && bands) {
-    IdentifiedModel& model = solved.value();
-    model.recording_effect = FitRecordingEffect(model, training);
-    if (!model.recording_effect) solved = Error{"no recording stays in the model's domain"};
+  Result<IdentifiedModel> solved = SolveModel(training, options_, bands);
+  if (solved.ok() && bands && !solved.value().forecasts) {
+    solved = Error{"no recording stays in the model's domain"};
   }
   FoldPrediction prediction;
   if (solved.ok()) prediction.behaviour = solved.value().behaviour;
@@ -40,16 +40,16 @@ FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>&
       continue;
     }
     const IdentifiedModel& model = solved.value();
-    prediction.scores.push_back(use_ == FirstFrames::kReanchored
+    prediction.scores.push_back(use_ == FramesUse::kReanchored
                                     ? ScoreReanchored(model, recordings[i], observed)
-                                    : ScoreModel(model, recordings[i], observed));
+                                    : ScoreModel(model, recordings[i], observed, forecast_));
     prediction.scores.back().fell_harder = FallsWhenPushedHarder(model, recordings[i]);
   }
   return prediction;
 }
 
-BaselinePredictor::BaselinePredictor(std::string label, Baseline baseline, int seen)
-    : baseline_(baseline) {
+BaselinePredictor::BaselinePredictor(std::string label, Predict predict, int seen)
+    : predict_(predict) {
   name = std::move(label);
   observed = seen;
 }
@@ -60,7 +60,43 @@ FoldPrediction BaselinePredictor::FitAndScore(const std::vector<PendulumRecordin
   FoldPrediction prediction;
   for (int i : test) {
     prediction.scores.push_back(
-        ScoreHip(recordings[i], baseline_(recordings[i], observed), observed));
+        ScoreHip(recordings[i], predict_(recordings[i], observed), observed));
+  }
+  return prediction;
+}
+
+TemplatePredictor::TemplatePredictor(std::string label) { name = std::move(label); }
+
+FoldPrediction TemplatePredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
+                                              const std::vector<int>& train,
+                                              const std::vector<int>& test) const {
+  // The mean over training recordings that last so long, of one condition or of all; whether any
+  // do.
+  const auto displacement = [&](const std::string* condition, int t, Eigen::Vector3d* mean) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    int count = 0;
+    for (int i : train) {
+      const PendulumRecording& r = recordings[i];
+      if (t >= r.num_frames() || (condition && r.labels.condition() != *condition)) continue;
+      const auto& hip = r.hip[r.pushed_person];
+      sum += PushAxes(r).transpose() * (hip[t] - hip[0]);
+      ++count;
+    }
+    if (count > 0) *mean = sum / count;
+    return count > 0;
+  };
+  FoldPrediction prediction;
+  for (int i : test) {
+    const PendulumRecording& r = recordings[i];
+    const std::string condition = r.labels.condition();
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();  // later than any training recording: the last
+    const std::string* const among = displacement(&condition, 0, &mean) ? &condition : nullptr;
+    HipPaths paths = StaticBaseline(r);  // bystanders stay where they are
+    for (int t = 1; t < r.num_frames(); ++t) {
+      displacement(among, t, &mean);
+      paths[r.pushed_person][t] += PushAxes(r) * mean;
+    }
+    prediction.scores.push_back(ScoreHip(r, paths));
   }
   return prediction;
 }

@@ -41,10 +41,8 @@ Json ToJson(const ScoreSummary& summary, bool with_recordings) {
 
 Json ToJson(const Evaluation& evaluation) {
   Json json = ToJson(evaluation.model, true);
-  json["baselines"] = {{"static", ToJson(evaluation.static_baseline, false)},
-                       {"constant_velocity", ToJson(evaluation.constant_velocity, false)}};
-  if (evaluation.reanchored) {
-    json["baselines"]["reanchored"] = ToJson(*evaluation.reanchored, false);
+  for (const BaselineSummary& baseline : evaluation.baselines) {
+    json["baselines"][baseline.key] = ToJson(baseline.summary, false);
   }
   return json;
 }

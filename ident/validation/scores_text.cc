@@ -9,33 +9,21 @@
 #include "ident/validation/steps_report.h"
 
 namespace pushid {
-namespace {
-
-std::vector<const ScoreSummary*> Baselines(const Evaluation& evaluation) {
-  std::vector<const ScoreSummary*> baselines = {&evaluation.static_baseline,
-                                                &evaluation.constant_velocity};
-  if (evaluation.reanchored) baselines.push_back(&*evaluation.reanchored);
-  return baselines;
-}
-
-}  // namespace
-
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   std::string text;
-  const ShownMetrics shown = MetricsOf(evaluation.model.observed, false);
+  const ShownMetrics shown = TableMetrics(evaluation.model.observed);
   if (per_recording) {
     std::vector<std::string> header = {"recording", "frames"};
     Append(Titles(shown), &header);
-    Append({"static", "const velocity"}, &header);
-    if (evaluation.reanchored) header.push_back("re-anchored");
+    for (const BaselineSummary& baseline : evaluation.baselines) header.push_back(baseline.name);
     header.push_back("");
     TextTable table = TableOf(header, header.size() - 1);
     for (size_t i = 0; i < evaluation.model.recordings.size(); ++i) {
       const RecordingScore& r = evaluation.model.recordings[i];
       std::vector<std::string> row = {r.id, std::to_string(r.frames)};
       Append(PlainCells(r, shown, r.failure.empty()), &row);
-      for (const ScoreSummary* baseline : Baselines(evaluation)) {
-        row.push_back(PlainCells(baseline->recordings[i], shown)[0]);
+      for (const BaselineSummary& baseline : evaluation.baselines) {
+        row.push_back(PlainCells(baseline.summary.recordings[i], shown)[0]);
       }
       row.push_back(r.failure);
       table.Add(row);
@@ -46,13 +34,16 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
     }
   }
   std::vector<std::string> header = {Together(MetricNames(shown)) + " in " + kHipMetrics[0].unit,
-                                     "recordings", "model", "static", "constant velocity"};
-  if (evaluation.reanchored) header.push_back("re-anchored");
+                                     "recordings", "model"};
+  for (const BaselineSummary& baseline : evaluation.baselines) header.push_back(baseline.name);
   std::vector<bool> left(header.size(), true);
   left[1] = false;
   TextTable table(header, left);
   const ScoreSummary& m = evaluation.model;
-  const std::vector<const ScoreSummary*> baselines = Baselines(evaluation);
+  std::vector<const ScoreSummary*> baselines;
+  for (const BaselineSummary& baseline : evaluation.baselines) {
+    baselines.push_back(&baseline.summary);
+  }
   // pick: the mean of a summary.
   const auto add = [&](const std::string& name, const auto& pick) {
     std::vector<std::string> row = {name, std::to_string(pick(m).recordings),
@@ -74,7 +65,7 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
     for (const auto& [name, setting] : m.propagation_by_setting)
       columns.push_back({name, &setting});
   }
-  columns.push_back({"constant velocity", &evaluation.constant_velocity.propagation});
+  columns.push_back({"constant velocity", &evaluation.Baseline("constant_velocity").propagation});
   return text + "\n" + PropagationText(columns);
 }
 

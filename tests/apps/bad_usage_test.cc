@@ -19,7 +19,7 @@ struct UsageCase {
 };
 
 TEST_F(BadUsageTest, FitFlags) {
-  const std::string all_free = "mu,Kp_theta,Kd_theta,a_x,tail_gain,tail_torque,tail_time";
+  const std::string all_free = "mu,Kp_theta,Kd_theta,a_x,tail_gain,tail_torque,tail_time,tail_base";
   const std::vector<UsageCase> cases = {
       {{"--fix=mew"}, {"--fix", "'mew'", "not a parameter", "Kp_theta"}},
       {{"--free=mew"}, {"--free", "'mew'"}},
@@ -243,7 +243,7 @@ TEST_F(BadUsageTest, WhatDoesNothingIsWarnedAbout) {
   FitModel("m.json", {"--fix=mu_y=10", "--quiet"});
   EXPECT_TRUE(Contains(fit_.err, "warning: --fix=mu_y=10 does nothing"));
   FitModel("m.json", {"--pool_by=subject", "--quiet"});
-  EXPECT_TRUE(Contains(fit_.err, "--pool_by=subject without --pool lets only tail_time differ"));
+  EXPECT_TRUE(Contains(fit_.err, "--pool_by=subject without --pool lets only tail_base differ"));
   FitModel("m.json", {"--interaction=ldp_discrete", "--quiet"});
   EXPECT_TRUE(Contains(fit_.err, "warning: --interaction=ldp_discrete"));
 }
@@ -327,7 +327,7 @@ TEST_F(BadUsageTest, CrossValidationFlags) {
       {{"--compare=pd: --model_out=x"}, {"--compare", "'--model_out=x'"}},
       {{"--compare=pd: --json_out=x"}, {"--compare", "'--json_out=x'"}},
       {{"--compare=a: --seed=2; a: --seed=3"}, {"--compare", "'a'"}},
-      {{"--compare=held: --fix=mu,Kp_theta,Kd_theta,a_x,tail_gain,tail_torque,tail_time"},
+      {{"--compare=held: --fix=mu,Kp_theta,Kd_theta,a_x,tail_gain,tail_torque,tail_time,tail_base"},
        {"--compare", "'held'", "nothing is left"}},
   };
   for (const UsageCase& one : cases) {

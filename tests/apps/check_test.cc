@@ -62,7 +62,7 @@ TEST_F(CheckTest, TheModelStaysWhereAnotherIsNamedOrNothingIsAdded) {
   const AppRun printed = Check(model, {"--design=mu", "--population"});
   ASSERT_EQ(printed.exit_code, 0) << printed.err;
   EXPECT_TRUE(Contains(printed.out, "error of mu"));
-  EXPECT_TRUE(Contains(printed.out, "on tail_gain, b ~ N(0, w^2)"));
+  EXPECT_TRUE(Contains(printed.out, "on the push tail, b ~ N(0, w^2)"));
   EXPECT_EQ(printed.out.find("--design="), std::string::npos) << "advised where it was done";
   EXPECT_EQ(ReadText(model), before);
   // Checks add up.

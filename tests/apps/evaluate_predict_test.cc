@@ -187,12 +187,13 @@ TEST_F(CrossValidateAppTest, EverySchemeScoresAndCompares) {
         {Recordings(), std::string("--scheme=") + scheme, "--folds=2", "--repeats=2",
          "--compare=short: --push_tail=none; linear: --self_force=linear", "--json_out=" + out});
     ASSERT_EQ(run.exit_code, 0) << scheme << ": " << run.err;
-    for (const char* part : {"tail", "short", "linear", "ridge", "static", "constant velocity"}) {
+    for (const char* part :
+         {"tail", "short", "linear", "ridge", "template", "static", "constant velocity"}) {
       EXPECT_TRUE(Contains(run.out, part)) << scheme;
     }
     const nlohmann::ordered_json json = Json(out);
-    ASSERT_EQ(json["predictors"].size(), 6u);
-    EXPECT_EQ(json["paired_differences"].size(), 5u);
+    ASSERT_EQ(json["predictors"].size(), 7u);
+    EXPECT_EQ(json["paired_differences"].size(), 6u);
     for (const auto& predictor : json["predictors"]) {
       ExpectScore(predictor["mean"], "mean");
       ExpectScore(predictor["frame_weighted"], "frame_weighted");

@@ -55,7 +55,8 @@ TEST_F(ObservedTest, FramesThatAreSeenHelp) {
     EXPECT_LT(json["mean"]["hipADE_m"].get<double>(), before);
     before = json["mean"]["hipADE_m"];
     EXPECT_TRUE(json["mean"].contains("inside90_x_share"));
-    for (const char* baseline : {"static", "constant_velocity", "reanchored"}) {
+    for (const char* baseline :
+         {"static", "constant_velocity", "velocity_of_8", "kinematic", "reanchored"}) {
       EXPECT_TRUE(json["baselines"][baseline]["mean"].contains("after_hipADE_m")) << baseline;
     }
     EXPECT_NE(run.out.find("90 % bands hold"), std::string::npos);
@@ -81,7 +82,7 @@ TEST_F(ObservedTest, HeldOutRecordingsAreScoredBehindTheirFirstFrames) {
       {Recordings(), "--folds=3", "--repeats=1", "--observed=12", "--json_out=" + Path("cv.json")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto json = Json(Path("cv.json"));
-  ASSERT_EQ(json["predictors"].size(), 4u);
+  ASSERT_EQ(json["predictors"].size(), 7u);
   EXPECT_EQ(json["predictors"][1]["name"], "re-anchored");
   for (const auto& predictor : json["predictors"]) {
     EXPECT_GT(predictor["mean"]["after_hipADE_m"].get<double>(), 0.0);
@@ -122,7 +123,7 @@ TEST_F(ObservedTest, WhatCannotBeIsRefused) {
 
 TEST_F(ObservedTest, PopulationIsPrintedAndKept) {
   const std::string model = FitModel("model.json", {"--population"});
-  EXPECT_NE(fit_.out.find("Recordings differ by a factor exp(b) on tail_gain"), std::string::npos);
+  EXPECT_NE(fit_.out.find("Recordings differ by a factor exp(b) on the push tail"), std::string::npos);
   EXPECT_NE(fit_.out.find("alone"), std::string::npos);
   const auto effect = Json(model)["recording_effect"];
   EXPECT_EQ(effect["recordings"].size(), 12u);

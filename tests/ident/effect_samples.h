@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/files/random.h"
-#include "ident/fit/push_range.h"
+#include "ident/model/push_range.h"
 #include "ident/prediction/online_predictor.h"
 #include "tests/ident/fit_samples.h"
 
@@ -24,7 +24,7 @@ struct PlantedEffects {
   uint64_t seed = 1;
 };
 
-// The law of fit/recording_filter.h drawn step by step, on the scale of a recording: along the
+// The law of observed/recording_filter.h drawn step by step, on the scale of a recording: along the
 // push, across and upwards.
 inline std::vector<Vector3<double>> DrawnErrors(int frames, double dt, double scale,
                                                 Random* random) {

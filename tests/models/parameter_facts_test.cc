@@ -67,7 +67,7 @@ TEST(ParameterFacts, ActWhereTheirTermsAre) {
   EXPECT_EQ(adds([](ModelOptions* m) { m->cart_derivative = CartDerivative::kBackward; }),
             (Names{"Kd_x", "Kd_y"}));
   EXPECT_EQ(adds([](ModelOptions* m) { m->push_tail = PushTail::kExponential; }),
-            (Names{"tail_gain", "tail_torque", "tail_time", "tail_exponent"}));
+            (Names{"tail_gain", "tail_torque", "tail_time", "tail_exponent", "tail_base"}));
   EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.spring = true; }),
             (Names{"contact_stiffness", "contact_distance", "contact_kappa", "contact_height"}));
   EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.damping = true; }),

@@ -1,75 +1,182 @@
 """What the first frames of a new push tell (--observed).
 
-single      errors of held-out recordings of single people after 1, 12, 20 and 30 frames (ident/prediction/README.md); 2 minutes
-steps       the same by gains of single steps (--likelihood=innovation), 4 folds once (ident/prediction/README.md); a minute
-groups      the same of groups, 5 folds (ident/prediction/README.md); 15 minutes
-population  how recordings of single people differ (ident/prediction/README.md); seconds
+All in ident/prediction/README.md.
 
-Times are those of one core.
+first       errors from frame 0 and the push alone, beside the baselines; 2 minutes
+single      errors of held-out recordings of single people after 1 to 45 frames, 5 x 4 folds; half a minute
+person      the same, a person left out
+groups      the same of groups, 5 folds; 6 minutes
+thirds      each third of what is to come, beside the best baseline; after person and groups seconds
+bands       share of hips inside 50 and 90 % bands, and CRPS; after person and groups seconds
+forecasters each forecaster alone, a person left out; seconds
+unseen      people of another simulator whose push goes on unseen (unseen_pushes.py; the Python module); a minute
+population  how recordings of single people differ; seconds
+
+Times are those of two cores.
 """
+import json
+import os
+import sys
+
 import studies
 from studies import number, with_error
 
-FRAMES = [1, 12, 20, 30]
-GROUP_FRAMES = [1, 12, 30]  # a fit of groups takes a minute
+FRAMES = [1, 6, 12, 20, 30, 45]
+SCHEMES = {"5 x 4 folds": ("single", ()), "a person left out": ("single", ("--scheme=subject",)),
+           "groups, 5 folds": ("groups", ("--folds=5", "--repeats=1"))}
+MODEL = {"single": "tail", "groups": "group"}
 
 
-def scored(setting, observed, *arguments):
-    return studies.on_recordings("pushid-crossvalidate", setting, f"--observed={observed}", *arguments).json
+def longer_than(setting, frames):
+    """--leave_out of the recordings that have no frame left."""
+    with open(studies.MANIFEST, encoding="utf-8") as file:
+        recordings = json.load(file)["recordings"]
+    short = [r["id"] for r in recordings if (r["setting"] == "single") == (setting == "single") and r["frames"] <= frames]
+    return [f"--leave_out={','.join(short)}"] if short else []
+
+
+def predictors(scheme, observed, *arguments):
+    setting, flags = SCHEMES[scheme]
+    out = studies.on_recordings("pushid-crossvalidate", setting, f"--observed={observed}", "--num_threads=2", *flags,
+                                *longer_than(setting, observed), *arguments).json
+    return out["predictors"], {d["to"]: d for d in out.get("paired_differences", [])}
 
 
 def metric(mean, name, unit="m", sign=False):
     return with_error(mean[f"{name}_{unit}"], mean[f"{name}_standard_error_{unit}"], sign)
 
 
-def rows_of(setting, frames, *arguments):
+def errors(scheme):
     rows = []
-    for k in frames:
-        out = scored(setting, k, *arguments)
-        differences = {d["to"]: d for d in out.get("paired_differences", [])}
-        for i, p in enumerate(out["predictors"]):
+    for k in FRAMES:
+        scored, differences = predictors(scheme, k)
+        for i, p in enumerate(scored):
             mean = p["mean"]
-            bands = [metric(mean, f"inside90_{axis}", "share") for axis in "xy"] if i == 0 else [None, None]
-            difference = metric(differences[p["name"]], "after_hipADE", sign=True) if i else None
             rows.append([k if i == 0 else None, "forecast" if i == 0 else p["name"], metric(mean, "hipADE"),
-                         metric(mean, "after_hipADE"), metric(mean, "hipFDE"), difference, *bands])
-    return rows
-
-
-HEADER = ["frames seen", "", "all frames, m", "frames after, m", "last, m", "after, minus forecast, m",
-          "inside 90 %, x", "y"]
+                         metric(mean, "after_hipADE"), metric(mean, "hipFDE"),
+                         metric(differences[p["name"]], "after_hipADE", sign=True) if i else None])
+            if k == 1:
+                break  # baselines without any frame are in the first table
+    return studies.table(["frames seen", "", "all frames, m", "frames after, m", "last, m", "after, minus forecast, m"],
+                         rows)
 
 
 def single():
-    return studies.table(HEADER, rows_of("single", FRAMES))
+    return errors("5 x 4 folds")
 
 
-def steps():
-    rows = rows_of("single", FRAMES[1:], "--likelihood=innovation", "--folds=4", "--repeats=1")
-    return studies.table(HEADER, [row for row in rows if row[1] in ("forecast", "re-anchored")])
+def person():
+    return errors("a person left out")
 
 
 def groups():
-    return studies.table(HEADER, rows_of("groups", GROUP_FRAMES, "--folds=5", "--repeats=1"))
+    return errors("groups, 5 folds")
+
+
+def thirds():
+    rows = []
+    for scheme in SCHEMES:
+        for k in FRAMES[1:]:
+            scored, _ = predictors(scheme, k)
+            cells = []
+            for third in ("first", "second", "last"):
+                key = f"{third}_third_hipADE_m"
+                best = min(scored[1:], key=lambda p: p["mean"][key])
+                own, other = scored[0]["mean"][key], best["mean"][key]
+                cells.append(f"{'**' if other < own else ''}{number(own)} / {number(other)} ({best['name']})"
+                             f"{'**' if other < own else ''}")
+            rows.append([scheme, k, *cells])
+    return studies.table(["held out", "frames seen", "first third: forecast / best baseline, m", "second", "last"], rows)
+
+
+def bands():
+    rows = []
+    for scheme in SCHEMES:
+        for k in FRAMES:
+            mean = predictors(scheme, k)[0][0]["mean"]
+            rows.append([scheme, k, *[metric(mean, f"inside{share}_{axis}", "share") for share in (50, 90) for axis in "xy"],
+                         metric(mean, "crps")])
+    return studies.table(["held out", "frames seen", "inside 50 %, x", "y", "inside 90 %, x", "y", "CRPS, m"], rows)
+
+
+def forecasters():
+    rows = []
+    for k in FRAMES[1:]:
+        means = [predictors("a person left out", k, "--yardsticks=false", f"--forecast={who}")[0][0]["mean"]
+                 for who in ("physics", "input", "kinematic")]
+        means.append(predictors("a person left out", k)[0][0]["mean"])
+        rows.append([k, *[f"{number(m['after_hipADE_m'])} / {number(m['hipFDE_m'])}" for m in means]])
+    return studies.table(["frames seen", "physics: after / last, m", "input", "kinematic", "together"], rows)
+
+
+def first():
+    rows = []
+    cases = [("5 x 4 folds", "single", ()), ("a person left out", "single", ("--scheme=subject",)),
+             ("strong pushes left out", "single", ("--scheme=strong",)),
+             ("groups, 5 folds", "groups", ("--folds=5", "--repeats=1"))]
+    for name, setting, flags in cases:
+        scored = studies.on_recordings("pushid-crossvalidate", setting, "--num_threads=2", *flags).json["predictors"]
+        rows.append([name, *[next((f"{metric(p['mean'], 'hipADE')} / {number(p['mean']['hipFDE_m'])}" for p in scored
+                                   if p["name"] == who and (who != "template" or setting == "single")), None)
+                             for who in (MODEL[setting], "template", "ridge", "constant velocity", "static")]])
+    return studies.table(["held out", "physics: mean / last, m", "template", "ridge", "constant velocity", "static"], rows)
 
 
 def population():
-    effect = studies.fit("single").json["recording_effect"]
+    fitted = studies.fit("single").json
+    effect, forecasts = fitted["recording_effect"], fitted["forecasts"]
     rows = [["spread w of b", with_error(effect["spread"], effect["spread_standard_error"])],
             ["error scale s, m", number(effect["error_scale_m"])],
             ["share of the squared error that b takes away", number(effect["explained"], 2)],
-            ["blend rate r, 1/s", number(effect["blend_rate_per_s"], 2)],
-            ["widening c, 1/s^2: along the push, across, upwards",
-             ", ".join(number(c, 2) for c in effect["widening_per_s2"])]]
+            ["time of the unknown force, s: forecasting best, likeliest",
+             f"{number(forecasts['input']['force_time_s'], 2)}, {number(forecasts['likeliest_input']['force_time_s'], 2)}"],
+            ["tail of the filter over the model's: strength, time",
+             f"{number(forecasts['tail_strength'], 2)}, {number(forecasts['tail_time'], 2)}"]]
     for key in ("person", "condition"):
-        groups = sorted({r[key] for r in effect["recordings"]})
+        names = sorted({r[key] for r in effect["recordings"]})
         means = []
-        for name in groups:
+        for name in names:
             own = [r["effect"] for r in effect["recordings"] if r[key] == name]
             means.append(f"{name} {sum(own) / len(own):+.2f}")
         rows.append([f"mean b by {key}", ", ".join(means)])
     return studies.table(["32 recordings of single people", ""], rows)
 
 
+def unseen():
+    sys.path.insert(0, os.path.join(os.path.dirname(studies.BIN), "python"))
+    import numpy as np
+    import pushid
+    import unseen_pushes
+    rows = []
+    for hidden in (0.0, 0.5, 1.0, 2.0):
+        inside, errors_of = [], {"stack": [], "physics": [], "input": []}
+        for seed in range(4):
+            recordings, truths = [], []
+            for i, (name, mass, (hip, left, right, push, truth)) in enumerate(unseen_pushes.study(seed, hidden=hidden)):
+                recordings.append(pushid.Recording(np.array(hip), np.array(left), np.array(right), mass=mass, fps=60,
+                                                   push=np.array(push), push_height=1.0, id=f"{name}_{i}", subjects=name))
+                truths.append(truth)
+            people = sorted({r.subjects[0] for r in recordings})
+            for left_out in people:
+                result = pushid.fit([r for r in recordings if r.subjects[0] != left_out], stance="slide")
+                for recording, truth in zip(recordings, truths):
+                    if recording.subjects[0] != left_out:
+                        continue
+                    online = pushid.OnlinePredictor(result, recording, recording.num_frames)
+                    for t in range(1, 60):
+                        online.observe(recording.hip[t], recording.left_ankle[t], recording.right_ankle[t])
+                        if t >= 8:
+                            force, deviation = online.unknown_force
+                            inside.append(abs(force[0, 0] - truth[t]) < 1.645 * deviation[0, 0])
+                    for who, kept in errors_of.items():
+                        hip = result.predict(recording, observed=20, forecast=who)["hip"]
+                        kept.append(np.linalg.norm(hip[20:, 0] - recording.hip[20:, 0], axis=1).mean())
+        rows.append([number(hidden, 2), len(errors_of["stack"]), f"{100 * np.mean(inside):.1f} %",
+                     *[number(float(np.mean(errors_of[who])))for who in ("physics", "input", "stack")]])
+    return studies.table(["unknown force, m/s^2", "recordings", "its 90 % band holds", "after 20 frames: physics, m", "input",
+                          "together"], rows)
+
+
 if __name__ == "__main__":
-    studies.main(__file__, {"single": single, "steps": steps, "groups": groups, "population": population})
+    studies.main(__file__, {"first": first, "single": single, "person": person, "groups": groups, "thirds": thirds,
+                            "bands": bands, "forecasters": forecasters, "unseen": unseen, "population": population})

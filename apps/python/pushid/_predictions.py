@@ -34,10 +34,13 @@ def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=
 
 
 class OnlinePredictor:
-    """A prediction that is updated with every observed frame; recording: people, pushes and frame 0."""
+    """A prediction that is updated with every observed frame; recording: people, pushes and frame 0.
 
-    def __init__(self, result, recording, frames):
-        self._online = _pushid.Online(result._model, *checked(recording), frames)
+    forecast: "stack" (all forecasters together), "physics", "input" or "kinematic".
+    """
+
+    def __init__(self, result, recording, frames, *, forecast="stack"):
+        self._online = _pushid.Online(result._model, *checked(recording), frames, forecast)
 
     def observe(self, hip, left_ankle, right_ankle):
         """Adds the next frame, starting with frame 1: (people, 3) each, or (3,) for one person, in m."""
@@ -47,6 +50,11 @@ class OnlinePredictor:
     def observed(self):
         """Number of observed frames, including frame 0."""
         return self._online.observed
+
+    @property
+    def unknown_force(self):
+        """(force, standard deviation): what acts beside the known push, (people, 4) each, N and N m; or None."""
+        return self._online.unknown_force
 
     def predict(self):
         """As Result.predict, from the frames observed so far, without bands."""

@@ -173,11 +173,13 @@ class Result:
         """Finds the further push that would reduce the error of a parameter (or of all together) most; see Design."""
         return Design(_pushid.design(self._model, parameter))
 
-    def predict(self, recording, *, observed=0, frames=0, samples=0, seed=1, set=None, push_scale=1.0, push_again=()):
+    def predict(self, recording, *, observed=0, forecast="stack", frames=0, samples=0, seed=1, set=None, push_scale=1.0,
+                push_again=()):
         """Predicts the motion from the first frame (or `observed` frames) and the push.
 
         {"hip": (frames, people, 3), "states": (frames, people, 8: q and its rate), ...}; with `observed` also the
-        90 % bands "lower90" and "upper90" of the later frames. samples: number of futures to draw, as "samples" of
+        90 % bands "lower90" and "upper90" of the later frames, forecast by "stack" (all forecasters together), "physics",
+        "input" (a filter with an unknown force) or "kinematic". samples: number of futures to draw, as "samples" of
         shape (samples, frames, people, 3): after `observed` frames from the distribution behind those bands; otherwise
         from the process noise if the model has one, or from the covariance of the parameters and the errors of the
         fitted recordings. frames: number of frames (0: as in the recording). set: {name: value} for "what if";
@@ -185,7 +187,7 @@ class Result:
         rollout leaves the model's domain; warns about pushes unlike the fitted ones.
         """
         return _pushid.predict(self._model, *checked(recording), observed, frames, samples, seed, text_of("set", set or {}),
-                               push_scale, list(push_again))
+                               push_scale, list(push_again), forecast)
 
     def path_between(self, start, end, *, frames=90, fps=60.0, mass=85.0, rod=0.95):
         """The most probable path of a person between two states under the model's process noise.
@@ -201,9 +203,9 @@ class Result:
         """Smooths a recording and fills its gaps under the model's process noise: as path_between, for all people."""
         return _pushid.smooth(self._model, *checked(recording))
 
-    def evaluate(self, recordings, *, observed=0):
+    def evaluate(self, recordings, *, observed=0, forecast="stack"):
         """Errors of the predictions and of two baselines, as pushid-evaluate writes them."""
-        return self._model.evaluate(checked(recordings), observed)
+        return self._model.evaluate(checked(recordings), observed, forecast)
 
     def loop(self, *, mass=85.0, rod=0.95):
         """The linearized loop of a person at rest, as a control engineer quotes it: {"theta": {...}, "phi": {...}}.
@@ -301,7 +303,7 @@ def load(path):
 
 
 def crossvalidate(recordings, candidates=None, *, scheme="stratified", folds=4, repeats=1, seed=1, observed=0,
-                  baselines=True, num_threads=1, progress=None, **asked):
+                  forecast="stack", baselines=True, num_threads=1, progress=None, **asked):
     """Errors on recordings that were not fitted, for the options given and each of `candidates`.
 
     candidates: {name: {option: value}}, in addition to the options given. Returns a list with the scores that
@@ -311,7 +313,7 @@ def crossvalidate(recordings, candidates=None, *, scheme="stratified", folds=4, 
     for name, more in (candidates or {}).items():
         all_of_them.append((name, given({**asked, **more})))
     return _pushid.crossvalidate(checked(recordings), all_of_them, scheme, folds, repeats, seed, observed,
-                                 baselines, num_threads, progress)
+                                 forecast, baselines, num_threads, progress)
 
 
 class Design(dict):

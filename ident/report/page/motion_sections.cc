@@ -56,9 +56,6 @@ Chart HipChart(const RecordingView& view, int person, int axis, const std::strin
     chart.bands.push_back({shifted(band.lower90), shifted(band.upper90), kWideBandLook});
     chart.bands.push_back({shifted(band.lower50), shifted(band.upper50), kNarrowBandLook});
   }
-  if (!view.bands.people.empty()) {
-    chart.lines.push_back({line(MedianHip(view.bands)[person]), kMedianLook, false});
-  }
   if (run.prediction.status.ok) {
     chart.lines.push_back({line(run.prediction.hip[person]), kPredictedLook, false});
   }
@@ -83,18 +80,14 @@ Chart AngleChart(const RecordingView& view, int person, int row, const std::stri
     chart.bands.push_back({edge(band.lower90), edge(band.upper90), kWideBandLook});
     chart.bands.push_back({edge(band.lower50), edge(band.upper50), kNarrowBandLook});
   }
-  ChartLine measured{{}, kMeasuredLook, false}, predicted{{}, kPredictedLook, false},
-      median{{}, kMedianLook, false};
+  ChartLine measured{{}, kMeasuredLook, false}, predicted{{}, kPredictedLook, false};
   const int frames = run.recording.num_frames();
   const int valid = run.prediction.status.ok ? frames : run.prediction.status.frame;
   for (int t = 0; t < frames; ++t) {
     measured.points.emplace_back(run.Seconds(t), run.recording.states[person][t].q[row]);
     if (t >= valid) continue;
     predicted.points.emplace_back(run.Seconds(t), run.prediction.path.At(t, person).q[row]);
-    if (view.bands.people.empty()) continue;
-    median.points.emplace_back(run.Seconds(t), view.bands.people[person].median[t][row + 1]);
   }
-  if (!median.points.empty()) chart.lines.push_back(median);
   chart.lines.push_back(predicted);
   chart.lines.push_back(measured);
   return chart;
@@ -120,10 +113,6 @@ TextTable PathNumbers(const RecordingView& view) {
                    "predicted_theta_rad",
                    "measured_phi_rad",
                    "predicted_phi_rad",
-                   "median_x_m",
-                   "median_y_m",
-                   "median_theta_rad",
-                   "median_phi_rad",
                    "left_foot_stands",
                    "right_foot_stands"});
   const FormationRun& run = view.run;
@@ -149,8 +138,6 @@ TextTable PathNumbers(const RecordingView& view) {
         add(true, run.recording.states[n][t].q[row]);
         add(ok, ok ? run.prediction.path.At(t, n).q[row] : 0.0);
       }
-      for (int entry : {0, 1, 3, 4})
-        add(bands, bands ? view.bands.people[n].median[t][entry] : 0.0);
       for (Foot foot : kFeet) add(true, run.recording.steps[n].Stands(foot, t) ? 1.0 : 0.0);
       table.Add(cells);
     }
@@ -181,7 +168,6 @@ std::vector<LegendEntry> LegendOf(const RecordingView& view) {
   std::vector<LegendEntry> legend = {{"measured", kMeasuredLook}};
   if (view.run.prediction.status.ok) legend.push_back({"predicted", kPredictedLook});
   if (!view.bands.people.empty()) {
-    legend.push_back({"median of the bands", kMedianLook});
     legend.push_back({"50 %", kNarrowBandLook});
     legend.push_back({"90 %", kWideBandLook});
   }
@@ -217,34 +203,8 @@ std::string FoldTitle(const RecordingView& view) {
   std::string title = r.id;
   if (view.run.prediction.status.ok) {
     title += ": predicted " + MetricsText(ScoreHip(r, view.run.prediction.hip), 2);
-    if (!view.bands.people.empty()) {
-      title += "; median of the bands " + MetricsText(ScoreHip(r, MedianHip(view.bands)), 2);
-    }
   }
   return title + (view.note.empty() ? "" : " (" + view.note + ")");
-}
-
-// How far the medians of the bands lie from the rollouts at the estimate.
-std::string MedianText(const std::vector<RecordingView>& views) {
-  double sum = 0.0, most = 0.0;
-  int count = 0;
-  for (const RecordingView& view : views) {
-    if (!view.run.prediction.status.ok) continue;
-    const auto median = MedianHip(view.bands);
-    for (size_t n = 0; n < median.size(); ++n) {
-      for (size_t t = 1; t < median[n].size(); ++t, ++count) {
-        const double distance = (median[n][t] - view.run.prediction.hip[n][t]).norm();
-        sum += distance;
-        most = std::max(most, distance);
-      }
-    }
-  }
-  if (count == 0) return "";
-  return "Predicted: the model at the estimated values, rolled out; the forces, the moving figure "
-         "and the errors called so refer to it. The median of the bands (dashed) lies " +
-         Rounded(sum / count, 2) + " m from it on average, " + Rounded(most, 2) +
-         " m at most: the common part of other recordings' errors shifts it, and a median of paths "
-         "does not satisfy the equations of motion.";
 }
 
 }  // namespace
@@ -258,7 +218,6 @@ ReportSection MotionSection(const ReportSource& source) {
       "parameters; for others only the uncertainty of the parameters. Bars under the hip show when "
       "a foot was off the ground. The forces explain the motion: balance, friction, interaction, "
       "push and all others add up to the net force (thick)."};
-  section.Say(MedianText(source.views));
   for (const RecordingView& view : source.views) {
     ReportFold fold{FoldTitle(view), {}};
     const std::string& id = view.run.recording.id;

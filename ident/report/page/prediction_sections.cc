@@ -9,6 +9,7 @@
 #include "ident/report/page/sections.h"
 #include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
+#include "ident/prediction/baselines.h"
 
 namespace pushid {
 namespace {

@@ -33,9 +33,9 @@ struct SectionRow {
 RenderSection LeadSection, SummarySection, ParameterSection, ContrastSection, UnitSection,
     IdentifiabilitySection, ProfileSection, BootstrapSection, PriorCheckSection, PushCheckSection,
     HorizonCheckSection, BehaviourSection, LoopSection, FrequencySection, SwaySection,
-    PopulationSection, StepSection, GroupSection, FigureSection, MotionSection, VisualCheckSection,
-    RecordingSection, LeverageSection, ResidualSection, SolveSection, DesignSection, AdviceSection,
-    ProvenanceSection;
+    PopulationSection, ForecastSection, StepSection, GroupSection, FigureSection, MotionSection,
+    VisualCheckSection, RecordingSection, LeverageSection, ResidualSection, SolveSection,
+    DesignSection, AdviceSection, ProvenanceSection;
 
 // In the order of the report.
 inline constexpr SectionRow kSections[] = {
@@ -55,6 +55,7 @@ inline constexpr SectionRow kSections[] = {
     {"frequency", "Frequency response", FrequencySection},
     {"sway", "Quiet stance", SwaySection},
     {"population", "How recordings differ", PopulationSection},
+    {"forecasts", "Forecasts from first frames", ForecastSection},
     {"steps", "Who steps", StepSection},
     {"groups", "Groups", GroupSection},
     {"figure", "Moving figure", FigureSection},

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ident/fit/fit.h"
-#include "ident/fit/model_rollout.h"
+#include "ident/model/model_rollout.h"
 #include "ident/model/model_json.h"
 #include "ident/report/contrast_text.h"
 #include "tests/ident/fit_samples.h"

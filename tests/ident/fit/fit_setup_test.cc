@@ -54,11 +54,11 @@ TEST(FitSetup, PoolingFollowsTheTerms) {
 // The preset's own pooling gives way to what else is asked for; that of a user does not.
 TEST(FitSetup, ThePresetPoolsWhatItCan) {
   const FitOptions tail = MakeFitOptions({{"preset", "tail"}}).value();
-  EXPECT_TRUE(tail.table[kTailTime].pooled);
+  EXPECT_TRUE(tail.table[kTailBase].pooled);
   EXPECT_EQ(tail.pool_by, kConditionLabel);
-  EXPECT_FALSE(tail.pooling_sigma);
+  EXPECT_EQ(tail.pooling_sigma, 0.5);
   for (const GivenOptions& given :
-       {GivenOptions{{"fix", "tail_time"}}, GivenOptions{{"push_tail", "none"}},
+       {GivenOptions{{"fix", "tail_base"}}, GivenOptions{{"push_tail", "none"}},
         GivenOptions{{"self_force", "mlp:4"}, {"ensemble", "2"}}}) {
     const Result<FitOptions> made = MakeFitOptions(Merged(given, {{"preset", "tail"}}));
     ASSERT_TRUE(made.ok()) << made.error().ToString();
@@ -227,7 +227,8 @@ TEST(FitSetup, BadOptionsAreNamed) {
 TEST(FitSetup, OptionsOfGroupsAreNotRefusedTooEarly) {
   for (const GivenOptions& given :
        {GivenOptions{{"pool", "contact_stiffness"}},
-        GivenOptions{{"fix", "mu,Kp_theta,Kd_theta,a_x,tail_gain,tail_torque,tail_time"}}}) {
+        GivenOptions{
+            {"fix", "mu,Kp_theta,Kd_theta,a_x,tail_gain,tail_torque,tail_time,tail_base"}}}) {
     EXPECT_EQ(Complaint(given), "") << given[0].first;
     EXPECT_FALSE(MakeFitOptions(Merged(given, {{"preset", "tail"}}), nullptr, given).ok());
   }

@@ -40,6 +40,7 @@ SyntheticOptions RowStudy(const InteractionTerms& terms) {
 FitOptions RowFit(const SyntheticOptions& study, bool exact) {
   FitOptions options = exact ? ExactFit(study) : UnbiasedFit(study);
   FreeTerms(&options);
+  options.table[kTailBase].free = false;  // as the preset of groups has it
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
   return options;
 }

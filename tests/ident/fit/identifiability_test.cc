@@ -103,7 +103,7 @@ TEST(Identifiability, NoEffectIsNamed) {
   study.push_kind = PushKind::kExternal;
   study.strengths = {{"weak", 0.5}, {"strong", 1.0}};
   const FitResult result = FitEdited(study, {});
-  const NameSet tail = {"tail_gain", "tail_torque", "tail_time"};
+  const NameSet tail = {"tail_gain", "tail_torque", "tail_time", "tail_base"};
   EXPECT_EQ(Unidentifiable(result), tail);
   ExpectOthersFinite(result, tail);
   NameSet named;

@@ -7,7 +7,7 @@
 #include "datasets/files/json_file.h"
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
-#include "ident/fit/recording_effect.h"
+#include "ident/observed/recording_effect.h"
 #include "ident/model/model_json.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/network_training.h"

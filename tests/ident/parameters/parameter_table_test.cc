@@ -27,10 +27,10 @@ TEST(Presets, FreeWhatTheyPromise) {
   const FitOptions tail = MakePreset("tail").value(), ldp = MakePreset("ldp").value();
   EXPECT_EQ(FreeNames(tail.table),
             (std::set<std::string>{"mu", "Kp_theta", "Kd_theta", "a_x", "tail_gain", "tail_torque",
-                                   "tail_time"}));
+                                   "tail_time", "tail_base"}));
   EXPECT_EQ(tail.table[kTailExponent].nominal, 0.0);
   for (const ParameterSpec& spec : tail.table.specs) {
-    EXPECT_EQ(spec.pooled, spec.id == kTailTime) << spec.name;
+    EXPECT_EQ(spec.pooled, spec.id == kTailBase) << spec.name;
   }
   EXPECT_EQ(FreeNames(ldp.table),
             (std::set<std::string>{"mu", "Kp_theta", "Kp_phi", "Kd_theta", "Kd_phi"}));
@@ -122,9 +122,10 @@ TEST(Presets, LinearSelfForceComesWithPriors) {
 
 TEST(ParameterTable, MapHoldsTheFreeOnesInOrder) {
   ParameterTable table = Tail();
+  table[kTailBase].pooled = false;
   table[kKpTheta].pooled = table[kTailTime].pooled = true;
   const ParameterMap map = table.Map();
-  ASSERT_EQ(map.fitted.size(), 7u);
+  ASSERT_EQ(map.fitted.size(), 8u);
   EXPECT_EQ(map.num_deviations, 2);
   for (size_t i = 1; i < map.fitted.size(); ++i) {
     EXPECT_LT(map.fitted[i - 1].parameter, map.fitted[i].parameter);

@@ -182,8 +182,8 @@ TEST(Evaluation, TheTruthScoresZero) {
   const Evaluation e = Evaluate(TruthOf(study), MakePendulums(study));
   EXPECT_EQ(e.model.mean.recordings, 24);
   EXPECT_LT(e.model.mean.hip_ade, 1e-9);
-  EXPECT_GT(e.static_baseline.mean.hip_ade, 0.05);
-  EXPECT_GT(e.constant_velocity.mean.hip_ade, 0.0);
+  EXPECT_GT(e.Baseline("static").mean.hip_ade, 0.05);
+  EXPECT_GT(e.Baseline("constant_velocity").mean.hip_ade, 0.0);
   EXPECT_EQ(e.model.by.at("subject").size(), 4u);
 }
 
@@ -198,7 +198,7 @@ TEST(Evaluation, AFailedRolloutIsNamedAndInNoMean) {
   EXPECT_TRUE(failed.fell);
   EXPECT_EQ(e.model.mean.recordings, 23);
   EXPECT_LT(e.model.mean.hip_ade, 1e-9);
-  EXPECT_EQ(e.static_baseline.mean.recordings, 24);
+  EXPECT_EQ(e.Baseline("static").mean.recordings, 24);
 }
 
 }  // namespace

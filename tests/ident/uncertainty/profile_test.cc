@@ -196,7 +196,7 @@ TEST(Profiles, AreTheClusteredIntervalsWhereTheCostIsQuadratic) {
     EXPECT_EQ(profile->classification, ProfileClass::kIdentifiable) << e.name;
     EXPECT_NEAR(profile->lower95, e.lower95, 0.02 * (e.upper95 - e.lower95)) << e.name;
     EXPECT_NEAR(profile->upper95, e.upper95, 0.02 * (e.upper95 - e.lower95)) << e.name;
-    EXPECT_EQ(profile->points.front().others.size(), 6u);
+    EXPECT_EQ(profile->points.front().others.size(), 7u);
   }
 }
 

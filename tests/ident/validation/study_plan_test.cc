@@ -177,7 +177,7 @@ TEST(StudyPlanTest, PredictsWhatASensorBrings) {
     study.recording_spread = 0.1;
     const auto now = SolveSet(study, MakePendulums(study));
     const auto then = SolveSet(study, Measured(study));
-    EXPECT_EQ(then->point.shared.size() + 3, now->point.shared.size()) << "no tail";
+    EXPECT_EQ(then->point.shared.size() + 4, now->point.shared.size()) << "no tail";
     const auto add = [](const Solved& solved, std::map<std::string, std::vector<double>>* all) {
       const ParameterSet<double> values = solved.problem->Parameters(solved.point, "");
       for (const FittedParameter& f : solved.problem->map().fitted) {

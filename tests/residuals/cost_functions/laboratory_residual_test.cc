@@ -118,7 +118,9 @@ TEST(ReactionDelay, OfWholeFramesLooksBack) {
     const DelayedState<double> then(path, 7, 0, DelayedPlace<double>(back * kStep, kStep));
     EXPECT_NEAR(then.q[2], 0.1 * (7 - back) * (7 - back), 1e-12);
     // qd of a frame is the rate half a frame before it.
-    if (back > 0) EXPECT_NEAR(then.qd[0], 7.5 - back, back < 6 ? 1e-12 : 0.1);
+    if (back > 0) {
+      EXPECT_NEAR(then.qd[0], 7.5 - back, back < 6 ? 1e-12 : 0.1);
+    }
   }
   EXPECT_NEAR(PresentRate(path, 7, 0)[0], 7.5, 1e-12);
   // Between frames a straight line stays one.

@@ -103,7 +103,7 @@ TEST_P(Sensitivities, EqualJetsForEveryModel) {
         for (int column = 0; column < kRolloutColumns; ++column) {
           // Ankles hold by torques that nearly cancel, of 100 N m against LDP's repulsion: what
           // rounding leaves of them.
-          const double cancelled = options.interaction.ldp_published ? 3e-17 : 1e-18;
+          const double cancelled = options.interaction.ldp_published ? 3e-17 : 2e-17;
           const double rounding = options.stance == Stance::kThreshold ? cancelled : 0.0;
           const double allowed =
               1e-10 * expected.col(column).cwiseAbs().maxCoeff() + regime.absolute + rounding;

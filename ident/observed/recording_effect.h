@@ -1,7 +1,7 @@
 // ident: how recordings differ from what the same push does to the mean person, and how much the
 // first frames tell of it.
 //
-// Every recording i has its own log factor b on the tail's gain; all else is held at the fit (freed
+// Every recording i has its own log factor b on the tail; all else is held at the fit (freed
 // together with it, parameters run away on real recordings):
 //
 //   y = f(b) + s g a e,   b ~ N(0, w^2)
@@ -12,17 +12,12 @@
 // more. b acts where one person alone is pushed and the push has a tail. People who touch have e
 // alone: b changed nothing there (README.md of ident/prediction).
 //
-// After k frames, t seconds, b has the posterior over the nodes; its mean makes one rollout, to
-// which the expectation of e is added. (The mean, not the mode: the posterior is skewed.) People go
-// on as they go better than any such rollout knows, the longer the better, so from frame k on
-//
-//   (1 - l) of that path + l of constant velocity,   l = min(1, r t)
-//
-// and bands are wider than e has them by 1 + c t^2, c of each axis: what people do late is seen
-// little early. r is what errs least, and c what makes 90 % bands hold 90 %, over the fitted
-// recordings.
+// After k frames b has the posterior over the nodes; its mean makes one rollout, to which the
+// expectation of e is added. (The mean, not the mode: the posterior is skewed.) That is one of the
+// forecasts that are put together (forecast_stack.h).
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +38,11 @@ inline constexpr double EffectNode(int node) {
 // rollout left the domain.
 std::vector<double> EffectWeights(const std::vector<double>& misfit, double spread,
                                   double error_scale);
+
+// Whether the recording alone would have an effect as far out as is looked, or farther.
+inline bool AtEffectEdge(const EffectOfRecording& effect) {
+  return std::abs(effect.alone) >= kWidestEffect;
+}
 
 struct EffectEstimate {
   double mean = 0.0, error = 0.0;

@@ -4,7 +4,7 @@
 //   RecordingFilter filter(model, recording, recording.num_frames());
 //   for (int t = 1; t < k; ++t) filter.Observe(HipsAt(recording, t));
 //   const EffectEstimate b = filter.Effect(*model.recording_effect);
-//   filter.ForecastOf(hips of a rollout with b.mean).Blended(model.recording_effect->Blend(s));
+//   filter.ForecastOf(hips of a rollout with b.mean);
 //
 // All nodes are rolled out once; a frame then costs two multiplications a node and axis, and its
 // sums are never looked at again.
@@ -13,8 +13,8 @@
 #include <array>
 #include <vector>
 
-#include "ident/fit/model_rollout.h"
-#include "ident/fit/recording_effect.h"
+#include "ident/model/model_rollout.h"
+#include "ident/observed/recording_effect.h"
 
 namespace pushid {
 
@@ -67,6 +67,9 @@ class ErrorProcess {
   Covariance now_;
 };
 
+// Columns: along the push, across, upwards.
+Eigen::Matrix3d PushAxes(const PendulumRecording& recording);
+
 // Where people's hips are at one frame.
 struct SeenHips {
   std::vector<Vector3<double>> hip;  // m
@@ -74,14 +77,6 @@ struct SeenHips {
   bool Sees(int person) const { return seen.empty() || seen[person]; }
 };
 SeenHips HipsAt(const PendulumRecording& recording, int frame);
-
-// The frames to come, from the first unseen one on.
-struct Forecast {
-  HipPaths model;     // rollout plus what is left of the error
-  HipPaths going_on;  // constant velocity
-  // (1 - l) model + l going_on
-  HipPaths Blended(double l) const;
-};
 
 // Hips to come as a mixture of normal distributions, a component for each node, on the axes of
 // Axes(): by [person][frame].
@@ -111,8 +106,8 @@ class RecordingFilter {
 
   // Before anything is seen both are exactly the prior's.
   EffectEstimate Effect(const RecordingEffect& effect) const;
-  // hips: a rollout's, over all frames.
-  Forecast ForecastOf(const HipPaths& hips) const;
+  // The frames to come, of a rollout over all frames and what is left of its error.
+  HipPaths ForecastOf(const HipPaths& rollout) const;
   // By [person][frame - observed()]; weights as in EffectWeights.
   std::vector<std::vector<MixturePoint>> Mixture(const RecordingEffect& effect,
                                                  std::vector<double>* weights) const;
@@ -127,6 +122,8 @@ class RecordingFilter {
     SeenHips hips;
     std::vector<ErrorProcess::Gains> gains;  // by person
   };
+  // On the axes, in units of y.
+  Vector3<double> Scaled(const Vector3<double>& error) const;
   // One person's error after all frames seen; misfit may be null.
   void Update(const Vector3<double>& error, const ErrorProcess::Gains& gains, Axis3* state,
               double* misfit) const;

@@ -1,11 +1,11 @@
 // ident: nodes of the effect, filtered frame by frame.
-#include "ident/fit/recording_filter.h"
+#include "ident/observed/recording_filter.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "ident/fit/push_range.h"
+#include "ident/model/push_range.h"
 
 namespace pushid {
 namespace {
@@ -15,14 +15,14 @@ constexpr double kLeastUnit = 0.05;      // of a push that moves nobody: errors 
 const Vector3<double> kAxisScale(1.0, 0.3, 0.3);
 constexpr double kFailed = std::numeric_limits<double>::infinity();
 
-Eigen::Matrix3d AxesOf(const PendulumRecording& recording) {
+}  // namespace
+
+Eigen::Matrix3d PushAxes(const PendulumRecording& recording) {
   const Eigen::Vector2d along = PushDirection(recording);
   Eigen::Matrix3d axes;
   axes << along.x(), -along.y(), 0.0, along.y(), along.x(), 0.0, 0.0, 0.0, 1.0;
   return axes;
 }
-
-}  // namespace
 
 SeenHips HipsAt(const PendulumRecording& recording, int frame) {
   SeenHips hips;
@@ -33,22 +33,12 @@ SeenHips HipsAt(const PendulumRecording& recording, int frame) {
   return hips;
 }
 
-HipPaths Forecast::Blended(double l) const {
-  HipPaths blended = model;
-  if (l == 0.0) return blended;
-  for (size_t n = 0; n < model.size(); ++n) {
-    for (size_t t = 0; t < model[n].size(); ++t)
-      blended[n][t] += l * (going_on[n][t] - model[n][t]);
-  }
-  return blended;
-}
-
 RecordingFilter::RecordingFilter(const IdentifiedModel& model, const PendulumRecording& recording,
                                  int frames)
     : dt_(recording.scene.dt),
       unit_(std::max(kLeastUnit, PushSpeed(recording) / kReferenceSpeed)),
       frames_(frames),
-      axes_(AxesOf(recording)),
+      axes_(PushAxes(recording)),
       process_(recording.scene.num_people(), ErrorProcess(recording.scene.dt)),
       nodes_(EffectActs(model.options, recording) ? kEffectNodes : 1),
       misfit_(nodes_.size(), 0.0) {
@@ -65,9 +55,13 @@ bool RecordingFilter::ok() const {
   return std::any_of(misfit_.begin(), misfit_.end(), [](double m) { return m < kFailed; });
 }
 
+Vector3<double> RecordingFilter::Scaled(const Vector3<double>& error) const {
+  return (axes_.transpose() * error).cwiseQuotient(kAxisScale) / unit_;
+}
+
 void RecordingFilter::Update(const Vector3<double>& error, const ErrorProcess::Gains& gains,
                              Axis3* state, double* misfit) const {
-  const Vector3<double> scaled = (axes_.transpose() * error).cwiseQuotient(kAxisScale) / unit_;
+  const Vector3<double> scaled = Scaled(error);
   for (int i = 0; i < 3; ++i) {
     ErrorProcess::State& now = (*state)[i];
     now = process_[0].Predicted(now);
@@ -102,34 +96,30 @@ EffectEstimate RecordingFilter::Effect(const RecordingEffect& effect) const {
   return MeanEffect(EffectWeights(misfit_, effect.spread, effect.error_scale));
 }
 
-Forecast RecordingFilter::ForecastOf(const HipPaths& hips) const {
-  Forecast forecast;
+HipPaths RecordingFilter::ForecastOf(const HipPaths& rollout) const {
+  HipPaths forecast;
   const int now = observed_ - 1;
-  for (size_t n = 0; n < hips.size(); ++n) {
+  for (size_t n = 0; n < rollout.size(); ++n) {
     Axis3 state{};
     for (int t = 1; t <= now; ++t) {
       const Seen& seen = seen_[t - 1];
-      Update(seen.hips.hip[n] - hips[n][t], seen.gains[n], &state, nullptr);
+      Update(seen.hips.hip[n] - rollout[n][t], seen.gains[n], &state, nullptr);
     }
-    const auto in_world = [&](const auto& value) {
-      const Vector3<double> scaled(value(state[0]), value(state[1]), value(state[2]));
-      return Vector3<double>(axes_ * (unit_ * kAxisScale.cwiseProduct(scaled)));
-    };
-    using State = ErrorProcess::State;
-    const Vector3<double> error = in_world([](const State& s) { return s.position; });
-    const Vector3<double> step =
-        in_world([this](const State& s) { return dt_ * s.velocity; }) +
-        (now > 0 ? Vector3<double>(hips[n][now] - hips[n][now - 1]) : Vector3<double>::Zero());
-    HipPath model, going_on;
+    // Hips go on from where they were seen: a millimetre of noise is little beside what comes.
+    if (now > 0 && seen_[now - 1].hips.Sees(static_cast<int>(n))) {
+      const Vector3<double> off = Scaled(seen_[now - 1].hips.hip[n] - rollout[n][now]);
+      for (int i = 0; i < 3; ++i) state[i].position = off[i];
+    }
+    HipPath path;
     for (int t = observed_; t < frames_; ++t) {
       const double reach = process_[n].Reach(t - now);
-      model.push_back(hips[n][t] + in_world([reach](const State& s) {
-                        return s.position + reach * s.velocity;
-                      }));
-      going_on.push_back(hips[n][now] + error + (t - now) * step);
+      Vector3<double> left;
+      for (int i = 0; i < 3; ++i) {
+        left[i] = unit_ * kAxisScale[i] * (state[i].position + reach * state[i].velocity);
+      }
+      path.push_back(rollout[n][t] + axes_ * left);
     }
-    forecast.model.push_back(std::move(model));
-    forecast.going_on.push_back(std::move(going_on));
+    forecast.push_back(std::move(path));
   }
   return forecast;
 }

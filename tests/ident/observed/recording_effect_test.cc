@@ -1,5 +1,5 @@
 // Spread and error scale of planted effects; where there are none; the file.
-#include "ident/fit/recording_effect.h"
+#include "ident/observed/recording_effect.h"
 
 #include <gtest/gtest.h>
 

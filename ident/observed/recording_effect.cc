@@ -1,13 +1,12 @@
-// ident: spread and error scale by expectation maximization, then what forecasts need.
-#include "ident/fit/recording_effect.h"
+// ident: spread and error scale by expectation maximization.
+#include "ident/observed/recording_effect.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 
-#include "ident/fit/learned_forecasts.h"
-#include "ident/fit/recording_filter.h"
+#include "ident/observed/recording_filter.h"
 #include "ident/problem/parallel.h"
 #include "ident/uncertainty/clusters.h"
 
@@ -24,6 +23,7 @@ struct Misfits {
   std::vector<double> of_node;
   int residuals = 0;
   bool acts = false;
+  double unit = 1.0;  // g
 };
 
 struct Population {
@@ -149,27 +149,53 @@ bool EffectActs(const ModelOptions& model, const PendulumRecording& recording) {
                      });
 }
 
+namespace {
+
+double MeanSquare(const PendulumRecording& recording, const HipPaths& hips) {
+  double sum = 0.0, frames = 0.0;
+  for (size_t n = 0; n < hips.size(); ++n) {
+    for (size_t t = 1; t < hips[n].size(); ++t, ++frames) {
+      sum += (recording.hip[n][t] - hips[n][t]).squaredNorm();
+    }
+  }
+  return frames > 0.0 ? sum / frames : 0.0;
+}
+
+// What the recording's own effect leaves of the squared error, over that without; each over g^2.
+struct Squares {
+  double left = 0.0, without = 0.0;
+};
+Squares SquaresOf(const IdentifiedModel& model, const PendulumRecording& recording, double effect,
+                  double unit) {
+  const auto square = [&](double b) {
+    return MeanSquare(recording, HipsOfRollout(model, recording, b, recording.num_frames())) /
+           (unit * unit);
+  };
+  return {square(effect), square(0.0)};
+}
+
+}  // namespace
+
 std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
                                                   const std::vector<PendulumRecording>& recordings,
                                                   int num_threads) {
   if (model.options.push_tail == PushTail::kNone) return std::nullopt;
   const int total = static_cast<int>(recordings.size());
   std::vector<Misfits> all(total);
-  std::vector<std::optional<RecordingFilter>> starts(total);
   ParallelFor(total, num_threads, [&](int i) {
     const PendulumRecording& recording = recordings[i];
-    RecordingFilter filter = starts[i].emplace(model, recording, recording.num_frames());
+    RecordingFilter filter(model, recording, recording.num_frames());
     if (!filter.ok()) return;
     for (int t = 1; t < recording.num_frames(); ++t) filter.Observe(HipsAt(recording, t));
-    all[i] = {filter.misfit(), filter.residuals(), filter.acts()};
+    all[i] = {filter.misfit(), filter.residuals(), filter.acts(), filter.error_unit()};
   });
-  std::vector<RecordingToForecast> kept;
+  std::vector<const PendulumRecording*> kept;
   std::vector<Misfits> misfits;
   std::vector<std::string> people;
   for (int i = 0; i < total; ++i) {
     if (all[i].residuals == 0) continue;
     people.push_back(PersonKey(recordings[i], recordings[i].pushed_person));
-    kept.push_back({&recordings[i], *std::move(starts[i])});
+    kept.push_back(&recordings[i]);
     misfits.push_back(std::move(all[i]));
   }
   if (kept.empty()) return std::nullopt;
@@ -179,14 +205,18 @@ std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
   effect.spread = p.spread;
   effect.error_scale = p.scale;
   if (p.spread > 0.0) effect.spread_error = JackknifeError(misfits, cluster, effect.clusters);
+  Squares sum;
   for (size_t i = 0; i < kept.size(); ++i) {
     if (!misfits[i].acts) continue;
-    const PendulumRecording& r = *kept[i].recording;
+    const PendulumRecording& r = *kept[i];
     const EffectEstimate b = MeanEffect(EffectWeights(misfits[i].of_node, p.spread, p.scale));
     effect.recordings.push_back({r.id, r.subject_ids[r.pushed_person], r.labels.condition(), b.mean,
                                  b.error, LikeliestEffect(misfits[i].of_node)});
+    const Squares squares = SquaresOf(model, r, b.mean, misfits[i].unit);
+    sum.left += squares.left;
+    sum.without += squares.without;
   }
-  LearnForecasts(model, std::move(kept), num_threads, &effect);
+  effect.explained = sum.without > 0.0 ? 1.0 - sum.left / sum.without : 0.0;
   return effect;
 }
 

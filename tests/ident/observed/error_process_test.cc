@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "datasets/files/random.h"
-#include "ident/fit/recording_filter.h"
+#include "ident/observed/recording_filter.h"
 #include "models/decompositions.h"
 
 namespace pushid {

@@ -1,0 +1,76 @@
+// ident: refits without folds.
+#include "ident/fit/cross_fit.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "ident/model/push_range.h"
+#include "ident/observed/recording_effect.h"
+#include "ident/problem/parallel.h"
+#include "ident/solver/solver.h"
+#include "ident/uncertainty/bootstrap.h"
+
+namespace pushid {
+namespace {
+
+constexpr size_t kFolds = 4, kFewestUnits = 3;
+// Of the cost: what more would bring is little beside what people differ by.
+constexpr double kFoldTolerance = 1e-5;
+
+std::vector<std::vector<int>> FoldsOf(const FitProblem& problem) {
+  std::vector<std::vector<int>> units =
+      MakeResamplingUnits(problem.recordings(), problem.options().cluster).units;
+  if (units.size() < kFewestUnits) {
+    units.clear();
+    for (size_t i = 0; i < problem.recordings().size(); ++i) units.push_back({static_cast<int>(i)});
+  }
+  std::vector<std::vector<int>> folds;
+  if (units.size() < kFewestUnits) return folds;
+  folds.resize(std::min(kFolds, units.size()));
+  for (size_t u = 0; u < units.size(); ++u) {
+    std::vector<int>& fold = folds[u % folds.size()];
+    fold.insert(fold.end(), units[u].begin(), units[u].end());
+  }
+  return folds;
+}
+
+}  // namespace
+
+std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optimum,
+                                const IdentifiedModel& model, int num_threads) {
+  FitOptions options = problem.options();
+  if (NeedsGradientTraining(options) || options.body_weight > 0.0) return {};
+  options.num_threads = 1;
+  options.function_tolerance = std::max(kFoldTolerance, options.function_tolerance);
+  const std::vector<std::vector<int>> held_out = FoldsOf(problem);
+  std::vector<std::optional<FoldModel>> made(held_out.size());
+  ParallelFor(static_cast<int>(held_out.size()), num_threads, [&](int f) {
+    std::vector<int> counts(problem.recordings().size(), 1);
+    for (int i : held_out[f]) counts[i] = 0;
+    const FitProblem others(problem.recordings(), options, counts);
+    const SolveStart fit = Refit(others, optimum);
+    if (!fit.usable) return;
+    FoldModel& fold = made[f].emplace(FoldModel{model, held_out[f]});
+    fold.model.options = others.ModelAt(fit.to);
+    fold.model.parameters = others.Parameters(fit.to, "");
+    for (auto& [unit, parameters] : fold.model.by_unit) {
+      parameters = others.Parameters(fit.to, unit);
+    }
+    fold.model.others.clear();
+    std::vector<PendulumRecording> fitted;
+    for (size_t i = 0; i < counts.size(); ++i) {
+      if (counts[i] > 0) fitted.push_back(problem.recordings()[i]);
+    }
+    fold.model.push_range.reset();
+    fold.model.push_range = FittedPushRange(fold.model, fitted);
+    fold.model.recording_effect = FitRecordingEffect(fold.model, fitted);
+    if (!fold.model.recording_effect) made[f].reset();
+  });
+  std::vector<FoldModel> folds;
+  for (std::optional<FoldModel>& fold : made) {
+    if (fold) folds.push_back(*std::move(fold));
+  }
+  return folds;
+}
+
+}  // namespace pushid

@@ -1,0 +1,98 @@
+// Fits without folds: what is held out teaches them nothing.
+#include "ident/fit/cross_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ident/fit/fit.h"
+#include "ident/observed/recording_effect.h"
+#include "ident/solver/solver.h"
+#include "tests/ident/fit_samples.h"
+
+namespace pushid {
+namespace {
+
+SyntheticOptions DifferingPeople() {
+  SyntheticOptions study = SmallStudy();
+  study.subjects = 4;
+  study.recordings_per_subject = 4;
+  study.subject_spread = 0.2;
+  study.joint_noise_m = 0.001;
+  return study;
+}
+
+// Folds of a problem, from a point that is given.
+std::vector<FoldModel> FoldsOfProblem(const std::vector<PendulumRecording>& recordings,
+                                      const FitOptions& options, const FitPoint& from) {
+  const FitProblem problem(recordings, options);
+  IdentifiedModel model;
+  model.options = options.model;
+  model.table = options.table;
+  model.parameters = problem.Parameters(from, "");
+  return CrossFit(problem, from, model, 2);
+}
+
+TEST(CrossFit, LooksAtNothingHeldOut) {
+  const SyntheticOptions study = DifferingPeople();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const FitOptions options = UnbiasedFit(study);
+  const FitProblem problem(recordings, options);
+  const SolveStart start = SolveFrom(problem, problem.NominalPoint(), "nominal", "", nullptr);
+  ASSERT_TRUE(start.usable);
+  const std::vector<FoldModel> folds = FoldsOfProblem(recordings, options, start.to);
+  ASSERT_EQ(folds.size(), 4u);
+  std::vector<int> times(recordings.size(), 0);
+  for (const FoldModel& fold : folds) {
+    std::vector<PendulumRecording> changed = recordings;
+    for (int i : fold.held_out) {
+      ++times[i];
+      // One person is held out, with all recordings.
+      EXPECT_EQ(recordings[i].subject_ids, recordings[fold.held_out[0]].subject_ids);
+      for (PendulumState<double>& state : changed[i].states[0]) state.q[0] *= 0.7;
+      for (Vector3<double>& hip : changed[i].hip[0]) hip[0] *= 0.7;
+    }
+    for (const FoldModel& again : FoldsOfProblem(changed, options, start.to)) {
+      if (again.held_out != fold.held_out) continue;
+      for (int p = 0; p < kNumParameters; ++p) {
+        EXPECT_EQ(again.model.parameters[p], fold.model.parameters[p]) << kParameterNames[p];
+      }
+    }
+  }
+  EXPECT_EQ(times, std::vector<int>(recordings.size(), 1));
+}
+
+// Recordings that a model was fitted to are forecast better by it than those that were held out,
+// and a fit says the latter.
+TEST(CrossFit, ScoresAreThoseOfOthers) {
+  SyntheticOptions study = DifferingPeople();
+  study.subject_spread = 0.5;
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = UnbiasedFit(study);
+  const FitResult result = Fit(recordings, options);
+  ASSERT_TRUE(result.forecasts.has_value());
+  EXPECT_EQ(result.forecasts->folds, 4);
+  EXPECT_EQ(result.forecasts->recordings, 16);
+  const auto of_itself = LearnForecasts(ModelOf(result), recordings, {}, 1);
+  ASSERT_TRUE(of_itself.has_value());
+  EXPECT_EQ(of_itself->folds, 0);
+  EXPECT_EQ(of_itself->logits, ForecastStack::DefaultLogits());
+  EXPECT_GT(result.forecasts->scores[0].mean[0], 1.1 * of_itself->scores[0].mean[0]);
+}
+
+TEST(CrossFit, NeedsThreeRecordings) {
+  const SyntheticOptions study = DifferingPeople();
+  std::vector<PendulumRecording> recordings = MakePendulums(study);
+  recordings.resize(2);
+  const FitResult two = Fit(recordings, UnbiasedFit(study));
+  ASSERT_TRUE(two.forecasts.has_value());
+  EXPECT_EQ(two.forecasts->folds, 0);
+  recordings = MakePendulums(study);
+  recordings.resize(4);  // of one person
+  const FitResult one = Fit(recordings, UnbiasedFit(study));
+  ASSERT_TRUE(one.forecasts.has_value());
+  EXPECT_EQ(one.forecasts->folds, 4);
+}
+
+}  // namespace
+}  // namespace pushid
