@@ -108,8 +108,7 @@ ReportSection ForecastSection(const ReportSource& source) {
     ReportFold fold{view.run.recording.id + ": the force that nobody measured", {*figure}};
     fold.figures.back().caption =
         "Along the push, beside it and its tail: what the filter believes (blue) with its 90 % "
-        "band, and "
-        "the recorded push (black).";
+        "band, which knows no error of the gains, and the recorded push (black).";
     section.folds.push_back(std::move(fold));
   }
   return section;
