@@ -66,7 +66,7 @@ TEST(CrossFit, LooksAtNothingHeldOut) {
 // and a fit says the latter.
 TEST(CrossFit, ScoresAreThoseOfOthers) {
   SyntheticOptions study = DifferingPeople();
-  study.subject_spread = 0.5;
+  study.subject_spread = 0.3;
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
   FitOptions options = UnbiasedFit(study);
   const FitResult result = Fit(recordings, options);
