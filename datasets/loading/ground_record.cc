@@ -69,8 +69,8 @@ Result<double> GroundStart(const GroundTracks& tracks, const ManifestRecording& 
                                : recording.people[0].skipped_s);
   const double fps = recording.fps, seconds = (recording.num_frames() - 1) / fps;
   // Half a frame less is none.
-  const RecordTimes times = {"the record of the ground lasts", tracks.first_s, tracks.last_s(), start,
-                             seconds, fps, 0.5};
+  const RecordTimes times = {
+      "the record of the ground lasts", tracks.first_s, tracks.last_s(), start, seconds, fps, 0.5};
   const int line = tracks.lines.empty() ? 0 : tracks.lines.back();
   if (MaybeError error = CheckLasts(times, tracks.file, line)) return *std::move(error);
   return start;

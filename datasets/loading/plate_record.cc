@@ -91,8 +91,8 @@ Result<double> PlatesStart(const PlateTracks& tracks, const ManifestPlates& plat
   const bool c3d = MotionFormatOfFile(tracks.file) == MotionFormat::kC3d;
   const double start =
       plates.start_s.value_or(of_motion && !c3d ? person.file_clock_s : person.skipped_s);
-  const RecordTimes times = {"the platforms were recorded", tracks.first_s, tracks.last_s(), start,
-                             seconds, fps, 1.5};
+  const RecordTimes times = {
+      "the platforms were recorded", tracks.first_s, tracks.last_s(), start, seconds, fps, 1.5};
   if (MaybeError error = CheckLasts(times, tracks.file, tracks.last_line)) return *std::move(error);
   return start;
 }

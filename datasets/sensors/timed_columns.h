@@ -27,8 +27,8 @@ Result<TimedColumns> ReadTimedColumns(
     const std::string& path,
     const std::function<Result<std::vector<int>>(const std::vector<std::string>&)>& choose);
 
-// That a record, "the record of the ground lasts", goes on for as long as a motion of so many seconds
-// that begins at `start_s` of its clock. spare: frames that may be missing at the end.
+// That a record, "the record of the ground lasts", goes on for as long as a motion of so many
+// seconds that begins at `start_s` of its clock. spare: frames that may be missing at the end.
 struct RecordTimes {
   const char* lasts;
   double first_s, last_s, start_s, seconds, fps, spare;

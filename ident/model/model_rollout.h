@@ -20,9 +20,9 @@ std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model
                                                     const PendulumRecording& recording,
                                                     double effect = 0.0);
 
-// The log factor of a recording on the tail's horizontal force, both of its parts. Its torque stays:
-// scaled as well, people left out are predicted worse after first frames (after frame 6: 0.094
-// against 0.086 m).
+// The log factor of a recording on the tail's horizontal force, both of its parts. Its torque
+// stays: scaled as well, people left out are predicted worse after first frames (after frame 6:
+// 0.094 against 0.086 m).
 void ApplyEffect(double effect, ParameterSet<double>* parameters);
 
 // Everybody's hips in a rollout; empty where it leaves the model's domain.

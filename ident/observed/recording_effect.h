@@ -6,11 +6,11 @@
 //
 //   y = f(b) + s g a e,   b ~ N(0, w^2)
 //
-// y: the hip; f: the rollout; g: the speed that the push gives the person over 0.2 m/s; a: 1 along
-// the push, 0.3 across and upwards; e: recording_filter.h on every axis. w and s by maximum
-// marginal likelihood (expectation maximization) over fixed nodes of b: one rollout a node, then no
-// more. b acts where one person alone is pushed and the push has a tail. People who touch have e
-// alone: b changed nothing there (README.md of ident/prediction).
+// y: the hip; f: the rollout; g: the speed that the push gives the person with its tail, over 1
+// m/s; a: 1 along the push, 0.3 across and upwards; e: recording_filter.h on every axis. w and s by
+// maximum marginal likelihood (expectation maximization) over fixed nodes of b: one rollout a node,
+// then no more. b acts where one person alone is pushed and the push has a tail. People who touch
+// have e alone: b changed nothing there (README.md of ident/prediction).
 //
 // After k frames b has the posterior over the nodes; its mean makes one rollout, to which the
 // expectation of e is added. (The mean, not the mode: the posterior is skewed.) That is one of the

@@ -10,8 +10,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kReferenceSpeed = 0.2;  // m/s
-constexpr double kLeastUnit = 0.05;      // of a push that moves nobody: errors are not zero
+constexpr double kLeastUnit = 0.3;  // m/s, of a push that hardly moves anybody: errors are not zero
 const Vector3<double> kAxisScale(1.0, 0.3, 0.3);
 constexpr double kFailed = std::numeric_limits<double>::infinity();
 
@@ -36,7 +35,7 @@ SeenHips HipsAt(const PendulumRecording& recording, int frame) {
 RecordingFilter::RecordingFilter(const IdentifiedModel& model, const PendulumRecording& recording,
                                  int frames)
     : dt_(recording.scene.dt),
-      unit_(std::max(kLeastUnit, PushSpeed(recording) / kReferenceSpeed)),
+      unit_(std::max(kLeastUnit, WholePushSpeed(model, recording))),
       frames_(frames),
       axes_(PushAxes(recording)),
       process_(recording.scene.num_people(), ErrorProcess(recording.scene.dt)),

@@ -32,8 +32,8 @@ FitOptions TailPreset() {
   // recordings that stands for the condition, and it sends people away who are pushed weakly for
   // long.
   o.model.directions = Directions::kIsotropic;
-  // Conditions differ in how much of the momentum is common to all pushes (5 x 4 folds: hipADE 0.085
-  // against 0.093 m with the tail's time pooled).
+  // Conditions differ in how much of the momentum is common to all pushes (5 x 4 folds: hipADE
+  // 0.085 against 0.093 m with the tail's time pooled).
   o.pool = "tail_base";
   o.pool_by = kConditionLabel;
   // Two conditions do not tell how far conditions lie apart.

@@ -224,7 +224,7 @@ void AddGroups(const RecordingEffect& effect, const char* title, Pick pick, Text
 
 std::string PopulationSentence(const RecordingEffect& effect) {
   const std::string scale = "the error of a rollout is " + Rounded(effect.error_scale, 3) +
-                            " m half a second after a push of 0.2 m/s";
+                            " m half a second after a push that gives 1 m/s with its tail";
   if (effect.recordings.empty()) {
     return "No recording effect: it needs people who are pushed alone and a model with a push "
            "tail. " +

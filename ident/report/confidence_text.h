@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "ident/figures/text_table.h"
-#include "ident/observed/recording_effect.h"
 #include "ident/model/fitted_model.h"
+#include "ident/observed/recording_effect.h"
 
 namespace pushid {
 

@@ -123,7 +123,8 @@ TEST_F(ObservedTest, WhatCannotBeIsRefused) {
 
 TEST_F(ObservedTest, PopulationIsPrintedAndKept) {
   const std::string model = FitModel("model.json", {"--population"});
-  EXPECT_NE(fit_.out.find("Recordings differ by a factor exp(b) on the push tail"), std::string::npos);
+  EXPECT_NE(fit_.out.find("Recordings differ by a factor exp(b) on the push tail"),
+            std::string::npos);
   EXPECT_NE(fit_.out.find("alone"), std::string::npos);
   const auto effect = Json(model)["recording_effect"];
   EXPECT_EQ(effect["recordings"].size(), 12u);

@@ -67,7 +67,7 @@ inline std::vector<PendulumRecording> PlantEffects(const IdentifiedModel& model,
     const Eigen::Vector2d u = PushDirection(recording);
     Eigen::Matrix3d axes;
     axes << u.x(), -u.y(), 0, u.y(), u.x(), 0, 0, 0, 1;
-    const double scale = planted.error_scale * PushSpeed(recording) / 0.2;
+    const double scale = planted.error_scale * WholePushSpeed(model, recording);
     for (int n = 0; n < recording.num_people(); ++n) {
       const auto errors = DrawnErrors(recording.num_frames(), recording.scene.dt, scale, &random);
       for (int t = 0; t < recording.num_frames(); ++t) {

@@ -25,7 +25,6 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kAx] = -9.0, p[kAy] = -7.0, p[kBx] = 0.3, p[kBy] = 0.2, p[kTx] = -0.2, p[kTy] = -0.1;
   p[kCq] = 0.05, p[kDq] = 0.1;
   p[kTailGain] = 1.1, p[kTailTorque] = 0.35, p[kTailTime] = 0.19, p[kTailExponent] = 1.5;
-  p[kTailBase] = -1e-4;
   p[kContactStiffness] = 2000.0, p[kContactDistance] = 0.9, p[kContactKappa] = 0.6;
   p[kContactDamping] = 100.0, p[kContactHeight] = 0.5;
   p[kPotentialStrength] = 120.0, p[kPotentialLength] = 0.4, p[kNeighbourRange] = 0.9;

@@ -4,12 +4,12 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/figures/chart.h"
+#include "ident/prediction/baselines.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/report/page/sections.h"
 #include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
-#include "ident/prediction/baselines.h"
 
 namespace pushid {
 namespace {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "ident/fit/fit.h"
-#include "ident/model/model_rollout.h"
 #include "ident/model/model_json.h"
+#include "ident/model/model_rollout.h"
 #include "ident/report/contrast_text.h"
 #include "tests/ident/fit_samples.h"
 

@@ -78,7 +78,7 @@ TEST_F(OnlinePredictorTest, EqualsTheDenseComputation) {
   Eigen::Matrix3d axes;
   axes << u.x(), -u.y(), 0, u.y(), u.x(), 0, 0, 0, 1;
   const Vector3<double> a(1.0, 0.3, 0.3);
-  const double g = PushSpeed(r) / 0.2;
+  const double g = WholePushSpeed(model_, r);
   const auto errors = [&](double b) {
     const Prediction p = Predict(model_, r, 0, b);
     Eigen::MatrixXd e(seen, 3);

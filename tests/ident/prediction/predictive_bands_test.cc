@@ -76,8 +76,8 @@ TEST(PredictiveBands, LieInsideOneAnotherAndWidenWithModelError) {
   EXPECT_GT(width(wide), 1.5 * width(narrow));
 }
 
-// Where the model misses something that all recordings share, the median of the draws lies beside the
-// rollout: bands are moved so that the rollout lies where their median was.
+// Where the model misses something that all recordings share, the median of the draws lies beside
+// the rollout: bands are moved so that the rollout lies where their median was.
 TEST(PredictiveBands, LieAroundTheRollout) {
   const std::vector<PendulumRecording> recordings = MakePendulums(VaryingStudy());
   const FitResult result = Fit(recordings, UnbiasedFit(VaryingStudy()));

@@ -23,8 +23,8 @@ RecordingEffect Sample() {
 TEST(PopulationText, SentenceAndTables) {
   const std::string text = PopulationText(Sample());
   for (const char* part : {"w = 0.43 +- 0.061 (4 clusters", "38 % of the mean squared error",
-                           "0.116 m half a second after a push of 0.2 m/s", "person A",
-                           "condition p", "r0", "1.35", "-0.12"}) {
+                           "0.116 m half a second after a push that gives 1 m/s with its tail",
+                           "person A", "condition p", "r0", "1.35", "-0.12"}) {
     EXPECT_TRUE(Contains(text, part)) << part << "\n" << text;
   }
   // By person, condition and effect.

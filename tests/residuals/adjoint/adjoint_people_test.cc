@@ -19,7 +19,7 @@ std::ostream& operator<<(std::ostream& out, const GroupRegime& regime) {
 
 const GroupRegime kQuiet{"quiet", 0.0, 0.0, 0.01, 0.5, 0.0, false};
 const GroupRegime kPushed{"pushed", 0.03, 120.0, 0.02, 0.6, 0.0, true};
-const GroupRegime kFalling{"falling", 0.05, 120.0, 0.05, 0.6, 250.0, true};
+const GroupRegime kFalling{"falling", 0.05, 150.0, 0.05, 0.8, 250.0, true};
 
 // Recordings of 34, 40, 25 and 20 frames, of two, five, four and one person.
 std::vector<PendulumRecording> Groups(const ModelOptions& options, const GroupRegime& regime,

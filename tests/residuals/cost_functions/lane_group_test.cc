@@ -9,6 +9,12 @@
 namespace pushid {
 namespace {
 
+ParameterSet<double> WithTailBase() {
+  ParameterSet<double> p = RecoveringParameters();
+  p[kTailBase] = 0.1;
+  return p;
+}
+
 struct LaneRegime {
   Posture posture;
   GainScaling scaling;
@@ -54,13 +60,12 @@ struct Crowd {
             RandomPush(0, 3 + 7 * k, 4 + static_cast<int>(i) % 3, kKinds[i % 3], 90.0, &random));
       }
       recordings[i] =
-          RecordRollout(scene, options, {RecoveringParameters()}, 24 + 3 * static_cast<int>(i % 5));
+          RecordRollout(scene, options, {WithTailBase()}, 24 + 3 * static_cast<int>(i % 5));
       AddNoise(0.05, &random, &recordings[i]);
       if (regime.free_velocity) recordings[i].initial_velocity = InitialVelocity::kFree;
       recordings[i].subject_ids = {"subject " + std::to_string(i)};
       problems.push_back(MakeRolloutProblem(recordings[i], options, map, sigmas, 0.5 + 0.1 * i, 0));
-      blocks.push_back(
-          RandomBlocks(map, problems[i]->layout, RecoveringParameters(), 0.1, 0.1, &random));
+      blocks.push_back(RandomBlocks(map, problems[i]->layout, WithTailBase(), 0.1, 0.1, &random));
     }
     for (const ParameterBlocks& of_one : blocks) {
       at.emplace_back();
