@@ -47,7 +47,7 @@ inline bool IsOfLaboratory(int id) {
 inline ParameterSet<double> RandomRecoveringParameters(Random* random, double spread) {
   ParameterSet<double> p = RecoveringParameters();
   for (int id = 0; id < kFirstOwnParameter; ++id) {
-    if (!IsNoiseParameter(static_cast<Parameter>(id)) && !IsOfLaboratory(id))
+    if (!IsNoiseParameter(static_cast<Parameter>(id)) && !IsOfLaboratory(id) && id != kTailBase)
       p[id] *= random->Uniform(1.0 - spread, 1.0 + spread);
   }
   // Six more, as many as own parameters there once were: what is drawn behind them stays.

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
+#include "ident/observed/learn_forecasts.h"
 #include "ident/prediction/evaluation.h"
 #include "models/decompositions.h"
 #include "tests/ident/effect_samples.h"
@@ -175,6 +176,8 @@ TEST_F(OnlinePredictorTest, BandsHoldWhatTheModelDraws) {
   SyntheticOptions study = study_;
   study.subjects = study.recordings_per_subject = 10;
   const auto recordings = PlantEffects(model_, MakePendulums(study), {0.4, 0.1, 12});
+  const auto others = PlantEffects(model_, MakePendulums(study), {0.4, 0.1, 13});
+  model_.forecasts = LearnForecasts(model_, others, {}, 2);
   for (int observed : {1, 15, 30}) {
     double inside = 0.0;
     for (const PendulumRecording& r : recordings) {
