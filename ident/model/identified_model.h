@@ -85,13 +85,14 @@ struct RecordingEffect {
 };
 
 // Who forecasts a motion that was seen to begin (observed/first_frames.h).
-enum class Forecaster { kPhysics, kInput, kKinematic, kVelocity };
-inline constexpr int kNumForecasters = 4;
+enum class Forecaster { kPhysics, kInput, kKinematic, kVelocity, kReanchored };
+inline constexpr int kNumForecasters = 5;
 constexpr EnumNames<Forecaster, kNumForecasters> Names(Forecaster) {
   return {{{"physics", Forecaster::kPhysics},
            {"input", Forecaster::kInput},
            {"kinematic", Forecaster::kKinematic},
-           {"velocity", Forecaster::kVelocity}}};
+           {"velocity", Forecaster::kVelocity},
+           {"reanchored", Forecaster::kReanchored}}};
 }
 
 // Who is to forecast: all together, or one alone.
