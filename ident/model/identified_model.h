@@ -85,14 +85,13 @@ struct RecordingEffect {
 };
 
 // Who forecasts a motion that was seen to begin (observed/first_frames.h).
-enum class Forecaster { kPhysics, kInput, kKinematic, kVelocity, kReanchored };
-inline constexpr int kNumForecasters = 5;
+enum class Forecaster { kPhysics, kInput, kKinematic, kVelocity };
+inline constexpr int kNumForecasters = 4;
 constexpr EnumNames<Forecaster, kNumForecasters> Names(Forecaster) {
   return {{{"physics", Forecaster::kPhysics},
            {"input", Forecaster::kInput},
            {"kinematic", Forecaster::kKinematic},
-           {"velocity", Forecaster::kVelocity},
-           {"reanchored", Forecaster::kReanchored}}};
+           {"velocity", Forecaster::kVelocity}}};
 }
 
 // Who is to forecast: all together, or one alone.

@@ -1,4 +1,4 @@
-// ident: all forecasters side by side.
+// ident: four forecasters side by side.
 #include "ident/observed/first_frames.h"
 
 #include <utility>
@@ -20,13 +20,10 @@ FirstFrames::FirstFrames(const IdentifiedModel& model, const ForecastStack& stac
                          const PendulumRecording& recording, int frames)
     : recording_(&recording),
       filter_(model, recording, frames),
-      input_{ForecastFilter(model, stack, recording, frames), {}},
-      own_{OwnFilter(model, stack.noise, recording, frames), {}} {
+      input_(ForecastFilter(model, stack, recording, frames)) {
   for (const auto& hip : recording.hip) {
     paths_.push_back({{hip[0]}, {true}});
-  }
-  for (Filtered* filtered : {&input_, &own_}) {
-    filtered->beside.assign(paths_.size(), Vector3<double>::Zero());
+    beside_.push_back(Vector3<double>::Zero());
   }
 }
 
@@ -39,21 +36,16 @@ void FirstFrames::Observe(SeenFrame frame) {
     paths_[n].hip.push_back(frame.hips.hip[n]);
     paths_[n].seen.push_back(seen.back());
   }
-  Observe(frame, seen, &input_);
-  Observe(frame, seen, &own_);
-  seen_.push_back(std::move(frame));
-}
-
-void FirstFrames::Observe(const SeenFrame& frame, const std::vector<bool>& seen,
-                          Filtered* filtered) const {
-  if (!filtered->filter) return;
-  filtered->filter->Observe(frame.states, seen);
-  for (size_t n = 0; n < paths_.size(); ++n) {
-    const int person = static_cast<int>(n);
-    if (!seen[n] || !filtered->filter->status().ok) continue;
-    filtered->beside[n] = frame.hips.hip[n] - HipPosition(recording_->scene.people[n].body,
-                                                          filtered->filter->State(person).q);
+  if (input_) {
+    input_->Observe(frame.states, seen);
+    for (size_t n = 0; n < paths_.size(); ++n) {
+      const int person = static_cast<int>(n);
+      if (!seen[n] || !input_->status().ok) continue;
+      beside_[n] = frame.hips.hip[n] -
+                   HipPosition(recording_->scene.people[n].body, input_->State(person).q);
+    }
   }
+  seen_.push_back(std::move(frame));
 }
 
 std::vector<Vector3<double>> FirstFrames::LastHips() const {
@@ -62,16 +54,16 @@ std::vector<Vector3<double>> FirstFrames::LastHips() const {
   return hips;
 }
 
-HipPaths FirstFrames::HipsOf(const Filtered& filtered, InputForecast* forecast) const {
+HipPaths FirstFrames::InputHips(InputForecast* forecast) const {
   HipPaths hips;
-  if (!filtered.filter) return hips;
-  forecast->status = filtered.filter->Forecast(&forecast->path);
+  if (!input_) return hips;
+  forecast->status = input_->Forecast(&forecast->path);
   if (!forecast->status.ok) return hips;
   for (size_t n = 0; n < paths_.size(); ++n) {
     hips.emplace_back();
     for (int t = observed(); t < frames(); ++t) {
       const Vector4<double>& q = forecast->path.At(t, static_cast<int>(n)).q;
-      hips.back().push_back(filtered.beside[n] + HipPosition(recording_->scene.people[n].body, q));
+      hips.back().push_back(beside_[n] + HipPosition(recording_->scene.people[n].body, q));
     }
   }
   return hips;
@@ -81,9 +73,8 @@ ForecastsOfAll FirstFrames::Forecasts(const HipPaths& rollout, InputForecast* in
   ForecastsOfAll all;
   const auto of = [&all](Forecaster who) -> HipPaths& { return all[static_cast<int>(who)]; };
   if (!rollout.empty()) of(Forecaster::kPhysics) = filter_.ForecastOf(rollout);
-  InputForecast spare, own;
-  of(Forecaster::kInput) = HipsOf(input_, input != nullptr ? input : &spare);
-  of(Forecaster::kReanchored) = HipsOf(own_, &own);
+  InputForecast own;
+  of(Forecaster::kInput) = InputHips(input != nullptr ? input : &own);
   const double dt = recording_->scene.dt;
   const int ahead = frames() - observed();
   for (const SeenPath& seen : paths_) {

@@ -6,9 +6,6 @@
 //              (scene_filter.h), the force dying out; push and tail act as known
 //   kinematic  a quadratic through what was seen last, fading (kinematics.h)
 //   velocity   the last velocity
-//   reanchored the rollout anew, from the state that the same filter finds with the model's own
-//   gains
-//              and tail
 #pragma once
 
 #include <array>
@@ -50,7 +47,7 @@ class FirstFrames {
   int frames() const { return filter_.frames(); }
   double seconds() const { return filter_.seconds(); }  // after frame 0
   const RecordingFilter& filter() const { return filter_; }
-  bool HasInput() const { return input_.filter.has_value(); }
+  bool HasInput() const { return input_.has_value(); }
   const std::vector<SeenFrame>& seen() const { return seen_; }  // from frame 1 on
   // Where hips were seen last, by person.
   std::vector<Vector3<double>> LastHips() const;
@@ -60,19 +57,14 @@ class FirstFrames {
   ForecastsOfAll Forecasts(const HipPaths& rollout, InputForecast* input = nullptr) const;
 
  private:
-  // A filter, and by person the hip less the filter's, where it was seen last.
-  struct Filtered {
-    std::optional<SceneFilter> filter;
-    std::vector<Vector3<double>> beside;
-  };
-  void Observe(const SeenFrame& frame, const std::vector<bool>& seen, Filtered* filtered) const;
-  HipPaths HipsOf(const Filtered& filtered, InputForecast* forecast) const;
+  HipPaths InputHips(InputForecast* forecast) const;
 
   const PendulumRecording* recording_;
   RecordingFilter filter_;
-  Filtered input_, own_;
+  std::optional<SceneFilter> input_;
   std::vector<SeenFrame> seen_;
-  std::vector<SeenPath> paths_;  // by person
+  std::vector<SeenPath> paths_;          // by person
+  std::vector<Vector3<double>> beside_;  // by person: hip less the filter's, where last seen
 };
 
 }  // namespace pushid

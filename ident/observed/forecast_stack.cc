@@ -133,8 +133,7 @@ ScaleCoefficients ScaleFeatures(double ahead, double seconds, double speed) {
 
 std::array<Eigen::Vector3d, kNumForecasters> ForecastStack::DefaultLogits() {
   return {Eigen::Vector3d(0.0, -1.0, 0.5), Eigen::Vector3d(0.0, 1.0, -0.5),
-          Eigen::Vector3d(-2.0, 0.5, 0.0), Eigen::Vector3d(-2.0, 0.5, -0.5),
-          Eigen::Vector3d(-1.0, 0.0, 0.0)};
+          Eigen::Vector3d(-2.0, 0.5, 0.0), Eigen::Vector3d(-2.0, 0.5, -0.5)};
 }
 
 HipDistribution::HipDistribution(const ForecastStack& stack, const Eigen::Matrix3d& axes,

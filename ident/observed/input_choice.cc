@@ -106,7 +106,7 @@ InputNoise LikeliestInput(const IdentifiedModel& model,
     for (size_t i = 0; i < recordings.size(); i += step) {
       const PendulumRecording& recording = recordings[i];
       const int frames = recording.num_frames();
-      auto filter = OwnFilter(model, noise, recording, frames);
+      auto filter = UnknownForceFilter(model, noise, recording, frames);
       for (int t = 1; t < frames; ++t) {
         const SeenFrame frame = FrameAt(recording, t);
         if (!filter->Observe(frame.states, frame.hips.seen).ok) break;

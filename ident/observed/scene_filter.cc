@@ -86,7 +86,7 @@ std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, const Fo
   return SceneFilter(model, std::move(parameters), stack.noise, recording, frames);
 }
 
-std::optional<SceneFilter> OwnFilter(const IdentifiedModel& model, const InputNoise& noise,
+std::optional<SceneFilter> UnknownForceFilter(const IdentifiedModel& model, const InputNoise& noise,
                                               const PendulumRecording& recording, int frames) {
   if (model.options.learned != nullptr) return std::nullopt;
   return SceneFilter(model, PeoplesParameters(model, recording), noise, recording, frames);

@@ -49,9 +49,8 @@ class SceneFilter {
 // The filter that forecasts; none of models with networks, whose memory no measurement corrects.
 std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, const ForecastStack& stack,
                                           const PendulumRecording& recording, int frames);
-// The filter with the model's own gains and tail: where the model goes from what was seen, and
-// which force acted beside its own.
-std::optional<SceneFilter> OwnFilter(const IdentifiedModel& model, const InputNoise& noise,
-                                     const PendulumRecording& recording, int frames);
+// The filter that says which force acted beside those of the model, with its own gains and tail.
+std::optional<SceneFilter> UnknownForceFilter(const IdentifiedModel& model, const InputNoise& noise,
+                                              const PendulumRecording& recording, int frames);
 
 }  // namespace pushid

@@ -35,7 +35,7 @@ OnlinePredictor::OnlinePredictor(const IdentifiedModel& model, const PendulumRec
       recording_(&recording),
       use_(use),
       frames_(std::make_unique<FirstFrames>(model, *model.forecasts, recording, num_frames)) {
-  auto filter = OwnFilter(model, model.forecasts->likeliest, recording, num_frames);
+  auto filter = UnknownForceFilter(model, model.forecasts->likeliest, recording, num_frames);
   if (filter) unknown_force_ = std::make_unique<SceneFilter>(*std::move(filter));
 }
 

@@ -17,8 +17,7 @@ constexpr char kStackLook[] = "fill:none;stroke-width:2.6;stroke:#3b82f6";
 constexpr const char* kForecasterLooks[kNumForecasters] = {
     "fill:none;stroke-width:1.4;stroke:#d55e00", "fill:none;stroke-width:1.4;stroke:#009e73",
     "fill:none;stroke-width:1.4;stroke-dasharray:5 3;stroke:#cc79a7",
-    "fill:none;stroke-width:1.4;stroke-dasharray:2 3;stroke:#888",
-    "fill:none;stroke-width:1.4;stroke-dasharray:8 3;stroke:#d55e00"};
+    "fill:none;stroke-width:1.4;stroke-dasharray:2 3;stroke:#888"};
 
 ReportFigure ErrorsFigure(const ForecastStack& forecasts) {
   Chart chart;
@@ -58,7 +57,7 @@ ReportFigure ErrorsFigure(const ForecastStack& forecasts) {
 std::optional<ReportFigure> ForceFigure(const IdentifiedModel& model, const ForecastStack& stack,
                                         const PendulumRecording& recording) {
   const int frames = recording.num_frames(), person = recording.pushed_person;
-  std::optional<SceneFilter> filter = OwnFilter(model, stack.likeliest, recording, frames);
+  std::optional<SceneFilter> filter = UnknownForceFilter(model, stack.likeliest, recording, frames);
   if (!filter) return std::nullopt;
   const double dt = recording.scene.dt;
   const Eigen::Vector2d along = PushDirection(recording);
