@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(ThreeRegimes, LikelihoodTwins,
 // Those that the fit takes against those that are exact.
 TEST_P(LikelihoodTwins, DifferencesOfFiltersEqualJets) {
   const LikelihoodRegime& regime = GetParam();
-  Random random(13);
+  Random random(12);
   const ParameterMap map = LikelihoodMap({kMu, kKpTheta, kSigmaX});
   for (int people : {1, 2}) {
     const ModelOptions options = ModelOf(people > 1, people > 1);
