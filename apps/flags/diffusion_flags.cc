@@ -14,6 +14,9 @@ DEFINE_int32(averaged, kOptions.averaged, "diffusion: number of samples averaged
 DEFINE_string(sampler, pushid::NameOf(kOptions.sampler),
               "diffusion: sampler: renoised, ddpm or ddim");
 DEFINE_int32(sampling_steps, kOptions.steps, "diffusion: number of sampling steps");
+DEFINE_string(settle, pushid::NameOf(kOptions.settle),
+              "diffusion: what follows the longest motion learned from: fade (people come to rest) "
+              "or none (the network alone, as in SDM)");
 DEFINE_double(blend, kOptions.blend,
               "diffusion: blend of the hip paths, from 0 (forecast) to 1 (physics)");
 
@@ -23,6 +26,7 @@ Result<DiffusionGeneratorOptions> DiffusionOptionsFromCommandLine() {
   DiffusionGeneratorOptions options;
   for (const MaybeError& error :
        {ParseName("--sampler", FLAGS_sampler, &options.sampler),
+        ParseName("--settle", FLAGS_settle, &options.settle),
         CheckRange("averaged", FLAGS_averaged, 1, 1000),
         CheckRange("sampling_steps", FLAGS_sampling_steps, 1, kDiffusionTime),
         CheckRange("blend", FLAGS_blend, 0.0, 1.0)}) {
@@ -35,7 +39,7 @@ Result<DiffusionGeneratorOptions> DiffusionOptionsFromCommandLine() {
 }
 
 std::vector<const char*> DiffusionFlagNames() {
-  return {"averaged", "sampler", "sampling_steps", "blend"};
+  return {"averaged", "sampler", "sampling_steps", "settle", "blend"};
 }
 
 }  // namespace pushid

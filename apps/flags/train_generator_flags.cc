@@ -41,6 +41,9 @@ DEFINE_string(accuracy, pushid::NameOf(kFlags.accuracy),
               "diffusion: best cross-validates it (four folds) against physics with restored "
               "bodies and against blends of both, trains all of them, and pushid-generate uses the "
               "most accurate (if interrupted, the comparison starts again); or usual");
+DEFINE_string(published, pushid::NameOf(kFlags.published),
+              "a method as published, which flags that are given change: sdm (--kind=diffusion; "
+              "Tanke et al., ICCV 2023) or none");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json and train/");
 DEFINE_bool(with_validation, kFlags.with_validation,
             "cmu: also train on the validation clips, which then cannot validate");
@@ -191,9 +194,19 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   for (const MaybeError& error :
        {ParseName("--kind", FLAGS_kind, &options.kind),
         ParseName("--dataset", FLAGS_dataset, &flags.data),
+        ParseName("--published", FLAGS_published, &flags.published),
         ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy), ReadNumbers(&flags),
         KindFlags<TrainGeneratorFlags>::ReadAll(&flags)}) {
     if (error) return *error;
+  }
+  if (flags.published == PublishedMethod::kSdm && options.kind != GeneratorKind::kDiffusion) {
+    return Error{"--published=sdm needs --kind=diffusion"};
+  }
+  if (flags.published == PublishedMethod::kSde) {
+    return Error{"--published=sde is not a preset of this program; give sdm or none"};
+  }
+  if (FLAGS_pendulum_input && options.diffusion.structure.frame == MotionFrame::kOwn) {
+    return Error{"--frame=own knows no pendulum; leave out --pendulum_input"};
   }
   const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0 || Best());
   if (!scheme.ok()) return scheme.error();

@@ -236,7 +236,11 @@ std::unique_ptr<MotionGenerator> TrainedParticles::Make(const GeneratorSettings&
 }
 
 nlohmann::ordered_json TrainedDiffusion::Settings() const {
-  return {{"members", members.size()}, {"pooling", NameOf(members.front().structure.pooling)}};
+  const DiffusionStructure& structure = members.front().structure;
+  return {{"members", members.size()},
+          {"pooling", NameOf(structure.pooling)},
+          {"pooling_at", NameOf(structure.join)},
+          {"frame", NameOf(structure.frame)}};
 }
 
 SharedNetworks ReadDiffusion(const nlohmann::ordered_json& json, const GeneratorSettings& settings,
@@ -245,6 +249,11 @@ SharedNetworks ReadDiffusion(const nlohmann::ordered_json& json, const Generator
   const auto trained = std::make_shared<TrainedDiffusion>();
   DiffusionStructure structure;
   ParseSetting(json, "pooling", &structure.pooling);
+  // Older generators have neither.
+  if (json.contains("pooling_at")) ParseSetting(json, "pooling_at", &structure.join);
+  if (json.contains("frame")) ParseSetting(json, "frame", &structure.frame);
+  Demand(structure.frame == MotionFrame::kGroup || !settings.pendulum,
+         "people's own frames know no pendulum");
   structure.pendulum = settings.pendulum;
   const int members = ReadMembers(json);
   for (int m = 0; m < members; ++m) {

@@ -74,11 +74,13 @@ std::string KeyOf(const GeneratorSamples& samples, const DiffusionTrainingOption
       }
     }
   }
-  return Joined("diffusion 1 " + NameOf(o.structure.pooling),
-                {double(o.structure.pendulum), double(o.steps), double(o.groups),
-                 double(o.people_alone), double(o.warm_up), o.learning_rate, o.weight_decay, o.clip,
-                 o.averaging, o.dropout, o.bystanders, o.turn, o.size, o.dt, double(o.seed)},
-                hash);
+  return Joined(
+      "diffusion 2 " + NameOf(o.structure.pooling) + " " + NameOf(o.structure.join) + " " +
+          NameOf(o.structure.frame),
+      {double(o.structure.pendulum), double(o.steps), double(o.groups), double(o.people_alone),
+       double(o.warm_up), o.learning_rate, o.weight_decay, o.clip, o.averaging, o.dropout,
+       o.joint_weight, o.difference_weight, o.bystanders, o.turn, o.size, o.dt, double(o.seed)},
+      hash);
 }
 
 // The options of a seed.

@@ -45,7 +45,7 @@ int Padded(int frames) {
 
 // Groups of one batch, padded to the longest.
 DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vector<int>& past,
-                      const JointScales& scales, const DiffusionTrainingOptions& options) {
+                      const MotionScales& scales, const DiffusionTrainingOptions& options) {
   int longest = 0;
   int64_t people = 0;
   for (const ObservedGroup& group : groups) {
@@ -54,8 +54,8 @@ DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vecto
   }
   const bool pendulum = options.structure.pendulum;
   DiffusionBatch all;
-  all.truth = torch::zeros({people, kMotionRows, longest});
-  all.given = torch::zeros({people, GivenRows(pendulum), longest});
+  all.truth = torch::zeros({people, scales.rows(), longest});
+  all.given = torch::zeros({people, GivenRows(pendulum, scales.rows()), longest});
   all.weights = torch::zeros({people, 1, longest});
   all.statics = torch::zeros({people, kStaticRows});
   int64_t begin = 0;
@@ -63,7 +63,7 @@ DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vecto
     const int frames = FramesOf(groups[g]), count = static_cast<int>(groups[g].size());
     const GroupFeatures features =
         FeaturesOf(groups[g], scales, past[g], frames, options.dt, pendulum);
-    Eigen::MatrixXf rows(kMotionRows, count * frames);
+    Eigen::MatrixXf rows(scales.rows(), count * frames);
     for (int n = 0; n < count; ++n) {
       rows.middleCols(n * frames, frames) = MotionRows(groups[g][n], scales, pendulum);
     }
@@ -97,7 +97,7 @@ DiffusionBatch BatchOf(const GroupFeatures& features, const DiffusionStructure& 
 }
 
 DiffusionBatches::DiffusionBatches(const std::vector<ObservedGroup>& groups,
-                                   const JointScales& scales,
+                                   const MotionScales& scales,
                                    const DiffusionTrainingOptions& options)
     : scales_(scales), options_(options) {
   for (const ObservedGroup& group : groups) {

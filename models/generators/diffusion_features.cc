@@ -31,6 +31,39 @@ Trajectories Moved(const ObservedMotion& person, bool pendulum) {
   return moved;
 }
 
+// Rows in the person's own frames, in m.
+Eigen::MatrixXf OwnRows(const ObservedMotion& person) {
+  Eigen::MatrixXf rows(kOwnFrameRows, person.frames.cols());
+  const Trajectories seen = FromHip(person.frames);
+  for (Eigen::Index t = 0; t < rows.cols(); ++t) {
+    const double heading = Heading(person.frames.col(t).cast<double>().reshaped(3, kBodyJoints));
+    const Eigen::Matrix3f back = TurnAboutZ(-heading).cast<float>();
+    rows.col(t).head(3) = seen.col(t).head(3) - seen.col(0).head(3);
+    for (int j = 1; j < kBodyJoints; ++j) {
+      rows.col(t).segment<3>(3 * j) = back * seen.col(t).segment<3>(3 * j);
+    }
+    rows.col(t).tail<2>() << static_cast<float>(std::cos(heading)),
+        static_cast<float>(std::sin(heading));
+  }
+  return rows;
+}
+
+Trajectories FromOwnRows(const Eigen::MatrixXf& rows, const ObservedMotion& person) {
+  Trajectories frames(kMotionRows, rows.cols());
+  for (Eigen::Index t = 0; t < rows.cols(); ++t) {
+    const Eigen::Vector3f hip = person.frames.col(0).head<3>() + rows.col(t).head<3>();
+    // The two are not exactly of length 1 where a network estimates them.
+    const Eigen::Matrix3f there =
+        TurnAboutZ(std::atan2(rows(kOwnFrameRows - 1, t), rows(kOwnFrameRows - 2, t)))
+            .cast<float>();
+    frames.col(t).head<3>() = hip;
+    for (int j = 1; j < kBodyJoints; ++j) {
+      frames.col(t).segment<3>(3 * j) = hip + there * rows.col(t).segment<3>(3 * j);
+    }
+  }
+  return frames;
+}
+
 Eigen::VectorXf ByCoordinate(const JointScales& scales) {
   return scales.transpose().replicate<3, 1>().reshaped();
 }
@@ -81,13 +114,43 @@ JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups
   return scales;
 }
 
-Eigen::MatrixXf MotionRows(const ObservedMotion& person, const JointScales& scales, bool pendulum) {
-  return ByCoordinate(scales).cwiseInverse().asDiagonal() * Moved(person, pendulum);
+MotionScales OwnFrameScalesOf(const std::vector<std::vector<ObservedMotion>>& groups) {
+  constexpr double kLeastSpread = 1e-3;  // m, or of a cosine: rows that hardly move
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(kOwnFrameRows), squares = sum;
+  double frames = 0.0;
+  for (const auto& group : groups) {
+    for (const ObservedMotion& person : group) {
+      const Eigen::ArrayXXd rows = OwnRows(person).cast<double>();
+      sum += rows.rowwise().sum();
+      squares += rows.square().rowwise().sum();
+      frames += static_cast<double>(rows.cols());
+    }
+  }
+  const Eigen::ArrayXd mean = sum / std::max(1.0, frames);
+  MotionScales scales(JointScalesOf(groups));
+  scales.mean = mean.cast<float>();
+  scales.spread = (squares / std::max(1.0, frames) - mean.square())
+                      .max(kLeastSpread * kLeastSpread)
+                      .sqrt()
+                      .cast<float>();
+  return scales;
+}
+
+Eigen::MatrixXf MotionRows(const ObservedMotion& person, const MotionScales& scales,
+                           bool pendulum) {
+  if (scales.own_frames()) {
+    return scales.spread.cwiseInverse().asDiagonal() * (OwnRows(person).colwise() - scales.mean);
+  }
+  return ByCoordinate(scales.joints).cwiseInverse().asDiagonal() * Moved(person, pendulum);
 }
 
 Trajectories FromMotionRows(const Eigen::MatrixXf& rows, const ObservedMotion& person,
-                            const JointScales& scales, bool pendulum) {
-  Trajectories frames = ByCoordinate(scales).asDiagonal() * rows;
+                            const MotionScales& scales, bool pendulum) {
+  if (scales.own_frames()) {
+    const Eigen::MatrixXf spread = scales.spread.asDiagonal() * rows;
+    return FromOwnRows(spread.colwise() + scales.mean, person);
+  }
+  Trajectories frames = ByCoordinate(scales.joints).asDiagonal() * rows;
   if (pendulum) {
     const Columns physics = person.pendulum.leftCols(rows.cols());
     frames.topRows(3) += physics.colwise() - Eigen::Vector3f(physics.col(0));
@@ -97,12 +160,13 @@ Trajectories FromMotionRows(const Eigen::MatrixXf& rows, const ObservedMotion& p
   return frames;
 }
 
-GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const JointScales& scales,
+GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const MotionScales& scales,
                          int observed, int frames, double dt, bool pendulum) {
   GroupFeatures features;
   features.people = static_cast<int>(group.size());
   features.frames = frames;
-  features.given = Eigen::MatrixXf::Zero(GivenRows(pendulum), features.people * frames);
+  const int rows = scales.rows();
+  features.given = Eigen::MatrixXf::Zero(GivenRows(pendulum, rows), features.people * frames);
   features.statics.resize(kStaticRows, features.people);
   features.places.resize(2, features.people);
   const Eigen::MatrixXf push = PushOf(group, frames);
@@ -114,15 +178,14 @@ GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const JointSc
     const ObservedMotion& person = group[n];
     auto given = features.given.middleCols(n * frames, frames);
     if (observed > 0) {
-      given.topLeftCorner(kMotionRows, observed) =
-          MotionRows(person, scales, pendulum).leftCols(observed);
-      given.row(kMotionRows).head(observed).setOnes();
+      given.topLeftCorner(rows, observed) = MotionRows(person, scales, pendulum).leftCols(observed);
+      given.row(rows).head(observed).setOnes();
     }
-    given.middleRows(kMotionRows + 1, kPushRows) = push / kForceUnit;
+    given.middleRows(rows + 1, kPushRows) = push / kForceUnit;
     if (pendulum) {
       const Columns physics = person.pendulum.leftCols(frames);
       given.bottomRows(3) =
-          (physics.colwise() - Eigen::Vector3f(physics.col(0))) / scales[kBodyHip];
+          (physics.colwise() - Eigen::Vector3f(physics.col(0))) / scales.joints[kBodyHip];
     }
     const Trajectories first = FromHip(person.frames.leftCols(1));
     const Eigen::Vector2f from_source = person.place - source;

@@ -2,6 +2,8 @@
 //
 //   motion    66 rows: hip(t) - hip(0), then (joint - hip)(t) - (joint - hip)(0), each over the
 //             joint's scale; no rotation is taken out: all face the way of the push
+//             or, in people's own frames (SDM): hip(t) - hip(0), joint - hip turned to face +x, and
+//             cosine and sine of where they face, each to zero mean and unit variance
 //   given     a row of each: the observed motion (0 where nothing was seen), 1 where it was, the
 //             push on the group over 10 m of the pushed, and where physics have the hip
 //   statics   of a person: joints seen from the hip at frame 0, place seen from the pushed,
@@ -20,11 +22,30 @@ namespace pushid {
 inline constexpr int kMotionRows = 3 * kBodyJoints;
 inline constexpr int kPushRows = 4;
 inline constexpr int kStaticRows = 3 * (kBodyJoints - 1) + 2 + 1 + 1 + 1 + kPushRows + 1;
-inline int GivenRows(bool pendulum) { return kMotionRows + 1 + kPushRows + (pendulum ? 3 : 0); }
+inline constexpr int kOwnFrameRows = kMotionRows + 2;
+inline int GivenRows(bool pendulum, int motion_rows = kMotionRows) {
+  return motion_rows + 1 + kPushRows + (pendulum ? 3 : 0);
+}
 
 // m, by joint: what a unit of a motion's row is.
 using JointScales = Eigen::Matrix<float, kBodyJoints, 1>;
 JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups);
+
+// What a unit of a motion's row is, and in which frame rows are.
+struct MotionScales {
+  MotionScales() = default;
+  // Of the group's frame.
+  template <typename OfJoints>
+  MotionScales(const Eigen::MatrixBase<OfJoints>& of_joints) : joints(of_joints) {}
+
+  JointScales joints = JointScales::Ones();
+  Eigen::VectorXf mean, spread;  // of people's own frames, kOwnFrameRows; otherwise empty
+
+  bool own_frames() const { return mean.size() > 0; }
+  int rows() const { return own_frames() ? kOwnFrameRows : kMotionRows; }
+};
+// Mean and standard deviation of every row over all frames and people of the groups.
+MotionScales OwnFrameScalesOf(const std::vector<std::vector<ObservedMotion>>& groups);
 
 struct GroupFeatures {
   int people = 0, frames = 0;
@@ -35,14 +56,14 @@ struct GroupFeatures {
 
 // observed: the frames of each person that are shown, frames: of the whole motion. The push is that
 // of all people together.
-GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const JointScales& scales,
+GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const MotionScales& scales,
                          int observed, int frames, double dt, bool pendulum);
 
-// Rows of a motion: with physics the hip is what they leave over.
-Eigen::MatrixXf MotionRows(const ObservedMotion& person, const JointScales& scales, bool pendulum);
+// Rows of a motion: with physics (not in people's own frames) the hip is what they leave over.
+Eigen::MatrixXf MotionRows(const ObservedMotion& person, const MotionScales& scales, bool pendulum);
 // The motion that begins as the person's does; rows as above.
 Trajectories FromMotionRows(const Eigen::MatrixXf& rows, const ObservedMotion& person,
-                            const JointScales& scales, bool pendulum);
+                            const MotionScales& scales, bool pendulum);
 
 // A group as it may as well have been: in the mirror, turned about z, of another size.
 struct GroupChange {

@@ -72,7 +72,7 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
     past.push_back(MotionRows(person, network.scales, pendulum));
   }
   const std::vector<int> order = ByPlace(people);
-  Eigen::MatrixXf fresh(kMotionRows, count * frames), estimate;
+  Eigen::MatrixXf fresh(network.structure.NumMotion(), count * frames), estimate;
   Draw(order, normal, &fresh);
   Eigen::MatrixXf noisy = fresh;
   for (int k = 0; k < options_.steps; ++k) {
@@ -94,8 +94,10 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
     motions.push_back(FromMotionRows(estimate.middleCols(n * frames, frames), people[n],
                                      network.scales, pendulum));
   }
-  for (Trajectories& motion : motions)
+  for (Trajectories& motion : motions) {
+    if (options_.settle == Settling::kNone) break;
     Settle(options_.learnt_frames, options_.settling / dt_, &motion);
+  }
   return motions;
 }
 

@@ -77,11 +77,19 @@ inline BackwardStep StepBack(DiffusionSampler sampler, double t, double u) {
   return {};
 }
 
+// Past the frames of the longest motion learned from: steps fade until people rest, or the network
+// alone goes on (as in SDM).
+enum class Settling { kFade, kNone };
+constexpr EnumNames<Settling, 2> Names(Settling) {
+  return {{{"fade", Settling::kFade}, {"none", Settling::kNone}}};
+}
+
 struct DiffusionGeneratorOptions {
   DiffusionSampler sampler = DiffusionSampler::kRenoised;
   int steps = 25;
-  int averaged = 8;          // samples of a forecast
-  int learnt_frames = 128;   // of the longest motion learnt from; later ones settle
+  int averaged = 8;         // samples of a forecast
+  int learnt_frames = 128;  // of the longest motion learnt from; later ones settle
+  Settling settle = Settling::kFade;
   double settling = 0.5;     // s, in which steps of later frames fade to 1/e
   double blend = 0.0;        // share of the way to the pendulum's hip
   double push_spread = 0.8;  // of the logarithm of the push, between sampled futures

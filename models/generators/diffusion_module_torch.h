@@ -48,9 +48,11 @@ class DiffusionModule : public torch::nn::Module {
     first_static_ = Linear("static0", kStaticRows, kStaticWidth);
     second_static_ = Linear("static1", kStaticWidth, kStaticWidth);
     for (int b = 0; b < kDiffusionBlocks; ++b) AddBlock(b);
-    for (int p = 0; p <= kDiffusionLevels && structure.Pools(); ++p) AddPool(p);
-    out_ = Convolution("out", kTaps, 1, kDownWidths[0], kMotionRows, 1.0);
-    direct_ = Convolution("direct", 1, 1, structure.NumInputs(), kMotionRows, 1.0);
+    for (int b = 0; b <= kDiffusionLevels; ++b) {
+      if (structure.PoolsAfter(b)) AddPool(b);
+    }
+    out_ = Convolution("out", kTaps, 1, kDownWidths[0], structure.NumMotion(), 1.0);
+    direct_ = Convolution("direct", 1, 1, structure.NumInputs(), structure.NumMotion(), 1.0);
   }
 
   // time: [person, time feature]
@@ -72,7 +74,7 @@ class DiffusionModule : public torch::nn::Module {
     return (*out_)(Doubled(at)) + (*direct_)(input);
   }
 
-  DiffusionNetwork Network(const JointScales& scales) const {
+  DiffusionNetwork Network(const MotionScales& scales) const {
     DiffusionNetwork network;
     network.structure = structure_;
     network.scales = scales;
@@ -83,10 +85,15 @@ class DiffusionModule : public torch::nn::Module {
           {block.first->Layer(), block.second->Layer(), block.skip->Layer(), ToLayer(block.film)});
     }
     for (const Pool& pool : pools_) {
-      network.pools.push_back({pool.join->Layer(), {}, {}});
-      if (!pool.query) continue;
-      network.pools.back().query = pool.query->Layer();
-      network.pools.back().key = pool.key->Layer();
+      network.pools.emplace_back();
+      DiffusionPool& to = network.pools.back();
+      for (const auto& [layer, from] : {std::pair(&to.join, pool.join),
+                                        {&to.query, pool.query},
+                                        {&to.key, pool.key},
+                                        {&to.value, pool.value},
+                                        {&to.mixed, pool.mixed}}) {
+        if (from) *layer = from->Layer();
+      }
     }
     network.out = out_->Layer();
     network.direct = direct_->Layer();
@@ -100,7 +107,7 @@ class DiffusionModule : public torch::nn::Module {
     torch::nn::Linear film{nullptr};
   };
   struct Pool {
-    ConvolutionPointer join, query, key;
+    ConvolutionPointer join, query, key, value, mixed;
   };
   static constexpr double kSmallStart = 0.3;  // of what is added to a block's way around
 
@@ -126,15 +133,21 @@ class DiffusionModule : public torch::nn::Module {
     torch::nn::init::zeros_(block.film->bias);
     blocks_.push_back(block);
   }
-  void AddPool(int p) {
-    const int width = WidthsOf(p, structure_).out;
-    const std::string name = "pool" + std::to_string(p);
+  void AddPool(int block) {
+    const int width = WidthsOf(block, structure_).out, query = QueryWidth(structure_, width);
+    const std::string name = "pool" + std::to_string(block);
     Pool pool;
-    pool.join =
-        Convolution(name + "_join", 1, 1, structure_.NumViews() * width, width, kSmallStart);
-    if (structure_.pooling == SocialPooling::kAttention) {
-      pool.query = Convolution(name + "_query", 1, 1, width, kAttentionWidth, 1.0);
-      pool.key = Convolution(name + "_key", 1, 1, width, kAttentionWidth, 1.0);
+    if (structure_.join == SocialJoin::kLevels) {
+      pool.join =
+          Convolution(name + "_join", 1, 1, structure_.NumViews() * width, width, kSmallStart);
+    }
+    if (structure_.Attends()) {
+      pool.query = Convolution(name + "_query", 1, 1, width, query, 1.0);
+      pool.key = Convolution(name + "_key", 1, 1, width, query, 1.0);
+    }
+    if (structure_.pooling == SocialPooling::kHeads) {
+      pool.value = Convolution(name + "_value", 1, 1, width, width, 1.0);
+      pool.mixed = Convolution(name + "_mixed", 1, 1, width, width, 1.0);
     }
     pools_.push_back(pool);
   }
@@ -147,13 +160,14 @@ class DiffusionModule : public torch::nn::Module {
     return torch::silu((*block.second)(inner)) + (*block.skip)(x);
   }
 
-  torch::Tensor Pooled(int p, const torch::Tensor& y, const DiffusionBatch& batch) const {
-    if (!structure_.Pools()) return y;
-    const Pool& pool = pools_[p];
+  torch::Tensor Pooled(int block, const torch::Tensor& y, const DiffusionBatch& batch) const {
+    if (!structure_.PoolsAfter(block)) return y;
+    const bool joined = structure_.join == SocialJoin::kBottleneck;
+    const Pool& pool = pools_[joined ? 0 : block];
     const std::vector<torch::Tensor> groups = y.split_with_sizes(batch.sizes, 0);
     std::vector<torch::Tensor> seen;
     for (size_t g = 0; g < groups.size(); ++g) {
-      if (structure_.pooling == SocialPooling::kAttention) {
+      if (structure_.Attends()) {
         seen.push_back(Attended(pool, groups[g]));
         continue;
       }
@@ -163,19 +177,29 @@ class DiffusionModule : public torch::nn::Module {
       }
       seen.push_back(torch::cat(sums, 1));
     }
-    return y + (*pool.join)(torch::cat(seen, 0));
+    const torch::Tensor all = torch::cat(seen, 0);
+    return joined ? torch::cat({y, all}, 1) : y + (*pool.join)(all);
   }
 
-  // A softmax over the others, frame by frame; people alone see nothing.
-  static torch::Tensor Attended(const Pool& pool, const torch::Tensor& y) {
-    if (y.size(0) == 1) return torch::zeros_like(y);
-    const torch::Tensor queries = (*pool.query)(y).permute({2, 0, 1});
-    const torch::Tensor keys = (*pool.key)(y).permute({2, 1, 0});
-    const double scale = 1.0 / std::sqrt(static_cast<double>(kAttentionWidth));
-    const torch::Tensor self = torch::eye(y.size(0), torch::kBool);
-    const torch::Tensor scores = (scale * torch::matmul(queries, keys)).masked_fill(self, -1e9);
-    const torch::Tensor weights = torch::softmax(scores, 2);
-    return torch::matmul(weights, y.permute({2, 0, 1})).permute({1, 2, 0}).contiguous();
+  // A softmax over people, frame by frame: over everybody with several heads, over the others with
+  // one; then people alone see nothing.
+  torch::Tensor Attended(const Pool& pool, const torch::Tensor& y) const {
+    const bool several = structure_.pooling == SocialPooling::kHeads;
+    if (y.size(0) == 1 && !several) return torch::zeros_like(y);
+    const int64_t people = y.size(0), frames = y.size(2), heads = several ? kHeads : 1;
+    // [frame, head, person, channel]
+    const auto by_head = [&](const torch::Tensor& values) {
+      return values.view({people, heads, values.size(1) / heads, frames}).permute({3, 1, 0, 2});
+    };
+    const torch::Tensor queries = by_head((*pool.query)(y)), keys = by_head((*pool.key)(y));
+    const double scale = 1.0 / std::sqrt(static_cast<double>(queries.size(3)));
+    torch::Tensor scores = scale * torch::matmul(queries, keys.transpose(2, 3));
+    if (!several) scores = scores.masked_fill(torch::eye(people, torch::kBool), -1e9);
+    const torch::Tensor shown = by_head(several ? (*pool.value)(y) : y.contiguous());
+    const torch::Tensor seen = torch::matmul(torch::softmax(scores, 3), shown)
+                                   .permute({2, 1, 3, 0})
+                                   .reshape({people, y.size(1), frames});
+    return several ? (*pool.mixed)(seen) : seen;
   }
 
   static torch::Tensor Doubled(const torch::Tensor& x) {
@@ -193,7 +217,7 @@ class DiffusionModule : public torch::nn::Module {
 
 class DiffusionBatches {
  public:
-  DiffusionBatches(const std::vector<ObservedGroup>& groups, const JointScales& scales,
+  DiffusionBatches(const std::vector<ObservedGroup>& groups, const MotionScales& scales,
                    const DiffusionTrainingOptions& options);
 
   bool empty() const { return groups_.empty() && alone_.empty(); }
@@ -206,7 +230,7 @@ class DiffusionBatches {
   ObservedGroup Varied(const ObservedGroup& group) const;
   void AddBystanders(ObservedGroup* group) const;
 
-  const JointScales scales_;
+  const MotionScales scales_;
   const DiffusionTrainingOptions& options_;
   std::vector<ObservedGroup> groups_, alone_;
 };

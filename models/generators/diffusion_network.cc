@@ -53,7 +53,10 @@ BlockWidths WidthsOf(int block, const DiffusionStructure& structure) {
   const int deepest = down[kDiffusionLevels - 1];
   if (block == 0) return {structure.NumInputs(), down[0]};
   if (block < kDiffusionLevels) return {down[block - 1], down[block]};
-  if (block == kDiffusionLevels) return {deepest, deepest};
+  if (block == kDiffusionLevels) {
+    const bool joined = structure.Pools() && structure.join == SocialJoin::kBottleneck;
+    return {deepest * (joined ? 1 + structure.NumViews() : 1), deepest};
+  }
   // Up from the level below, beside what the level had on the way down.
   const int level = kDiffusionBlocks - 1 - block;
   const int below = block == kDiffusionLevels + 1 ? deepest : down[level + 1];
@@ -62,6 +65,9 @@ BlockWidths WidthsOf(int block, const DiffusionStructure& structure) {
 
 std::vector<Eigen::MatrixXf> PoolingWeights(SocialPooling pooling, const Eigen::Matrix2Xf& places) {
   const Eigen::Index people = places.cols();
+  if (pooling == SocialPooling::kMeanAll) {
+    return {Eigen::MatrixXf::Constant(people, people, 1.0f / static_cast<float>(people))};
+  }
   if (pooling == SocialPooling::kMean) {
     Eigen::MatrixXf others = Eigen::MatrixXf::Ones(people, people);
     others.diagonal().setZero();
@@ -127,37 +133,44 @@ GroupDenoiser::Values GroupDenoiser::Block(int index, const Values& in,
   return out;
 }
 
-void GroupDenoiser::Attend(const DiffusionPool& pool, const Values& values,
-                           Eigen::MatrixXf* seen) const {
-  const int people = features_.people;
+// Several heads see everybody; a single one sees the others as they are.
+Eigen::MatrixXf GroupDenoiser::Attended(const DiffusionPool& pool, const Values& values) const {
+  const bool several = network_.structure.pooling == SocialPooling::kHeads;
+  const int people = features_.people, heads = several ? kHeads : 1;
   const Eigen::MatrixXf queries = Applied(pool.query, values.data);
   const Eigen::MatrixXf keys = Applied(pool.key, values.data);
-  const float scale = 1.0f / std::sqrt(static_cast<float>(kAttentionWidth));
-  for (int i = 0; i < people && people > 1; ++i) {
+  const Eigen::MatrixXf shown = several ? Applied(pool.value, values.data) : values.data;
+  const Eigen::Index width = queries.rows() / heads, shown_width = shown.rows() / heads;
+  const float scale = 1.0f / std::sqrt(static_cast<float>(width));
+  Eigen::MatrixXf seen = Eigen::MatrixXf::Zero(shown.rows(), shown.cols());
+  for (int h = 0; h < heads && (several || people > 1); ++h) {
     for (int t = 0; t < values.frames; ++t) {
-      Eigen::VectorXf weights(people);
-      for (int j = 0; j < people; ++j) {
-        weights[j] =
-            scale * queries.col(i * values.frames + t).dot(keys.col(j * values.frames + t));
+      const auto at = Eigen::seqN(t, people, values.frames);  // everybody's columns
+      const Eigen::MatrixXf query = queries(Eigen::seqN(h * width, width), at);
+      const Eigen::MatrixXf key = keys(Eigen::seqN(h * width, width), at);
+      const auto shown_rows = Eigen::seqN(h * shown_width, shown_width);
+      const Eigen::MatrixXf value = shown(shown_rows, at);
+      Eigen::MatrixXf weights = scale * key.transpose() * query;
+      if (!several) weights.diagonal().setConstant(-INFINITY);
+      for (int i = 0; i < people; ++i) {
+        weights.col(i) = (weights.col(i).array() - weights.col(i).maxCoeff()).exp();
+        weights.col(i) /= weights.col(i).sum();
       }
-      weights[i] = -INFINITY;
-      weights = (weights.array() - weights.maxCoeff()).exp();
-      weights /= weights.sum();
-      for (int j = 0; j < people; ++j) {
-        seen->col(i * values.frames + t) += weights[j] * values.data.col(j * values.frames + t);
-      }
+      seen(shown_rows, at) = value * weights;
     }
   }
+  return several ? Applied(pool.mixed, seen) : seen;
 }
 
-void GroupDenoiser::Pool(int index, Values* values) const {
-  if (!network_.structure.Pools()) return;
-  const DiffusionPool& pool = network_.pools[index];
+void GroupDenoiser::Pool(int block, Values* values) const {
+  const DiffusionStructure& structure = network_.structure;
+  if (!structure.PoolsAfter(block)) return;
+  const bool joined = structure.join == SocialJoin::kBottleneck;
+  const DiffusionPool& pool = network_.pools[joined ? 0 : block];
   const Eigen::Index width = values->data.rows(), size = width * values->frames;
-  Eigen::MatrixXf seen =
-      Eigen::MatrixXf::Zero(network_.structure.NumViews() * width, values->data.cols());
-  if (network_.structure.pooling == SocialPooling::kAttention) {
-    Attend(pool, *values, &seen);
+  Eigen::MatrixXf seen(structure.NumViews() * width, values->data.cols());
+  if (structure.Attends()) {
+    seen = Attended(pool, *values);
   } else {
     // A person's frames below one another, a column per person.
     const Eigen::Map<const Eigen::MatrixXf> all(values->data.data(), size, features_.people);
@@ -167,7 +180,11 @@ void GroupDenoiser::Pool(int index, Values* values) const {
           Eigen::Map<const Eigen::MatrixXf>(sums.data(), width, values->data.cols());
     }
   }
-  values->data += Applied(pool.join, seen);
+  if (joined) {
+    values->data = Below(values->data, seen);
+  } else {
+    values->data += Applied(pool.join, seen);
+  }
 }
 
 GroupDenoiser::Values GroupDenoiser::Doubled(const Values& values) const {
@@ -182,10 +199,11 @@ GroupDenoiser::Values GroupDenoiser::Doubled(const Values& values) const {
 
 Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) const {
   const int people = features_.people, frames = features_.frames;
+  const int motion = network_.structure.NumMotion();
   Values input{Eigen::MatrixXf::Zero(network_.structure.NumInputs(), people * frames_), frames_};
   for (int n = 0; n < people; ++n) {
     auto person = input.data.middleCols(n * frames_, frames);
-    person.topRows(kMotionRows) = noisy.middleCols(n * frames, frames);
+    person.topRows(motion) = noisy.middleCols(n * frames, frames);
     person.bottomRows(features_.given.rows()) = features_.given.middleCols(n * frames, frames);
   }
   const Eigen::MatrixXf conditions = Below(TimeFeatures(t).replicate(1, people), statics_);
@@ -204,7 +222,7 @@ Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) 
   at = Doubled(at);
   Eigen::MatrixXf out = Applied(network_.out, Unfolded(at.data, frames_, 1));
   out += Applied(network_.direct, input.data);
-  Eigen::MatrixXf estimate(kMotionRows, people * frames);
+  Eigen::MatrixXf estimate(motion, people * frames);
   for (int n = 0; n < people; ++n) {
     estimate.middleCols(n * frames, frames) = out.middleCols(n * frames_, frames);
   }
@@ -216,7 +234,11 @@ namespace {
 void ListTensors(const std::string& name, DiffusionNetwork* network, TensorFields* fields) {
   constexpr int kConditions = kTimeWidth + kStaticWidth;
   const DiffusionStructure& structure = network->structure;
-  fields->Positive(name + ".scales", kBodyJoints, &network->scales);
+  fields->Positive(name + ".scales", kBodyJoints, &network->scales.joints);
+  if (structure.frame == MotionFrame::kOwn) {
+    fields->Matrix(name + ".row_mean", kOwnFrameRows, 1, &network->scales.mean);
+    fields->Positive(name + ".row_spread", kOwnFrameRows, &network->scales.spread);
+  }
   fields->Layer(name + ".static0", kStaticRows, kStaticWidth, &network->first_static);
   fields->Layer(name + ".static1", kStaticWidth, kStaticWidth, &network->second_static);
   network->blocks.resize(kDiffusionBlocks);
@@ -229,18 +251,25 @@ void ListTensors(const std::string& name, DiffusionNetwork* network, TensorField
     fields->Layer(of_block + ".skip", widths.in, widths.out, &block.skip);
     fields->Layer(of_block + ".film", kConditions, 2 * widths.out, &block.film);
   }
-  network->pools.resize(structure.Pools() ? kDiffusionLevels + 1 : 0);
-  for (size_t p = 0; p < network->pools.size(); ++p) {
-    const int width = WidthsOf(static_cast<int>(p), structure).out;
-    const std::string of_pool = name + ".pool" + std::to_string(p);
-    DiffusionPool& pool = network->pools[p];
-    fields->Layer(of_pool + ".join", structure.NumViews() * width, width, &pool.join);
-    if (structure.pooling != SocialPooling::kAttention) continue;
-    fields->Layer(of_pool + ".query", width, kAttentionWidth, &pool.query);
-    fields->Layer(of_pool + ".key", width, kAttentionWidth, &pool.key);
+  size_t p = 0;
+  for (int b = 0; b <= kDiffusionLevels; ++b) {
+    if (!structure.PoolsAfter(b)) continue;
+    const int width = WidthsOf(b, structure).out, query = QueryWidth(structure, width);
+    const std::string of_pool = name + ".pool" + std::to_string(b);
+    if (network->pools.size() <= p) network->pools.emplace_back();
+    DiffusionPool& pool = network->pools[p++];
+    if (structure.join == SocialJoin::kLevels) {
+      fields->Layer(of_pool + ".join", structure.NumViews() * width, width, &pool.join);
+    }
+    if (!structure.Attends()) continue;
+    fields->Layer(of_pool + ".query", width, query, &pool.query);
+    fields->Layer(of_pool + ".key", width, query, &pool.key);
+    if (structure.pooling != SocialPooling::kHeads) continue;
+    fields->Layer(of_pool + ".value", width, width, &pool.value);
+    fields->Layer(of_pool + ".mixed", width, width, &pool.mixed);
   }
-  fields->Layer(name + ".out", kTaps * kDownWidths[0], kMotionRows, &network->out);
-  fields->Layer(name + ".direct", structure.NumInputs(), kMotionRows, &network->direct);
+  fields->Layer(name + ".out", kTaps * kDownWidths[0], structure.NumMotion(), &network->out);
+  fields->Layer(name + ".direct", structure.NumInputs(), structure.NumMotion(), &network->direct);
 }
 
 }  // namespace

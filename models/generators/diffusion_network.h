@@ -31,49 +31,84 @@ namespace pushid {
 // mean       all others alike
 // attention  a softmax over the others, frame by frame
 // none       people do not see each other
-enum class SocialPooling { kLocal, kMean, kAttention, kNone };
-constexpr EnumNames<SocialPooling, 4> Names(SocialPooling) {
+// mean_all   the mean over everybody, oneself included (SDM)
+// heads      attention of four heads with values of their own, oneself included (SDM)
+enum class SocialPooling { kLocal, kMean, kAttention, kNone, kMeanAll, kHeads };
+constexpr EnumNames<SocialPooling, 6> Names(SocialPooling) {
   return {{{"local", SocialPooling::kLocal},
            {"mean", SocialPooling::kMean},
            {"attention", SocialPooling::kAttention},
-           {"none", SocialPooling::kNone}}};
+           {"none", SocialPooling::kNone},
+           {"mean_all", SocialPooling::kMeanAll},
+           {"heads", SocialPooling::kHeads}}};
+}
+
+// Where people see each other: added after every block down and the middle, or joined (as further
+// channels) to what the middle is given, as SDM has it.
+enum class SocialJoin { kLevels, kBottleneck };
+constexpr EnumNames<SocialJoin, 2> Names(SocialJoin) {
+  return {{{"levels", SocialJoin::kLevels}, {"bottleneck", SocialJoin::kBottleneck}}};
+}
+
+// The frame of the motion's rows (diffusion_features.h).
+enum class MotionFrame { kGroup, kOwn };
+constexpr EnumNames<MotionFrame, 2> Names(MotionFrame) {
+  return {{{"group", MotionFrame::kGroup}, {"own", MotionFrame::kOwn}}};
 }
 
 struct DiffusionStructure {
   SocialPooling pooling = SocialPooling::kLocal;
   bool pendulum = false;  // where physics have the hip is given, and what they leave is predicted
+  SocialJoin join = SocialJoin::kLevels;
+  MotionFrame frame = MotionFrame::kGroup;
 
   int NumViews() const { return pooling == SocialPooling::kLocal ? 2 : 1; }
   bool Pools() const { return pooling != SocialPooling::kNone; }
-  int NumInputs() const { return kMotionRows + GivenRows(pendulum); }
+  bool Attends() const {
+    return pooling == SocialPooling::kAttention || pooling == SocialPooling::kHeads;
+  }
+  bool PoolsAfter(int block) const;
+  int NumMotion() const { return frame == MotionFrame::kOwn ? kOwnFrameRows : kMotionRows; }
+  int NumInputs() const { return NumMotion() + GivenRows(pendulum, NumMotion()); }
 };
 
 inline constexpr int kDiffusionLevels = 4, kDiffusionBlocks = 8;  // four down, middle, three up
 inline constexpr int kDiffusionFrames = 1 << kDiffusionLevels;    // frames come in multiples
 inline constexpr int kDownWidths[kDiffusionLevels] = {64, 64, 96, 96};
 inline constexpr int kTimeWidth = 64, kStaticWidth = 96, kAttentionWidth = 16;
-inline constexpr int kTaps = 3;  // frames that a convolution sees
+inline constexpr int kHeads = 4;  // of SocialPooling::kHeads
+inline constexpr int kTaps = 3;   // frames that a convolution sees
 // Channels in and out of a block.
 struct BlockWidths {
   int in = 0, out = 0;
 };
 BlockWidths WidthsOf(int block, const DiffusionStructure& structure);
 
+inline bool DiffusionStructure::PoolsAfter(int block) const {
+  if (!Pools() || block > kDiffusionLevels) return false;
+  return join == SocialJoin::kLevels || block == kDiffusionLevels - 1;
+}
+// The width of the queries of everybody's heads together.
+inline int QueryWidth(const DiffusionStructure& structure, int width) {
+  return structure.pooling == SocialPooling::kHeads ? width : kAttentionWidth;
+}
+
 // Weights of a convolution: outputs x (3 inputs), the oldest frame first.
 struct DiffusionBlock {
   DenseLayer first, second, skip, film;
 };
 struct DiffusionPool {
-  DenseLayer join;        // of the sums, one view after the other
-  DenseLayer query, key;  // attention alone
+  DenseLayer join;          // of the sums, one view after the other; not at the bottleneck
+  DenseLayer query, key;    // attention alone
+  DenseLayer value, mixed;  // of several heads
 };
 
 struct DiffusionNetwork {
   DiffusionStructure structure;
-  JointScales scales;
+  MotionScales scales;
   DenseLayer first_static, second_static;
   std::vector<DiffusionBlock> blocks;
-  std::vector<DiffusionPool> pools;  // of the blocks down and the middle; none without pooling
+  std::vector<DiffusionPool> pools;  // of the blocks after which there is one
   DenseLayer out, direct;
 };
 
@@ -87,7 +122,7 @@ Eigen::VectorXf TimeFeatures(double t);
 class GroupDenoiser {
  public:
   GroupDenoiser(const DiffusionNetwork& network, GroupFeatures features);
-  // The estimate of x_0; both kMotionRows x (people * frames).
+  // The estimate of x_0; both NumMotion() x (people * frames).
   Eigen::MatrixXf Estimate(const Eigen::MatrixXf& noisy, double t) const;
 
  private:
@@ -99,7 +134,7 @@ class GroupDenoiser {
   // conditions: of FiLM, a column per person.
   Values Block(int index, const Values& in, const Eigen::MatrixXf& conditions) const;
   void Pool(int index, Values* values) const;
-  void Attend(const DiffusionPool& pool, const Values& values, Eigen::MatrixXf* seen) const;
+  Eigen::MatrixXf Attended(const DiffusionPool& pool, const Values& values) const;
   Values Doubled(const Values& values) const;
 
   const DiffusionNetwork& network_;

@@ -8,7 +8,6 @@
 namespace pushid {
 namespace {
 
-constexpr double kJointWeight = 2.0, kDifferenceWeight = 2.0;
 constexpr double kRateFloor = 0.02;  // share of the largest
 constexpr int kHeldGroups = 32;
 constexpr double kHeldTime = 0.9 * kDiffusionTime;  // nearly all of it noise
@@ -34,15 +33,16 @@ struct DiffusionTrainer::Torch : KeptRun<Run, Torch> {
   Torch(const std::vector<ObservedGroup>& learnt, const std::vector<ObservedGroup>& held,
         const DiffusionTrainingOptions& given)
       : options(given),
-        scales(JointScalesOf(learnt)),
+        scales(given.structure.frame == MotionFrame::kOwn ? OwnFrameScalesOf(learnt)
+                                                          : MotionScales(JointScalesOf(learnt))),
         batches(learnt, scales, options),
         held_batches(held, scales, options) {
     joint_scales = torch::zeros({kBodyJoints});
-    for (int j = 0; j < kBodyJoints; ++j) joint_scales[j] = scales[j];
+    for (int j = 0; j < kBodyJoints; ++j) joint_scales[j] = scales.joints[j];
   }
 
   DiffusionTrainingOptions options;
-  JointScales scales;
+  MotionScales scales;
   torch::Tensor joint_scales;
   DiffusionBatches batches, held_batches;
   std::shared_ptr<DiffusionModule> module, mean;  // mean: of the weights
@@ -82,12 +82,17 @@ struct DiffusionTrainer::Torch : KeptRun<Run, Torch> {
     const auto weighted = [](const torch::Tensor& by_frame, const torch::Tensor& weights) {
       return (by_frame * weights).sum() / weights.sum();
     };
-    const int64_t frames = miss.size(2);
-    const torch::Tensor steps = miss.narrow(2, 1, frames - 1) - miss.narrow(2, 0, frames - 1);
-    return weighted(miss.abs().mean(1, true), batch.weights) +
-           kJointWeight * weighted(JointError(miss), batch.weights) +
-           kDifferenceWeight *
-               weighted(steps.abs().mean(1, true), batch.weights.narrow(2, 1, frames - 1));
+    torch::Tensor loss = weighted(miss.abs().mean(1, true), batch.weights);
+    if (options.joint_weight > 0.0) {
+      loss = loss + options.joint_weight * weighted(JointError(miss), batch.weights);
+    }
+    if (options.difference_weight > 0.0) {
+      const int64_t frames = miss.size(2);
+      const torch::Tensor steps = miss.narrow(2, 1, frames - 1) - miss.narrow(2, 0, frames - 1);
+      loss = loss + options.difference_weight *
+                        weighted(steps.abs().mean(1, true), batch.weights.narrow(2, 1, frames - 1));
+    }
+    return loss;
   }
 
   double Step() {
@@ -170,7 +175,7 @@ Eigen::MatrixXf DiffusionTrainer::Estimate(const GroupFeatures& features,
   const DiffusionBatch batch = BatchOf(features, training.options.structure);
   const int64_t frames = features.frames;
   const torch::Tensor all =
-      ToTensor(noisy).view({features.people, frames, kMotionRows}).transpose(1, 2);
+      ToTensor(noisy).view({features.people, frames, noisy.rows()}).transpose(1, 2);
   const torch::Tensor padded = torch::constant_pad_nd(all, {0, batch.given.size(2) - frames});
   const torch::Tensor time = torch::full({features.people}, t);
   training.mean->eval();

@@ -75,6 +75,9 @@ class ParticleTrainer : public Trainer {
 //
 //   |x - x_0| + 2 |joint - joint_0| in m + 2 |the same differences of frames|, in means
 //
+// (SDM's Eq. 4 is the first term alone; the weights of the others are options)
+//
+//
 // where observed frames weigh 0.1 and those after the recording's end nothing. Into some groups
 // people are put who stand far from all others and do nothing: from groups alone the network cannot
 // know that a push does not reach everybody. AdamW, a warm-up, the rate down to a fiftieth by a
@@ -93,10 +96,12 @@ struct DiffusionTrainingOptions : TrainerOptions {
   double clip = 1.0;         // largest norm of the gradient
   double averaging = 0.998;  // of the weights, from step to step
   double dropout = 0.1;      // of the statics
-  double bystanders = 0.3;   // share of groups that get one or two
-  double turn = 0.12;        // rad, largest
-  double size = 0.05;        // share, largest
-  double dt = 1.0 / 60.0;    // s
+  // Of the terms beside Eq. 4 of SDM; joints in m need the group's frame.
+  double joint_weight = 2.0, difference_weight = 2.0;
+  double bystanders = 0.3;  // share of groups that get one or two
+  double turn = 0.12;       // rad, largest
+  double size = 0.05;       // share, largest
+  double dt = 1.0 / 60.0;   // s
 };
 
 inline constexpr int kDiffusionRound = 50;  // steps of a point of the curve

@@ -111,6 +111,24 @@ TEST_F(DiffusionAppTest, LongForecastsAreToldBySecond) {
   EXPECT_LT(seconds[3]["hip_speed_m_s"].get<double>(), 0.02) << "they have come to rest";
 }
 
+TEST_F(DiffusionAppTest, AsSdmIsPublished) {
+  ASSERT_EQ(Train({"--out=" + Path("g"), "--published=sdm"}).exit_code, 0);
+  const auto settings = Json(Path("g/generator.json"));
+  EXPECT_EQ(settings["pooling"], "mean_all");
+  EXPECT_EQ(settings["pooling_at"], "bottleneck");
+  EXPECT_EQ(settings["frame"], "own");
+  const AppRun run =
+      Generate({"--settle=none", "--sampler=ddpm", "--frames=241", "--json_out=" + Path("e.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(Json(Path("e.json"))["seconds"]["generator"].size(), 4u);
+  ASSERT_EQ(Train({"--out=" + Path("h"), "--published=sdm", "--pooling=heads"}).exit_code, 0);
+  EXPECT_EQ(Json(Path("h/generator.json"))["pooling"], "heads") << "flags change the preset";
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("i"), "--published=sdm", "--joint_weight=2"}),
+                      {"give --joint_weight=0"}));
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("i"), "--published=sdm", "--kind=particles"}),
+                      {"--published=sdm needs --kind=diffusion"}));
+}
+
 TEST_F(DiffusionAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--accuracy=best", "--crossvalidate=2"}),
                       {"makes its own folds"}));

@@ -64,29 +64,47 @@ TEST(DiffusionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
   EXPECT_FALSE(resumed.Resume("no state"));
 }
 
-TEST(DiffusionTrainerTest, EigenEstimatesWhatLibTorchDoes) {
-  for (const auto& row : Names(SocialPooling{})) {
-    for (const bool pendulum : {false, true}) {
-      DiffusionTrainingOptions options = QuickDiffusion(10);
-      options.structure = {row.value, pendulum};
-      std::vector<ObservedGroup> groups = PushedGroups();
-      for (ObservedGroup& group : groups) {
-        for (ObservedMotion& person : group) {
-          if (pendulum) person.pendulum = 0.9f * person.frames.topRows(3);
-        }
-      }
-      DiffusionTrainer trainer(groups, {}, options);
-      while (!trainer.Done()) trainer.RunRound();
-      const DiffusionNetwork network = trainer.Network();
-      const GroupFeatures features =
-          FeaturesOf(groups[1], network.scales, 3, 37, options.dt, pendulum);
-      Random random(2);
-      const Eigen::MatrixXf noisy = RandomMatrix(kMotionRows, 37 * features.people, 1.0, &random);
-      const Eigen::MatrixXf torch = trainer.Estimate(features, noisy, 440.0);
-      const Eigen::MatrixXf eigen = GroupDenoiser(network, features).Estimate(noisy, 440.0);
-      EXPECT_LT((torch - eigen).cwiseAbs().maxCoeff(), 1e-5f) << row.name << " " << pendulum;
+void ExpectEigenIsLibTorch(const DiffusionStructure& structure, const std::string& name) {
+  DiffusionTrainingOptions options = QuickDiffusion(10);
+  options.structure = structure;
+  if (structure.frame == MotionFrame::kOwn) options.joint_weight = 0.0;
+  std::vector<ObservedGroup> groups = PushedGroups();
+  for (ObservedGroup& group : groups) {
+    for (ObservedMotion& person : group) {
+      if (structure.pendulum) person.pendulum = 0.9f * person.frames.topRows(3);
     }
   }
+  DiffusionTrainer trainer(groups, {}, options);
+  while (!trainer.Done()) trainer.RunRound();
+  const DiffusionNetwork network = trainer.Network();
+  const GroupFeatures features =
+      FeaturesOf(groups[1], network.scales, 3, 37, options.dt, structure.pendulum);
+  Random random(2);
+  const Eigen::MatrixXf noisy =
+      RandomMatrix(structure.NumMotion(), 37 * features.people, 1.0, &random);
+  const Eigen::MatrixXf torch = trainer.Estimate(features, noisy, 440.0);
+  const Eigen::MatrixXf eigen = GroupDenoiser(network, features).Estimate(noisy, 440.0);
+  EXPECT_LT((torch - eigen).cwiseAbs().maxCoeff(), 1e-5f) << name;
+}
+
+TEST(DiffusionTrainerTest, EigenEstimatesWhatLibTorchDoes) {
+  for (const auto& row : Names(SocialPooling{})) {
+    for (const auto& join : Names(SocialJoin{})) {
+      const std::string name = std::string(row.name) + " " + join.name;
+      ExpectEigenIsLibTorch({row.value, false, join.value}, name);
+      ExpectEigenIsLibTorch({row.value, true, join.value}, name + ", pendulum");
+      ExpectEigenIsLibTorch({row.value, false, join.value, MotionFrame::kOwn}, name + ", own");
+    }
+  }
+}
+
+// Eq. 4 of SDM alone: the other terms are errors, which add to it.
+TEST(DiffusionTrainerTest, WithoutItsOtherTermsTheLossIsSmaller) {
+  DiffusionTrainingOptions options = QuickDiffusion(kDiffusionRound);
+  DiffusionTrainer all(PushedGroups(), PushedGroups(), options);
+  options.joint_weight = options.difference_weight = 0.0;
+  DiffusionTrainer alone(PushedGroups(), PushedGroups(), options);
+  EXPECT_LT(alone.RunRound().training_loss, all.RunRound().training_loss);
 }
 
 }  // namespace

@@ -36,6 +36,10 @@ inline DiffusionNetwork RandomDiffusion(uint64_t seed, const DiffusionStructure&
   DiffusionNetwork network;
   network.structure = structure;
   network.scales = JointScales::Constant(0.1f);
+  if (structure.frame == MotionFrame::kOwn) {
+    network.scales.mean = Eigen::VectorXf::Constant(kOwnFrameRows, 0.02f);
+    network.scales.spread = Eigen::VectorXf::Constant(kOwnFrameRows, 0.3f);
+  }
   network.first_static = RandomLayer(kStaticRows, kStaticWidth, &random);
   network.second_static = RandomLayer(kStaticWidth, kStaticWidth, &random);
   for (int b = 0; b < kDiffusionBlocks; ++b) {
@@ -45,17 +49,25 @@ inline DiffusionNetwork RandomDiffusion(uint64_t seed, const DiffusionStructure&
                               RandomLayer(w.in, w.out, &random),
                               RandomLayer(kTimeWidth + kStaticWidth, 2 * w.out, &random)});
   }
-  for (int p = 0; p <= kDiffusionLevels && structure.Pools(); ++p) {
-    const int width = WidthsOf(p, structure).out;
-    DiffusionPool pool{RandomLayer(structure.NumViews() * width, width, &random), {}, {}};
-    if (structure.pooling == SocialPooling::kAttention) {
-      pool.query = RandomLayer(width, kAttentionWidth, &random);
-      pool.key = RandomLayer(width, kAttentionWidth, &random);
+  for (int b = 0; b <= kDiffusionLevels; ++b) {
+    if (!structure.PoolsAfter(b)) continue;
+    const int width = WidthsOf(b, structure).out, query = QueryWidth(structure, width);
+    DiffusionPool pool;
+    if (structure.join == SocialJoin::kLevels) {
+      pool.join = RandomLayer(structure.NumViews() * width, width, &random);
+    }
+    if (structure.Attends()) {
+      pool.query = RandomLayer(width, query, &random);
+      pool.key = RandomLayer(width, query, &random);
+    }
+    if (structure.pooling == SocialPooling::kHeads) {
+      pool.value = RandomLayer(width, width, &random);
+      pool.mixed = RandomLayer(width, width, &random);
     }
     network.pools.push_back(pool);
   }
-  network.out = RandomLayer(3 * kDownWidths[0], kMotionRows, &random);
-  network.direct = RandomLayer(structure.NumInputs(), kMotionRows, &random);
+  network.out = RandomLayer(3 * kDownWidths[0], structure.NumMotion(), &random);
+  network.direct = RandomLayer(structure.NumInputs(), structure.NumMotion(), &random);
   return network;
 }
 

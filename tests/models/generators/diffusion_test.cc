@@ -1,5 +1,5 @@
 // The diffusion network without its training: schedule, features and back, who sees whom, what
-// later frames may change, samples that are finished.
+// later frames may change.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,6 +50,33 @@ TEST(DiffusionFeaturesTest, MotionsComeBack) {
       EXPECT_LT((back - person.frames).cwiseAbs().maxCoeff(), 1e-5f);
     }
   }
+}
+
+// A group and the same group turned by 0.7 rad: joints in people's own frames are the same, and
+// heading differs by what it was turned. Rows have zero mean and unit variance over the group.
+TEST(DiffusionFeaturesTest, OwnFramesKnowNoTurn) {
+  const std::vector<ObservedMotion> group = PushedGroup(3, 40);
+  const std::vector<ObservedMotion> turned = Changed(group, {false, 0.7, 1.0});
+  MotionScales plain = OwnFrameScalesOf({group});
+  const MotionScales scales = plain;
+  plain.mean.setZero();
+  plain.spread.setOnes();
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(kOwnFrameRows), squares = sum;
+  for (size_t n = 0; n < group.size(); ++n) {
+    const Eigen::MatrixXf a = MotionRows(group[n], plain, false);
+    const Eigen::MatrixXf b = MotionRows(turned[n], plain, false);
+    EXPECT_LT((a - b).middleRows(3, kMotionRows - 3).cwiseAbs().maxCoeff(), 1e-5f);
+    const double from = std::atan2(a(67, 9), a(66, 9)), to = std::atan2(b(67, 9), b(66, 9));
+    EXPECT_NEAR(to - from, 0.7, 1e-5);
+    const Eigen::MatrixXf rows = MotionRows(group[n], scales, false);
+    EXPECT_LT(
+        (FromMotionRows(rows, group[n], scales, false) - group[n].frames).cwiseAbs().maxCoeff(),
+        1e-5f);
+    sum += rows.cast<double>().array().rowwise().sum();
+    squares += rows.cast<double>().array().square().rowwise().sum();
+  }
+  EXPECT_LT((sum / 120.0).abs().maxCoeff(), 1e-3);
+  EXPECT_NEAR(squares[0] / 120.0, 1.0, 1e-3) << "the hip goes forwards";
 }
 
 TEST(DiffusionFeaturesTest, EverybodyIsToldOfThePushAndWhereItComesFrom) {
@@ -107,6 +134,8 @@ TEST(PoolingWeightsTest, NearPeopleCountAndFarOnesFade) {
   EXPECT_EQ(mean[0](2, 0), 0.5f);
   EXPECT_EQ(PoolingWeights(SocialPooling::kMean, places.leftCols(1))[0](0, 0), 0.0f);
   EXPECT_TRUE(PoolingWeights(SocialPooling::kNone, places).empty());
+  const auto all = PoolingWeights(SocialPooling::kMeanAll, places);
+  EXPECT_EQ(all[0], Eigen::MatrixXf::Constant(3, 3, 1.0f / 3.0f)) << "oneself included";
 }
 
 Eigen::MatrixXf Noise(Eigen::Index columns) {
@@ -175,140 +204,14 @@ TEST_P(DenoiserTest, PeopleSeeEachOtherAsTheyShould) {
   } else {
     EXPECT_GT(changed(0), 1e-3f);
   }
-  const bool sees_far =
-      GetParam() == SocialPooling::kMean || GetParam() == SocialPooling::kAttention;
+  const bool sees_far = GetParam() != SocialPooling::kLocal && GetParam() != SocialPooling::kNone;
   EXPECT_EQ(changed(2) > 1e-5f, sees_far);
 }
 
 INSTANTIATE_TEST_SUITE_P(Poolings, DenoiserTest,
                          ::testing::Values(SocialPooling::kLocal, SocialPooling::kMean,
-                                           SocialPooling::kAttention, SocialPooling::kNone));
-
-class DiffusionGeneratorTest : public ::testing::Test {
- protected:
-  DiffusionGeneratorTest() {
-    layout_.names.resize(kBodyJoints);
-    options_.averaged = 2;
-    options_.steps = 3;
-  }
-  DiffusionGenerator Generator(int members = 1) const {
-    std::vector<DiffusionNetwork> networks;
-    for (int m = 0; m < members; ++m) {
-      networks.push_back(RandomDiffusion(static_cast<uint64_t>(m) + 1));
-      networks.back().scales.setConstant(0.02f);
-    }
-    return DiffusionGenerator(layout_, networks, 1.0 / 60.0, options_, SeededNoise());
-  }
-  static std::vector<ObservedMotion> Seen(int people, int observed) {
-    std::vector<ObservedMotion> group = PushedGroup(people, 40);
-    for (ObservedMotion& person : group) {
-      person.frames = Trajectories(person.frames.leftCols(observed));
-    }
-    return group;
-  }
-  ParticleLayout layout_;
-  DiffusionGeneratorOptions options_;
-};
-
-TEST_F(DiffusionGeneratorTest, ForecastsRepeatThemselvesInAnyOrder) {
-  const DiffusionGenerator generator = Generator(2);
-  const auto forecast = generator.Forecast(Seen(4, 5), 20);
-  ASSERT_EQ(forecast.size(), 4u);
-  EXPECT_EQ(forecast[0].cols(), 20);
-  const auto again = generator.Forecast(Seen(4, 5), 20);
-  std::vector<ObservedMotion> turned = Seen(4, 5);
-  std::reverse(turned.begin(), turned.end());
-  const auto reversed = generator.Forecast(turned, 20);
-  for (size_t n = 0; n < 4; ++n) {
-    EXPECT_EQ(forecast[n], again[n]);
-    EXPECT_LT((forecast[n] - reversed[3 - n]).cwiseAbs().maxCoeff(), 1e-5f);
-  }
-}
-
-TEST_F(DiffusionGeneratorTest, TheSeamFades) {
-  const std::vector<ObservedMotion> people = Seen(2, 12);
-  const auto jump = [&people](const DiffusionGenerator& generator) {
-    return (generator.Forecast(people, 25)[0].col(0) - people[0].frames.col(11)).norm();
-  };
-  options_.postprocess = {true, 20, false, false};
-  const float faded = jump(Generator());
-  options_.postprocess.fade_residual = false;
-  EXPECT_LT(faded, 0.7f * jump(Generator()));
-}
-
-TEST_F(DiffusionGeneratorTest, BonesHold) {
-  for (const int observed : {1, 12}) {
-    const std::vector<ObservedMotion> people = Seen(2, observed);
-    for (const Trajectories& motion :
-         {Generator().Forecast(people, 25)[0],
-          Generator().Sample(people, 25, 1, SeededNoise()())[0][0].motion}) {
-      const Pose first = people[0].frames.col(0).cast<double>().reshaped(3, kBodyJoints);
-      for (const int t : {0, 10, 24}) {
-        const Pose pose = motion.col(t).cast<double>().reshaped(3, kBodyJoints);
-        EXPECT_LT((BoneLengths(pose) - BoneLengths(first)).cwiseAbs().maxCoeff(), 1e-4);
-      }
-    }
-  }
-}
-
-TEST_F(DiffusionGeneratorTest, ABlendGoesSomeOfTheWayToThePendulum) {
-  options_.postprocess = {false, 0, false, false};
-  std::vector<ObservedMotion> people = Seen(2, 1);
-  const auto alone = Generator().Forecast(people, 20);
-  for (ObservedMotion& person : people) person.pendulum = Eigen::MatrixXf::Constant(3, 21, 2.0f);
-  EXPECT_EQ(Generator().Forecast(people, 20)[1], alone[1]);
-  options_.blend = 0.25;
-  const Trajectories blended = Generator().Forecast(people, 20)[1];
-  const Eigen::Vector3f hip = alone[1].col(7).head<3>(), moved = blended.col(7).head<3>();
-  EXPECT_LT((moved - hip - 0.25f * (Eigen::Vector3f::Constant(2.0f) - hip)).norm(), 1e-5f);
-  const Eigen::Vector3f head = alone[1].col(7).segment<3>(3 * kBodyHead);
-  EXPECT_LT((blended.col(7).segment<3>(3 * kBodyHead) - moved - (head - hip)).norm(), 1e-5f);
-}
-
-// Past what was learnt people come to rest, and nothing before it changes.
-TEST_F(DiffusionGeneratorTest, LongForecastsSettle) {
-  options_.postprocess = {false, 0, false, false};
-  options_.averaged = 1;
-  options_.learnt_frames = 60;
-  options_.settling = 0.25;
-  const std::vector<ObservedMotion> people = Seen(2, 1);
-  const Trajectories whole = Generator().Forecast(people, 200)[1];
-  ASSERT_EQ(whole.cols(), 200);
-  options_.learnt_frames = 1000;
-  const Trajectories restless = Generator().Forecast(people, 200)[1];
-  EXPECT_EQ(Trajectories(whole.leftCols(58)), Trajectories(restless.leftCols(58)));
-  const auto step = [](const Trajectories& motion, int t) {
-    return (motion.col(t) - motion.col(t - 1)).norm();
-  };
-  // Column 59 is frame 60; a quarter of a second later a step has lost 1 - 1/e of its size.
-  EXPECT_NEAR(step(whole, 59), step(restless, 59), 1e-5f);
-  EXPECT_NEAR(step(whole, 74), std::exp(-1.0) * step(restless, 74), 1e-4f);
-  EXPECT_LT(step(whole, 199), 1e-3f * step(restless, 199) + 1e-6f);
-}
-
-// A future under a push drawn larger is that of a larger push; forecasts are under the push itself.
-TEST_F(DiffusionGeneratorTest, PushesOfSampledFuturesDiffer) {
-  const auto sample = [this](double spread, double first_draw, double push) {
-    options_.push_spread = spread;
-    const auto draws = std::make_shared<int>(0);
-    const NormalSource normal = [draws, first_draw] { return (*draws)++ == 0 ? first_draw : 0.0; };
-    return Generator().Sample(PushedBy(Seen(2, 1), push), 30, 1, normal)[1][0].motion;
-  };
-  const Trajectories drawn = sample(0.5, 1.0, 1.0);
-  EXPECT_EQ(drawn, sample(0.0, 0.0, std::exp(0.5)));
-  EXPECT_NE(drawn, sample(0.0, 0.0, 1.0));
-  const auto forecast = [this](double spread) {
-    options_.push_spread = spread;
-    return Generator().Forecast(Seen(2, 1), 20)[0];
-  };
-  EXPECT_EQ(forecast(0.0), forecast(1.0));
-}
-
-TEST_F(DiffusionGeneratorTest, NobodyHasNoFuture) {
-  EXPECT_TRUE(Generator().Forecast({}, 10).empty());
-  EXPECT_TRUE(Generator().Sample({}, 10, 3, SeededNoise()()).empty());
-  EXPECT_EQ(Generator().Sample(Seen(1, 1), 10, 3, SeededNoise()())[0].size(), 3u);
-}
+                                           SocialPooling::kAttention, SocialPooling::kNone,
+                                           SocialPooling::kMeanAll, SocialPooling::kHeads));
 
 }  // namespace
 }  // namespace pushid
