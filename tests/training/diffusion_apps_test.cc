@@ -113,7 +113,7 @@ TEST_F(DiffusionAppTest, LongForecastsAreToldBySecond) {
 
 TEST_F(DiffusionAppTest, AsSdmIsPublished) {
   ASSERT_EQ(Train({"--out=" + Path("g"), "--published=sdm"}).exit_code, 0);
-  const auto settings = Json(Path("g/generator.json"));
+  const auto settings = Json(Path("g/generator.json"))["settings"];
   EXPECT_EQ(settings["pooling"], "mean_all");
   EXPECT_EQ(settings["pooling_at"], "bottleneck");
   EXPECT_EQ(settings["frame"], "own");
@@ -122,10 +122,12 @@ TEST_F(DiffusionAppTest, AsSdmIsPublished) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(Json(Path("e.json"))["seconds"]["generator"].size(), 4u);
   ASSERT_EQ(Train({"--out=" + Path("h"), "--published=sdm", "--pooling=heads"}).exit_code, 0);
-  EXPECT_EQ(Json(Path("h/generator.json"))["pooling"], "heads") << "flags change the preset";
+  EXPECT_EQ(Json(Path("h/generator.json"))["settings"]["pooling"], "heads")
+      << "flags change the preset";
   EXPECT_TRUE(Refused(Train({"--out=" + Path("i"), "--published=sdm", "--joint_weight=2"}),
                       {"give --joint_weight=0"}));
-  EXPECT_TRUE(Refused(Train({"--out=" + Path("i"), "--published=sdm", "--kind=particles"}),
+  EXPECT_TRUE(Refused(RunApp("pushid-train-generator",
+                             {"--kind=particles", "--published=sdm", "--out=" + Path("i")}),
                       {"--published=sdm needs --kind=diffusion"}));
 }
 
