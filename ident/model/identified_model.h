@@ -107,18 +107,10 @@ constexpr EnumNames<ForecastUse, 4> Names(ForecastUse) {
 inline constexpr double kErrorShares[] = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5,
                                           0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 0.99};
 
-using ScaleCoefficients = Eigen::Matrix<double, 6, 1>;
-
 // How far hips are from a forecast (observed/forecast_stack.h), on one axis.
 struct ErrorScale {
-  ScaleCoefficients coefficients = InitialCoefficients();  // of log m
+  Eigen::Vector4d coefficients{-2.3, 1.0, 0.0, 0.3};  // of log m
   std::vector<double> quantiles;  // of |error| over that scale; empty: as of a normal distribution
-
-  static ScaleCoefficients InitialCoefficients() {
-    ScaleCoefficients initial;
-    initial << -2.3, 1.0, 0.0, 0.3, 0.0, 0.0;
-    return initial;
-  }
 };
 
 // The mean distance of hips from forecasts after so many seconds were seen, m.

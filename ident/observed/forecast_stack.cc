@@ -124,11 +124,9 @@ HipPaths Stacked(const std::vector<ForecastWeights>& weights, const ForecastsOfA
   return stacked;
 }
 
-ScaleCoefficients ScaleFeatures(double ahead, double seconds, double speed) {
-  const double h = std::log(ahead / kAhead), s = std::log((seconds + kLeastSeconds) / kSeconds);
-  ScaleCoefficients features;
-  features << 1.0, h, s, std::log(speed + kLeastSpeed), h * s, s * s;
-  return features;
+Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed) {
+  return {1.0, std::log(ahead / kAhead), std::log((seconds + kLeastSeconds) / kSeconds),
+          std::log(speed + kLeastSpeed)};
 }
 
 std::array<Eigen::Vector3d, kNumForecasters> ForecastStack::DefaultLogits() {
@@ -150,7 +148,7 @@ HipDistribution::HipDistribution(const ForecastStack& stack, const Eigen::Matrix
     scale_.emplace_back();
     for (size_t t = 0; t < centre_[n].size(); ++t) {
       const double ahead = (static_cast<double>(t) + 1.0) * dt;
-      const ScaleCoefficients features =
+      const Eigen::Vector4d features =
           ScaleFeatures(ahead, seconds, (centre_[n][t] - from[n]).norm() / ahead);
       Vector3<double> variance;
       for (int i = 0; i < 3; ++i) {

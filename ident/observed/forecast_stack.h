@@ -7,8 +7,7 @@
 // of those that are available: non-negative, of sum one. With frame 0 alone it is physics.
 //
 // An error on one axis (along the push, across, upwards) has the scale
-//   exp(coefficients . [1, H, S, V, H S, S^2]),
-//   H = log(h / 0.5 s), S = log((s + 0.05 s) / 0.35 s), V = log(v + 0.05 m/s),
+//   exp(coefficients . [1, log(h / 0.5 s), log((s + 0.05 s) / 0.35 s), log(v + 0.05 m/s)]),
 // v the mean speed to which the forecast takes the hip, and over that scale the quantiles of what
 // was found, alike on both sides: the middle of every distribution is the forecast itself.
 #pragma once
@@ -39,7 +38,7 @@ std::vector<ForecastWeights> WeightsAhead(const ForecastStack& stack,
 HipPaths Stacked(const std::vector<ForecastWeights>& weights, const ForecastsOfAll& forecasts);
 
 // Of log scale, as above.
-ScaleCoefficients ScaleFeatures(double ahead, double seconds, double speed);
+Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed);
 
 // Where hips will be.
 class HipDistribution {

@@ -116,7 +116,7 @@ namespace {
 // A hip some frames ahead, on the axes of the push. A trial counts once, however many frames it
 // has: so does a recording in the share of its frames that a band holds.
 struct ScaledError {
-  ScaleCoefficients features;
+  Eigen::Vector4d features;
   Vector3<double> off;
   double weight;
 };
@@ -161,10 +161,10 @@ std::array<ErrorScale, 3> LearnErrorScales(const std::vector<ForecastTrial>& tri
   std::vector<ScaledError> errors;
   for (size_t i = 0; i < trials.size(); ++i) AddErrors(trials[i], centre[i], &errors);
   if (errors.size() < kFewestErrors) return scales;
-  Eigen::Matrix<double, 6, 6> gram = 1e-6 * Eigen::Matrix<double, 6, 6>::Identity();
+  Eigen::Matrix4d gram = 1e-6 * Eigen::Matrix4d::Identity();
   for (const ScaledError& e : errors) gram += e.weight * e.features * e.features.transpose();
   for (int axis = 0; axis < 3; ++axis) {
-    ScaleCoefficients right = ScaleCoefficients::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
     for (const ScaledError& e : errors) {
       right += e.weight * std::log(std::max(kLeastError, std::abs(e.off[axis]))) * e.features;
     }

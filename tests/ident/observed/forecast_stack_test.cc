@@ -177,10 +177,7 @@ TEST(LearnForecasts, ScalesHoldTheirShares) {
 // Of a normal distribution in closed form (Gneiting and Raftery 2007, (21)).
 TEST(HipDistribution, CrpsIsThatOfTheNormalDistribution) {
   ForecastStack stack;
-  for (ErrorScale& scale : stack.errors) {
-    scale.coefficients.setZero();
-    scale.coefficients[0] = std::log(0.2);
-  }
+  for (ErrorScale& scale : stack.errors) scale.coefficients = {std::log(0.2), 0.0, 0.0, 0.0};
   const HipDistribution hips(stack, Eigen::Matrix3d::Identity(),
                              {HipPath(3, Vector3<double>(1.0, 0.0, 0.0))},
                              {Vector3<double>(1.0, 0.0, 0.0)}, 0.2, kFrame);
