@@ -226,6 +226,24 @@ TEST(RoomsTest, DecompositionsStayInOneFile) {
   }
 }
 
+// A citation, a wheel and the changelog name the version that the programs print.
+TEST(RoomsTest, OneVersion) {
+  const auto found = [](const char* file, const std::string& line) {
+    std::ifstream stream(fs::path(PUSHID_SOURCE_DIR) / file);
+    std::smatch match;
+    for (std::string text; std::getline(stream, text);) {
+      if (std::regex_search(text, match, std::regex(line))) return match[1].str();
+    }
+    return std::string("none");
+  };
+  const std::string number = "([0-9]+\\.[0-9]+\\.[0-9]+)";
+  const std::string version = found("CMakeLists.txt", "^project\\(pushid VERSION " + number);
+  EXPECT_NE(version, "none");
+  EXPECT_EQ(found("CITATION.cff", "^version: " + number), version);
+  EXPECT_EQ(found("apps/python/pyproject.toml", "^version = \"" + number), version);
+  EXPECT_EQ(found("CHANGELOG.md", "^## " + number), version);
+}
+
 // Flags that programs share are read in one folder, those of one program alone in its own file:
 // support, batches and Python know none.
 TEST(RoomsTest, FlagsStayWithPrograms) {
