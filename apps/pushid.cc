@@ -1,6 +1,7 @@
 // apps: pushid: one command in front of all programs: `pushid fit ...` runs `pushid-fit ...`.
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "apps/support/app_support.h"
 #include "apps/support/processes.h"
 #include "datasets/files/names.h"
+#include "ident/model/model_json.h"
 
 namespace {
 
@@ -63,7 +65,9 @@ int Help() {
   }
   std::printf(
       "\npushid help COMMAND lists the flags of one; pushid completion bash|zsh|fish prints a "
-      "script for\nthe shell; pushid --version prints the version.\n");
+      "script for\nthe shell; pushid schema prints the JSON Schema of a model's file; pushid "
+      "--version prints the "
+      "version.\n");
   return kDone;
 }
 
@@ -116,6 +120,10 @@ int main(int argc, char** argv) {
   }
   if (command == "help" || command == "--help" || command == "-h") {
     return arguments.empty() ? Help() : HelpOn(arguments[0]);
+  }
+  if (command == "schema") {
+    std::printf("%s\n", ModelSchema().dump(1).c_str());
+    return kDone;
   }
   return command == "completion" ? Complete(arguments) : Run(command, arguments);
 }

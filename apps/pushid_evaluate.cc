@@ -112,6 +112,7 @@ int Run() {
     AddBodyJson(*bodies.value(), &json);
   }
   if (!FLAGS_json_out.empty()) {
+    json["schema"] = kScoresSchema;
     json["version"] = Version();
     json["configuration"] = EffectiveFlags();
     if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);

@@ -9,10 +9,12 @@ build_packages=(g++ cmake ninja-build ccache
 # LibTorch trains restorations and generators, with OpenBLAS in half the time; everything else builds and
 # runs without them.
 test_packages=(libgtest-dev libbenchmark-dev libtorch-dev libopenblas0-pthread assimp-utils chromium
-  python3 python3-dev pybind11-dev python3-numpy python3-pytest python3-matplotlib)
+  python3 python3-dev pybind11-dev python3-numpy python3-pytest python3-matplotlib python3-jsonschema)
 fuzz_packages=(clang libclang-rt-14-dev)  # tests/fuzz/run.sh alone needs them
 # The workflow's tests are skipped without them: Snakemake takes 44 s and 683 MB to install.
 workflow_packages=(snakemake slurmctld slurmd slurm-client munge)
+
+site_packages=(mkdocs)  # apps/site/build.sh alone needs it; its test is skipped without
 
 install_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then

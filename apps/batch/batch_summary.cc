@@ -57,7 +57,11 @@ Json SummaryJson(const BatchPlan& plan, const std::vector<JobResult>& rows) {
                          {"standard_error", NumberJson(s.standard_error)},
                          {"interval_95", {NumberJson(s.lower95), NumberJson(s.upper95)}}});
   }
-  return {{"plan", plan.path}, {"version", Version()}, {"bootstrap", bootstrap}, {"jobs", jobs}};
+  return {{"schema", "pushid-summary/1"},
+          {"plan", plan.path},
+          {"version", Version()},
+          {"bootstrap", bootstrap},
+          {"jobs", jobs}};
 }
 
 Report PageOf(const BatchPlan& plan, const std::vector<JobResult>& rows) {

@@ -138,7 +138,9 @@ ManifestRecording EntryOf(const Recording& recording) {
 }
 
 MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
-  Json json = manifest.json->is_object() ? *manifest.json : Json::object();
+  Json json = Json::object();
+  if (manifest.path.empty()) json["schema"] = "pushid-manifest/1";  // what was read stays as it was
+  if (manifest.json->is_object()) json.update(*manifest.json);
   if (manifest.length_unit) {
     const std::string name = NameOf(*manifest.length_unit);
     const bool in_units =

@@ -40,9 +40,12 @@ void WarningFields(Archive& a, const std::string& key, Warnings& warnings) {
     row("warning", at[i]);
     row("recording", recording[i]);
     row("of_many", of_many[i]);
-    row.Check(0 <= at[i] && at[i] < static_cast<int>(warnings.size()), "there is no such warning");
-    warnings[at[i]].recording = recording[i];
-    warnings[at[i]].of_many = of_many[i];
+    if constexpr (Archive::kReads) {
+      row.Check(0 <= at[i] && at[i] < static_cast<int>(warnings.size()),
+                "there is no such warning");
+      warnings[at[i]].recording = recording[i];
+      warnings[at[i]].of_many = of_many[i];
+    }
   });
 }
 

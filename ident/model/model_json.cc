@@ -5,106 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
-#include "ident/model/confidence_fields.h"
-#include "ident/model/model_fields.h"
-#include "ident/parameters/fit_options.h"
-#include "ident/parameters/learned_terms_io.h"
-#include "ident/parameters/network_json.h"
+#include "ident/model/model_file_fields.h"
 
 namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json ValuesJson(const ParameterTable& table, const ParameterSet<double>& set) {
-  Json values = Json::object();
-  for (const ParameterSpec& spec : table.specs) values[spec.name] = set[spec.id];
-  return values;
-}
-
-Json EnsembleJson(const FitResult& fit) {
-  Json members = Json::array();
-  for (const EnsembleMember& member : fit.others) {
-    members.push_back({{"values", ValuesJson(fit.options.table, member.parameters)},
-                       {"self_network", ToJson(*member.network)}});
-  }
-  return members;
-}
-
-// The file from top to bottom. Entries that are only written are read by ModelReader first: the
-// others are of a model whose options and parameters are known.
-template <class Archive>
-void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
-  FitResult& fit = model.fit;
-  Provenance& from = model.provenance;
-  const ModelOptions& options = fit.options.model;
-  a("version", from.version);
-  a.Written("model", [&] { return OptionsJson(fit.options); });
-  a("parameters", fit.estimates);
-  a("derived", fit.derived);
-  a("nuisance", fit.nuisance);
-  a("subjects", fit.subjects);
-  a("settings", fit.settings);
-  a.Written("values", [&] { return ValuesJson(fit.options.table, fit.parameters); });
-  a("behaviour", fit.behaviour);
-  a("uncertainty", fit.uncertainty);
-  if (a.Has("verdict")) a("verdict", fit.verdict);
-  if (a.Has("diagnostics")) {
-    a.Group("diagnostics", [&](auto& g) {
-      Fields(g, fit.diagnostics);
-      g("advice", model.advice);
-    });
-  }
-  WarningFields(a, "warnings", fit.warnings);
-  a.Group("fit", [&](auto& g) {
-    g("converged", fit.converged);
-    g("cost", fit.cost);
-    g("message", fit.message);
-    g("best_start", fit.best_start);
-    g("starts", fit.starts);
-  });
-  a.Written("table", [&] { return TableJson(fit.options.table); });
-  a.Group("data", [&](auto& g) {
-    g("manifest_hash", from.manifest_hash);
-    g("setting", from.setting);
-    g("recordings", fit.recordings);
-  });
-  a("configuration", from.configuration);
-  if (a.Has("changed_flags")) a("changed_flags", from.changed_flags);
-  a.Group("run", [&](auto& g) {
-    g.Written("date", [&] { return run.date; });
-    g.Written("host", [&] { return run.host; });
-    g("manifest", from.manifest);
-    g.Written("model_out", [&] { return run.model_path; });
-    g("solve_seconds", fit.solve_seconds);
-    g.Written("total_seconds", [&] { return run.total_seconds; });
-    g.Written("num_threads", [&] { return run.num_threads; });
-  });
-  a.Optional("contrast", fit.contrast);
-  a.Optional("feet", fit.feet);
-  a.Optional("push_range", fit.push_range);
-  a.Optional("step_probability", fit.step_probability);
-  a.Optional("likelihood", fit.likelihood);
-  a.Optional("recording_effect", fit.recording_effect);
-  a.Optional("forecasts", fit.forecasts);
-  if (options.learned != nullptr) {
-    a.Written("self_network", [&] { return ToJson(*options.learned); });
-  }
-  a.Optional("network_takeover", fit.takeover);
-  a.Optional("contact_takeover", fit.contact_takeover);
-  if (!fit.others.empty()) a.Written("ensemble", [&] { return EnsembleJson(fit); });
-  if (const auto laws = LawNames(options); !laws.empty()) {
-    a.Written("force_laws", [&] { return laws; });
-  }
-  if (options.interaction_network != nullptr) {
-    a.Written("interaction_network", [&] { return ToJson(*options.interaction_network); });
-  }
-  if (a.Has("profiles", !model.profiles.empty())) a("profiles", model.profiles);
-  a.Optional("bootstrap", model.bootstrap);
-  a.Optional("push_check", model.push_check);
-  a.Optional("prior_check", model.prior_check);
-  a.Optional("horizon_check", model.horizon_check);
-}
 
 // What the types alone do not ensure and readers of a result rely on.
 void CheckConsistent(const FitResult& result) {
@@ -247,7 +153,8 @@ class ModelReader {
 }  // namespace
 
 nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
-  Json json = {{"format", "pushid model"}, {"format_version", kModelFormat}};
+  Json json = {
+      {"schema", kModelSchema}, {"format", "pushid model"}, {"format_version", kModelFormat}};
   JsonWriter writer(&json);
   ModelFields(writer, const_cast<FittedModel&>(model), run);
   return json;
@@ -264,9 +171,15 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
   if (json["format_version"] > kModelFormat) {
     return Error{"written by a newer pushid; update pushid to read it", file};
   }
-  const auto damaged = [&file](const std::string& part, const std::exception& exception) {
-    return Error{"incomplete or damaged model, at '" + part + "': " + ReasonOf(exception) +
-                     "; use another copy or fit again",
+  const auto damaged = [&](const std::string& part, const std::exception& exception) {
+    std::string remedy = "; use another copy or fit again";
+    const bool has_version = json.contains("version") && json["version"].is_string();
+    if (has_version && json["version"] != std::string(PUSHID_VERSION)) {
+      remedy += " (pushid " + json["version"].get<std::string>() + " wrote it, this is " +
+                PUSHID_VERSION + "; to convert it, run pushid-fit on the manifest under 'run' " +
+                "with the flags under 'configuration')";
+    }
+    return Error{"incomplete or damaged model, at '" + part + "': " + ReasonOf(exception) + remedy,
                  file};
   };
   ModelReader reader(json);

@@ -11,6 +11,8 @@ namespace pushid {
 
 inline constexpr int kModelFormat = 1;  // raised when older readers would misread a file
 
+inline constexpr char kModelSchema[] = "pushid-model/1";  // of the files as they are written now
+
 // What changes from run to run and stands under `run`.
 struct RunInfo {
   std::string date, host, model_path;
@@ -20,7 +22,8 @@ struct RunInfo {
 
 nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run);
 
-// Errors: not a pushid model, a newer format, missing or wrong entries by name.
+// Errors: not a pushid model, a newer format, missing or wrong entries by name, with the version that
+// wrote them where it is another one.
 // laws: those of the caller's own that the model may have been fitted with; one that the file names
 // and that is not here is an error.
 Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, const std::string& file,
@@ -28,5 +31,8 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
 Result<FittedModel> ReadFittedModel(const std::string& path, const ForceLaws& laws = {});
 
 nlohmann::ordered_json ToJson(const Behaviour& behaviour);
+
+// The JSON Schema of what ToJson writes, which apps/schemas has as a file.
+nlohmann::ordered_json ModelSchema();
 
 }  // namespace pushid

@@ -10,6 +10,8 @@
 
 namespace pushid {
 
+inline constexpr char kScoresSchema[] = "pushid-scores/1";  // of --json_out
+
 nlohmann::ordered_json ToJson(const Evaluation& evaluation);
 nlohmann::ordered_json ToJson(const ScoreSummary& summary, bool with_recordings);
 nlohmann::ordered_json ToJson(const CrossValidation& validation);

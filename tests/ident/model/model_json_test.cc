@@ -201,6 +201,9 @@ TEST(ResultJson, DamageIsNamed) {
   json = good;
   json.erase("values");
   EXPECT_TRUE(Contains(message(json), "values"));
+  // One of another version, with the way to convert it.
+  EXPECT_TRUE(Contains(message(json), "pushid 0.1.0 wrote it"));
+  EXPECT_TRUE(Contains(message(json), "run pushid-fit on the manifest under 'run'"));
   json = good;
   json["model"]["posture"] = "sitting";
   EXPECT_TRUE(Contains(message(json), "posture is 'sitting'"));
@@ -235,8 +238,8 @@ TEST(ResultJson, DamageIsNamed) {
   for (const auto& [key, value] : good.items()) {
     // Older models have none.
     static const std::set<std::string> kLater = {
-        "format_version",   "diagnostics", "changed_flags", "push_range",
-        "recording_effect", "feet",        "verdict",       "forecasts"};
+        "schema",           "format_version", "diagnostics", "changed_flags", "push_range",
+        "recording_effect", "feet",           "verdict",     "forecasts"};
     if (kLater.count(key) > 0) continue;
     json = good;
     json.erase(key);

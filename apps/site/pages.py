@@ -1,0 +1,136 @@
+"""The site's pages in build/site/docs: the READMEs at their places, sections of them as tutorials, and references made of
+what the programs, the Python module's stubs and the studies' blocks say. Nothing is written twice.
+
+  pages.py BIN    BIN: the folder of the programs
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DOCS = ROOT / "build" / "site" / "docs"
+BIN = pathlib.Path(sys.argv[1]).resolve()
+ROOMS = ("apps", "datasets", "ident", "models", "residuals", "tests")
+LINK = re.compile(r"(\]\()([^)#\s]*)(#[^)\s]*)?(\))")
+BLOCK = re.compile(r"<!-- (tests/studies/\S+ \w+) -->\n(.*?)<!-- end -->", re.S)
+
+
+def sources():
+    pages = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
+    for room in ROOMS:
+        pages += sorted((ROOT / room).rglob("README.md"))
+    return pages
+
+
+def output_of(*command):
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}: exit code {done.returncode}\n{done.stderr}")
+    return done.stdout
+
+
+def place(text, origin, target):
+    """The text of `origin` as it stands in `target`, both relative to the top: links lead where they led. Files that are
+    no pages are copied beside the pages; a link to a folder leads to its README, or to a list
+    of its files."""
+    def link(match):
+        path, anchor = match[2], match[3] or ""
+        if "://" in path or path.startswith("mailto:"):
+            return match[0]
+        found = (ROOT / origin).parent / path if path else ROOT / origin
+        if found.is_dir():
+            found = found / "README.md"
+            if not found.exists():
+                return f"{match[1]}{os.path.relpath(DOCS / listed(found.parent), (DOCS / target).parent)}{match[4]}"
+        if not found.is_file():
+            sys.exit(f"{origin}: no {path}")
+        name = pathlib.Path(os.path.relpath(found.resolve(), ROOT))
+        copied = DOCS / name
+        if found.suffix != ".md" and not copied.exists():
+            copied.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(found, copied)
+        return f"{match[1]}{os.path.relpath(DOCS / name, (DOCS / target).parent)}{anchor}{match[4]}"
+    parts = re.split(r"(```.*?```)", text, flags=re.S)  # commands are left alone
+    return "".join(part if part.startswith("```") else LINK.sub(link, part) for part in parts)
+
+
+def listed(folder):
+    """A page of the files of a folder that has no README."""
+    name = folder.resolve().relative_to(ROOT)
+    files = sorted(path for path in folder.iterdir() if path.is_file())
+    for path in files:
+        (DOCS / name).mkdir(parents=True, exist_ok=True)
+        shutil.copy(path, DOCS / name / path.name)
+    write(name / "README.md", f"# {name}\n\n" + "\n".join(f"- [{path.name}]({path.name})" for path in files) + "\n")
+    return name / "README.md"
+
+
+def write(target, text):
+    path = DOCS / target
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+
+
+def sections(readme, *headings):
+    """These sections, each until the next heading of its level."""
+    text = (ROOT / readme).read_text()
+    found = []
+    for heading in headings:
+        match = re.search(rf"^(#+) {re.escape(heading)}\n", text, re.M)
+        if not match:
+            sys.exit(f"{readme} has no section '{heading}'")
+        end = re.search(rf"^#{{1,{len(match[1])}}} ", text[match.end():], re.M)
+        found.append(text[match.start():match.end() + end.start() if end else len(text)])
+    return "\n".join(found)
+
+
+def tutorial(name, title, introduction, readme, *headings):
+    target = f"tutorials/{name}.md"
+    write(target, f"# {title}\n\n{introduction}\n\n" + place(sections(readme, *headings), readme, target))
+
+
+def flags():
+    lines = ["# Flags of every program\n", "As `--helpfull` prints them.\n"]
+    for program in sorted(BIN.glob("pushid-*")):
+        if program.name.endswith(("-study", "-benchmarks")):
+            continue
+        lines.append(f"## {program.name}\n\n```\n{output_of(program, '--helpfull').strip()}\n```\n")
+    write("reference/flags.md", "\n".join(lines))
+
+
+def validation():
+    version = re.search(r"project\(pushid VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    lines = ["# All study tables\n", f"pushid {version}. Each block is printed by the command in its heading; the date is "
+             "that of the page's last change.\n"]
+    for page in sources():
+        name = page.relative_to(ROOT)
+        date = subprocess.run(["git", "log", "-1", "--format=%cs", "--", str(name)], cwd=ROOT, capture_output=True,
+                              text=True).stdout.strip() or "unknown date"
+        for block, text in BLOCK.findall(page.read_text()):
+            body = place(text, name, "reference/validation.md")
+            lines.append(f"## `python3 {block}`\n\nFrom [{name}](../{name}), {date}.\n\n{body}")
+    write("reference/validation.md", "\n".join(lines))
+
+
+def main():
+    for page in sources():
+        name = page.relative_to(ROOT)
+        write(name, place(page.read_text(), name, name))
+    tutorial("own_recordings", "Your own recordings, step by step", "After `bash apps/quickstart.sh`, in the folder of the "
+             "project.", "README.md", "Your own recordings, step by step", "How to read the result")
+    tutorial("force_plates", "C3D files with force plates", "Pushes from sensors, ground that moves, and people who stand on "
+             "platforms.", "datasets/README.md", "Pushes and sensors", "Moving ground and force platforms",
+             "From a folder of files to a manifest")
+    tutorial("batch", "A batch, also on a cluster", "Many fits from one plan.", "apps/README.md", "Many fits: pushid-batch")
+    flags()
+    write("reference/parameters.md", "# Parameters\n\n" + output_of(BIN / "pushid-fit", "--list_parameters"))
+    stubs = (ROOT / "apps/python/pushid/__init__.pyi").read_text()
+    write("reference/python.md", "# Python\n\n[How to use it](../apps/python/README.md). Every function and its types:\n\n"
+          f"```python\n{stubs.strip()}\n```\n")
+    validation()
+
+
+main()

@@ -1,0 +1,114 @@
+"""The programs' JSON against apps/schemas, by jsonschema of Debian (python3-jsonschema).
+
+  schemas.py BIN            what the programs write is valid, and no entry stands in a file that its schema lacks
+  schemas.py BIN --write    apps/schemas/pushid-model-1.schema.json as `pushid schema` prints it
+
+Exit code 77, which ctest counts as skipped, where jsonschema is not installed.
+"""
+import copy
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+FOLDER = pathlib.Path(__file__).resolve().parents[2] / "apps" / "schemas"
+PLAN = """[data]
+recordings = "people/manifest.json"
+[jobs]
+group_by = "subject"
+folds = 2
+bootstrap = 1
+[[variant]]
+name = "usual"
+flags = []
+[output]
+dir = "out"
+"""
+
+
+def schema_of(name):
+    return json.loads((FOLDER / f"pushid-{name}-1.schema.json").read_text())
+
+
+def strict(schema):
+    """The schema with no further entries where it says nothing of them: programs write what is described alone."""
+    if isinstance(schema, list):
+        return [strict(one) for one in schema]
+    if not isinstance(schema, dict):
+        return schema
+    result = {key: strict(value) for key, value in schema.items()}
+    if result.get("type") == "object" and "properties" in result:
+        result.setdefault("additionalProperties", False)
+    return result
+
+
+def check(jsonschema, name, content, file):
+    """Complaints about one file."""
+    validator = jsonschema.Draft202012Validator(strict(schema_of(name)))
+    return [f"{file}: /{'/'.join(map(str, error.absolute_path))}: {error.message[:300]}"
+            for error in validator.iter_errors(content)]
+
+
+def written(folder, binaries):
+    """(name of the schema, file) of what the programs write."""
+    def run(program, *flags):
+        done = subprocess.run([f"{binaries}/{program}", *flags], cwd=folder, capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(f"{program} {' '.join(flags)}: {done.stderr}")
+
+    data, model = "--recordings=people/manifest.json", "--model=model.json"
+    run("pushid-simulate", "--out=people", "--people=2", "--seed=1")
+    run("pushid-simulate", "--out=rows", "--people=2", "--group_size=2", "--seed=1")
+    run("pushid-fit", data, "--model_out=model.json")
+    run("pushid-fit", data, "--model_out=learned.json", "--self_force=mlp:2")
+    run("pushid-check", model, data, "--prior_check", "--push_check", "--horizon_check", "--profile", "--bootstrap=5")
+    run("pushid-evaluate", model, data, "--json_out=evaluation.json")
+    run("pushid-crossvalidate", data, "--folds=2", "--compare=pd: --preset=ldp", "--json_out=folds.json")
+    (folder / "plan.toml").write_text(PLAN)
+    run("pushid-batch", "--plan=plan.toml", "--jobs=2")
+    return [("manifest", "people/manifest.json"), ("manifest", "rows/manifest.json"), ("model", "model.json"),
+            ("model", "learned.json"), ("scores", "evaluation.json"), ("scores", "folds.json"),
+            ("summary", "out/summary.json")]
+
+
+def main():
+    binaries = pathlib.Path(sys.argv[1]).resolve()
+    model = subprocess.run([binaries / "pushid", "schema"], capture_output=True, text=True, check=True).stdout
+    stored = FOLDER / "pushid-model-1.schema.json"
+    if "--write" in sys.argv:
+        stored.write_text(model)
+    if stored.read_text() != model:
+        sys.exit(f"{stored} is not what `pushid schema` prints; if the change is meant, run "
+                 f"python3 {sys.argv[0]} {sys.argv[1]} --write")
+    try:
+        import jsonschema
+    except ImportError:
+        print("jsonschema is not installed (python3-jsonschema)")
+        sys.exit(77)
+    for file in sorted(FOLDER.glob("*.json")):
+        jsonschema.Draft202012Validator.check_schema(json.loads(file.read_text()))
+    faults = []
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        files = written(folder, binaries)
+        for kind, file in files:
+            content = json.loads((folder / file).read_text())
+            if content.get("schema") != f"pushid-{kind}/1":
+                faults.append(f"{file}: schema is {content.get('schema')}")
+            faults += check(jsonschema, kind, content, file)
+            damaged = copy.deepcopy(content)  # the check can fail
+            damaged.pop("recordings" if kind == "manifest" else "schema")
+            if not check(jsonschema, kind, damaged, file):
+                faults.append(f"{file}: nothing is said of an entry that is missing")
+        plan = tomllib.loads((folder / "plan.toml").read_text())
+        faults += check(jsonschema, "plan", plan, "plan.toml")
+        if not check(jsonschema, "plan", {**plan, "jobs": {"folds": 1}}, "plan.toml"):
+            faults.append("plan.toml: folds = 1 is taken")
+    print("\n".join(faults) or f"{len(files) + 1} files are valid")
+    sys.exit(1 if faults else 0)
+
+
+if __name__ == "__main__":
+    main()
