@@ -22,10 +22,9 @@ struct RunInfo {
 
 nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run);
 
-// Errors: not a pushid model, a newer format, missing or wrong entries by name, with the version that
-// wrote them where it is another one.
-// laws: those of the caller's own that the model may have been fitted with; one that the file names
-// and that is not here is an error.
+// Errors: not a pushid model, a newer format, missing or wrong entries by name, with the version
+// that wrote them where it is another one. laws: those of the caller's own that the model may have
+// been fitted with; one that the file names and that is not here is an error.
 Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, const std::string& file,
                                         const ForceLaws& laws = {});
 Result<FittedModel> ReadFittedModel(const std::string& path, const ForceLaws& laws = {});
