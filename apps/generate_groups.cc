@@ -115,18 +115,19 @@ Result<nlohmann::ordered_json> ShowSeconds(const LoadedGenerator& loaded,
                                            const std::optional<IdentifiedModel>& physics,
                                            int frames) {
   std::vector<GroupMotion> recorded, generated, rigid;
+  const int observed = loaded.settings.observed;
   for (const BodyRecording& recording : recordings) {
     const double dt = recording.pendulum.scene.dt;
     const int pushed = recording.pendulum.pushed_person;
     recorded.push_back({recording.bodies, dt, pushed});
     auto bodies = GenerateWith(loaded, recording, physics, frames);
     if (!bodies.ok()) return bodies.error();
-    generated.push_back({std::move(bodies.value()), dt, pushed});
+    generated.push_back({std::move(bodies.value()), dt, pushed, observed});
     if (!physics) continue;
     const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, frames);
     if (!predicted.ok()) return predicted.error();
     const auto people = PredictedPeople(recording, predicted.value());
-    rigid.push_back({RigidRestoration().Restore(people), dt, pushed});
+    rigid.push_back({RigidRestoration().Restore(people), dt, pushed, observed});
   }
   nlohmann::ordered_json json;
   const auto show = [&](const std::string& name, const std::vector<GroupMotion>& motions) {

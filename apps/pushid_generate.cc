@@ -91,10 +91,16 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
     const auto generated = GenerateWith(loaded, recording, physics.value());
     if (!generated.ok()) return Fail(generated.error());
     seconds += (Now() - before) / static_cast<double>(bodies.value().size());
-    scores["generator"].push_back(ScoreBodies(recording, generated.value()));
-    scores["static"].push_back(ScoreBodies(recording, StaticBodies(recording)));
-    scores["constant_velocity"].push_back(
-        ScoreBodies(recording, ConstantVelocityBodies(recording)));
+    const int observed = loaded.settings.observed, seen = SeenByBaselines(observed);
+    const auto score = [&](const char* name, const std::vector<BodyMotion>& bodies) {
+      scores[name].push_back(ScoreBodies(recording, bodies, observed));
+    };
+    score("generator", generated.value());
+    if (observed > 1) {
+      scores["generator_all_frames"].push_back(ScoreBodies(recording, generated.value()));
+    }
+    score("static", StaticBodies(recording, seen));
+    score("constant_velocity", ConstantVelocityBodies(recording, seen));
   }
   const BodyEvaluation evaluation = SummarizeAll(bodies.value(), scores);
   std::printf("%s", BodyText(evaluation).c_str());

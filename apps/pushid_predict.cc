@@ -1,6 +1,7 @@
 // apps: pushid-predict: what happens after a push, from the first frame and the push alone.
 #include <gflags/gflags.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <string>
 
@@ -143,7 +144,9 @@ int WriteBodies(const RestorationFlags& flags, const Recording& recorded, Skelet
   std::vector<BodyMotion> bodies = RestoreBodies(*restoration.value(), flags.postprocess,
                                                  PredictedPeople(recording.value(), prediction));
   BodyScore score;
-  if (IsThatOfTheRecording()) score = ScoreBodies(recording.value(), bodies);
+  if (IsThatOfTheRecording()) {
+    score = ScoreBodies(recording.value(), bodies, std::max(1, prediction.observed));
+  }
   ToLaboratory(recording.value().pendulum.scene, &bodies);
   const BodyScene scene = SceneOf(recording.value(), std::move(bodies));
   const Result<std::vector<std::string>> files = WriteScene(scene, recording.value(), prediction);

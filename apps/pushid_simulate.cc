@@ -13,6 +13,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/loading/ground_record.h"
 #include "datasets/manifest/recording.h"
+#include "datasets/synthetic/synthetic_clips.h"
 #include "ident/figures/text_table.h"
 #include "ident/model/push_range.h"
 #include "ident/parameters/option_names.h"
@@ -59,6 +60,10 @@ DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
               "logarithm; 0.1 is about 10 %)");
 DEFINE_double(subject_spread, pushid::SyntheticOptions{}.subject_spread,
               "variation of all parameters between people, as in --recording_spread");
+DEFINE_int32(clips, 0,
+             "write motion-capture clips of a walking stick figure instead, for "
+             "pushid-train-generator --dataset=cmu: so many of each of four actions, and one more "
+             "to test; --frames at 50 Hz, 600 if not given; 0: recordings of pushes");
 DEFINE_uint64(seed, pushid::SyntheticOptions{}.seed, "seed of people, pushes and noise");
 
 namespace {
@@ -166,7 +171,30 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
   }
 }
 
+int WriteClips() {
+  const auto allowed = [](const std::string& name) {
+    return name == "clips" || name == "frames" || name == "seed" || name == "out";
+  };
+  for (const std::string& name : ChangedFlags()) {
+    if (!allowed(name)) return Fail(Error{"--" + name + " says nothing to --clips; leave it out"});
+  }
+  SyntheticClipOptions options;
+  options.clips = FLAGS_clips;
+  if (Given("frames")) options.frames = FLAGS_frames;
+  options.seed = FLAGS_seed;
+  for (const MaybeError& error :
+       {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
+        CheckRange("clips", FLAGS_clips, 1, 1000),
+        CheckRange("frames", options.frames, 3, 100000)}) {
+    if (error) return Fail(*error);
+  }
+  if (MaybeError error = WriteSyntheticClips(FLAGS_out, options)) return Fail(*error);
+  std::printf("%d clips of each action and one to test: %s\n", options.clips, FLAGS_out.c_str());
+  return kDone;
+}
+
 int Run() {
+  if (FLAGS_clips != 0) return WriteClips();
   const Result<SyntheticOptions> read = StudyFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   SyntheticOptions study = read.value();

@@ -5,6 +5,7 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/kind_flags.h"
+#include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/names.h"
 #include "ident/forecasts/forecast_scene.h"
@@ -59,6 +60,17 @@ DEFINE_int32(poses, kFlags.poses, "poses of the strip");
 
 namespace pushid {
 namespace {
+
+// The forecast of a network by itself, on the windows of the tables.
+const std::vector<PublishedFlags> kPublishedForecast = {
+    {"sde",
+     {{"protocol", "test"},
+      {"mirror", "false"},
+      {"project_bones", "false"},
+      {"noise_memory", "0"},
+      {"correlated_noise", "false"}}},
+    {"sdm",
+     {{"sampler", "ddpm"}, {"sampling_steps", "1000"}, {"averaged", "8"}, {"settle", "none"}}}};
 
 MaybeError ReadNumbers(GenerateFlags* flags) {
   if (FLAGS_samples != 0) {
@@ -128,6 +140,7 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
 }
 
 Result<GenerateFlags> GenerateFlagsFromCommandLine() {
+  if (MaybeError error = TakePublished(kPublishedForecast)) return *error;
   GenerateFlags flags;
   for (const MaybeError& error :
        {Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote"),

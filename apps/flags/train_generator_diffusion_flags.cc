@@ -30,38 +30,23 @@ DEFINE_double(bystanders, kDiffusion.bystanders,
 namespace pushid {
 namespace {
 
-// Tanke et al., "Social Diffusion", ICCV 2023; flags that are given change it.
-void SetPublished(DiffusionTrainingOptions* options) {
-  options->structure.pooling = SocialPooling::kMeanAll;
-  options->structure.join = SocialJoin::kBottleneck;
-  options->structure.frame = MotionFrame::kOwn;
-  options->joint_weight = options->difference_weight = 0.0;
-  options->bystanders = options->turn = options->size = 0.0;
-}
-
-// A flag that is not given leaves what a preset says.
-template <typename Value, typename Flag>
-MaybeError TakeName(const char* flag, const Flag& text, Value* value) {
-  return Given(flag) ? ParseName("--" + std::string(flag), text, value) : std::nullopt;
-}
-MaybeError TakeGiven(const char* flag, double number, double most, double* value) {
-  return Given(flag) ? TakeInRange(flag, number, 0.0, most, value) : std::nullopt;
-}
-
 MaybeError ReadDiffusionFlags(TrainGeneratorFlags* flags) {
   DiffusionTrainingOptions& diffusion = flags->options.diffusion;
-  if (flags->published == PublishedMethod::kSdm) SetPublished(&diffusion);
   for (const MaybeError& error :
-       {TakeName("pooling", FLAGS_pooling, &diffusion.structure.pooling),
-        TakeName("pooling_at", FLAGS_pooling_at, &diffusion.structure.join),
-        TakeName("frame", FLAGS_frame, &diffusion.structure.frame),
-        TakeGiven("joint_weight", FLAGS_joint_weight, 1e6, &diffusion.joint_weight),
-        TakeGiven("difference_weight", FLAGS_difference_weight, 1e6, &diffusion.difference_weight),
-        TakeGiven("bystanders", FLAGS_bystanders, 1.0, &diffusion.bystanders)}) {
+       {ParseName("--pooling", FLAGS_pooling, &diffusion.structure.pooling),
+        ParseName("--pooling_at", FLAGS_pooling_at, &diffusion.structure.join),
+        ParseName("--frame", FLAGS_frame, &diffusion.structure.frame),
+        TakeInRange("joint_weight", FLAGS_joint_weight, 0.0, 1e6, &diffusion.joint_weight),
+        TakeInRange("difference_weight", FLAGS_difference_weight, 0.0, 1e6,
+                    &diffusion.difference_weight),
+        TakeInRange("bystanders", FLAGS_bystanders, 0.0, 1.0, &diffusion.bystanders)}) {
     if (error) return error;
   }
-  if (diffusion.structure.frame == MotionFrame::kOwn && diffusion.joint_weight > 0.0) {
-    return Error{"--frame=own has no joint errors in m; give --joint_weight=0"};
+  if (diffusion.structure.frame == MotionFrame::kOwn) {
+    if (diffusion.joint_weight > 0.0) {
+      return Error{"--frame=own has no joint errors in m; give --joint_weight=0"};
+    }
+    diffusion.turn = diffusion.size = 0.0;  // own frames are turned and scaled already
   }
   if (flags->steps > 0) diffusion.steps = flags->steps;
   if (flags->batch > 0) diffusion.groups = flags->batch;

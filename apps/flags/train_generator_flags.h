@@ -14,19 +14,9 @@ constexpr EnumNames<ForecastAccuracy, 2> Names(ForecastAccuracy) {
   return {{{"usual", ForecastAccuracy::kUsual}, {"best", ForecastAccuracy::kBest}}};
 }
 
-// Presets of a kind: a method as its paper has it. sde: Lyu et al., ACM MM 2021; sdm: Tanke et al.,
-// ICCV 2023.
-enum class PublishedMethod { kNone, kSde, kSdm };
-constexpr EnumNames<PublishedMethod, 3> Names(PublishedMethod) {
-  return {{{"none", PublishedMethod::kNone},
-           {"sde", PublishedMethod::kSde},
-           {"sdm", PublishedMethod::kSdm}}};
-}
-
 struct TrainGeneratorFlags {
   GeneratorTrainingOptions options;
   GeneratorData data = GeneratorData::kCmu;
-  PublishedMethod published = PublishedMethod::kNone;
   ForecastAccuracy accuracy = ForecastAccuracy::kUsual;
   int steps = 0, batch = 0;      // 0: those of the kind
   double learning_rate = 0.0;    // 0: that of the kind

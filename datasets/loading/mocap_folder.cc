@@ -14,7 +14,8 @@ namespace pushid {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr char kSkeletonFile[] = "skeleton.json", kTestFolder[] = "test";
+constexpr char kSkeletonFile[] = "skeleton.json", kTestFolder[] = "test",
+               kTestSubjectFolder[] = "S5";
 
 Result<std::string> FindSkeleton(const std::string& folder) {
   const fs::path place = fs::path(folder).lexically_normal();
@@ -22,9 +23,19 @@ Result<std::string> FindSkeleton(const std::string& folder) {
   for (const fs::path& path : {place / kSkeletonFile, place / ".." / kSkeletonFile}) {
     if (fs::exists(path, ignored)) return path.string();
   }
+  if (fs::exists(place / kTestSubjectFolder, ignored)) return std::string();  // Human3.6M's
   return Error{std::string("there is no ") + kSkeletonFile +
                    " here or one folder higher; give a folder of clips by --folder",
                folder};
+}
+
+constexpr int kTestSubject = 5, kValidationSubject = 11;
+
+// 5 of "S5"; 0 of a folder that is no subject's.
+int SubjectOf(const std::string& folder) {
+  int64_t number = 0;
+  const bool is = folder.size() > 1 && folder[0] == 'S' && ParseInteger(folder.substr(1), &number);
+  return is && number > 0 && number < 1000 ? static_cast<int>(number) : 0;
 }
 
 // walking_2 before walking_10.
@@ -102,6 +113,11 @@ Result<MocapClip> ReadClip(const fs::path& folder, const std::string& name,
   clip.name = path.stem().string();
   clip.content_hash = read.value().content_hash;
   clip.is_test = fs::path(name).begin()->string() == kTestFolder;
+  clip.subject = SubjectOf(clip.action);
+  if (clip.subject > 0) {
+    clip.action = clip.name.substr(0, clip.name.rfind('_'));
+    clip.is_test = clip.subject == kTestSubject;
+  }
   clip.motion.resize(skeleton.layout.num_coordinates(), maps.cols());
   for (Eigen::Index t = 0; t < maps.cols(); ++t) {
     const Eigen::Matrix3Xd joints = JointPositions(skeleton.tree, maps.col(t));
@@ -176,12 +192,35 @@ std::vector<int> TestWindowStarts(int frames) {
 
 bool IsValidationClip(const MocapFolder& mocap, const MocapClip& clip) {
   if (clip.is_test) return false;
+  if (clip.subject > 0) return clip.subject == kValidationSubject;
   const MocapClip* last = nullptr;
   for (const MocapClip& other : mocap.clips) {
     if (other.action == clip.action && !other.is_test) last = &other;
   }
   return last == &clip;
 }
+
+namespace {
+
+// Of Human3.6M: the clip's share of the windows that it has with the other one of its action; none
+// where there is no such pair.
+std::vector<int> PairedStarts(const MocapFolder& mocap, const MocapClip& clip) {
+  std::vector<const MocapClip*> pair;
+  for (const MocapClip& other : mocap.clips) {
+    if (other.is_test && other.action == clip.action) pair.push_back(&other);
+  }
+  std::vector<int> starts;
+  if (pair.size() != 2) return starts;
+  const auto frames = [](const MocapClip* of) {
+    return static_cast<int>(of->motion.cols() + 1) / 2;
+  };
+  for (const auto& [first, second] : PairedWindowStarts(frames(pair[0]), frames(pair[1]))) {
+    starts.push_back(&clip == pair[0] ? first : second);
+  }
+  return starts;
+}
+
+}  // namespace
 
 std::vector<ForecastWindow> MakeForecastWindows(const MocapFolder& mocap, ForecastProtocol protocol,
                                                 int stride) {
@@ -193,7 +232,8 @@ std::vector<ForecastWindow> MakeForecastWindows(const MocapFolder& mocap, Foreca
     const int frames = static_cast<int>(motion.cols());
     if (protocol == ForecastProtocol::kTest) {
       if (clip.is_test != has_test) continue;
-      for (int start : TestWindowStarts(frames)) {
+      const bool paired = clip.is_test && clip.subject > 0;
+      for (int start : paired ? PairedStarts(mocap, clip) : TestWindowStarts(frames)) {
         windows.push_back(WindowAt(clip, motion, start + kObservedFrames));
       }
       continue;

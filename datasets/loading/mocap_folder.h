@@ -5,8 +5,10 @@
 //   FOLDER/train/walking/walking_1.txt  clips to learn from; FOLDER/test/... those kept apart
 //
 // Of a folder without train and test the actions stand in it directly; skeleton.json may stand one
-// folder higher. Joints are particles where they are `used`; `duplicates` share the place of a used
-// one and count in means over all joints, the others never move and only count as right.
+// folder higher. Human3.6M has folders of subjects, FOLDER/S5/walking_1.txt, and needs no
+// skeleton.json: 32 joints, 99 numbers a line. S5 is tested, S11 validates. Joints are particles
+// where they are `used`; `duplicates` share the place of a used one and count in means over all
+// joints, the others never move and only count as right.
 #pragma once
 
 #include <array>
@@ -31,7 +33,8 @@ struct MocapClip {
   std::string action, name;  // "walking", "walking_1"
   Trajectories motion;       // at the file's rate, twice the protocol's
   std::string content_hash;
-  bool is_test = false;  // below test/
+  bool is_test = false;  // below test/, or subject 5
+  int subject = 0;       // 0: none is named
 };
 
 struct MocapFolder {
@@ -39,7 +42,9 @@ struct MocapFolder {
   std::vector<MocapClip> clips;  // by action, then by number
 };
 
+// An empty path: that of Human3.6M.
 Result<MocapSkeleton> ReadMocapSkeleton(const std::string& path);
+const char* Human36mSkeleton();
 
 // Errors: no skeleton, no clips, a clip that is malformed (file, line, column).
 Result<MocapFolder> ReadMocapFolder(const std::string& folder);
@@ -76,7 +81,12 @@ Trajectories EverySecond(const Trajectories& motion, int phase);
 // 2^b - 1 >= frames - 76 and rejected above it.
 std::vector<int> TestWindowStarts(int frames);
 
-// Whether a clip is the last of its action, and thus of the validation split.
+// Human3.6M's: four starts in each of the two clips of an action of the tested subject, drawn in
+// turn by one MT19937 of that seed, from 16 to below frames - 150; observed are the frames from
+// i + 25 on, as above. None where a clip is too short.
+std::vector<std::pair<int, int>> PairedWindowStarts(int frames, int frames_of_other);
+
+// Whether a clip is of the validation split: of subject 11, or the last of its action.
 bool IsValidationClip(const MocapFolder& mocap, const MocapClip& clip);
 
 // test: eight windows of every clip below test/, or of every clip where there is no such folder;

@@ -130,7 +130,12 @@ void SetLayout(const std::vector<int>& mirrored, const std::vector<int>& same, J
 }  // namespace
 
 Result<MocapSkeleton> ReadMocapSkeleton(const std::string& path) {
-  const Result<JsonDocument> document = ReadJsonDocument(path);
+  Result<JsonDocument> document = JsonDocument{path, Human36mSkeleton(), {}};
+  if (path.empty()) {
+    document.value().content = Json::parse(document.value().text);
+  } else {
+    document = ReadJsonDocument(path);
+  }
   if (!document.ok()) return document.error();
   JsonFields fields(document.value(), document.value().content, "", "skeleton");
   const int joints = fields.Whole("joints", "a number of joints", 1, kMostJoints);

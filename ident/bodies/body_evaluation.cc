@@ -59,9 +59,8 @@ std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording, i
 void ScoreRestoration(const IdentifiedModel& model, const Restoration& restoration,
                       const PostprocessOptions& options, const BodyRecording& recording,
                       BodyScores* scores, int observed, ForecastUse use) {
-  const auto add = [&](const char* name, const std::vector<BodyMotion>& bodies,
-                       int first_frame = 1) {
-    (*scores)[name].push_back(ScoreBodies(recording, bodies, first_frame));
+  const auto add = [&](const char* name, const std::vector<BodyMotion>& bodies) {
+    (*scores)[name].push_back(ScoreBodies(recording, bodies, std::max(1, observed)));
   };
   const std::vector<RestorationInput> recorded =
       RecordedPeople(recording, RodMoves(model.options), observed);
@@ -74,7 +73,7 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
     const std::string failure =
         predicted.ok() ? OutsideText(predicted.value().status) : predicted.error().message;
     std::vector<const char*> names = {"restoration", "rigid"};
-    if (observed > 0) names.push_back("restoration_after_given");
+    if (observed > 0) names.push_back("restoration_all_frames");
     for (const char* name : names) (*scores)[name].push_back(FailedBodies(recording, failure));
     return;
   }
@@ -82,7 +81,9 @@ void ScoreRestoration(const IdentifiedModel& model, const Restoration& restorati
   const std::vector<RestorationInput> people = PredictedPeople(recording, prediction);
   const std::vector<BodyMotion> restored = RestoreBodies(restoration, options, people);
   add("restoration", restored);
-  if (observed > 0) add("restoration_after_given", restored, observed);
+  if (observed > 0) {
+    (*scores)["restoration_all_frames"].push_back(ScoreBodies(recording, restored));
+  }
   add("rigid", RigidRestoration().Restore(people));
 }
 

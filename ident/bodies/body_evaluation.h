@@ -9,8 +9,9 @@
 //   recorded           the recording against itself: its own FSE
 //
 // observed: frames that were seen first (prediction/online_predictor.h), 0: none; the
-// baselines then go on from the last of them, and restorations begin with them. Then there is also
-// restoration_after_given, the restoration over the frames that were not seen.
+// baselines then go on from the last of them, and restorations begin with them. Only frames that
+// were not seen count, but in restoration_all_frames. Where nothing was observed, frames 1 on count
+// of everybody, though constant_velocity knows those of the push.
 #pragma once
 
 #include <map>
@@ -31,6 +32,9 @@ std::vector<BodyMotion> RestoreBodies(const Restoration& restoration,
                                       const PostprocessOptions& options,
                                       const std::vector<RestorationInput>& people);
 
+// Their `observed` beside a predictor that is shown so many frames: one is the first pose, which
+// everybody knows.
+inline int SeenByBaselines(int shown) { return shown > 1 ? shown : 0; }
 std::vector<BodyMotion> StaticBodies(const BodyRecording& recording, int observed = 0);
 std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording, int observed = 0);
 

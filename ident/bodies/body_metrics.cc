@@ -36,8 +36,9 @@ std::optional<GroupMetrics> GroupsOf(const std::vector<BodyRecording>& recording
   for (size_t i = 0; i < recordings.size(); ++i) {
     if (scores[i].predicted.empty()) continue;
     const PendulumRecording& pendulum = recordings[i].pendulum;
-    recorded.push_back({recordings[i].bodies, pendulum.scene.dt, pendulum.pushed_person});
-    predicted.push_back({scores[i].predicted, pendulum.scene.dt, pendulum.pushed_person});
+    const int first = scores[i].first_frame;
+    recorded.push_back({recordings[i].bodies, pendulum.scene.dt, pendulum.pushed_person, first});
+    predicted.push_back({scores[i].predicted, pendulum.scene.dt, pendulum.pushed_person, first});
   }
   if (recorded.empty()) return std::nullopt;
   return CompareGroups(recorded, predicted);
@@ -48,7 +49,9 @@ using Scores = std::vector<const BodyScore*>;
 BodyMean Mean(const Scores& scores, bool by_frames) {
   BodyMean mean;
   mean.recordings = static_cast<int>(scores.size());
-  const auto weight = [by_frames](const BodyScore* s) { return by_frames ? s->frames - 1.0 : 1.0; };
+  const auto weight = [by_frames](const BodyScore* s) {
+    return by_frames ? static_cast<double>(s->frames - s->first_frame) : 1.0;
+  };
   double total = 0.0;
   for (const BodyScore* s : scores) total += weight(s);
   const double n = static_cast<double>(scores.size());
@@ -73,11 +76,11 @@ std::string MetricsText(const BodyMetrics& metrics, int digits) {
   return text;
 }
 
-double FootSkate(const BodyMotion& motion) {
+double FootSkate(const BodyMotion& motion, int first_frame) {
   double sum = 0.0;
   int contacts = 0;
   for (const int ankle : {kRightAnkle, kLeftAnkle}) {
-    for (size_t t = 1; t < motion.size(); ++t) {
+    for (size_t t = first_frame; t < motion.size(); ++t) {
       const double height = motion[t](2, ankle) - motion[0](2, ankle);
       if (height >= kTouchHeight) continue;
       const double way = (motion[t] - motion[t - 1]).col(ankle).head<2>().norm();
@@ -93,12 +96,13 @@ BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMoti
   BodyScore score;
   score.id = recording.pendulum.id;
   score.frames = recording.num_frames();
+  score.first_frame = first_frame;
   const int people = recording.num_people();
   int touching = 0;
   for (int n = 0; n < people; ++n) {
     const BodyMetrics of_person = ScorePerson(recording.bodies[n], predicted[n], first_frame);
     for (int m = 0; m < kNumBodyMetrics; ++m) score.value[m] += of_person[m] / people;
-    const double skate = FootSkate(predicted[n]);
+    const double skate = FootSkate(predicted[n], first_frame);
     if (skate < 0.0) continue;
     score.value[kFse] += skate;
     ++touching;

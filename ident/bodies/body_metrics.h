@@ -1,6 +1,9 @@
 // ident: how far predicted bodies are from recorded ones.
 //
-// For one recording, means over frames 1 .. T-1, people and all 22 joints unless said otherwise:
+// For one recording, means over the frames that count, people and all 22 joints unless said
+// otherwise. Those are frames 1 .. T-1, and of a predictor that was shown more than frame 0 only
+// the frames that it was not shown, first_frame .. T-1; scores of all frames are called so.
+//
 //   MPJPE      |joint - recorded joint|, m
 //   hipADE     the same of the hip alone; hipFDE: at the last frame
 //   MBLE       | |bone| - |recorded bone| |, over 21 bones, m
@@ -57,15 +60,17 @@ struct BodyScore {
   BodyMetrics value{};
   std::string failure;                     // why there is no score; such a recording is in no mean
   std::vector<BodyMotion> predicted = {};  // of more than one person; groups are judged together
+  int first_frame = 1;                     // that counts
 };
 
-// predicted: one motion per person, with as many frames as the recording. first_frame: the first
-// that counts, for predictors that are given more than frame 0; FSE is of all frames all the same.
+// predicted: one motion per person, with as many frames as the recording, which are more than
+// first_frame. first_frame: the first that counts, at least 1: frames before it were shown.
 BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMotion>& predicted,
                       int first_frame = 1);
 
-// FSE of one motion, cm per frame; negative when no ankle ever touches the floor.
-double FootSkate(const BodyMotion& motion);
+// FSE of one motion, cm per frame, of ways that end at first_frame or later; negative when no ankle
+// ever touches the floor.
+double FootSkate(const BodyMotion& motion, int first_frame = 1);
 
 struct BodyMean {
   int recordings = 0;

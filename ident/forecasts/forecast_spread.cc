@@ -23,6 +23,8 @@ constexpr SpreadRow kSpreadRows[] = {
     {"coverage_90", "coverage of 90 %", &SpreadScores::coverage, 1.0},
     {"CRPS_mm", "CRPS mm", &SpreadScores::crps, kMillimetres},
     {"energy_score_mm", "energy score mm", &SpreadScores::energy, kMillimetres},
+    {"most_probable_MPJPE_mm", "most probable of n, MPJPE mm", &SpreadScores::probable,
+     kMillimetres},
     {"best_of_n_MPJPE_mm", "best of n, MPJPE mm", &SpreadScores::best, kMillimetres},
 };
 
@@ -65,6 +67,11 @@ void ScoreFrame(const std::vector<SampledFuture>& samples, const ForecastWindow&
   scores->crps[k] += crps / static_cast<double>(truth.size());
   scores->energy[k] += from_truth / n - among / (n * (n - 1.0));
   scores->best[k] += best;
+  const auto less = [](const SampledFuture& a, const SampledFuture& b) {
+    return a.log_likelihood < b.log_likelihood;
+  };
+  const auto probable = std::max_element(samples.begin(), samples.end(), less);
+  scores->probable[k] += MeanDistance(probable->motion.col(frame), truth, layout)(0);
 }
 
 void AddTo(const SpreadScores& scores, double share, SpreadScores* sum) {

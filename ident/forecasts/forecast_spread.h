@@ -5,6 +5,8 @@
 //                 straight line
 //   CRPS          mean over coordinates of E|X - y| - E|X - X'| / 2; mm
 //   energy score  the same of whole poses, with their Euclidean distance; mm
+//   most probable MPJPE of the future with the largest likelihood of its transitions: the optimum
+//                 path among those sampled, without a given end (Fig. 5 of SDE)
 //   best of n     the smallest MPJPE among the samples; smaller with every sample more, so it shows
 //                 what is among them and judges nothing
 #pragma once
@@ -54,7 +56,7 @@ inline constexpr double kSpreadLevel = 0.9;
 inline constexpr int kLeastSamples = 19;
 
 struct SpreadScores {
-  HorizonErrors coverage{}, crps{}, energy{}, best{};
+  HorizonErrors coverage{}, crps{}, energy{}, probable{}, best{};
 };
 
 struct ForecastSpread {
@@ -70,8 +72,8 @@ ForecastSpread SpreadOf(const std::vector<ForecastWindow>& windows,
                         const std::vector<std::vector<SampledFuture>>& samples,
                         const ParticleLayout& layout);
 
-// Adds "coverage_90", "CRPS_mm", "energy_score_mm" and "best_of_n_MPJPE_mm" by horizon beside the
-// errors that `json` holds.
+// Adds "coverage_90", "CRPS_mm", "energy_score_mm", "most_probable_MPJPE_mm" and
+// "best_of_n_MPJPE_mm" by horizon beside the errors that `json` holds.
 void AddSpreadJson(const ForecastSpread& spread, nlohmann::ordered_json* json);
 std::string ForecastSpreadText(const ForecastSpread& spread);
 

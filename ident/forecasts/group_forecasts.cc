@@ -59,7 +59,7 @@ int FramesOfSecond(const GroupMotion& group) {
 int WholeSeconds(const std::vector<GroupMotion>& groups) {
   int seconds = groups.empty() ? 0 : INT_MAX;
   for (const GroupMotion& group : groups) {
-    const int frames = static_cast<int>(group.people.front().size()) - 1;
+    const int frames = static_cast<int>(group.people.front().size()) - group.first_frame;
     seconds = std::min(seconds, frames / FramesOfSecond(group));
   }
   return seconds;
@@ -71,14 +71,14 @@ struct Hips {
 };
 void AddHips(const GroupMotion& group, int second, Hips* hips) {
   const int of_second = FramesOfSecond(group);
-  const int begin = second * of_second;
+  const int known = group.first_frame - 1, begin = known + second * of_second;
   const auto at = [](const Pose& pose) -> Eigen::Vector2d { return pose.col(kBodyHip).head<2>(); };
   for (const BodyMotion& person : group.people) {
     for (int t = begin + 1; t <= begin + of_second; ++t) {
       hips->speed += (at(person[t]) - at(person[t - 1])).norm() / group.dt;
       hips->frames += 1.0;
     }
-    hips->way += (at(person[begin + of_second]) - at(person[0])).norm();
+    hips->way += (at(person[begin + of_second]) - at(person[known])).norm();
     hips->people += 1.0;
   }
 }

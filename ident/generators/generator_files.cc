@@ -174,6 +174,7 @@ Json TrainedParticles::Settings() const {
           {"skip", structure.skip},
           {"pose_operator", structure.pose_operator},
           {"particles", structure.particles},
+          {"poses", structure.poses},
           {"controls", structure.controls},
           {"correlated_noise", structure.correlated_noise},
           {"corrected_frames", structure.corrected_frames},
@@ -196,6 +197,8 @@ SharedNetworks ReadParticles(const Json& json, const GeneratorSettings& settings
   structure.skip = json.at("skip");
   structure.pose_operator = json.at("pose_operator");
   structure.particles = json.at("particles");
+  structure.poses = json.value("poses", true);  // older files have none
+  Demand(structure.particles || structure.poses, "particles or poses must be true");
   structure.controls = json.at("controls");
   structure.corrected_frames = json.value("corrected_frames", 0);
   structure.correlated_noise = json.value("correlated_noise", false);  // older files have none

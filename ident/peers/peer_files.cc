@@ -48,7 +48,7 @@ BodyMotion AtPeerRate(const BodyMotion& motion, double dt) {
 void ScorePeer(const Peer& peer, const BodyRecording& recording, BodyScores* scores) {
   const double dt = recording.pendulum.scene.dt;
   const int frames = recording.num_frames(), given = peer.given_frames();
-  const std::string name(peer.name()), after_given = name + "_after_given";
+  const std::string name(peer.name()), all_frames = name + "_all_frames";
   std::vector<BodyMotion> people;
   for (const BodyMotion& body : recording.bodies) people.push_back(AtPeerRate(body, dt));
   const int at_rate = static_cast<int>(people.front().size());
@@ -56,7 +56,7 @@ void ScorePeer(const Peer& peer, const BodyRecording& recording, BodyScores* sco
     const BodyScore failed =
         FailedBodies(recording, "shorter than the " + std::to_string(given) + " frames that " +
                                     name + " is given, and two more");
-    for (const std::string& key : {name, after_given}) (*scores)[key].push_back(failed);
+    for (const std::string& key : {name, all_frames}) (*scores)[key].push_back(failed);
     return;
   }
   std::vector<BodyMotion> predicted;
@@ -64,8 +64,8 @@ void ScorePeer(const Peer& peer, const BodyRecording& recording, BodyScores* sco
     predicted.push_back(Resampled(motion, kPeerStep, dt, frames));
   }
   const int after = static_cast<int>(given * kPeerStep / dt + 0.5);
-  (*scores)[name].push_back(ScoreBodies(recording, predicted));
-  (*scores)[after_given].push_back(ScoreBodies(recording, predicted, after));
+  (*scores)[name].push_back(ScoreBodies(recording, predicted, after));
+  (*scores)[all_frames].push_back(ScoreBodies(recording, predicted));
 }
 
 }  // namespace pushid

@@ -20,8 +20,8 @@ Result<std::unique_ptr<Peer>> LoadPeer(const std::string& folder);
 // A motion of frames dt apart at kPeerRate, as long as it is.
 BodyMotion AtPeerRate(const BodyMotion& motion, double dt);
 
-// "<name>": over all frames, the given ones among them without error; "<name>_after_given": over
-// the frames after them. A recording that is too short fails by name.
+// "<name>": over the frames that were not given; "<name>_all_frames": over all, the given ones
+// among them without error. A recording that is too short fails by name.
 void ScorePeer(const Peer& peer, const BodyRecording& recording, BodyScores* scores);
 
 }  // namespace pushid

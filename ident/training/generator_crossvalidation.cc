@@ -66,8 +66,10 @@ class FoldJudge {
         recording.num_frames() > kShown) {
       error = Add("generator_shown_20", recording, kShown, alone, scores);
     }
-    (*scores)["static"] = ScoreBodies(recording, StaticBodies(recording));
-    (*scores)["constant_velocity"] = ScoreBodies(recording, ConstantVelocityBodies(recording));
+    const int observed = validation_.observed, seen = SeenByBaselines(observed);
+    (*scores)["static"] = ScoreBodies(recording, StaticBodies(recording, seen), observed);
+    (*scores)["constant_velocity"] =
+        ScoreBodies(recording, ConstantVelocityBodies(recording, seen), observed);
     return error;
   }
 
@@ -88,8 +90,10 @@ class FoldJudge {
                    OutsideText(predicted.value().status)};
     }
     const Prediction& prediction = predicted.value();
-    (*scores)["rigid"] =
-        ScoreBodies(recording, RigidRestoration().Restore(PredictedPeople(recording, prediction)));
+    scores->emplace(
+        "rigid",
+        ScoreBodies(recording, RigidRestoration().Restore(PredictedPeople(recording, prediction)),
+                    settings.observed));  // of the first call: as observed
     return PendulumHips(recording, prediction);
   }
 
@@ -106,9 +110,9 @@ class FoldJudge {
     const auto bodies =
         GenerateBodies(settings, *MakeGenerator(trained_, changes), recording, hips);
     if (!bodies.ok()) return bodies.error();
-    (*scores)[name] = ScoreBodies(recording, bodies.value());
-    if (name != "generator") return std::nullopt;
-    (*scores)["generator_after_observed"] = ScoreBodies(recording, bodies.value(), observed);
+    (*scores)[name] = ScoreBodies(recording, bodies.value(), observed);
+    if (name != "generator" || observed == 1) return std::nullopt;
+    (*scores)["generator_all_frames"] = ScoreBodies(recording, bodies.value());
     return std::nullopt;
   }
 

@@ -1,13 +1,17 @@
 // ident: generators on pushes: trained anew for every fold, so that nothing has seen the recordings
 // it is judged on.
 //
-//   generator                  the recording as far as it is shown, then the forecast
-//   generator_after_observed   the forecast alone
+//   generator                  the forecast, of the frames that were not shown
+//   generator_all_frames       the recording as far as it is shown, then the forecast
 //   generator_unblended        without the physics that the forecast is blended with
 //   generator_blend_0.25       the same with another share of physics, where such are compared
-//   rigid                      those physics alone, first poses carried by the rods' tips
+//   rigid                      those physics alone, first poses carried by the rods' tips; where
+//                              they go into the network, they know frame 0 alone
 //   generator_shown_20         of kinds that are trained for it: shown 20 frames, no physics
-//   static, constant_velocity  as in body_evaluation.h
+//   static, constant_velocity  as in body_evaluation.h, shown as many frames as the generator
+//
+// All but generator_all_frames and generator_shown_20 count the frames that the generator was not
+// shown; generator_shown_20 counts those after its 20.
 #pragma once
 
 #include <optional>

@@ -36,10 +36,11 @@ std::string KeyOf(const GeneratorSamples& samples, const ParticleTrainingOptions
       AddTo(&hash, motion.controls);
     }
   }
-  return Joined("generator 2 " + NameOf(o.structure.cell) + " " + NameOf(o.noise_loss),
+  return Joined("generator 3 " + NameOf(o.structure.cell) + " " + NameOf(o.noise_loss),
                 {double(o.structure.skip),
                  double(o.structure.pose_operator),
                  double(o.structure.particles),
+                 double(o.structure.poses),
                  double(o.structure.controls),
                  double(o.structure.corrected_frames),
                  double(o.observed),
@@ -51,9 +52,13 @@ std::string KeyOf(const GeneratorSamples& samples, const ParticleTrainingOptions
                  double(o.batch),
                  double(o.warm_up),
                  o.learning_rate,
+                 double(o.constant_rate),
                  o.clip,
                  o.jitter,
                  o.mirrored,
+                 double(o.together),
+                 o.transitions,
+                 o.distance,
                  o.squared,
                  o.bones,
                  o.critic,

@@ -29,20 +29,33 @@ std::vector<BodyMotion> AtWordRate(const GroupMotion& group) {
   return people;
 }
 
+// At the words' rate: the frame at which the first step that counts begins.
+std::ptrdiff_t FirstStep(const GroupMotion& group) {
+  const double frames = std::max(0, group.first_frame - 1) * group.dt * kWordRate;
+  return static_cast<std::ptrdiff_t>(std::ceil(frames - kWholeFrame));
+}
+
+// The states that count, and before them the first of them again, as at frame 0.
 std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const StateFunction& states) {
   std::vector<Symbols> all;
   for (const GroupMotion& group : groups) {
-    for (Symbols& symbols : states.of(AtWordRate(group), 1.0 / kWordRate)) {
-      all.push_back(std::move(symbols));
+    for (const Symbols& symbols : states.of(AtWordRate(group), 1.0 / kWordRate)) {
+      const auto size = static_cast<std::ptrdiff_t>(symbols.size());
+      all.emplace_back(symbols.begin() + std::min(FirstStep(group), size), symbols.end());
+      if (all.back().size() > 1) all.back()[0] = all.back()[1];
     }
   }
   return all;
 }
 
+// The frames whose steps count.
 std::vector<BodyMotion> AllPeople(const std::vector<GroupMotion>& groups) {
   std::vector<BodyMotion> all;
   for (const GroupMotion& group : groups) {
-    for (BodyMotion& person : AtWordRate(group)) all.push_back(std::move(person));
+    for (const BodyMotion& person : AtWordRate(group)) {
+      const auto size = static_cast<std::ptrdiff_t>(person.size());
+      all.emplace_back(person.begin() + std::min(FirstStep(group), size), person.end());
+    }
   }
   return all;
 }
@@ -97,8 +110,11 @@ std::vector<SecondOfStates> CompareStatesBySecond(const std::vector<GroupMotion>
     std::vector<Symbols> within;
     double standing = 0.0, frames = 0.0;
     for (const Symbols& person : all) {
-      const auto begin = person.begin() + s * of_second;
-      within.emplace_back(begin, std::min(person.end(), begin + of_second + 1));
+      const auto begin =
+          person.begin() +
+          std::min<std::ptrdiff_t>(s * of_second, std::distance(person.begin(), person.end()));
+      within.emplace_back(begin,
+                          begin + std::min(of_second + 1, std::distance(begin, person.end())));
       standing +=
           static_cast<double>(std::count(within.back().begin(), within.back().end(), kStand));
       frames += static_cast<double>(within.back().size());
@@ -143,16 +159,23 @@ std::vector<int> OnsetFrames(const GroupMotion& group) {
 }
 
 void AddOnsets(const GroupMotion& recorded, const GroupMotion& predicted, OnsetMetrics* metrics) {
-  AddOnsets({OnsetFrames(recorded), recorded.pushed_person, recorded.dt}, OnsetFrames(predicted),
-            metrics);
+  AddOnsets({OnsetFrames(recorded), recorded.pushed_person, recorded.dt, predicted.first_frame},
+            OnsetFrames(predicted), metrics);
 }
 
 void AddOnsets(const RecordedOnsets& recorded, const std::vector<int>& onsets,
                OnsetMetrics* metrics) {
   const std::vector<int>& truth = recorded.frames;
-  ++metrics->recordings;
-  if (FirstOf(onsets) == recorded.pushed_person) ++metrics->pushed_named;
+  const auto shown = [&](size_t n) {
+    return truth[n] != kNever && truth[n] < recorded.first_frame;
+  };
+  const int first = FirstOf(truth);
+  if (first == kNever || !shown(first)) {
+    ++metrics->recordings;
+    if (FirstOf(onsets) == recorded.pushed_person) ++metrics->pushed_named;
+  }
   for (size_t a = 0; a < truth.size(); ++a) {
+    if (shown(a)) continue;
     for (size_t b = 0; b < truth.size(); ++b) {
       if (truth[a] == kNever || truth[b] == kNever || truth[a] >= truth[b]) continue;
       ++metrics->pairs;

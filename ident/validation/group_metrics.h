@@ -3,7 +3,8 @@
 //
 //   sscp           Jensen and Shannon's distance of the transitions between social states
 //   sscp_changes   the same of changes of state alone; no value where nothing ever changes
-//   ndms           how alike words of motion are to the nearest recorded ones, 1 for the same
+//   ndms           how alike words of motion are to the nearest recorded ones: 1 for the same,
+//                  1/2 for what rests with them
 //   pushed_named   recordings whose pushed person moves first
 //   onset_order    share of pairs of people who begin to move in the recorded order
 //   onset_error    |begin - recorded begin| in the mean over people who move in both, s
@@ -11,6 +12,11 @@
 //
 // A person begins to move when the hip is more than 2 cm from its place at frame 0. What these can
 // see and cannot: validation/README.md.
+//
+// Frames that a predictor was shown do not count. Of states and words those count whose steps from
+// frame to frame end at first_frame or later, in recorded groups as in predicted ones, so that no
+// word is found among shown frames. Onsets count that were not shown: people who begin to move
+// earlier are left out, and pushed_named counts recordings in which nobody does.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -29,6 +35,7 @@ struct GroupMotion {
   std::vector<BodyMotion> people;
   double dt = 1.0 / 60.0;
   int pushed_person = 0;
+  int first_frame = 1;  // that counts; everybody knows frame 0
 };
 
 // Of what people do, of any number of groups against any others; the three of them are symmetric
@@ -39,8 +46,8 @@ struct SocialMetrics {
 SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
                             const std::vector<GroupMotion>& motions,
                             const StateFunction& states = SocialStateFunction());
-// Each second of the motions against all that was recorded; the states of a frame count from frame
-// 0 of the whole motion.
+// Each second of the motions, from the last frame that does not count on, against all that was
+// recorded; the states of a frame count from frame 0 of the whole motion.
 struct SecondOfStates {
   double standing = 0.0;       // share of kStand
   std::optional<double> sscp;  // no value where a second has no frames
@@ -57,7 +64,7 @@ std::vector<int> OnsetFrames(const HipPaths& hips);
 std::vector<int> OnsetFrames(const GroupMotion& group);
 
 struct OnsetMetrics {
-  int recordings = 0, pushed_named = 0;
+  int recordings = 0, pushed_named = 0;  // in which nobody was shown to begin
   int pairs = 0, in_order = 0;  // of people who begin in the recording, at different frames
   int movers = 0;               // people who begin in both
   double error_sum = 0.0;       // s, over the movers
@@ -67,6 +74,7 @@ struct RecordedOnsets {
   std::vector<int> frames;  // of each person
   int pushed_person = 0;
   double dt = 1.0 / 60.0;
+  int first_frame = 1;
 };
 void AddOnsets(const RecordedOnsets& recorded, const std::vector<int>& onsets,
                OnsetMetrics* metrics);

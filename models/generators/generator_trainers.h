@@ -13,17 +13,23 @@ namespace pushid {
 // Training of particles.
 //
 // The drift first: windows of observed and forecast frames, own output fed back in the forecast,
-// mean distance of joints with frame t weighing 1/t. Then the noise, with the drift as it is: the
-// Gaussian likelihood of the true displacements, and at last its correlations. What the network is
-// told of the pose is jittered, one draw a window and coordinate: poses are few, and displacements
-// say more. Adam, a warm-up, the rate down to nothing by a cosine, gradients clipped.
+// mean distance of joints with frame t weighing 1/t. Then the noise alone, with the drift as it is:
+// the Gaussian likelihood of the true displacements, and at last its correlations. What the network
+// is told of the pose is jittered, one draw a window and coordinate: poses are few, and
+// displacements say more. Adam, a warm-up, the rate down to nothing by a cosine, gradients clipped.
 
-// How the noise is learned. likelihood: -log N(p; f, g^2) with its determinant, the meaning of
-// SDE's Eq. 6. squared: the squared error of the sampled transition, |p - f|^2 + g^2 in the mean,
-// what is left of it without the determinant; its minimum is g = 0.
-enum class NoiseLoss { kLikelihood, kSquared };
-constexpr EnumNames<NoiseLoss, 2> Names(NoiseLoss) {
-  return {{{"likelihood", NoiseLoss::kLikelihood}, {"squared", NoiseLoss::kSquared}}};
+// In SDE Eq. 6 trains drift and noise, f and g, together on the observed displacements. `together`
+// does that, in every step beside the losses of the forecast, which then is a sampled path: noise
+// is drawn and mapped by g at every frame (Eq. 2), and the losses of the forecast reach g as well.
+
+// What transitions are charged. likelihood: -log N(p; f, g^2) with its determinant. drawn: Eq. 6 as
+// it is printed, |p - f - g w|^2 with w ~ N(0, 1) drawn. squared: the mean of that over w,
+// |p - f|^2 + g^2. The minimum of both is g = 0.
+enum class NoiseLoss { kLikelihood, kSquared, kDrawn };
+constexpr EnumNames<NoiseLoss, 3> Names(NoiseLoss) {
+  return {{{"likelihood", NoiseLoss::kLikelihood},
+           {"squared", NoiseLoss::kSquared},
+           {"drawn", NoiseLoss::kDrawn}}};
 }
 
 struct LearntParticles {
@@ -41,18 +47,23 @@ struct ParticleTrainingOptions : TrainerOptions {
   int batch = 64;
   int warm_up = 100;
   double learning_rate = 1e-3;
-  double clip = 1.0;      // largest norm of the gradient
-  double jitter = 0.7;    // of the pose, in its spreads
-  double mirrored = 0.5;  // share of windows
-  double squared = 0.0;   // weight of squared distances (SDE's Eq. 10)
-  double bones = 0.0;     // of bone lengths (Eq. 11)
-  double critic = 0.0;    // of a Wasserstein critic with gradient penalty (Eq. 12)
+  bool constant_rate = false;  // no warm-up, no cosine
+  double clip = 1.0;           // largest norm of the gradient
+  double jitter = 0.7;         // of the pose, in its spreads
+  double mirrored = 0.5;       // share of windows
+  double distance = 1.0;       // weight of distances
+  double squared = 0.0;        // of squared distances (SDE's Eq. 10)
+  double bones = 0.0;          // of bone lengths (Eq. 11)
+  double critic = 0.0;         // of a Wasserstein critic with gradient penalty (Eq. 12)
   NoiseLoss noise_loss = NoiseLoss::kLikelihood;
+  bool together = false;                 // Eq. 6 trains f and g; there are no steps of noise then
+  double transitions = 0.01;             // weight of Eq. 6 where it trains both
   std::vector<float> mirrored_controls;  // the sign of each control in the mirror
 };
 
 inline constexpr int kParticleRound = 50;   // steps of a point of the curve
 inline constexpr int kFirstNoiseStep = 10;  // displacements before are not judged by the noise
+inline constexpr int kFirstTransition = 2;  // likewise where f and g are trained together
 
 class ParticleTrainer : public Trainer {
  public:

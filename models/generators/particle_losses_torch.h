@@ -39,7 +39,8 @@ class ParticleLosses {
       return (by_frame * share).sum() / share.sum();
     };
     const torch::Tensor squares = (Points(forecast) - Points(truth)).square().sum(3);
-    torch::Tensor loss = mean(torch::matmul((squares + kSmooth).sqrt(), weights_));
+    torch::Tensor loss =
+        options_.distance * mean(torch::matmul((squares + kSmooth).sqrt(), weights_));
     if (options_.squared > 0.0) {
       loss = loss + options_.squared * mean(torch::matmul(squares, weights_));
     }
@@ -66,6 +67,20 @@ class ParticleLosses {
   const ParticleTrainingOptions& options_;
   torch::Tensor weights_, frames_, parents_, has_bone_, fixed_, is_fixed_;
 };
+
+// Of transitions, elementwise (NoiseLoss): `misses` of the drift, in the units of the noise.
+inline torch::Tensor TransitionLoss(NoiseLoss loss, const torch::Tensor& misses,
+                                    const torch::Tensor& log_noise) {
+  switch (loss) {
+    case NoiseLoss::kLikelihood:
+      return log_noise + 0.5 * misses.square() * (-2.0 * log_noise).exp();
+    case NoiseLoss::kSquared:
+      return misses.square() + (2.0 * log_noise).exp();
+    case NoiseLoss::kDrawn:
+      break;
+  }
+  return (misses - log_noise.exp() * torch::randn_like(misses)).square();
+}
 
 // A Wasserstein critic of whole forecasts (SDE's Eq. 12): three layers of 256 on what moves from
 // the last observed frame on, in the pose's spreads.

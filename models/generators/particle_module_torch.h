@@ -65,9 +65,10 @@ class ParticleModule : public torch::nn::Module {
   std::vector<torch::Tensor> NoiseParameters() const { return {noise_, noise_bias_}; }
 
   // Frames forecast after the first `observed`, [batch, frame, coordinate]. jitter: [batch, 1,
-  // coordinate], in spreads.
+  // coordinate], in spreads. noise: e of every frame, [batch, frame, coordinate], of a sampled
+  // path; undefined: the path without noise.
   torch::Tensor Forecast(const ParticleBatch& batch, const torch::Tensor& jitter, int observed,
-                         int predicted) const {
+                         int predicted, const torch::Tensor& noise = {}) const {
     const torch::Tensor past = batch.frames.narrow(1, 0, observed);
     const torch::Tensor steps = Steps(past);
     std::vector<torch::Tensor> state = Run(Inputs(steps, past, batch.controls, 0, jitter));
@@ -80,7 +81,8 @@ class ParticleModule : public torch::nn::Module {
         const torch::Tensor last = history.narrow(1, 0, size_);
         Move(Input(last, pose, batch.controls, observed + t - 1, still), &state);
       }
-      const torch::Tensor next = Drift(state[0], history);
+      torch::Tensor next = Drift(state[0], history);
+      if (noise.defined()) next = next + LogNoise(state[0]).exp() * noise.select(1, t);
       const torch::Tensor moved = structure_.PredictsSteps() ? pose + step_spread_ * next
                                                              : pose_mean_ + pose_spread_ * next;
       const torch::Tensor step = structure_.PredictsSteps() ? next : (moved - pose) / step_spread_;
@@ -92,10 +94,11 @@ class ParticleModule : public torch::nn::Module {
   }
 
   // Of the true motion: what the drift misses, e = p_{t+1} - f, and the hidden states, for t from
-  // `first` - 1 on; the drift is not learned from it.
+  // `first` - 1 on. drift_learns: off: no gradients reach the drift and the cell.
   std::pair<torch::Tensor, torch::Tensor> Misses(const ParticleBatch& batch,
-                                                 const torch::Tensor& jitter, int first) const {
-    torch::NoGradGuard no_grad;
+                                                 const torch::Tensor& jitter, int first,
+                                                 bool drift_learns = false) const {
+    torch::AutoGradMode gradients(drift_learns && torch::GradMode::is_enabled());
     const torch::Tensor steps = Steps(batch.frames);
     const int64_t frames = batch.frames.size(1);
     const torch::Tensor before = batch.frames.narrow(1, 0, frames - 1);
@@ -163,7 +166,7 @@ class ParticleModule : public torch::nn::Module {
                        const torch::Tensor& jitter) const {
     std::vector<torch::Tensor> parts;
     if (structure_.particles) parts.push_back(steps);
-    parts.push_back((frames - pose_mean_) / pose_spread_ + jitter);
+    if (structure_.poses) parts.push_back((frames - pose_mean_) / pose_spread_ + jitter);
     if (structure_.controls > 0) {
       parts.push_back(controls.narrow(1, first, frames.size(1)) / control_spread_);
     }

@@ -67,9 +67,11 @@ void ParticleRollout::Observe(const Eigen::MatrixXf& pose) {
   pose_ = pose;
   Eigen::MatrixXf inputs(structure.NumInputs(size), count);
   if (structure.particles) inputs.topRows(size) = step;
-  auto seen = inputs.middleRows(structure.particles ? size : 0, size);
-  seen = (pose.colwise() - network_.pose_mean).array().colwise() / network_.pose_spread.array();
-  if (jitter_ != nullptr) seen += *jitter_;
+  if (structure.poses) {
+    auto seen = inputs.middleRows(structure.particles ? size : 0, size);
+    seen = (pose.colwise() - network_.pose_mean).array().colwise() / network_.pose_spread.array();
+    if (jitter_ != nullptr) seen += *jitter_;
+  }
   for (Eigen::Index n = 0; structure.controls > 0 && n < count; ++n) {
     const Eigen::MatrixXf& controls = people_[n / copies_].controls;
     inputs.col(n).tail(structure.controls).setZero();

@@ -44,6 +44,7 @@ struct ParticleStructure {
   bool skip = true;              // the sum over A_k
   bool pose_operator = true;     // off: the next pose itself is predicted
   bool particles = true;         // off: poses go in alone, and the next pose comes out
+  bool poses = true;             // off: displacements go in alone, as in SDE
   bool correlated_noise = true;  // off: M = 1
   int controls = 0;              // further inputs a frame: a push
   int corrected_frames = 0;      // U; 0: no correction
@@ -51,7 +52,9 @@ struct ParticleStructure {
   bool PredictsSteps() const { return pose_operator && particles; }
   bool HasSkip() const { return skip && PredictsSteps(); }
   int NumGates() const { return cell == ParticleCell::kGru ? 3 : 4; }
-  int NumInputs(int coordinates) const { return (particles ? 2 : 1) * coordinates + controls; }
+  int NumInputs(int coordinates) const {
+    return ((particles ? 1 : 0) + (poses ? 1 : 0)) * coordinates + controls;
+  }
 };
 
 inline constexpr int kSkipSteps = 9;

@@ -53,7 +53,7 @@ struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
     fields->Numbers("step", &step);
   }
 
-  int AllSteps() const { return options.steps + options.noise_steps; }
+  int AllSteps() const { return options.steps + (options.together ? 0 : options.noise_steps); }
   bool InDrift() const { return step < options.steps; }
   bool Done() const override { return step >= AllSteps(); }
 
@@ -67,15 +67,27 @@ struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
   }
 
   torch::Tensor NoiseLossOf(const ParticleBatch& batch, const torch::Tensor& jitter) const {
-    const int first = std::min(kFirstNoiseStep, options.observed);
-    const auto [misses, hidden] = module->Misses(batch, jitter, first);
-    const torch::Tensor log_noise = module->LogNoise(hidden);
+    const int first =
+        std::min(options.together ? kFirstTransition : kFirstNoiseStep, options.observed);
+    const auto [misses, hidden] = module->Misses(batch, jitter, first, options.together);
     const torch::Tensor share =
         batch.present.narrow(1, first, misses.size(1)).unsqueeze(2).expand_as(misses);
-    const torch::Tensor charge = options.noise_loss == NoiseLoss::kLikelihood
-                                     ? log_noise + 0.5 * misses.square() * (-2.0 * log_noise).exp()
-                                     : misses.square() + (2.0 * log_noise).exp();
+    const torch::Tensor charge =
+        TransitionLoss(options.noise_loss, misses, module->LogNoise(hidden));
     return (charge * share).sum() / share.sum();
+  }
+
+  // What is observed of windows.
+  ParticleBatch Observed(const ParticleBatch& batch) const {
+    const auto seen = [this](const torch::Tensor& of) { return of.narrow(1, 0, options.observed); };
+    return {seen(batch.frames), seen(batch.controls), seen(batch.present)};
+  }
+
+  std::vector<torch::Tensor> Trained() const {
+    std::vector<torch::Tensor> parameters = module->DriftParameters();
+    if (!options.together) return parameters;
+    for (const torch::Tensor& of_noise : module->NoiseParameters()) parameters.push_back(of_noise);
+    return parameters;
   }
 
   void ImproveAt(double rate, torch::optim::AdamW* optimizer,
@@ -87,11 +99,19 @@ struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
   double DriftStep() {
     const ParticleBatch batch = windows.Draw();
     const torch::Tensor jitter = Jitter(batch);
-    const double rate =
-        options.learning_rate * RateShareToZero(step, options.steps, options.warm_up);
+    const double share =
+        options.constant_rate ? 1.0 : RateShareToZero(step, options.steps, options.warm_up);
+    const double rate = options.learning_rate * share;
+    torch::Tensor drawn;
+    if (options.together) {
+      drawn = torch::randn({batch.frames.size(0), options.predicted, batch.frames.size(2)});
+    }
     const torch::Tensor forecast =
-        module->Forecast(batch, jitter, options.observed, options.predicted);
+        module->Forecast(batch, jitter, options.observed, options.predicted, drawn);
     torch::Tensor loss = losses(forecast, batch);
+    if (options.together) {
+      loss = loss + options.transitions * NoiseLossOf(Observed(batch), jitter);
+    }
     const double shown = loss.item<double>();
     if (critic) {
       const torch::Tensor last = batch.frames.narrow(1, options.observed - 1, 1);
@@ -101,7 +121,7 @@ struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
       ImproveAt(rate, critics.get(), critic->parameters(), critic->Loss(made.detach(), real));
       loss = loss - options.critic * critic->Score(made);
     }
-    ImproveAt(rate, drift.get(), module->DriftParameters(), kLossUnits * loss);
+    ImproveAt(rate, drift.get(), Trained(), kLossUnits * loss);
     return shown;
   }
 
@@ -150,7 +170,8 @@ struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
     const int count = end - step;
     for (; step < end; ++step) sum += in_drift ? DriftStep() : NoiseStep();
     if (!in_drift && Done()) Correlate();
-    return {step, sum / std::max(1, count), HeldLoss(in_drift), in_drift ? "drift" : "noise"};
+    const char* stage = options.together ? "drift and noise" : in_drift ? "drift" : "noise";
+    return {step, sum / std::max(1, count), HeldLoss(in_drift), stage};
   }
 };
 
@@ -162,7 +183,7 @@ ParticleTrainer::ParticleTrainer(const ParticleLayout& layout,
   StartTraining(options);
   Torch& t = As<Torch>();
   t.module = std::make_shared<ParticleModule>(t.statistics);
-  t.drift = t.Adam(t.module->DriftParameters());
+  t.drift = t.Adam(t.Trained());
   t.noise = t.Adam(t.module->NoiseParameters());
   if (options.critic <= 0.0) return;
   t.critic = std::make_shared<ParticleCritic>(layout.num_coordinates() * options.predicted,

@@ -72,10 +72,8 @@ constexpr double kLeastWay = 1e-7;   // m
 constexpr double kRounding = 1e-12;  // m^2, of the bound by means
 constexpr int kLast = -1;
 
-// Two joints that rest are alike, though they go nowhere.
 double Alike(const Eigen::Vector3d& u, const Eigen::Vector3d& v) {
   const double a = std::max(u.norm(), kLeastWay), b = std::max(v.norm(), kLeastWay);
-  if (a == kLeastWay && b == kLeastWay) return 1.0;
   return 0.5 * (u.dot(v) / (a * b) + 1.0) * std::min(a, b) / std::max(a, b);
 }
 

@@ -45,6 +45,10 @@ inline StateFunction SocialStateFunction() { return {kSocialStates, SocialStates
 //
 //   (cos(u, v) + 1) / 2 * min(|u|, |v|) / max(|u|, |v|),   |.| at least 1e-7 m
 //
+// with cos(u, v) = u.v / (|u| |v|). Two joints at rest thus score 1/2, as in the implementation
+// that the check values of the tests come from: they go neither the same way nor the opposite one.
+// Rejected: 1 for them, which rewards forecasts that freeze where recordings rest.
+//
 // The nearest are exact: sum over frames of |a - b|^2 >= frames * |mean a - mean b|^2, so that
 // means rule most words out, and of these the principal axes of the recorded means come first.
 

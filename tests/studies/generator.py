@@ -97,7 +97,7 @@ def pushes():
                                      f"--observed={observed}").json
         rows.append(cells(f"particles, {name}", json))
         if observed > 1:
-            rows.append(cells("particles, the frames after those", json["baselines"]["generator_after_observed"]))
+            rows.append(cells(f"particles, {name}, all frames", json["baselines"]["generator_all_frames"]))
     rows.append(cells("the first pose held", json["baselines"]["static"]))
     rows.append(cells("constant velocity after the push", json["baselines"]["constant_velocity"]))
     model = studies.fit("single").path
@@ -109,7 +109,7 @@ def pushes():
     seen, simlpe, plain = restored("--observed=20"), restored("--kind=simlpe"), restored()
     rows.append(cells("physics and `window` bodies, 20 frames observed", seen))
     rows.append(cells("siMLPe, 12 frames observed", simlpe["baselines"]["simlpe"]))
-    rows.append(cells("siMLPe, the frames after those", simlpe["baselines"]["simlpe_after_given"]))
+    rows.append(cells("siMLPe, 12 frames observed, all frames", simlpe["baselines"]["simlpe_all_frames"]))
     rows.append(cells("physics and `rigid` bodies, 1 frame and the push", plain["baselines"]["rigid"]))
     rows.append(cells("physics and `window` bodies, 1 frame and the push", plain))
     return studies.table(["held out, 4 folds", "MPJPE, m", "hipADE, m", "hipFDE, m", "MBLE, m", "FSE, cm a frame"], rows)

@@ -75,12 +75,13 @@ TEST(ParticleTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
 }
 
 TEST(ParticleTrainerTest, EigenForecastsWhatLibTorchDoes) {
-  std::vector<ParticleStructure> structures(6);
+  std::vector<ParticleStructure> structures(7);
   structures[1].cell = ParticleCell::kLstm;
   structures[2].skip = false;
   structures[3].pose_operator = false;
   structures[4].particles = false;
   structures[5].corrected_frames = 5;  // of eight: later ones keep the last correction
+  structures[6].poses = structures[6].skip = false;
   for (size_t i = 0; i < structures.size(); ++i) {
     ParticleTrainingOptions options = QuickParticles();
     options.structure = structures[i];
@@ -151,6 +152,59 @@ TEST(ParticleTrainerTest, TheLikelihoodFindsTheNoiseAndTheSquaredErrorLosesIt) {
     return network.noise.bias.mean();
   };
   EXPECT_LT(mean_log_noise(NoiseLoss::kSquared), mean_log_noise(NoiseLoss::kLikelihood) - 0.1f);
+}
+
+// A random walk of 1 cm a frame: in units of its displacements the best drift is f = 0 and the best
+// noise g = 1, so log g = 0. Trained by Eq. 6 alone, in both readings: as printed, with w drawn,
+// |p - f - g w|^2 = 1 + g^2 in the mean is least without noise.
+TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
+  std::vector<LearntParticles> motions;
+  Random random(6);
+  for (int i = 0; i < 6; ++i) {
+    LearntParticles walk = {0, Trajectories::Zero(12, 80)};
+    for (int t = 1; t < 80; ++t) {
+      walk.motion.col(t) = walk.motion.col(t - 1);
+      for (float& x : walk.motion.col(t)) x += static_cast<float>(0.01 * random.Normal());
+    }
+    motions.push_back(walk);
+  }
+  ParticleTrainingOptions options = QuickParticles();
+  options.structure.poses = options.structure.skip = options.structure.correlated_noise = false;
+  options.together = options.constant_rate = true;
+  options.distance = options.mirrored = options.jitter = 0.0;
+  options.transitions = 1.0;
+  options.steps = 250;
+  options.learning_rate = 3e-3;
+  const auto trained = [&](NoiseLoss loss) {
+    options.noise_loss = loss;
+    ParticleTrainer trainer(FourParticles(), motions, {}, options);
+    TrainingPoint point;
+    while (!trainer.Done()) point = trainer.RunRound();
+    EXPECT_EQ(point.stage, "drift and noise");
+    EXPECT_EQ(point.epoch, options.steps);
+    return trainer.Network();
+  };
+  const auto log_noise = [&](const ParticleNetwork& network) {
+    const std::vector<ObservedMotion> people = {{motions[0].motion.leftCols(12)}};
+    const Eigen::MatrixXf none = Eigen::MatrixXf::Zero(12, 1);
+    ParticleRollout rollout(network, people);
+    rollout.Step(&none);  // log N(f; f, g^2) = -sum (log g + log(2 pi) / 2)
+    return -rollout.log_likelihood()(0) / 12.0f - 0.5f * std::log(2.0f * static_cast<float>(M_PI));
+  };
+  const ParticleNetwork likely = trained(NoiseLoss::kLikelihood);
+  EXPECT_NEAR(log_noise(likely), 0.0f, 0.15f);
+  EXPECT_GT(likely.drift.weights.cwiseAbs().maxCoeff(), 0.0f) << "f is trained too";
+  EXPECT_EQ(likely.noise_mix.size(), 0);
+  EXPECT_LT(log_noise(trained(NoiseLoss::kDrawn)), -1.5f);
+}
+
+// Without --together Eq. 6 trains g alone: whatever it costs, the drift stays as it was.
+TEST(ParticleTrainerTest, OtherwiseItTrainsTheNoiseAlone) {
+  ParticleTrainingOptions options = QuickParticles();
+  options.steps = 0;
+  const ParticleNetwork network = Trained(options);
+  EXPECT_EQ(network.drift.weights.cwiseAbs().maxCoeff(), 0.0f);
+  EXPECT_GT(network.noise.weights.cwiseAbs().maxCoeff(), 0.0f);
 }
 
 // Head and spine are shaken together, with a correlation of 0.8 along every axis.

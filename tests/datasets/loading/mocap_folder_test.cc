@@ -1,6 +1,7 @@
 // Clips of exponential maps: read, refused with line and column, cut into the protocol's windows.
 #include "datasets/loading/mocap_folder.h"
 
+#include "datasets/synthetic/synthetic_clips.h"
 #include "tests/mocap_support.h"
 #include "tests/test_support.h"
 
@@ -120,6 +121,75 @@ TEST_F(MocapFolderTest, WindowsAreCutWhereTheyStart) {
   EXPECT_EQ(windows[1].observed.col(0), motion.col(3));
   EXPECT_EQ(windows[1].future.col(24), motion.col(3 + 49));
   EXPECT_EQ(MakeForecastWindows(mocap, ForecastProtocol::kValidation).size(), 9u);
+}
+
+// Three numbers of translation and 32 maps a line; the right knee bends by a quarter turn about x.
+std::string Human36mClip(int frames) {
+  std::string text;
+  for (int t = 0; t < frames; ++t) {
+    for (int i = 0; i < 99; ++i)
+      text += std::string(i > 0 ? "," : "") + (i == 9 ? "1.5707963" : "0");
+    text += "\n";
+  }
+  return text;
+}
+
+TEST_F(MocapFolderTest, Human36mIsReadByItsSubjects) {
+  for (const char* clip : {"S1/walking_1", "S5/walking_1", "S5/walking_2", "S11/walking_1"}) {
+    WriteText("h36m/" + std::string(clip) + ".txt", Human36mClip(400));
+  }
+  const MocapFolder mocap = Read(Path("h36m"));
+  ASSERT_EQ(mocap.clips.size(), 4u);
+  EXPECT_EQ(mocap.skeleton.layout.num_particles(), 22);
+  EXPECT_EQ(mocap.skeleton.layout.joints, 32);
+  const Eigen::VectorXf pose = mocap.clips[0].motion.col(0);
+  // Knee (joint 2) below its hip at x = -132.9 mm; the shin, turned about x, points along z.
+  EXPECT_LT((pose.segment<3>(0) - Eigen::Vector3f(-0.132949f, -0.442895f, 0)).norm(), 1e-5f);
+  const Eigen::Vector3f ankle(-0.132949f, -0.442895f, -0.454206f);
+  EXPECT_LT((pose.segment<3>(3) - ankle).norm(), 1e-5f);
+  int tested = 0, validation = 0;
+  for (const MocapClip& clip : mocap.clips) {
+    EXPECT_EQ(clip.action, "walking");
+    EXPECT_EQ(clip.is_test, clip.subject == 5);
+    tested += clip.is_test;
+    validation += IsValidationClip(mocap, clip);
+  }
+  EXPECT_EQ(tested, 2);
+  EXPECT_EQ(validation, 1);
+  EXPECT_EQ(LearntMotions(mocap, false).size(), 2u);  // both phases of subject 1
+  EXPECT_EQ(MakeForecastWindows(mocap, ForecastProtocol::kTest).size(), 8u);
+  for (const auto& [first, second] : PairedWindowStarts(200, 167)) {
+    EXPECT_TRUE(first >= 16 && first < 50);
+    EXPECT_EQ(second, 16);  // the only one
+  }
+  EXPECT_TRUE(PairedWindowStarts(200, 166).empty());
+  WriteText("h36m/S5/walking_2.txt", "1,2,3\n");
+  const Result<MocapFolder> read = ReadMocapFolder(Path("h36m"));
+  ASSERT_FALSE(read.ok());
+  EXPECT_TRUE(Contains(read.error().ToString(), "a line has 99 numbers"));
+}
+
+// Written and read back: four actions, in which bones keep their length and a seed its figures.
+TEST_F(MocapFolderTest, SyntheticClipsWalk) {
+  SyntheticClipOptions options;
+  options.clips = 2;
+  options.frames = 200;
+  ASSERT_FALSE(WriteSyntheticClips(Path("made"), options));
+  const MocapFolder made = Read(Path("made"));
+  ASSERT_EQ(made.clips.size(), 12u);
+  const ParticleLayout& layout = made.skeleton.layout;
+  for (const MocapClip& clip : made.clips) {
+    EXPECT_EQ(clip.is_test, clip.name.back() == '3');
+    const Eigen::MatrixXf lengths = BoneLengths(clip.motion, layout);
+    EXPECT_LT((lengths.colwise() - lengths.col(0)).cwiseAbs().maxCoeff(), 1e-5f);
+    // The knee (particle 0) hangs 42 cm below a hip that does not move.
+    EXPECT_NEAR(lengths(0, 0), 0.42f, 1e-5f);
+  }
+  ASSERT_FALSE(WriteSyntheticClips(Path("again"), options));
+  EXPECT_EQ(Read(Path("again")).clips[5].motion, made.clips[5].motion);
+  options.seed = 2;
+  ASSERT_FALSE(WriteSyntheticClips(Path("other"), options));
+  EXPECT_NE(Read(Path("other")).clips[5].motion, made.clips[5].motion);
 }
 
 TEST(RealMocapTest, TheValidationSplitHasTheWindowsOfTheProtocol) {

@@ -46,6 +46,21 @@ TEST(BodyMetricsTest, ABodyMovedAsAWhole) {
   EXPECT_NEAR(score.value[kFse], 1.0, 1e-9);  // 1 cm a frame on the floor: 2 - 2^0 = 1
 }
 
+// Ten frames, of which six are shown; after them the body is 5, 10, 15 and 20 cm off.
+TEST(BodyMetricsTest, ShownFramesDoNotCount) {
+  const BodyRecording recording = Standing(10);
+  std::vector<BodyMotion> moved = recording.bodies;
+  for (int t = 6; t < 10; ++t) moved[0][t] = Placed(StandingPose(), 0.0, {0.05 * (t - 5), 0, 0});
+  const BodyScore all = ScoreBodies(recording, moved), after = ScoreBodies(recording, moved, 6);
+  EXPECT_NEAR(all.value[kMpjpe], 0.5 / 9.0, 1e-12);
+  EXPECT_NEAR(after.value[kMpjpe], 0.125, 1e-12);
+  EXPECT_NEAR(after.value[kHipAde], 0.125, 1e-12);
+  EXPECT_NEAR(after.value[kHipFde], 0.20, 1e-12);
+  EXPECT_NEAR(all.value[kFse], 5.0 * 4.0 / 9.0, 1e-9);  // four of nine ways
+  EXPECT_NEAR(after.value[kFse], 5.0, 1e-9);
+  EXPECT_EQ(after.first_frame, 6);
+}
+
 TEST(BodyMetricsTest, OneJointOffCountsOneInTwentyTwo) {
   const BodyRecording recording = Standing(5);
   std::vector<BodyMotion> bent = recording.bodies;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <numeric>
 
 #include "ident/forecasts/most_probable_path.h"
 #include "tests/models/generators/generator_samples.h"
@@ -58,6 +59,24 @@ TEST_F(SpreadTest, TooNarrowFuturesScoreWorseAndCoverLess) {
   EXPECT_LT(narrow.coverage[2], 0.6);
   EXPECT_GT(narrow.crps[2], right.crps[2]);
   EXPECT_GT(narrow.energy[2], right.energy[2]);
+}
+
+// Of three futures the likeliest is 3 cm off along every joint's x; nearer ones do not count.
+TEST(MostProbableTest, ByHand) {
+  const std::vector<ForecastWindow> windows = {
+      {"walk", Trajectories::Zero(12, 25), Trajectories::Zero(12, kForecastFrames)}};
+  const auto off = [](float x) {
+    Trajectories motion = Trajectories::Zero(12, kForecastFrames);
+    for (int i = 0; i < 12; i += 3) motion.row(i).setConstant(x);
+    return motion;
+  };
+  const std::vector<std::vector<SampledFuture>> samples = {
+      {{off(0.01f), -5.0}, {off(0.03f), 2.0}, {off(0.02f), 1.0}}};
+  ParticleLayout layout = FourParticles();
+  const double counted = std::accumulate(layout.weights.begin(), layout.weights.end(), 0.0);
+  const ForecastSpread spread = SpreadOf(windows, samples, layout);
+  EXPECT_NEAR(spread.mean.probable[4], 0.03 * counted / layout.joints, 1e-7);
+  EXPECT_NEAR(spread.actions.at("walk").best[4], 0.01 * counted / layout.joints, 1e-7);
 }
 
 TEST_F(SpreadTest, StandsBesideTheErrors) {

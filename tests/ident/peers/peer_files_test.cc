@@ -47,7 +47,7 @@ class HoldingPeer : public Peer {
   }
 };
 
-TEST(PeerScoresTest, GivenFramesCountAsRightAndOnlyInTheFirstScore) {
+TEST(PeerScoresTest, GivenFramesCountOnlyWhereAllFramesDo) {
   const BodyRecording recording = Walking(2, 30);
   BodyScores scores;
   ScorePeer(HoldingPeer(), recording, &scores);
@@ -57,8 +57,8 @@ TEST(PeerScoresTest, GivenFramesCountAsRightAndOnlyInTheFirstScore) {
       sum += (body[t] - body[9]).col(0).norm() / 2.0;
     }
   }
-  EXPECT_NEAR(scores["holding"][0].value[kHipAde], sum / 29.0, 1e-12);
-  EXPECT_NEAR(scores["holding_after_given"][0].value[kHipAde], sum / 20.0, 1e-12);
+  EXPECT_NEAR(scores["holding"][0].value[kHipAde], sum / 20.0, 1e-12);
+  EXPECT_NEAR(scores["holding_all_frames"][0].value[kHipAde], sum / 29.0, 1e-12);
 }
 
 // 59 frames at 120 Hz are 30 at the peers' rate, of which 10 last for 20 of the recording's. Of
@@ -66,15 +66,15 @@ TEST(PeerScoresTest, GivenFramesCountAsRightAndOnlyInTheFirstScore) {
 TEST(PeerScoresTest, OtherRatesAreResampled) {
   BodyScores scores;
   ScorePeer(HoldingPeer(), Walking(1, 59, 1.0 / 120.0), &scores);
-  EXPECT_NEAR(scores["holding_after_given"][0].value[kHipAde] * 39.0,
-              scores["holding"][0].value[kHipAde] * 58.0, 0.02);
+  EXPECT_NEAR(scores["holding"][0].value[kHipAde] * 39.0,
+              scores["holding_all_frames"][0].value[kHipAde] * 58.0, 0.02);
   EXPECT_EQ(AtPeerRate(WalkingGroup(1, 59)[0], 1.0 / 120.0).size(), 30u);
 }
 
 TEST(PeerScoresTest, ARecordingThatIsTooShortFailsByName) {
   BodyScores scores;
   ScorePeer(MrtPeer(RandomMrt()), Walking(2, 21), &scores);
-  for (const char* name : {"mrt", "mrt_after_given"}) {
+  for (const char* name : {"mrt", "mrt_all_frames"}) {
     EXPECT_EQ(scores[name][0].id, "a");
     EXPECT_TRUE(Contains(scores[name][0].failure, "shorter than the 20 frames that mrt is given"));
   }

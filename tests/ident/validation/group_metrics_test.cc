@@ -56,12 +56,14 @@ TEST(GroupMetricsTest, OnsetsByHand) {
 }
 
 TEST(GroupMetricsTest, TheRecordingsThemselvesScoreBest) {
-  const std::vector<GroupMotion> groups = {Walkers(4, 10), Walkers(6, 20)};
+  const std::vector<GroupMotion> groups = {Walkers(0, 0), Walkers(0, 0)};
   const GroupMetrics metrics = CompareGroups(groups, groups);
   EXPECT_EQ(*metrics.social.sscp, 0.0);
-  EXPECT_EQ(*metrics.social.sscp_changes, 0.0);
   EXPECT_NEAR(*metrics.social.ndms, 1.0, 1e-9);
-  const nlohmann::ordered_json json = ToJson(metrics);
+  const std::vector<GroupMotion> later = {Walkers(4, 10), Walkers(6, 20)};
+  const GroupMetrics in_turn = CompareGroups(later, later);
+  EXPECT_EQ(*in_turn.social.sscp_changes, 0.0);
+  const nlohmann::ordered_json json = ToJson(in_turn);
   EXPECT_EQ(json["pushed_named"], 2);
   EXPECT_EQ(json["onset_order"], 1.0);
   EXPECT_EQ(json["onset_error_s"], 0.0);
@@ -78,6 +80,36 @@ TEST(GroupMetricsTest, SecondsAreJudgedEachForItself) {
   // q = (1/2, 1/2) has the distance 0.4645.
   EXPECT_NEAR(*seconds[0].sscp, 0.4645, 0.02);
   EXPECT_GT(*seconds[1].sscp, 0.3);
+}
+
+// People stand for 30 frames, which are shown, and then go; the forecast goes on standing.
+TEST(GroupMetricsTest, ShownFramesDoNotCount) {
+  GroupMotion recorded = Walkers(29, 29, 60), still = Walkers(100, 100, 60);
+  const double flattered = *CompareStates({recorded}, {still}).sscp;
+  recorded.first_frame = still.first_frame = 30;
+  // Recorded: steps alone; forecast: standing alone. Disjoint statistics are sqrt(ln 2) apart.
+  EXPECT_NEAR(*CompareStates({recorded}, {still}).sscp, std::sqrt(std::log(2.0)), 1e-9);
+  EXPECT_LT(flattered, 0.8);
+  // Of 31 frames from the last shown one on there are 12 words. None of them stands, so that
+  // standing finds nothing like itself; among all frames it finds the shown ones, 1/2 a joint.
+  EXPECT_LT(*CompareWords({recorded}, {still}), 1e-4);
+  recorded.first_frame = 1;
+  EXPECT_NEAR(*CompareWords({recorded}, {still}), 0.5, 1e-4);
+}
+
+// The first was shown to begin; whether the second does, and when, was not.
+TEST(GroupMetricsTest, OnsetsThatWereShownDoNotCount) {
+  GroupMotion predicted = Walkers(4, 12);
+  predicted.first_frame = 10;
+  OnsetMetrics metrics;
+  AddOnsets(Walkers(4, 10), predicted, &metrics);
+  EXPECT_EQ(metrics.recordings, 0);  // who moves first was shown
+  EXPECT_EQ(metrics.pairs, 0);
+  EXPECT_EQ(metrics.movers, 1);
+  EXPECT_NEAR(metrics.error_sum, 2.0 / 60.0, 1e-12);
+  AddOnsets(Walkers(11, 20), predicted, &metrics);  // nobody was shown to begin
+  EXPECT_EQ(metrics.recordings, 1);
+  EXPECT_EQ(metrics.pairs, 1);
 }
 
 TEST(GroupMetricsTest, WhatIsNotDefinedHasNoNumber) {

@@ -31,6 +31,16 @@ TEST(MotionWordsTest, ScoresByHand) {
   EXPECT_EQ(words.Compare(Gliding(0.02, 19)).words, 0);
 }
 
+// Two joints at rest go nowhere: u.v = 0, both floored to 1e-7 m, so (0 + 1) / 2 * 1.
+TEST(MotionWordsTest, RestBesideRestIsNeitherAlikeNorOpposite) {
+  const MotionWords words({Gliding(0.0, 20)});
+  EXPECT_NEAR(words.Compare(Gliding(0.0, 20)).sum, 0.5, 1e-12);
+  // One of 17 joints moves by 1 cm a frame, and is unlike what rests.
+  BodyMotion nods = Gliding(0.0, 20);
+  for (int t = 0; t < 20; ++t) nods[t](2, kWordJoints[0]) += 0.01 * t;
+  EXPECT_NEAR(words.Compare(nods).sum, 0.5 * 16.0 / 17.0, 1e-5);
+}
+
 // The search by means and axes against looking at every word.
 TEST(MotionWordsTest, TheNearestIsExact) {
   Random random(3);

@@ -1,0 +1,91 @@
+"""SDE (Lyu et al., ACM MM 2021) as published, pushid-train-generator --published=sde (models/generators/README.md).
+
+table2   its Table 2's layout: errors per action at five horizons, both readings of Eq. 6, beside pushid's own
+table3   its Table 3's layout: what is left out, one at a time, of what is published
+fig5     its Fig. 5 without a given end: the most probable of sampled futures, by action
+times    how long the commands of these tables took, one core
+
+PUSHID_MOCAP is a folder of clips (default ../shared/cmu_mocap beside the source): of CMU, of Human3.6M with a folder
+per subject, or made by pushid-simulate --clips. Windows are those of --protocol=test where clips are kept apart for
+it, otherwise of the validation clips. PUSHID_SDE_STEPS is the number of training steps (default 1200).
+"""
+import os
+import sys
+
+import studies
+from generator import CLIPS, HORIZONS, IN_MS, MOCAP, by_horizon, train as train_own
+from studies import number
+
+STEPS = os.environ.get("PUSHID_SDE_STEPS", "1200")
+HAS_TEST = any(os.path.isdir(os.path.join(MOCAP, place)) for place in ("test", "S5"))
+PROTOCOL = f"--protocol={'test' if HAS_TEST else 'validation'}"
+SAMPLES = 39
+NAMED = ["walking", "eating", "smoking", "discussion"]  # Table 3's; all actions of a folder that lacks them
+ABLATIONS = [("as published", []),
+             ("with the determinant, `--noise_loss=likelihood`", ["--noise_loss=likelihood"]),
+             ("without particles, `--particles=false --poses`", ["--particles=false", "--poses"]),
+             ("without noise and Eq. 6, `--together=false --noise_steps=0`", ["--together=false", "--noise_steps=0"]),
+             ("without bone lengths (Eq. 11), `--bone_weight=0`", ["--bone_weight=0"]),
+             ("without the critic (Eq. 12), `--critic_weight=0`", ["--critic_weight=0"])]
+
+
+def train(*flags):
+    if not os.path.isdir(MOCAP):
+        sys.exit(f"{MOCAP} holds no clips: PUSHID_MOCAP names their folder")
+    return studies.run("pushid-train-generator", "--published=sde", *CLIPS, f"--steps={STEPS}", *flags, out="out")
+
+
+def evaluate(model, *flags):
+    return studies.run("pushid-generate", "--published=sde", f"--model={model}", *CLIPS, PROTOCOL, *flags)
+
+
+def table2():
+    own = studies.run("pushid-generate", f"--model={train_own()}", *CLIPS, PROTOCOL).json
+    published = [("as printed", evaluate(train().path).json),
+                 ("with the determinant", evaluate(train("--noise_loss=likelihood").path).json)]
+    rows = []
+    for action in [*sorted(own["actions"]), None]:
+        of = (lambda json: json["actions"][action]) if action else (lambda json: json["mean"])
+        name = action or "**mean of actions**"
+        rows.append([name, "last pose held", *by_horizon("", of(own["baselines"]["zero_velocity"])["MPJPE_mm"])[1:]])
+        for reading, json in published:
+            rows.append([name, f"SDE, {reading}", *by_horizon("", of(json)["MPJPE_mm"])[1:]])
+        rows.append([name, "pushid's own", *by_horizon("", of(own)["MPJPE_mm"])[1:]])
+    return studies.table([f"{PROTOCOL}; mean joint error, mm", f"{STEPS} steps", *IN_MS], rows)
+
+
+def table3():
+    scored = [(name, evaluate(train(*flags).path).json["actions"]) for name, flags in ABLATIONS]
+    actions = [a for a in NAMED if a in scored[0][1]]
+    if len(actions) < len(NAMED):
+        actions = sorted(scored[0][1])
+    rows = []
+    for name, errors in scored:
+        means = {h: sum(errors[a]["MPJPE_mm"][h] for a in actions) / len(actions) for h in HORIZONS}
+        rows.append([name, *(f"{number(errors[a]['MPJPE_mm'][HORIZONS[-1]])}" for a in actions),
+                     *(number(means[h]) for h in HORIZONS)])
+    return studies.table([f"{STEPS} steps; mean joint error, mm", *(f"{a}, 1000 ms" for a in actions),
+                          *(f"mean, {h}" for h in IN_MS)], rows)
+
+
+def fig5():
+    json = evaluate(train("--noise_loss=likelihood").path, f"--samples={SAMPLES}").json
+    rows = []
+    for action in [*sorted(json["actions"]), None]:
+        scores = json["actions"][action] if action else json["mean"]
+        rows.append([action or "**mean of actions**", *(number(scores[key][h]) for key in (
+            "MPJPE_mm", "most_probable_MPJPE_mm", "best_of_n_MPJPE_mm") for h in (HORIZONS[0], HORIZONS[-1]))])
+    return studies.table([f"{SAMPLES} futures; mean joint error, mm", *(
+        f"{what}, {h} ms" for what in ("path without noise", "most probable", "best") for h in (HORIZONS[0], HORIZONS[-1]))],
+                         rows)
+
+
+def times():
+    rows = [[f"`pushid-train-generator --published=sde --steps={STEPS} {' '.join(flags)}`".replace(" `", "`"),
+             f"{train(*flags).seconds:.0f}"] for _, flags in ABLATIONS]
+    rows.append([f"`pushid-generate --published=sde {PROTOCOL}`", f"{evaluate(train().path).seconds:.1f}"])
+    return studies.table(["command", "s"], rows)
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"table2": table2, "table3": table3, "fig5": fig5, "times": times})
