@@ -20,10 +20,10 @@ constexpr char kSkeletonFile[] = "skeleton.json", kTestFolder[] = "test",
 Result<std::string> FindSkeleton(const std::string& folder) {
   const fs::path place = fs::path(folder).lexically_normal();
   std::error_code ignored;
-  for (const fs::path& path : {place / kSkeletonFile, place / ".." / kSkeletonFile}) {
-    if (fs::exists(path, ignored)) return path.string();
-  }
+  const fs::path here = place / kSkeletonFile, above = place / ".." / kSkeletonFile;
+  if (fs::exists(here, ignored)) return here.string();
   if (fs::exists(place / kTestSubjectFolder, ignored)) return std::string();  // Human3.6M's
+  if (fs::exists(above, ignored)) return above.string();
   return Error{std::string("there is no ") + kSkeletonFile +
                    " here or one folder higher; give a folder of clips by --folder",
                folder};

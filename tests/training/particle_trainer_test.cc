@@ -160,7 +160,7 @@ TEST(ParticleTrainerTest, TheLikelihoodFindsTheNoiseAndTheSquaredErrorLosesIt) {
 TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
   std::vector<LearntParticles> motions;
   Random random(6);
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 60; ++i) {  // too many to be learned by heart
     LearntParticles walk = {0, Trajectories::Zero(12, 80)};
     for (int t = 1; t < 80; ++t) {
       walk.motion.col(t) = walk.motion.col(t - 1);
@@ -173,7 +173,7 @@ TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
   options.together = options.constant_rate = true;
   options.distance = options.mirrored = options.jitter = 0.0;
   options.transitions = 1.0;
-  options.steps = 250;
+  options.steps = 100;
   options.learning_rate = 3e-3;
   const auto trained = [&](NoiseLoss loss) {
     options.noise_loss = loss;
@@ -185,7 +185,7 @@ TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
     return trainer.Network();
   };
   const auto log_noise = [&](const ParticleNetwork& network) {
-    const std::vector<ObservedMotion> people = {{motions[0].motion.leftCols(12)}};
+    const std::vector<ObservedMotion> people = {{motions[7].motion.middleCols(20, 12)}};
     const Eigen::MatrixXf none = Eigen::MatrixXf::Zero(12, 1);
     ParticleRollout rollout(network, people);
     rollout.Step(&none);  // log N(f; f, g^2) = -sum (log g + log(2 pi) / 2)
@@ -195,7 +195,7 @@ TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
   EXPECT_NEAR(log_noise(likely), 0.0f, 0.15f);
   EXPECT_GT(likely.drift.weights.cwiseAbs().maxCoeff(), 0.0f) << "f is trained too";
   EXPECT_EQ(likely.noise_mix.size(), 0);
-  EXPECT_LT(log_noise(trained(NoiseLoss::kDrawn)), -1.5f);
+  EXPECT_LT(log_noise(trained(NoiseLoss::kDrawn)), -1.2f);
 }
 
 // Without --together Eq. 6 trains g alone: whatever it costs, the drift stays as it was.
