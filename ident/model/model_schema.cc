@@ -5,8 +5,8 @@
 namespace pushid {
 
 nlohmann::ordered_json ModelSchema() {
-  using Json = nlohmann::ordered_json;
-  Json fields, definitions = Json::object();
+  using Ordered = nlohmann::ordered_json;
+  Ordered fields, definitions = Ordered::object();
   SchemaArchive archive(&fields, &definitions);
   archive.Add("schema", {{"const", kModelSchema}});
   archive.Add("format", {{"const", "pushid model"}});
@@ -14,16 +14,16 @@ nlohmann::ordered_json ModelSchema() {
   FittedModel model;
   ModelFields(archive, model, RunInfo{});
   // What is written by lists of its own.
-  Json& properties = fields["properties"];
-  const Json number = {{"type", "number"}};
+  Ordered& properties = fields["properties"];
+  const Ordered number = {{"type", "number"}};
   properties["model"] = {{"type", "object"}, {"additionalProperties", true}};
   properties["values"] = {{"type", "object"}, {"additionalProperties", number}};
   properties["table"] = json_schema::ListOf({{"type", "object"},
                                              {"required", {"name", "unit", "nominal", "bounds"}},
                                              {"additionalProperties", true}});
-  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                 {"$id", "urn:pushid:model:1"},
-                 {"title", "A fitted model: pushid-fit --model_out"}};
+  Ordered schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                    {"$id", "urn:pushid:model:1"},
+                    {"title", "A fitted model: pushid-fit --model_out"}};
   schema.update(fields);
   schema["$defs"] = definitions;
   return schema;

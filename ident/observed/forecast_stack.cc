@@ -129,11 +129,6 @@ Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed) {
           std::log(speed + kLeastSpeed)};
 }
 
-std::array<Eigen::Vector3d, kNumForecasters> ForecastStack::DefaultLogits() {
-  return {Eigen::Vector3d(0.0, -1.0, 0.5), Eigen::Vector3d(0.0, 1.0, -0.5),
-          Eigen::Vector3d(-2.0, 0.5, 0.0), Eigen::Vector3d(-2.0, 0.5, -0.5)};
-}
-
 HipDistribution::HipDistribution(const ForecastStack& stack, const Eigen::Matrix3d& axes,
                                  HipPaths centre, const std::vector<Vector3<double>>& from,
                                  double seconds, double dt)

@@ -1,7 +1,7 @@
 // ident: the JSON Schema (draft 2020-12) of a list of fields (json_archive.h), so that it cannot
 // say anything else than what is written.
 //
-//   Json definitions, object;
+//   Ordered definitions, object;
 //   SchemaArchive archive(&object, &definitions);
 //   Fields(archive, value);  // a default value: nothing of it is read
 //
@@ -29,11 +29,13 @@ nlohmann::ordered_json SchemaOf(nlohmann::ordered_json* definitions);
 
 class SchemaArchive {
  public:
-  using Json = nlohmann::ordered_json;
+  using Ordered = nlohmann::ordered_json;
   static constexpr bool kReads = false;
 
-  SchemaArchive(Json* object, Json* definitions) : object_(*object), definitions_(*definitions) {
-    object_ = {{"type", "object"}, {"required", Json::array()}, {"properties", Json::object()}};
+  SchemaArchive(Ordered* object, Ordered* definitions)
+      : object_(*object), definitions_(*definitions) {
+    object_ = {
+        {"type", "object"}, {"required", Ordered::array()}, {"properties", Ordered::object()}};
   }
 
   // An entry that the writer of a default value would leave out is optional.
@@ -41,7 +43,7 @@ class SchemaArchive {
     if (!present) optional_.insert(key);
     return true;
   }
-  void Add(const char* key, const Json& schema) {
+  void Add(const char* key, const Ordered& schema) {
     object_["properties"][key] = schema;
     if (optional_.count(key) == 0) object_["required"].push_back(key);
   }
@@ -67,7 +69,7 @@ class SchemaArchive {
   }
   template <typename Function>
   void Group(const char* key, Function fields) {
-    Json inner;
+    Ordered inner;
     SchemaArchive archive(&inner, &definitions_);
     fields(archive);
     Add(key, inner);
@@ -75,7 +77,7 @@ class SchemaArchive {
   template <typename Function, typename... Columns>
   void Rows(const char* key, std::tuple<Columns&...> columns, Function fields) {
     std::apply([](auto&... column) { (column.resize(1), ...); }, columns);
-    Json row;
+    Ordered row;
     SchemaArchive archive(&row, &definitions_);
     fields(archive, size_t{0});
     Add(key, {{"type", "array"}, {"items", row}});
@@ -91,8 +93,8 @@ class SchemaArchive {
   void Check(bool, const char*) const {}
 
  private:
-  Json& object_;
-  Json& definitions_;
+  Ordered& object_;
+  Ordered& definitions_;
   std::set<std::string> optional_;
 };
 
@@ -120,7 +122,7 @@ inline nlohmann::ordered_json ListOf(const nlohmann::ordered_json& items) {
 
 template <typename T>
 nlohmann::ordered_json SchemaOf(nlohmann::ordered_json* definitions) {
-  using Json = nlohmann::ordered_json;
+  using Ordered = nlohmann::ordered_json;
   if constexpr (std::is_same_v<T, double>) {
     (*definitions)["number"] = {
         {"anyOf", {{{"type", "number"}}, {{"enum", {"infinity", "-infinity", "nan"}}}}}};
@@ -131,8 +133,8 @@ nlohmann::ordered_json SchemaOf(nlohmann::ordered_json* definitions) {
     return {{"type", "integer"}};
   } else if constexpr (std::is_same_v<T, std::string>) {
     return {{"type", "string"}};
-  } else if constexpr (std::is_same_v<T, Json>) {
-    return Json::object();
+  } else if constexpr (std::is_same_v<T, Ordered>) {
+    return Ordered::object();
   } else if constexpr (std::is_enum_v<T>) {
     return {{"enum", AllNames<T>()}};
   } else if constexpr (json_archive::IsVector<T>::value) {
@@ -141,14 +143,14 @@ nlohmann::ordered_json SchemaOf(nlohmann::ordered_json* definitions) {
     return {{"type", "object"},
             {"additionalProperties", SchemaOf<typename T::mapped_type>(definitions)}};
   } else if constexpr (json_archive::kIsMatrix<T>) {
-    const Json row = json_schema::ListOf(SchemaOf<double>(definitions));
+    const Ordered row = json_schema::ListOf(SchemaOf<double>(definitions));
     return T::ColsAtCompileTime == 1 ? row : json_schema::ListOf(row);
   } else {
     const std::string name = json_schema::TypeName<T>();
     if (!definitions->contains(name)) {
-      (*definitions)[name] = Json::object();  // for types that hold themselves
+      (*definitions)[name] = Ordered::object();  // for types that hold themselves
       T value{};
-      Json object;
+      Ordered object;
       SchemaArchive archive(&object, definitions);
       Fields(archive, value);
       (*definitions)[name] = object;
