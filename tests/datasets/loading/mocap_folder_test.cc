@@ -145,7 +145,7 @@ TEST_F(MocapFolderTest, Human36mIsReadByItsSubjects) {
   const Eigen::VectorXf pose = mocap.clips[0].motion.col(0);
   // Knee (joint 2) below its hip at x = -132.9 mm; the shin, turned about x, points along z.
   EXPECT_LT((pose.segment<3>(0) - Eigen::Vector3f(-0.132949f, -0.442895f, 0)).norm(), 1e-5f);
-  const Eigen::Vector3f ankle(-0.132949f, -0.442895f, -0.454206f);
+  const Eigen::Vector3f ankle(-0.132949f, -0.442895f, 0.454206f);  // row vectors: x R
   EXPECT_LT((pose.segment<3>(3) - ankle).norm(), 1e-5f);
   int tested = 0, validation = 0;
   for (const MocapClip& clip : mocap.clips) {
