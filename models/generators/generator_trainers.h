@@ -86,9 +86,7 @@ class ParticleTrainer : public Trainer {
 //
 //   |x - x_0| + 2 |joint - joint_0| in m + 2 |the same differences of frames|, in means
 //
-// (SDM's Eq. 4 is the first term alone; the weights of the others are options)
-//
-//
+// (SDM's Eq. 4 is the first term alone; the weights of the others are options),
 // where observed frames weigh 0.1 and those after the recording's end nothing. Into some groups
 // people are put who stand far from all others and do nothing: from groups alone the network cannot
 // know that a push does not reach everybody. AdamW, a warm-up, the rate down to a fiftieth by a
