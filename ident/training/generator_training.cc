@@ -80,7 +80,7 @@ std::string KeyOf(const GeneratorSamples& samples, const DiffusionTrainingOption
     }
   }
   return Joined(
-      "diffusion 2 " + NameOf(o.structure.pooling) + " " + NameOf(o.structure.join) + " " +
+      "diffusion 3 " + NameOf(o.structure.pooling) + " " + NameOf(o.structure.join) + " " +
           NameOf(o.structure.frame),
       {double(o.structure.pendulum), double(o.steps), double(o.groups), double(o.people_alone),
        double(o.warm_up), o.learning_rate, o.weight_decay, o.clip, o.averaging, o.dropout,

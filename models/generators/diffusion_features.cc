@@ -9,7 +9,8 @@ namespace {
 
 constexpr float kLeastHipScale = 0.05f, kLeastJointScale = 0.02f;  // m
 constexpr float kForceUnit = 10.0f;                                // N/kg
-constexpr float kMassUnit = 80.0f;                                 // kg
+constexpr float kUsualMass = 80.0f, kUsualHip = 1.0f;              // kg, m
+constexpr float kFirstPoseShare = 0.5f;
 constexpr float kFramesUnit = 15.0f;
 
 using Columns = Eigen::Matrix3Xf;
@@ -114,6 +115,17 @@ JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups
   return scales;
 }
 
+Scaling FirstPoseScalingOf(const std::vector<std::vector<ObservedMotion>>& groups) {
+  Eigen::MatrixXf poses(kFirstPoseRows, 0);
+  for (const auto& group : groups) {
+    for (const ObservedMotion& person : group) {
+      poses.conservativeResize(Eigen::NoChange, poses.cols() + 1);
+      poses.rightCols(1) = FromHip(person.frames.leftCols(1)).bottomRows(kFirstPoseRows);
+    }
+  }
+  return ScalingOf(poses, kLeastJointScale);
+}
+
 MotionScales OwnFrameScalesOf(const std::vector<std::vector<ObservedMotion>>& groups) {
   constexpr double kLeastSpread = 1e-3;  // m, or of a cosine: rows that hardly move
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(kOwnFrameRows), squares = sum;
@@ -189,8 +201,9 @@ GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const MotionS
     }
     const Trajectories first = FromHip(person.frames.leftCols(1));
     const Eigen::Vector2f from_source = person.place - source;
-    features.statics.col(n) << first.bottomRows(kMotionRows - 3), from_source, first(2, 0),
-        person.mass / kMassUnit, IsPushed(person) ? 1.0f : 0.0f, impulse, pushed_frames;
+    const Eigen::MatrixXf pose = scales.first_pose.Scaled(first.bottomRows(kFirstPoseRows));
+    features.statics.col(n) << kFirstPoseShare * pose, from_source, first(2, 0) - kUsualHip,
+        person.mass / kUsualMass - 1.0f, IsPushed(person) ? 1.0f : 0.0f, impulse, pushed_frames;
     features.places.col(n) = person.place;
   }
   return features;

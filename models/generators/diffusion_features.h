@@ -6,8 +6,9 @@
 //             cosine and sine of where they face, each to zero mean and unit variance
 //   given     a row of each: the observed motion (0 where nothing was seen), 1 where it was, the
 //             push on the group over 10 m of the pushed, and where physics have the hip
-//   statics   of a person: joints seen from the hip at frame 0, place seen from the pushed,
-//             height of the hip, mass, whether pushed, the push's impulse per mass, its length
+//   statics   of a person: joints seen from the hip at frame 0, to half of unit variance, place
+//             seen from the pushed, height of the hip above 1 m, mass over 80 kg less 1, whether
+//             pushed, the push's impulse per mass, its length
 //
 // Columns of motion and given: the frames of the first person, then those of the next.
 #pragma once
@@ -16,12 +17,14 @@
 
 #include "models/generators/motion_generator.h"
 #include "models/restoration/body.h"
+#include "models/restoration/dense_network.h"
 
 namespace pushid {
 
 inline constexpr int kMotionRows = 3 * kBodyJoints;
 inline constexpr int kPushRows = 4;
-inline constexpr int kStaticRows = 3 * (kBodyJoints - 1) + 2 + 1 + 1 + 1 + kPushRows + 1;
+inline constexpr int kFirstPoseRows = 3 * (kBodyJoints - 1);
+inline constexpr int kStaticRows = kFirstPoseRows + 2 + 1 + 1 + 1 + kPushRows + 1;
 inline constexpr int kOwnFrameRows = kMotionRows + 2;
 inline int GivenRows(bool pendulum, int motion_rows = kMotionRows) {
   return motion_rows + 1 + kPushRows + (pendulum ? 3 : 0);
@@ -39,11 +42,15 @@ struct MotionScales {
   MotionScales(const Eigen::MatrixBase<OfJoints>& of_joints) : joints(of_joints) {}
 
   JointScales joints = JointScales::Ones();
+  // Of joints seen from the hip at frame 0.
+  Scaling first_pose = {Eigen::VectorXf::Zero(kFirstPoseRows),
+                        Eigen::VectorXf::Ones(kFirstPoseRows)};
   Eigen::VectorXf mean, spread;  // of people's own frames, kOwnFrameRows; otherwise empty
 
   bool own_frames() const { return mean.size() > 0; }
   int rows() const { return own_frames() ? kOwnFrameRows : kMotionRows; }
 };
+Scaling FirstPoseScalingOf(const std::vector<std::vector<ObservedMotion>>& groups);
 // Mean and standard deviation of every row over all frames and people of the groups.
 MotionScales OwnFrameScalesOf(const std::vector<std::vector<ObservedMotion>>& groups);
 

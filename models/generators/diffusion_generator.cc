@@ -29,6 +29,8 @@ void Draw(const std::vector<int>& order, const NormalSource& normal, Eigen::Matr
   }
 }
 
+constexpr double kLastTime = 1.0;  // of the last estimate: hardly any noise is left
+
 Pose PoseOf(const Trajectories& frames, Eigen::Index t) {
   return frames.col(t).cast<double>().reshaped(3, kBodyJoints);
 }
@@ -76,7 +78,7 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
   Draw(order, normal, &fresh);
   Eigen::MatrixXf noisy = fresh;
   for (int k = 0; k < options_.steps; ++k) {
-    const double step = static_cast<double>(kDiffusionTime) / options_.steps;
+    const double step = (kDiffusionTime - kLastTime) / std::max(1, options_.steps - 1);
     const double t = kDiffusionTime - k * step;
     const double u = k + 1 == options_.steps ? 0.0 : t - step;
     estimate = denoise.Estimate(noisy, t);

@@ -45,31 +45,39 @@ class DiffusionModule : public torch::nn::Module {
  public:
   DiffusionModule(const DiffusionStructure& structure, double dropout)
       : structure_(structure), dropout_(dropout) {
-    first_static_ = Linear("static0", kStaticRows, kStaticWidth);
-    second_static_ = Linear("static1", kStaticWidth, kStaticWidth);
+    first_time_ = Linear("time0", kTimeWidth, kConditionWidth);
+    second_time_ = Linear("time1", kConditionWidth, kConditionWidth);
+    first_static_ = Linear("static0", kStaticRows, kConditionWidth);
+    second_static_ = Linear("static1", kConditionWidth, kConditionWidth);
     for (int b = 0; b < kDiffusionBlocks; ++b) AddBlock(b);
-    for (int b = 0; b <= kDiffusionLevels; ++b) {
-      if (structure.PoolsAfter(b)) AddPool(b);
+    for (int b = 0; b < kDiffusionLevels; ++b) {
+      if (structure.Attends() && structure.PoolsAfter(b)) AddPool(b);
     }
-    out_ = Convolution("out", kTaps, 1, kDownWidths[0], structure.NumMotion(), 1.0);
-    direct_ = Convolution("direct", 1, 1, structure.NumInputs(), structure.NumMotion(), 1.0);
+    // It begins with the mean motion for everybody, not with noise to be unlearned.
+    out_ = Convolution("out", kTaps, 1, kDownWidths[0], structure.NumMotion(), 0.0);
+    direct_ = Convolution("direct", 1, 1, structure.NumInputs(), structure.NumMotion(), 0.0);
   }
 
   // time: [person, time feature]
   torch::Tensor Estimate(const torch::Tensor& noisy, const torch::Tensor& time,
                          const DiffusionBatch& batch) {
     const torch::Tensor input = torch::cat({noisy, batch.given}, 1);
-    const torch::Tensor hidden =
-        torch::dropout(torch::silu(first_static_->forward(batch.statics)), dropout_, is_training());
-    const torch::Tensor conditions = torch::cat({time, second_static_->forward(hidden)}, 1);
-    std::vector<torch::Tensor> levels = {input};
+    const auto dropped = [this](const torch::Tensor& x) {
+      return torch::dropout(x, dropout_, is_training());
+    };
+    const torch::Tensor hidden = dropped(torch::silu(first_static_->forward(batch.statics)));
+    const torch::Tensor of_time = second_time_->forward(torch::silu(first_time_->forward(time)));
+    const torch::Tensor conditions = torch::silu(of_time + second_static_->forward(hidden));
+    std::vector<torch::Tensor> levels;
     for (int b = 0; b < kDiffusionLevels; ++b) {
-      levels.push_back(Pooled(b, Apply(b, levels.back(), conditions), batch));
+      levels.push_back(Apply(b, b == 0 ? input : levels.back(), conditions));
     }
+    constexpr int kMiddle = kDiffusionLevels;
     torch::Tensor at =
-        Pooled(kDiffusionLevels, Apply(kDiffusionLevels, levels.back(), conditions), batch);
-    for (int b = kDiffusionLevels + 1; b < kDiffusionBlocks; ++b) {
-      at = Apply(b, torch::cat({Doubled(at), levels[kDiffusionBlocks - b]}, 1), conditions);
+        Apply(kMiddle, dropped(Pooled(kMiddle - 1, levels.back(), batch)), conditions);
+    for (int level = kMiddle - 2; level >= 0; --level) {
+      const torch::Tensor seen = Pooled(level, levels[level], batch);
+      at = Apply(kDiffusionBlocks - 1 - level, torch::cat({Doubled(at), seen}, 1), conditions);
     }
     return (*out_)(Doubled(at)) + (*direct_)(input);
   }
@@ -78,6 +86,8 @@ class DiffusionModule : public torch::nn::Module {
     DiffusionNetwork network;
     network.structure = structure_;
     network.scales = scales;
+    network.first_time = ToLayer(first_time_);
+    network.second_time = ToLayer(second_time_);
     network.first_static = ToLayer(first_static_);
     network.second_static = ToLayer(second_static_);
     for (const Block& block : blocks_) {
@@ -87,8 +97,7 @@ class DiffusionModule : public torch::nn::Module {
     for (const Pool& pool : pools_) {
       network.pools.emplace_back();
       DiffusionPool& to = network.pools.back();
-      for (const auto& [layer, from] : {std::pair(&to.join, pool.join),
-                                        {&to.query, pool.query},
+      for (const auto& [layer, from] : {std::pair(&to.query, pool.query),
                                         {&to.key, pool.key},
                                         {&to.value, pool.value},
                                         {&to.mixed, pool.mixed}}) {
@@ -107,7 +116,7 @@ class DiffusionModule : public torch::nn::Module {
     torch::nn::Linear film{nullptr};
   };
   struct Pool {
-    ConvolutionPointer join, query, key, value, mixed;
+    ConvolutionPointer query, key, value, mixed;
   };
   static constexpr double kSmallStart = 0.3;  // of what is added to a block's way around
 
@@ -128,7 +137,7 @@ class DiffusionModule : public torch::nn::Module {
     block.first = Convolution(name + "_first", kTaps, stride, widths.in, widths.out, 1.0);
     block.second = Convolution(name + "_second", kTaps, 1, widths.out, widths.out, kSmallStart);
     block.skip = Convolution(name + "_skip", 1, stride, widths.in, widths.out, 1.0);
-    block.film = Linear(name + "_film", kTimeWidth + kStaticWidth, 2 * widths.out);
+    block.film = Linear(name + "_film", kConditionWidth, 2 * widths.out);
     torch::nn::init::zeros_(block.film->weight);
     torch::nn::init::zeros_(block.film->bias);
     blocks_.push_back(block);
@@ -137,14 +146,8 @@ class DiffusionModule : public torch::nn::Module {
     const int width = WidthsOf(block, structure_).out, query = QueryWidth(structure_, width);
     const std::string name = "pool" + std::to_string(block);
     Pool pool;
-    if (structure_.join == SocialJoin::kLevels) {
-      pool.join =
-          Convolution(name + "_join", 1, 1, structure_.NumViews() * width, width, kSmallStart);
-    }
-    if (structure_.Attends()) {
-      pool.query = Convolution(name + "_query", 1, 1, width, query, 1.0);
-      pool.key = Convolution(name + "_key", 1, 1, width, query, 1.0);
-    }
+    pool.query = Convolution(name + "_query", 1, 1, width, query, 1.0);
+    pool.key = Convolution(name + "_key", 1, 1, width, query, 1.0);
     if (structure_.pooling == SocialPooling::kHeads) {
       pool.value = Convolution(name + "_value", 1, 1, width, width, 1.0);
       pool.mixed = Convolution(name + "_mixed", 1, 1, width, width, 1.0);
@@ -162,13 +165,12 @@ class DiffusionModule : public torch::nn::Module {
 
   torch::Tensor Pooled(int block, const torch::Tensor& y, const DiffusionBatch& batch) const {
     if (!structure_.PoolsAfter(block)) return y;
-    const bool joined = structure_.join == SocialJoin::kBottleneck;
-    const Pool& pool = pools_[joined ? 0 : block];
     const std::vector<torch::Tensor> groups = y.split_with_sizes(batch.sizes, 0);
     std::vector<torch::Tensor> seen;
     for (size_t g = 0; g < groups.size(); ++g) {
       if (structure_.Attends()) {
-        seen.push_back(Attended(pool, groups[g]));
+        const size_t pool = structure_.join == SocialJoin::kBottleneck ? 0 : block;
+        seen.push_back(Attended(pools_[pool], groups[g]));
         continue;
       }
       std::vector<torch::Tensor> sums;
@@ -177,8 +179,7 @@ class DiffusionModule : public torch::nn::Module {
       }
       seen.push_back(torch::cat(sums, 1));
     }
-    const torch::Tensor all = torch::cat(seen, 0);
-    return joined ? torch::cat({y, all}, 1) : y + (*pool.join)(all);
+    return torch::cat({y, torch::cat(seen, 0)}, 1);
   }
 
   // A softmax over people, frame by frame: over everybody with several heads, over the others with
@@ -209,6 +210,7 @@ class DiffusionModule : public torch::nn::Module {
 
   DiffusionStructure structure_;
   double dropout_;
+  torch::nn::Linear first_time_{nullptr}, second_time_{nullptr};
   torch::nn::Linear first_static_{nullptr}, second_static_{nullptr};
   std::vector<Block> blocks_;
   std::vector<Pool> pools_;

@@ -44,6 +44,13 @@ Eigen::MatrixXf Below(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) {
   return both;
 }
 
+Eigen::MatrixXf Perceived(const DenseLayer& first, const DenseLayer& second,
+                          const Eigen::MatrixXf& values) {
+  Eigen::MatrixXf hidden = Applied(first, values);
+  ApplySilu(&hidden);
+  return Applied(second, hidden);
+}
+
 int StrideOf(int block) { return block < kDiffusionLevels ? 2 : 1; }
 
 }  // namespace
@@ -51,16 +58,16 @@ int StrideOf(int block) { return block < kDiffusionLevels ? 2 : 1; }
 BlockWidths WidthsOf(int block, const DiffusionStructure& structure) {
   const int* down = kDownWidths;
   const int deepest = down[kDiffusionLevels - 1];
+  const auto pooled = [&structure](int level) {
+    return kDownWidths[level] * (structure.PoolsAfter(level) ? 1 + structure.NumViews() : 1);
+  };
   if (block == 0) return {structure.NumInputs(), down[0]};
   if (block < kDiffusionLevels) return {down[block - 1], down[block]};
-  if (block == kDiffusionLevels) {
-    const bool joined = structure.Pools() && structure.join == SocialJoin::kBottleneck;
-    return {deepest * (joined ? 1 + structure.NumViews() : 1), deepest};
-  }
+  if (block == kDiffusionLevels) return {pooled(kDiffusionLevels - 1), deepest};
   // Up from the level below, beside what the level had on the way down.
   const int level = kDiffusionBlocks - 1 - block;
   const int below = block == kDiffusionLevels + 1 ? deepest : down[level + 1];
-  return {below + down[level], down[level]};
+  return {below + pooled(level), down[level]};
 }
 
 std::vector<Eigen::MatrixXf> PoolingWeights(SocialPooling pooling, const Eigen::Matrix2Xf& places) {
@@ -108,9 +115,7 @@ GroupDenoiser::GroupDenoiser(const DiffusionNetwork& network, GroupFeatures feat
     : network_(network),
       features_(std::move(features)),
       frames_((features_.frames + kDiffusionFrames - 1) / kDiffusionFrames * kDiffusionFrames) {
-  Eigen::MatrixXf hidden = Applied(network.first_static, features_.statics);
-  ApplySilu(&hidden);
-  statics_ = Applied(network.second_static, hidden);
+  statics_ = Perceived(network.first_static, network.second_static, features_.statics);
   views_ = PoolingWeights(network.structure.pooling, features_.places);
 }
 
@@ -162,29 +167,23 @@ Eigen::MatrixXf GroupDenoiser::Attended(const DiffusionPool& pool, const Values&
   return several ? Applied(pool.mixed, seen) : seen;
 }
 
-void GroupDenoiser::Pool(int block, Values* values) const {
+GroupDenoiser::Values GroupDenoiser::Pooled(int block, const Values& values) const {
   const DiffusionStructure& structure = network_.structure;
-  if (!structure.PoolsAfter(block)) return;
-  const bool joined = structure.join == SocialJoin::kBottleneck;
-  const DiffusionPool& pool = network_.pools[joined ? 0 : block];
-  const Eigen::Index width = values->data.rows(), size = width * values->frames;
-  Eigen::MatrixXf seen(structure.NumViews() * width, values->data.cols());
+  if (!structure.PoolsAfter(block)) return values;
+  const Eigen::Index width = values.data.rows(), size = width * values.frames;
+  Eigen::MatrixXf seen(structure.NumViews() * width, values.data.cols());
   if (structure.Attends()) {
-    seen = Attended(pool, *values);
+    seen = Attended(network_.pools[structure.join == SocialJoin::kBottleneck ? 0 : block], values);
   } else {
     // A person's frames below one another, a column per person.
-    const Eigen::Map<const Eigen::MatrixXf> all(values->data.data(), size, features_.people);
+    const Eigen::Map<const Eigen::MatrixXf> all(values.data.data(), size, features_.people);
     for (size_t v = 0; v < views_.size(); ++v) {
       const Eigen::MatrixXf sums = all * views_[v].transpose();
       seen.middleRows(static_cast<Eigen::Index>(v) * width, width) =
-          Eigen::Map<const Eigen::MatrixXf>(sums.data(), width, values->data.cols());
+          Eigen::Map<const Eigen::MatrixXf>(sums.data(), width, values.data.cols());
     }
   }
-  if (joined) {
-    values->data = Below(values->data, seen);
-  } else {
-    values->data += Applied(pool.join, seen);
-  }
+  return {Below(values.data, seen), values.frames};
 }
 
 GroupDenoiser::Values GroupDenoiser::Doubled(const Values& values) const {
@@ -206,18 +205,19 @@ Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) 
     person.topRows(motion) = noisy.middleCols(n * frames, frames);
     person.bottomRows(features_.given.rows()) = features_.given.middleCols(n * frames, frames);
   }
-  const Eigen::MatrixXf conditions = Below(TimeFeatures(t).replicate(1, people), statics_);
-  std::vector<Values> levels = {input};
+  const Eigen::VectorXf time =
+      Perceived(network_.first_time, network_.second_time, TimeFeatures(t));
+  Eigen::MatrixXf conditions = statics_.colwise() + time;
+  ApplySilu(&conditions);
+  std::vector<Values> levels;
   for (int b = 0; b < kDiffusionLevels; ++b) {
-    levels.push_back(Block(b, levels.back(), conditions));
-    Pool(b, &levels.back());
+    levels.push_back(Block(b, b == 0 ? input : levels.back(), conditions));
   }
-  Values at = Block(kDiffusionLevels, levels.back(), conditions);
-  Pool(kDiffusionLevels, &at);
-  for (int b = kDiffusionLevels + 1; b < kDiffusionBlocks; ++b) {
+  Values at = Block(kDiffusionLevels, Pooled(kDiffusionLevels - 1, levels.back()), conditions);
+  for (int level = kDiffusionLevels - 2; level >= 0; --level) {
     at = Doubled(at);
-    at.data = Below(at.data, levels[kDiffusionBlocks - b].data);
-    at = Block(b, at, conditions);
+    at.data = Below(at.data, Pooled(level, levels[level]).data);
+    at = Block(kDiffusionBlocks - 1 - level, at, conditions);
   }
   at = Doubled(at);
   Eigen::MatrixXf out = Applied(network_.out, Unfolded(at.data, frames_, 1));
@@ -232,15 +232,17 @@ Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) 
 namespace {
 
 void ListTensors(const std::string& name, DiffusionNetwork* network, TensorFields* fields) {
-  constexpr int kConditions = kTimeWidth + kStaticWidth;
   const DiffusionStructure& structure = network->structure;
   fields->Positive(name + ".scales", kBodyJoints, &network->scales.joints);
+  fields->Scales(name + ".first_pose", kFirstPoseRows, &network->scales.first_pose);
   if (structure.frame == MotionFrame::kOwn) {
     fields->Matrix(name + ".row_mean", kOwnFrameRows, 1, &network->scales.mean);
     fields->Positive(name + ".row_spread", kOwnFrameRows, &network->scales.spread);
   }
-  fields->Layer(name + ".static0", kStaticRows, kStaticWidth, &network->first_static);
-  fields->Layer(name + ".static1", kStaticWidth, kStaticWidth, &network->second_static);
+  fields->Layer(name + ".time0", kTimeWidth, kConditionWidth, &network->first_time);
+  fields->Layer(name + ".time1", kConditionWidth, kConditionWidth, &network->second_time);
+  fields->Layer(name + ".static0", kStaticRows, kConditionWidth, &network->first_static);
+  fields->Layer(name + ".static1", kConditionWidth, kConditionWidth, &network->second_static);
   network->blocks.resize(kDiffusionBlocks);
   for (int b = 0; b < kDiffusionBlocks; ++b) {
     const BlockWidths widths = WidthsOf(b, structure);
@@ -249,19 +251,15 @@ void ListTensors(const std::string& name, DiffusionNetwork* network, TensorField
     fields->Layer(of_block + ".first", kTaps * widths.in, widths.out, &block.first);
     fields->Layer(of_block + ".second", kTaps * widths.out, widths.out, &block.second);
     fields->Layer(of_block + ".skip", widths.in, widths.out, &block.skip);
-    fields->Layer(of_block + ".film", kConditions, 2 * widths.out, &block.film);
+    fields->Layer(of_block + ".film", kConditionWidth, 2 * widths.out, &block.film);
   }
   size_t p = 0;
-  for (int b = 0; b <= kDiffusionLevels; ++b) {
-    if (!structure.PoolsAfter(b)) continue;
+  for (int b = 0; b < kDiffusionLevels; ++b) {
+    if (!structure.Attends() || !structure.PoolsAfter(b)) continue;
     const int width = WidthsOf(b, structure).out, query = QueryWidth(structure, width);
     const std::string of_pool = name + ".pool" + std::to_string(b);
     if (network->pools.size() <= p) network->pools.emplace_back();
     DiffusionPool& pool = network->pools[p++];
-    if (structure.join == SocialJoin::kLevels) {
-      fields->Layer(of_pool + ".join", structure.NumViews() * width, width, &pool.join);
-    }
-    if (!structure.Attends()) continue;
     fields->Layer(of_pool + ".query", width, query, &pool.query);
     fields->Layer(of_pool + ".key", width, query, &pool.key);
     if (structure.pooling != SocialPooling::kHeads) continue;

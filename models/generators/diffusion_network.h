@@ -8,9 +8,9 @@
 //   out            the frames doubled once more: conv3, and a linear map of level 0
 //
 //   block(x)  = SiLU(conv3(FiLM(SiLU(conv3(x))))) + conv1(x)
-//   FiLM(y)   = y (1 + g) + b, [g, b] linear in [sines of t, MLP of the person's statics]
-//   pooled(y) = y + W [sums over the others of a y_other], after every block on the way down and
-//               the middle: all that people see of each other
+//   FiLM(y)   = y (1 + g) + b, [g, b] linear in SiLU(MLP(sines of t) + MLP(the person's statics))
+//   pooled(y) = [y, sums over the others of a y_other], of every level on the way down, in what the
+//               middle and the way up are given: all that people see of each other
 //
 // Convolutions over time are causal (frames t-2, t-1, t), and so is the doubling, so that later
 // frames never change earlier ones and a motion may go on past the frames of the training.
@@ -43,8 +43,8 @@ constexpr EnumNames<SocialPooling, 6> Names(SocialPooling) {
            {"heads", SocialPooling::kHeads}}};
 }
 
-// Where people see each other: added after every block down and the middle, or joined (as further
-// channels) to what the middle is given, as SDM has it.
+// Where people see each other: in the middle and on the whole way up, or in the middle alone, as
+// SDM has it.
 enum class SocialJoin { kLevels, kBottleneck };
 constexpr EnumNames<SocialJoin, 2> Names(SocialJoin) {
   return {{{"levels", SocialJoin::kLevels}, {"bottleneck", SocialJoin::kBottleneck}}};
@@ -75,7 +75,7 @@ struct DiffusionStructure {
 inline constexpr int kDiffusionLevels = 4, kDiffusionBlocks = 8;  // four down, middle, three up
 inline constexpr int kDiffusionFrames = 1 << kDiffusionLevels;    // frames come in multiples
 inline constexpr int kDownWidths[kDiffusionLevels] = {64, 64, 96, 96};
-inline constexpr int kTimeWidth = 64, kStaticWidth = 96, kAttentionWidth = 16;
+inline constexpr int kTimeWidth = 64, kConditionWidth = 96, kAttentionWidth = 16;
 inline constexpr int kHeads = 4;  // of SocialPooling::kHeads
 inline constexpr int kTaps = 3;   // frames that a convolution sees
 // Channels in and out of a block.
@@ -85,7 +85,7 @@ struct BlockWidths {
 BlockWidths WidthsOf(int block, const DiffusionStructure& structure);
 
 inline bool DiffusionStructure::PoolsAfter(int block) const {
-  if (!Pools() || block > kDiffusionLevels) return false;
+  if (!Pools() || block >= kDiffusionLevels) return false;
   return join == SocialJoin::kLevels || block == kDiffusionLevels - 1;
 }
 // The width of the queries of everybody's heads together.
@@ -98,7 +98,6 @@ struct DiffusionBlock {
   DenseLayer first, second, skip, film;
 };
 struct DiffusionPool {
-  DenseLayer join;          // of the sums, one view after the other; not at the bottleneck
   DenseLayer query, key;    // attention alone
   DenseLayer value, mixed;  // of several heads
 };
@@ -106,7 +105,7 @@ struct DiffusionPool {
 struct DiffusionNetwork {
   DiffusionStructure structure;
   MotionScales scales;
-  DenseLayer first_static, second_static;
+  DenseLayer first_time, second_time, first_static, second_static;
   std::vector<DiffusionBlock> blocks;
   std::vector<DiffusionPool> pools;  // of the blocks after which there is one
   DenseLayer out, direct;
@@ -133,14 +132,15 @@ class GroupDenoiser {
   };
   // conditions: of FiLM, a column per person.
   Values Block(int index, const Values& in, const Eigen::MatrixXf& conditions) const;
-  void Pool(int index, Values* values) const;
+  // With what people see of each other below it.
+  Values Pooled(int index, const Values& values) const;
   Eigen::MatrixXf Attended(const DiffusionPool& pool, const Values& values) const;
   Values Doubled(const Values& values) const;
 
   const DiffusionNetwork& network_;
   GroupFeatures features_;
   int frames_;               // padded
-  Eigen::MatrixXf statics_;  // kStaticWidth x people
+  Eigen::MatrixXf statics_;  // kConditionWidth x people
   std::vector<Eigen::MatrixXf> views_;
 };
 

@@ -20,6 +20,13 @@ double RateShareToFloor(int step, int steps, int warm_up) {
   return kRateFloor + (1.0 - kRateFloor) * 0.5 * (1.0 + std::cos(M_PI * down));
 }
 
+MotionScales ScalesOf(const std::vector<ObservedGroup>& learnt, MotionFrame frame) {
+  MotionScales scales =
+      frame == MotionFrame::kOwn ? OwnFrameScalesOf(learnt) : MotionScales(JointScalesOf(learnt));
+  scales.first_pose = FirstPoseScalingOf(learnt);
+  return scales;
+}
+
 // x_t, whose signal has the share a of [person].
 torch::Tensor Noised(const torch::Tensor& truth, const torch::Tensor& share,
                      const torch::Tensor& noise) {
@@ -33,8 +40,7 @@ struct DiffusionTrainer::Torch : KeptRun<Run, Torch> {
   Torch(const std::vector<ObservedGroup>& learnt, const std::vector<ObservedGroup>& held,
         const DiffusionTrainingOptions& given)
       : options(given),
-        scales(given.structure.frame == MotionFrame::kOwn ? OwnFrameScalesOf(learnt)
-                                                          : MotionScales(JointScalesOf(learnt))),
+        scales(ScalesOf(learnt, given.structure.frame)),
         batches(learnt, scales, options),
         held_batches(held, scales, options) {
     joint_scales = torch::zeros({kBodyJoints});

@@ -40,26 +40,22 @@ inline DiffusionNetwork RandomDiffusion(uint64_t seed, const DiffusionStructure&
     network.scales.mean = Eigen::VectorXf::Constant(kOwnFrameRows, 0.02f);
     network.scales.spread = Eigen::VectorXf::Constant(kOwnFrameRows, 0.3f);
   }
-  network.first_static = RandomLayer(kStaticRows, kStaticWidth, &random);
-  network.second_static = RandomLayer(kStaticWidth, kStaticWidth, &random);
+  network.first_time = RandomLayer(kTimeWidth, kConditionWidth, &random);
+  network.second_time = RandomLayer(kConditionWidth, kConditionWidth, &random);
+  network.first_static = RandomLayer(kStaticRows, kConditionWidth, &random);
+  network.second_static = RandomLayer(kConditionWidth, kConditionWidth, &random);
   for (int b = 0; b < kDiffusionBlocks; ++b) {
     const BlockWidths w = WidthsOf(b, structure);
-    network.blocks.push_back({RandomLayer(3 * w.in, w.out, &random),
-                              RandomLayer(3 * w.out, w.out, &random),
-                              RandomLayer(w.in, w.out, &random),
-                              RandomLayer(kTimeWidth + kStaticWidth, 2 * w.out, &random)});
+    network.blocks.push_back(
+        {RandomLayer(3 * w.in, w.out, &random), RandomLayer(3 * w.out, w.out, &random),
+         RandomLayer(w.in, w.out, &random), RandomLayer(kConditionWidth, 2 * w.out, &random)});
   }
-  for (int b = 0; b <= kDiffusionLevels; ++b) {
-    if (!structure.PoolsAfter(b)) continue;
+  for (int b = 0; b < kDiffusionLevels; ++b) {
+    if (!structure.Attends() || !structure.PoolsAfter(b)) continue;
     const int width = WidthsOf(b, structure).out, query = QueryWidth(structure, width);
     DiffusionPool pool;
-    if (structure.join == SocialJoin::kLevels) {
-      pool.join = RandomLayer(structure.NumViews() * width, width, &random);
-    }
-    if (structure.Attends()) {
-      pool.query = RandomLayer(width, query, &random);
-      pool.key = RandomLayer(width, query, &random);
-    }
+    pool.query = RandomLayer(width, query, &random);
+    pool.key = RandomLayer(width, query, &random);
     if (structure.pooling == SocialPooling::kHeads) {
       pool.value = RandomLayer(width, width, &random);
       pool.mixed = RandomLayer(width, width, &random);
