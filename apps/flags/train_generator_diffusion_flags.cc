@@ -11,11 +11,11 @@ const pushid::DiffusionTrainingOptions kDiffusion;
 
 DEFINE_string(pooling, pushid::NameOf(kDiffusion.structure.pooling),
               "diffusion: interaction between people: local (by distance, ahead and behind), mean "
-              "(all equal), attention, none");
+              "(all equal), none; mean_all and heads (attention) as in SDM");
 DEFINE_string(
     pooling_at, pushid::NameOf(kDiffusion.structure.join),
-    "diffusion: where people see each other: levels (added after every block), bottleneck "
-    "(joined to the middle's input)");
+    "diffusion: where people see each other: levels (in the middle and on the way up), bottleneck "
+    "(in the middle alone)");
 DEFINE_string(frame, pushid::NameOf(kDiffusion.structure.frame),
               "diffusion: frame of the motion: group (displacements, nothing turned), own (joints "
               "seen from the hip and turned to face forward, with where it faces; zero mean and "

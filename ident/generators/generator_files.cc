@@ -252,9 +252,8 @@ SharedNetworks ReadDiffusion(const nlohmann::ordered_json& json, const Generator
   const auto trained = std::make_shared<TrainedDiffusion>();
   DiffusionStructure structure;
   ParseSetting(json, "pooling", &structure.pooling);
-  // Older generators have neither.
-  if (json.contains("pooling_at")) ParseSetting(json, "pooling_at", &structure.join);
-  if (json.contains("frame")) ParseSetting(json, "frame", &structure.frame);
+  ParseSetting(json, "pooling_at", &structure.join);
+  ParseSetting(json, "frame", &structure.frame);
   Demand(structure.frame == MotionFrame::kGroup || !settings.pendulum,
          "people's own frames know no pendulum");
   structure.pendulum = settings.pendulum;

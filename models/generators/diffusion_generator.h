@@ -1,7 +1,7 @@
 // models: groups continued by diffusion. The people of a call are one group, at one rate, whose
 // frame 0 is the first that was seen; the push is what acts on any of them (their controls).
 //
-// From noise at T to nothing of it in some steps; frames that were seen are put in the place of
+// From noise at T to hardly any in some steps; frames that were seen are put in the place of
 // what the network estimates for them, after every step (Eq. 6 of SDM). Networks of several seeds
 // take turns, sample by sample. The forecast is the mean of several samples, as the mean joint
 // error asks for. Recordings end before people stand still: past the longest one learnt from, what

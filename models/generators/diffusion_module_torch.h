@@ -51,7 +51,7 @@ class DiffusionModule : public torch::nn::Module {
     second_static_ = Linear("static1", kConditionWidth, kConditionWidth);
     for (int b = 0; b < kDiffusionBlocks; ++b) AddBlock(b);
     for (int b = 0; b < kDiffusionLevels; ++b) {
-      if (structure.Attends() && structure.PoolsAfter(b)) AddPool(b);
+      if (structure.AttendsAfter(b)) AddPool(b);
     }
     // It begins with the mean motion for everybody, not with noise to be unlearned.
     out_ = Convolution("out", kTaps, 1, kDownWidths[0], structure.NumMotion(), 0.0);
@@ -95,14 +95,8 @@ class DiffusionModule : public torch::nn::Module {
           {block.first->Layer(), block.second->Layer(), block.skip->Layer(), ToLayer(block.film)});
     }
     for (const Pool& pool : pools_) {
-      network.pools.emplace_back();
-      DiffusionPool& to = network.pools.back();
-      for (const auto& [layer, from] : {std::pair(&to.query, pool.query),
-                                        {&to.key, pool.key},
-                                        {&to.value, pool.value},
-                                        {&to.mixed, pool.mixed}}) {
-        if (from) *layer = from->Layer();
-      }
+      network.pools.push_back(
+          {pool.query->Layer(), pool.key->Layer(), pool.value->Layer(), pool.mixed->Layer()});
     }
     network.out = out_->Layer();
     network.direct = direct_->Layer();
@@ -143,16 +137,12 @@ class DiffusionModule : public torch::nn::Module {
     blocks_.push_back(block);
   }
   void AddPool(int block) {
-    const int width = WidthsOf(block, structure_).out, query = QueryWidth(structure_, width);
+    const int width = WidthsOf(block, structure_).out;
     const std::string name = "pool" + std::to_string(block);
-    Pool pool;
-    pool.query = Convolution(name + "_query", 1, 1, width, query, 1.0);
-    pool.key = Convolution(name + "_key", 1, 1, width, query, 1.0);
-    if (structure_.pooling == SocialPooling::kHeads) {
-      pool.value = Convolution(name + "_value", 1, 1, width, width, 1.0);
-      pool.mixed = Convolution(name + "_mixed", 1, 1, width, width, 1.0);
-    }
-    pools_.push_back(pool);
+    const auto layer = [&](const char* of) {
+      return Convolution(name + of, 1, 1, width, width, 1.0);
+    };
+    pools_.push_back({layer("_query"), layer("_key"), layer("_value"), layer("_mixed")});
   }
 
   torch::Tensor Apply(int b, const torch::Tensor& x, const torch::Tensor& conditions) {
@@ -168,7 +158,7 @@ class DiffusionModule : public torch::nn::Module {
     const std::vector<torch::Tensor> groups = y.split_with_sizes(batch.sizes, 0);
     std::vector<torch::Tensor> seen;
     for (size_t g = 0; g < groups.size(); ++g) {
-      if (structure_.Attends()) {
+      if (structure_.AttendsAfter(block)) {
         const size_t pool = structure_.join == SocialJoin::kBottleneck ? 0 : block;
         seen.push_back(Attended(pools_[pool], groups[g]));
         continue;
@@ -182,25 +172,18 @@ class DiffusionModule : public torch::nn::Module {
     return torch::cat({y, torch::cat(seen, 0)}, 1);
   }
 
-  // A softmax over people, frame by frame: over everybody with several heads, over the others with
-  // one; then people alone see nothing.
-  torch::Tensor Attended(const Pool& pool, const torch::Tensor& y) const {
-    const bool several = structure_.pooling == SocialPooling::kHeads;
-    if (y.size(0) == 1 && !several) return torch::zeros_like(y);
-    const int64_t people = y.size(0), frames = y.size(2), heads = several ? kHeads : 1;
+  // A softmax over everybody, frame by frame.
+  static torch::Tensor Attended(const Pool& pool, const torch::Tensor& y) {
+    const int64_t people = y.size(0), width = y.size(1), frames = y.size(2);
     // [frame, head, person, channel]
-    const auto by_head = [&](const torch::Tensor& values) {
-      return values.view({people, heads, values.size(1) / heads, frames}).permute({3, 1, 0, 2});
+    const auto by_head = [&](const ConvolutionPointer& layer) {
+      return (*layer)(y).view({people, kHeads, width / kHeads, frames}).permute({3, 1, 0, 2});
     };
-    const torch::Tensor queries = by_head((*pool.query)(y)), keys = by_head((*pool.key)(y));
-    const double scale = 1.0 / std::sqrt(static_cast<double>(queries.size(3)));
-    torch::Tensor scores = scale * torch::matmul(queries, keys.transpose(2, 3));
-    if (!several) scores = scores.masked_fill(torch::eye(people, torch::kBool), -1e9);
-    const torch::Tensor shown = by_head(several ? (*pool.value)(y) : y.contiguous());
-    const torch::Tensor seen = torch::matmul(torch::softmax(scores, 3), shown)
-                                   .permute({2, 1, 3, 0})
-                                   .reshape({people, y.size(1), frames});
-    return several ? (*pool.mixed)(seen) : seen;
+    const double scale = 1.0 / std::sqrt(static_cast<double>(width / kHeads));
+    const torch::Tensor scores =
+        scale * torch::matmul(by_head(pool.query), by_head(pool.key).transpose(2, 3));
+    const torch::Tensor seen = torch::matmul(torch::softmax(scores, 3), by_head(pool.value));
+    return (*pool.mixed)(seen.permute({2, 1, 3, 0}).reshape({people, width, frames}));
   }
 
   static torch::Tensor Doubled(const torch::Tensor& x) {

@@ -138,33 +138,29 @@ GroupDenoiser::Values GroupDenoiser::Block(int index, const Values& in,
   return out;
 }
 
-// Several heads see everybody; a single one sees the others as they are.
 Eigen::MatrixXf GroupDenoiser::Attended(const DiffusionPool& pool, const Values& values) const {
-  const bool several = network_.structure.pooling == SocialPooling::kHeads;
-  const int people = features_.people, heads = several ? kHeads : 1;
+  const int people = features_.people;
   const Eigen::MatrixXf queries = Applied(pool.query, values.data);
   const Eigen::MatrixXf keys = Applied(pool.key, values.data);
-  const Eigen::MatrixXf shown = several ? Applied(pool.value, values.data) : values.data;
-  const Eigen::Index width = queries.rows() / heads, shown_width = shown.rows() / heads;
+  const Eigen::MatrixXf shown = Applied(pool.value, values.data);
+  const Eigen::Index width = values.data.rows() / kHeads;
   const float scale = 1.0f / std::sqrt(static_cast<float>(width));
-  Eigen::MatrixXf seen = Eigen::MatrixXf::Zero(shown.rows(), shown.cols());
-  for (int h = 0; h < heads && (several || people > 1); ++h) {
+  Eigen::MatrixXf seen(shown.rows(), shown.cols());
+  for (int h = 0; h < kHeads; ++h) {
+    const auto head = Eigen::seqN(h * width, width);
     for (int t = 0; t < values.frames; ++t) {
       const auto at = Eigen::seqN(t, people, values.frames);  // everybody's columns
-      const Eigen::MatrixXf query = queries(Eigen::seqN(h * width, width), at);
-      const Eigen::MatrixXf key = keys(Eigen::seqN(h * width, width), at);
-      const auto shown_rows = Eigen::seqN(h * shown_width, shown_width);
-      const Eigen::MatrixXf value = shown(shown_rows, at);
+      const Eigen::MatrixXf query = queries(head, at), key = keys(head, at);
+      const Eigen::MatrixXf value = shown(head, at);
       Eigen::MatrixXf weights = scale * key.transpose() * query;
-      if (!several) weights.diagonal().setConstant(-INFINITY);
       for (int i = 0; i < people; ++i) {
         weights.col(i) = (weights.col(i).array() - weights.col(i).maxCoeff()).exp();
         weights.col(i) /= weights.col(i).sum();
       }
-      seen(shown_rows, at) = value * weights;
+      seen(head, at) = value * weights;
     }
   }
-  return several ? Applied(pool.mixed, seen) : seen;
+  return Applied(pool.mixed, seen);
 }
 
 GroupDenoiser::Values GroupDenoiser::Pooled(int block, const Values& values) const {
@@ -172,7 +168,7 @@ GroupDenoiser::Values GroupDenoiser::Pooled(int block, const Values& values) con
   if (!structure.PoolsAfter(block)) return values;
   const Eigen::Index width = values.data.rows(), size = width * values.frames;
   Eigen::MatrixXf seen(structure.NumViews() * width, values.data.cols());
-  if (structure.Attends()) {
+  if (structure.AttendsAfter(block)) {
     seen = Attended(network_.pools[structure.join == SocialJoin::kBottleneck ? 0 : block], values);
   } else {
     // A person's frames below one another, a column per person.
@@ -255,14 +251,13 @@ void ListTensors(const std::string& name, DiffusionNetwork* network, TensorField
   }
   size_t p = 0;
   for (int b = 0; b < kDiffusionLevels; ++b) {
-    if (!structure.Attends() || !structure.PoolsAfter(b)) continue;
-    const int width = WidthsOf(b, structure).out, query = QueryWidth(structure, width);
+    if (!structure.AttendsAfter(b)) continue;
+    const int width = WidthsOf(b, structure).out;
     const std::string of_pool = name + ".pool" + std::to_string(b);
     if (network->pools.size() <= p) network->pools.emplace_back();
     DiffusionPool& pool = network->pools[p++];
-    fields->Layer(of_pool + ".query", width, query, &pool.query);
-    fields->Layer(of_pool + ".key", width, query, &pool.key);
-    if (structure.pooling != SocialPooling::kHeads) continue;
+    fields->Layer(of_pool + ".query", width, width, &pool.query);
+    fields->Layer(of_pool + ".key", width, width, &pool.key);
     fields->Layer(of_pool + ".value", width, width, &pool.value);
     fields->Layer(of_pool + ".mixed", width, width, &pool.mixed);
   }

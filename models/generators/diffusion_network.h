@@ -29,15 +29,13 @@ namespace pushid {
 // local      exp(-(d / 0.8 m)^2), those ahead and those behind apart (a logistic of dx / 0.1 m),
 //            each over their sum + 0.1; d, dx between the places at frame 0. Far people fade out.
 // mean       all others alike
-// attention  a softmax over the others, frame by frame
 // none       people do not see each other
 // mean_all   the mean over everybody, oneself included (SDM)
 // heads      attention of four heads with values of their own, oneself included (SDM)
-enum class SocialPooling { kLocal, kMean, kAttention, kNone, kMeanAll, kHeads };
-constexpr EnumNames<SocialPooling, 6> Names(SocialPooling) {
+enum class SocialPooling { kLocal, kMean, kNone, kMeanAll, kHeads };
+constexpr EnumNames<SocialPooling, 5> Names(SocialPooling) {
   return {{{"local", SocialPooling::kLocal},
            {"mean", SocialPooling::kMean},
-           {"attention", SocialPooling::kAttention},
            {"none", SocialPooling::kNone},
            {"mean_all", SocialPooling::kMeanAll},
            {"heads", SocialPooling::kHeads}}};
@@ -64,10 +62,10 @@ struct DiffusionStructure {
 
   int NumViews() const { return pooling == SocialPooling::kLocal ? 2 : 1; }
   bool Pools() const { return pooling != SocialPooling::kNone; }
-  bool Attends() const {
-    return pooling == SocialPooling::kAttention || pooling == SocialPooling::kHeads;
-  }
   bool PoolsAfter(int block) const;
+  bool AttendsAfter(int block) const {
+    return pooling == SocialPooling::kHeads && PoolsAfter(block);
+  }
   int NumMotion() const { return frame == MotionFrame::kOwn ? kOwnFrameRows : kMotionRows; }
   int NumInputs() const { return NumMotion() + GivenRows(pendulum, NumMotion()); }
 };
@@ -75,7 +73,7 @@ struct DiffusionStructure {
 inline constexpr int kDiffusionLevels = 4, kDiffusionBlocks = 8;  // four down, middle, three up
 inline constexpr int kDiffusionFrames = 1 << kDiffusionLevels;    // frames come in multiples
 inline constexpr int kDownWidths[kDiffusionLevels] = {64, 64, 96, 96};
-inline constexpr int kTimeWidth = 64, kConditionWidth = 96, kAttentionWidth = 16;
+inline constexpr int kTimeWidth = 64, kConditionWidth = 96;
 inline constexpr int kHeads = 4;  // of SocialPooling::kHeads
 inline constexpr int kTaps = 3;   // frames that a convolution sees
 // Channels in and out of a block.
@@ -88,18 +86,13 @@ inline bool DiffusionStructure::PoolsAfter(int block) const {
   if (!Pools() || block >= kDiffusionLevels) return false;
   return join == SocialJoin::kLevels || block == kDiffusionLevels - 1;
 }
-// The width of the queries of everybody's heads together.
-inline int QueryWidth(const DiffusionStructure& structure, int width) {
-  return structure.pooling == SocialPooling::kHeads ? width : kAttentionWidth;
-}
 
 // Weights of a convolution: outputs x (3 inputs), the oldest frame first.
 struct DiffusionBlock {
   DenseLayer first, second, skip, film;
 };
 struct DiffusionPool {
-  DenseLayer query, key;    // attention alone
-  DenseLayer value, mixed;  // of several heads
+  DenseLayer query, key, value, mixed;
 };
 
 struct DiffusionNetwork {
@@ -107,7 +100,7 @@ struct DiffusionNetwork {
   MotionScales scales;
   DenseLayer first_time, second_time, first_static, second_static;
   std::vector<DiffusionBlock> blocks;
-  std::vector<DiffusionPool> pools;  // of the blocks after which there is one
+  std::vector<DiffusionPool> pools;  // of the blocks after which people attend to each other
   DenseLayer out, direct;
 };
 

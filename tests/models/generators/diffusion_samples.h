@@ -51,16 +51,10 @@ inline DiffusionNetwork RandomDiffusion(uint64_t seed, const DiffusionStructure&
          RandomLayer(w.in, w.out, &random), RandomLayer(kConditionWidth, 2 * w.out, &random)});
   }
   for (int b = 0; b < kDiffusionLevels; ++b) {
-    if (!structure.Attends() || !structure.PoolsAfter(b)) continue;
-    const int width = WidthsOf(b, structure).out, query = QueryWidth(structure, width);
-    DiffusionPool pool;
-    pool.query = RandomLayer(width, query, &random);
-    pool.key = RandomLayer(width, query, &random);
-    if (structure.pooling == SocialPooling::kHeads) {
-      pool.value = RandomLayer(width, width, &random);
-      pool.mixed = RandomLayer(width, width, &random);
-    }
-    network.pools.push_back(pool);
+    if (!structure.AttendsAfter(b)) continue;
+    const int width = WidthsOf(b, structure).out;
+    const auto layer = [&] { return RandomLayer(width, width, &random); };
+    network.pools.push_back({layer(), layer(), layer(), layer()});
   }
   network.out = RandomLayer(3 * kDownWidths[0], structure.NumMotion(), &random);
   network.direct = RandomLayer(structure.NumInputs(), structure.NumMotion(), &random);

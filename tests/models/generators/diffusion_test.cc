@@ -210,8 +210,8 @@ TEST_P(DenoiserTest, PeopleSeeEachOtherAsTheyShould) {
 
 INSTANTIATE_TEST_SUITE_P(Poolings, DenoiserTest,
                          ::testing::Values(SocialPooling::kLocal, SocialPooling::kMean,
-                                           SocialPooling::kAttention, SocialPooling::kNone,
-                                           SocialPooling::kMeanAll, SocialPooling::kHeads));
+                                           SocialPooling::kNone, SocialPooling::kMeanAll,
+                                           SocialPooling::kHeads));
 
 }  // namespace
 }  // namespace pushid
