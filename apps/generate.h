@@ -10,6 +10,7 @@
 #include "apps/flags/generate_flags.h"
 #include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/group_forecasts.h"
+#include "ident/forecasts/social_report.h"
 #include "ident/model/identified_model.h"
 
 namespace pushid {
@@ -44,13 +45,18 @@ Result<GroupSpread> SpreadOf(const LoadedGenerator& loaded, const GenerateFlags&
 Result<nlohmann::ordered_json> ShowSeconds(const LoadedGenerator& loaded,
                                            const std::vector<BodyRecording>& recordings,
                                            const std::optional<IdentifiedModel>& physics,
-                                           int frames);
+                                           const SocialCues& cues, int frames);
+
+// The states of --states, or the built-in ones; writes --states_out.
+Result<SocialCues> FlaggedCues(const GenerateFlags& flags,
+                               const std::vector<BodyRecording>& recordings);
 
 // What --poses_out, --strip_out and --page_out ask for: everybody recorded, forecast, and the
-// pendulums of the physics beside them. Returns the files' names.
+// pendulums of the physics beside them; the page shows the figures too. Returns the files' names.
 Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
                                            const GenerateFlags& flags,
                                            const BodyRecording& recording,
-                                           const std::optional<IdentifiedModel>& physics);
+                                           const std::optional<IdentifiedModel>& physics,
+                                           const std::vector<std::string>& figures);
 
 }  // namespace pushid

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/flags/recording_flags.h"
 #include "apps/generate.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
@@ -113,13 +114,13 @@ Result<GroupSpread> SpreadOf(const LoadedGenerator& loaded, const GenerateFlags&
 Result<nlohmann::ordered_json> ShowSeconds(const LoadedGenerator& loaded,
                                            const std::vector<BodyRecording>& recordings,
                                            const std::optional<IdentifiedModel>& physics,
-                                           int frames) {
+                                           const SocialCues& cues, int frames) {
   std::vector<GroupMotion> recorded, generated, rigid;
   const int observed = loaded.settings.observed;
   for (const BodyRecording& recording : recordings) {
     const double dt = recording.pendulum.scene.dt;
     const int pushed = recording.pendulum.pushed_person;
-    recorded.push_back({recording.bodies, dt, pushed});
+    recorded.push_back(RecordedGroup(recording, cues, recorded.size(), 1));
     auto bodies = GenerateWith(loaded, recording, physics, frames);
     if (!bodies.ok()) return bodies.error();
     generated.push_back({std::move(bodies.value()), dt, pushed, observed});
@@ -131,7 +132,7 @@ Result<nlohmann::ordered_json> ShowSeconds(const LoadedGenerator& loaded,
   }
   nlohmann::ordered_json json;
   const auto show = [&](const std::string& name, const std::vector<GroupMotion>& motions) {
-    const std::vector<ForecastSecond> seconds = BySecond(recorded, motions);
+    const std::vector<ForecastSecond> seconds = BySecond(recorded, motions, cues.states);
     std::printf("\n%s", SecondsText(name, seconds).c_str());
     json[name] = ToJson(seconds);
   };
@@ -140,10 +141,31 @@ Result<nlohmann::ordered_json> ShowSeconds(const LoadedGenerator& loaded,
   return json;
 }
 
+Result<SocialCues> FlaggedCues(const GenerateFlags& flags,
+                               const std::vector<BodyRecording>& recordings) {
+  SocialCues cues;
+  if (!flags.states.empty()) {
+    const Result<StateTable> table = ReadStates(flags.states);
+    if (!table.ok()) return table.error();
+    std::vector<std::string> ids;
+    for (const ManifestRecording& entry : FlaggedManifest().value().recordings) {
+      ids.push_back(entry.id);
+    }
+    Result<SocialCues> annotated = SocialCuesOf(table.value(), ids, recordings);
+    if (!annotated.ok()) return annotated;
+    cues = std::move(annotated.value());
+  }
+  if (flags.states_out.empty()) return cues;
+  if (MaybeError error = WriteStates(flags.states_out, StatesInUse(recordings, cues)))
+    return *error;
+  return cues;
+}
+
 Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
                                            const GenerateFlags& flags,
                                            const BodyRecording& recording,
-                                           const std::optional<IdentifiedModel>& physics) {
+                                           const std::optional<IdentifiedModel>& physics,
+                                           const std::vector<std::string>& figures) {
   const auto bodies = GenerateWith(loaded, recording, physics, flags.frames);
   if (!bodies.ok()) return bodies.error();
   Animation animation;
@@ -152,6 +174,7 @@ Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
   AddRecorded(recording.pendulum.subject_ids, recording.bodies, &animation);
   AddForecast(recording.pendulum.subject_ids, bodies.value(), &animation);
   AddPushes(recording.pendulum, &animation);
+  animation.figures = figures;
   if (physics) {
     const Result<Prediction> predicted = PredictBeside(loaded, *physics, recording, flags.frames);
     if (!predicted.ok()) return predicted.error();

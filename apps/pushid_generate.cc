@@ -47,9 +47,10 @@ Result<ForecastScene> SceneOfPerson(const LoadedGenerator& loaded, const Generat
 
 // One recording as it is shown: a person of it and what particles make of that, or the whole group.
 MaybeError ShowPush(const LoadedGenerator& loaded, const GenerateFlags& flags,
-                    const BodyRecording& recording, const std::optional<IdentifiedModel>& physics) {
+                    const BodyRecording& recording, const std::optional<IdentifiedModel>& physics,
+                    const std::vector<std::string>& figures) {
   if (RowOf(loaded.kind).groups) {
-    const Result<std::vector<std::string>> files = ShowGroup(loaded, flags, recording, physics);
+    const auto files = ShowGroup(loaded, flags, recording, physics, figures);
     if (!files.ok()) return files.error();
     for (const std::string& file : files.value()) std::printf("%s\n", file.c_str());
     return std::nullopt;
@@ -85,6 +86,8 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
     return Fail(Error{"--id is '" + flags.id + "', which is not one of the recordings"});
   }
   WarnOfPushKinds(loaded.settings, bodies.value());
+  const Result<SocialCues> cues = FlaggedCues(flags, bodies.value());
+  if (!cues.ok()) return Fail(cues.error());
   double seconds = 0.0;
   for (const BodyRecording& recording : bodies.value()) {
     const double before = Now();
@@ -92,8 +95,8 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
     if (!generated.ok()) return Fail(generated.error());
     seconds += (Now() - before) / static_cast<double>(bodies.value().size());
     const int observed = loaded.settings.observed, seen = SeenByBaselines(observed);
-    const auto score = [&](const char* name, const std::vector<BodyMotion>& bodies) {
-      scores[name].push_back(ScoreBodies(recording, bodies, observed));
+    const auto score = [&](const char* name, const std::vector<BodyMotion>& forecast) {
+      scores[name].push_back(ScoreBodies(recording, forecast, observed));
     };
     score("generator", generated.value());
     if (observed > 1) {
@@ -102,13 +105,23 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
     score("static", StaticBodies(recording, seen));
     score("constant_velocity", ConstantVelocityBodies(recording, seen));
   }
-  const BodyEvaluation evaluation = SummarizeAll(bodies.value(), scores);
-  std::printf("%s", BodyText(evaluation).c_str());
+  BodyEvaluation evaluation = SummarizeAll(bodies.value(), scores);
+  std::optional<SocialReport> social;
+  std::vector<std::string> figures;
+  if (RowOf(loaded.kind).groups) {
+    social = CompareSocially(bodies.value(), cues.value(), &evaluation);
+    if (social) figures = SocialFigures(*social, "generator");
+  }
+  std::printf("%s\n%s", BodyText(evaluation).c_str(), TimedErrorsText(evaluation).c_str());
+  if (social) std::printf("\n%s", SocialText(*social).c_str());
   if (flags.Shows()) {
-    if (MaybeError error = ShowPush(loaded, flags, *shown, physics.value())) return Fail(*error);
+    if (MaybeError error = ShowPush(loaded, flags, *shown, physics.value(), figures)) {
+      return Fail(*error);
+    }
   }
   Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
   AddBodyJson(evaluation, &json);
+  if (social) json["social"] = ToJson(*social);
   if (flags.samples > 0 && RowOf(loaded.kind).groups) {
     const Result<GroupSpread> spread = SpreadOf(loaded, flags, bodies.value(), physics.value());
     if (!spread.ok()) return Fail(spread.error());
@@ -116,7 +129,8 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
     json["spread"] = ToJson(spread.value());
   }
   if (flags.frames > 0) {
-    const Result<Json> rows = ShowSeconds(loaded, bodies.value(), physics.value(), flags.frames);
+    const Result<Json> rows =
+        ShowSeconds(loaded, bodies.value(), physics.value(), cues.value(), flags.frames);
     if (!rows.ok()) return Fail(rows.error());
     json["seconds"] = rows.value();
   }

@@ -14,6 +14,7 @@
 #include "datasets/loading/ground_record.h"
 #include "datasets/manifest/recording.h"
 #include "datasets/synthetic/synthetic_clips.h"
+#include "datasets/synthetic/synthetic_turns.h"
 #include "ident/figures/text_table.h"
 #include "ident/model/push_range.h"
 #include "ident/parameters/option_names.h"
@@ -64,6 +65,10 @@ DEFINE_int32(clips, 0,
              "write motion-capture clips of a walking stick figure instead, for "
              "pushid-train-generator --dataset=cmu: so many of each of four actions, and one more "
              "to test; --frames at 50 Hz, 600 if not given; 0: recordings of pushes");
+DEFINE_int32(turns, 0,
+             "write so many recordings of three people who talk in turns instead, without a push, "
+             "with the truth of who speaks (states.csv); --frames, 300 if not given; 0: recordings "
+             "of pushes");
 DEFINE_uint64(seed, pushid::SyntheticOptions{}.seed, "seed of people, pushes and noise");
 
 namespace {
@@ -171,29 +176,47 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
   }
 }
 
-int WriteClips() {
-  const auto allowed = [](const std::string& name) {
-    return name == "clips" || name == "frames" || name == "seed" || name == "out";
-  };
+// Flags of what has no push and no parameters: `flag`, its value, and those of all.
+MaybeError CheckAlone(const char* flag, int count, int frames) {
   for (const std::string& name : ChangedFlags()) {
-    if (!allowed(name)) return Fail(Error{"--" + name + " says nothing to --clips; leave it out"});
+    if (name == flag || name == "frames" || name == "seed" || name == "out") continue;
+    return Error{"--" + name + " says nothing to --" + std::string(flag) + "; leave it out"};
   }
+  for (const MaybeError& error :
+       {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
+        CheckRange(flag, count, 1, 1000), CheckRange("frames", frames, 3, 100000)}) {
+    if (error) return error;
+  }
+  return std::nullopt;
+}
+
+int WriteTurns() {
+  SyntheticTurnsOptions options;
+  options.recordings = FLAGS_turns;
+  if (Given("frames")) options.frames = FLAGS_frames;
+  options.seed = FLAGS_seed;
+  MaybeError error = CheckAlone("turns", FLAGS_turns, options.frames);
+  if (!error) error = WriteSyntheticTurns(FLAGS_out, options);
+  if (error) return Fail(*error);
+  std::printf("%d recordings of three people who talk in turns: %s\n", options.recordings,
+              (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
+  return kDone;
+}
+
+int WriteClips() {
   SyntheticClipOptions options;
   options.clips = FLAGS_clips;
   if (Given("frames")) options.frames = FLAGS_frames;
   options.seed = FLAGS_seed;
-  for (const MaybeError& error :
-       {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
-        CheckRange("clips", FLAGS_clips, 1, 1000),
-        CheckRange("frames", options.frames, 3, 100000)}) {
-    if (error) return Fail(*error);
-  }
-  if (MaybeError error = WriteSyntheticClips(FLAGS_out, options)) return Fail(*error);
+  MaybeError error = CheckAlone("clips", FLAGS_clips, options.frames);
+  if (!error) error = WriteSyntheticClips(FLAGS_out, options);
+  if (error) return Fail(*error);
   std::printf("%d clips of each action and one to test: %s\n", options.clips, FLAGS_out.c_str());
   return kDone;
 }
 
 int Run() {
+  if (FLAGS_turns != 0) return WriteTurns();
   if (FLAGS_clips != 0) return WriteClips();
   const Result<SyntheticOptions> read = StudyFromCommandLine();
   if (!read.ok()) return Fail(read.error());

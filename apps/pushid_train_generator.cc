@@ -165,7 +165,12 @@ int FromClips(const TrainGeneratorFlags& flags) {
 int FromPushes(const TrainGeneratorFlags& flags) {
   const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
   if (!recordings.ok()) return Fail(recordings.error());
-  if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
+  // Groups move without a push too; people by themselves, and physics, need one.
+  const bool needs_push = !RowOf(flags.options.kind).groups || flags.physics ||
+                          flags.accuracy == ForecastAccuracy::kBest;
+  if (needs_push) {
+    if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
+  }
   const Result<std::vector<BodyRecording>> bodies =
       MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
   if (!bodies.ok()) return Fail(bodies.error());

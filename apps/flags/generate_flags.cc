@@ -40,6 +40,10 @@ DEFINE_string(physics, "",
 DEFINE_int32(frames, kFlags.frames,
              "diffusion: length of the forecast, frames, also past the recording's end; a table "
              "shows the motion of all groups second by second; 0: as long as the recording");
+DEFINE_string(states, "",
+              "diffusion: CSV of the states of people and groups that somebody annotated "
+              "(recording,frame,person,symbol), for SSCP and transitions; empty: built-in states");
+DEFINE_string(states_out, "", "diffusion: write the states of the recordings here (CSV)");
 DEFINE_string(action, "", "cmu: action of the window to show; empty: the first");
 DEFINE_int32(window, kFlags.window, "cmu: which of the action's windows to show, from 0 on");
 DEFINE_string(id, "", "pushes: the recording to show");
@@ -129,7 +133,7 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   std::vector<const char*> foreign;
   for (const auto& other : KindFlags<GenerateFlags>::ForeignTo(kind)) foreign.push_back(other.flag);
   if (row.groups) foreign.push_back("person");
-  if (!row.groups) foreign.insert(foreign.end(), {"physics", "frames"});
+  if (!row.groups) foreign.insert(foreign.end(), {"physics", "frames", "states", "states_out"});
   if (!row.any_observed) foreign.push_back("observed");
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
@@ -154,6 +158,8 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.folder = FLAGS_folder;
   flags.changes.seed = FLAGS_seed;
   flags.physics = FLAGS_physics;
+  flags.states = FLAGS_states;
+  flags.states_out = FLAGS_states_out;
   flags.samples = FLAGS_samples;
   flags.seed = FLAGS_seed;
   flags.action = FLAGS_action;
@@ -163,8 +169,8 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.strip_out = FLAGS_strip_out;
   flags.page_out = FLAGS_page_out;
   if (MaybeError error = CheckData(flags)) return *error;
-  if (MaybeError error =
-          CheckOutputFiles({flags.json_out, flags.poses_out, flags.strip_out, flags.page_out})) {
+  if (MaybeError error = CheckOutputFiles(
+          {flags.json_out, flags.poses_out, flags.strip_out, flags.page_out, flags.states_out})) {
     return *error;
   }
   return flags;

@@ -36,7 +36,6 @@ enum Joint {
 };
 constexpr int kJoints = 16;
 constexpr double kStep = 1.0 / 50.0;  // s
-constexpr double kMemory = 1.0;       // s, of the slow noise
 
 struct StickAction {
   const char* name;
@@ -47,30 +46,15 @@ constexpr StickAction kActions[] = {{"walking", 0.9, 0.45, 0.6, 0.35, 0.3, 0.04}
                                     {"strolling", 0.6, 0.25, 0.35, 0.15, 0.2, 0.05},
                                     {"waving", 0.5, 0.02, 0.05, 1.10, 1.2, 0.08}};
 
-// Of unit variance.
-class SlowNoise {
- public:
-  explicit SlowNoise(Random* random) : random_(random), value_(random->Normal()) {}
-  double Next() {
-    const double memory = std::exp(-kStep / kMemory);
-    value_ = memory * value_ + std::sqrt(1.0 - memory * memory) * random_->Normal();
-    return value_;
-  }
-
- private:
-  Random* random_;
-  double value_;
-};
-
 std::string Clip(const StickAction& action, int frames, Random* random) {
   constexpr double kAmplitude = 0.15, kCadence = 0.1, kTremor = 0.02;
   const auto own = [&](double size) { return size * std::exp(random->Normal(0.0, kAmplitude)); };
   const double leg = own(action.leg), knee = own(action.knee), arm = own(action.arm);
   const double elbow = own(action.elbow), sway = own(action.sway);
   double phase = random->Uniform(0.0, 2.0 * M_PI);
-  SlowNoise cadence(random);
+  SlowNoise cadence(random, kStep);
   std::vector<SlowNoise> tremor;
-  while (tremor.size() < 3 * kJoints) tremor.emplace_back(random);
+  while (tremor.size() < 3 * kJoints) tremor.emplace_back(random, kStep);
   std::string text;
   for (int t = 0; t < frames; ++t) {
     std::array<double, 3 * kJoints> maps{};

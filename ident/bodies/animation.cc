@@ -293,7 +293,8 @@ std::string AnimationHtml(const Animation& animation) {
   const std::string push = std::string("--push:") + kAnimatedPushColour + ";";
   return ToHtml({"People in motion", push + "--grid:#ddd;--recorded:#8a8a8a",
                  push + "--grid:#3a3f46;--recorded:#a0a0a0",
-                 Choices(animation, whats) + StoryHtml(animation), std::move(data), kScript});
+                 Choices(animation, whats) + StoryHtml(animation), std::move(data), kScript,
+                 animation.figures});
 }
 
 }  // namespace pushid

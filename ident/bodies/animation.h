@@ -40,6 +40,7 @@ struct Animation {
   std::vector<AnimatedPerson> people;
   std::vector<AnimatedPush> pushes;
   std::optional<AnimatedStory> story;
+  std::vector<std::string> figures;  // SVG, below the motion
 
   int num_frames() const;
 };

@@ -198,6 +198,15 @@ Json ToJson(const BodySummary& summary, bool with_recordings) {
   }
   if (!summary.without_label.empty()) json["without_label"] = summary.without_label;
   if (summary.groups) json["group_metrics"] = ToJson(*summary.groups);
+  json["errors_at"] = Json::array();
+  for (size_t i = 0; i < summary.at.size(); ++i) {
+    const TimedMean& at = summary.at[i];
+    const auto metres = [&at](double value) { return at.recordings > 0 ? Json(value) : Json(); };
+    json["errors_at"].push_back({{"seconds", kErrorSeconds[i]},
+                                 {"recordings", at.recordings},
+                                 {"root_m", metres(at.mean.root)},
+                                 {"pose_m", metres(at.mean.pose)}});
+  }
   return json;
 }
 
@@ -226,6 +235,26 @@ Result<BodyMetrics> MeanBodyMetrics(const Json& json, const std::string& file) {
             std::string(error.what()),
         file};
   }
+}
+
+std::string TimedErrorsText(const BodyEvaluation& evaluation) {
+  std::vector<std::string> header = {"m, after the last shown frame"};
+  for (const char* what : {"root", "pose"}) {
+    for (const int seconds : kErrorSeconds) {
+      header.push_back(std::string(what) + " " + std::to_string(seconds) + " s");
+    }
+  }
+  TextTable table = TextTable::OfNumbers(header);
+  for (const auto& [name, summary] : evaluation) {
+    std::vector<std::string> row = {Spaced(name)};
+    for (double TimedError::*part : {&TimedError::root, &TimedError::pose}) {
+      for (const TimedMean& at : summary.at) {
+        row.push_back(at.recordings > 0 ? Cell(at.mean.*part) : "none");
+      }
+    }
+    table.Add(row);
+  }
+  return table.ToString();
 }
 
 std::string BodyText(const BodyEvaluation& evaluation) {

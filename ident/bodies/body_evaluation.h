@@ -70,5 +70,7 @@ nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);
 
 // A row per predictor, a column per metric; then the restoration by label.
 std::string BodyText(const BodyEvaluation& evaluation);
+// Root and pose errors at fixed times (TimedError), a row per predictor.
+std::string TimedErrorsText(const BodyEvaluation& evaluation);
 
 }  // namespace pushid

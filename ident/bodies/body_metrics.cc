@@ -30,6 +30,32 @@ BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted,
   return sum;
 }
 
+TimedError ErrorAt(const std::vector<BodyMotion>& recorded,
+                   const std::vector<BodyMotion>& predicted, int frame) {
+  TimedError error;
+  const double people = static_cast<double>(recorded.size());
+  for (size_t n = 0; n < recorded.size(); ++n) {
+    const Pose difference = predicted[n][frame] - recorded[n][frame];
+    const Eigen::Vector3d hip = difference.col(kBodyHip);
+    error.root += hip.norm() / people;
+    error.pose += (difference.colwise() - hip).colwise().norm().mean() / people;
+  }
+  return error;
+}
+
+TimedMean MeanAt(const std::vector<const BodyScore*>& scores, size_t second) {
+  TimedMean at;
+  for (const BodyScore* score : scores) {
+    if (!score->at[second]) continue;
+    ++at.recordings;
+    at.mean.root += score->at[second]->root;
+    at.mean.pose += score->at[second]->pose;
+  }
+  at.mean.root /= std::max(1, at.recordings);
+  at.mean.pose /= std::max(1, at.recordings);
+  return at;
+}
+
 std::optional<GroupMetrics> GroupsOf(const std::vector<BodyRecording>& recordings,
                                      const std::vector<BodyScore>& scores) {
   std::vector<GroupMotion> recorded, predicted;
@@ -108,6 +134,11 @@ BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMoti
     ++touching;
   }
   score.value[kFse] /= std::max(1, touching);
+  for (size_t i = 0; i < kErrorSeconds.size(); ++i) {
+    const double after = kErrorSeconds[i] / recording.pendulum.scene.dt;
+    const int frame = first_frame - 1 + static_cast<int>(std::lround(after));
+    if (frame < score.frames) score.at[i] = ErrorAt(recording.bodies, predicted, frame);
+  }
   if (people > 1) score.predicted = predicted;
   return score;
 }
@@ -125,6 +156,7 @@ BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
   summary.groups = GroupsOf(recordings, summary.recordings);
   summary.mean = Mean(all, false);
   summary.frame_weighted = Mean(all, true);
+  for (size_t i = 0; i < summary.at.size(); ++i) summary.at[i] = MeanAt(all, i);
   summary.by = GroupScores(pendulums, summary.recordings, group_by,
                            [](const Scores& group) { return Mean(group, false); });
   summary.without_label = CountWithoutLabel(pendulums, summary.recordings, group_by);

@@ -18,6 +18,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,13 @@ inline constexpr BodyMetricRow kBodyMetrics[kNumBodyMetrics] = {
 // "MPJPE 0.1 m, hipADE 0.1 m, ..."
 std::string MetricsText(const BodyMetrics& metrics, int digits);
 
+// Errors a while after the last shown frame (Tanke et al., ICCV 2023, Tables 1 and 2), means over
+// people, m: root is |hip - recorded hip|, pose the mean joint error with hips aligned.
+inline constexpr std::array<int, 3> kErrorSeconds = {1, 2, 3};
+struct TimedError {
+  double root = 0.0, pose = 0.0;
+};
+
 struct BodyScore {
   std::string id;
   int frames = 0;
@@ -61,6 +69,8 @@ struct BodyScore {
   std::string failure;                     // why there is no score; such a recording is in no mean
   std::vector<BodyMotion> predicted = {};  // of more than one person; groups are judged together
   int first_frame = 1;                     // that counts
+  // At kErrorSeconds, where the recording lasts so long.
+  std::array<std::optional<TimedError>, kErrorSeconds.size()> at = {};
 };
 
 // predicted: one motion per person, with as many frames as the recording, which are more than
@@ -77,9 +87,15 @@ struct BodyMean {
   BodyMetrics value{}, error{};  // mean and its standard error
 };
 
+struct TimedMean {
+  int recordings = 0;  // that last so long
+  TimedError mean;
+};
+
 struct BodySummary {
   std::vector<BodyScore> recordings;
   BodyMean mean, frame_weighted;
+  std::array<TimedMean, kErrorSeconds.size()> at;
   ByLabel<BodyMean> by;
   WithoutLabel without_label;          // in no group of `by`
   std::optional<GroupMetrics> groups;  // of all recordings of more than one person, if any

@@ -31,8 +31,7 @@ constexpr char kFooter[] = R"html(; drag to turn, wheel to zoom"></canvas>
 <output id="clock"></output>
 <label>speed <select id="speed"><option value="0.25">1/4</option><option value="0.5">1/2</option>
 <option value="1" selected>1</option></select></label></footer>
-<script>
-const data=)html";
+)html";
 
 constexpr char kScriptBefore[] = R"html(;
 const $=id=>document.getElementById(id),view=$('view'),pen=view.getContext('2d');
@@ -66,6 +65,15 @@ std::string ForScript(std::string json) {
   return json;
 }
 
+// The motion keeps most of the window, and the page is longer than that.
+std::string FiguresHtml(const std::vector<std::string>& figures) {
+  if (figures.empty()) return "";
+  std::string html = "<style>body{height:auto}canvas{flex:none;height:80vh}" +
+                     std::string(SvgStyle()) + "</style>\n<section>\n";
+  for (const std::string& figure : figures) html += figure + "\n";
+  return html + "</section>\n";
+}
+
 }  // namespace
 
 std::string ToHtml(const MovingPage& page) {
@@ -74,6 +82,7 @@ std::string ToHtml(const MovingPage& page) {
          page.light + "}\n@media(prefers-color-scheme:dark){:root{--paper:#15181c;--ink:#e8e8e8;" +
          page.dark + "}}\n" + kMovingPageStyle + page.choices +
          "</header>\n<canvas id=\"view\" aria-label=\"" + page.described + kFooter +
+         FiguresHtml(page.figures) + "<script>\nconst data=" +
          ForScript(page.data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) +
          kScriptBefore + page.script + kScriptAfter;
 }

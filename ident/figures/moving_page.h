@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace pushid {
 
@@ -17,6 +18,7 @@ struct MovingPage {
   // Sees `data`, `view`, `pen`, `$` (element by id) and `style` (value of a CSS variable); declares
   // `frame`, `turn`, `tilt` and `zoom` by let, and draw(), which draws `frame` and sets the clock.
   std::string script;
+  std::vector<std::string> figures = {};  // SVG without style sheets, below the motion
 };
 
 std::string ToHtml(const MovingPage& page);

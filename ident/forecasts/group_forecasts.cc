@@ -8,6 +8,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
+#include "ident/parameters/json_archive.h"
 
 namespace pushid {
 
@@ -86,15 +87,16 @@ void AddHips(const GroupMotion& group, int second, Hips* hips) {
 }  // namespace
 
 std::vector<ForecastSecond> BySecond(const std::vector<GroupMotion>& recorded,
-                                     const std::vector<GroupMotion>& forecast) {
+                                     const std::vector<GroupMotion>& forecast,
+                                     const StateFunction& states) {
   std::vector<ForecastSecond> seconds(WholeSeconds(forecast));
-  const std::vector<SecondOfStates> states =
-      CompareStatesBySecond(recorded, forecast, static_cast<int>(seconds.size()));
+  const std::vector<SecondOfStates> by_second =
+      CompareStatesBySecond(recorded, forecast, static_cast<int>(seconds.size()), states);
   for (size_t s = 0; s < seconds.size(); ++s) {
     Hips hips;
     for (const GroupMotion& group : forecast) AddHips(group, static_cast<int>(s), &hips);
-    seconds[s] = {hips.speed / hips.frames, hips.way / hips.people, states[s].standing,
-                  states[s].sscp};
+    seconds[s] = {hips.speed / hips.frames, hips.way / hips.people, by_second[s].standing,
+                  by_second[s].sscp};
   }
   return seconds;
 }
@@ -103,13 +105,11 @@ nlohmann::ordered_json ToJson(const std::vector<ForecastSecond>& seconds) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (size_t s = 0; s < seconds.size(); ++s) {
     const ForecastSecond& second = seconds[s];
-    nlohmann::ordered_json row = {{"second", s + 1},
-                                  {"hip_speed_m_s", second.hip_speed},
-                                  {"hip_way_m", second.hip_way},
-                                  {"standing", second.standing},
-                                  {"sscp", nullptr}};
-    if (second.sscp) row["sscp"] = *second.sscp;
-    rows.push_back(row);
+    rows.push_back({{"second", s + 1},
+                    {"hip_speed_m_s", second.hip_speed},
+                    {"hip_way_m", second.hip_way},
+                    {"standing", NumberOrNull(second.standing)},
+                    {"sscp", NumberOrNull(second.sscp)}});
   }
   return rows;
 }
@@ -119,8 +119,11 @@ std::string SecondsText(const std::string& name, const std::vector<ForecastSecon
                   {false, false, false, false, false});
   for (size_t s = 0; s < seconds.size(); ++s) {
     const ForecastSecond& second = seconds[s];
+    const auto cell = [](const std::optional<double>& value) {
+      return value ? Rounded(*value, 3) : std::string("none");
+    };
     table.Add({std::to_string(s + 1), Rounded(second.hip_speed, 3), Rounded(second.hip_way, 3),
-               Rounded(second.standing, 3), second.sscp ? Rounded(*second.sscp, 3) : "none"});
+               cell(second.standing), cell(second.sscp)});
   }
   return table.ToString();
 }

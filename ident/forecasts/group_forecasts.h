@@ -40,15 +40,16 @@ std::string SpreadText(const GroupSpread& spread);
 
 // One second of the forecasts.
 struct ForecastSecond {
-  double hip_speed = 0.0;      // mean, horizontal, m/s
-  double hip_way = 0.0;        // mean distance from the last shown frame at its end, m
-  double standing = 0.0;       // share of people and frames that neither lean, step nor push
-  std::optional<double> sscp;  // of its states to all that were recorded
+  double hip_speed = 0.0;          // mean, horizontal, m/s
+  double hip_way = 0.0;            // mean distance from the last shown frame at its end, m
+  std::optional<double> standing;  // share of people and frames that neither lean, step nor push
+  std::optional<double> sscp;      // of its states to all that were recorded
 };
 
 // Whole seconds alone, from the last frame on that the forecast was shown.
 std::vector<ForecastSecond> BySecond(const std::vector<GroupMotion>& recorded,
-                                     const std::vector<GroupMotion>& forecast);
+                                     const std::vector<GroupMotion>& forecast,
+                                     const StateFunction& states = SocialStateFunction());
 
 nlohmann::ordered_json ToJson(const std::vector<ForecastSecond>& seconds);
 // A table under the name of what forecasts.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "datasets/files/number_text.h"
@@ -15,46 +16,14 @@
 namespace pushid {
 namespace {
 
-constexpr double kWholeFrame = 0.1;  // frames; rates are rounded
 constexpr int kNever = -1;
 
-// Transitions and words are those of 60 frames a second.
-std::vector<BodyMotion> AtWordRate(const GroupMotion& group) {
-  std::vector<BodyMotion> people;
-  for (const BodyMotion& person : group.people) {
-    const double seconds = (static_cast<double>(person.size()) - 1.0) * group.dt;
-    const int frames = 1 + static_cast<int>(seconds * kWordRate + kWholeFrame);
-    people.push_back(Resampled(person, group.dt, 1.0 / kWordRate, frames));
-  }
-  return people;
-}
-
-// At the words' rate: the frame at which the first step that counts begins.
-std::ptrdiff_t FirstStep(const GroupMotion& group) {
-  const double frames = std::max(0, group.first_frame - 1) * group.dt * kWordRate;
-  return static_cast<std::ptrdiff_t>(std::ceil(frames - kWholeFrame));
-}
-
-// The states that count, and before them the first of them again, as at frame 0.
+// Of everybody, those that count.
 std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const StateFunction& states) {
   std::vector<Symbols> all;
   for (const GroupMotion& group : groups) {
-    for (const Symbols& symbols : states.of(AtWordRate(group), 1.0 / kWordRate)) {
-      const auto size = static_cast<std::ptrdiff_t>(symbols.size());
-      all.emplace_back(symbols.begin() + std::min(FirstStep(group), size), symbols.end());
-      if (all.back().size() > 1) all.back()[0] = all.back()[1];
-    }
-  }
-  return all;
-}
-
-// The frames whose steps count.
-std::vector<BodyMotion> AllPeople(const std::vector<GroupMotion>& groups) {
-  std::vector<BodyMotion> all;
-  for (const GroupMotion& group : groups) {
-    for (const BodyMotion& person : AtWordRate(group)) {
-      const auto size = static_cast<std::ptrdiff_t>(person.size());
-      all.emplace_back(person.begin() + std::min(FirstStep(group), size), person.end());
+    for (const Symbols& symbols : StatesOfPeople(group, states)) {
+      all.push_back(Counted(group, symbols));
     }
   }
   return all;
@@ -89,22 +58,22 @@ SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
   const std::vector<Symbols> of_recorded = StatesOf(recorded, states);
   const std::vector<Symbols> of_motions = StatesOf(motions, states);
   const auto distance = [&](Transitions which) {
-    return JensenShannon(CountTransitions(of_recorded, states.num_symbols, which),
-                         CountTransitions(of_motions, states.num_symbols, which));
+    return JensenShannon(CountTransitions(of_recorded, states.num_symbols(), which),
+                         CountTransitions(of_motions, states.num_symbols(), which));
   };
   return {distance(Transitions::kAll), distance(Transitions::kChanges), std::nullopt};
 }
 
 std::vector<SecondOfStates> CompareStatesBySecond(const std::vector<GroupMotion>& recorded,
                                                   const std::vector<GroupMotion>& motions,
-                                                  int seconds) {
-  const StateFunction states = SocialStateFunction();
+                                                  int seconds, const StateFunction& states) {
   const auto transitions = [&](const std::vector<Symbols>& people) {
-    return CountTransitions(people, states.num_symbols, Transitions::kAll);
+    return CountTransitions(people, states.num_symbols(), Transitions::kAll);
   };
   const Eigen::MatrixXd reference = transitions(StatesOf(recorded, states));
   const std::vector<Symbols> all = StatesOf(motions, states);
   const auto of_second = static_cast<Symbols::difference_type>(kWordRate);
+  const auto stand = std::find(states.names.begin(), states.names.end(), NameOf(kStand));
   std::vector<SecondOfStates> rows(seconds);
   for (int s = 0; s < seconds; ++s) {
     std::vector<Symbols> within;
@@ -115,26 +84,28 @@ std::vector<SecondOfStates> CompareStatesBySecond(const std::vector<GroupMotion>
           std::min<std::ptrdiff_t>(s * of_second, std::distance(person.begin(), person.end()));
       within.emplace_back(begin,
                           begin + std::min(of_second + 1, std::distance(begin, person.end())));
-      standing +=
-          static_cast<double>(std::count(within.back().begin(), within.back().end(), kStand));
+      standing += static_cast<double>(
+          std::count(within.back().begin(), within.back().end(), stand - states.names.begin()));
       frames += static_cast<double>(within.back().size());
     }
-    rows[s] = {standing / std::max(1.0, frames), JensenShannon(reference, transitions(within))};
+    rows[s].sscp = JensenShannon(reference, transitions(within));
+    if (stand != states.names.end()) rows[s].standing = standing / std::max(1.0, frames);
   }
   return rows;
 }
 
 std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
                                    const std::vector<GroupMotion>& motions) {
-  const MotionWords words(AllPeople(recorded));
-  MotionWords::Similarity sum;
+  const MotionWords words(CountedMotions(recorded));
+  double sum = 0.0;
+  int count = 0;
   if (words.size() == 0) return std::nullopt;
-  for (const BodyMotion& person : AllPeople(motions)) {
-    const MotionWords::Similarity one = words.Compare(person);
-    sum.sum += one.sum;
-    sum.words += one.words;
+  for (const BodyMotion& person : CountedMotions(motions)) {
+    const std::vector<double> scores = words.Scores(person);
+    sum += std::accumulate(scores.begin(), scores.end(), 0.0);
+    count += static_cast<int>(scores.size());
   }
-  return Share(sum.sum, sum.words);
+  return Share(sum, count);
 }
 
 std::vector<int> OnsetFrames(const HipPaths& hips) {

@@ -27,16 +27,9 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/figures/text_table.h"
 #include "ident/model/model_rollout.h"
-#include "models/restoration/group_motion.h"
+#include "ident/validation/group_states.h"
 
 namespace pushid {
-
-struct GroupMotion {
-  std::vector<BodyMotion> people;
-  double dt = 1.0 / 60.0;
-  int pushed_person = 0;
-  int first_frame = 1;  // that counts; everybody knows frame 0
-};
 
 // Of what people do, of any number of groups against any others; the three of them are symmetric
 // but for ndms, whose words are those of `motions`.
@@ -49,12 +42,12 @@ SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
 // Each second of the motions, from the last frame that does not count on, against all that was
 // recorded; the states of a frame count from frame 0 of the whole motion.
 struct SecondOfStates {
-  double standing = 0.0;       // share of kStand
-  std::optional<double> sscp;  // no value where a second has no frames
+  std::optional<double> standing;  // share of the state that is called so, if any
+  std::optional<double> sscp;      // no value where a second has no frames
 };
-std::vector<SecondOfStates> CompareStatesBySecond(const std::vector<GroupMotion>& recorded,
-                                                  const std::vector<GroupMotion>& motions,
-                                                  int seconds);
+std::vector<SecondOfStates> CompareStatesBySecond(
+    const std::vector<GroupMotion>& recorded, const std::vector<GroupMotion>& motions, int seconds,
+    const StateFunction& states = SocialStateFunction());
 std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
                                    const std::vector<GroupMotion>& motions);
 

@@ -66,6 +66,12 @@ std::vector<Symbols> SocialStates(const std::vector<BodyMotion>& people, double 
   return all;
 }
 
+StateFunction SocialStateFunction() {
+  StateFunction states{{}, SocialStates};
+  for (const auto& row : Names(SocialState{})) states.names.push_back(row.name);
+  return states;
+}
+
 namespace {
 
 constexpr double kLeastWay = 1e-7;   // m
@@ -166,18 +172,17 @@ int MotionWords::Nearest(const Word& word, int first) const {
   return nearest;
 }
 
-MotionWords::Similarity MotionWords::Compare(const BodyMotion& motion) const {
-  Similarity similarity;
+std::vector<double> MotionWords::Scores(const BodyMotion& motion) const {
+  std::vector<double> scores;
   int nearest = kLast;
   for (size_t t = 0; t + kWordFrames <= motion.size(); ++t) {
     const Word word = WordAt(motion, t);
     // The nearest of the word before, a frame on, is hardly ever far.
     const int first = nearest == kLast || next_[nearest] == kLast ? 0 : next_[nearest];
     nearest = Nearest(word, first);
-    similarity.sum += Score(word, words_[nearest]);
-    ++similarity.words;
+    scores.push_back(Score(word, words_[nearest]));
   }
-  return similarity;
+  return scores;
 }
 
 }  // namespace pushid

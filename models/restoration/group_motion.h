@@ -3,8 +3,10 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
+#include "models/enum_names.h"
 #include "models/particles.h"
 #include "models/restoration/body.h"
 
@@ -25,15 +27,25 @@ namespace pushid {
 
 // Symbols of a group, [person]; another set of symbols may be put in its place.
 struct StateFunction {
-  int num_symbols = 0;
+  std::vector<std::string> names;  // of the symbols
   std::function<std::vector<Symbols>(const std::vector<BodyMotion>& people, double dt)> of;
+
+  int num_symbols() const { return static_cast<int>(names.size()); }
 };
 
 enum SocialState { kStand, kLean, kStep, kPushStanding, kPushLeaning, kPushStepping };
 inline constexpr int kSocialStates = 6;
+constexpr EnumNames<SocialState, kSocialStates> Names(SocialState) {
+  return {{{"stand", kStand},
+           {"lean", kLean},
+           {"step", kStep},
+           {"push_standing", kPushStanding},
+           {"push_leaning", kPushLeaning},
+           {"push_stepping", kPushStepping}}};
+}
 
 std::vector<Symbols> SocialStates(const std::vector<BodyMotion>& people, double dt);
-inline StateFunction SocialStateFunction() { return {kSocialStates, SocialStates}; }
+StateFunction SocialStateFunction();
 
 // How natural motions look: normalized directional motion similarity (NDMS, Tanke et al.,
 // "Intention-based long-term human motion anticipation", 3DV 2021; as SDM uses it).
@@ -72,13 +84,9 @@ class MotionWords {
   // first: any word, at best one that is near.
   int Nearest(const Word& word, int first = 0) const;
 
-  // Sum over the words of `motion` of their scores, and how many they are. At least one recorded
-  // word is needed.
-  struct Similarity {
-    double sum = 0.0;
-    int words = 0;
-  };
-  Similarity Compare(const BodyMotion& motion) const;
+  // The scores of the words of `motion`, by the frame each begins at. At least one recorded word is
+  // needed.
+  std::vector<double> Scores(const BodyMotion& motion) const;
 
  private:
   using Mean = Eigen::Matrix<double, kWordSize, 1>;

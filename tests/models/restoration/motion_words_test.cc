@@ -1,6 +1,8 @@
 // Words of motion: scores by hand, and the exact nearest.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "models/restoration/group_motion.h"
 #include "tests/models/body_samples.h"
 
@@ -20,25 +22,25 @@ TEST(MotionWordsTest, ScoresByHand) {
   const MotionWords words({Gliding(0.02, 24)});
   EXPECT_EQ(words.size(), 5);
   const auto score = [&words](const BodyMotion& motion) {
-    const MotionWords::Similarity similarity = words.Compare(motion);
-    EXPECT_EQ(similarity.words, static_cast<int>(motion.size()) - kWordFrames + 1);
-    return similarity.sum / similarity.words;
+    const std::vector<double> scores = words.Scores(motion);
+    EXPECT_EQ(scores.size(), motion.size() - kWordFrames + 1);
+    return std::accumulate(scores.begin(), scores.end(), 0.0) / static_cast<double>(scores.size());
   };
   EXPECT_NEAR(score(Gliding(0.02, 22, 0.7)), 1.0, 1e-9) << "turned and elsewhere it is the same";
   EXPECT_NEAR(score(Gliding(0.01, 20)), 0.5, 1e-9) << "half as fast";
   EXPECT_NEAR(score(Gliding(-0.02, 20)), 0.0, 1e-9) << "backwards";
   EXPECT_LT(score(Gliding(0.0, 20)), 1e-5) << "not at all";
-  EXPECT_EQ(words.Compare(Gliding(0.02, 19)).words, 0);
+  EXPECT_TRUE(words.Scores(Gliding(0.02, 19)).empty());
 }
 
 // Two joints at rest go nowhere: u.v = 0, both floored to 1e-7 m, so (0 + 1) / 2 * 1.
 TEST(MotionWordsTest, RestBesideRestIsNeitherAlikeNorOpposite) {
   const MotionWords words({Gliding(0.0, 20)});
-  EXPECT_NEAR(words.Compare(Gliding(0.0, 20)).sum, 0.5, 1e-12);
+  EXPECT_NEAR(words.Scores(Gliding(0.0, 20))[0], 0.5, 1e-12);
   // One of 17 joints moves by 1 cm a frame, and is unlike what rests.
   BodyMotion nods = Gliding(0.0, 20);
   for (int t = 0; t < 20; ++t) nods[t](2, kWordJoints[0]) += 0.01 * t;
-  EXPECT_NEAR(words.Compare(nods).sum, 0.5 * 16.0 / 17.0, 1e-5);
+  EXPECT_NEAR(words.Scores(nods)[0], 0.5 * 16.0 / 17.0, 1e-5);
 }
 
 // The search by means and axes against looking at every word.
