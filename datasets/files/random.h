@@ -51,19 +51,4 @@ class Random {
   bool has_spare_ = false;
 };
 
-// Slow noise of unit variance: n' = m n + sqrt(1 - m^2) N(0, 1), m = exp(-step / memory).
-class SlowNoise {
- public:
-  SlowNoise(Random* random, double step_s, double memory_s = 1.0)
-      : random_(random), memory_(std::exp(-step_s / memory_s)), value_(random->Normal()) {}
-  double Next() {
-    value_ = memory_ * value_ + std::sqrt(1.0 - memory_ * memory_) * random_->Normal();
-    return value_;
-  }
-
- private:
-  Random* random_;
-  double memory_, value_;
-};
-
 }  // namespace pushid

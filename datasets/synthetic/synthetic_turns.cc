@@ -1,17 +1,17 @@
 // datasets: three people who talk in turns.
 #include "datasets/synthetic/synthetic_turns.h"
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/random.h"
 #include "datasets/loading/state_csv.h"
 #include "datasets/manifest/manifest.h"
+#include "datasets/synthetic/synthetic_clips.h"
 #include "datasets/synthetic/synthetic_recordings.h"
-#include "models/restoration/body.h"
 
 namespace pushid {
 namespace {
@@ -95,8 +95,8 @@ class TalkingBody {
                               height + rod * std::cos(theta) * std::cos(phi));
     const size_t begin = values->size();
     who_.skeleton.AppendFrame({theta, phi, hip, foot + half, foot - half}, kTurnsUnit, values);
-    const Eigen::Matrix3d turn = TurnAboutZ(who_.heading);
-    const Eigen::Vector2d there = who_.place + (turn * hip).head<2>();
+    const Eigen::Rotation2D<double> turn(who_.heading);
+    const Eigen::Vector2d there = who_.place + turn * Eigen::Vector2d(hip.head<2>());
     double* const frame = values->data() + begin;
     frame[0] = ConvertLength(there.x(), LengthUnit::kMetre, kTurnsUnit);
     frame[1] = ConvertLength(there.y(), LengthUnit::kMetre, kTurnsUnit);
