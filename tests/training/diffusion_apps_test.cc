@@ -111,6 +111,51 @@ TEST_F(DiffusionAppTest, LongForecastsAreToldBySecond) {
   EXPECT_LT(seconds[3]["hip_speed_m_s"].get<double>(), 0.02) << "they have come to rest";
 }
 
+// Nobody is pushed; who speaks is annotated.
+TEST_F(DiffusionAppTest, GroupsWithoutAPushAreForecastAndTheirStatesCompared) {
+  ASSERT_EQ(RunApp("pushid-simulate", {"--turns=4", "--frames=90", "--out=" + Path("t")}).exit_code,
+            0);
+  const std::string turns = "--recordings=" + Path("t/manifest.json");
+  const AppRun train = RunApp("pushid-train-generator",
+                              {"--published=sdm", turns, "--steps=5", "--batch=2", "--quiet",
+                               "--held_out=0", "--observed=20", "--out=" + Path("g")});
+  ASSERT_EQ(train.exit_code, 0) << train.err;
+  const auto generate = [&](std::vector<std::string> more) {
+    more.insert(more.end(), {"--model=" + Path("g"), turns, "--averaged=1", "--sampling_steps=2",
+                             "--quiet", "--json_out=" + Path("e.json")});
+    return RunApp("pushid-generate", more);
+  };
+  const AppRun run = generate(
+      {"--states=" + Path("t/states.csv"), "--id=turns_01", "--page_out=" + Path("p.html")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(Contains(run.out, "root 1 s"));
+  EXPECT_TRUE(Contains(run.out, "found by a classifier"));
+  auto json = Json(Path("e.json"));
+  EXPECT_EQ(json["errors_at"][0]["recordings"], 4);
+  EXPECT_TRUE(json["errors_at"][1]["root_m"].is_null());
+  EXPECT_EQ(json["social"]["names"].size(), 3u);
+  EXPECT_EQ(json["social"]["group_names"].back(), "other");
+  const auto by_frame = json["social"]["by"]["generator"]["by_frame"];
+  EXPECT_EQ(json["social"]["first_frame"], 20);
+  EXPECT_EQ(by_frame["sscp"].size(), 70u);
+  EXPECT_EQ(by_frame["ndms"].size(), 52u);
+  EXPECT_TRUE(Contains(ReadText(Path("p.html")), "people, generator: changes a minute"));
+  // The built-in states from a file are the built-in ones.
+  ASSERT_EQ(generate({"--states_out=" + Path("s.csv")}).exit_code, 0);
+  auto built_in = Json(Path("e.json"));
+  ASSERT_EQ(generate({"--states=" + Path("s.csv")}).exit_code, 0);
+  auto from_file = Json(Path("e.json"));
+  for (auto* of : {&built_in, &from_file}) (*of)["social"].erase("states");
+  EXPECT_EQ(built_in["social"].dump(), from_file["social"].dump());
+  EXPECT_EQ(built_in["group_metrics"].dump(), from_file["group_metrics"].dump());
+  WriteText("wrong.csv", "recording,frame,person,symbol\nturns_1,0,T1,speak\n");
+  EXPECT_TRUE(Refused(generate({"--states=" + Path("wrong.csv")}),
+                      {"wrong.csv:2", "turns_1", "is turns_01 meant?"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-train-generator", {"--kind=particles", "--dataset=pushes",
+                                                        turns, "--steps=5", "--out=" + Path("h")}),
+                      {"has no push"}));
+}
+
 TEST_F(DiffusionAppTest, AsSdmIsPublished) {
   ASSERT_EQ(Train({"--out=" + Path("g"), "--published=sdm"}).exit_code, 0);
   const auto settings = Json(Path("g/generator.json"))["settings"];

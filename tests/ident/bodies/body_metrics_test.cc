@@ -102,6 +102,31 @@ TEST(BodyMetricsTest, TheOrderOfPeopleMakesNoDifference) {
   for (int m = 0; m < kNumBodyMetrics; ++m) EXPECT_NEAR(one.value[m], other.value[m], 1e-15);
 }
 
+// One second is 60 frames; one recording lasts for it, none for two.
+TEST(BodyMetricsTest, ErrorsAtFixedTimes) {
+  const std::vector<BodyRecording> recordings = {Standing(70, "a"), Standing(40, "b")};
+  std::vector<BodyScore> scores;
+  for (const BodyRecording& recording : recordings) {
+    std::vector<BodyMotion> predicted = recording.bodies;
+    for (size_t t = 1; t < predicted[0].size(); ++t) {
+      predicted[0][t].colwise() += Eigen::Vector3d(0.001 * t, 0, 0);
+      predicted[0][t].col(kBodyHead) += Eigen::Vector3d(0, 0, 0.22);
+    }
+    scores.push_back(ScoreBodies(recording, predicted));
+    EXPECT_FALSE(ScoreBodies(recording, predicted, 30).at[1]);
+  }
+  EXPECT_NEAR(ScoreBodies(recordings[0], recordings[0].bodies, 5).at[0]->root, 0.0, 1e-12);
+  EXPECT_FALSE(ScoreBodies(recordings[0], recordings[0].bodies, 11).at[0]) << "frame 70 is no more";
+  const BodySummary summary = SummarizeBodies(recordings, scores);
+  EXPECT_EQ(summary.at[0].recordings, 1);
+  EXPECT_NEAR(summary.at[0].mean.root, 0.060, 1e-12);
+  EXPECT_NEAR(summary.at[0].mean.pose, 0.01, 1e-12);
+  EXPECT_EQ(summary.at[1].recordings, 0);
+  const std::string text = TimedErrorsText({{"generator", summary}});
+  EXPECT_NE(text.find("0.060"), std::string::npos) << text;
+  EXPECT_NE(text.find("none"), std::string::npos) << text;
+}
+
 TEST(BodyMetricsTest, BothMeansAndTheirErrors) {
   const std::vector<BodyRecording> recordings = {Standing(11, "a"), Standing(31, "b"),
                                                  Standing(5, "c")};

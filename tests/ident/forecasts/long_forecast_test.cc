@@ -27,8 +27,8 @@ TEST(LongForecastTest, SecondsByHand) {
   EXPECT_NEAR(seconds[0].hip_speed, 0.6, 1e-9);
   EXPECT_NEAR(seconds[1].hip_speed, 0.0, 1e-9);
   EXPECT_NEAR(seconds[2].hip_way, 0.6, 1e-9);
-  EXPECT_LT(seconds[0].standing, 0.1);
-  EXPECT_EQ(seconds[2].standing, 1.0);
+  EXPECT_LT(*seconds[0].standing, 0.1);
+  EXPECT_EQ(*seconds[2].standing, 1.0);
   EXPECT_EQ(ToJson(seconds)[2]["second"], 3);
   EXPECT_NE(SecondsText("generator", seconds).find("generator, second"), std::string::npos);
 }

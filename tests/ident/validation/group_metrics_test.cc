@@ -74,8 +74,8 @@ TEST(GroupMetricsTest, SecondsAreJudgedEachForItself) {
   const GroupMotion walkers = Walkers(61, 61, 121);
   const auto seconds = CompareStatesBySecond({walkers}, {walkers}, 2);
   ASSERT_EQ(seconds.size(), 2u);
-  EXPECT_EQ(seconds[0].standing, 1.0);
-  EXPECT_LT(seconds[1].standing, 0.1);
+  EXPECT_EQ(*seconds[0].standing, 1.0);
+  EXPECT_LT(*seconds[1].standing, 0.1);
   // Half of all transitions are standing, and all of the first second: by hand, p = (1, 0) against
   // q = (1/2, 1/2) has the distance 0.4645.
   EXPECT_NEAR(*seconds[0].sscp, 0.4645, 0.02);
