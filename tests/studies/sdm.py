@@ -1,0 +1,134 @@
+"""Social Diffusion (Tanke et al., ICCV 2023) as published, pushid-train-generator --published=sdm (models/generators/README.md).
+
+table1   its Tables 1 and 2: root and pose errors at 1, 2 and 3 s, of pushed groups and of people who talk in turns
+table3   its Table 3: states, whole groups and words of motion, of recordings that were trained on and of those left out
+table4   its Tables 4 and 5: how people see each other (mean, attention, not at all), and MRT, on recordings left out
+times    how long the trainings of these tables took
+
+Pushed groups are the published ones (PUSHID_RECORDINGS), fold 3 left out; those who talk are made by pushid-simulate
+--turns, the last four left out, with the true states. PUSHID_SDM_STEPS is the number of training steps (default 150; the
+full length is 1500), PUSHID_SDM_EFFORT that of MRT (default 0.1). Forecasts are given 20 frames.
+"""
+import os
+
+import studies
+from diffusion import of_fold
+from studies import number
+
+STEPS = os.environ.get("PUSHID_SDM_STEPS", "150")
+EFFORT = os.environ.get("PUSHID_SDM_EFFORT", "0.1")
+TURNS = os.path.join(studies.KEPT, "turns")
+LEFT_OUT = ",".join(f"turns_{i}" for i in range(13, 17))
+POOLINGS = [("mean (as published)", "mean_all"), ("attention, `--pooling=heads`", "heads"), ("none, `--pooling=none`", "none")]
+
+
+class Pushed:
+    title, given = "pushed groups", []
+
+    @staticmethod
+    def left_out():
+        return of_fold(3)
+
+    @staticmethod
+    def run(program, *flags, **options):
+        return studies.on_recordings(program, "groups", *flags, **options)
+
+
+class Talking:
+    title, given = "who talk in turns", [f"--states={TURNS}/states.csv"]
+
+    @staticmethod
+    def left_out():
+        return LEFT_OUT
+
+    @staticmethod
+    def run(program, *flags, **options):
+        if not os.path.exists(os.path.join(TURNS, "manifest.json")):
+            studies.run("pushid-simulate", "--turns=16", "--frames=240", f"--out={TURNS}", out=None, keep=False)
+        return studies.run(program, f"--recordings={TURNS}/manifest.json", *flags, **options)
+
+
+DATA = [Pushed, Talking]
+
+
+def train(data, pooling):
+    return data.run("pushid-train-generator", "--published=sdm", f"--steps={STEPS}", f"--pooling={pooling}", "--held_out=0",
+                    f"--leave_out={data.left_out()}", "--quiet", out="out")
+
+
+def forecast(data, pooling, chosen=None):
+    return data.run("pushid-generate", f"--model={train(data, pooling).path}", "--published=sdm", "--sampling_steps=25",
+                    "--observed=20", *data.given, chosen or f"--ids={data.left_out()}", "--quiet").json
+
+
+def mrt():
+    fitted = studies.on_recordings("pushid-fit", "groups", f"--leave_out={of_fold(3)}", out="model_out").path
+    folder = Pushed.run("pushid-train-restoration", f"--model={fitted}", "--kind=mrt", f"--effort={EFFORT}",
+                        f"--leave_out={of_fold(3)}", "--quiet", out="out")
+    json = Pushed.run("pushid-evaluate", f"--model={fitted}", "--restoration=rigid", f"--peer={folder.path}",
+                      f"--ids={of_fold(3)}").json
+    return folder, json["baselines"]["mrt"]
+
+
+def share(value):
+    return "none" if value is None else number(value)
+
+
+def at(scores):
+    return [share(row[part]) for part in ("root_m", "pose_m") for row in scores["errors_at"]]
+
+
+AT = [f"{part}, {s} s" for part in ("root", "pose") for s in (1, 2, 3)]
+
+
+def table1():
+    rows = []
+    for data in DATA:
+        json = forecast(data, "mean_all")
+        rows.append([data.title, "SDM", *at(json)])
+        if data is Pushed:
+            rows.append([data.title, "MRT", *at(mrt()[1])])
+        for name, key in (("last poses held", "static"), ("constant velocity", "constant_velocity")):
+            rows.append([data.title, name, *at(json["baselines"][key])])
+    return studies.table([f"left out; mean error, m; {STEPS} steps", "", *AT], rows)
+
+
+def social(json):
+    row = json["social"]["by"]["generator"]
+    return [share(row[key]) for key in ("sscp", "group_sscp", "ndms")]
+
+
+def table3():
+    rows = []
+    for data in DATA:
+        for name, chosen in (("trained on", f"--leave_out={data.left_out()}"), ("left out", None)):
+            json = forecast(data, "mean_all", chosen)
+            recorded = json["social"]["by"]["recorded"]
+            rows.append([data.title, name, *social(json), number(json["mean"]["MPJPE_m"]), share(recorded["sscp"])])
+    return studies.table([f"SDM, {STEPS} steps", "", "SSCP", "SSCP of groups", "NDMS", "MPJPE, m",
+                          "SSCP of recorded motion, states found"], rows)
+
+
+def table4():
+    rows = []
+    for data in DATA:
+        for name, pooling in POOLINGS:
+            json = forecast(data, pooling)
+            rows.append([data.title, name, *social(json), number(json["mean"]["MPJPE_m"]), *at(json)[:2]])
+        if data is Pushed:
+            peer = mrt()[1]
+            metrics = peer["group_metrics"]
+            rows.append([data.title, f"MRT, effort {EFFORT}", share(metrics["sscp"]), "", share(metrics["ndms"]),
+                         number(peer["mean"]["MPJPE_m"]), *at(peer)[:2]])
+    return studies.table([f"left out; {STEPS} steps", "people see each other by", "SSCP", "SSCP of groups", "NDMS", "MPJPE, m",
+                          *AT[:2]], rows)
+
+
+def times():
+    rows = [[data.title, name, f"{train(data, pooling).seconds:.0f}"] for data in DATA for name, pooling in POOLINGS]
+    rows.append([Pushed.title, f"MRT, effort {EFFORT}", f"{mrt()[0].seconds:.0f}"])
+    return studies.table([f"training of {STEPS} steps", "", "s"], rows)
+
+
+if __name__ == "__main__":
+    studies.main(__file__, {"table1": table1, "table3": table3, "table4": table4, "times": times})
