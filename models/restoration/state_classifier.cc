@@ -106,7 +106,7 @@ Eigen::MatrixXd Smoothed(const Eigen::MatrixXd& raw, Eigen::Index half) {
 }
 
 // Probabilities of each column's states.
-Eigen::MatrixXd Softmax(Eigen::MatrixXd scores) {
+Eigen::MatrixXd StateProbabilities(Eigen::MatrixXd scores) {
   scores.rowwise() -= Eigen::RowVectorXd(scores.colwise().maxCoeff());
   scores = scores.array().exp();
   scores.array().rowwise() /= scores.colwise().sum().eval().array();
@@ -158,13 +158,13 @@ StateClassifier::StateClassifier(const std::vector<const Annotated*>& groups, in
   weights_ = Eigen::MatrixXd::Zero(num_symbols, d);
   const double penalty = kPenalty * static_cast<double>(samples);
   const auto cost = [&](const Eigen::MatrixXd& weights) {
-    const Eigen::MatrixXd p = Softmax(weights * x);
+    const Eigen::MatrixXd p = StateProbabilities(weights * x);
     double sum = 0.5 * penalty * weights.squaredNorm();
     for (Eigen::Index i = 0; i < samples; ++i) sum -= std::log(std::max(p(labels[i], i), 1e-300));
     return sum;
   };
   for (int step = 0; step < kMostSteps; ++step) {
-    const Eigen::MatrixXd p = Softmax(weights_ * x);
+    const Eigen::MatrixXd p = StateProbabilities(weights_ * x);
     Eigen::MatrixXd error = p;
     for (Eigen::Index i = 0; i < samples; ++i) error(labels[i], i) -= 1.0;
     const Eigen::MatrixXd gradient = error * x.transpose() + penalty * weights_;
