@@ -179,7 +179,9 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
 // Flags of what has no push and no parameters: `flag`, its value, and those of all.
 MaybeError CheckAlone(const char* flag, int count, int frames) {
   for (const std::string& name : ChangedFlags()) {
-    if (name == flag || name == "frames" || name == "seed" || name == "out") continue;
+    const bool allowed =
+        name == flag || name == "frames" || name == "seed" || name == "out" || name == "overwrite";
+    if (allowed) continue;
     return Error{"--" + name + " says nothing to --" + std::string(flag) + "; leave it out"};
   }
   for (const MaybeError& error :

@@ -80,15 +80,16 @@ class TalkingBody {
   // looks: direction of whom they look at, rad; appends the channels of a frame.
   void Append(double looks, bool speaks, bool listens, std::vector<double>* values) {
     const double wanted = Wrapped(looks - who_.heading);
+    for (int i = 0; i < kNoises; ++i) Follow(noise_[i].Next(), 0.3, &slow_[i]);
     if (first_) head_ = wanted, shoulders_ = kShare * wanted, gesture_ = speaks ? 1.0 : 0.0;
     first_ = false;
     Follow(wanted, 0.15, &head_);
     Follow(kShare * wanted, 0.35, &shoulders_);
     Follow(speaks ? 1.0 : 0.0, 0.2, &gesture_);
     Follow(listens ? 1.0 : 0.0, 0.3, &nod_);
-    phase_ += 2.0 * M_PI * 1.1 * std::exp(0.2 * noise_[0].Next()) * dt_;
+    phase_ += 2.0 * M_PI * 1.1 * std::exp(0.2 * slow_[0]) * dt_;
 
-    const double theta = 0.006 * noise_[1].Next(), phi = 0.006 * noise_[2].Next();
+    const double theta = 0.006 * slow_[1], phi = 0.006 * slow_[2];
     const double rod = who_.skeleton.rod_length(), height = who_.skeleton.cart_height();
     const Eigen::Vector3d foot(0.0, 0.0, height), half = who_.skeleton.HalfStance();
     const Eigen::Vector3d hip(rod * std::sin(theta), -rod * std::cos(theta) * std::sin(phi),
@@ -104,8 +105,8 @@ class TalkingBody {
     const auto turn_joint = [frame](int joint, int axis, double angle) {
       frame[3 + 3 * joint + axis] = kDegrees * angle;
     };
-    const double shoulders = shoulders_ + 0.04 * noise_[3].Next();
-    const double head = head_ + 0.05 * noise_[4].Next();
+    const double shoulders = shoulders_ + 0.04 * slow_[3];
+    const double head = head_ + 0.05 * slow_[4];
     turn_joint(kHipJoint, 0, who_.heading);
     for (int j = kSpine; j < kTalkingNeck; ++j) turn_joint(j, 0, shoulders / 3.0);
     turn_joint(kTalkingNeck, 0, head - shoulders);
@@ -113,7 +114,7 @@ class TalkingBody {
     const double lively = who_.liveliness * gesture_;
     for (const bool left : {false, true}) {
       const double beat = phase_ + (left ? 1.0 : 0.0);
-      const double raise = lively * (0.45 + 0.2 * std::sin(beat)) + 0.03 * noise_[5 + left].Next();
+      const double raise = lively * (0.45 + 0.2 * std::sin(beat)) + 0.03 * slow_[5 + left];
       const double bend = lively * (1.1 + 0.4 * std::sin(1.3 * beat)) + 0.15;
       turn_joint(left ? kTalkersLeftArm : kTalkersRightArm, 1, -raise);
       turn_joint(left ? kTalkersLeftElbow : kTalkersRightElbow, 1, -bend);
@@ -133,6 +134,7 @@ class TalkingBody {
   bool first_ = true;
   double head_ = 0.0, shoulders_ = 0.0, gesture_ = 0.0, nod_ = 0.0;
   std::vector<SlowNoise> noise_;
+  std::array<double, kNoises> slow_{};  // without jitter from frame to frame
 };
 
 double DirectionTo(const Talker& of, const Talker& other) {

@@ -34,7 +34,7 @@ struct SyntheticTurnsOptions {
   int recordings = 12;
   int frames = 300;
   double fps = 60.0;
-  double turn_s = 1.5, pause_s = 0.7;  // means
+  double turn_s = 2.0, pause_s = 1.0;  // means
   double pause_share = 0.4;            // of turns that end in a pause
   uint64_t seed = 1;
 };

@@ -83,8 +83,8 @@ TEST_F(SocialReportTest, StatesFollowTheKnownChain) {
   EXPECT_NEAR((known.rowwise().sum() - known.colwise().sum().transpose()).norm(), 0.0, 1e-12);
   for (int a = 0; a < 3; ++a) {
     for (int b = 0; b < 3; ++b) {
-      // 20 recordings of some 25 turns: 500 changes, each kind a third of them or so.
-      EXPECT_NEAR(shares(a, b), known(a, b), 0.2 * known(a, b)) << a << " to " << b;
+      // Of some 400 turns 160 end in a pause: a standard deviation of 8 %.
+      EXPECT_NEAR(shares(a, b), known(a, b), 0.25 * known(a, b)) << a << " to " << b;
     }
   }
 }
