@@ -9,10 +9,11 @@
 namespace pushid {
 namespace {
 
-constexpr double kHalfWindow = 0.25;   // s
-constexpr double kPenalty = 1e-3;      // a sample
-constexpr double kLeastSpread = 1e-6;  // of a feature
-constexpr int kEvery = 3;              // frames; neighbours say the same
+constexpr double kHalfWindow = 0.25;    // s
+constexpr double kPenalty = 1e-3;       // a sample
+constexpr double kLeastSpread = 1e-6;   // of a feature
+constexpr double kLeastGesture = 1e-3;  // m/s; where nobody moves, all others count alike
+constexpr int kEvery = 3;               // frames; neighbours say the same
 constexpr int kMostSteps = 30;
 
 using Features = Eigen::Matrix<double, kStateFeatures, 1>;
@@ -73,7 +74,7 @@ double Reach(const Pose& of, const Pose& other) {
 // Of the others to a person.
 void AddOthers(const std::vector<const Pose*>& poses, const std::vector<Look>& looks, size_t n,
                Features* x) {
-  double reach = INFINITY, facing = 0.0, least = INFINITY, gestures = 0.0, most = -1.0, to = 0.0;
+  double reach = INFINITY, facing = 0.0, least = INFINITY, gestures = 0.0, most = 0.0, to = 0.0;
   for (size_t m = 0; m < looks.size(); ++m) {
     if (m == n) continue;
     const Eigen::Vector2d way = (looks[m].place - looks[n].place).stableNormalized();
@@ -82,14 +83,14 @@ void AddOthers(const std::vector<const Pose*>& poses, const std::vector<Look>& l
     facing += faced;
     least = std::min(least, faced);
     gestures += looks[m].gesture;
-    if (looks[m].gesture <= most) continue;
-    most = looks[m].gesture;
-    to = looks[n].faces.dot(way);
+    most = std::max(most, looks[m].gesture);
+    to += (looks[m].gesture + kLeastGesture) * looks[n].faces.dot(way);
   }
   if (looks.size() < 2) return;
   const double others = static_cast<double>(looks.size()) - 1.0;
   (*x)[3] = reach;
-  x->tail<5>() << facing / others, least, gestures / others, most, to;
+  x->tail<5>() << facing / others, least, gestures / others, most,
+      to / (gestures + others * kLeastGesture);
 }
 
 // Means over +-half columns, by sums from the beginning.

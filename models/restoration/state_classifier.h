@@ -10,8 +10,8 @@
 //   speed of the faster ankle; of the hip; lean of the hip against the ankles; turning of the
 //   shoulders; their angle to the pelvis
 //   cosine between where others face and the way to me: mean and least
-//   wrist speed of the others: mean and most; cosine between where I face and the way to whom has
-//   most of it
+//   wrist speed of the others: mean and most; cosine between where I face and the ways to the
+//   others, weighted by it
 // Of others only means and extremes: their order does not matter. Who is alone has zeros there.
 #pragma once
 
