@@ -194,6 +194,9 @@ std::vector<Finding> FindingsOf(const PendulumRecording& recording) {
 // By the line between the ankles, where it is long enough.
 std::vector<Finding> FacingFindings(const Recording& recording) {
   std::vector<Finding> found;
+  // Forward is the way of the push: a group that nobody and nothing pushes may face each other.
+  const bool moved = !recording.pushes.empty() || !recording.ground.empty();
+  if (!moved && recording.people.size() > 1) return found;
   for (const RecordedPerson& person : recording.people) {
     const Eigen::Vector2d to_the_left = (person.left_ankle[0] - person.right_ankle[0]).head<2>();
     const double facing = std::fabs(std::atan2(-to_the_left.x(), to_the_left.y()));
