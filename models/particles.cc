@@ -45,6 +45,17 @@ Eigen::MatrixXf BoneLengths(const Trajectories& motion, const ParticleLayout& la
   return lengths;
 }
 
+Eigen::MatrixXd CosineTransform(int frames) {
+  Eigen::MatrixXd transform(frames, frames);
+  for (int k = 0; k < frames; ++k) {
+    for (int t = 0; t < frames; ++t) {
+      transform(k, t) =
+          std::sqrt((k == 0 ? 1.0 : 2.0) / frames) * std::cos(M_PI * (t + 0.5) * k / frames);
+    }
+  }
+  return transform;
+}
+
 void ProjectBones(const Eigen::VectorXf& like, const ParticleLayout& layout, Trajectories* motion) {
   const Eigen::VectorXf lengths = BoneLengths(like, layout);
   for (int t = 0; t < motion->cols(); ++t) {

@@ -37,6 +37,11 @@ Eigen::MatrixXf MirroredControls(const Eigen::MatrixXf& controls, const std::vec
 // A row per particle, a column per frame, m; zero where there is no bone.
 Eigen::MatrixXf BoneLengths(const Trajectories& motion, const ParticleLayout& layout);
 
+// The transform over time by which networks read and write motions: the orthonormal DCT-II of
+// `frames` values: row k of the matrix gives coefficient k, and the matrix transposed gives the
+// values back.
+Eigen::MatrixXd CosineTransform(int frames);
+
 // Moves every particle along its bone, parents first, so that the bone has the length it has in
 // `like`: a network that predicts coordinates knows nothing of bones.
 void ProjectBones(const Eigen::VectorXf& like, const ParticleLayout& layout, Trajectories* motion);

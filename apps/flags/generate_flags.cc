@@ -135,6 +135,7 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   if (row.groups) foreign.push_back("person");
   if (!row.groups) foreign.insert(foreign.end(), {"physics", "frames", "states", "states_out"});
   if (!row.any_observed) foreign.push_back("observed");
+  if (!row.futures) foreign.insert(foreign.end(), {"samples", "target_window"});
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
     return Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),

@@ -87,9 +87,11 @@ MaybeError ReadParticleFlags(TrainGeneratorFlags* flags) {
 
 const KindFlags<TrainGeneratorFlags> kParticleFlags(
     GeneratorKind::kParticles,
-    {"noise_steps", "jitter", "cell", "skip", "pose_operator", "particles", "poses", "together",
-     "transition_weight", "constant_rate", "mirrored_share", "even_frames", "distance_weight",
-     "squared_weight", "bone_weight", "critic_weight", "noise_loss"},
+    {"noise_steps",       "jitter",         "cell",           "skip",
+     "pose_operator",     "particles",      "poses",          "together",
+     "transition_weight", "constant_rate",  "mirrored_share", "even_frames",
+     "distance_weight",   "squared_weight", "bone_weight",    "critic_weight",
+     "noise_loss",        "correction",     "ridge_share",    "ridge_penalty"},
     ReadParticleFlags);
 
 }  // namespace

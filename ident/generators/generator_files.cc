@@ -17,7 +17,8 @@ using Json = nlohmann::ordered_json;
 TensorFolderKind GeneratorFolder(const char* flag) {
   return {"generator", flag, "pushid-train-generator --out", 1};
 }
-constexpr int kMostParticles = 1000;
+constexpr int kMostParticles = 1000, kMostControls = 1000, kMostCorrected = 100000,
+              kMostBlocks = 1000;
 
 bool IsKind(const std::string& name) { return FromName<GeneratorKind>(name).has_value(); }
 
@@ -160,13 +161,6 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
                          nullptr};
 }
 
-namespace {
-
-using Json = nlohmann::ordered_json;
-constexpr int kMostControls = 1000, kMostCorrected = 100000;
-
-}  // namespace
-
 Json TrainedParticles::Settings() const {
   const ParticleStructure& structure = members.front().structure;
   return {{"members", members.size()},
@@ -236,6 +230,27 @@ std::unique_ptr<MotionGenerator> TrainedParticles::Make(const GeneratorSettings&
   if (settings.data == GeneratorData::kPushes) options.mirrored_controls = kMirroredPush;
   options.ridge_share = ridge_share > 0.0 ? changes.ridge_share.value_or(ridge_share) : 0.0;
   return std::make_unique<ParticleGenerator>(settings.layout, members, ridge, options);
+}
+
+Json TrainedSimlpe::Settings() const {
+  return {{"members", members.size()}, {"blocks", members.front().blocks.size()}};
+}
+
+SharedNetworks ReadSimlpe(const Json& json, const GeneratorSettings& settings,
+                          TensorReader* reader) {
+  const auto trained = std::make_shared<TrainedSimlpe>();
+  const int members = ReadMembers(json), blocks = json.at("blocks");
+  Demand(blocks >= 1 && blocks <= kMostBlocks, "blocks must be 1 to 1000");
+  for (int m = 0; m < members; ++m) {
+    trained->members.push_back(TakeSimlpe(MemberName(m), settings.observed,
+                                          settings.layout.num_coordinates(), blocks, reader));
+  }
+  return trained;
+}
+
+std::unique_ptr<MotionGenerator> TrainedSimlpe::Make(const GeneratorSettings& settings,
+                                                     const GeneratorChanges&) const {
+  return std::make_unique<SimlpeGenerator>(settings.layout, members);
 }
 
 nlohmann::ordered_json TrainedDiffusion::Settings() const {

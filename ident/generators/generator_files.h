@@ -14,6 +14,7 @@
 #include "ident/generators/generator_kinds.h"
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/particle_generator.h"
+#include "models/generators/simlpe_network.h"
 #include "models/push.h"
 #include "models/restoration/restoration.h"
 
@@ -96,6 +97,16 @@ struct TrainedParticles : KindNetworks {
   nlohmann::ordered_json Settings() const override;
   TensorList Tensors() const override;
   MaybeError Check(const GeneratorChanges& changes) const override;
+  std::unique_ptr<MotionGenerator> Make(const GeneratorSettings& settings,
+                                        const GeneratorChanges& changes) const override;
+};
+
+struct TrainedSimlpe : KindNetworks {
+  std::vector<SimlpeNetwork> members;  // of as many blocks each
+
+  GeneratorKind kind() const override { return GeneratorKind::kSimlpe; }
+  nlohmann::ordered_json Settings() const override;
+  TensorList Tensors() const override { return TensorsOf(members); }
   std::unique_ptr<MotionGenerator> Make(const GeneratorSettings& settings,
                                         const GeneratorChanges& changes) const override;
 };

@@ -30,7 +30,7 @@ struct GeneratorSettings;         // ident/generators/generator_files.h
 struct GeneratorSamples;          // ident/training/generator_training.h
 struct GeneratorTrainingOptions;  // ident/training/generator_training.h
 
-enum class GeneratorKind { kParticles, kDiffusion };
+enum class GeneratorKind { kParticles, kDiffusion, kSimlpe };
 
 // What may differ from the training; unset: as trained.
 struct GeneratorChanges {
@@ -44,6 +44,7 @@ struct GeneratorChanges {
 struct KindTrainingOptions {
   ParticleTrainingOptions particles;
   DiffusionTrainingOptions diffusion;
+  SimlpeTrainingOptions simlpe;
 };
 
 // The networks of a generator, by its kind.
@@ -65,7 +66,7 @@ using SharedNetworks = std::shared_ptr<const KindNetworks>;
 // Demand's where something does not fit.
 using GeneratorReader = SharedNetworks(const nlohmann::ordered_json& settings,
                                        const GeneratorSettings& of_all, TensorReader* reader);
-GeneratorReader ReadParticles, ReadDiffusion;
+GeneratorReader ReadParticles, ReadDiffusion, ReadSimlpe;
 
 struct GeneratorKindRow {
   const char* name;
@@ -74,6 +75,8 @@ struct GeneratorKindRow {
   // People of a call see each other: whole groups that are pushed, which physics may blend with.
   // Otherwise it forecasts people one by one, and motion capture too.
   bool groups;
+  bool pushes;        // forecasts pushes too, and not motion capture alone
+  bool futures;       // more than one can be sampled
   bool any_observed;  // trained for any number of frames shown, so that others may be shown in use
   int observed;       // frames of a push that it is shown, if no flag says otherwise
   int seeds;          // networks that are averaged, likewise
@@ -82,9 +85,11 @@ struct GeneratorKindRow {
 
 inline constexpr GeneratorKindRow kGeneratorKinds[] = {
     {"particles", GeneratorKind::kParticles, "displacements with learned drift and noise", false,
-     false, 20, 3, ReadParticles},
-    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, true, 1, 1,
-     ReadDiffusion},
+     true, true, false, 20, 3, ReadParticles},
+    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, true, true,
+     true, 1, 1, ReadDiffusion},
+    {"simlpe", GeneratorKind::kSimlpe, "siMLPe, a perceptron to compare with on clips", false,
+     false, false, false, 0, 1, ReadSimlpe},
 };
 
 constexpr const auto& Names(GeneratorKind) { return kGeneratorKinds; }
@@ -96,8 +101,9 @@ using SeedRunner = std::function<MaybeError(Trainer* trainer, const std::string&
 using GeneratorTrainer = Result<SharedNetworks>(const GeneratorSamples& samples,
                                                 const GeneratorTrainingOptions& options,
                                                 const SeedRunner& run);
-GeneratorTrainer TrainParticles, TrainDiffusion;
-inline constexpr GeneratorTrainer* kGeneratorTrainers[] = {TrainParticles, TrainDiffusion};
+GeneratorTrainer TrainParticles, TrainDiffusion, TrainSimlpe;
+inline constexpr GeneratorTrainer* kGeneratorTrainers[] = {TrainParticles, TrainDiffusion,
+                                                           TrainSimlpe};
 
 static_assert(std::size(kGeneratorTrainers) == std::size(kGeneratorKinds), "a kind has no trainer");
 

@@ -20,10 +20,9 @@ void AddTo(ContentHash* hash, const Eigen::MatrixXf& values) {
              static_cast<size_t>(values.size()) * sizeof(float)});
 }
 
-std::string Joined(const std::string& begin, const std::vector<double>& values,
-                   const ContentHash& hash) {
-  std::string key = begin;
-  for (double value : values) key += " " + DoubleText(value);
+template <typename... Number>
+std::string Joined(std::string key, const ContentHash& hash, Number... numbers) {
+  ((key += " " + DoubleText(static_cast<double>(numbers))), ...);
   return key + " " + hash.Hex();
 }
 
@@ -36,34 +35,19 @@ std::string KeyOf(const GeneratorSamples& samples, const ParticleTrainingOptions
       AddTo(&hash, motion.controls);
     }
   }
-  return Joined("generator 3 " + NameOf(o.structure.cell) + " " + NameOf(o.noise_loss),
-                {double(o.structure.skip),
-                 double(o.structure.pose_operator),
-                 double(o.structure.particles),
-                 double(o.structure.poses),
-                 double(o.structure.controls),
-                 double(o.structure.corrected_frames),
-                 double(o.observed),
-                 double(o.predicted),
-                 double(o.from_start),
-                 double(o.even_frames),
-                 double(o.steps),
-                 double(o.noise_steps),
-                 double(o.batch),
-                 double(o.warm_up),
-                 o.learning_rate,
-                 double(o.constant_rate),
-                 o.clip,
-                 o.jitter,
-                 o.mirrored,
-                 double(o.together),
-                 o.transitions,
-                 o.distance,
-                 o.squared,
-                 o.bones,
-                 o.critic,
-                 double(o.seed)},
-                hash);
+  return Joined("generator 4 " + NameOf(o.structure.cell) + " " + NameOf(o.noise_loss), hash,
+                o.structure.skip, o.structure.pose_operator, o.structure.particles,
+                o.structure.poses, o.structure.controls, o.structure.corrected_frames, o.observed,
+                o.predicted, o.from_start, o.even_frames, o.steps, o.noise_steps, o.batch,
+                o.warm_up, o.learning_rate, o.constant_rate, o.clip, o.jitter, o.mirrored,
+                o.together, o.transitions, o.distance, o.squared, o.bones, o.critic, o.changes,
+                o.seed);
+}
+
+std::string KeyOf(const GeneratorSamples& samples, const SimlpeTrainingOptions& o) {
+  const ParticleTrainingOptions& of_particles = o;
+  return "simlpe " + std::to_string(o.blocks) + " " + DoubleText(o.weight_decay) + " " +
+         KeyOf(samples, of_particles);
 }
 
 std::string KeyOf(const GeneratorSamples& samples, const DiffusionTrainingOptions& o) {
@@ -79,13 +63,11 @@ std::string KeyOf(const GeneratorSamples& samples, const DiffusionTrainingOption
       }
     }
   }
-  return Joined(
-      "diffusion 3 " + NameOf(o.structure.pooling) + " " + NameOf(o.structure.join) + " " +
-          NameOf(o.structure.frame),
-      {double(o.structure.pendulum), double(o.steps), double(o.groups), double(o.people_alone),
-       double(o.warm_up), o.learning_rate, o.weight_decay, o.clip, o.averaging, o.dropout,
-       o.joint_weight, o.difference_weight, o.bystanders, o.turn, o.size, o.dt, double(o.seed)},
-      hash);
+  return Joined("diffusion 3 " + NameOf(o.structure.pooling) + " " + NameOf(o.structure.join) +
+                    " " + NameOf(o.structure.frame),
+                hash, o.structure.pendulum, o.steps, o.groups, o.people_alone, o.warm_up,
+                o.learning_rate, o.weight_decay, o.clip, o.averaging, o.dropout, o.joint_weight,
+                o.difference_weight, o.bystanders, o.turn, o.size, o.dt, o.seed);
 }
 
 // The options of a seed.
@@ -100,27 +82,47 @@ std::string SeedsCheckpoint(const std::string& path, int index) {
   return path.empty() ? "" : path + "." + std::to_string(index + 1);
 }
 
-}  // namespace
-
-Result<SharedNetworks> TrainParticles(const GeneratorSamples& samples,
-                                      const GeneratorTrainingOptions& options,
-                                      const SeedRunner& run) {
-  const int window = options.particles.from_start
-                         ? options.particles.observed + 1
-                         : options.particles.observed + options.particles.predicted;
+// A network of every seed, from windows of motions.
+template <typename OfKind, typename Options, typename Network>
+MaybeError TrainSeeds(const GeneratorSamples& samples, const Options& of_kind,
+                      const GeneratorTrainingOptions& options, const SeedRunner& run,
+                      std::vector<Network>* members) {
+  const int window = of_kind.observed + (of_kind.from_start ? 1 : of_kind.predicted);
   bool enough = false;
   for (const LearntParticles& motion : samples.learnt) enough |= motion.motion.cols() >= window;
   if (!enough) {
     return Error{"there is nothing to train on: no motion has " + std::to_string(window) +
                  " frames"};
   }
+  for (int index = 0; index < options.seeds; ++index) {
+    const Options of_seed = OfSeed(of_kind, index, options);
+    OfKind trainer(samples.settings.layout, samples.learnt, samples.held, of_seed);
+    if (MaybeError error = run(&trainer, KeyOf(samples, of_seed))) return error;
+    members->push_back(trainer.Network());
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<SharedNetworks> TrainSimlpe(const GeneratorSamples& samples,
+                                   const GeneratorTrainingOptions& options, const SeedRunner& run) {
+  const auto simlpe = std::make_shared<TrainedSimlpe>();
+  if (MaybeError error =
+          TrainSeeds<SimlpeTrainer>(samples, options.simlpe, options, run, &simlpe->members)) {
+    return *error;
+  }
+  return SharedNetworks(simlpe);
+}
+
+Result<SharedNetworks> TrainParticles(const GeneratorSamples& samples,
+                                      const GeneratorTrainingOptions& options,
+                                      const SeedRunner& run) {
   const auto particles = std::make_shared<TrainedParticles>();
   particles->jitter = options.particles.jitter;
-  for (int index = 0; index < options.seeds; ++index) {
-    const ParticleTrainingOptions of_seed = OfSeed(options.particles, index, options);
-    ParticleTrainer trainer(samples.settings.layout, samples.learnt, samples.held, of_seed);
-    if (MaybeError error = run(&trainer, KeyOf(samples, of_seed))) return *error;
-    particles->members.push_back(trainer.Network());
+  if (MaybeError error = TrainSeeds<ParticleTrainer>(samples, options.particles, options, run,
+                                                     &particles->members)) {
+    return *error;
   }
   if (options.ridge_share > 0.0) {
     RidgeFit fit;
@@ -276,6 +278,7 @@ void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* optio
   ParticleTrainingOptions& particles = options->particles;
   particles.observed = settings.observed;
   particles.predicted = settings.predicted;
+  options->simlpe.observed = settings.observed, options->simlpe.predicted = settings.predicted;
   if (settings.data != GeneratorData::kPushes) {
     if (options->correction) particles.structure.corrected_frames = settings.predicted;
     return;

@@ -39,10 +39,19 @@ class ParticleLosses {
       return (by_frame * share).sum() / share.sum();
     };
     const torch::Tensor squares = (Points(forecast) - Points(truth)).square().sum(3);
+    const torch::Tensor weights = weights_.to(squares.scalar_type());
     torch::Tensor loss =
-        options_.distance * mean(torch::matmul((squares + kSmooth).sqrt(), weights_));
+        options_.distance * mean(torch::matmul((squares + kSmooth).sqrt(), weights));
     if (options_.squared > 0.0) {
-      loss = loss + options_.squared * mean(torch::matmul(squares, weights_));
+      loss = loss + options_.squared * mean(torch::matmul(squares, weights));
+    }
+    if (options_.changes > 0.0) {
+      const auto changes = [](const torch::Tensor& of) { return Points(of).diff(1, 1); };
+      const torch::Tensor misfit = changes(forecast) - changes(truth);
+      const torch::Tensor distances = (misfit.square().sum(3) + kSmooth).sqrt();
+      const torch::Tensor share_of = share.narrow(1, 1, options_.predicted - 1);
+      loss = loss + options_.changes * (torch::matmul(distances, weights) * share_of).sum() /
+                        share_of.sum();
     }
     if (options_.bones > 0.0) {
       const torch::Tensor misfit = (Bones(forecast) - Bones(truth)).abs() * has_bone_;

@@ -257,6 +257,16 @@ class ParticleWindows {
   std::vector<double> group_share_;  // summed up
 };
 
+// How particles and siMLPe are trained.
+inline constexpr int kHeldWindows = 256;
+inline constexpr double kLossUnits = 1e3;  // the gradient is clipped with the loss in mm
+// Share of the largest rate: up in a straight line, then down to nothing by a cosine.
+inline double RateShareToZero(int step, int steps, int warm_up) {
+  const int up = std::min(warm_up, std::max(1, steps / 2));
+  if (step < up) return (step + 1.0) / up;
+  return 0.5 * (1.0 + std::cos(M_PI * (step - up) / std::max(1, steps - up)));
+}
+
 // Means and spreads of poses and displacements, over the motions and their mirror images.
 ParticleNetwork ParticleStatistics(const ParticleLayout& layout,
                                    const std::vector<LearntParticles>& motions,

@@ -6,19 +6,10 @@
 namespace pushid {
 namespace {
 
-constexpr int kHeldWindows = 256;
 constexpr int kScatterBatches = 32;  // thousands of windows for the correlations of the noise
-constexpr double kLossUnits = 1e3;   // the gradient is clipped with the loss in mm
 
 torch::Tensor NoJitter(const ParticleBatch& batch) {
   return torch::zeros({batch.frames.size(0), 1, batch.frames.size(2)});
-}
-
-// Share of the largest rate: up in a straight line, then down to nothing by a cosine.
-double RateShareToZero(int step, int steps, int warm_up) {
-  const int up = std::min(warm_up, std::max(1, steps / 2));
-  if (step < up) return (step + 1.0) / up;
-  return 0.5 * (1.0 + std::cos(M_PI * (step - up) / std::max(1, steps - up)));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "models/particles.h"
 #include "models/peers/peer.h"
 
 namespace pushid {

@@ -7,8 +7,6 @@
 // are predicted to their end (the shortest has 43 frames), and so are longer ones, on and on.
 #pragma once
 
-#include <Eigen/Core>
-#include <cmath>
 #include <string_view>
 #include <vector>
 
@@ -30,19 +28,5 @@ class Peer {
   virtual std::vector<BodyMotion> Continue(const std::vector<BodyMotion>& people,
                                            int frames) const = 0;
 };
-
-// The transform over time by which the peers read and write motions: the orthonormal DCT-II of
-// `frames` values: row k of the matrix gives coefficient k, and the matrix transposed gives the
-// values back.
-inline Eigen::MatrixXd CosineTransform(int frames) {
-  Eigen::MatrixXd transform(frames, frames);
-  for (int k = 0; k < frames; ++k) {
-    for (int t = 0; t < frames; ++t) {
-      transform(k, t) =
-          std::sqrt((k == 0 ? 1.0 : 2.0) / frames) * std::cos(M_PI * (t + 0.5) * k / frames);
-    }
-  }
-  return transform;
-}
 
 }  // namespace pushid

@@ -1,6 +1,7 @@
 // models: cosine transform, dense layers, and on.
 #include "models/peers/simlpe.h"
 
+#include "models/particles.h"
 #include "models/peers/peer.h"
 
 namespace pushid {

@@ -1,6 +1,7 @@
 """Learned generators of motion: particles on motion capture, and on pushes (models/generators/README.md).
 
 validation   errors on the validation split of the clips: baselines, one network, three averaged and blended
+apart        the choices behind that, judged on whole actions and on whole clips left out in turn; short trainings
 spread       coverage and scores of sampled futures on the same windows
 ablations    one network of 600 steps with something left out, changed or charged besides
 pushes       the published pushes of single people, four folds, beside what physics and restorations score
@@ -20,6 +21,22 @@ HORIZONS = ["80", "160", "320", "400", "1000"]
 IN_MS = [f"{h} ms" for h in HORIZONS]
 SAMPLES = 39
 ALONE = ["--seeds=1", "--ridge_share=0"]
+APART_ACTIONS = ["basketball", "jumping", "soccer", "walking"]
+APART_CLIPS = [2]  # counted from the last
+APART_STEPS = os.environ.get("PUSHID_APART_STEPS", "300")
+SHORT = [f"--steps={APART_STEPS}", "--noise_steps=0"]
+NO_RIDGE = "--ridge_share=0"
+# What is trained, and how it then forecasts.
+APART = [(["--seeds=1", "--ridge_share=0.3", *SHORT],
+          [("one network", [NO_RIDGE]),
+           ("one network, `--mirror=false`", [NO_RIDGE, "--mirror=false"]),
+           ("the same and `--project_bones=false`", [NO_RIDGE, "--mirror=false", "--project_bones=false"]),
+           *((f"one network and ridge, `--ridge_share={share}`", [f"--ridge_share={share}"]) for share in (0.15, 0.3, 0.5, 1))]),
+         ([*ALONE, *SHORT, "--correction=false"], [("one network, `--correction=false`", [])]),
+         ([*ALONE, *SHORT, "--jitter=0.2"], [("one network, `--jitter=0.2`", [])]),
+         (["--seeds=3", "--ridge_share=0.3", *SHORT],
+          [("three networks", [NO_RIDGE]), ("three networks and ridge, `--ridge_share=0.3`", ["--ridge_share=0.3"])]),
+         (["--kind=simlpe"], [("siMLPe, 1500 steps", [])])]
 ABLATIONS = [("as it is", []),
              ("without displacements, `--particles=false`", ["--particles=false"]),
              ("without the sum, `--pose_operator=false`", ["--pose_operator=false"]),
@@ -58,6 +75,49 @@ def validation():
             ("**three networks and ridge** (default)", whole)]
     return studies.table(["mean joint error, mm", *IN_MS],
                          [by_horizon(name, json["mean"]["MPJPE_mm"]) for name, json in rows])
+
+
+def link(file, folder):
+    at = os.path.join(folder, os.path.basename(file))
+    if not os.path.lexists(at):
+        os.symlink(file, at)
+
+
+def apart_folds():
+    """Folders of clips to learn from and of those left out: whole actions, then one clip of every action."""
+    root = os.path.join(MOCAP, "train")
+    clips = {action: sorted(os.listdir(os.path.join(root, action)), key=lambda name: (len(name), name))
+             for action in sorted(os.listdir(root))}
+    folds = [("action", f"without_{action}", {action: clips[action]}) for action in APART_ACTIONS]
+    folds += [("clip", f"without_clip_{place}", {a: names[-place:][:1] for a, names in clips.items() if len(names) >= place})
+              for place in APART_CLIPS]
+    for kind, name, left_out in folds:
+        places = [os.path.join(studies.KEPT, "apart", name, part) for part in ("learnt", "held")]
+        for action, names in clips.items():
+            for clip in names:
+                folder = os.path.join(places[clip in left_out.get(action, [])], "train", action)
+                os.makedirs(folder, exist_ok=True)
+                link(os.path.join(root, action, clip), folder)
+        for place in places:
+            link(os.path.join(MOCAP, "skeleton.json"), place)
+        yield kind, *(f"--folder={place}" for place in places)
+
+
+def apart():
+    sums = {}
+    for kind, learnt, held in apart_folds():
+        for training, forecasts in APART:
+            model = studies.run("pushid-train-generator", "--dataset=cmu", learnt, "--with_validation", *training,
+                                out="out").path
+            for name, flags in forecasts:
+                errors = studies.run("pushid-generate", f"--model={model}", "--dataset=cmu", held, "--protocol=all",
+                                     "--stride=8", *flags).json
+                kinds = sums.setdefault(name, {"action": [], "clip": []})
+                kinds[kind].append([errors["mean"]["MPJPE_mm"][h] for h in HORIZONS])
+    rows = [[name, *(number(sum(of) / len(of)) for kind in ("action", "clip") for of in zip(*kinds[kind]))]
+            for name, kinds in sums.items()]
+    return studies.table([f"mean joint error, mm; {APART_STEPS} steps", *(f"{what}, {h} ms" for what in (
+        "action left out", "clip left out") for h in HORIZONS)], rows)
 
 
 def spread():
@@ -116,4 +176,4 @@ def pushes():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"validation": validation, "spread": spread, "ablations": ablations, "pushes": pushes})
+    studies.main(__file__, {"validation": validation, "apart": apart, "spread": spread, "ablations": ablations, "pushes": pushes})

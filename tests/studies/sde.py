@@ -1,14 +1,18 @@
 """SDE (Lyu et al., ACM MM 2021) as published, pushid-train-generator --published=sde (models/generators/README.md).
 
-table2   its Table 2's layout: errors per action at five horizons, both readings of Eq. 6
+table2   its Table 2's layout: errors per action at five horizons, both readings of Eq. 6, siMLPe on the same windows
+curve    the loss of the validation clips along the trainings of table2
 table3   its Table 3's layout: what is left out, one at a time, of what is published
 fig5     its Fig. 5 without a given end: the most probable of sampled futures, by action
 times    how long the commands of these tables took, one core
 
 PUSHID_MOCAP is a folder of clips (default ../shared/cmu_mocap beside the source): of CMU, of Human3.6M with a folder
 per subject, or made by pushid-simulate --clips. Windows are those of --protocol=test where clips are kept apart for
-it, otherwise of the validation clips. PUSHID_SDE_STEPS is the number of training steps (default 150).
+it, otherwise of the validation clips. PUSHID_SDE_STEPS is the number of training steps of table2, curve and fig5
+(default 1500; the rate is constant, so that shorter trainings are parts of longer ones), PUSHID_SDE_SHORT_STEPS that
+of table3 and times (default 150).
 """
+import json
 import os
 import sys
 
@@ -16,7 +20,8 @@ import studies
 from generator import CLIPS, HORIZONS, IN_MS, MOCAP, by_horizon
 from studies import number
 
-STEPS = os.environ.get("PUSHID_SDE_STEPS", "150")
+STEPS = os.environ.get("PUSHID_SDE_STEPS", "1500")
+SHORT = os.environ.get("PUSHID_SDE_SHORT_STEPS", "150")
 HAS_TEST = any(os.path.isdir(os.path.join(MOCAP, place)) for place in ("test", "S5"))
 PROTOCOL = f"--protocol={'test' if HAS_TEST else 'validation'}"
 SAMPLES = 39
@@ -29,31 +34,51 @@ ABLATIONS = [("as published", []),
              ("without the critic (Eq. 12), `--critic_weight=0`", ["--critic_weight=0"])]
 
 
-def train(*flags):
+def train(steps, *flags):
+    return train_any("--published=sde", f"--steps={steps}", *flags)
+
+
+def train_any(*flags):
     if not os.path.isdir(MOCAP):
         sys.exit(f"{MOCAP} holds no clips: PUSHID_MOCAP names their folder")
-    return studies.run("pushid-train-generator", "--published=sde", *CLIPS, f"--steps={STEPS}", *flags, out="out")
+    return studies.run("pushid-train-generator", *CLIPS, *flags, out="out")
 
 
 def evaluate(model, *flags):
     return studies.run("pushid-generate", "--published=sde", f"--model={model}", *CLIPS, PROTOCOL, *flags)
 
 
+def readings():
+    return [("as printed", train(STEPS)), ("with the determinant", train(STEPS, "--noise_loss=likelihood"))]
+
+
 def table2():
-    published = [("as printed", evaluate(train().path).json),
-                 ("with the determinant", evaluate(train("--noise_loss=likelihood").path).json)]
+    published = [(f"SDE, {reading}", evaluate(trained.path).json) for reading, trained in readings()]
+    simlpe = train_any("--kind=simlpe").path
+    published.append(("siMLPe", studies.run("pushid-generate", f"--model={simlpe}", *CLIPS, PROTOCOL).json))
     rows = []
     for action in [*sorted(published[0][1]["actions"]), None]:
-        of = (lambda json: json["actions"][action]) if action else (lambda json: json["mean"])
+        of = (lambda errors: errors["actions"][action]) if action else (lambda errors: errors["mean"])
         name = action or "**mean of actions**"
         rows.append([name, "last pose held", *by_horizon("", of(published[0][1]["baselines"]["zero_velocity"])["MPJPE_mm"])[1:]])
-        for reading, json in published:
-            rows.append([name, f"SDE, {reading}", *by_horizon("", of(json)["MPJPE_mm"])[1:]])
+        for forecaster, errors in published:
+            rows.append([name, forecaster, *by_horizon("", of(errors)["MPJPE_mm"])[1:]])
     return studies.table([f"{PROTOCOL}; mean joint error, mm", f"{STEPS} steps", *IN_MS], rows)
 
 
+def curve():
+    rows = []
+    for reading, trained in readings():
+        with open(os.path.join(trained.path, "generator.json"), encoding="utf-8") as file:
+            points = {p["epoch"]: p["held_out_loss"] for p in json.load(file)["training"]["curve"]}
+        last = int(STEPS)
+        asked = [150 * 2**i for i in range(12) if 150 * 2**i < last and 150 * 2**i in points] + [last]
+        rows.append([reading, *(number(1000.0 * points[n]) for n in asked)])
+    return studies.table(["loss of validation clips, 1e-3", *(f"{n} steps" for n in asked)], rows)
+
+
 def table3():
-    scored = [(name, evaluate(train(*flags).path).json["actions"]) for name, flags in ABLATIONS]
+    scored = [(name, evaluate(train(SHORT, *flags).path).json["actions"]) for name, flags in ABLATIONS]
     actions = [a for a in NAMED if a in scored[0][1]]
     if len(actions) < len(NAMED):
         actions = sorted(scored[0][1])
@@ -62,15 +87,15 @@ def table3():
         means = {h: sum(errors[a]["MPJPE_mm"][h] for a in actions) / len(actions) for h in HORIZONS}
         rows.append([name, *(f"{number(errors[a]['MPJPE_mm'][HORIZONS[-1]])}" for a in actions),
                      *(number(means[h]) for h in HORIZONS)])
-    return studies.table([f"{STEPS} steps; mean joint error, mm", *(f"{a}, 1000 ms" for a in actions),
+    return studies.table([f"{SHORT} steps; mean joint error, mm", *(f"{a}, 1000 ms" for a in actions),
                           *(f"mean, {h}" for h in IN_MS)], rows)
 
 
 def fig5():
-    json = evaluate(train("--noise_loss=likelihood").path, f"--samples={SAMPLES}").json
+    errors = evaluate(train(STEPS, "--noise_loss=likelihood").path, f"--samples={SAMPLES}").json
     rows = []
-    for action in [*sorted(json["actions"]), None]:
-        scores = json["actions"][action] if action else json["mean"]
+    for action in [*sorted(errors["actions"]), None]:
+        scores = errors["actions"][action] if action else errors["mean"]
         rows.append([action or "**mean of actions**", *(number(scores[key][h]) for key in (
             "MPJPE_mm", "most_probable_MPJPE_mm", "best_of_n_MPJPE_mm") for h in (HORIZONS[0], HORIZONS[-1]))])
     return studies.table([f"{SAMPLES} futures; mean joint error, mm", *(
@@ -79,11 +104,11 @@ def fig5():
 
 
 def times():
-    rows = [[f"`pushid-train-generator --published=sde --steps={STEPS} {' '.join(flags)}`".replace(" `", "`"),
-             f"{train(*flags).seconds:.0f}"] for _, flags in ABLATIONS]
-    rows.append([f"`pushid-generate --published=sde {PROTOCOL}`", f"{evaluate(train().path).seconds:.1f}"])
+    rows = [[f"`pushid-train-generator --published=sde --steps={SHORT} {' '.join(flags)}`".replace(" `", "`"),
+             f"{train(SHORT, *flags).seconds:.0f}"] for _, flags in ABLATIONS]
+    rows.append([f"`pushid-generate --published=sde {PROTOCOL}`", f"{evaluate(train(SHORT).path).seconds:.1f}"])
     return studies.table(["command", "s"], rows)
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"table2": table2, "table3": table3, "fig5": fig5, "times": times})
+    studies.main(__file__, {"table2": table2, "curve": curve, "table3": table3, "fig5": fig5, "times": times})

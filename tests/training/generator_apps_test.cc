@@ -99,6 +99,24 @@ TEST_F(GeneratorAppTest, SdeAsPublishedOnSyntheticClips) {
                       {"--people says nothing to --clips"}));
 }
 
+TEST_F(GeneratorAppTest, SimlpeOnTheSameWindows) {
+  const std::vector<std::string> simlpe = {"--kind=simlpe",      "--folder=" + Path("clips"),
+                                           "--out=" + Path("g"), "--steps=20",
+                                           "--blocks=2",         "--quiet"};
+  const AppRun train = RunApp("pushid-train-generator", simlpe);
+  ASSERT_EQ(train.exit_code, 0) << train.err;
+  EXPECT_EQ(Json("g/generator.json")["blocks"], 2);
+  const AppRun run = Generate({"--json_out=" + Path("e.json"), "--strip_out=" + Path("s.svg")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_GT(Json("e.json")["mean"]["MPJPE_mm"]["1000"].get<double>(), 0.0);
+  EXPECT_TRUE(
+      Refused(Generate({"--samples=19"}), {"--samples has no effect on a generator of simlpe"}));
+  EXPECT_TRUE(Refused(Train("g", {"--kind=simlpe"}), {"--noise_steps needs --kind=particles"}));
+  EXPECT_TRUE(Refused(Train("g", {"--blocks=2"}), {"--blocks needs --kind=simlpe"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-train-generator", {"--kind=simlpe", "--dataset=pushes"}),
+                      {"trains on clips"}));
+}
+
 TEST_F(GeneratorAppTest, TheSameSeedGivesTheSameBits) {
   ASSERT_EQ(Train("g").exit_code, 0);
   ASSERT_EQ(Train("h").exit_code, 0);

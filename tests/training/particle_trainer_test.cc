@@ -1,5 +1,5 @@
 // The trainer of particles: it learns, repeats itself, goes on where it was broken off, and what it
-// returns is the network that LibTorch trained, to 1e-5 m.
+// returns is the network that LibTorch trained, to 1e-5 m. Likewise siMLPe.
 #include <gtest/gtest.h>
 
 #include "models/generators/generator_trainers.h"
@@ -271,6 +271,34 @@ TEST(ParticleTrainerTest, BonesCanBeLearntToo) {
     return error;
   };
   EXPECT_LT(arm_error(10.0), 0.7 * arm_error(0.0));
+}
+
+SimlpeTrainingOptions QuickSimlpe() {
+  SimlpeTrainingOptions options;
+  options.observed = options.predicted = 12;
+  options.steps = 150;
+  options.batch = 16;
+  options.warm_up = 10;
+  options.blocks = 3;
+  return options;
+}
+
+TEST(SimlpeTrainerTest, EigenForecastsWhatLibTorchDoesAndItLearns) {
+  const SimlpeTrainingOptions options = QuickSimlpe();
+  SimlpeTrainer trainer(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+  const TrainingPoint first = trainer.RunRound();
+  const std::string state = trainer.State();
+  TrainingPoint last = first;
+  while (!trainer.Done()) last = trainer.RunRound();
+  EXPECT_LT(last.validation_loss, 0.7 * first.validation_loss);
+  const Trajectories seen = SwayingMotion(12, 0.5f);
+  const Trajectories torch = trainer.Forecast(seen);
+  EXPECT_LT((trainer.Network().Forecast(seen, 12) - torch).cwiseAbs().maxCoeff(), 1e-5f);
+  EXPECT_GT((torch.colwise() - seen.col(11)).cwiseAbs().maxCoeff(), 0.01f);
+  SimlpeTrainer resumed(FourParticles(), Motions(6, 0.0f), Motions(2, 0.3f), options);
+  ASSERT_TRUE(resumed.Resume(state));
+  while (!resumed.Done()) resumed.RunRound();
+  EXPECT_EQ(resumed.Forecast(seen), torch) << "goes on to the last bit";
 }
 
 }  // namespace

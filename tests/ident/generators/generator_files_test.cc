@@ -81,7 +81,7 @@ TEST_F(GeneratorFilesTest, MistakesAreNamed) {
                        "--model names the folder that "
                        "pushid-train-generator --out wrote"));
   EXPECT_TRUE(Contains(ErrorAfter("\"kind\": \"particles\"", "\"kind\": \"waves\""),
-                       "kind is 'waves'; it must be particles, diffusion"));
+                       "kind is 'waves'; it must be particles, diffusion, simlpe"));
   EXPECT_TRUE(Contains(ErrorAfter("\"format\": 1", "\"format\": 2"), "format 2"));
   EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"rnn\""), "cell is 'rnn'"));
   EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"lstm\""), "member0.input"));
