@@ -1,18 +1,16 @@
 """SDE (Lyu et al., ACM MM 2021) as published, pushid-train-generator --published=sde (models/generators/README.md).
 
 table2   its Table 2's layout: errors per action at five horizons, both readings of Eq. 6, siMLPe on the same windows
-curve    the loss of the validation clips along the trainings of table2
 table3   its Table 3's layout: what is left out, one at a time, of what is published
 fig5     its Fig. 5 without a given end: the most probable of sampled futures, by action
 times    how long the commands of these tables took, one core
 
 PUSHID_MOCAP is a folder of clips (default ../shared/cmu_mocap beside the source): of CMU, of Human3.6M with a folder
 per subject, or made by pushid-simulate --clips. Windows are those of --protocol=test where clips are kept apart for
-it, otherwise of the validation clips. PUSHID_SDE_STEPS is the number of training steps of table2, curve and fig5
-(default 1500; the rate is constant, so that shorter trainings are parts of longer ones), PUSHID_SDE_SHORT_STEPS that
+it, otherwise of the validation clips. PUSHID_SDE_STEPS is the number of training steps of table2 and fig5
+(default 150; the rate is constant, so that shorter trainings are parts of longer ones), PUSHID_SDE_SHORT_STEPS that
 of table3 and times (default 150).
 """
-import json
 import os
 import sys
 
@@ -20,7 +18,7 @@ import studies
 from generator import CLIPS, HORIZONS, IN_MS, MOCAP, by_horizon
 from studies import number
 
-STEPS = os.environ.get("PUSHID_SDE_STEPS", "1500")
+STEPS = os.environ.get("PUSHID_SDE_STEPS", "150")
 SHORT = os.environ.get("PUSHID_SDE_SHORT_STEPS", "150")
 HAS_TEST = any(os.path.isdir(os.path.join(MOCAP, place)) for place in ("test", "S5"))
 PROTOCOL = f"--protocol={'test' if HAS_TEST else 'validation'}"
@@ -66,17 +64,6 @@ def table2():
     return studies.table([f"{PROTOCOL}; mean joint error, mm", f"{STEPS} steps", *IN_MS], rows)
 
 
-def curve():
-    rows = []
-    for reading, trained in readings():
-        with open(os.path.join(trained.path, "generator.json"), encoding="utf-8") as file:
-            points = {p["epoch"]: p["held_out_loss"] for p in json.load(file)["training"]["curve"]}
-        last = int(STEPS)
-        asked = [150 * 2**i for i in range(12) if 150 * 2**i < last and 150 * 2**i in points] + [last]
-        rows.append([reading, *(number(1000.0 * points[n]) for n in asked)])
-    return studies.table(["loss of validation clips, 1e-3", *(f"{n} steps" for n in asked)], rows)
-
-
 def table3():
     scored = [(name, evaluate(train(SHORT, *flags).path).json["actions"]) for name, flags in ABLATIONS]
     actions = [a for a in NAMED if a in scored[0][1]]
@@ -111,4 +98,4 @@ def times():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"table2": table2, "curve": curve, "table3": table3, "fig5": fig5, "times": times})
+    studies.main(__file__, {"table2": table2, "table3": table3, "fig5": fig5, "times": times})
