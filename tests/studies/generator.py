@@ -33,7 +33,10 @@ APART = [(["--seeds=1", "--ridge_share=0.3", *SHORT],
            ("the same and `--project_bones=false`", [NO_RIDGE, "--mirror=false", "--project_bones=false"]),
            *((f"one network and ridge, `--ridge_share={share}`", [f"--ridge_share={share}"]) for share in (0.3, 0.5, 1))]),
          ([*ALONE, *SHORT, "--correction=false"], [("one network, `--correction=false`", [])]),
-         ([*ALONE, *SHORT, "--jitter=0.2"], [("one network, `--jitter=0.2`", [])])]
+         ([*ALONE, *SHORT, "--jitter=0.2"], [("one network, `--jitter=0.2`", [])]),
+         (["--seeds=3", "--ridge_share=0.3", *SHORT],
+          [("three networks", [NO_RIDGE]), ("three networks and ridge, `--ridge_share=0.3`", ["--ridge_share=0.3"])]),
+         (["--kind=simlpe"], [("siMLPe, 1500 steps", [])])]
 ABLATIONS = [("as it is", []),
              ("without displacements, `--particles=false`", ["--particles=false"]),
              ("without the sum, `--pose_operator=false`", ["--pose_operator=false"]),

@@ -105,7 +105,7 @@ TEST_F(GeneratorAppTest, SimlpeOnTheSameWindows) {
                                            "--blocks=2",         "--quiet"};
   const AppRun train = RunApp("pushid-train-generator", simlpe);
   ASSERT_EQ(train.exit_code, 0) << train.err;
-  EXPECT_EQ(Json("g/generator.json")["blocks"], 2);
+  EXPECT_EQ(Json("g/generator.json")["settings"]["blocks"], 2);
   const AppRun run = Generate({"--json_out=" + Path("e.json"), "--strip_out=" + Path("s.svg")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_GT(Json("e.json")["mean"]["MPJPE_mm"]["1000"].get<double>(), 0.0);
