@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/figure_outputs.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
@@ -18,7 +19,6 @@ DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with it
 DEFINE_string(html_out, "", "write the whole report here: one self-contained page (HTML)");
 DEFINE_bool(text, false, "print the whole report, not only the parameters");
 DEFINE_int32(num_threads, 1, "threads");
-DEFINE_string(csv_dir, "", "write the numbers behind every plot into this folder (CSV)");
 
 namespace {
 
@@ -40,9 +40,8 @@ int WriteWhole(const FittedModel& model) {
   const Report report = BuildReport(model, recordings.value(), options);
   line.Finish();
   if (FLAGS_text) std::printf("%s", ToText(report).c_str());
-  if (!FLAGS_csv_dir.empty()) {
-    if (MaybeError error = WriteNumbers(report, FLAGS_csv_dir)) return Fail(*error);
-    std::fprintf(stderr, "numbers written to %s\n", FLAGS_csv_dir.c_str());
+  if (FiguresAsked()) {
+    if (MaybeError error = WriteFigures(model, report)) return Fail(*error);
   }
   if (FLAGS_html_out.empty()) return kDone;
   if (MaybeError error = WriteFileAtomically(FLAGS_html_out, ToPage(report))) return Fail(*error);
@@ -56,7 +55,8 @@ int WriteWhole(const FittedModel& model) {
 int Run() {
   for (MaybeError error :
        {Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote"),
-        CheckPageName("--html_out", FLAGS_html_out), CheckOutputFiles({FLAGS_html_out})}) {
+        CheckPageName("--html_out", FLAGS_html_out), CheckOutputFiles({FLAGS_html_out}),
+        CheckFigureFlags()}) {
     if (error) return Fail(*error);
   }
   const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
@@ -67,8 +67,7 @@ int Run() {
     std::printf("%s", TruthTable(model.value().fit, truth.value()).c_str());
     return kDone;
   }
-  if ((FLAGS_text || !FLAGS_html_out.empty() || !FLAGS_csv_dir.empty()))
-    return WriteWhole(model.value());
+  if (FLAGS_text || !FLAGS_html_out.empty() || FiguresAsked()) return WriteWhole(model.value());
   std::printf("%s", ReportText(model.value()).c_str());
   return kDone;
 }
@@ -80,6 +79,8 @@ int main(int argc, char** argv) {
       argc, argv,
       "pushid-report prints the report of an identified model, or writes it as an HTML page.\n\n"
       "  pushid-report --model=model.json\n"
-      "  pushid-report --model=model.json --recordings=M/manifest.json --html_out=report.html",
+      "  pushid-report --model=model.json --recordings=M/manifest.json --html_out=report.html\n"
+      "  pushid-report --model=model.json --recordings=M/manifest.json --figures_out=figures "
+      "--figure_format=pdf",
       Run);
 }

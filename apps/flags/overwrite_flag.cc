@@ -7,7 +7,7 @@
 
 #include "datasets/files/json_file.h"
 
-DEFINE_bool(overwrite, false, "replace existing recordings, manifests and pushes");
+DEFINE_bool(overwrite, false, "replace existing recordings, manifests, pushes and figures");
 
 namespace pushid {
 

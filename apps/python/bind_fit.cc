@@ -14,7 +14,6 @@
 #include "ident/parameters/option_table.h"
 #include "ident/report/advice.h"
 #include "ident/report/fit_command.h"
-#include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
 #include "ident/report/value_text.h"
 #include "ident/validation/crossvalidation.h"
@@ -156,16 +155,7 @@ void WriteReport(const Model& model, const std::string& path, const Advised& cal
   if (fitted->provenance.manifest.empty()) {
     fitted = std::make_shared<const FittedModel>(InCalls(model, calls));
   }
-  const std::shared_ptr<const FittedTo> to = model.to;
-  BuildReportOptions options;
-  options.progress = JobsOf(py::none());
-  std::string page;
-  {
-    const py::gil_scoped_release no_gil;
-    const auto drawn = to ? Copies(to->recordings) : std::vector<Recording>();
-    page = ToPage(BuildReport(*fitted, drawn, options));
-  }
-  Check(WriteFileAtomically(path, page), Fault::kData);
+  Check(WriteFileAtomically(path, ToPage(ReportOf(*fitted, model))), Fault::kData);
 }
 
 py::object EvaluateOn(const Model& model, const std::vector<SharedRecording>& recordings,

@@ -106,6 +106,7 @@ void BindStudies(py::module_* module);
 void BindPredictions(py::module_* module);
 void BindFormations(py::module_* module);
 void BindStanding(py::module_* module);
+void BindFigures(py::module_* module);
 
 // What a model was fitted to.
 struct FittedTo {
@@ -124,6 +125,10 @@ struct Model {
 std::shared_ptr<const FittedTo> DataOf(const Model& model);
 
 IdentifiedModel IdentifiedOf(const Model& model);
+
+// With the figures of the recordings that the model has, if any. Releases the GIL.
+struct Report;
+Report ReportOf(const FittedModel& fitted, const Model& model);
 
 // (frames, people, 8): q, then qd.
 Array StatesOf(const RolloutPath<double>& path, int people);

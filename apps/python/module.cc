@@ -133,6 +133,7 @@ PYBIND11_MODULE(_pushid, module) {
   BindPredictions(&module);
   BindFormations(&module);
   BindStanding(&module);
+  BindFigures(&module);
 }
 
 namespace pushid {

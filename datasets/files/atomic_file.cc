@@ -132,6 +132,37 @@ MaybeError CheckWritable(const std::string& path) {
   return file.Open(path);
 }
 
+AtomicFolder::~AtomicFolder() {
+  std::error_code ignored;
+  if (!temporary_.empty()) std::filesystem::remove_all(temporary_, ignored);
+}
+
+MaybeError AtomicFolder::Open(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  target_ = fs::absolute(folder).lexically_normal().string();
+  while (target_.size() > 1 && target_.back() == '/') target_.pop_back();
+  if (fs::exists(target_, failed) && !fs::is_directory(target_, failed)) {
+    return Error{"this is a file; name a folder for the output", folder};
+  }
+  temporary_ = TemporaryName(target_);
+  return MakeFolder(temporary_);
+}
+
+MaybeError AtomicFolder::Commit() {
+  const std::string before = TemporaryName(target_);
+  const bool exists = std::rename(target_.c_str(), before.c_str()) == 0;
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) {
+    const Error error = SystemError(target_, "cannot replace it");
+    if (exists) std::rename(before.c_str(), target_.c_str());
+    return error;
+  }
+  temporary_.clear();
+  std::error_code ignored;
+  if (exists) std::filesystem::remove_all(before, ignored);
+  return std::nullopt;
+}
+
 MaybeError MakeFolder(const std::string& folder) {
   std::error_code failed;
   if (!folder.empty()) std::filesystem::create_directories(folder, failed);

@@ -48,6 +48,26 @@ MaybeError WriteFileAtomically(const std::string& path, std::string_view content
 // For use before a long computation whose result goes there; leaves the target untouched.
 MaybeError CheckWritable(const std::string& path);
 
+// The same for a folder of files that belong together: written beside the target, and renamed at
+// last.
+class AtomicFolder {
+ public:
+  AtomicFolder() = default;
+  ~AtomicFolder();
+  AtomicFolder(const AtomicFolder&) = delete;
+  AtomicFolder& operator=(const AtomicFolder&) = delete;
+
+  // Errors: a file of that name, or the folder above cannot be written.
+  MaybeError Open(const std::string& folder);
+  // Where to write until Commit.
+  const std::string& path() const { return temporary_; }
+  // Replaces what was there.
+  MaybeError Commit();
+
+ private:
+  std::string target_, temporary_;
+};
+
 // Folders that outputs need.
 
 // With all folders above it; one that is there already is no error.

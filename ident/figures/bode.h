@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "ident/figures/chart.h"
+
 namespace pushid {
 
 struct BodePoint {
@@ -12,11 +14,10 @@ struct BodePoint {
   double gain = 0.0, gain_lower = 0.0, gain_upper = 0.0;  // above 0
   double phase = 0.0, phase_error = 0.0;                  // degrees
   double coherence = 0.0;                                 // in [0, 1]
-  std::string tooltip;
 };
 
 struct BodePlot {
-  std::string title, gain_unit;         // "rad/m"
+  std::string gain_unit;                // "rad/m"
   std::vector<BodePoint> measured;      // by frequency
   std::vector<double> hz, gain, phase;  // of the model, above 0, above 0 and degrees; may be empty
 };
@@ -25,7 +26,7 @@ struct BodePlot {
 // each point as near to the model as may be, or to the point before where there is no model.
 void Unwrap(BodePlot* plot);
 
-// Three panels above each other over a logarithmic frequency; inline SVG.
-std::string DrawBode(const BodePlot& plot);
+// Three panels over a logarithmic frequency.
+Figure BodeFigure(const BodePlot& plot);
 
 }  // namespace pushid

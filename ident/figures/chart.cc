@@ -11,9 +11,12 @@
 namespace pushid {
 namespace {
 
-constexpr double kAbove = 22, kBelow = 36, kBefore = 52, kAfter = 12;
-constexpr int kYTicks = 3;    // about
-constexpr double kLane = 12;  // height, as that of its name
+constexpr double kLane = 12;     // height, as that of its name
+constexpr double kRow = 16;      // of a category
+constexpr double kLetter = 6.4;  // width of a small one, about
+constexpr double kBoldLetter = 7.4;
+constexpr double kValueWidth = 36;    // a cell that is wider shows its number
+constexpr double kLeastShare = 0.01;  // of the strongest colour, that is drawn
 
 struct Range {
   double from = INFINITY, to = -INFINITY;
@@ -43,32 +46,70 @@ Range RangeOf(const Chart& chart, double std::pair<double, double>::*axis) {
   return range;
 }
 
-// Of its line, its name and the room after it.
-double EntryWidth(const LegendEntry& entry) {
-  return 46 + 6.2 * static_cast<double>(entry.name.size());
+double Longest(const std::vector<std::string>& names) {
+  size_t longest = 0;
+  for (const std::string& name : names) longest = std::max(longest, name.size());
+  return kLetter * static_cast<double>(longest);
 }
+
+std::string Cut(const std::string& name, double width, double letter = kLetter) {
+  const size_t most = static_cast<size_t>(std::max(2.0, width / letter));
+  return name.size() <= most ? name : name.substr(0, most - 1) + "~";
+}
+
+// The room around the plot.
+struct Margins {
+  double left = 44, right = 12, top = 22, bottom = 36;
+  bool upright = false;  // heads of columns
+
+  Margins(const Chart& chart, double width) {
+    if (chart.bare_y) left = 10;
+    if (!chart.y_categories.empty())
+      left = 10 + std::min(0.42 * width, Longest(chart.y_categories));
+    if (!chart.y_notes.empty()) right = 14 + std::min(0.3 * width, Longest(chart.y_notes));
+    if (chart.title.empty() && chart.y_label.empty()) top = 8;
+    if (chart.x_label.empty()) bottom = 22;
+    if (chart.cells.empty()) return;
+    const double columns = std::max<double>(1.0, static_cast<double>(chart.x_categories.size()));
+    upright = Longest(chart.x_categories) + 4 > (width - left - right) / columns;
+    top += upright ? 4 + std::min(120.0, Longest(chart.x_categories)) : 16;
+    bottom = chart.x_label.empty() ? 8 : 22;
+  }
+};
 
 class Panel {
  public:
   Panel(const Chart& chart, const SvgBox& box, SvgPicture* svg)
       : chart_(chart),
-        left_(box.x + kBefore),
-        right_(box.x + box.width - kAfter),
-        top_(box.y + kAbove),
-        floor_(box.y + box.height - kBelow),
+        box_(box),
+        margins_(chart, box.width),
+        left_(box.x + margins_.left),
+        right_(box.x + box.width - margins_.right),
+        top_(box.y + margins_.top),
+        floor_(box.y + box.height - margins_.bottom),
         bottom_(floor_ - kLane * static_cast<double>(chart.lanes.size())),
         x_(XScale()),
         y_(YScale()),
         svg_(*svg) {}
 
   void Draw() {
-    svg_.Text(left_, top_ - 8, chart_.title, "ink bold");
-    Axes();
+    Heads();
+    if (chart_.cells.empty()) {
+      XAxis();
+    } else {
+      Cells();
+    }
+    YAxis();
     for (const ChartBand& band : chart_.bands) {
       ChartPoints outline = Placed(band.lower);
       const ChartPoints back = Placed(band.upper);
       outline.insert(outline.end(), back.rbegin(), back.rend());
       svg_.Polyline(outline, band.look);
+    }
+    for (const ChartBar& bar : chart_.bars) {
+      const double from = Inside(bar.from), to = Inside(bar.to), y = y_(bar.row);
+      svg_.Rect({std::min(from, to), y - 0.36 * kRow, std::abs(to - from), 0.72 * kRow}, bar.look,
+                bar.tooltip);
     }
     for (double level : chart_.levels) svg_.Line(left_, y_(level), right_, y_(level), kLimitLook);
     for (double mark : chart_.marks) svg_.Line(x_(mark), top_, x_(mark), bottom_, kMarkLook);
@@ -78,27 +119,34 @@ class Panel {
 
  private:
   SvgScale XScale() const {
+    if (!chart_.cells.empty())
+      return {0.0, static_cast<double>(chart_.x_categories.size()), left_, right_};
     Range range = RangeOf(chart_, &std::pair<double, double>::first);
     for (double mark : chart_.marks) range.Add(mark);
-    range = range.Widened(0.0);
-    return {range.from, range.to, left_, right_};
+    for (const ChartBar& bar : chart_.bars) range.Add(bar.from), range.Add(bar.to);
+    range = range.Widened(chart_.bare_y || !chart_.y_categories.empty() ? 0.05 : 0.0);
+    return {chart_.x_from.value_or(range.from), chart_.x_to.value_or(range.to), left_, right_};
   }
   SvgScale YScale() const {
+    // Names run downwards.
+    if (!chart_.y_categories.empty()) {
+      return {-0.5, static_cast<double>(chart_.y_categories.size()) - 0.5, top_, bottom_};
+    }
     Range range = RangeOf(chart_, &std::pair<double, double>::second);
     for (double level : chart_.levels) range.Add(level);
     range = range.Widened(0.06);
-    if (!chart_.y_categories.empty()) {
-      // Names run downwards.
-      return {-0.6, static_cast<double>(chart_.y_categories.size()) - 0.4, top_, bottom_};
-    }
     return {chart_.y_from.value_or(range.from), chart_.y_to.value_or(range.to), bottom_, top_};
   }
 
+  double Inside(double x) const { return std::clamp(x_(x), left_, right_); }
+
+  // Infinite ends of intervals go to the edge.
   ChartPoints Placed(const ChartPoints& points) const {
     ChartPoints placed;
     for (const auto& [x, y] : points) {
-      if (!std::isfinite(x) || !std::isfinite(y)) continue;
-      placed.emplace_back(x_(x), std::clamp(y_(y), top_ - 2.0, bottom_ + 2.0));
+      if (std::isnan(x) || !std::isfinite(y)) continue;
+      placed.emplace_back(std::isinf(x) ? (x < 0.0 ? left_ : right_) : Inside(x),
+                          std::clamp(y_(y), top_ - 2.0, bottom_ + 2.0));
     }
     return placed;
   }
@@ -110,6 +158,14 @@ class Panel {
     } else {
       svg_.Polyline(placed, line.look);
     }
+  }
+
+  void Heads() {
+    const double from = chart_.y_categories.empty() ? left_ : box_.x + 10;
+    const double y = box_.y + 14;
+    svg_.Text(right_, y, chart_.y_label, "faint small end");
+    const double room = right_ - from - kLetter * static_cast<double>(chart_.y_label.size());
+    svg_.Text(from, y, Cut(chart_.title, room, kBoldLetter), "ink bold");
   }
 
   // Between the plot and its axis.
@@ -125,37 +181,87 @@ class Panel {
     }
   }
 
-  void Axes() {
+  void XAxis() {
     std::vector<SvgLine> axis = {{left_, floor_, right_, floor_}}, grid;
-    double free_from = -INFINITY;
-    for (double tick : x_.Ticks(5)) {
+    double free_from = box_.x;
+    for (double tick : chart_.logarithmic_x ? Powers(x_) : x_.Ticks(5)) {
       axis.push_back({x_(tick), floor_, x_(tick), floor_ + 4});
-      const std::string text = TickText(tick);
+      if (chart_.logarithmic_x || !chart_.y_categories.empty())
+        grid.push_back({x_(tick), top_, x_(tick), bottom_});
+      const std::string text = TickText(chart_.logarithmic_x ? std::pow(10.0, tick) : tick);
       const double half = 3.4 * static_cast<double>(text.size());
-      // A number that would touch the one before is left out.
-      if (chart_.bare_x || x_(tick) - half < free_from) continue;
+      // A number that would touch the one before, or the edge, is left out.
+      if (x_(tick) - half < free_from || x_(tick) + half > box_.x + box_.width) continue;
       free_from = x_(tick) + half + 4;
       svg_.Text(x_(tick), floor_ + 15, text, "ink small middle");
     }
+    svg_.Lines(grid, "grid");
     svg_.Lines(axis, "axis");
-    if (!chart_.bare_x) {
-      svg_.Text(0.5 * (left_ + right_), floor_ + 29, chart_.x_label, "faint small middle");
-    }
+    svg_.Text(0.5 * (left_ + right_), floor_ + 29, chart_.x_label, "faint small middle");
+  }
+
+  void YAxis() {
+    std::vector<SvgLine> grid;
     for (size_t i = 0; i < chart_.y_categories.size(); ++i) {
       const double y = y_(static_cast<double>(i));
-      grid.push_back({left_, y, right_, y});
-      svg_.Text(left_ - 6, y + 4, chart_.y_categories[i], "ink small end");
+      if (chart_.cells.empty()) grid.push_back({left_, y, right_, y});
+      svg_.Text(left_ - 6, y + 4, Cut(chart_.y_categories[i], margins_.left - 6), "ink small end");
+      if (i < chart_.y_notes.size())
+        svg_.Text(right_ + 6, y + 4, Cut(chart_.y_notes[i], margins_.right - 4), "faint small");
     }
-    for (double tick : chart_.y_categories.empty() ? y_.Ticks(kYTicks) : std::vector<double>()) {
-      if (chart_.logarithmic && tick != std::floor(tick)) continue;
+    const bool numbers = chart_.y_categories.empty() && !chart_.bare_y;
+    for (double tick : numbers ? y_.Ticks(3) : std::vector<double>()) {
+      if (chart_.logarithmic_y && tick != std::floor(tick)) continue;
       grid.push_back({left_, y_(tick), right_, y_(tick)});
       // The names of lanes stand below.
       if (!chart_.lanes.empty() && y_(tick) > bottom_ - 6) continue;
-      const std::string text = chart_.logarithmic ? "1e" + SvgNumber(tick) : TickText(tick);
-      svg_.Text(left_ - 5, y_(tick) + 3.5, text, "faint small end");
+      svg_.Text(left_ - 5, y_(tick) + 3.5,
+                TickText(chart_.logarithmic_y ? std::pow(10.0, tick) : tick), "faint small end");
     }
     svg_.Lines(grid, "grid");
-    svg_.Text(right_, top_ - 8, chart_.y_label, "faint small end");
+  }
+
+  // Logarithms of 1, 2 and 5 times powers of ten; over many of the powers alone.
+  static std::vector<double> Powers(const SvgScale& scale) {
+    std::vector<double> ticks;
+    for (double power = std::floor(scale.from()); power <= scale.to(); ++power) {
+      for (double first : {1.0, 2.0, 5.0}) {
+        const double tick = power + std::log10(first);
+        const bool shown = first == 1.0 || scale.to() - scale.from() < 4.0;
+        if (shown && tick >= scale.from() && tick <= scale.to()) ticks.push_back(tick);
+      }
+    }
+    return ticks;
+  }
+
+  void Cells() {
+    for (size_t j = 0; j < chart_.x_categories.size(); ++j) {
+      const double x = x_(static_cast<double>(j) + 0.5);
+      if (margins_.upright) {
+        svg_.TextUp(x + 4, top_ - 4, Cut(chart_.x_categories[j], 120), "ink small");
+      } else {
+        svg_.Text(x, top_ - 5, chart_.x_categories[j], "ink small middle");
+      }
+    }
+    const double wide = x_(1.0) - x_(0.0), high = y_(1.0) - y_(0.0);
+    for (size_t i = 0; i < chart_.cells.size(); ++i) {
+      for (size_t j = 0; j < chart_.cells[i].size(); ++j) {
+        const double value = chart_.cells[i][j];
+        const double x = x_(static_cast<double>(j)), y = y_(static_cast<double>(i) - 0.5);
+        const double share = std::clamp(std::abs(value) / chart_.full_cell, 0.0, 1.0);
+        if (share >= kLeastShare) {  // most cells of a large map are paper
+          svg_.Rect(
+              {x + 0.5, y + 0.5, wide - 1, high - 1}, CellLook(value, share),
+              chart_.y_categories[i] + ", " + chart_.x_categories[j] + ": " + Rounded(value, 3));
+        }
+        if (wide > kValueWidth)
+          svg_.Text(x + 0.5 * wide, y + 12, SvgNumber(value), "ink small middle");
+      }
+    }
+  }
+  static std::string CellLook(double value, double share) {
+    return std::string("fill:") + (value < 0.0 ? "#3b82f6" : "#e69f00") +
+           ";fill-opacity:" + SvgNumber(0.85 * share);
   }
 
   // "0.002", "1e-05": enough digits for round numbers.
@@ -166,6 +272,8 @@ class Panel {
   }
 
   const Chart& chart_;
+  const SvgBox box_;
+  const Margins margins_;
   double left_, right_, top_, floor_, bottom_;  // lanes lie between bottom_ and floor_
   SvgScale x_, y_;
   SvgPicture& svg_;
@@ -173,90 +281,17 @@ class Panel {
 
 }  // namespace
 
+double HeightOf(const Chart& chart, double width) {
+  if (chart.y_categories.empty()) {
+    // Lower where it is narrower; strips of a row or two keep their height.
+    return chart.bare_y ? chart.height : chart.height * std::clamp(width / chart.width, 0.8, 1.0);
+  }
+  const Margins margins(chart, width);
+  return margins.top + margins.bottom + kRow * static_cast<double>(chart.y_categories.size());
+}
+
 void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg) {
   Panel(chart, box, svg).Draw();
-}
-
-std::string DrawCharts(const std::vector<Chart>& charts, const std::string& title, int columns,
-                       double width, double height) {
-  const int rows = (static_cast<int>(charts.size()) + columns - 1) / columns;
-  SvgPicture svg(width * columns, height * rows, title);
-  for (size_t i = 0; i < charts.size(); ++i) {
-    const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-    DrawChart(charts[i], {width * column, height * row, width, height}, &svg);
-  }
-  return svg.ToInline();
-}
-
-double LegendWidth(const std::vector<LegendEntry>& entries) {
-  double width = 0.0;
-  for (const LegendEntry& entry : entries) width += EntryWidth(entry);
-  return width;
-}
-
-void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg) {
-  for (const LegendEntry& entry : entries) {
-    const bool filled = entry.look.find("stroke:none") != std::string::npos ||
-                        entry.look.rfind("band", 0) == 0 || entry.look == kLiftedLook;
-    if (filled) {
-      svg->Rect({x, y - 9, 18, 10}, entry.look);
-    } else {
-      svg->Polyline({{x, y - 4}, {x + 18, y - 4}}, entry.look);
-    }
-    svg->Text(x + 23, y, entry.name, "ink small");
-    x += EntryWidth(entry);
-  }
-}
-
-namespace {
-
-constexpr double kHigh = 22, kTop = 84;
-constexpr size_t kFewColumns = 12;
-constexpr double kLeastShare = 0.01;  // of the strongest colour, that is drawn
-
-// The name turned upwards would need another anchor; long names are cut instead.
-std::string Short(const std::string& name, size_t most) {
-  return name.size() <= most ? name : name.substr(0, most - 1) + "~";
-}
-
-}  // namespace
-
-std::string DrawHeatMap(const HeatMap& map) {
-  size_t longest = 4;
-  for (const std::string& row : map.rows) longest = std::max(longest, row.size());
-  const double left = 24 + 6.4 * static_cast<double>(std::min<size_t>(longest, 28));
-  const double columns = static_cast<double>(map.columns.size());
-  const bool few = map.columns.size() <= kFewColumns;
-  const double wide = few ? 64 : 46;
-  const double rows = static_cast<double>(map.rows.size());
-  // The last name is wider than its column.
-  const double after =
-      map.columns.empty() ? 12 : 12 + 3.2 * static_cast<double>(map.columns.back().size());
-  SvgPicture svg(left + wide * columns + after, kTop + kHigh * rows + 12, map.title);
-  svg.Text(12, 18, map.title, "ink bold");
-  for (size_t j = 0; j < map.columns.size(); ++j) {
-    // Neighbouring names at two or three heights, so that they do not touch.
-    const double y = kTop - 10 - 16.0 * static_cast<double>(j % (few ? 2 : 3));
-    svg.Text(left + wide * (static_cast<double>(j) + 0.5), y, Short(map.columns[j], 18),
-             "ink small middle");
-  }
-  for (size_t i = 0; i < map.rows.size(); ++i) {
-    const double y = kTop + kHigh * static_cast<double>(i);
-    svg.Text(left - 8, y + 15, Short(map.rows[i], 28), "ink small end");
-    for (size_t j = 0; j < map.columns.size(); ++j) {
-      const double value = map.values[i][j];
-      const double x = left + wide * static_cast<double>(j);
-      const double share = std::clamp(std::abs(value) / map.full, 0.0, 1.0);
-      const bool seen = share >= kLeastShare;  // most cells of a large map are paper
-      if (seen)
-        svg.Rect({x + 1, y + 1, wide - 2, kHigh - 2},
-                 std::string("fill:") + (value < 0.0 ? "#3b82f6" : "#e69f00") +
-                     ";fill-opacity:" + SvgNumber(0.85 * share),
-                 map.rows[i] + ", " + map.columns[j] + ": " + Rounded(value, 3));
-      svg.Text(x + 0.5 * wide, y + 15, SvgNumber(value), "ink small middle");
-    }
-  }
-  return svg.ToInline();
 }
 
 }  // namespace pushid

@@ -1,4 +1,5 @@
-// ident: panels with axes, lines and bands, drawn into an SVG picture.
+// ident: charts as data: panels with axes, lines, bands, bars and coloured cells, drawn into SVG
+// pictures of any width. Pages, files for papers and Python draw the same data.
 #pragma once
 
 #include <optional>
@@ -19,8 +20,14 @@ inline constexpr char kPredictedLook[] = "predicted";
 inline constexpr char kWideBandLook[] = "band wide";
 inline constexpr char kNarrowBandLook[] = "band narrow";
 inline constexpr char kLiftedLook[] = "lifted";  // a foot off the ground
+inline constexpr char kDotLook[] = "stroke:none;fill:#3b82f6";
 inline constexpr char kLimitLook[] = "fill:none;stroke-dasharray:5 4;stroke:#d55e00";
 inline constexpr char kMarkLook[] = "fill:none;stroke-width:1.2;stroke:#d55e00";
+
+// Wanted width of a panel: three fit beside each other on a page, one on a telephone and in a
+// column of a journal; of small panels four, one and two.
+inline constexpr double kPanelWidth = 332, kPanelHeight = 190;
+inline constexpr double kSmallWidth = 250, kSmallHeight = 160;
 
 struct ChartLine {
   ChartPoints points;
@@ -40,43 +47,60 @@ struct ChartLane {
   std::string look;
 };
 
+// Along x, in a row of y_categories.
+struct ChartBar {
+  double row = 0.0, from = 0.0, to = 0.0;
+  std::string look, tooltip;
+};
+
 struct Chart {
-  std::string title, x_label, y_label;
+  std::string title, x_label;
+  std::string y_label;  // at the right end of the title's line
   std::vector<ChartBand> bands;
   std::vector<ChartLine> lines;
   std::vector<ChartLane> lanes;
-  std::vector<double> levels;             // dashed, across
-  std::vector<double> marks;              // upright
-  std::optional<double> y_from, y_to;     // instead of the data's own range
-  bool logarithmic = false;               // powers of ten upwards; y given as log10
-  std::vector<std::string> y_categories;  // names at y = 0, 1, ... instead of numbers
-  bool bare_x = false;                    // the panel below has the same x axis, with its numbers
+  std::vector<ChartBar> bars;
+  std::vector<double> levels;          // dashed, across
+  std::vector<double> marks;           // upright
+  std::optional<double> x_from, x_to;  // instead of the data's own range
+  std::optional<double> y_from, y_to;
+  bool logarithmic_x = false;  // x and y are given as log10
+  bool logarithmic_y = false;
+  bool bare_y = false;  // no numbers upwards: the rows are few and named
+  std::vector<std::string> y_categories,
+      y_notes;  // names at y = 0, 1, ... downwards; right of them
+  // A table of signed numbers as colours, blue below zero and orange above; full_cell: the value of
+  // the strongest one.
+  std::vector<std::string> x_categories;
+  std::vector<std::vector<double>> cells;  // [row][column]
+  double full_cell = 1.0;
+  double width = kPanelWidth,
+         height = kPanelHeight;  // wanted; rows of categories have their own height
 };
 
-// Axes and labels lie within the box.
-void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg);
-
-// Small panels side by side, `columns` in a row.
-std::string DrawCharts(const std::vector<Chart>& charts, const std::string& title, int columns,
-                       double width, double height);
-
-// What the lines of a picture mean, from x on.
+// What the lines of a picture mean.
 struct LegendEntry {
   std::string name, look;
 };
-double LegendWidth(const std::vector<LegendEntry>& entries);
-void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg);
 
-// A table of signed numbers as colours.
-
-struct HeatMap {
-  std::string title;
-  std::vector<std::string> rows, columns;
-  std::vector<std::vector<double>> values;  // [row][column]; 0 is paper
-  double full = 1.0;                        // the value of the strongest colour
+// What belongs together, with one legend.
+struct Figure {
+  std::vector<LegendEntry> legend;
+  std::vector<Chart> panels;
+  std::string heading = {};  // above everything; may be empty
 };
 
-// Blue below zero, orange above.
-std::string DrawHeatMap(const HeatMap& map);
+// Of a panel that is drawn so wide.
+double HeightOf(const Chart& chart, double width);
+// Axes and labels lie within the box.
+void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg);
+
+// A picture of its own, as wide as wanted.
+SvgPicture DrawPanel(const Chart& chart);
+// All panels in one picture, as many side by side as fit.
+SvgPicture DrawFigure(const Figure& figure, double width, const std::string& title);
+
+double LegendWidth(const std::vector<LegendEntry>& entries);
+void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg);
 
 }  // namespace pushid

@@ -51,13 +51,20 @@ class SvgPicture {
   // Classes middle and end set the anchor, small and bold the font. A number's hyphen becomes a
   // minus sign; an empty text draws nothing.
   void Text(double x, double y, std::string_view text, std::string_view look = "ink");
+  // From (x, y) upwards.
+  void TextUp(double x, double y, std::string_view text, std::string_view look = "ink");
+
+  double width() const { return width_; }
 
   std::string ToString() const;
   // For a page that has SvgStyle: without a style sheet of its own.
   std::string ToInline() const;
+  // For print: always light, so wide, with a description.
+  std::string ToPaper(double width_mm, std::string_view description) const;
 
  private:
-  std::string Drawn(std::string_view style) const;
+  std::string Drawn(double width, double height, const char* unit, const std::string& head) const;
+  void TextAt(const std::string& place, std::string_view text, std::string_view look);
   void Open(std::string_view element);
   void Number(std::string_view name, double value);
   void Look(std::string_view look);
@@ -73,6 +80,8 @@ class SvgScale {
   // from_pixel may exceed to_pixel: the vertical axis of a plot.
   SvgScale(double from, double to, double from_pixel, double to_pixel);
   double operator()(double value) const;
+  double from() const { return from_; }
+  double to() const { return to_; }
   // Multiples of 1, 2 or 5 times a power of ten within the range, about `wanted` of them.
   std::vector<double> Ticks(int wanted) const;
 

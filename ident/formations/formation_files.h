@@ -5,7 +5,7 @@
 #include <string>
 
 #include "datasets/files/error.h"
-#include "ident/figures/svg.h"
+#include "ident/figures/chart.h"
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
 
@@ -35,13 +35,12 @@ inline constexpr int kMostPeopleInForces = 40;
 std::string WaveSvg(const FormationRun& run, const std::string& title,
                     const std::vector<OnsetBand>& onsets = {});
 
-// One row of panels for each person: the net force along the push (N) and the torque about y (N m)
-// over time with their parts. On one scale, so that heights compare, or each panel on its own:
+// Two panels for each person: the net force along the push (N) and the torque about y (N m) over
+// time with their parts. On one scale, so that heights compare, or each panel on its own:
 // what the tenth person feels is a fraction of the push.
 enum class ForceScale { kShared, kOwn };
+Figure ForcesFigure(const FormationRun& run, ForceScale scale = ForceScale::kShared);
 std::string ForcesSvg(const FormationRun& run, const std::string& title,
                       ForceScale scale = ForceScale::kShared);
-SvgPicture ForcesPictureOf(const FormationRun& run, const std::string& title,
-                           ForceScale scale = ForceScale::kShared);
 
 }  // namespace pushid

@@ -2,6 +2,7 @@
 // telephone's: nothing overlaps, nothing is cut off, nothing complains.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,22 @@ TEST_F(LayoutTest, AReportOfManyParameters) {
       "pushid-report", {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   ExpectGoodLayout(Opened(ReadText(Path("report.html"))), true);
+}
+
+// In a journal's column.
+TEST_F(LayoutTest, FiguresForPapers) {
+  const std::string model = FitModel("model.json", {"--profile=mu", "--bootstrap=9"});
+  const AppRun run = RunApp("pushid-report",
+                            {"--model=" + model, Recordings(), "--figures_out=" + Path("figures")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::string figures;
+  for (const auto& entry : std::filesystem::directory_iterator(Path("figures"))) {
+    if (entry.path().extension() != ".svg") continue;
+    // Their section names them in what the probe says.
+    figures += "<section id=\"" + entry.path().stem().string() + "\">" +
+               ReadText(entry.path().string()) + "</section>";
+  }
+  ExpectGoodLayout(PageOf(figures), true);
 }
 
 TEST_F(LayoutTest, PicturesOfAFormation) {

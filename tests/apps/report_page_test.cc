@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "ident/figures/svg.h"
 #include "tests/apps/app_fixture.h"
 #include "tests/apps/browser.h"
 
@@ -61,27 +63,105 @@ TEST_F(ReportPage, WorksInABrowser) {
   }
 }
 
-TEST_F(ReportPage, NumbersBehindEveryPlot) {
+// On a desk and on a telephone; folded tables count as well.
+TEST_F(ReportPage, LeadsWithPictures) {
+  if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
+  const AppRun run = RunApp("pushid-report", {"--model=" + FitModel(), Recordings(),
+                                              "--html_out=" + Path("report.html")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const std::string page = ReadText(Path("report.html"));
+  ASSERT_NE(page.find("<figure>"), std::string::npos);
+  EXPECT_LT(page.find("<figure>"), page.find("<table>"));
+  EXPECT_LT(page.find("<figure>"), page.find("<nav"));
+  for (const int width : {1200, 400}) {
+    SCOPED_TRACE(width);
+    const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Framed(Probed(page, R"js(
+  const panel = document.querySelector('figure .panels.scroll svg').getBoundingClientRect();
+  said.push(panel.top + 0.5 * panel.height < innerHeight ? 'seen at once' : 'starts at ' + panel.top);
+)js"),
+                                                                                width)));
+    EXPECT_EQ(WhatItSaid(seen), "seen at once");
+  }
+}
+
+TEST_F(ReportPage, FiguresAndTablesForPapers) {
   const std::string model = FitModel("model.json", {"--profile=mu"});
-  const AppRun run = RunApp(
-      "pushid-report", {"--model=" + model, Recordings(), "--text", "--csv_dir=" + Path("csv")});
+  const std::vector<std::string> flags = {"--model=" + model, Recordings(), "--text",
+                                          "--figures_out=" + Path("figures")};
+  const AppRun run = RunApp("pushid-report", flags);
   ASSERT_EQ(run.exit_code, 0) << run.err;
   for (const char* heading : {"What was fitted\n===============", "Profile likelihood",
                               "What to record next", "Measured and predicted motion"}) {
     EXPECT_TRUE(Contains(run.out, heading));
   }
+  const std::string captions = ReadText(Path("figures/captions.md"));
   for (const std::string& name :
-       {std::string("forest"), std::string("correlation"), std::string("profiles"),
-        std::string("explained"), std::string("leverage"), std::string("residual_correlations"),
-        std::string("trace"), "motion_" + id_, "forces_" + id_}) {
-    const std::string csv = ReadText(Path("csv/" + name + ".csv"));
+       {std::string("typical"), std::string("forest"), std::string("correlation"),
+        std::string("profiles"), std::string("explained"), std::string("leverage"),
+        std::string("residual_correlations"), std::string("trace"), "motion_" + id_,
+        "forces_" + id_}) {
+    SCOPED_TRACE(name);
+    const std::string csv = ReadText(Path("figures/" + name + ".csv"));
     const size_t columns = static_cast<size_t>(
         std::count(csv.begin(), csv.begin() + static_cast<long>(csv.find('\n')), ','));
-    EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 1) << name;
+    EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 1);
     EXPECT_EQ(
         static_cast<size_t>(std::count(csv.begin(), csv.end(), ',')) % std::max<size_t>(1, columns),
         0u)
-        << name << " has rows of different lengths";
+        << "rows of different lengths";
+    const std::string svg = ReadText(Path("figures/" + name + ".svg"));
+    EXPECT_TRUE(Contains(svg, "width=\"85mm\""));
+    EXPECT_EQ(svg.find("prefers-color-scheme"), std::string::npos) << "paper is light";
+    const size_t from = captions.find("**" + name + "** ");
+    ASSERT_NE(from, std::string::npos);
+    const size_t begin = from + name.size() + 5;
+    const std::string caption = captions.substr(begin, captions.find('\n', begin) - begin);
+    EXPECT_GT(caption.size(), 10u);
+    EXPECT_TRUE(Contains(svg, "<desc>" + EscapeXml(caption) + "</desc>"));
+  }
+  EXPECT_TRUE(Contains(ReadText(Path("figures/table_parameters_1.csv")), "parameter,value"));
+  const std::string tex = ReadText(Path("figures/parameters.tex"));
+  for (const char* part : {"\\toprule\nsymbol & parameter & unit", "$\\mu$ & mu & N s/m & ",
+                           "$K_{p,\\theta}$ & Kp\\_theta & N m/rad & ", " \\\\\n\\bottomrule"}) {
+    EXPECT_TRUE(Contains(tex, part));
+  }
+  EXPECT_TRUE(Contains(ReadText(Path("figures/parameters.md")), "| $\\mu$ | mu | N s/m | "));
+}
+
+TEST_F(ReportPage, FiguresReplaceFiguresAlone) {
+  const std::string model = FitModel();
+  const std::string out = "--figures_out=" + Path("figures");
+  const auto write = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> flags = {"--model=" + model, out};
+    flags.insert(flags.end(), more.begin(), more.end());
+    return RunApp("pushid-report", flags);
+  };
+  ASSERT_EQ(write({}).exit_code, 0);
+  EXPECT_TRUE(Refused(write({}), {"captions.md", "already exists", "--overwrite"}));
+  WriteText("figures/old.svg", "");
+  ASSERT_EQ(write({"--overwrite", "--figure_width=180", "--figure_font=9"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(Path("figures/old.svg"))) << "the folder is new as a whole";
+  EXPECT_TRUE(Contains(ReadText(Path("figures/forest.svg")), "width=\"180mm\""));
+  std::filesystem::remove(Path("figures/captions.md"));
+  EXPECT_TRUE(Refused(write({"--overwrite"}), {"holds other files"}));
+  std::filesystem::remove_all(Path("figures"));
+  EXPECT_TRUE(Refused(write({"--figure_format=eps"}), {"'eps'", "svg, pdf or png"}));
+  EXPECT_TRUE(Refused(write({"--figure_width=3"}), {"--figure_width is 3", "40 to 1000 mm"}));
+  EXPECT_TRUE(Refused(write({"--figure_font=0"}), {"--figure_font is 0", "4 to 40 points"}));
+  EXPECT_FALSE(std::filesystem::exists(Path("figures")));
+  for (const std::string format : {"pdf", "png"}) {
+    const AppRun run = write({"--figure_format=" + format, "--overwrite"});
+    if (run.exit_code != 0) {
+      EXPECT_TRUE(Refused(run, {"rsvg-convert", "apt-get install librsvg2-bin"}));
+      continue;
+    }
+    const std::string picture = ReadText(Path("figures/forest." + format));
+    EXPECT_TRUE(Contains(picture.substr(0, 5), format == "pdf" ? "%PDF" : "PNG"));
+    EXPECT_FALSE(std::filesystem::exists(Path("figures/forest.svg")));
+    EXPECT_TRUE(std::filesystem::exists(Path("figures/forest.csv")));
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(Path(""))) {
+    EXPECT_EQ(entry.path().string().find(".tmp."), std::string::npos) << entry.path();
   }
 }
 

@@ -132,6 +132,8 @@ def test_whole_bodies(made, result):
 def test_pictures(made, result):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
+    import matplotlib.figure
+    import matplotlib.pyplot
 
     def whole(axes):
         """Whether all words lie within the saved figure."""
@@ -140,16 +142,29 @@ def test_pictures(made, result):
         width, height = axes.figure.get_size_inches()
         return box.x0 > -0.02 and box.y0 > -0.02 and box.x1 < width + 0.02 and box.y1 < height + 0.02
 
-    axes = result.plot()
-    assert whole(axes)
-    assert any(label.get_text().startswith("mu ") for label in axes.get_yticklabels())
+    drawn = result.plot()
+    assert whole(drawn[0])
+    assert "mu, N s/m" in [axes.get_title(loc="left") for axes in drawn]
+    one = result.plot("forest", axes=matplotlib.figure.Figure().subplots(), panel="mu")
+    low, high = result["mu"].interval
+    ends = [end for line in one.lines for end in line.get_xdata()]
+    assert any(end == pytest.approx(low) for end in ends) and any(end == pytest.approx(high) for end in ends)
     axes = result.plot_motion(made[0][0], observed=20)
     assert len(axes.lines) == 2 and axes.collections  # measured, predicted, the band
     result.profile("mu")
-    axes = result.plot_profile("mu")
+    axes = result.plot("profiles", panel="mu")
     assert axes.lines[0].get_ydata().min() == pytest.approx(0.0, abs=0.01)
-    with pytest.raises(KeyError, match="profile"):
-        result.plot_profile("a_x")
+    for name in result.figures:  # each of them can be drawn
+        result.plot(name)
+        matplotlib.pyplot.close("all")
+    # what the report's picture of the recording draws: the motion itself
+    hip = made[0][0].hip[:, 0, 0]
+    axes = result.plot(f"motion_{made[0][0].id}", panel="hip forward")
+    assert any(np.allclose(line.get_ydata(), hip - hip[0]) for line in axes.lines if len(line.get_ydata()) == len(hip))
+    with pytest.raises(KeyError, match="no figure 'none'"):
+        result.plot("none")
+    with pytest.raises(ValueError, match="panels"):
+        result.plot("forest", axes=axes)
     axes = pushid.simulate_formation(result, "line", 4, push=60.0, onset_bands=True).plot()
     assert axes.images[0].get_array().shape == (4, 241) and whole(axes)
 

@@ -252,20 +252,25 @@ class Result:
         self._model.attach(checked(recordings))
         return self
 
-    def plot(self, **options):
-        """Values and intervals (matplotlib); returns the axes."""
+    @property
+    def figures(self):
+        """The figures of the report: {name: caption}. Those of motions need the recordings (see attach)."""
+        return {name: parts["caption"] for name, parts in _pushid.figures(self._model).items()}
+
+    def plot(self, name="forest", axes=None, panel=None):
+        """Draws a figure of the report (see figures), the same data as its page, with matplotlib.
+
+        axes: matplotlib Axes to draw on, one for each panel (None: a new picture of all). panel: only this one, by its
+        title or its number from 0. Returns the Axes, a list of them for several panels. Raises KeyError for unknown
+        names and ValueError for another number of axes than of panels.
+        """
         from . import _plots
-        return _plots.intervals(self, **options)
+        return _plots.draw(self, name, axes, panel)
 
     def plot_motion(self, recording, **options):
         """Recorded and predicted hips, with bands if there are any; returns the axes."""
         from . import _plots
         return _plots.motion(self, recording, **options)
-
-    def plot_profile(self, name, **options):
-        """The profile of a parameter, computed before by profile(); returns the axes."""
-        from . import _plots
-        return _plots.profile(self, name, **options)
 
     def __str__(self):
         return self._model.text(self.advice)

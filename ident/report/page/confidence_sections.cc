@@ -18,26 +18,29 @@ constexpr int kBars = 24;
 ReportFigure CorrelationFigure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   const size_t size = result.options.table.Free().size();  // without deviations and velocities
-  HeatMap map{"correlation of the estimates", {}, {}, {}, 1.0};
+  Chart map;
+  map.title = "correlation of the estimates";
+  map.width = kWidestMap;
   std::vector<std::string> header = {"parameter"};
   for (size_t i = 0; i < size; ++i) header.push_back(u.estimates[i].name);
   TextTable numbers(header);
   for (size_t i = 0; i < size; ++i) {
-    map.rows.push_back(u.estimates[i].name);
-    map.columns.push_back(u.estimates[i].name);
+    map.y_categories.push_back(u.estimates[i].name);
+    map.x_categories.push_back(u.estimates[i].name);
     std::vector<std::string> cells = {u.estimates[i].name};
     std::vector<double> row;
     for (size_t j = 0; j < size; ++j) {
       row.push_back(u.correlation(static_cast<int>(i), static_cast<int>(j)));
       cells.push_back(DoubleText(row.back()));
     }
-    map.values.push_back(row);
+    map.cells.push_back(row);
     numbers.Add(cells);
   }
   return {
       "correlation",
       "Near 1 or -1: the data determine the joint effect of two parameters, but not that of each.",
-      DrawHeatMap(map), numbers};
+      {{}, {map}},
+      numbers};
 }
 
 // A multiple of one parameter draws that parameter's curve again.
@@ -56,13 +59,14 @@ bool IsAlias(const FittedModel& model, const Profile& p) {
 Chart ProfileChart(const Profile& p) {
   Chart chart;
   chart.title = p.name;
-  chart.x_label = p.unit == "1" ? "" : p.unit;
-  ChartLine line{{}, kPredictedLook, false}, dots{{}, kPredictedLook, true};
+  chart.x_label = WithUnit(p.name, p.unit);
+  chart.width = kSmallWidth;
+  chart.height = kSmallHeight;
+  ChartLine line{{}, kPredictedLook}, dots{{}, kDotLook, true};
   for (const ProfilePoint& point : p.points) {
     line.points.emplace_back(point.value, (point.cost - p.cost) / p.threshold);
   }
   dots.points = line.points;
-  dots.look = "fill:#3b82f6";
   chart.lines = {line, dots};
   chart.levels = {1.0};
   chart.marks = {p.estimate};
@@ -75,7 +79,10 @@ Chart Histogram(const std::vector<double>& values, const std::string& name, cons
                 double estimate) {
   Chart chart;
   chart.title = name;
-  chart.x_label = unit == "1" ? "" : unit;
+  chart.x_label = WithUnit(name, unit);
+  chart.y_label = "replicas";
+  chart.width = kSmallWidth;
+  chart.height = kSmallHeight;
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const double width = (*high - *low) / kBars;
   std::vector<int> counts(kBars, 0);
@@ -127,14 +134,14 @@ ReportSection ProfileSection(const ReportSource& source) {
       "not determine the parameter."};
   section.Say(AgreementNote(source.model));
   section.Show("three kinds of intervals", AgreementTable(source.model));
-  std::vector<Chart> charts;
+  Figure figure;
   TextTable ends({"profile of", "why it ended below", "above"});
   TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"});
   for (const Profile& p : source.model.profiles) {
     if (p.lower_end != "threshold" || p.upper_end != "threshold") {
       ends.Add({p.name, p.lower_end, p.upper_end});
     }
-    if (p.points.size() > 1 && !IsAlias(source.model, p)) charts.push_back(ProfileChart(p));
+    if (p.points.size() > 1 && !IsAlias(source.model, p)) figure.panels.push_back(ProfileChart(p));
     for (const ProfilePoint& point : p.points) {
       numbers.Add({p.name, p.unit, point.value, point.cost - p.cost, p.threshold});
     }
@@ -143,7 +150,7 @@ ReportSection ProfileSection(const ReportSource& source) {
   section.figures.push_back(
       {"profiles",
        "Cost above the optimum, over the 95 % threshold (dashed); the estimate is the line.",
-       DrawCharts(charts, "profiles", kPanelColumns, kPanelWidth, kPanelHeight), numbers});
+       figure, numbers});
   return section;
 }
 
@@ -157,7 +164,7 @@ ReportSection BootstrapSection(const ReportSource& source) {
     section.Say(AgreementNote(source.model));
     section.Show("two kinds of intervals", AgreementTable(source.model));
   }
-  std::vector<Chart> charts;
+  Figure figure;
   std::vector<std::string> header;
   for (size_t i = 0; i < b.names.size(); ++i) {
     header.push_back(b.names[i] + " (" + b.units[i] + ")");
@@ -168,7 +175,7 @@ ReportSection BootstrapSection(const ReportSource& source) {
     if (estimate == nullptr) continue;  // combinations are their parameter on another scale
     std::vector<double> values;
     for (const auto& row : b.values) values.push_back(row[i]);
-    charts.push_back(Histogram(values, b.names[i], b.units[i], estimate->value));
+    figure.panels.push_back(Histogram(values, b.names[i], b.units[i], estimate->value));
   }
   TextTable numbers(header);
   for (const auto& row : b.values) {
@@ -177,46 +184,34 @@ ReportSection BootstrapSection(const ReportSource& source) {
     numbers.Add(cells);
   }
   section.figures.push_back(
-      {"bootstrap", "Replicas, and the estimate of the fit (line).",
-       DrawCharts(charts, "bootstrap", kPanelColumns, kPanelWidth, kPanelHeight), numbers});
+      {"bootstrap", "Replicas, and the estimate of the fit (line).", figure, numbers});
   return section;
 }
 
 namespace {
 
-constexpr double kWidth = 760, kRow = 15, kTop = 24, kBottom = 36;
-constexpr double kNames = 150, kLeft = 160, kRight = 740;  // where names end and the axis goes
 constexpr double kNinetyFive = 1.96;
+constexpr char kAloneLook[] = "fill:none;stroke:#d55e00";
 
-std::string ForestPicture(const std::vector<EffectOfRecording>& effects) {
-  const double bottom = kTop + kRow * static_cast<double>(effects.size());
-  SvgPicture svg(kWidth, bottom + kBottom, "effects of recordings");
-  const SvgScale scale(-kWidestEffect, kWidestEffect, kLeft, kRight);
-  for (double tick : scale.Ticks(7)) {
-    svg.Line(scale(tick), kTop, scale(tick), bottom, "grid");
-    svg.Text(scale(tick), bottom + 14, SvgNumber(tick), "faint small middle");
-  }
-  svg.Text(0.5 * (kLeft + kRight), bottom + 30, "b: log of the tail's factor",
-           "faint small middle");
-  svg.Line(scale(0.0), kTop, scale(0.0), bottom, kLimitLook);
-  std::string before;
+// Beyond the widest effect at the edge.
+Chart EffectsChart(const std::vector<EffectOfRecording>& effects) {
+  Chart chart;
+  chart.x_label = "b: log of the tail's factor";
+  chart.marks = {0.0};
+  chart.x_from = -kWidestEffect;
+  chart.x_to = kWidestEffect;
+  ChartLine alone{{}, kAloneLook, true}, means{{}, kDotLook, true};
   for (size_t i = 0; i < effects.size(); ++i) {
     const EffectOfRecording& r = effects[i];
-    const double y = kTop + kRow * (static_cast<double>(i) + 0.5);
-    const double half = kNinetyFive * r.error;
-    const auto x = [&scale](double b) {
-      return scale(std::clamp(b, -kWidestEffect, kWidestEffect));
-    };
-    const std::string group = r.person + r.condition;
-    if (i > 0 && group != before) svg.Line(kLeft, y - 0.5 * kRow, kRight, y - 0.5 * kRow, "axis");
-    before = group;
-    svg.Text(kNames, y + 4, r.id, "ink small end");
-    svg.Line(x(r.mean - half), y, x(r.mean + half), y, kPredictedLook);
-    svg.Circle(x(r.alone), y, 3, kMarkLook, r.id + " alone: " + Rounded(r.alone, 2));
-    svg.Circle(x(r.mean), y, 3.5, "fill:#3b82f6",
-               r.id + ": " + Rounded(r.mean, 2) + " +- " + Rounded(r.error, 2));
+    const double row = static_cast<double>(i), half = kNinetyFive * r.error;
+    chart.y_categories.push_back(r.id);
+    chart.lines.push_back({{{r.mean - half, row}, {r.mean + half, row}}, kPredictedLook});
+    alone.points.emplace_back(r.alone, row);
+    means.points.emplace_back(r.mean, row);
   }
-  return svg.ToInline();
+  chart.lines.push_back(alone);
+  chart.lines.push_back(means);
+  return chart;
 }
 
 ReportFigure ForestFigure(const RecordingEffect& effect) {
@@ -232,7 +227,8 @@ ReportFigure ForestFigure(const RecordingEffect& effect) {
   return {"recording_effects",
           "Effects with 95 % intervals (blue) and the estimate from each recording alone (orange; "
           "at the edge where it is poorly determined), by person and condition.",
-          ForestPicture(effects), numbers};
+          {{}, {EffectsChart(effects)}},
+          numbers};
 }
 
 }  // namespace

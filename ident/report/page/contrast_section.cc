@@ -11,47 +11,30 @@
 namespace pushid {
 namespace {
 
-constexpr double kContrastWidth = 900, kContrastRow = 40, kContrastTop = 40, kContrastLeft = 150,
-                 kContrastRight = 700;
-constexpr char kUntoldLook[] = "fill:none;stroke-width:3;stroke:#3b82f6";
-constexpr char kToldLook[] = "fill:none;stroke-width:3;stroke:#d55e00";
 constexpr double kContrastLevel = 0.05;
 
 // Every row has its own scale, with zero in the middle: units differ, their signs do not.
-std::string ContrastForest(const Contrast& contrast) {
-  const double height =
-      kContrastTop + 10 + kContrastRow * static_cast<double>(contrast.rows.size());
-  SvgPicture svg(kContrastWidth, height,
-                 "differences: " + contrast.second + " less " + contrast.first);
-  DrawLegend({{"95 %", kUntoldLook}, {"differs after Holm's correction", kToldLook}}, kContrastLeft,
-             16, &svg);
-  const double middle = 0.5 * (kContrastLeft + kContrastRight);
-  svg.Line(middle, kContrastTop - 12, middle, height - 10, "axis");
-  double y = kContrastTop + 0.4 * kContrastRow;
+Figure ContrastForest(const Contrast& contrast) {
+  Figure figure;
+  figure.legend = {{"95 %", kIntervalLook}, {"differs after Holm's correction", kToldLook}};
   for (const ContrastRow& row : contrast.rows) {
     double reach = std::abs(row.difference);
     for (double end : {row.lower95, row.upper95}) {
       if (std::isfinite(end)) reach = std::max(reach, std::abs(end));
     }
     reach = reach > 0.0 ? 1.08 * reach : 1.0;
-    const SvgScale scale(-reach, reach, kContrastLeft, kContrastRight);
-    svg.Text(kContrastLeft - 12, y + 4, row.name, "ink end");
-    svg.Line(kContrastLeft, y + 12, kContrastRight, y + 12, "grid");
-    for (double tick : scale.Ticks(6)) {
-      svg.Line(scale(tick), y + 12, scale(tick), y + 15, "axis");
-      svg.Text(scale(tick), y + 24, Rounded(tick, 6), "faint small middle");
-    }
-    const double from = std::isfinite(row.lower95) ? scale(row.lower95) : kContrastLeft;
-    const double to = std::isfinite(row.upper95) ? scale(row.upper95) : kContrastRight;
-    svg.Polyline({{from, y}, {to, y}}, row.p_holm < kContrastLevel ? kToldLook : kUntoldLook);
-    svg.Circle(scale(row.difference), y, 4.5, "ink",
-               row.name + ": " + Rounded(row.difference, 4) + " " + row.unit);
-    svg.Text(kContrastRight + 8, y + 4,
-             (row.unit == "1" ? "" : row.unit + ", ") + "Holm's p " + Rounded(row.p_holm, 2),
-             "faint small");
-    y += kContrastRow;
+    Chart strip = IntervalStrip({row.name,
+                                 row.unit,
+                                 row.difference,
+                                 0.0,
+                                 {{{0.0, row.lower95, row.upper95},
+                                   row.p_holm < kContrastLevel ? kToldLook : kIntervalLook}}});
+    strip.y_label = "Holm's p " + Rounded(row.p_holm, 2);
+    strip.x_from = -reach;
+    strip.x_to = reach;
+    figure.panels.push_back(strip);
   }
-  return svg.ToInline();
+  return figure;
 }
 
 TextTable ContrastNumbers(const Contrast& contrast) {
@@ -75,10 +58,11 @@ ReportSection ContrastSection(const ReportSource& source) {
   section.title = "By " + contrast.label + ": " + contrast.second + " less " + contrast.first;
   section.Say(ContrastText(source.fit));
   section.Show("", ContrastTable(contrast));
-  section.figures.push_back({"contrast",
-                             "Differences (dots) with their 95 % intervals. Every row has its own "
-                             "scale around zero; an open interval extends to the edge.",
-                             ContrastForest(contrast), ContrastNumbers(contrast)});
+  section.figures.push_back(
+      {"contrast",
+       "Differences (dots) with their 95 % intervals. Every row has its own "
+       "scale around zero (upright line); an open interval extends to the edge.",
+       ContrastForest(contrast), ContrastNumbers(contrast)});
   return section;
 }
 

@@ -17,29 +17,21 @@ constexpr double kStrongMove = 1.0;     // standard errors
 constexpr double kWorstShown = -300.0;  // % explained; bars of worse ones are cut
 
 // Best explained first.
-std::string ExplainedBars(std::vector<const RecordingDiagnostics*> recordings) {
-  const double row = 16, left = 190, zero = 200, right = 820;
-  SvgPicture svg(900, 34 + row * static_cast<double>(recordings.size()), "% of motion explained");
+Chart ExplainedChart(const std::vector<const RecordingDiagnostics*>& recordings) {
   double worst = 0.0;
   for (const RecordingDiagnostics* r : recordings) worst = std::min(worst, r->explained);
   worst = std::max(kWorstShown, worst);
-  const SvgScale scale(worst, 100.0, zero, right);
-  for (double tick : scale.Ticks(5)) {
-    svg.Line(scale(tick), 22, scale(tick), 26 + row * static_cast<double>(recordings.size()),
-             "grid");
-    svg.Text(scale(tick), 16, SvgNumber(tick) + " %", "faint small middle");
-  }
+  Chart chart;
+  chart.x_label = "hip motion explained, %";
+  chart.x_to = 100.0;
   for (size_t i = 0; i < recordings.size(); ++i) {
-    const double y = 28 + row * static_cast<double>(i);
-    const double value = std::clamp(recordings[i]->explained, worst, 100.0);
-    svg.Text(left, y + 10, recordings[i]->id, "ink small end");
-    svg.Rect({std::min(scale(0.0), scale(value)), y + 1, std::abs(scale(value) - scale(0.0)), 11},
-             value < 0.0 ? "fill:#d55e00" : "fill:#3b82f6");
-    const bool beyond = recordings[i]->explained < worst;
-    svg.Text(right + 8, y + 10, Rounded(recordings[i]->explained, 3) + (beyond ? " <<" : ""),
-             "ink small");
+    const double value = recordings[i]->explained;
+    chart.y_categories.push_back(recordings[i]->id);
+    chart.y_notes.push_back(Rounded(value, 3) + (value < worst ? " <<" : ""));
+    chart.bars.push_back({static_cast<double>(i), 0.0, std::max(value, worst),
+                          value < 0.0 ? "fill:#d55e00" : "fill:#3b82f6", ""});
   }
-  return svg.ToInline();
+  return chart;
 }
 
 // Frames in a row are one: "85 - 104".
@@ -88,6 +80,8 @@ Chart Correlogram(const std::string& title, const std::vector<double>& values,
   Chart chart;
   chart.title = title;
   chart.x_label = "lag, frames";
+  chart.width = kSmallWidth;
+  chart.height = kSmallHeight;
   ChartBand spread{{}, {}, kNarrowBandLook},
       white{{}, {}, "stroke:none;fill:#e69f00;fill-opacity:.2"};
   ChartLine line{{}, kPredictedLook, false};
@@ -125,7 +119,8 @@ ReportSection RecordingSection(const ReportSource& source) {
   section.figures.push_back({"explained",
                              "Share of the hip's horizontal motion that the model explains; below "
                              "zero it is worse than predicting no motion.",
-                             ExplainedBars(sorted), numbers});
+                             {{}, {ExplainedChart(sorted)}},
+                             numbers});
   const TextTable outliers = OutlierTable(d);
   if (!outliers.empty()) {
     section.tables.push_back(
@@ -139,8 +134,11 @@ ReportSection LeverageSection(const ReportSource& source) {
   ReportSection section;
   const Leverage& l = source.fit.diagnostics.leverage;
   if (l.recordings.empty()) return section;
-  HeatMap map{
-      "change without the recording, in standard errors", {}, l.parameters, {}, kStrongMove};
+  Chart map;
+  map.title = "change without the recording, in standard errors";
+  map.x_categories = l.parameters;
+  map.full_cell = kStrongMove;
+  map.width = kWidestMap;
   std::vector<size_t> order(l.recordings.size());
   std::iota(order.begin(), order.end(), 0);
   const auto largest = [&l](size_t g) {
@@ -156,8 +154,8 @@ ReportSection LeverageSection(const ReportSource& source) {
   }
   TextTable numbers(header);
   for (size_t g : order) {
-    map.rows.push_back(l.recordings[g]);
-    map.values.push_back(l.in_errors[g]);
+    map.y_categories.push_back(l.recordings[g]);
+    map.cells.push_back(l.in_errors[g]);
     std::vector<std::string> cells = {l.recordings[g]};
     for (double change : l.change[g]) cells.push_back(DoubleText(change));
     numbers.Add(cells);
@@ -166,7 +164,8 @@ ReportSection LeverageSection(const ReportSource& source) {
                              "One step with the Hessian of all recordings, not a refit (on the 32 "
                              "published recordings of "
                              "single people refits differ from it by 15 %).",
-                             DrawHeatMap(map), numbers});
+                             {{}, {map}},
+                             numbers});
   return section;
 }
 
@@ -180,13 +179,14 @@ ReportSection ResidualSection(const ReportSource& source) {
       "(orange). Autocorrelated residuals mean that frames are not independent (so only clustered "
       "errors are valid); residuals correlated with the push mean that the model misses part of "
       "the response to it."};
-  std::vector<Chart> own, push;
+  Figure figure;
   TextTable numbers({"channel", "kind", "lag", "correlation", "standard_error", "white_band"});
   TextTable tests =
       TextTable::OfNumbers({"channel", "lag-1 correlation", "white +-", "Ljung-Box", "p"});
   for (const Whiteness& w : channels) {
-    own.push_back(Correlogram(w.channel, w.autocorrelation, w.error, 1, w.mean_band));
-    push.push_back(Correlogram(w.channel + " and the push", w.push, w.push_error, 0, w.mean_band));
+    figure.panels.push_back(Correlogram(w.channel, w.autocorrelation, w.error, 1, w.mean_band));
+    figure.panels.push_back(
+        Correlogram(w.channel + " and the push", w.push, w.push_error, 0, w.mean_band));
     const auto add = [&](const char* kind, const std::vector<double>& values,
                          const std::vector<double>& errors, int first) {
       for (size_t k = 0; k < values.size(); ++k) {
@@ -199,10 +199,9 @@ ReportSection ResidualSection(const ReportSource& source) {
     tests.Add({w.channel, w.autocorrelation.empty() ? "-" : Rounded(w.autocorrelation[0], 2),
                Rounded(w.mean_band, 1), Rounded(w.ljung_box, 3), Rounded(w.ljung_box_p, 2)});
   }
-  own.insert(own.end(), push.begin(), push.end());
-  section.Show("", tests);
-  section.figures.push_back({"residual_correlations", "Correlations of the residuals.",
-                             DrawCharts(own, "residual correlations", 3, 320, 170), numbers});
+  section.Show("tests of whiteness", tests);
+  section.figures.push_back(
+      {"residual_correlations", "Correlations of the residuals.", figure, numbers});
   return section;
 }
 

@@ -3,9 +3,7 @@
 
 #include <cctype>
 #include <filesystem>
-#include <system_error>
 
-#include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
@@ -27,7 +25,7 @@ std::string FigureText(const ReportFigure& figure) {
   const auto& rows = figure.numbers.rows();
   std::string text = figure.caption + (figure.caption.empty() ? "" : "\n");
   if (rows.size() > kMostRowsInText) {
-    return text + "  (" + std::to_string(rows.size() - 1) + " rows: --csv_dir writes them to " +
+    return text + "  (" + std::to_string(rows.size() - 1) + " rows: --figures_out writes them to " +
            figure.name + ".csv)\n";
   }
   TextTable table(rows[0]);
@@ -69,13 +67,13 @@ std::string Field(const std::string& text) {
 }
 
 // Names hold ids of recordings and parameters.
-std::string FileName(const std::string& name) {
+std::string PlainName(const std::string& name) {
   std::string file = name;
   for (char& c : file) {
     const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_';
     if (!plain) c = '_';
   }
-  return file + ".csv";
+  return file;
 }
 
 }  // namespace
@@ -95,23 +93,42 @@ std::string ToText(const Report& report) {
   return text;
 }
 
-MaybeError WriteNumbers(const Report& report, const std::string& folder) {
-  if (MaybeError failed = MakeFolder(folder)) return failed;
-  const auto write = [&folder](const ReportFigure& figure) {
-    return WriteFileAtomically((std::filesystem::path(folder) / FileName(figure.name)).string(),
-                               CsvOf(figure.numbers));
-  };
+std::vector<const ReportFigure*> FiguresOf(const Report& report) {
+  std::vector<const ReportFigure*> figures;
   for (const ReportSection& section : report.sections) {
-    for (const ReportFigure& figure : section.figures) {
-      if (MaybeError failed = write(figure)) return failed;
-    }
+    for (const ReportFigure& figure : section.figures) figures.push_back(&figure);
     for (const ReportFold& fold : section.folds) {
-      for (const ReportFigure& figure : fold.figures) {
-        if (MaybeError failed = write(figure)) return failed;
-      }
+      for (const ReportFigure& figure : fold.figures) figures.push_back(&figure);
     }
   }
-  return std::nullopt;
+  return figures;
+}
+
+std::vector<NamedText> FigureFiles(const Report& report, double width_mm, double font_pt) {
+  constexpr double kInch = 25.4, kPoints = 72.0, kSmallest = 11.0;  // mm, pt, pixels of a label
+  const double width = width_mm / kInch * kPoints * kSmallest / font_pt;
+  std::vector<NamedText> files;
+  std::string captions = "# " + report.title + "\n";
+  const auto caption = [&captions](const std::string& name, const std::string& text) {
+    captions += "\n**" + name + "** " + text + "\n";
+  };
+  for (const ReportFigure* figure : FiguresOf(report)) {
+    const std::string name = PlainName(figure->name);
+    files.emplace_back(name + ".svg",
+                       DrawFigure(figure->figure, width, name).ToPaper(width_mm, figure->caption));
+    files.emplace_back(name + ".csv", CsvOf(figure->numbers));
+    caption(name, figure->caption);
+  }
+  for (const ReportSection& section : report.sections) {
+    int number = 0;
+    for (const ReportTable& table : section.tables) {
+      const std::string name = "table_" + section.id + "_" + std::to_string(++number);
+      files.emplace_back(name + ".csv", CsvOf(table.table));
+      caption(name, section.title + (table.caption.empty() ? "" : ": " + table.caption) + ".");
+    }
+  }
+  files.emplace_back(kCaptionsFile, captions);
+  return files;
 }
 
 namespace {
@@ -120,11 +137,15 @@ std::string Element(const std::string& name, const std::string& text) {
   return "<" + name + ">" + EscapeXml(text) + "</" + name + ">\n";
 }
 
+std::string Fold(const std::string& title, const std::string& html) {
+  return "<details><summary>" + EscapeXml(title) + "</summary>\n" + html + "</details>\n";
+}
+
+// With a caption it unfolds on demand.
 std::string TableHtml(const ReportTable& table) {
   const auto& rows = table.table.rows();
   if (rows.size() < 2) return "";
   std::string html = "<div class=\"scroll\" tabindex=\"0\"><table>\n";
-  if (!table.caption.empty()) html += Element("caption", table.caption);
   for (size_t i = 0; i < rows.size(); ++i) {
     if (rows[i].empty()) continue;  // a gap
     html += "<tr>";
@@ -136,11 +157,21 @@ std::string TableHtml(const ReportTable& table) {
     }
     html += "</tr>\n";
   }
-  return html + "</table></div>\n";
+  html += "</table></div>\n";
+  return table.caption.empty() ? html : Fold(table.caption, html);
 }
 
+// Entries and panels wrap where the window is narrow.
 std::string FigureHtml(const ReportFigure& figure) {
-  std::string html = "<figure><div class=\"scroll\" tabindex=\"0\">" + figure.svg + "</div>";
+  std::string html = "<figure><div class=\"panels\">";
+  for (const LegendEntry& entry : figure.figure.legend) {
+    SvgPicture picture(LegendWidth({entry}), 18, entry.name);
+    DrawLegend({entry}, 2, 13, &picture);
+    html += picture.ToInline();
+  }
+  html += "</div>\n<div class=\"panels scroll\" tabindex=\"0\">";
+  for (const Chart& panel : figure.figure.panels) html += DrawPanel(panel).ToInline();
+  html += "</div>\n";
   if (!figure.caption.empty()) html += Element("figcaption", figure.caption);
   return html + "</figure>\n";
 }
@@ -166,6 +197,7 @@ std::string Paragraph(std::string text, const char* opening = "<p>") {
 std::string SectionHtml(const ReportSection& section) {
   std::string html = "<section id=\"" + section.id + "\">\n" + Element("h2", section.title);
   html += Paragraph(section.alarm, "<p class=\"alarm\">");
+  for (const ReportFigure& figure : section.figures) html += FigureHtml(figure);
   for (const std::string& text : section.paragraphs) html += Paragraph(text);
   for (const auto& [sentence, command] : section.advice) {
     html += Paragraph(sentence);
@@ -173,23 +205,23 @@ std::string SectionHtml(const ReportSection& section) {
   }
   html += section.widget;
   for (const ReportTable& table : section.tables) html += TableHtml(table);
-  for (const ReportFigure& figure : section.figures) html += FigureHtml(figure);
   for (const ReportFold& fold : section.folds) {
-    html += "<details><summary>" + EscapeXml(fold.title) + "</summary>\n";
-    for (const ReportFigure& figure : fold.figures) html += FigureHtml(figure);
-    html += "</details>\n";
+    std::string figures;
+    for (const ReportFigure& figure : fold.figures) figures += FigureHtml(figure);
+    html += Fold(fold.title, figures);
   }
   return html + "</section>\n";
 }
 
 }  // namespace
 
+// The links stand behind the first section, whose pictures lead.
 std::string ToPage(const Report& report) {
-  std::string nav, body, script;
+  std::string nav, lead, body, script;
   for (const ReportSection& section : report.sections) {
     if (IsEmpty(section)) continue;
     nav += "<li><a href=\"#" + section.id + "\">" + EscapeXml(section.title) + "</a></li>\n";
-    body += SectionHtml(section);
+    (lead.empty() ? lead : body) += SectionHtml(section);
     if (!section.widget.empty()) script = kPageScript;
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -197,8 +229,8 @@ std::string ToPage(const Report& report) {
          "<link rel=\"icon\" href=\"data:,\">\n" +
          Element("title", report.title) + "<style>" + std::string(SvgStyle()) + kPageStyle +
          "</style>\n</head>\n<body>\n<header>" + Element("h1", report.title) +
-         Element("p", report.subtitle) + "</header>\n<nav aria-label=\"sections\"><ul>\n" + nav +
-         "</ul></nav>\n<main>\n" + body + "</main>\n" +
+         Element("p", report.subtitle) + "</header>\n<main>\n" + lead +
+         "<nav aria-label=\"sections\"><ul>\n" + nav + "</ul></nav>\n" + body + "</main>\n" +
          (script.empty() ? "" : "<script>" + script + "</script>\n") + "</body>\n</html>\n";
 }
 

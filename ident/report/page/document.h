@@ -7,20 +7,21 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
 
 namespace pushid {
 
 struct ReportTable {
-  std::string caption;  // may be empty
+  std::string caption;  // where there is one the page folds the table under it
   TextTable table;
 };
 
 struct ReportFigure {
-  std::string name;     // of its file of numbers: letters, digits, _ and -
+  std::string name;     // of its files: letters, digits, _ and -
   std::string caption;  // what to see in it
-  std::string svg;      // inline
-  TextTable numbers;    // behind it, at full precision, units in the header
+  Figure figure;
+  TextTable numbers;  // behind it, at full precision, units in the header
 };
 
 // What opens on demand: one recording's figures.
@@ -61,8 +62,16 @@ std::string ToText(const Report& report);
 // Rows of a table; fields with a comma or a quote are quoted.
 std::string CsvOf(const TextTable& table);
 
-// One file <name>.csv for each figure, in a folder that is made where it is missing.
-MaybeError WriteNumbers(const Report& report, const std::string& folder);
+// All figures, those of folds too.
+std::vector<const ReportFigure*> FiguresOf(const Report& report);
+
+// For papers: a file's name and what is in it.
+using NamedText = std::pair<std::string, std::string>;
+
+// Every figure as <name>.svg, so wide and with the smallest labels in such a font; what it draws
+// and every table as <name>.csv; captions.md.
+std::vector<NamedText> FigureFiles(const Report& report, double width_mm, double font_pt);
+inline constexpr char kCaptionsFile[] = "captions.md";
 
 // A report as one HTML page that needs nothing else: no network, no other file. Sections
 // without anything in them are left out.

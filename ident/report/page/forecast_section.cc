@@ -11,7 +11,6 @@
 namespace pushid {
 namespace {
 
-constexpr double kForecastWidth = 520, kErrorsHeight = 260, kForceHeight = 200;
 constexpr double kBandHalf = 1.645;
 constexpr char kStackLook[] = "fill:none;stroke-width:2.6;stroke:#3b82f6";
 constexpr const char* kForecasterLooks[kNumForecasters] = {
@@ -21,7 +20,7 @@ constexpr const char* kForecasterLooks[kNumForecasters] = {
 
 ReportFigure ErrorsFigure(const ForecastStack& forecasts) {
   Chart chart;
-  chart.x_label = "seen, s";
+  chart.x_label = "time seen, s";
   chart.y_label = "mean distance of the hip, m";
   chart.y_from = 0.0;
   std::vector<LegendEntry> legend = {{"together", kStackLook}};
@@ -41,15 +40,12 @@ ReportFigure ErrorsFigure(const ForecastStack& forecasts) {
     stack.points.emplace_back(row.seconds, row.stack);
   }
   chart.lines.push_back(stack);
-  SvgPicture svg(kForecastWidth + 20, kErrorsHeight + 40,
-                 "error of forecasts against the time seen");
-  DrawLegend(legend, 60, 16, &svg);
-  DrawChart(chart, {0, 28, kForecastWidth, kErrorsHeight}, &svg);
   return {
       "forecast_errors",
       "Mean distance of the hip from forecasts, over all frames that were not seen, against the "
       "time that was.",
-      svg.ToInline(), ForecastTable(forecasts)};
+      {legend, {chart}},
+      ForecastTable(forecasts)};
 }
 
 // On the pushed person along the push: what was recorded of it, and what the filter adds to push
@@ -84,13 +80,16 @@ std::optional<ReportFigure> ForceFigure(const IdentifiedModel& model, const Fore
   }
   Chart chart;
   chart.title = recording.id;
-  chart.x_label = "s";
+  chart.x_label = "time, s";
   chart.y_label = "N";
   chart.bands = {band};
   chart.lines = {believed, known};
-  SvgPicture svg(kForecastWidth + 20, kForceHeight + 10, "unknown force of " + recording.id);
-  DrawChart(chart, {0, 0, kForecastWidth, kForceHeight}, &svg);
-  return ReportFigure{"unknown_force_" + recording.id, "", svg.ToInline(), numbers};
+  return ReportFigure{
+      "unknown_force_" + recording.id,
+      "Along the push, beside it and its tail: what the filter believes (blue) with its 90 % band, "
+      "which knows no error of the gains, and the recorded push (black).",
+      {{}, {chart}},
+      numbers};
 }
 
 }  // namespace
@@ -105,11 +104,8 @@ ReportSection ForecastSection(const ReportSource& source) {
   for (const RecordingView& view : source.views) {
     const auto figure = ForceFigure(model, *forecasts, view.run.recording);
     if (!figure) continue;
-    ReportFold fold{view.run.recording.id + ": the force that nobody measured", {*figure}};
-    fold.figures.back().caption =
-        "Along the push, beside it and its tail: what the filter believes (blue) with its 90 % "
-        "band, which knows no error of the gains, and the recorded push (black).";
-    section.folds.push_back(std::move(fold));
+    section.folds.push_back(
+        {view.run.recording.id + ": the force that nobody measured", {*figure}});
   }
   return section;
 }

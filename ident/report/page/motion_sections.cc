@@ -1,6 +1,7 @@
 // ident: recordings beside their predictions, with bands and forces.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
@@ -12,8 +13,6 @@
 
 namespace pushid {
 namespace {
-
-constexpr double kMotionWidth = 250, kMotionHeight = 170;
 
 // Bars where a foot is off the ground.
 std::vector<ChartLane> FeetLanes(const FormationRun& run, int person) {
@@ -29,37 +28,47 @@ std::vector<ChartLane> FeetLanes(const FormationRun& run, int person) {
   return lanes;
 }
 
-// One axis of one person's hip, with its bands where there are some.
-Chart HipChart(const RecordingView& view, int person, int axis, const std::string& title) {
+// One coordinate of one person over time: measured, predicted and with bands where there are some.
+// measured, predicted: of a frame; edge: of a point of the bands.
+template <typename Measured, typename Predicted, typename Edge>
+void AddPerson(const RecordingView& view, int person, int predicted_frames,
+               const Measured& measured, const Predicted& predicted, const Edge& edge,
+               Chart* chart) {
   const FormationRun& run = view.run;
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "s";
-  chart.lanes = FeetLanes(run, person);
-  const auto line = [&](const std::vector<Vector3<double>>& hip) {
-    ChartPoints points;
-    for (size_t t = 0; t < hip.size(); ++t) {
-      points.emplace_back(run.Seconds(static_cast<int>(t)), hip[t][axis] - hip[0][axis]);
-    }
-    return points;
+  const auto points = [&run](int frames, const auto& value) {
+    ChartPoints placed;
+    for (int t = 0; t < frames; ++t) placed.emplace_back(run.Seconds(t), value(t));
+    return placed;
   };
   if (!view.bands.people.empty()) {
     const PathBand& band = view.bands.people[person];
-    const double start = run.recording.hip[person][0][axis];
-    const auto shifted = [&](const std::vector<BandPoint>& edge) {
-      ChartPoints points;
-      for (size_t t = 0; t < edge.size(); ++t) {
-        points.emplace_back(run.Seconds(static_cast<int>(t)), edge[t][axis] - start);
-      }
-      return points;
+    const auto edges = [&](const std::vector<BandPoint>& ends) {
+      return points(static_cast<int>(ends.size()), [&](int t) { return edge(ends[t]); });
     };
-    chart.bands.push_back({shifted(band.lower90), shifted(band.upper90), kWideBandLook});
-    chart.bands.push_back({shifted(band.lower50), shifted(band.upper50), kNarrowBandLook});
+    chart->bands.push_back({edges(band.lower90), edges(band.upper90), kWideBandLook});
+    chart->bands.push_back({edges(band.lower50), edges(band.upper50), kNarrowBandLook});
   }
-  if (run.prediction.status.ok) {
-    chart.lines.push_back({line(run.prediction.hip[person]), kPredictedLook, false});
-  }
-  chart.lines.push_back({line(run.recording.hip[person]), kMeasuredLook, false});
+  if (predicted_frames > 0)
+    chart->lines.push_back({points(predicted_frames, predicted), kPredictedLook});
+  chart->lines.push_back({points(run.recording.num_frames(), measured), kMeasuredLook});
+}
+
+// Of the hip along one axis, from a place on.
+void AddHip(const RecordingView& view, int person, int axis, double from, Chart* chart) {
+  const FormationRun& run = view.run;
+  AddPerson(
+      view, person, run.prediction.status.ok ? run.recording.num_frames() : 0,
+      [&](int t) { return run.recording.hip[person][t][axis] - from; },
+      [&](int t) { return run.prediction.hip[person][t][axis] - from; },
+      [&](const BandPoint& end) { return end[axis] - from; }, chart);
+}
+
+Chart HipChart(const RecordingView& view, int person, int axis, const std::string& title) {
+  Chart chart;
+  chart.title = title;
+  chart.x_label = "time, s";
+  chart.lanes = FeetLanes(view.run, person);
+  AddHip(view, person, axis, view.run.recording.hip[person][0][axis], &chart);
   return chart;
 }
 
@@ -67,29 +76,13 @@ Chart AngleChart(const RecordingView& view, int person, int row, const std::stri
   const FormationRun& run = view.run;
   Chart chart;
   chart.title = title;
-  chart.x_label = "s";
-  if (!view.bands.people.empty()) {
-    const PathBand& band = view.bands.people[person];
-    const auto edge = [&](const std::vector<BandPoint>& points) {
-      ChartPoints placed;
-      for (size_t t = 0; t < points.size(); ++t) {
-        placed.emplace_back(run.Seconds(static_cast<int>(t)), points[t][row + 1]);
-      }
-      return placed;
-    };
-    chart.bands.push_back({edge(band.lower90), edge(band.upper90), kWideBandLook});
-    chart.bands.push_back({edge(band.lower50), edge(band.upper50), kNarrowBandLook});
-  }
-  ChartLine measured{{}, kMeasuredLook, false}, predicted{{}, kPredictedLook, false};
-  const int frames = run.recording.num_frames();
-  const int valid = run.prediction.status.ok ? frames : run.prediction.status.frame;
-  for (int t = 0; t < frames; ++t) {
-    measured.points.emplace_back(run.Seconds(t), run.recording.states[person][t].q[row]);
-    if (t >= valid) continue;
-    predicted.points.emplace_back(run.Seconds(t), run.prediction.path.At(t, person).q[row]);
-  }
-  chart.lines.push_back(predicted);
-  chart.lines.push_back(measured);
+  chart.x_label = "time, s";
+  const int frames =
+      run.prediction.status.ok ? run.recording.num_frames() : run.prediction.status.frame;
+  AddPerson(
+      view, person, frames, [&](int t) { return run.recording.states[person][t].q[row]; },
+      [&](int t) { return run.prediction.path.At(t, person).q[row]; },
+      [&](const BandPoint& end) { return end[row + 1]; }, &chart);
   return chart;
 }
 
@@ -178,24 +171,20 @@ std::vector<LegendEntry> LegendOf(const RecordingView& view) {
   return legend;
 }
 
-std::string PathPicture(const RecordingView& view) {
+Figure PathFigure(const RecordingView& view) {
   const int people = view.run.recording.num_people();
-  SvgPicture svg(4 * kMotionWidth, 24 + kMotionHeight * people, view.run.recording.id);
-  DrawLegend(LegendOf(view), 52, 16, &svg);
+  Figure figure{LegendOf(view), {}};
   for (int n = 0; n < people; ++n) {
     const std::string who = people == 1 ? "" : view.run.recording.subject_ids[n] + ": ";
-    std::vector<Chart> charts = {
-        HipChart(view, n, 0, who + "hip forward, m"), HipChart(view, n, 1, "hip to the left, m"),
-        AngleChart(view, n, 2, "theta, rad"), AngleChart(view, n, 3, "phi, rad")};
-    for (size_t i = 0; i < charts.size(); ++i) {
-      charts[i].bare_x = n + 1 < people;
-      DrawChart(charts[i],
-                {kMotionWidth * static_cast<double>(i), 24 + kMotionHeight * n, kMotionWidth,
-                 kMotionHeight},
-                &svg);
+    for (const Chart& chart :
+         {HipChart(view, n, 0, who + "hip forward, m"), HipChart(view, n, 1, "hip to the left, m"),
+          AngleChart(view, n, 2, "theta, rad"), AngleChart(view, n, 3, "phi, rad")}) {
+      figure.panels.push_back(chart);
+      figure.panels.back().width = kSmallWidth;
+      figure.panels.back().height = kSmallHeight;
     }
   }
-  return svg.ToInline();
+  return figure;
 }
 
 std::string FoldTitle(const RecordingView& view) {
@@ -209,6 +198,68 @@ std::string FoldTitle(const RecordingView& view) {
 
 }  // namespace
 
+namespace {
+
+// The hips of everybody along the push, from the pushed person's start on.
+Chart TypicalChart(const RecordingView& view, const std::string& title) {
+  const PendulumRecording& recording = view.run.recording;
+  const Eigen::Vector2d along = PushDirection(recording);
+  const int axis = std::abs(along[0]) >= std::abs(along[1]) ? 0 : 1;
+  Chart chart;
+  chart.title = title;
+  chart.x_label = "time, s";
+  chart.y_label = axis == 0 ? "hip forward, m" : "hip to the left, m";
+  const double from = recording.hip[std::max(0, recording.pushed_person)][0][axis];
+  for (int n = 0; n < recording.num_people(); ++n) AddHip(view, n, axis, from, &chart);
+  return chart;
+}
+
+}  // namespace
+
+std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
+  std::vector<std::pair<double, const RecordingView*>> ranked;
+  for (const RecordingView& view : source.views) {
+    if (!view.run.prediction.status.ok) continue;
+    ranked.emplace_back(ScoreHip(view.run.recording, view.run.prediction.hip).hip_ade, &view);
+  }
+  if (ranked.empty()) return std::nullopt;
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::pair<std::string, size_t>> shown = {{"best", 0}};
+  if (ranked.size() > 2) shown.emplace_back("median", (ranked.size() - 1) / 2);
+  if (ranked.size() > 1) shown.emplace_back("worst", ranked.size() - 1);
+  std::vector<LegendEntry> legend;
+  std::vector<Chart> panels;
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [which, place] : shown) {
+    const auto& [error, view] = ranked[place];
+    panels.push_back(TypicalChart(*view, which + ": " + view->run.recording.id));
+    panels.back().x_label = "time, s (" + kHipMetrics[0].Text(error, 2) + ")";
+    if (legend.empty()) legend = LegendOf(*view);
+    for (std::vector<std::string> row : PathNumbers(*view).rows()) {
+      const bool header = row[0] == "person";
+      if (header && !rows.empty()) continue;
+      row.insert(row.begin(),
+                 {header ? "which" : which, header ? "recording" : view->run.recording.id});
+      rows.push_back(row);
+    }
+  }
+  legend.erase(std::remove_if(legend.begin(), legend.end(),
+                              [](const LegendEntry& e) { return e.look == kLiftedLook; }),
+               legend.end());
+  TextTable numbers(rows[0]);
+  for (size_t i = 1; i < rows.size(); ++i) numbers.Add(rows[i]);
+  return ReportFigure{
+      "typical",
+      "Measured and predicted hips in typical recordings: of these " +
+          std::to_string(ranked.size()) + " those whose mean error (" + kHipMetrics[0].name +
+          ") is the smallest, the median and the largest. Predicted from the first frame and the "
+          "push alone, with 50 % and 90 % bands; lengths are along the push, from where the pushed "
+          "person starts.",
+      {legend, panels},
+      numbers};
+}
+
 ReportSection MotionSection(const ReportSource& source) {
   ReportSection section;
   if (source.views.empty()) return section;
@@ -221,12 +272,12 @@ ReportSection MotionSection(const ReportSource& source) {
   for (const RecordingView& view : source.views) {
     ReportFold fold{FoldTitle(view), {}};
     const std::string& id = view.run.recording.id;
-    fold.figures.push_back({"motion_" + id, "", PathPicture(view), PathNumbers(view)});
+    fold.figures.push_back({"motion_" + id, "Measured and predicted motion of " + id + ".",
+                            PathFigure(view), PathNumbers(view)});
     if (view.run.prediction.status.ok) {
       const ForceStory story = RichestStory(view.run.recording, view.run.prediction);
       fold.figures.push_back({"forces_" + id, StoryText(view.run.recording, story),
-                              ForcesPictureOf(view.run, "forces on each person").ToInline(),
-                              ForceNumbers(view.run)});
+                              ForcesFigure(view.run), ForceNumbers(view.run)});
     }
     section.folds.push_back(std::move(fold));
   }

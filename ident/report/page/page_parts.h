@@ -17,9 +17,9 @@ nav ul{display:flex;flex-wrap:wrap;gap:.1rem 1rem;margin:0;padding:.5rem 0;list-
 a{color:var(--link)}
 p{max-width:78ch}
 pre{background:var(--box);padding:.5rem .7rem;overflow-x:auto;font-size:.85rem;border-radius:4px}
+.panels{display:flex;flex-wrap:wrap;align-items:flex-start}
 .scroll{overflow-x:auto}  /* pictures keep their size, so that labels stay readable */
 table{border-collapse:collapse;margin:1rem 0;font-size:.85rem;font-variant-numeric:tabular-nums}
-caption{text-align:left;color:var(--faint);padding-bottom:.3rem}
 th,td{padding:.2rem .8rem .2rem 0;text-align:left;border-bottom:1px solid var(--line);white-space:nowrap}
 td:last-child{white-space:normal;min-width:6rem}
 th{font-weight:600}
@@ -27,7 +27,7 @@ th{font-weight:600}
 .alarm{border-left:5px solid #c62828;background:var(--box);padding:.5rem .8rem}
 figure{margin:1rem 0;break-inside:avoid}
 figcaption{color:var(--faint);font-size:.85rem;max-width:78ch}
-.scroll svg{display:block}
+.panels svg{display:block;flex:none}
 @media(max-width:1000px){nav{position:static}section{scroll-margin-top:1rem}}
 details{border-bottom:1px solid var(--line);padding:.3rem 0}
 summary{cursor:pointer}
@@ -47,7 +47,7 @@ circle.m{fill:var(--ink);stroke:none}circle.p{fill:#3b82f6;stroke:none}
 :focus-visible{outline:2px solid var(--link);outline-offset:2px}
 @media print{:root{--paper:#fff;--ink:#000;--faint:#444;--line:#bbb;--box:#fff}
 nav,.controls{display:none}body{max-width:none}h2{break-after:avoid}svg{max-width:100%;height:auto}
-pre{white-space:pre-wrap;overflow-wrap:anywhere}.scroll{overflow:visible}summary,caption{break-after:avoid}
+pre{white-space:pre-wrap;overflow-wrap:anywhere}.scroll{overflow:visible}summary{break-after:avoid}
 table{font-size:.62rem}th,td{white-space:normal;padding-right:.35rem}td:last-child{min-width:0}
 svg .paper{fill:#fff}svg .ink,svg .axis{fill:#222}svg .faint{fill:#666}svg line.axis,svg path.axis,svg path.ink{stroke:#222;fill:none}svg line.grid,svg path.grid{stroke:#ddd}}
 )css";

@@ -14,29 +14,29 @@
 namespace pushid {
 namespace {
 
-constexpr double kChartWidth = 320, kChartHeight = 260;
-
 ReportFigure MapFigure(const IdentifiedModel& model) {
   const StepMap map = ComputeStepMap(model);
-  HeatMap picture;
-  picture.title = "P(step) by impulse per mass and duration";
+  Chart picture;
+  picture.title = "P(step)";
+  picture.x_label = "duration of the push; rows: impulse over mass";
   std::vector<std::string> header = {"impulse_per_mass_m_s"};
   for (double duration : map.duration_s) {
-    picture.columns.push_back(Rounded(duration, 2) + " s");
+    picture.x_categories.push_back(Rounded(duration, 2) + " s");
     header.push_back("p_step_after_" + Rounded(duration, 2) + "_s");
   }
   TextTable numbers(header, std::vector<bool>(header.size(), false));
   for (size_t i = 0; i < map.impulse_per_mass.size(); ++i) {
-    picture.rows.push_back(Rounded(map.impulse_per_mass[i], 2) + " m/s");
+    picture.y_categories.push_back(Rounded(map.impulse_per_mass[i], 2) + " m/s");
     std::vector<std::string> row = {DoubleText(map.impulse_per_mass[i])};
     for (double p : map.probability[i]) row.push_back(DoubleText(p));
     numbers.Add(row);
   }
-  picture.values = map.probability;
+  picture.cells = map.probability;
   return {"step_probability",
           "Probability that a person of 80 kg steps after a forward push at the hip, by the "
           "duration of the push and its impulse divided by the mass.",
-          DrawHeatMap(picture), numbers};
+          {{}, {picture}},
+          numbers};
 }
 
 StepScore ScoreOf(const std::vector<RecordingView>& views) {
@@ -54,9 +54,10 @@ ReportFigure ReliabilityFigure(const StepScore& score) {
     numbers.Add(
         {std::to_string(fifth.tracks), DoubleText(fifth.predicted), DoubleText(fifth.observed)});
   }
-  return {
-      "step_reliability", "Share of people who stepped, by fifths of the predicted probability.",
-      DrawCharts({ReliabilityChart(score)}, "reliability", 1, kChartWidth, kChartHeight), numbers};
+  return {"step_reliability",
+          "Share of people who stepped, by fifths of the predicted probability.",
+          {{}, {ReliabilityChart(score)}},
+          numbers};
 }
 
 }  // namespace
@@ -126,13 +127,13 @@ ReportSection GroupSection(const ReportSource& source) {
 
 namespace {
 
-constexpr double kCheckWidth = 300, kCheckHeight = 210;
 constexpr char kMiddleBandLook[] = "stroke:none;fill:#d55e00;fill-opacity:.18";
 
 Chart StratumChart(const CheckedStratum& stratum) {
   Chart chart;
   chart.title = stratum.name + " (" + std::to_string(stratum.recordings) + " recordings)";
-  chart.x_label = "s";
+  chart.x_label = "time, s";
+  chart.y_label = "s";
   for (int q = 0; q < kNumCheckedShares; ++q) {
     const bool middle = q == kNumCheckedShares / 2;
     ChartBand band{{}, {}, middle ? kMiddleBandLook : kWideBandLook};
@@ -149,11 +150,11 @@ Chart StratumChart(const CheckedStratum& stratum) {
 }
 
 ReportFigure StrataFigure(const VisualCheck& check) {
-  std::vector<Chart> charts;
+  Figure figure;
   TextTable numbers = TextTable::OfNumbers(
       {"stratum", "time_s", "recordings", "percentile", "observed_s", "lower90_s", "upper90_s"});
   for (const CheckedStratum& stratum : check.strata) {
-    charts.push_back(StratumChart(stratum));
+    figure.panels.push_back(StratumChart(stratum));
     for (const CheckedFrame& frame : stratum.frames) {
       for (int q = 0; q < kNumCheckedShares; ++q) {
         numbers.Add({stratum.name, frame.seconds, frame.recordings, 100.0 * kCheckedShares[q],
@@ -165,8 +166,7 @@ ReportFigure StrataFigure(const VisualCheck& check) {
           "10th, 50th and 90th percentile over recordings of the hip's displacement along the "
           "push, divided by the speed of the push (lines), and the central 90 % of the same "
           "percentiles in simulated recordings (blue; of the median orange).",
-          DrawCharts(charts, "visual predictive check", kPanelColumns, kCheckWidth, kCheckHeight),
-          numbers};
+          figure, numbers};
 }
 
 TextTable StrataTable(const VisualCheck& check) {
@@ -182,6 +182,7 @@ Chart HistogramChart(const std::string& title, const UniformityTest& test) {
   Chart chart;
   chart.title = title;
   chart.x_label = "share of the model's distribution below";
+  chart.y_label = "share of frames";
   const double bins = static_cast<double>(test.shares.size());
   double most = 0.0;
   for (size_t b = 0; b < test.shares.size(); ++b) {
@@ -202,9 +203,9 @@ Chart HistogramChart(const std::string& title, const UniformityTest& test) {
 
 ReportFigure HistogramFigure(const VisualCheck& check) {
   TextTable numbers = TextTable::OfNumbers({"axis", "from", "to", "share", "standard_error"});
-  std::vector<Chart> charts;
+  Figure figure;
   const auto add = [&](const std::string& axis, const UniformityTest& test) {
-    charts.push_back(HistogramChart(axis + " the push", test));
+    figure.panels.push_back(HistogramChart(axis + " the push", test));
     const double bins = static_cast<double>(test.shares.size());
     for (size_t b = 0; b < test.shares.size(); ++b) {
       const double from = static_cast<double>(b) / bins;
@@ -216,8 +217,7 @@ ReportFigure HistogramFigure(const VisualCheck& check) {
   return {"probability_integral_transform",
           "Position of the recorded hip in the model's distribution, with standard errors "
           "clustered by recording; uniform if the model is correct.",
-          DrawCharts(charts, "probability integral transform", 2, kPanelWidth, kCheckHeight),
-          numbers};
+          figure, numbers};
 }
 
 std::string TestText(const std::string& axis, const UniformityTest& test) {

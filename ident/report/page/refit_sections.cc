@@ -21,8 +21,11 @@ namespace {
 // One parameter over the logarithm of the horizon, with twice its standard error.
 Chart DriftChart(const RefitTable& check, size_t i, double all_frames) {
   Chart chart;
-  chart.title = check.parameters[i];
-  chart.x_label = "frames, log10";
+  chart.title = WithUnit(check.parameters[i], check.units[i]);
+  chart.x_label = "frames";
+  chart.logarithmic_x = true;
+  chart.width = kSmallWidth;
+  chart.height = kSmallHeight;
   ChartLine line{{}, kPredictedLook, false};
   ChartBand band{{}, {}, kWideBandLook};
   const auto add = [&](double frames, double value, double error) {
@@ -98,12 +101,13 @@ ReportSection HorizonCheckSection(const ReportSource& source) {
   section.Show("values +- standard errors", HorizonTable(check));
   double all = 0.0;
   for (const FittedRecording& r : source.fit.recordings) all = std::max(all, r.frames - 1.0);
-  std::vector<Chart> charts;
-  for (size_t i = 0; i < check.parameters.size(); ++i) charts.push_back(DriftChart(check, i, all));
-  section.figures.push_back(
-      {"horizons", "Each parameter by horizon, with twice its standard error.",
-       DrawCharts(charts, "horizons", kPanelColumns, kPanelWidth, kPanelHeight),
-       HorizonNumbers(check)});
+  Figure figure;
+  for (size_t i = 0; i < check.parameters.size(); ++i) {
+    figure.panels.push_back(DriftChart(check, i, all));
+  }
+  section.figures.push_back({"horizons",
+                             "Each parameter by horizon, with twice its standard error.", figure,
+                             HorizonNumbers(check)});
   return section;
 }
 
@@ -181,8 +185,6 @@ ReportSection DesignSection(const ReportSource& source) {
 
 namespace {
 
-constexpr double kWaterfallWidth = 450, kWaterfallHeight = 210;
-
 // Costs on a logarithmic axis. Those of a likelihood may be negative: they count from 1 below the
 // lowest.
 struct CostAxis {
@@ -202,7 +204,7 @@ ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
   const CostAxis axis(lowest);
   chart.title = axis.Title() + " of the starts, best first";
   chart.x_label = "rank";
-  chart.logarithmic = true;
+  chart.logarithmic_y = true;
   ChartPoints ended;
   TextTable numbers({"rank", "start", "cost", "failed_recordings"}, {false, true, false, false});
   for (size_t i = 0; i < ranked.size(); ++i) {
@@ -211,11 +213,11 @@ ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
     if (!s.usable || !s.failed.empty()) continue;
     ended.emplace_back(static_cast<double>(i + 1), axis.At(s.cost));
   }
-  chart.lines = {{ended, kPredictedLook, false}, {ended, kPredictedLook, true}};
+  chart.lines = {{ended, kPredictedLook}, {ended, kDotLook, true}};
   return {"starts_waterfall",
           "Each step is another local minimum; starts on the lowest step agree. Starts with failed "
           "recordings are left out.",
-          DrawCharts({chart}, "waterfall of the starts", 1, kWaterfallWidth, kWaterfallHeight),
+          {{}, {chart}},
           numbers};
 }
 
@@ -262,7 +264,7 @@ ReportSection SolveSection(const ReportSource& source) {
   gradient.lines = {g};
   for (Chart* chart : {&cost, &gradient}) {
     chart->x_label = "iteration, over all horizons";
-    chart->logarithmic = true;
+    chart->logarithmic_y = true;
     for (size_t i = 1; i < trace.size(); ++i) {
       if (trace[i].horizon != trace[i - 1].horizon) chart->marks.push_back(static_cast<double>(i));
     }
@@ -271,7 +273,8 @@ ReportSection SolveSection(const ReportSource& source) {
                              source.fit.options.likelihood == Likelihood::kTrajectory
                                  ? "The best start. The cost jumps where the horizon grows (lines)."
                                  : "The best start: Fisher scoring, then BFGS.",
-                             DrawCharts({cost, gradient}, "trace", 2, 450, 210), numbers});
+                             {{}, {cost, gradient}},
+                             numbers});
   return section;
 }
 

@@ -2,6 +2,9 @@
 // left out. A new one is a renderer in a file of its own, its name and its row here.
 #pragma once
 
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "ident/prediction/standing_checks.h"
@@ -70,8 +73,24 @@ inline constexpr SectionRow kSections[] = {
     {"provenance", "Provenance", ProvenanceSection},
 };
 
-// Charts side by side, unless a section says otherwise.
-inline constexpr int kPanelColumns = 3;
-inline constexpr double kPanelWidth = 320, kPanelHeight = 200;
+// A value with its intervals, one above the other, and what it is compared with (an upright line),
+// on a scale of its own. Interval ends that tell nothing are infinite.
+struct IntervalRow {
+  std::string name, unit;
+  double value = 0.0, nominal = 0.0;
+  std::vector<std::pair<Interval, std::string>> intervals;  // with their looks
+};
+Chart IntervalStrip(const IntervalRow& row);
+inline constexpr char kIntervalLook[] = "fill:none;stroke-width:3;stroke:#3b82f6";
+inline constexpr char kToldLook[] = "fill:none;stroke-width:3;stroke:#d55e00";
+
+// The parameters' values with all intervals that are known.
+ReportFigure IntervalFigure(const ReportSource& source);
+
+// Hips of the recordings that are predicted best, in the middle and worst; none without recordings.
+std::optional<ReportFigure> TypicalFigure(const ReportSource& source);
+
+// Of a table of colours as wide as the page.
+inline constexpr double kWidestMap = 1000;
 
 }  // namespace pushid

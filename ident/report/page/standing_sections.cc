@@ -14,7 +14,6 @@ constexpr double kDegrees = 180.0 / M_PI;
 
 BodePlot PlotOf(const FrequencyResponse& response) {
   BodePlot plot;
-  plot.title = response.Name();
   plot.gain_unit = response.OutputUnit() + "/" + response.InputUnit();
   for (const FrequencyBin& bin : response.bins) {
     BodePoint point;
@@ -25,9 +24,6 @@ BodePlot PlotOf(const FrequencyResponse& response) {
     point.phase = kDegrees * bin.phase;
     point.phase_error = kDegrees * bin.phase_error;
     point.coherence = bin.coherence;
-    point.tooltip = Rounded(bin.hz, 3) + " Hz: gain " + Rounded(point.gain, 3) + ", phase " +
-                    Rounded(point.phase, 3) + " degrees, coherence " + Rounded(bin.coherence, 2) +
-                    ", people " + std::to_string(bin.people);
     plot.measured.push_back(point);
   }
   plot.hz = response.model.hz;
@@ -52,11 +48,12 @@ std::string CaptionOf(const FrequencyResponse& response) {
 }
 
 // A panel for each measure, a row for each person.
-std::string SwayPicture(const std::vector<PersonSway>& people) {
-  std::vector<Chart> charts;
+Figure SwayFigure(const std::vector<PersonSway>& people) {
+  Figure figure;
   for (int i = 0; i < kNumSwayMeasures; ++i) {
     Chart chart;
-    chart.title = kSwayMeasures[i].Title();
+    chart.title = kSwayMeasures[i].name;
+    chart.x_label = kSwayMeasures[i].unit;
     ChartLine measured{{}, kMeasuredLook, true};
     for (size_t n = 0; n < people.size(); ++n) {
       const double row = static_cast<double>(n);
@@ -65,13 +62,12 @@ std::string SwayPicture(const std::vector<PersonSway>& people) {
       if (people[n].repeats == 0) continue;
       const double from = people[n].simulated[i] - people[n].spread[i];
       const double to = people[n].simulated[i] + people[n].spread[i];
-      chart.lines.push_back({{{from, row}, {to, row}}, kPredictedLook, false});
+      chart.lines.push_back({{{from, row}, {to, row}}, kPredictedLook});
     }
     chart.lines.push_back(measured);
-    charts.push_back(chart);
+    figure.panels.push_back(chart);
   }
-  const double height = 70 + 18 * static_cast<double>(people.size());
-  return DrawCharts(charts, "sway of quiet stance", kPanelColumns, kPanelWidth, height);
+  return figure;
 }
 
 // "0.12 +- 0.02"
@@ -108,7 +104,7 @@ ReportSection FrequencySection(const ReportSource& source) {
                   : "There is no curve: " + WithoutLinearLoop(source.fit.options.model) + ".");
   for (const FrequencyResponse& response : responses) {
     section.figures.push_back({"frequency_" + response.Key(), CaptionOf(response),
-                               DrawBode(PlotOf(response)), FrequencyTable({response})});
+                               BodeFigure(PlotOf(response)), FrequencyTable({response})});
   }
   return section;
 }
@@ -147,7 +143,7 @@ ReportSection SwaySection(const ReportSource& source) {
                              simulated ? "Measured (dots) and simulated, one standard deviation "
                                          "about the mean (lines)."
                                        : "Measured.",
-                             SwayPicture(people), SwayTable(people)});
+                             SwayFigure(people), SwayTable(people)});
   section.Show("sway of quiet stance", table);
   return section;
 }

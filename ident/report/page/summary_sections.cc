@@ -153,6 +153,9 @@ TextTable Legend(const FitResult& result) {
 
 ReportSection LeadSection(const ReportSource& source) {
   ReportSection section;
+  if (const std::optional<ReportFigure> typical = TypicalFigure(source))
+    section.figures.push_back(*typical);
+  section.figures.push_back(IntervalFigure(source));
   const std::string verdict = ModelVerdictText(source.fit.verdict);
   if (source.fit.verdict.fails()) {
     section.alarm = verdict;
@@ -165,7 +168,7 @@ ReportSection LeadSection(const ReportSource& source) {
   if (!source.fit.verdict.checked()) section.Say(DoesNotFit(source));
   section.Say(Travels(source.propagation));
   section.Say(Next(source.model));
-  section.Show("the parameters that were fitted", Legend(source.fit));
+  section.Show("what the names mean", Legend(source.fit));
   return section;
 }
 

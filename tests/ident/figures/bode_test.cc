@@ -10,13 +10,12 @@ namespace {
 
 BodePlot Falling() {
   BodePlot plot;
-  plot.title = "falling";
   plot.gain_unit = "rad/m";
   plot.hz = {0.1, 0.2, 0.5, 1.0, 2.0};
   plot.gain = {10.0, 8.0, 2.0, 0.5, 0.02};
   plot.phase = {-100.0, -150.0, 170.0, 120.0, 60.0};
-  plot.measured.push_back({0.5, 2.1, 1.9, 2.3, 165.0, 10.0, 0.9, "here"});
-  plot.measured.push_back({1.0, 0.5, 0.4, 0.6, -230.0, 12.0, 0.5, "there"});
+  plot.measured.push_back({0.5, 2.1, 1.9, 2.3, 165.0, 10.0, 0.9});
+  plot.measured.push_back({1.0, 0.5, 0.4, 0.6, -230.0, 12.0, 0.5});
   return plot;
 }
 
@@ -36,15 +35,15 @@ TEST(Bode, PhasesGoOn) {
 TEST(Bode, DrawsThreePanels) {
   BodePlot plot = Falling();
   Unwrap(&plot);
-  const std::string svg = DrawBode(plot);
+  const std::string svg = DrawFigure(BodeFigure(plot), 640, "").ToInline();
   for (const char* part : {"gain, rad/m", "phase, degrees", "coherence", "frequency, Hz", "model",
-                           "here", ">0.1<", ">1<"}) {
+                           ">0.1<", ">1<", ">0.5<"}) {
     EXPECT_TRUE(Contains(svg, part));
   }
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
-  EXPECT_EQ(DrawBode({"alone", "1", {plot.measured[0]}, {}, {}, {}}).find("nan"),
-            std::string::npos);
+  const Figure alone = BodeFigure({"1", {plot.measured[0]}, {}, {}, {}});
+  EXPECT_EQ(DrawFigure(alone, 640, "").ToInline().find("nan"), std::string::npos);
 }
 
 }  // namespace

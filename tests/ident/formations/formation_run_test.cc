@@ -141,7 +141,8 @@ TEST(FormationPictures, ShowEverybodyEveryPushAndEveryPart) {
     EXPECT_TRUE(Has(wave, part)) << part;
   }
   const std::string forces = ForcesSvg(run, "forces");
-  for (const char* part : {">person 12<", ">push<", ">friction<", ">balance<", ">linear<"}) {
+  for (const char* part :
+       {">person 12: force along the push, N<", ">push<", ">friction<", ">balance<", ">linear<"}) {
     EXPECT_TRUE(Has(forces, part)) << part;
   }
   EXPECT_TRUE(Has(forces, ">interaction<"));

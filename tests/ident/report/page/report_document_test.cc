@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "ident/figures/chart.h"
 #include "ident/report/page/document.h"
@@ -20,7 +21,7 @@ Report Sample() {
                      {"one\ntwo"},
                      {{"try", "pushid-fit --x='1<2'"}},
                      {{"caption", table}},
-                     {{"a/../b", "see", "<svg></svg>", numbers}},
+                     {{"a/../b", "see", {{}, {Chart()}}, numbers}},
                      {{"fold <1>", {}}},
                      ""};
   ReportSection empty;
@@ -60,34 +61,41 @@ TEST(ReportDocument, APageIsNoPdf) {
   EXPECT_TRUE(Contains(pdf->message, "--html_out is 'out/report.pdf'"));
 }
 
-class ReportNumbers : public TempDirTest {};
+TEST(ReportDocument, FilesStayInTheirFolderAndQuote) {
+  std::map<std::string, std::string> files;
+  for (const auto& [name, text] : FigureFiles(Sample(), 85.0, 8.0)) files[name] = text;
+  EXPECT_EQ(files["a____b.csv"], "time_s,what\n0.5,\"say \"\"x\"\", y\"\n");
+  EXPECT_TRUE(Contains(files["a____b.svg"], "<desc>see</desc>"));
+  EXPECT_EQ(files["table_full_1.csv"], "name,value\na<b,1\n");
+  EXPECT_EQ(files["captions.md"],
+            "# Title <&>\n\n**a____b** see\n\n**table_full_1** Full & <whole>: caption.\n");
+}
 
-TEST_F(ReportNumbers, StayInTheirFolderAndQuote) {
-  ASSERT_FALSE(WriteNumbers(Sample(), Path("numbers")));
-  EXPECT_EQ(ReadText(Path("numbers/a____b.csv")), "time_s,what\n0.5,\"say \"\"x\"\", y\"\n");
-  WriteText("file", "");
-  const MaybeError error = WriteNumbers(Sample(), Path("file/below"));
-  ASSERT_TRUE(error);
-  EXPECT_TRUE(Contains(error->ToString(), "cannot make this folder"));
+TEST(ReportDocument, TablesWithACaptionFold) {
+  const std::string page = ToPage(Sample());
+  EXPECT_LT(page.find("<summary>caption</summary>"), page.find("<table>"));
+  EXPECT_LT(page.find("<figure>"), page.find("<p>one"));
 }
 
 // A lane takes its height from the plot: the axis stays, the line moves up.
 TEST(Chart, LanesLieBetweenPlotAndAxis) {
   Chart chart;
   chart.lines = {{{{0, 0}, {4, 1}}, "ink", false}};
-  const std::string plain = DrawCharts({chart}, "", 1, 200, 100);
+  chart.width = 200;
+  chart.height = 100;
+  const std::string plain = DrawPanel(chart).ToInline();
   chart.lanes = {{"left", {{1, 2}, {3, 4}}, "fill:#123456"}, {"right", {}, "fill:#123456"}};
-  const std::string lanes = DrawCharts({chart}, "", 1, 200, 100);
+  const std::string lanes = DrawPanel(chart).ToInline();
   size_t bars = 0;
   for (size_t at = lanes.find("#123456"); at != std::string::npos;
        at = lanes.find("#123456", at + 1)) {
     ++bars;
   }
   EXPECT_EQ(bars, 2u);
-  // x runs over 136 pixels from 52 on; the bars over a quarter of them each.
-  EXPECT_TRUE(Contains(lanes, "<rect x=\"86\""));
-  EXPECT_TRUE(Contains(lanes, "<rect x=\"154\""));
-  EXPECT_TRUE(Contains(lanes, "width=\"34\""));
+  // x runs over 144 pixels from 44 on; the bars over a quarter of them each.
+  EXPECT_TRUE(Contains(lanes, "<rect x=\"80\""));
+  EXPECT_TRUE(Contains(lanes, "<rect x=\"152\""));
+  EXPECT_TRUE(Contains(lanes, "width=\"36\""));
   for (const char* part : {">left<", ">right<"}) {
     EXPECT_TRUE(Contains(lanes, part));
     EXPECT_FALSE(Contains(plain, part));
@@ -101,7 +109,7 @@ TEST(Chart, DrawsWhatItIsGiven) {
                  {{{0, 1}, {1, 1}}, "fill:#000", true}};
   chart.bands = {{{{0, -1}, {3, -1}}, {{0, 1}, {3, 1}}, kWideBandLook}};
   chart.levels = {1.5};
-  const std::string svg = DrawCharts({chart, Chart()}, "two", 2, 200, 100);
+  const std::string svg = DrawFigure({{}, {chart, Chart()}}, 400, "two").ToInline();
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   EXPECT_EQ(svg.find("inf"), std::string::npos);
   EXPECT_TRUE(Contains(svg, "x &amp; y"));
