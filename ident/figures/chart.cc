@@ -160,12 +160,14 @@ class Panel {
     }
   }
 
+  // A title that is too long for its place above the plot begins at the panel's edge.
   void Heads() {
-    const double from = chart_.y_categories.empty() ? left_ : box_.x + 10;
-    const double y = box_.y + 14;
+    const double y = box_.y + 14, edge = box_.x + 10;
+    const double end = right_ - kLetter * static_cast<double>(chart_.y_label.size());
+    const double wide = kBoldLetter * static_cast<double>(chart_.title.size());
+    const double from = chart_.y_categories.empty() && left_ + wide < end ? left_ : edge;
     svg_.Text(right_, y, chart_.y_label, "faint small end");
-    const double room = right_ - from - kLetter * static_cast<double>(chart_.y_label.size());
-    svg_.Text(from, y, Cut(chart_.title, room, kBoldLetter), "ink bold");
+    svg_.Text(from, y, Cut(chart_.title, end - from, kBoldLetter), "ink bold");
   }
 
   // Between the plot and its axis.
@@ -267,7 +269,7 @@ class Panel {
   // "0.002", "1e-05": enough digits for round numbers.
   static std::string TickText(double tick) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.4g", std::abs(tick) < 1e-12 ? 0.0 : tick);
+    std::snprintf(text, sizeof text, "%.6g", std::abs(tick) < 1e-12 ? 0.0 : tick);
     return text;
   }
 

@@ -16,8 +16,9 @@ constexpr char kLightStyle[] =
     ".middle{text-anchor:middle}.end{text-anchor:end}"
     ".paper{fill:#fff}.ink,.axis{fill:#222}.faint{fill:#666}"
     "line,path{fill:none;stroke-linejoin:round}"
-    "line.axis,path.axis,path.ink{stroke:#222;fill:none}line.grid,path.grid{stroke:#ddd}"
-    "rect{shape-rendering:crispEdges}.ring{fill:none;stroke:#222}path.net{stroke-width:3}"
+    "line.axis,path.axis,path.ink{stroke:#222;fill:none}path.ink{stroke-width:1.4}"
+    "line.grid,path.grid{stroke:#ddd}rect{shape-rendering:crispEdges}.ring{fill:none;stroke:#222}"
+    "path.net{stroke-width:3}"
     ".predicted{stroke-width:1.8;stroke:#3b82f6}"
     ".band{stroke:none;fill:#3b82f6}path.band{fill:#3b82f6}.wide{fill-opacity:.16}"
     ".narrow{fill-opacity:.26}.lifted{fill:#8a8f98}";

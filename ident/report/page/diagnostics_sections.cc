@@ -135,7 +135,7 @@ ReportSection LeverageSection(const ReportSource& source) {
   const Leverage& l = source.fit.diagnostics.leverage;
   if (l.recordings.empty()) return section;
   Chart map;
-  map.title = "change without the recording, in standard errors";
+  map.title = "change without it, standard errors";
   map.x_categories = l.parameters;
   map.full_cell = kStrongMove;
   map.width = kWidestMap;
@@ -160,12 +160,14 @@ ReportSection LeverageSection(const ReportSource& source) {
     for (double change : l.change[g]) cells.push_back(DoubleText(change));
     numbers.Add(cells);
   }
-  section.figures.push_back({"leverage",
-                             "One step with the Hessian of all recordings, not a refit (on the 32 "
-                             "published recordings of "
-                             "single people refits differ from it by 15 %).",
-                             {{}, {map}},
-                             numbers});
+  section.figures.push_back(
+      {"leverage",
+       "Change of each parameter without one recording, in standard errors. One "
+       "step with the Hessian of all recordings, not a refit (on the 32 "
+       "published recordings of "
+       "single people refits differ from it by 15 %).",
+       {{}, {map}},
+       numbers});
   return section;
 }
 
@@ -186,7 +188,7 @@ ReportSection ResidualSection(const ReportSource& source) {
   for (const Whiteness& w : channels) {
     figure.panels.push_back(Correlogram(w.channel, w.autocorrelation, w.error, 1, w.mean_band));
     figure.panels.push_back(
-        Correlogram(w.channel + " and the push", w.push, w.push_error, 0, w.mean_band));
+        Correlogram(w.channel + " and push", w.push, w.push_error, 0, w.mean_band));
     const auto add = [&](const char* kind, const std::vector<double>& values,
                          const std::vector<double>& errors, int first) {
       for (size_t k = 0; k < values.size(); ++k) {

@@ -236,7 +236,8 @@ std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
     panels.push_back(TypicalChart(*view, which + ": " + view->run.recording.id));
     panels.back().x_label = "time, s (" + kHipMetrics[0].Text(error, 2) + ")";
     if (legend.empty()) legend = LegendOf(*view);
-    for (std::vector<std::string> row : PathNumbers(*view).rows()) {
+    const TextTable path = PathNumbers(*view);
+    for (std::vector<std::string> row : path.rows()) {
       const bool header = row[0] == "person";
       if (header && !rows.empty()) continue;
       row.insert(row.begin(),

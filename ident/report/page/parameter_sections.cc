@@ -19,7 +19,7 @@ constexpr char kTotalLook[] = "fill:none;stroke-width:3;stroke:#9ca3af";
 constexpr char kTheseLook[] = "fill:none;stroke-width:3;stroke:#93c5fd";
 constexpr char kProfileLook[] = "fill:none;stroke-width:3;stroke:#009e73";
 constexpr char kBootstrapLook[] = "fill:none;stroke-width:3;stroke:#cc79a7";
-constexpr double kStripHeight = 58;
+constexpr double kStripHeight = 50, kIntervalHeight = 6;  // pixels
 
 // Ends that tell nothing go to the edge.
 Interval Shown(double value, Interval interval) {
@@ -91,11 +91,11 @@ Chart IntervalStrip(const IntervalRow& row) {
   Chart chart;
   chart.title = WithUnit(row.name, row.unit);
   chart.bare_y = true;
-  chart.height = kStripHeight;
+  chart.height = kStripHeight + kIntervalHeight * static_cast<double>(row.intervals.size());
   chart.marks = {row.nominal};
   const double rows = static_cast<double>(row.intervals.size());
-  chart.y_from = -0.5 - 0.3 * rows;
-  chart.y_to = 0.5 + 0.3 * rows;
+  chart.y_from = -1.0 - 0.5 * rows;
+  chart.y_to = 1.0 + 0.5 * rows;
   double y = 0.5 * (rows - 1.0);
   for (const auto& [interval, look] : row.intervals) {
     chart.lines.push_back({{{interval.lower, y}, {interval.upper, y}}, look});

@@ -131,9 +131,9 @@ constexpr char kMiddleBandLook[] = "stroke:none;fill:#d55e00;fill-opacity:.18";
 
 Chart StratumChart(const CheckedStratum& stratum) {
   Chart chart;
-  chart.title = stratum.name + " (" + std::to_string(stratum.recordings) + " recordings)";
+  chart.title = stratum.name + " (n = " + std::to_string(stratum.recordings) + ")";
   chart.x_label = "time, s";
-  chart.y_label = "s";
+  chart.y_label = "hip/push speed, s";
   for (int q = 0; q < kNumCheckedShares; ++q) {
     const bool middle = q == kNumCheckedShares / 2;
     ChartBand band{{}, {}, middle ? kMiddleBandLook : kWideBandLook};
