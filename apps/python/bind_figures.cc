@@ -6,10 +6,6 @@
 namespace pushid {
 namespace {
 
-py::object OrNone(const std::optional<double>& value) {
-  return value ? py::object(py::float_(*value)) : py::object(py::none());
-}
-
 py::dict DictOf(const Chart& chart) {
   py::list lines, bands, lanes, bars;
   for (const ChartLine& line : chart.lines) {
@@ -34,8 +30,8 @@ py::dict DictOf(const Chart& chart) {
   dict["bars"] = bars;
   dict["levels"] = chart.levels;
   dict["marks"] = chart.marks;
-  dict["x_range"] = py::make_tuple(OrNone(chart.x_from), OrNone(chart.x_to));
-  dict["y_range"] = py::make_tuple(OrNone(chart.y_from), OrNone(chart.y_to));
+  dict["x_range"] = py::make_tuple(chart.x_from, chart.x_to);
+  dict["y_range"] = py::make_tuple(chart.y_from, chart.y_to);
   dict["logarithmic"] = py::make_tuple(chart.logarithmic_x, chart.logarithmic_y);
   dict["bare_y"] = chart.bare_y;
   dict["y_categories"] = chart.y_categories;

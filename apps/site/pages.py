@@ -125,6 +125,7 @@ def main():
              "platforms.", "datasets/README.md", "Pushes and sensors", "Moving ground and force platforms",
              "From a folder of files to a manifest")
     tutorial("batch", "A batch, also on a cluster", "Many fits from one plan.", "apps/README.md", "Many fits: pushid-batch")
+    tutorial("papers", "Figures and tables for papers", "After a fit.", "apps/README.md", "Figures for papers")
     flags()
     write("reference/parameters.md", "# Parameters\n\n" + output_of(BIN / "pushid-fit", "--list_parameters"))
     stubs = (ROOT / "apps/python/pushid/__init__.pyi").read_text()

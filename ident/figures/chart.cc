@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include "datasets/files/number_text.h"
-#include "ident/figures/svg.h"
 
 namespace pushid {
 namespace {
@@ -14,7 +13,7 @@ namespace {
 constexpr double kLane = 12;     // height, as that of its name
 constexpr double kRow = 16;      // of a category
 constexpr double kLetter = 6.4;  // width of a small one, about
-constexpr double kBoldLetter = 7.4;
+constexpr double kBoldLetter = 7.2;
 constexpr double kValueWidth = 36;    // a cell that is wider shows its number
 constexpr double kLeastShare = 0.01;  // of the strongest colour, that is drawn
 
@@ -163,7 +162,9 @@ class Panel {
   // A title that is too long for its place above the plot begins at the panel's edge.
   void Heads() {
     const double y = box_.y + 14, edge = box_.x + 10;
-    const double end = right_ - kLetter * static_cast<double>(chart_.y_label.size());
+    const double end = chart_.y_label.empty()
+                           ? box_.x + box_.width - 4
+                           : right_ - kLetter * static_cast<double>(chart_.y_label.size());
     const double wide = kBoldLetter * static_cast<double>(chart_.title.size());
     const double from = chart_.y_categories.empty() && left_ + wide < end ? left_ : edge;
     svg_.Text(right_, y, chart_.y_label, "faint small end");
