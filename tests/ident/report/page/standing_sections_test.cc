@@ -57,7 +57,7 @@ TEST(StandingSections, FrequencyResponse) {
   ASSERT_EQ(section.figures.size(), 2u);
   EXPECT_EQ(section.figures[0].name, "frequency_angle_theta_by_ground_shift");
   EXPECT_EQ(section.figures[0].numbers.rows().size(), 7u);
-  EXPECT_TRUE(Contains(section.figures[0].svg, "gain, rad/m"));
+  EXPECT_TRUE(Contains(section.figures[0].figure.panels[0].title, "gain, rad/m"));
   EXPECT_TRUE(Contains(section.figures[0].caption, "1 recording of 1 person"));
   EXPECT_TRUE(Contains(section.figures[1].caption, "torque by inverse dynamics"));
   EXPECT_TRUE(FrequencySection({model}).figures.empty());
