@@ -277,7 +277,8 @@ ReportSection MotionSection(const ReportSource& source) {
                             PathFigure(view), PathNumbers(view)});
     if (view.run.prediction.status.ok) {
       const ForceStory story = RichestStory(view.run.recording, view.run.prediction);
-      fold.figures.push_back({"forces_" + id, StoryText(view.run.recording, story),
+      fold.figures.push_back({"forces_" + id,
+                              "Forces in " + id + ". " + StoryText(view.run.recording, story),
                               ForcesFigure(view.run), ForceNumbers(view.run)});
     }
     section.folds.push_back(std::move(fold));
