@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "apps/completion.h"
+#include "apps/flags/command_line.h"
+#include "apps/flags/man_page.h"
 #include "apps/support/app_support.h"
 #include "apps/support/processes.h"
 #include "datasets/files/names.h"
@@ -65,7 +67,8 @@ int Help() {
   }
   std::printf(
       "\npushid help COMMAND lists the flags of one; pushid completion bash|zsh|fish prints a "
-      "script for\nthe shell; pushid schema prints the JSON Schema of a model's file; pushid "
+      "script for\nthe shell; pushid man COMMAND prints a page of the manual; pushid schema prints "
+      "the JSON Schema of a model's file; pushid "
       "--version prints the "
       "version.\n");
   return kDone;
@@ -74,7 +77,7 @@ int Help() {
 // word: a command, or its program's name.
 int Run(const std::string& word, const std::vector<std::string>& arguments) {
   const std::string command = word.rfind("pushid-", 0) == 0 ? word.substr(7) : word;
-  std::vector<std::string> known = {"help", "completion"};
+  std::vector<std::string> known = {"help", "completion", "man"};
   bool found = false;
   for (const Command& one : AllCommands()) {
     known.push_back(one.name);
@@ -94,6 +97,31 @@ int HelpOn(const std::string& command) {
   if (command == "help") return Help();
   if (command != "completion") return Run(command, {"--help"});
   std::printf("%s", CompletionHelp().c_str());
+  return kDone;
+}
+
+// The manual's page of one command, or of all.
+int Manual(const std::vector<std::string>& arguments) {
+  if (!arguments.empty()) return Run(arguments[0], {kManPage});
+  std::vector<HelpSection> sections;
+  for (const Job& job : Jobs()) {
+    sections.push_back({job.title, {}});
+    for (const Command& command : job.commands) {
+      sections.back().entries.push_back({command.name, command.line});
+    }
+  }
+  sections.push_back({"about pushid",
+                      {{"help COMMAND", "the flags of a command"},
+                       {"man COMMAND", "its page of the manual, for man -l -"},
+                       {"completion bash|zsh|fish", "a script for the shell"},
+                       {"schema", "the JSON Schema of a model's file"},
+                       {"--version", "the version"}}});
+  std::printf("%s", ManPage("pushid estimates how people balance and recover from pushes, from "
+                            "motion capture.\npushid COMMAND [flags] runs the program "
+                            "pushid-COMMAND, which has a page of its own.\n\n"
+                            "  pushid fit --recordings=M/manifest.json --model_out=model.json",
+                            "COMMAND [--flag=value ...]", "COMMANDS", sections)
+                        .c_str());
   return kDone;
 }
 
@@ -125,5 +153,6 @@ int main(int argc, char** argv) {
     std::printf("%s\n", ModelSchema().dump(1).c_str());
     return kDone;
   }
+  if (command == "man") return Manual(arguments);
   return command == "completion" ? Complete(arguments) : Run(command, arguments);
 }

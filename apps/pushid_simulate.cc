@@ -13,6 +13,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/loading/ground_record.h"
 #include "datasets/manifest/recording.h"
+#include "datasets/synthetic/laboratory.h"
 #include "datasets/synthetic/synthetic_clips.h"
 #include "datasets/synthetic/synthetic_turns.h"
 #include "ident/figures/text_table.h"
@@ -69,6 +70,10 @@ DEFINE_int32(turns, 0,
              "write so many recordings of three people who talk in turns instead, without a push, "
              "with the truth of who speaks (states.csv); --frames, 300 if not given; 0: recordings "
              "of pushes");
+DEFINE_int32(laboratory, 0,
+             "write a laboratory's recordings instead, of so many people who are not the fitted "
+             "model (two links that balance late, feet that step): markers (TRC), force platforms, "
+             "a load cell that pulled, and the truth in truth.json");
 DEFINE_uint64(seed, pushid::SyntheticOptions{}.seed, "seed of people, pushes and noise");
 
 namespace {
@@ -176,17 +181,15 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
   }
 }
 
-// Flags of what has no push and no parameters: `flag`, its value, and those of all.
-MaybeError CheckAlone(const char* flag, int count, int frames) {
+// --clips, --turns and --laboratory draw all but these themselves.
+MaybeError CheckNothingBut(const std::vector<std::string>& allowed) {
   for (const std::string& name : ChangedFlags()) {
-    const bool allowed =
-        name == flag || name == "frames" || name == "seed" || name == "out" || name == "overwrite";
-    if (allowed) continue;
-    return Error{"--" + name + " says nothing to --" + std::string(flag) + "; leave it out"};
+    if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
+      return Error{"--" + name + " says nothing to --" + allowed[0] + "; leave it out"};
+    }
   }
-  for (const MaybeError& error :
-       {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
-        CheckRange(flag, count, 1, 1000), CheckRange("frames", frames, 3, 100000)}) {
+  for (MaybeError error : {Require("out", FLAGS_out, "name the folder to write"),
+                           CheckOutputFolder("out", FLAGS_out)}) {
     if (error) return error;
   }
   return std::nullopt;
@@ -197,9 +200,12 @@ int WriteTurns() {
   options.recordings = FLAGS_turns;
   if (Given("frames")) options.frames = FLAGS_frames;
   options.seed = FLAGS_seed;
-  MaybeError error = CheckAlone("turns", FLAGS_turns, options.frames);
-  if (!error) error = WriteSyntheticTurns(FLAGS_out, options);
-  if (error) return Fail(*error);
+  for (const MaybeError& error : {CheckNothingBut({"turns", "frames", "seed", "out", "overwrite"}),
+                                  CheckRange("turns", FLAGS_turns, 1, 1000),
+                                  CheckRange("frames", options.frames, 3, 100000)}) {
+    if (error) return Fail(*error);
+  }
+  if (MaybeError error = WriteSyntheticTurns(FLAGS_out, options)) return Fail(*error);
   std::printf("%d recordings of three people who talk in turns: %s\n", options.recordings,
               (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
   return kDone;
@@ -210,16 +216,35 @@ int WriteClips() {
   options.clips = FLAGS_clips;
   if (Given("frames")) options.frames = FLAGS_frames;
   options.seed = FLAGS_seed;
-  MaybeError error = CheckAlone("clips", FLAGS_clips, options.frames);
-  if (!error) error = WriteSyntheticClips(FLAGS_out, options);
-  if (error) return Fail(*error);
+  for (const MaybeError& error : {CheckNothingBut({"clips", "frames", "seed", "out", "overwrite"}),
+                                  CheckRange("clips", FLAGS_clips, 1, 1000),
+                                  CheckRange("frames", options.frames, 3, 100000)}) {
+    if (error) return Fail(*error);
+  }
+  if (MaybeError error = WriteSyntheticClips(FLAGS_out, options)) return Fail(*error);
   std::printf("%d clips of each action and one to test: %s\n", options.clips, FLAGS_out.c_str());
+  return kDone;
+}
+
+int WriteOfLaboratory() {
+  LaboratoryOptions options;
+  options.people = FLAGS_laboratory;
+  options.seed = FLAGS_seed;
+  for (const MaybeError& error : {CheckNothingBut({"laboratory", "seed", "out", "overwrite"}),
+                                  CheckRange("laboratory", FLAGS_laboratory, 1, 1000)}) {
+    if (error) return Fail(*error);
+  }
+  if (MaybeError error = WriteLaboratoryStudy(FLAGS_out, options)) return Fail(*error);
+  std::printf("%d people, %d pulls each that they withstand and %d after which they step: %s\n",
+              options.people, options.standing, options.stepping,
+              (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
   return kDone;
 }
 
 int Run() {
   if (FLAGS_turns != 0) return WriteTurns();
   if (FLAGS_clips != 0) return WriteClips();
+  if (FLAGS_laboratory != 0) return WriteOfLaboratory();
   const Result<SyntheticOptions> read = StudyFromCommandLine();
   if (!read.ok()) return Fail(read.error());
   SyntheticOptions study = read.value();

@@ -11,6 +11,7 @@
 #include <list>
 #include <new>
 
+#include "apps/flags/man_page.h"
 #include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/number_text.h"
@@ -100,6 +101,11 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   FLAGS_logtostderr = true;
   if (argc == 2 && std::strcmp(argv[1], kListFlags) == 0) {
     std::printf("%s", FlagList(moved).c_str());
+    return kDone;
+  }
+  if (argc == 2 && std::strcmp(argv[1], kManPage) == 0) {
+    std::printf("%s",
+                ManPage(usage, "[--flag=value ...]", "OPTIONS", FlagSections(moved, true)).c_str());
     return kDone;
   }
   if (MaybeError error = CheckFlags(argc, argv)) return Fail(*error);

@@ -12,6 +12,8 @@ namespace pushid {
 
 // Alone on a command line: prints FlagList and nothing else.
 inline constexpr char kListFlags[] = "--list_flags";
+// The same for the program's page of the manual (man_page.h).
+inline constexpr char kManPage[] = "--man_page";
 
 // Parses flags (--help and --version answer themselves), refuses outputs that would replace an
 // input or each other, then calls run. usage: one paragraph and an example. Words that are no flags

@@ -207,8 +207,8 @@ std::string MovedFlags::FirstGiven() const {
   return given == names.end() ? "" : *given;
 }
 
-std::string FlagHelp(const MovedFlags& moved, bool full) {
-  std::map<std::string, std::string> below;
+std::vector<HelpSection> FlagSections(const MovedFlags& moved, bool full) {
+  std::map<std::string, std::vector<HelpEntry>> below;
   std::vector<std::string> named;
   for (const FlagInfo& flag : OwnFlags()) {
     if (moved.Has(flag.name)) continue;
@@ -221,20 +221,32 @@ std::string FlagHelp(const MovedFlags& moved, bool full) {
       named.push_back(flag.name);
       continue;
     }
-    below[left ? "settings" : heading] +=
-        "  --" + flag.name + value + "\n      " + flag.description + "\n";
+    below[left ? "settings" : heading].push_back({"--" + flag.name + value, flag.description});
   }
-  below["general"] +=
-      "  --flagfile=FILE\n      read flags from a file, one per line\n"
-      "  --help, -h, --helpfull\n      print this\n"
-      "  --version\n      print the version\n";
+  for (const HelpEntry& entry :
+       {HelpEntry{"--flagfile=FILE", "read flags from a file, one per line"},
+        HelpEntry{"--help, -h, --helpfull", "print this"},
+        HelpEntry{"--version", "print the version"}}) {
+    below["general"].push_back(entry);
+  }
   if (!named.empty()) {
-    below[kRarelyChanged] = "  " + WithDashes(named, " ") + "\n      --helpfull describes them\n";
+    below[kRarelyChanged] = {{WithDashes(named, " "), "--helpfull describes them"}};
   }
-  std::string text;
+  std::vector<HelpSection> sections;
   for (const Heading& heading : Headings()) {
     const auto flags = below.find(heading.title);
-    if (flags != below.end()) text += "\n" + flags->first + ":\n" + flags->second;
+    if (flags != below.end()) sections.push_back({heading.title, flags->second});
+  }
+  return sections;
+}
+
+std::string FlagHelp(const MovedFlags& moved, bool full) {
+  std::string text;
+  for (const HelpSection& section : FlagSections(moved, full)) {
+    text += "\n" + section.title + ":\n";
+    for (const HelpEntry& entry : section.entries) {
+      text += "  " + entry.name + "\n      " + entry.text + "\n";
+    }
   }
   if (moved.names.empty()) return text;
   return text + "\n" + moved.what + " moved to " + moved.program + " (" +

@@ -78,6 +78,15 @@ struct MovedFlags {
   static constexpr char kUntil[] = "version 0.4";
 };
 
+// What --help and the manual are made of: flags below their headings.
+struct HelpEntry {
+  std::string name, text;  // "--out=", what it does
+};
+struct HelpSection {
+  std::string title;
+  std::vector<HelpEntry> entries;
+};
+std::vector<HelpSection> FlagSections(const MovedFlags& moved, bool full);
 // Under headings, without those that moved. full: what is rarely changed, too, is described and not
 // only named.
 std::string FlagHelp(const MovedFlags& moved, bool full);

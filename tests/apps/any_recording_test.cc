@@ -11,7 +11,7 @@
 #include "tests/apps/app_fixture.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
-#include "tests/datasets/table_writers.h"
+#include "datasets/formats/table_writers.h"
 
 namespace pushid {
 namespace {

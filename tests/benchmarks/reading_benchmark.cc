@@ -15,7 +15,7 @@
 #include "datasets/formats/trc.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_writer.h"
-#include "tests/datasets/table_writers.h"
+#include "datasets/formats/table_writers.h"
 
 namespace pushid {
 namespace {

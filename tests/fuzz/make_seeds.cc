@@ -17,7 +17,7 @@
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/handmade_c3d.h"
-#include "tests/datasets/table_writers.h"
+#include "datasets/formats/table_writers.h"
 #include "tests/fuzz/model_seeds.h"
 
 namespace {

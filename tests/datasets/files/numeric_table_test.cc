@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/datasets/table_writers.h"
+#include "datasets/formats/table_writers.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -8,7 +8,7 @@
 #include "datasets/formats/trc.h"
 #include "datasets/manifest/column_mapping.h"
 #include "tests/datasets/c3d_samples.h"
-#include "tests/datasets/table_writers.h"
+#include "datasets/formats/table_writers.h"
 #include "tests/test_support.h"
 
 namespace pushid {

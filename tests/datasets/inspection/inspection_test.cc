@@ -12,7 +12,7 @@
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
-#include "tests/datasets/table_writers.h"
+#include "datasets/formats/table_writers.h"
 
 namespace pushid {
 namespace {

@@ -1,4 +1,4 @@
-// Tests: TRC files and tables of numbers written.
+// datasets: TRC files and tables of numbers written.
 #pragma once
 
 #include <cmath>
