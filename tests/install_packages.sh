@@ -14,6 +14,7 @@ fuzz_packages=(clang libclang-rt-14-dev)  # tests/fuzz/run.sh alone needs them
 # The workflow's tests are skipped without them: Snakemake takes 44 s and 683 MB to install.
 workflow_packages=(snakemake slurmctld slurmd slurm-client munge)
 
+package_packages=(dpkg-dev)  # cpack: Debian packages, apps/packaging/Containerfile
 site_packages=(mkdocs)  # apps/site/build.sh alone needs it; its test is skipped without
 
 install_packages() {

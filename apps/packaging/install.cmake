@@ -30,11 +30,13 @@ install(FILES ${PROJECT_BINARY_DIR}/pushidConfig.cmake ${PROJECT_BINARY_DIR}/pus
 
 get_property(programs GLOBAL PROPERTY PUSHID_PROGRAMS)
 foreach(program ${programs})
+  set(component programs)
   if(program MATCHES "^pushid-train-")
-    install(TARGETS ${program} COMPONENT training)
-  else()
-    install(TARGETS ${program} COMPONENT programs)
+    set(component training)
   endif()
+  install(TARGETS ${program} COMPONENT ${component})
+  string(REPLACE pushid-command pushid page ${program})
+  install(FILES ${PUSHID_MANUAL}/${page}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
 endforeach()
 install(DIRECTORY apps/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs)
 install(DIRECTORY apps/workflow DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs

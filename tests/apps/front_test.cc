@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -66,6 +67,38 @@ TEST_F(FrontTest, DescriptionsAreWhole) {
   const std::string fish = RunApp("pushid", {"completion", "fish"}).out;
   EXPECT_TRUE(Contains(fish, "-d 'question a fitted model: profiles, bootstrap, "));
   EXPECT_TRUE(Contains(fish, "each recording\\'s effect'"));
+}
+
+// Every program has its page, which man and groff read without a warning.
+TEST_F(FrontTest, PagesOfTheManual) {
+  const bool groff = RunProgram("/bin/sh", {"-c", "command -v groff"}).exit_code == 0;
+  const bool man = RunProgram("/bin/sh", {"-c", "command -v man"}).exit_code == 0;
+  for (const auto& entry : std::filesystem::directory_iterator(PUSHID_BIN_DIR)) {
+    const std::string name = entry.path().filename().string();
+    const bool study = name.find("study") != std::string::npos || name == "pushid-benchmarks";
+    if (name.rfind("pushid", 0) != 0 || study) continue;
+    SCOPED_TRACE(name);
+    const std::vector<std::string> asked =
+        name == "pushid" ? std::vector<std::string>{"man"} : std::vector<std::string>{"man", name};
+    const AppRun run = RunApp("pushid", asked);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const std::string page = WriteText(name + ".1", run.out);
+    EXPECT_TRUE(Contains(
+        run.out, ".SH NAME\n" + std::regex_replace(name, std::regex("-"), "\\-") + " \\- "));
+    if (groff) {
+      const AppRun read =
+          RunProgram("/bin/sh", {"-c", "groff -man -ww -Tutf8 '" + page + "' >/dev/null"});
+      EXPECT_EQ(read.exit_code, 0);
+      EXPECT_EQ(read.err, "");
+    }
+    if (!man || name == "pushid") continue;
+    const AppRun read =
+        RunProgram("/bin/sh", {"-c", "MANWIDTH=100 man --warnings -l '" + page + "'"});
+    EXPECT_EQ(read.exit_code, 0);
+    EXPECT_EQ(read.err, "");
+    EXPECT_TRUE(Contains(read.out, "--flagfile=FILE"));
+  }
+  EXPECT_TRUE(Refused(RunApp("pushid", {"man", "fitt"}), {"did you mean 'fit'?"}));
 }
 
 // What bash itself makes of the script.
