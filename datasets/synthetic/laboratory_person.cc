@@ -16,8 +16,8 @@ constexpr double kClearance = 0.06;  // m
 constexpr double kSwayMemory = 0.3;  // s, of the noise at the ankles
 
 // Winter's table for both sides: shanks and thighs are the legs; feet have mass but no motion.
-struct Segments {
-  explicit Segments(const LaboratoryPerson& person)
+struct WinterSegments {
+  explicit WinterSegments(const LaboratoryPerson& person)
       : m1(0.293 * person.mass_kg),
         m2(0.678 * person.mass_kg),
         c1(0.307 * person.height_m),
@@ -35,13 +35,13 @@ struct Segments {
   double weight;                     // N
 };
 
-struct Angles {
+struct TwoAngles {
   double legs = 0.0, trunk = 0.0;
 };
-Angles operator+(Angles a, Angles b) { return {a.legs + b.legs, a.trunk + b.trunk}; }
-Angles operator*(double s, Angles a) { return {s * a.legs, s * a.trunk}; }
+TwoAngles operator+(TwoAngles a, TwoAngles b) { return {a.legs + b.legs, a.trunk + b.trunk}; }
+TwoAngles operator*(double s, TwoAngles a) { return {s * a.legs, s * a.trunk}; }
 struct Moving {
-  Angles q, v;
+  TwoAngles q, v;
 };
 Moving operator+(Moving a, Moving b) { return {a.q + b.q, a.v + b.v}; }
 Moving operator*(double s, Moving a) { return {s * a.q, s * a.v}; }
@@ -138,7 +138,7 @@ class Walker {
   double MiddleAcceleration(double t) const {
     return 0.5 * (swing_[0].Acceleration(t) + swing_[1].Acceleration(t));
   }
-  double CentreOfMass(const Angles& q, double x) const {
+  double CentreOfMass(const TwoAngles& q, double x) const {
     return x + ((body_.m1 * body_.c1 + body_.m2 * body_.l) * std::sin(q.legs) +
                 body_.m2 * body_.c2 * std::sin(q.trunk)) /
                    (body_.m1 + body_.m2);
@@ -199,7 +199,7 @@ class Walker {
   }
 
   LaboratoryPerson person_;
-  Segments body_;
+  WinterSegments body_;
   LaboratoryPush push_;
   double h_, tonic_ = 0.0, sway_ = 0.0;
   Moving now_;
