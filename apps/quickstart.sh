@@ -2,28 +2,48 @@
 # From a fresh machine to identified parameters and a prediction: installs what is missing, builds the
 # programs, makes recordings of synthetic people whose parameters are known, fits them, compares, and
 # predicts pushes that were held out. May be run again and again, from any folder.
+#   --example=model        (default) data come from the model that is fitted: the truth can be found exactly
+#   --example=laboratory   data come from another model: what is found of it, what is not, and which diagnostics say so
+#   --out=FOLDER           default quickstart-output, of the laboratory quickstart-output/laboratory
+# PUSHID_BIN: use the programs in this folder, and build nothing.
 set -euo pipefail
+example=model out=
+for word in "$@"; do
+  case $word in
+    --example=model | --example=laboratory) example=${word#*=} ;;
+    --out=?*) out=$(realpath -m "${word#*=}") ;;
+    *) echo "quickstart.sh: '$word' is not --example=model, --example=laboratory or --out=FOLDER" >&2; exit 1 ;;
+  esac
+done
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 # shellcheck source=tests/install_packages.sh
 source tests/install_packages.sh
-out=quickstart-output
-bin=build/release/bin
+bin=${PUSHID_BIN:-build/release/bin}
 export OPENBLAS_NUM_THREADS=1  # results repeat bit by bit
 
 say() { printf '\n== %s\n' "$*"; }
 
-say "Packages"
-install_packages "${build_packages[@]}"
-skip_unusable_ccache
-echo "all packages are installed"
+if [ -z "${PUSHID_BIN:-}" ]; then
+  say "Packages"
+  install_packages "${build_packages[@]}"
+  skip_unusable_ccache
+  echo "all packages are installed"
 
-say "Building the programs into $bin (some minutes the first time)"
-generator=()
-if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
-cmake --preset release "${generator[@]}" >/dev/null
-cmake --build --preset quickstart --parallel "$(nproc)"
+  say "Building the programs into $bin (some minutes the first time)"
+  generator=()
+  if [ ! -f build/release/CMakeCache.txt ] && command -v ninja >/dev/null; then generator=(-G Ninja); fi
+  cmake --preset release "${generator[@]}" >/dev/null
+  cmake --build --preset quickstart --parallel "$(nproc)"
+fi
+if [ $example = laboratory ]; then
+  # shellcheck source=apps/laboratory.sh
+  source apps/laboratory.sh
+  exit 0
+fi
+out=${out:-quickstart-output}
 
 say "Making recordings of four synthetic people with known parameters, with 2 mm of noise on the joints"
+echo "These data come from the model that is fitted below: an example of the commands, and no test of the model."
 "$bin/pushid-simulate" --out="$out/recordings" --people=4 --recordings_per_person=6 --seed=1 --overwrite
 
 say "Making recordings of two other people, held out: the same parameters, other bodies and pushes"
@@ -48,10 +68,10 @@ say "Writing the report as a page, and the same prediction as an animation"
   --html_out="$out/report.html" 2>/dev/null
 "$bin/pushid-animate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
   --id=S01_00_weak --out="$out/motion.html" --strip_out="$out/poses.svg" >/dev/null
-echo "  $PWD/$out/report.html"
-echo "  $PWD/$out/motion.html"
+echo "  $(realpath "$out")/report.html"
+echo "  $(realpath "$out")/motion.html"
 
-say "Done. In $PWD/$out:"
+say "Done. In $(realpath "$out"):"
 echo "  recordings/      BVH, push CSV and manifest.json: the format for your own recordings"
 echo "  held-out/        the recordings that were predicted"
 echo "  model.json       the identified model"
@@ -61,7 +81,7 @@ echo "  scores.json      prediction errors on the held-out pushes"
 echo "  trajectory.csv   a predicted push: states, hip and forces over time"
 echo "  motion.html      animation of the recorded and the predicted person; poses.svg is a strip of their poses"
 printf '\nYour own recordings (README.md, Your own recordings):\n'
-echo "  $PWD/$bin/pushid-fit --recordings=YOUR/manifest.json --setting=single --model_out=model.json"
+echo "  $(realpath "$bin")/pushid-fit --recordings=YOUR/manifest.json --setting=single --model_out=model.json"
 
 say "Result"
 grep -E '^(parameter|mu|Kp_theta) |intervals cover' "$out/identified.txt"

@@ -1,5 +1,6 @@
 """What apps/quickstart.sh prints, from the command itself, and whether its first seed was a lucky one.
 
+laboratory  ident/validation/README.md; the second example; ten seconds
 transcript  README.md; it builds the programs first, minutes the first time
 seeds       ident/README.md; the same recordings and fit with 30 seeds; half a minute
 
@@ -14,10 +15,19 @@ import studies
 SEEDS = 30
 
 
-def transcript():
-    done = subprocess.run(["bash", os.path.join(studies.SOURCE, "apps/quickstart.sh")], stdout=subprocess.PIPE,
-                          stderr=subprocess.DEVNULL, text=True, check=True)
+def result_of(*flags, **environment):
+    done = subprocess.run(["bash", os.path.join(studies.SOURCE, "apps/quickstart.sh"), *flags], stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL, text=True, check=True, env=dict(os.environ, **environment))
     return "```\n" + done.stdout.partition("\n== Result\n")[2].rstrip() + "\n```"
+
+
+def transcript():
+    return result_of()
+
+
+def laboratory():
+    with tempfile.TemporaryDirectory() as folder:
+        return result_of("--example=laboratory", f"--out={folder}", PUSHID_BIN=studies.BIN)
 
 
 def program(name, *arguments):
@@ -42,4 +52,4 @@ def seeds():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"transcript": transcript, "seeds": seeds})
+    studies.main(__file__, {"laboratory": laboratory, "transcript": transcript, "seeds": seeds})
