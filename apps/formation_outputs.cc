@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
@@ -12,6 +13,7 @@
 #include "datasets/files/atomic_file.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_files.h"
+#include "ident/formations/agent_file.h"
 #include "ident/formations/formation_files.h"
 #include "ident/generators/push_particles.h"
 
@@ -19,6 +21,9 @@ DEFINE_string(csv_out, "", "trajectories, one row per frame and person (CSV)");
 DEFINE_string(trajectories_out, "",
               "trajectories of the hips, for PedPy and JuPedSim (.txt, or .sqlite)");
 DEFINE_string(forces_out, "", "net forces, one row per frame, person and part (CSV)");
+DEFINE_string(agents_out, "",
+              "people, gains, contact and pushes as agents of another simulator (JSON; "
+              "pushid.agents of Python steps them)");
 DEFINE_string(bvh_out, "", "folder for the pendulums as BVH, with manifest.json and the pushes");
 DEFINE_string(svg_out, "", "picture of the wave (SVG): time across, person down, colour speed");
 DEFINE_string(forces_svg_out, "", "picture of the net forces with their parts (SVG)");
@@ -112,9 +117,9 @@ MaybeError CheckOutputFlags(int people) {
        {CheckPicture("svg_out", FLAGS_svg_out, people, kMostPeopleInWave),
         CheckPicture("forces_svg_out", FLAGS_forces_svg_out, people, kMostPeopleInForces),
         CheckTrajectoryFile("trajectories_out", FLAGS_trajectories_out),
-        CheckOutputFiles({FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out, FLAGS_svg_out,
-                          FLAGS_forces_svg_out, FLAGS_html_out, FLAGS_strip_out, FLAGS_joints_out,
-                          FLAGS_bodies_out}),
+        CheckOutputFiles({FLAGS_agents_out, FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out,
+                          FLAGS_svg_out, FLAGS_forces_svg_out, FLAGS_html_out, FLAGS_strip_out,
+                          FLAGS_joints_out, FLAGS_bodies_out}),
         FLAGS_bvh_out.empty() ? std::nullopt : CheckOutputFolder("bvh_out", FLAGS_bvh_out),
         CheckNeeds({"forces_own_scale"}, {"forces_svg_out"})}) {
     if (error) return error;
@@ -155,12 +160,18 @@ Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& fl
   return std::optional<FormationBodyPlan>(std::move(plan));
 }
 
-MaybeError WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
-                        const std::string& title) {
+MaybeError WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
+                        const std::vector<OnsetBand>& onsets, const std::string& title) {
   using File = const std::string&;
   const ForceScale scale = FLAGS_forces_own_scale ? ForceScale::kOwn : ForceScale::kShared;
   return WriteNamed(
-      {{FLAGS_bvh_out, [&](File file) { return WriteFormationRecording(file, run); }},
+      {{FLAGS_agents_out,
+        [&](File file) -> MaybeError {
+          const Result<nlohmann::ordered_json> agents = AgentsJson(run, model);
+          if (!agents.ok()) return Error{"--agents_out: " + agents.error().message};
+          return WriteFileAtomically(file, agents.value().dump(1) + "\n");
+        }},
+       {FLAGS_bvh_out, [&](File file) { return WriteFormationRecording(file, run); }},
        {FLAGS_csv_out,
         [&](File file) { return WriteTrajectoryCsv(file, run.recording, run.prediction); }},
        {FLAGS_trajectories_out, [&](File file) { return WriteFormationTrajectories(file, run); }},

@@ -38,8 +38,8 @@ Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& fl
                                                     Scene* scene);
 
 // The tables and pictures of the run that the flags name.
-MaybeError WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
-                        const std::string& title);
+MaybeError WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
+                        const std::vector<OnsetBand>& onsets, const std::string& title);
 
 // The pages and bodies that the flags name; of pendulums where there is no plan for bodies.
 MaybeError WriteFormationBodies(const PostprocessOptions& postprocess,

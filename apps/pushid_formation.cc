@@ -183,7 +183,7 @@ int Run() {
   const bool as_setting = !flags.value().as_setting.empty();
   const bool banded = !as_setting && (DrawsWave() || scene.num_people() <= kMostPeopleForBands);
   const WaveBands bands = banded ? BandsOfWave(fitted.value(), named.set, run) : WaveBands();
-  MaybeError error = WriteOutputs(run, bands.onsets, title);
+  MaybeError error = WriteOutputs(model.value(), run, bands.onsets, title);
   if (!error)
     error = WriteFormationBodies(body_flags.value().restoration.postprocess, bodies.value(), run,
                                  title);

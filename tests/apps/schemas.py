@@ -70,11 +70,13 @@ def written(folder, binaries):
     run("pushid-check", model, data, "--prior_check", "--push_check", "--horizon_check", "--profile", "--bootstrap=5")
     run("pushid-evaluate", model, data, "--json_out=evaluation.json")
     run("pushid-crossvalidate", data, "--folds=2", "--compare=pd: --preset=ldp", "--json_out=folds.json")
+    run("pushid-fit", "--recordings=rows/manifest.json", "--preset=group", "--model_out=group.json")
+    run("pushid-formation", "--model=group.json", "--formation=line", "--push=40", "--agents_out=agents.json")
     (folder / "plan.toml").write_text(PLAN)
     run("pushid-batch", "--plan=plan.toml", "--jobs=2")
     return [("manifest", "people/manifest.json"), ("manifest", "rows/manifest.json"), ("model", "model.json"),
             ("model", "learned.json"), ("scores", "evaluation.json"), ("scores", "folds.json"),
-            ("summary", "out/summary.json")]
+            ("summary", "out/summary.json"), ("agents", "agents.json")]
 
 
 def main():
