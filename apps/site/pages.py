@@ -10,6 +10,8 @@ import shutil
 import subprocess
 import sys
 
+import tutorials
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCS = ROOT / "build" / "site" / "docs"
 BIN = pathlib.Path(sys.argv[1]).resolve()
@@ -74,22 +76,13 @@ def write(target, text):
     path.write_text(text)
 
 
-def sections(readme, *headings):
-    """These sections, each until the next heading of its level."""
-    text = (ROOT / readme).read_text()
-    found = []
-    for heading in headings:
-        match = re.search(rf"^(#+) {re.escape(heading)}\n", text, re.M)
-        if not match:
-            sys.exit(f"{readme} has no section '{heading}'")
-        end = re.search(rf"^#{{1,{len(match[1])}}} ", text[match.end():], re.M)
-        found.append(text[match.start():match.end() + end.start() if end else len(text)])
-    return "\n".join(found)
-
-
-def tutorial(name, title, introduction, readme, *headings):
-    target = f"tutorials/{name}.md"
-    write(target, f"# {title}\n\n{introduction}\n\n" + place(sections(readme, *headings), readme, target))
+def tutorial_pages():
+    """With what the commands print, run now. Python's, where the module is not built, without."""
+    able = tutorials.available()
+    for name, (title, introduction, readme, _, _) in tutorials.TUTORIALS.items():
+        target = f"tutorials/{name}.md"
+        text = tutorials.with_outputs(name, BIN) if name in able else tutorials.text_of(name)
+        write(target, f"# {title}\n\n{introduction}\n\n" + place(text, readme, target))
 
 
 def flags():
@@ -119,13 +112,7 @@ def main():
     for page in sources():
         name = page.relative_to(ROOT)
         write(name, place(page.read_text(), name, name))
-    tutorial("own_recordings", "Your own recordings, step by step", "After `bash apps/quickstart.sh`, in the folder of the "
-             "project.", "README.md", "Your own recordings, step by step", "How to read the result")
-    tutorial("force_plates", "C3D files with force plates", "Pushes from sensors, ground that moves, and people who stand on "
-             "platforms.", "datasets/README.md", "Pushes and sensors", "Moving ground and force platforms",
-             "From a folder of files to a manifest")
-    tutorial("batch", "A batch, also on a cluster", "Many fits from one plan.", "apps/README.md", "Many fits: pushid-batch")
-    tutorial("papers", "Figures and tables for papers", "After a fit.", "apps/README.md", "Figures for papers")
+    tutorial_pages()
     flags()
     write("reference/parameters.md", "# Parameters\n\n" + output_of(BIN / "pushid-fit", "--list_parameters"))
     stubs = (ROOT / "apps/python/pushid/__init__.pyi").read_text()
