@@ -42,11 +42,41 @@ install(DIRECTORY apps/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPO
 install(DIRECTORY apps/workflow DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs
         USE_SOURCE_PERMISSIONS)
 install(DIRECTORY ${PROJECT_BINARY_DIR}/share/pushid/models DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs)
-install(FILES README.md LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
+install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 
+# Debian packages: a component each, as its policy has them (lintian, tests/install/consumer_test.sh).
+set(maintainer "The pushid authors <pushid@users.noreply.github.com>")
+string(TIMESTAMP today "%a, %d %b %Y %H:%M:%S +0000" UTC)
+file(WRITE ${PROJECT_BINARY_DIR}/changelog
+  "pushid (${PROJECT_VERSION}) unstable; urgency=medium\n\n  * CHANGELOG.md of the sources says what changed.\n\n"
+  " -- ${maintainer}  ${today}\n")
+# pushid_package(COMPONENT NAME SECTION "what it is" "more, by lines that start with a blank")
+function(pushid_package component name section synopsis more)
+  string(TOUPPER ${component} key)
+  set(CPACK_DEBIAN_${key}_PACKAGE_NAME ${name} PARENT_SCOPE)
+  set(CPACK_DEBIAN_${key}_PACKAGE_SECTION ${section} PARENT_SCOPE)
+  set(CPACK_COMPONENT_${key}_DESCRIPTION "${synopsis}\n${more}" PARENT_SCOPE)
+  set(CPACK_DEBIAN_${key}_DESCRIPTION "${synopsis}\n${more}" PARENT_SCOPE)
+  install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+  install(CODE "execute_process(COMMAND sh -c \"gzip -9nc '${PROJECT_BINARY_DIR}/changelog' >'${PROJECT_BINARY_DIR}/changelog.gz'\")"
+          COMPONENT ${component})
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name} COMPONENT ${component})
+endfunction()
+pushid_package(programs pushid science "estimates how pushed people balance, from motion capture"
+" Balance gains, drag of the feet and contact forces between people, each with a\n 95 % interval, from recordings of pushes; and the prediction of the next push.")
+pushid_package(development libpushid-dev libdevel "libraries and headers of pushid"
+" Static libraries, headers and find_package(pushid) for programs that fit\n models of balance to recordings of pushed people.")
+if(PUSHID_TORCH)
+  pushid_package(training pushid-training science "training of pushid's networks, by LibTorch"
+" pushid-train-restoration and pushid-train-generator: networks that turn\n pendulums into bodies, and that continue observed motion.")
+endif()
+if(PUSHID_PYTHON)
+  pushid_package(python python3-pushid python "import pushid: fits recordings of pushed people"
+" The library of pushid for NumPy: recordings from arrays or files, fits with\n intervals, predictions and reports.")
+endif()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_VENDOR pushid)
-set(CPACK_PACKAGE_CONTACT "the pushid project")
+set(CPACK_PACKAGE_CONTACT "${maintainer}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -58,17 +88,10 @@ if(PUSHID_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
-set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME pushid)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS snakemake)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libpushid-dev)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libceres-dev, libeigen3-dev, nlohmann-json3-dev, libxxhash-dev, libsqlite3-dev")
-set(CPACK_DEBIAN_TRAINING_PACKAGE_NAME pushid-training)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-pushid)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
 include(CPack)

@@ -24,7 +24,7 @@ std::string Untold(const IdentifiedModel& model) {
   return "";
 }
 
-Json PairOf(double x, double y) { return Json::array({x, y}); }
+Json PairOf(double x, double y) { return Json::array({x + 0.0, y + 0.0}); }  // no -0
 
 Json AgentOf(const IdentifiedModel& model, const ScenePerson& person, const std::string& id,
              double dt) {
