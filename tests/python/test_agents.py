@@ -69,14 +69,11 @@ def test_an_update_changes_nobody(group):
 
 
 def test_models_that_agents_lack_are_refused(group, tmp_path):
-    done = program("pushid-formation", "--model=" + str(group / "model.json"), "--formation=line", "--people=2",
-                   f"--agents_out={tmp_path}/a.json", "--set=mu=20")
-    assert done.returncode == 0, done.stderr
     fit = program("pushid-fit", f"--recordings={group}/manifest.json", "--preset=group", "--stance=threshold",
                   f"--model_out={tmp_path}/holds.json")
     assert fit.returncode == 0, fit.stderr
     done = program("pushid-formation", f"--model={tmp_path}/holds.json", "--formation=line", "--people=2",
-                   f"--agents_out={tmp_path}/b.json")
+                   "--push=5", f"--agents_out={tmp_path}/b.json")
     assert done.returncode == 1 and "feet that hold" in done.stderr
     with pytest.raises(ValueError, match="agents_out"):
         agents.Crowd(group / "manifest.json")
