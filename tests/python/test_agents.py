@@ -1,5 +1,6 @@
 """Agents of another simulator move as pushid-formation has them."""
 import csv
+import json
 import os
 import subprocess
 
@@ -24,6 +25,9 @@ def group(tmp_path_factory):
     made = program("pushid-fit", f"--recordings={manifest}", "--preset=group", "--friction=anisotropic", "--directions=axes",
                    f"--model_out={folder}/model.json")
     assert made.returncode == 0, made.stderr
+    done = program("pushid-formation", f"--model={folder}/model.json", "--formation=line", "--people=2", "--push=5",
+                   f"--agents_out={folder}/two.json")
+    assert done.returncode == 0, done.stderr
     return folder
 
 
@@ -59,7 +63,7 @@ def test_the_same_paths(group, shape):
 
 
 def test_an_update_changes_nobody(group):
-    crowd = agents.Crowd(group / "agents.json")
+    crowd = agents.Crowd(group / "two.json")
     agent = crowd.agents[0]
     before = list(agent.q), list(agent.qd)
     update = crowd.model.compute_new_state(crowd.dt, agent, crowd.agents, (100.0, 0.0, 0.0, 0.0))
@@ -69,11 +73,11 @@ def test_an_update_changes_nobody(group):
 
 
 def test_models_that_agents_lack_are_refused(group, tmp_path):
-    fit = program("pushid-fit", f"--recordings={group}/manifest.json", "--preset=group", "--stance=threshold",
-                  f"--model_out={tmp_path}/holds.json")
-    assert fit.returncode == 0, fit.stderr
-    done = program("pushid-formation", f"--model={tmp_path}/holds.json", "--formation=line", "--people=2",
-                   "--push=5", f"--agents_out={tmp_path}/b.json")
-    assert done.returncode == 1 and "feet that hold" in done.stderr
+    model = json.loads((group / "model.json").read_text())
+    model["model"]["friction"] = "coulomb"
+    (tmp_path / "dry.json").write_text(json.dumps(model))
+    done = program("pushid-formation", f"--model={tmp_path}/dry.json", "--formation=line", "--people=2", "--push=5",
+                   f"--agents_out={tmp_path}/b.json")
+    assert done.returncode == 1 and "dry friction" in done.stderr, done.stderr
     with pytest.raises(ValueError, match="agents_out"):
         agents.Crowd(group / "manifest.json")
