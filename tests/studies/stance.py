@@ -8,6 +8,8 @@ steps     who steps: AUC, Brier score, calibration, held out (ident/prediction/R
 
 Times are those of one core.
 """
+import re
+
 import studies
 from studies import number, with_error
 
@@ -74,10 +76,9 @@ def sways():
         out = studies.run("pushid-formation", f"--model={model}", "--formation=line", "--people=1",
                           f"--push={impulse}", "--push_duration=0.7", "--duration=6", out=None).text
         lines = out.splitlines()
-        row = dict(zip(lines[1].replace("x m", "x_m").replace("y m", "y_m").replace("onset s", "onset_s")
-                       .replace("peak m/s", "peak").replace("displaced m", "displaced").split(), lines[2].split()))
-        rows.append([impulse, row["displaced"], row["peak"], row["P(step)"]])
-    return studies.table(["impulse of 0.7 s on 80 kg, N s", "hip after 6 s, m", "peak speed, m/s", "P(step)"], rows)
+        row = dict(zip(*(re.split("  +", line.strip()) for line in lines[1:3])))
+        rows.append([impulse, row["displaced m"], row["peak m/s"], row["P(step)"], row["outcome"]])
+    return studies.table(["impulse of 0.7 s on 80 kg, N s", "hip after 6 s, m", "peak speed, m/s", "P(step)", "outcome"], rows)
 
 
 def values():
