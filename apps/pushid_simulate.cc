@@ -181,15 +181,17 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
   }
 }
 
-// --clips, --turns and --laboratory draw all but these themselves.
-MaybeError CheckNothingBut(const std::vector<std::string>& allowed) {
+// --clips, --turns and --laboratory (allowed[0], of this value) draw all but these themselves.
+MaybeError CheckNothingBut(const std::vector<std::string>& allowed, int count) {
   for (const std::string& name : ChangedFlags()) {
     if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
       return Error{"--" + name + " says nothing to --" + allowed[0] + "; leave it out"};
     }
   }
   for (MaybeError error : {Require("out", FLAGS_out, "name the folder to write"),
-                           CheckOutputFolder("out", FLAGS_out)}) {
+                           CheckOutputFolder("out", FLAGS_out),
+                           CheckRange(allowed[0].c_str(), count, 1, 1000),
+                           CheckRange("frames", FLAGS_frames, 3, 100000)}) {
     if (error) return error;
   }
   return std::nullopt;
@@ -200,12 +202,9 @@ int WriteTurns() {
   options.recordings = FLAGS_turns;
   if (Given("frames")) options.frames = FLAGS_frames;
   options.seed = FLAGS_seed;
-  for (const MaybeError& error : {CheckNothingBut({"turns", "frames", "seed", "out", "overwrite"}),
-                                  CheckRange("turns", FLAGS_turns, 1, 1000),
-                                  CheckRange("frames", options.frames, 3, 100000)}) {
-    if (error) return Fail(*error);
-  }
-  if (MaybeError error = WriteSyntheticTurns(FLAGS_out, options)) return Fail(*error);
+  MaybeError error = CheckNothingBut({"turns", "frames", "seed", "out", "overwrite"}, FLAGS_turns);
+  if (!error) error = WriteSyntheticTurns(FLAGS_out, options);
+  if (error) return Fail(*error);
   std::printf("%d recordings of three people who talk in turns: %s\n", options.recordings,
               (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
   return kDone;
@@ -216,12 +215,9 @@ int WriteClips() {
   options.clips = FLAGS_clips;
   if (Given("frames")) options.frames = FLAGS_frames;
   options.seed = FLAGS_seed;
-  for (const MaybeError& error : {CheckNothingBut({"clips", "frames", "seed", "out", "overwrite"}),
-                                  CheckRange("clips", FLAGS_clips, 1, 1000),
-                                  CheckRange("frames", options.frames, 3, 100000)}) {
-    if (error) return Fail(*error);
-  }
-  if (MaybeError error = WriteSyntheticClips(FLAGS_out, options)) return Fail(*error);
+  MaybeError error = CheckNothingBut({"clips", "frames", "seed", "out", "overwrite"}, FLAGS_clips);
+  if (!error) error = WriteSyntheticClips(FLAGS_out, options);
+  if (error) return Fail(*error);
   std::printf("%d clips of each action and one to test: %s\n", options.clips, FLAGS_out.c_str());
   return kDone;
 }
@@ -230,11 +226,9 @@ int WriteOfLaboratory() {
   LaboratoryOptions options;
   options.people = FLAGS_laboratory;
   options.seed = FLAGS_seed;
-  for (const MaybeError& error : {CheckNothingBut({"laboratory", "seed", "out", "overwrite"}),
-                                  CheckRange("laboratory", FLAGS_laboratory, 1, 1000)}) {
-    if (error) return Fail(*error);
-  }
-  if (MaybeError error = WriteLaboratoryStudy(FLAGS_out, options)) return Fail(*error);
+  MaybeError error = CheckNothingBut({"laboratory", "seed", "out", "overwrite"}, FLAGS_laboratory);
+  if (!error) error = WriteLaboratoryStudy(FLAGS_out, options);
+  if (error) return Fail(*error);
   std::printf("%d people, %d pulls each that they withstand and %d after which they step: %s\n",
               options.people, options.standing, options.stepping,
               (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
