@@ -95,7 +95,7 @@ std::string ForecastPageHtml(const ForecastScene& scene) {
 
 namespace {
 
-constexpr double kPanelHeight = 260, kTop = 40, kBottom = 26, kSide = 16;
+constexpr double kStripHeight = 260, kTop = 40, kBottom = 26, kSide = 16;
 constexpr size_t kMostFutures = 20;  // more of them hide one another
 
 struct View {
@@ -129,10 +129,10 @@ View ViewOf(const ForecastScene& scene) {
 
 std::string ForecastStripSvg(const ForecastScene& scene, int poses) {
   const View view = ViewOf(scene);
-  const double scale = (kPanelHeight - kTop - kBottom) / std::max(0.1, view.high_up - view.low_up);
+  const double scale = (kStripHeight - kTop - kBottom) / std::max(0.1, view.high_up - view.low_up);
   const double panel = scale * (view.high_across - view.low_across) + kSide;
   const double width = std::max(520.0, poses * panel + kSide);
-  SvgPicture svg(width, kPanelHeight, scene.title);
+  SvgPicture svg(width, kStripHeight, scene.title);
   svg.Text(kSide, 18, scene.title, "ink bold");
   svg.Text(kSide, 32, "recorded grey, sampled futures faint, forecast blue", "faint small");
   const auto draw = [&](const Trajectories& motion, Eigen::Index t, double left,
@@ -142,7 +142,7 @@ std::string ForecastStripSvg(const ForecastScene& scene, int poses) {
       return left + scale * (p(view.across) - view.low_across);
     };
     const auto y = [&](const Eigen::Vector3f& p) {
-      return kPanelHeight - kBottom - scale * (p(view.up) - view.low_up);
+      return kStripHeight - kBottom - scale * (p(view.up) - view.low_up);
     };
     for (int i = 0; i < scene.layout.num_particles(); ++i) {
       const int parent = scene.layout.parents[i];
@@ -169,7 +169,7 @@ std::string ForecastStripSvg(const ForecastScene& scene, int poses) {
     draw(t < 0 ? scene.observed : scene.recorded, t < 0 ? frame : t, left,
          "stroke:#8a8a8a;stroke-width:3");
     draw(scene.forecast, t, left, "stroke:#2a78c8;stroke-width:2");
-    svg.Text(left + 0.5 * (panel - kSide), kPanelHeight - 8, Rounded((t + 1) * scene.dt, 3) + " s",
+    svg.Text(left + 0.5 * (panel - kSide), kStripHeight - 8, Rounded((t + 1) * scene.dt, 3) + " s",
              "axis middle");
   }
   return svg.ToString();

@@ -231,19 +231,24 @@ std::string SocialText(const SocialReport& report) {
 
 namespace {
 
+constexpr double kFiguresWidth = 1000;
+
 // Changes of state per person and minute.
-HeatMap ChangesMap(const std::string& title, const Eigen::MatrixXd& counts,
+Chart ChangesChart(const std::string& title, const Eigen::MatrixXd& counts,
                    const std::vector<std::string>& names) {
-  HeatMap map{title, names, names, {}, 1e-9};
+  Chart chart;
+  chart.title = title;
+  chart.x_categories = chart.y_categories = names;
+  chart.full_cell = 1e-9;
   for (Eigen::Index i = 0; i < counts.rows(); ++i) {
-    map.values.emplace_back();
+    chart.cells.emplace_back();
     for (Eigen::Index j = 0; j < counts.cols(); ++j) {
       const double a_minute = kFramesAMinute * counts(i, j) / std::max(1.0, counts.sum());
-      map.values.back().push_back(i == j ? 0.0 : std::round(10.0 * a_minute) / 10.0);
-      map.full = std::max(map.full, map.values.back().back());
+      chart.cells.back().push_back(i == j ? 0.0 : std::round(10.0 * a_minute) / 10.0);
+      chart.full_cell = std::max(chart.full_cell, chart.cells.back().back());
     }
   }
-  return map;
+  return chart;
 }
 
 // The row "recorded" in ink, the predictor in colour.
@@ -273,19 +278,21 @@ std::vector<std::string> SocialFigures(const SocialReport& report, const std::st
   const auto found = std::find_if(report.rows.begin(), report.rows.end(),
                                   [&](const SocialRow& row) { return row.name == predictor; });
   if (found == report.rows.end()) return {};
+  const std::vector<Chart> by_frame = {
+      FrameChart("SSCP by frame", report, *found, &SocialRow::sscp_by_frame),
+      FrameChart("SSCP of groups", report, *found, &SocialRow::group_sscp_by_frame),
+      FrameChart("NDMS by frame", report, *found, &SocialRow::ndms_by_frame)};
   std::vector<std::string> figures = {
-      DrawCharts({FrameChart("SSCP by frame", report, *found, &SocialRow::sscp_by_frame),
-                  FrameChart("SSCP of groups", report, *found, &SocialRow::group_sscp_by_frame),
-                  FrameChart("NDMS by frame", report, *found, &SocialRow::ndms_by_frame)},
-                 "forecasts (in colour) and recorded motion, frame by frame", 3, 320, 200)};
+      DrawFigure({{}, by_frame}, kFiguresWidth, "forecasts (in colour) and recorded motion")
+          .ToInline()};
   const auto add = [&](const Eigen::MatrixXd& recorded, const Eigen::MatrixXd& forecast,
                        const std::vector<std::string>& names, const std::string& whose) {
     if (names.size() > kMostStatesDrawn) return;
-    HeatMap left = ChangesMap(whose + ", recorded: changes a minute", recorded, names);
-    HeatMap right = ChangesMap(whose + ", " + predictor + ": changes a minute", forecast, names);
-    left.full = right.full = std::max(left.full, right.full);
-    figures.push_back(DrawHeatMap(left));
-    figures.push_back(DrawHeatMap(right));
+    Chart left = ChangesChart("recorded", recorded, names);
+    Chart right = ChangesChart(predictor, forecast, names);
+    left.full_cell = right.full_cell = std::max(left.full_cell, right.full_cell);
+    const std::string both = whose + ": changes of state a minute";
+    figures.push_back(DrawFigure({{}, {left, right}, both}, kFiguresWidth, both).ToInline());
   };
   add(report.transitions, found->transitions, report.cues.states.names, "people");
   add(report.group_transitions, found->group_transitions, report.group_names, "groups");
