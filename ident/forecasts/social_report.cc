@@ -283,19 +283,19 @@ std::vector<std::string> SocialFigures(const SocialReport& report, const std::st
       FrameChart("SSCP of groups", report, *found, &SocialRow::group_sscp_by_frame),
       FrameChart("NDMS by frame", report, *found, &SocialRow::ndms_by_frame)};
   std::vector<std::string> figures = {
-      DrawFigure({{}, by_frame}, kFiguresWidth, "forecasts (in colour) and recorded motion")
-          .ToInline()};
+      DrawFigure({{}, by_frame}, kFiguresWidth, "forecasts and recorded motion").ToInline()};
   const auto add = [&](const Eigen::MatrixXd& recorded, const Eigen::MatrixXd& forecast,
-                       const std::vector<std::string>& names, const std::string& whose) {
+                       const std::vector<std::string>& names, const std::string& title) {
     if (names.size() > kMostStatesDrawn) return;
     Chart left = ChangesChart("recorded", recorded, names);
     Chart right = ChangesChart(predictor, forecast, names);
     left.full_cell = right.full_cell = std::max(left.full_cell, right.full_cell);
-    const std::string both = whose + ": changes of state a minute";
-    figures.push_back(DrawFigure({{}, {left, right}, both}, kFiguresWidth, both).ToInline());
+    figures.push_back(DrawFigure({{}, {left, right}, title}, kFiguresWidth, title).ToInline());
   };
-  add(report.transitions, found->transitions, report.cues.states.names, "people");
-  add(report.group_transitions, found->group_transitions, report.group_names, "groups");
+  add(report.transitions, found->transitions, report.cues.states.names,
+      "people: changes of state a minute");
+  add(report.group_transitions, found->group_transitions, report.group_names,
+      "groups: changes of state a minute");
   return figures;
 }
 

@@ -175,7 +175,7 @@ TEST_F(SocialReportTest, EveryFrameHasItsValue) {
   const auto figures = SocialFigures(*report, "generator");
   ASSERT_GE(figures.size(), 3u);
   EXPECT_TRUE(Contains(figures[0], "NDMS by frame"));
-  EXPECT_TRUE(Contains(figures[1], "people, recorded: changes a minute"));
+  EXPECT_TRUE(Contains(figures[1], "people: changes of state a minute"));
   EXPECT_TRUE(SocialFigures(*report, "nobody").empty());
 }
 
