@@ -160,9 +160,8 @@ namespace {
 
 Json MatrixJson(const Eigen::MatrixXd& matrix) {
   Json rows = Json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    rows.push_back(Json::array());
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) rows.back().push_back(matrix(i, j));
+  for (const auto& row : matrix.rowwise()) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
   }
   return rows;
 }
@@ -180,7 +179,7 @@ Json SparseJson(const Eigen::MatrixXd& matrix) {
 
 Json FramesJson(const ByFrame& by_frame) {
   Json values = Json::array();
-  for (const std::optional<double>& value : by_frame) values.push_back(NumberOrNull(value));
+  for (const auto& value : by_frame) values.push_back(NumberOrNull(value));
   return values;
 }
 
