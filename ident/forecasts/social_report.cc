@@ -231,7 +231,6 @@ std::string SocialText(const SocialReport& report) {
 namespace {
 
 constexpr double kFiguresWidth = 1000;
-
 // Changes of state per person and minute.
 Chart ChangesChart(const std::string& title, const Eigen::MatrixXd& counts,
                    const std::vector<std::string>& names) {
