@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kLane = 12;     // height, as that of its name
 constexpr double kRow = 16;      // of a category
-constexpr double kLetter = 6.4;  // width of a small one, about
+constexpr double kLetter = 7.1;  // width of a small one, about
+constexpr double kLine = 14;     // height of a small one with its space
 constexpr double kBoldLetter = 7.2;
 constexpr double kValueWidth = 36;    // a cell that is wider shows its number
 constexpr double kLeastShare = 0.01;  // of the strongest colour, that is drawn
@@ -39,8 +40,7 @@ Range RangeOf(const Chart& chart, double std::pair<double, double>::*axis) {
   Range range;
   for (const ChartLine& line : chart.lines) range.Add(line.points, axis);
   for (const ChartBand& band : chart.bands) {
-    range.Add(band.lower, axis);
-    range.Add(band.upper, axis);
+    for (const ChartPoints* edge : {&band.lower, &band.upper}) range.Add(*edge, axis);
   }
   return range;
 }
@@ -213,11 +213,13 @@ class Panel {
         svg_.Text(right_ + 6, y + 4, Cut(chart_.y_notes[i], margins_.right - 4), "faint small");
     }
     const bool numbers = chart_.y_categories.empty() && !chart_.bare_y;
+    double below = bottom_ + kLine;  // the number under the next one
     for (double tick : numbers ? y_.Ticks(3) : std::vector<double>()) {
       if (chart_.logarithmic_y && tick != std::floor(tick)) continue;
       grid.push_back({left_, y_(tick), right_, y_(tick)});
       // The names of lanes stand below.
-      if (!chart_.lanes.empty() && y_(tick) > bottom_ - 6) continue;
+      if ((!chart_.lanes.empty() && y_(tick) > bottom_ - 6) || below - y_(tick) < kLine) continue;
+      below = y_(tick);
       svg_.Text(left_ - 5, y_(tick) + 3.5,
                 TickText(chart_.logarithmic_y ? std::pow(10.0, tick) : tick), "faint small end");
     }
@@ -230,8 +232,8 @@ class Panel {
     for (double power = std::floor(scale.from()); power <= scale.to(); ++power) {
       for (double first : {1.0, 2.0, 5.0}) {
         const double tick = power + std::log10(first);
-        const bool shown = first == 1.0 || scale.to() - scale.from() < 4.0;
-        if (shown && tick >= scale.from() && tick <= scale.to()) ticks.push_back(tick);
+        if (first != 1.0 && scale.to() - scale.from() >= 4.0) continue;
+        if (tick >= scale.from() && tick <= scale.to()) ticks.push_back(tick);
       }
     }
     return ticks;
@@ -281,14 +283,12 @@ class Panel {
   SvgScale x_, y_;
   SvgPicture& svg_;
 };
-
 }  // namespace
 
 double HeightOf(const Chart& chart, double width) {
-  if (chart.y_categories.empty()) {
-    // Lower where it is narrower; strips of a row or two keep their height.
+  // Lower where it is narrower; strips of a row or two keep their height.
+  if (chart.y_categories.empty())
     return chart.bare_y ? chart.height : chart.height * std::clamp(width / chart.width, 0.8, 1.0);
-  }
   const Margins margins(chart, width);
   return margins.top + margins.bottom + kRow * static_cast<double>(chart.y_categories.size());
 }

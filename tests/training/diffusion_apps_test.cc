@@ -139,7 +139,7 @@ TEST_F(DiffusionAppTest, GroupsWithoutAPushAreForecastAndTheirStatesCompared) {
   EXPECT_EQ(json["social"]["first_frame"], 20);
   EXPECT_EQ(by_frame["sscp"].size(), 70u);
   EXPECT_EQ(by_frame["ndms"].size(), 52u);
-  EXPECT_TRUE(Contains(ReadText(Path("p.html")), "people, generator: changes a minute"));
+  EXPECT_TRUE(Contains(ReadText(Path("p.html")), "people: changes of state a minute"));
   // The built-in states from a file are the built-in ones.
   ASSERT_EQ(generate({"--states_out=" + Path("s.csv")}).exit_code, 0);
   auto built_in = Json(Path("e.json"));
