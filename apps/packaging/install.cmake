@@ -36,7 +36,7 @@ foreach(program ${programs})
   endif()
   install(TARGETS ${program} COMPONENT ${component})
   string(REPLACE pushid-command pushid page ${program})
-  install(FILES ${PUSHID_MANUAL}/${page}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
+  install(FILES ${PROJECT_BINARY_DIR}/share/man/man1/${page}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
 endforeach()
 install(DIRECTORY apps/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs)
 install(DIRECTORY apps/workflow DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs
