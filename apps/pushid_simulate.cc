@@ -188,10 +188,10 @@ MaybeError CheckNothingBut(const std::vector<std::string>& allowed, int count) {
       return Error{"--" + name + " says nothing to --" + allowed[0] + "; leave it out"};
     }
   }
-  for (MaybeError error : {Require("out", FLAGS_out, "name the folder to write"),
-                           CheckOutputFolder("out", FLAGS_out),
-                           CheckRange(allowed[0].c_str(), count, 1, 1000),
-                           CheckRange("frames", FLAGS_frames, 3, 100000)}) {
+  for (MaybeError error :
+       {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
+        CheckRange(allowed[0].c_str(), count, 1, 1000),
+        CheckRange("frames", FLAGS_frames, 3, 100000)}) {
     if (error) return error;
   }
   return std::nullopt;

@@ -6,12 +6,12 @@
 
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
+#include "datasets/formats/table_writers.h"
 #include "datasets/formats/trc.h"
 #include "datasets/loading/load_recordings.h"
 #include "tests/apps/app_fixture.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
-#include "datasets/formats/table_writers.h"
 
 namespace pushid {
 namespace {

@@ -12,10 +12,10 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/formats/table_writers.h"
 #include "datasets/formats/trc.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_writer.h"
-#include "datasets/formats/table_writers.h"
 
 namespace pushid {
 namespace {

@@ -9,10 +9,10 @@
 
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
+#include "datasets/formats/table_writers.h"
 #include "datasets/formats/trc.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
-#include "datasets/formats/table_writers.h"
 
 namespace pushid {
 

@@ -10,6 +10,7 @@
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/force_csv.h"
+#include "datasets/formats/table_writers.h"
 #include "datasets/formats/trajectories.h"
 #include "datasets/formats/trc.h"
 #include "datasets/manifest/manifest.h"
@@ -17,7 +18,6 @@
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/handmade_c3d.h"
-#include "datasets/formats/table_writers.h"
 #include "tests/fuzz/model_seeds.h"
 
 namespace {

@@ -5,10 +5,10 @@
 
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/point_motion.h"
+#include "datasets/formats/table_writers.h"
 #include "datasets/formats/trc.h"
 #include "datasets/manifest/column_mapping.h"
 #include "tests/datasets/c3d_samples.h"
-#include "datasets/formats/table_writers.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -8,11 +8,11 @@
 #include <limits>
 #include <tuple>
 
+#include "datasets/formats/table_writers.h"
 #include "datasets/formats/trc.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
-#include "datasets/formats/table_writers.h"
 
 namespace pushid {
 namespace {
