@@ -5,10 +5,9 @@
         crowd.iterate()
     print([agent.position for agent in crowd.agents])  # the hips, m
 
-`PendulumModel` has the division of JuPedSim's operational models (its C++ class OperationalModel, version 1.3:
-ComputeNewPosition gives an update without changing anybody, ApplyUpdate applies it), so that a simulation calls it for each of
-its agents: compute_new_state(dt, agent, neighbours), then apply_update(update, agent). JuPedSim 1.3 takes no operational
-models from Python; `Crowd` is the loop around them. Walls, goals and ways are not modelled: these people are pushed, they do
+`PendulumModel` has the division of JuPedSim's C++ class OperationalModel (ComputeNewPosition gives an update without changing
+anybody, ApplyUpdate applies it), so that a simulation calls it for each of its agents: compute_new_state(dt, agent,
+neighbours), then apply_update(update, agent). It was not tried with JuPedSim itself; `Crowd` is the loop around it. Walls, goals and ways are not modelled: these people are pushed, they do
 not walk.
 
 The equations are those of pushid's models (ipm.h, self_terms.h, contact.h): an inverted pendulum on a cart whose feet slide.
