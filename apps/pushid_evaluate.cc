@@ -28,7 +28,7 @@ DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
 DEFINE_string(peer, "",
-              "with --restoration: the folder of a peer (pushid-train-restoration --kind=simlpe or "
+              "with --restoration: the folder of a peer (pushid-train-restoration "
               "--kind=mrt) to compare with");
 DEFINE_bool(per_recording, true, "print a line for every recording");
 

@@ -156,9 +156,6 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
   if (is_cmu && groups) {
     return Error{"--kind=" + NameOf(kind) + " trains on pushed groups; give --dataset=pushes"};
   }
-  if (!is_cmu && !RowOf(kind).pushes) {
-    return Error{"--kind=" + NameOf(kind) + " trains on clips; give --dataset=cmu"};
-  }
   const std::string pushes = "--dataset=pushes", cmu = "--dataset=cmu";
   for (const MaybeError& error :
        {is_cmu ? refuse({"recordings", "setting", "observed", "held_out"}, pushes)

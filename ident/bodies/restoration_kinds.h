@@ -38,12 +38,9 @@ inline constexpr KindMaker<Restoration> kRestorationMakers[] = {
     {RestorationKind::kCvae, MakeCvae},
 };
 
-Result<std::unique_ptr<Peer>> MakeSimlpe(const RestorationFile& file, const std::string& path,
-                                         TensorReader* reader);
 Result<std::unique_ptr<Peer>> MakeMrt(const RestorationFile& file, const std::string& path,
                                       TensorReader* reader);
 inline constexpr KindMaker<Peer> kPeerMakers[] = {
-    {RestorationKind::kSimlpe, MakeSimlpe},
     {RestorationKind::kMrt, MakeMrt},
 };
 
@@ -55,11 +52,10 @@ struct KindTrainer {
   RestorationKind kind;
   RestorationTrainer* train;
 };
-RestorationTrainer TrainWindow, TrainCvae, TrainSimlpe, TrainMrt;
+RestorationTrainer TrainWindow, TrainCvae, TrainMrt;
 inline constexpr KindTrainer kRestorationTrainers[] = {
     {RestorationKind::kWindow, TrainWindow},
     {RestorationKind::kCvae, TrainCvae},
-    {RestorationKind::kSimlpe, TrainSimlpe},
     {RestorationKind::kMrt, TrainMrt},
 };
 
@@ -100,7 +96,7 @@ Result<std::unique_ptr<Made>> MakeByKind(const KindMaker<Made> (&makers)[kCount]
     return made;
   }
   return Error{
-      "the kind is " + Quoted(NameOf(file.kind)) + "; known are " + known + " (" + hint + ")",
+      "the kind is " + Quoted(NameOf(file.kind)) + "; it must be " + known + " (" + hint + ")",
       path};
 }
 

@@ -75,7 +75,6 @@ struct GeneratorKindRow {
   // People of a call see each other: whole groups that are pushed, which physics may blend with.
   // Otherwise it forecasts people one by one, and motion capture too.
   bool groups;
-  bool pushes;        // forecasts pushes too, and not motion capture alone
   bool futures;       // more than one can be sampled
   bool any_observed;  // trained for any number of frames shown, so that others may be shown in use
   int observed;       // frames of a push that it is shown, if no flag says otherwise
@@ -85,11 +84,11 @@ struct GeneratorKindRow {
 
 inline constexpr GeneratorKindRow kGeneratorKinds[] = {
     {"particles", GeneratorKind::kParticles, "displacements with learned drift and noise", false,
-     true, true, false, 20, 3, ReadParticles},
-    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, true, true,
+     true, false, 20, 3, ReadParticles},
+    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, true,
      true, 1, 1, ReadDiffusion},
-    {"simlpe", GeneratorKind::kSimlpe, "siMLPe, a perceptron to compare with on clips", false,
-     false, false, false, 0, 1, ReadSimlpe},
+    {"simlpe", GeneratorKind::kSimlpe, "siMLPe, a perceptron to compare with", false, false,
+     false, 12, 1, ReadSimlpe},
 };
 
 constexpr const auto& Names(GeneratorKind) { return kGeneratorKinds; }

@@ -6,7 +6,6 @@
 #include "ident/bodies/restoration_kinds.h"
 #include "ident/parameters/option_names.h"
 #include "models/peers/mrt_network.h"
-#include "models/peers/simlpe.h"
 #include "models/restoration/cvae_features.h"
 
 namespace pushid {
@@ -15,11 +14,6 @@ namespace {
 constexpr double kPeerStep = 1.0 / kPeerRate;  // s
 
 }  // namespace
-
-Result<std::unique_ptr<Peer>> MakeSimlpe(const RestorationFile&, const std::string&,
-                                         TensorReader* reader) {
-  return std::unique_ptr<Peer>(new SimlpePeer(TakeSimlpe(reader)));
-}
 
 Result<std::unique_ptr<Peer>> MakeMrt(const RestorationFile& file, const std::string& path,
                                       TensorReader* reader) {

@@ -278,7 +278,8 @@ void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* optio
   ParticleTrainingOptions& particles = options->particles;
   particles.observed = settings.observed;
   particles.predicted = settings.predicted;
-  options->simlpe.observed = settings.observed, options->simlpe.predicted = settings.predicted;
+  // siMLPe forecasts as many frames as it sees, and more from its own.
+  options->simlpe.observed = options->simlpe.predicted = settings.observed;
   if (settings.data != GeneratorData::kPushes) {
     if (options->correction) particles.structure.corrected_frames = settings.predicted;
     return;

@@ -114,8 +114,6 @@ std::vector<NetworkSize> SizesOf(const CvaeTrainer& trainer, const CvaeLayout& l
   return sizes;
 }
 
-constexpr int kWindowEpochs = 40;
-
 }  // namespace
 
 Result<RestorationTraining> TrainWindow(const std::vector<RestorationSample>& training,
@@ -124,7 +122,10 @@ Result<RestorationTraining> TrainWindow(const std::vector<RestorationSample>& tr
   Scaling inputs;
   const RegressionSamples learnt = WindowSamples(training, options.view, &inputs);
   const RegressionSamples judged = WindowSamples(held, options.view, &inputs);
-  const auto trainer = DenseTrainer(learnt, judged, kWindowEpochs, options);
+  RegressionOptions regression;
+  regression.epochs = EpochsOf(regression.epochs, options);
+  static_cast<TrainerOptions&>(regression) = options;
+  const auto trainer = std::make_shared<RegressionTrainer>(learnt, judged, regression);
   const auto finish = [trainer, inputs, view = options.view](RestorationFile* file) {
     (*file->settings)[kViewKey] = NameOf(view);
     AddTensors("inputs", inputs, &file->tensors);
@@ -181,15 +182,6 @@ std::string SizesText(const std::vector<NetworkSize>& sizes) {
 
 int EpochsOf(int epochs, const RestorationTrainingOptions& options) {
   return std::max(1, static_cast<int>(std::lround(epochs * options.effort)));
-}
-
-std::shared_ptr<RegressionTrainer> DenseTrainer(const RegressionSamples& learnt,
-                                                const RegressionSamples& judged, int epochs,
-                                                const RestorationTrainingOptions& options) {
-  RegressionOptions regression;
-  regression.epochs = EpochsOf(epochs, options);
-  static_cast<TrainerOptions&>(regression) = options;
-  return std::make_shared<RegressionTrainer>(learnt, judged, regression);
 }
 
 Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>& training,

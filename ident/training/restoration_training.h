@@ -107,10 +107,6 @@ struct RestorationTraining {
 };
 // `epochs` times the options' effort.
 int EpochsOf(int epochs, const RestorationTrainingOptions& options);
-// A dense network trained on these samples.
-std::shared_ptr<RegressionTrainer> DenseTrainer(const RegressionSamples& learnt,
-                                                const RegressionSamples& judged, int epochs,
-                                                const RestorationTrainingOptions& options);
 
 // training, held: samples to learn from and to stop early by. Errors: a kind without training, a
 // checkpoint that cannot be written. A checkpoint of other data or options is not used.

@@ -36,7 +36,7 @@ torch::Tensor Noised(const torch::Tensor& truth, const torch::Tensor& share,
 
 }  // namespace
 
-struct DiffusionTrainer::Torch : KeptRun<Run, Torch> {
+struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
   Torch(const std::vector<ObservedGroup>& learnt, const std::vector<ObservedGroup>& held,
         const DiffusionTrainingOptions& given)
       : options(given),
@@ -53,7 +53,6 @@ struct DiffusionTrainer::Torch : KeptRun<Run, Torch> {
   DiffusionBatches batches, held_batches;
   std::shared_ptr<DiffusionModule> module, mean;  // mean: of the weights
   std::unique_ptr<torch::optim::AdamW> optimizer;
-  int step = 0;
 
   template <typename Fields>
   void Keep(Fields* fields) {
@@ -101,7 +100,7 @@ struct DiffusionTrainer::Torch : KeptRun<Run, Torch> {
     return loss;
   }
 
-  double Step() {
+  double Step() override {
     const DiffusionBatch batch = batches.Draw(step);
     // One time for a group: its people are at the same stage of the way back.
     const torch::Tensor by_group =
@@ -129,7 +128,7 @@ struct DiffusionTrainer::Torch : KeptRun<Run, Torch> {
   }
 
   // From nothing but noise, the first frame and the push.
-  double HeldLoss() {
+  double HeldLoss(int) override {
     if (held_batches.empty()) return std::nan("");
     torch::NoGradGuard no_grad;
     const DiffusionBatch batch = held_batches.AsTheyAre(kHeldGroups);
@@ -142,16 +141,8 @@ struct DiffusionTrainer::Torch : KeptRun<Run, Torch> {
         .item<double>();
   }
 
-  bool Done() const override { return step >= options.steps; }
-
-  double ShareDone() const override { return static_cast<double>(step) / options.steps; }
-
-  TrainingPoint RunRound() override {
-    const int begin = step, end = std::min(begin + kDiffusionRound, options.steps);
-    double sum = 0.0;
-    for (; step < end; ++step) sum += Step();
-    return {step, sum / std::max(1, end - begin), HeldLoss(), "diffusion"};
-  }
+  int AllSteps() const override { return options.steps; }
+  const char* Stage(int) const override { return "diffusion"; }
 };
 
 DiffusionTrainer::DiffusionTrainer(const std::vector<ObservedGroup>& learnt,

@@ -63,7 +63,6 @@ struct ParticleTrainingOptions : TrainerOptions {
   std::vector<float> mirrored_controls;  // the sign of each control in the mirror
 };
 
-inline constexpr int kParticleRound = 50;   // steps of a point of the curve
 inline constexpr int kFirstNoiseStep = 10;  // displacements before are not judged by the noise
 inline constexpr int kFirstTransition = 2;  // likewise where f and g are trained together
 
@@ -142,8 +141,6 @@ struct DiffusionTrainingOptions : TrainerOptions {
   double size = 0.05;       // share, largest
   double dt = 1.0 / 60.0;   // s
 };
-
-inline constexpr int kDiffusionRound = 50;  // steps of a point of the curve
 
 class DiffusionTrainer : public Trainer {
  public:

@@ -77,6 +77,29 @@ class ParticleLosses {
   torch::Tensor weights_, frames_, parents_, has_bone_, fixed_, is_fixed_;
 };
 
+// A training on windows: of particles, and of siMLPe.
+template <typename Run, typename Self, typename Options>
+struct WindowsRun : StepsRun<Run, Self> {
+  WindowsRun(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
+             const std::vector<LearntParticles>& held, const Options& given)
+      : options(given),
+        windows(layout, learnt, options),
+        held_windows(layout, held, options),
+        losses(layout, options) {}
+
+  Options options;
+  ParticleWindows windows, held_windows;
+  ParticleLosses losses;
+
+  virtual double LossOfHeld(const ParticleBatch& batch, int of_step) = 0;
+  double HeldLoss(int of_step) override {
+    constexpr int kHeldWindows = 256;
+    if (held_windows.num_windows() == 0) return std::nan("");
+    torch::NoGradGuard no_grad;
+    return LossOfHeld(held_windows.Some(kHeldWindows), of_step);
+  }
+};
+
 // Of transitions, elementwise (NoiseLoss): `misses` of the drift, in the units of the noise.
 inline torch::Tensor TransitionLoss(NoiseLoss loss, const torch::Tensor& misses,
                                     const torch::Tensor& log_noise) {

@@ -258,7 +258,6 @@ class ParticleWindows {
 };
 
 // How particles and siMLPe are trained.
-inline constexpr int kHeldWindows = 256;
 inline constexpr double kLossUnits = 1e3;  // the gradient is clipped with the loss in mm
 // Share of the largest rate: up in a straight line, then down to nothing by a cosine.
 inline double RateShareToZero(int step, int steps, int warm_up) {

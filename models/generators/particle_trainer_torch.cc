@@ -14,23 +14,16 @@ torch::Tensor NoJitter(const ParticleBatch& batch) {
 
 }  // namespace
 
-struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
+struct ParticleTrainer::Torch : WindowsRun<Run, Torch, ParticleTrainingOptions> {
   Torch(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
         const std::vector<LearntParticles>& held, const ParticleTrainingOptions& given)
-      : options(given),
-        statistics(ParticleStatistics(layout, learnt, options)),
-        windows(layout, learnt, options),
-        held_windows(layout, held, options),
-        losses(layout, options) {}
+      : WindowsRun(layout, learnt, held, given),
+        statistics(ParticleStatistics(layout, learnt, options)) {}
 
-  ParticleTrainingOptions options;
   ParticleNetwork statistics;
-  ParticleWindows windows, held_windows;
-  ParticleLosses losses;
   std::shared_ptr<ParticleModule> module;
   std::shared_ptr<ParticleCritic> critic;
   std::unique_ptr<torch::optim::AdamW> drift, noise, critics;
-  int step = 0;
 
   template <typename Fields>
   void Keep(Fields* fields) {
@@ -44,9 +37,14 @@ struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
     fields->Numbers("step", &step);
   }
 
-  int AllSteps() const { return options.steps + (options.together ? 0 : options.noise_steps); }
-  bool InDrift() const { return step < options.steps; }
-  bool Done() const override { return step >= AllSteps(); }
+  int AllSteps() const override {
+    return options.steps + (options.together ? 0 : options.noise_steps);
+  }
+  bool InDrift(int of_step) const { return of_step < options.steps; }
+  int StageEnd(int of_step) const override { return InDrift(of_step) ? options.steps : AllSteps(); }
+  const char* Stage(int of_step) const override {
+    return options.together ? "drift and noise" : InDrift(of_step) ? "drift" : "noise";
+  }
 
   std::unique_ptr<torch::optim::AdamW> Adam(const std::vector<torch::Tensor>& parameters) const {
     return std::make_unique<torch::optim::AdamW>(
@@ -125,8 +123,11 @@ struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
     return loss.item<double>();
   }
 
+  double Step() override { return InDrift(step) ? DriftStep() : NoiseStep(); }
+
   // The correlations of the noise: of what the drift misses, on windows drawn as in training.
-  void Correlate() {
+  void Finish() override {
+    if (AllSteps() == options.steps) return;  // no noise was learned by itself
     torch::NoGradGuard no_grad;
     const int first = std::min(kFirstNoiseStep, options.observed);
     Eigen::MatrixXd scatter =
@@ -142,27 +143,11 @@ struct ParticleTrainer::Torch : KeptRun<Run, Torch> {
     module->SetScatter(scatter);
   }
 
-  double HeldLoss(bool of_drift) const {
-    if (held_windows.num_windows() == 0) return std::nan("");
-    torch::NoGradGuard no_grad;
-    const ParticleBatch batch = held_windows.Some(kHeldWindows);
+  double LossOfHeld(const ParticleBatch& batch, int of_step) override {
     const torch::Tensor none = NoJitter(batch);
-    if (!of_drift) return NoiseLossOf(batch, none).item<double>();
+    if (!InDrift(of_step)) return NoiseLossOf(batch, none).item<double>();
     return losses(module->Forecast(batch, none, options.observed, options.predicted), batch)
         .item<double>();
-  }
-
-  double ShareDone() const override { return static_cast<double>(step) / AllSteps(); }
-
-  TrainingPoint RunRound() override {
-    const bool in_drift = InDrift();
-    const int end = std::min(step + kParticleRound, in_drift ? options.steps : AllSteps());
-    double sum = 0.0;
-    const int count = end - step;
-    for (; step < end; ++step) sum += in_drift ? DriftStep() : NoiseStep();
-    if (!in_drift && Done()) Correlate();
-    const char* stage = options.together ? "drift and noise" : in_drift ? "drift" : "noise";
-    return {step, sum / std::max(1, count), HeldLoss(in_drift), stage};
   }
 };
 

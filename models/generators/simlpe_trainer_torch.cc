@@ -65,20 +65,11 @@ class SimlpeModule : public torch::nn::Module {
 
 }  // namespace
 
-struct SimlpeTrainer::Torch : KeptRun<Run, Torch> {
-  Torch(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
-        const std::vector<LearntParticles>& held, const SimlpeTrainingOptions& given)
-      : options(given),
-        windows(layout, learnt, options),
-        held_windows(layout, held, options),
-        losses(layout, options) {}
+struct SimlpeTrainer::Torch : WindowsRun<Run, Torch, SimlpeTrainingOptions> {
+  using WindowsRun::WindowsRun;
 
-  SimlpeTrainingOptions options;
-  ParticleWindows windows, held_windows;
-  ParticleLosses losses;
   std::shared_ptr<SimlpeModule> module;
   std::unique_ptr<torch::optim::AdamW> optimizer;
-  int step = 0;
 
   template <typename Fields>
   void Keep(Fields* fields) {
@@ -87,8 +78,8 @@ struct SimlpeTrainer::Torch : KeptRun<Run, Torch> {
     fields->Numbers("step", &step);
   }
 
-  bool Done() const override { return step >= options.steps; }
-  double ShareDone() const override { return static_cast<double>(step) / options.steps; }
+  int AllSteps() const override { return options.steps; }
+  const char* Stage(int) const override { return "perceptron"; }
 
   torch::Tensor Loss(const ParticleBatch& batch, double jitter) {
     const torch::Tensor past = batch.frames.narrow(1, 0, options.observed);
@@ -96,22 +87,16 @@ struct SimlpeTrainer::Torch : KeptRun<Run, Torch> {
     return losses(module->Forecast(past, moved), batch);
   }
 
-  TrainingPoint RunRound() override {
-    const int end = std::min(step + kParticleRound, options.steps), count = end - step;
-    double sum = 0.0;
-    for (; step < end; ++step) {
-      SetLearningRate(optimizer.get(), options.learning_rate *
-                                           RateShareToZero(step, options.steps, options.warm_up));
-      const torch::Tensor loss = Loss(windows.Draw(), options.jitter);
-      sum += loss.item<double>();
-      Improve(optimizer.get(), kLossUnits * loss, module->parameters(), options.clip);
-    }
-    double held = std::nan("");
-    if (held_windows.num_windows() > 0) {
-      torch::NoGradGuard no_grad;
-      held = Loss(held_windows.Some(kHeldWindows), 0.0).item<double>();
-    }
-    return {step, sum / std::max(1, count), held, "perceptron"};
+  double Step() override {
+    SetLearningRate(optimizer.get(), options.learning_rate *
+                                         RateShareToZero(step, options.steps, options.warm_up));
+    const torch::Tensor loss = Loss(windows.Draw(), options.jitter);
+    Improve(optimizer.get(), kLossUnits * loss, module->parameters(), options.clip);
+    return loss.item<double>();
+  }
+
+  double LossOfHeld(const ParticleBatch& batch, int) override {
+    return Loss(batch, 0.0).item<double>();
   }
 };
 

@@ -27,7 +27,7 @@ namespace pushid {
 // A new kind is a value and a row here, and a row in ident/bodies/restoration_kinds.h, which names
 // the functions that make it from a file and train it.
 
-enum class RestorationKind { kRigid, kWindow, kCvae, kSimlpe, kMrt };
+enum class RestorationKind { kRigid, kWindow, kCvae, kMrt };
 
 struct RestorationKindRow {
   const char* name;  // in files and on the command line
@@ -44,15 +44,13 @@ inline constexpr RestorationKindRow kRestorationKinds[] = {
      false, false},
     {"window", RestorationKind::kWindow, "fast, default", true, true, true, true},
     {"cvae", RestorationKind::kCvae, "LDP's chain", true, true, false, true},
-    {"simlpe", RestorationKind::kSimlpe, "siMLPe, which continues 12 given frames", true, false,
-     false, false},
     {"mrt", RestorationKind::kMrt, "MRT, which continues 20 given frames of a whole group", true,
      false, false, false},
 };
 constexpr const auto& Names(RestorationKind) { return kRestorationKinds; }
 static_assert(RowsAreInOrder(kRestorationKinds), "RowOf finds a row by its value");
 
-// Of those that can be trained, for messages: "window, cvae, simlpe or mrt".
+// Of those that can be trained, for messages: "window, cvae or mrt".
 inline std::string TrainedRestorationKinds() {
   return AnyName<RestorationKind>([](const RestorationKindRow& row) { return row.trained; });
 }

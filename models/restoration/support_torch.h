@@ -3,6 +3,7 @@
 
 #include <torch/torch.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <sstream>
@@ -176,8 +177,31 @@ struct KeptRun : Run {
   }
 };
 
-// Training by epochs that keeps the best one: what the trainers of windows, of siMLPe and of MRT
-// share. Network: a module; `best` has the weights of the epoch with the least held-out loss.
+// Training by steps, with a point of the curve for every round of them. A round is of one stage.
+template <typename Run, typename Self>
+struct StepsRun : KeptRun<Run, Self> {
+  int step = 0;
+
+  virtual int AllSteps() const = 0;
+  virtual double Step() = 0;  // takes a step; its loss
+  // Of the stage that a step belongs to.
+  virtual const char* Stage(int of_step) const = 0;
+  virtual int StageEnd(int /*of_step*/) const { return AllSteps(); }
+  virtual double HeldLoss(int of_step) = 0;  // NaN where nothing is held
+  virtual void Finish() {}  // after the last step
+
+  bool Done() const override { return step >= AllSteps(); }
+  double ShareDone() const override { return static_cast<double>(step) / AllSteps(); }
+  TrainingPoint RunRound() override {
+    const int first = step, end = std::min(first + kStepsOfRound, StageEnd(first));
+    double sum = 0.0;
+    for (; step < end; ++step) sum += Step();
+    if (Done()) Finish();
+    return {step, sum / std::max(1, end - first), HeldLoss(first), Stage(first)};
+  }
+};
+
+// Training by epochs that keeps the best one: what the trainers of windows and of MRT share. Network: a module; `best` has the weights of the epoch with the least held-out loss.
 template <typename Network>
 struct Epochs {
   std::shared_ptr<Network> network, best;

@@ -24,6 +24,8 @@ struct TrainerOptions {
   int num_threads = 1;
 };
 
+inline constexpr int kStepsOfRound = 50;  // where a round is not an epoch
+
 // What one round (an epoch, or some steps) came to; for the training curve.
 struct TrainingPoint {
   int epoch = 0;

@@ -46,7 +46,7 @@ TEST(DiffusionTrainerTest, Learns) {
 }
 
 TEST(DiffusionTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
-  const DiffusionTrainingOptions options = QuickDiffusion(2 * kDiffusionRound);
+  const DiffusionTrainingOptions options = QuickDiffusion(2 * kStepsOfRound);
   const auto trained = [&options] {
     DiffusionTrainer trainer(PushedGroups(), PushedGroups(), options);
     while (!trainer.Done()) trainer.RunRound();
@@ -100,7 +100,7 @@ TEST(DiffusionTrainerTest, EigenEstimatesWhatLibTorchDoes) {
 
 // Eq. 4 of SDM alone: the other terms are errors, which add to it.
 TEST(DiffusionTrainerTest, WithoutItsOtherTermsTheLossIsSmaller) {
-  DiffusionTrainingOptions options = QuickDiffusion(kDiffusionRound);
+  DiffusionTrainingOptions options = QuickDiffusion(kStepsOfRound);
   DiffusionTrainer all(PushedGroups(), PushedGroups(), options);
   options.joint_weight = options.difference_weight = 0.0;
   DiffusionTrainer alone(PushedGroups(), PushedGroups(), options);

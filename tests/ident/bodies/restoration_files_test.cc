@@ -137,9 +137,9 @@ TEST_F(RestorationFilesTest, WhatIsWrongIsNamed) {
   EXPECT_TRUE(Contains(ErrorOf(Path("nowhere")), "pushid-train-restoration"));
   WriteWindow();
   Replace("\"window\"", "\"wndow\"");
-  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "'wndow'; it must be window, cvae, simlpe or mrt"));
+  EXPECT_TRUE(Contains(ErrorOf(Path("r")), "'wndow'; it must be window, cvae or mrt"));
   WriteWindow();
-  Replace("\"window\"", "\"simlpe\"");
+  Replace("\"window\"", "\"mrt\"");
   EXPECT_TRUE(Contains(ErrorOf(Path("r")), "a peer is named by --peer"));
   WriteWindow();
   Replace("\"format\": 1", "\"format\": 9");

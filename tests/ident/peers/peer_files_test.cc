@@ -106,7 +106,7 @@ TEST_F(PeerFilesTest, WhatIsWrongIsNamed) {
   };
   RestorationFile file;
   EXPECT_TRUE(Contains(error(file),
-                       "'window'; known are simlpe and mrt (what follows a pendulum is "
+                       "'window'; it must be mrt (what follows a pendulum is "
                        "named by --restoration)"));
   file.kind = RestorationKind::kMrt;
   EXPECT_TRUE(Contains(error(file), "scaling.tokens.mean is missing; train again"));
