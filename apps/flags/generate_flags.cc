@@ -69,7 +69,6 @@ namespace {
 const std::vector<PublishedFlags> kPublishedForecast = {
     {"sde",
      {{"protocol", "test"},
-      {"mirror", "false"},
       {"project_bones", "false"},
       {"noise_memory", "0"},
       {"correlated_noise", "false"}}},

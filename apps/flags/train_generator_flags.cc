@@ -75,7 +75,7 @@ DEFINE_bool(correction, kOptions.correction,
             "cmu: correct the error of the summed displacements over the whole forecast by a few "
             "low frequencies");
 DEFINE_double(ridge_share, kOptions.ridge_share,
-              "cmu: share of the linear forecast in the blend; 0: none");
+              "cmu: share of the linear forecast, which fades over the next frames; 0: none");
 DEFINE_double(ridge_penalty, kOptions.ridge_penalty,
               "cmu: ridge penalty of the linear forecast, m^2");
 DEFINE_double(checkpoint_seconds, kOptions.checkpoint_seconds,
@@ -93,13 +93,13 @@ namespace {
 // SDE: particles alone, f and g trained together by Eq. 6 as printed, Eq. 10-12, one GRU. The paper
 // does not give the weights of its losses in a form that fits metres; these were chosen here.
 const std::vector<PublishedFlags> kPublished = {
-    {"sde", {{"kind", "particles"},     {"dataset", "cmu"},        {"seeds", "1"},
-             {"cell", "gru"},           {"batch", "32"},           {"learning_rate", "0.001"},
-             {"constant_rate", "true"}, {"poses", "false"},        {"skip", "false"},
-             {"correction", "false"},   {"ridge_share", "0"},      {"jitter", "0"},
-             {"mirrored_share", "0"},   {"even_frames", "true"},   {"together", "true"},
-             {"noise_loss", "drawn"},   {"distance_weight", "0"},  {"squared_weight", "10"},
-             {"bone_weight", "1"},      {"critic_weight", "0.001"}}},
+    {"sde", {{"kind", "particles"},     {"dataset", "cmu"},      {"seeds", "1"},
+             {"cell", "gru"},           {"batch", "32"},         {"learning_rate", "0.001"},
+             {"constant_rate", "true"}, {"poses", "false"},      {"skip", "false"},
+             {"correction", "false"},   {"ridge_share", "0"},    {"simlpe_share", "0"},
+             {"jitter", "0"},           {"mirrored_share", "0"}, {"even_frames", "true"},
+             {"together", "true"},      {"noise_loss", "drawn"}, {"distance_weight", "0"},
+             {"squared_weight", "10"},  {"bone_weight", "1"},    {"critic_weight", "0.001"}}},
     // SDM: Tanke et al., ICCV 2023.
     {"sdm",
      {{"kind", "diffusion"},
@@ -159,7 +159,8 @@ MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
   const std::string pushes = "--dataset=pushes", cmu = "--dataset=cmu";
   for (const MaybeError& error :
        {is_cmu ? refuse({"recordings", "setting", "observed", "held_out"}, pushes)
-               : refuse({"folder", "with_validation", "correction", "ridge_share", "ridge_penalty"},
+               : refuse({"folder", "with_validation", "correction", "ridge_share", "ridge_penalty",
+                         "simlpe_share", "simlpe_steps"},
                         cmu),
         OfOtherKinds(kind),
         groups ? MaybeError()

@@ -91,7 +91,8 @@ const KindFlags<TrainGeneratorFlags> kParticleFlags(
      "pose_operator",     "particles",      "poses",          "together",
      "transition_weight", "constant_rate",  "mirrored_share", "even_frames",
      "distance_weight",   "squared_weight", "bone_weight",    "critic_weight",
-     "noise_loss",        "correction",     "ridge_share",    "ridge_penalty"},
+     "noise_loss",        "correction",     "ridge_share",    "ridge_penalty",
+     "simlpe_share",      "simlpe_steps"},
     ReadParticleFlags);
 
 }  // namespace

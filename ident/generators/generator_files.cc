@@ -7,7 +7,6 @@
 #include "datasets/files/random.h"
 #include "datasets/manifest/recording.h"
 #include "ident/bodies/tensor_folder.h"
-#include "ident/generators/push_particles.h"
 
 namespace pushid {
 namespace {
@@ -161,6 +160,36 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
                          nullptr};
 }
 
+namespace {
+
+constexpr char kSimlpePartner[] = "simlpe";  // of its tensors, beside particles
+
+Json SimlpeSettings(const std::vector<SimlpeNetwork>& members) {
+  return {{"members", members.size()},
+          {"blocks", members.empty() ? 0 : members.front().blocks.size()}};
+}
+
+std::vector<SimlpeNetwork> ReadSimlpeMembers(const std::string& name, const Json& json,
+                                             const GeneratorSettings& settings,
+                                             TensorReader* reader) {
+  const int count = ReadMembers(json), blocks = json.at("blocks");
+  Demand(blocks >= 1 && blocks <= kMostBlocks, "blocks must be 1 to 1000");
+  std::vector<SimlpeNetwork> members;
+  for (int m = 0; m < count; ++m) {
+    members.push_back(TakeSimlpe(MemberName(m, name), settings.observed,
+                                 settings.layout.num_coordinates(), blocks, reader));
+  }
+  return members;
+}
+
+double ReadShare(const Json& json, const char* key) {
+  const double share = json.value(key, 0.0);  // older files know no siMLPe
+  Demand(share >= 0.0 && share <= 1.0, std::string(key) + " must lie between 0 and 1");
+  return share;
+}
+
+}  // namespace
+
 Json TrainedParticles::Settings() const {
   const ParticleStructure& structure = members.front().structure;
   return {{"members", members.size()},
@@ -173,12 +202,16 @@ Json TrainedParticles::Settings() const {
           {"correlated_noise", structure.correlated_noise},
           {"corrected_frames", structure.corrected_frames},
           {"jitter", jitter},
-          {"ridge_share", ridge_share}};
+          {"ridge_share", ridge_share},
+          {"simlpe_share", simlpe_share},
+          {"simlpe", SimlpeSettings(partners.simlpe)}};
 }
 
 TensorList TrainedParticles::Tensors() const {
   TensorList tensors = TensorsOf(members);
+  const RidgeForecast& ridge = partners.ridge;
   if (ridge_share > 0.0) AddTensors("ridge", DenseLayer{ridge.weights, ridge.bias}, &tensors);
+  AddMembers(kSimlpePartner, partners.simlpe, &tensors);
   return tensors;
 }
 
@@ -197,54 +230,55 @@ SharedNetworks ReadParticles(const Json& json, const GeneratorSettings& settings
   structure.corrected_frames = json.value("corrected_frames", 0);
   structure.correlated_noise = json.value("correlated_noise", false);  // older files have none
   trained.jitter = json.at("jitter");
-  trained.ridge_share = json.at("ridge_share");
+  trained.ridge_share = ReadShare(json, "ridge_share");
+  trained.simlpe_share = ReadShare(json, "simlpe_share");
   Demand(structure.controls >= 0 && structure.controls <= kMostControls,
          "controls must be 0 to 1000");
   Demand(structure.corrected_frames >= 0 && structure.corrected_frames <= kMostCorrected,
          "corrected_frames must be 0 to 100000");
   Demand(trained.jitter >= 0.0, "jitter must not be negative");
-  Demand(trained.ridge_share >= 0.0 && trained.ridge_share <= 1.0,
-         "ridge_share must lie between 0 and 1");
   const int members = ReadMembers(json), size = settings.layout.num_coordinates();
   for (int m = 0; m < members; ++m) {
     trained.members.push_back(TakeParticles(MemberName(m), structure, size, reader));
+  }
+  if (trained.simlpe_share > 0.0) {
+    trained.partners.simlpe =
+        ReadSimlpeMembers(kSimlpePartner, json.at("simlpe"), settings, reader);
   }
   if (trained.ridge_share <= 0.0) return networks;
   Demand(settings.observed > kRidgeDisplacements, "the ridge needs more observed frames");
   DenseLayer ridge;
   TensorFields(reader).Layer("ridge", size * (1 + kRidgeDisplacements), size * settings.predicted,
                              &ridge);
-  trained.ridge = {ridge.weights, ridge.bias};
+  trained.partners.ridge = {ridge.weights, ridge.bias};
   return networks;
 }
 
 MaybeError TrainedParticles::Check(const GeneratorChanges& changes) const {
-  if (changes.ridge_share.value_or(0.0) <= 0.0 || ridge_share > 0.0) return std::nullopt;
-  return Error{"this generator was trained without a ridge; leave out --ridge_share"};
+  if (changes.ridge_share.value_or(0.0) > 0.0 && ridge_share <= 0.0) {
+    return Error{"this generator was trained without a ridge; leave out --ridge_share"};
+  }
+  if (changes.simlpe_share.value_or(0.0) > 0.0 && simlpe_share <= 0.0) {
+    return Error{"this generator was trained without siMLPe; leave out --simlpe_share"};
+  }
+  return std::nullopt;
 }
 
 std::unique_ptr<MotionGenerator> TrainedParticles::Make(const GeneratorSettings& settings,
                                                         const GeneratorChanges& changes) const {
   ParticleGeneratorOptions options = changes.particles;
   options.jitter = jitter;
-  if (settings.data == GeneratorData::kPushes) options.mirrored_controls = kMirroredPush;
-  options.ridge_share = ridge_share > 0.0 ? changes.ridge_share.value_or(ridge_share) : 0.0;
-  return std::make_unique<ParticleGenerator>(settings.layout, members, ridge, options);
+  options.ridge_share = changes.ridge_share.value_or(ridge_share);
+  options.simlpe_share = changes.simlpe_share.value_or(simlpe_share);
+  return std::make_unique<ParticleGenerator>(settings.layout, members, partners, options);
 }
 
-Json TrainedSimlpe::Settings() const {
-  return {{"members", members.size()}, {"blocks", members.front().blocks.size()}};
-}
+Json TrainedSimlpe::Settings() const { return SimlpeSettings(members); }
 
 SharedNetworks ReadSimlpe(const Json& json, const GeneratorSettings& settings,
                           TensorReader* reader) {
   const auto trained = std::make_shared<TrainedSimlpe>();
-  const int members = ReadMembers(json), blocks = json.at("blocks");
-  Demand(blocks >= 1 && blocks <= kMostBlocks, "blocks must be 1 to 1000");
-  for (int m = 0; m < members; ++m) {
-    trained->members.push_back(TakeSimlpe(MemberName(m), settings.observed,
-                                          settings.layout.num_coordinates(), blocks, reader));
-  }
+  trained->members = ReadSimlpeMembers(kMember, json, settings, reader);
   return trained;
 }
 

@@ -89,8 +89,8 @@ std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
 
 struct TrainedParticles : KindNetworks {
   std::vector<ParticleNetwork> members;  // of one structure
-  RidgeForecast ridge;                   // empty where ridge_share is 0
-  double ridge_share = 0.0;
+  BlendPartners partners;
+  double ridge_share = 0.0, simlpe_share = 0.0;
   double jitter = 0.0;  // of the pose in training, and in sampled futures
 
   GeneratorKind kind() const override { return GeneratorKind::kParticles; }

@@ -34,7 +34,7 @@ enum class GeneratorKind { kParticles, kDiffusion, kSimlpe };
 
 // What may differ from the training; unset: as trained.
 struct GeneratorChanges {
-  std::optional<double> ridge_share;
+  std::optional<double> ridge_share, simlpe_share;
   ParticleGeneratorOptions particles = {};
   DiffusionGeneratorOptions diffusion = {};
   uint64_t seed = 1;  // of the samples that a forecast by diffusion averages
@@ -85,10 +85,10 @@ struct GeneratorKindRow {
 inline constexpr GeneratorKindRow kGeneratorKinds[] = {
     {"particles", GeneratorKind::kParticles, "displacements with learned drift and noise", false,
      true, false, 20, 3, ReadParticles},
-    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, true,
-     true, 1, 1, ReadDiffusion},
-    {"simlpe", GeneratorKind::kSimlpe, "siMLPe, a perceptron to compare with", false, false,
-     false, 12, 1, ReadSimlpe},
+    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, true, true,
+     1, 1, ReadDiffusion},
+    {"simlpe", GeneratorKind::kSimlpe, "siMLPe, a perceptron to compare with", false, false, false,
+     12, 1, ReadSimlpe},
 };
 
 constexpr const auto& Names(GeneratorKind) { return kGeneratorKinds; }
@@ -123,11 +123,18 @@ void ParseSetting(const Json& json, const char* key, Value* value) {
 // How many networks a file has.
 int ReadMembers(const nlohmann::ordered_json& json);
 // What their tensors are called.
-inline std::string MemberName(size_t member) { return "member" + std::to_string(member); }
+inline constexpr char kMember[] = "member";
+inline std::string MemberName(size_t member, const std::string& name = kMember) {
+  return name + std::to_string(member);
+}
+template <typename Network>
+void AddMembers(const std::string& name, const std::vector<Network>& members, TensorList* tensors) {
+  for (size_t m = 0; m < members.size(); ++m) AddTensors(MemberName(m, name), members[m], tensors);
+}
 template <typename Network>
 TensorList TensorsOf(const std::vector<Network>& members) {
   TensorList tensors;
-  for (size_t m = 0; m < members.size(); ++m) AddTensors(MemberName(m), members[m], &tensors);
+  AddMembers(kMember, members, &tensors);
   return tensors;
 }
 

@@ -82,9 +82,9 @@ std::string SeedsCheckpoint(const std::string& path, int index) {
   return path.empty() ? "" : path + "." + std::to_string(index + 1);
 }
 
-// A network of every seed, from windows of motions.
+// Networks of so many seeds, from windows of motions.
 template <typename OfKind, typename Options, typename Network>
-MaybeError TrainSeeds(const GeneratorSamples& samples, const Options& of_kind,
+MaybeError TrainSeeds(const GeneratorSamples& samples, const Options& of_kind, int seeds,
                       const GeneratorTrainingOptions& options, const SeedRunner& run,
                       std::vector<Network>* members) {
   const int window = of_kind.observed + (of_kind.from_start ? 1 : of_kind.predicted);
@@ -94,7 +94,7 @@ MaybeError TrainSeeds(const GeneratorSamples& samples, const Options& of_kind,
     return Error{"there is nothing to train on: no motion has " + std::to_string(window) +
                  " frames"};
   }
-  for (int index = 0; index < options.seeds; ++index) {
+  for (int index = 0; index < seeds; ++index) {
     const Options of_seed = OfSeed(of_kind, index, options);
     OfKind trainer(samples.settings.layout, samples.learnt, samples.held, of_seed);
     if (MaybeError error = run(&trainer, KeyOf(samples, of_seed))) return error;
@@ -108,8 +108,8 @@ MaybeError TrainSeeds(const GeneratorSamples& samples, const Options& of_kind,
 Result<SharedNetworks> TrainSimlpe(const GeneratorSamples& samples,
                                    const GeneratorTrainingOptions& options, const SeedRunner& run) {
   const auto simlpe = std::make_shared<TrainedSimlpe>();
-  if (MaybeError error =
-          TrainSeeds<SimlpeTrainer>(samples, options.simlpe, options, run, &simlpe->members)) {
+  if (MaybeError error = TrainSeeds<SimlpeTrainer>(samples, options.simlpe, options.seeds, options,
+                                                   run, &simlpe->members)) {
     return *error;
   }
   return SharedNetworks(simlpe);
@@ -120,16 +120,23 @@ Result<SharedNetworks> TrainParticles(const GeneratorSamples& samples,
                                       const SeedRunner& run) {
   const auto particles = std::make_shared<TrainedParticles>();
   particles->jitter = options.particles.jitter;
-  if (MaybeError error = TrainSeeds<ParticleTrainer>(samples, options.particles, options, run,
-                                                     &particles->members)) {
+  if (MaybeError error = TrainSeeds<ParticleTrainer>(samples, options.particles, options.seeds,
+                                                     options, run, &particles->members)) {
     return *error;
+  }
+  if (options.simlpe_share > 0.0) {
+    if (MaybeError error = TrainSeeds<SimlpeTrainer>(samples, options.simlpe, 1, options, run,
+                                                     &particles->partners.simlpe)) {
+      return *error;
+    }
+    particles->simlpe_share = options.simlpe_share;
   }
   if (options.ridge_share > 0.0) {
     RidgeFit fit;
     for (const Trajectories& motion : samples.ridge) {
       fit.Add(motion, samples.settings.observed, samples.settings.predicted);
     }
-    particles->ridge = fit.Solve(options.ridge_penalty);
+    particles->partners.ridge = fit.Solve(options.ridge_penalty);
     particles->ridge_share = options.ridge_share;
   }
   return SharedNetworks(particles);
@@ -155,14 +162,16 @@ Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
                                         const GeneratorTrainingOptions& options,
                                         const TrainingProgress& progress) {
   TrainedGenerator trained;
+  const bool has_partner = options.kind == GeneratorKind::kParticles && options.simlpe_share > 0.0;
+  const int networks_in_all = options.seeds + (has_partner ? 1 : 0);
   int index = 0;
   const SeedRunner run = [&](Trainer* trainer, const std::string& key) {
     const auto told = [&](TrainingPoint* point) {
-      point->stage = "seed " + std::to_string(index + 1) + ", " + point->stage;
-      if (progress) progress(*point, (index + trainer->ShareDone()) / options.seeds);
+      point->stage = "network " + std::to_string(index + 1) + ", " + point->stage;
+      if (progress) progress(*point, (index + trainer->ShareDone()) / networks_in_all);
     };
     const CheckpointOptions checkpoint = {SeedsCheckpoint(options.checkpoint, index),
-                                          options.checkpoint_seconds, index + 1 < options.seeds};
+                                          options.checkpoint_seconds, index + 1 < networks_in_all};
     const MaybeError error = RunToEnd(trainer, key, checkpoint, told, &trained);
     ++index;
     return error;
@@ -290,7 +299,8 @@ void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* optio
   particles.even_frames = true;
   particles.structure.controls = kPushControls;
   particles.mirrored_controls = kMirroredPush;
-  options->ridge_share = 0.0;  // it knows one horizon only
+  // The ridge knows one horizon only, and siMLPe no push.
+  options->ridge_share = options->simlpe_share = 0.0;
 }
 
 }  // namespace pushid

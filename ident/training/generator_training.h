@@ -17,7 +17,9 @@ struct GeneratorTrainingOptions : TrainerOptions, CheckpointOptions, KindTrainin
   int seeds = RowOf(GeneratorKind::kParticles).seeds;  // networks that are averaged
   bool correction =
       true;  // cmu: of the whole forecast at once (models/generators/particle_network.h)
+  // cmu: of the blend that particles are part of.
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;
+  double simlpe_share = ParticleGeneratorOptions{}.simlpe_share;
   double ridge_penalty = 1e-2;  // m^2
 };
 
@@ -47,7 +49,7 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
 // Options that the data decide: frames of a window, where it starts, controls, the rate.
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options);
 
-// Stages of the curve are "seed 1, drift", ...
+// Stages of the curve are "network 1, drift", ...
 struct TrainedGenerator : TrainingCourse {
   TrainedNetworks networks;
 };

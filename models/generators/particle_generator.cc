@@ -46,50 +46,25 @@ class ColouredNoise {
 }  // namespace
 
 ParticleGenerator::ParticleGenerator(ParticleLayout layout, std::vector<ParticleNetwork> members,
-                                     RidgeForecast ridge, const ParticleGeneratorOptions& options)
+                                     BlendPartners partners,
+                                     const ParticleGeneratorOptions& options)
     : layout_(std::move(layout)),
       members_(std::move(members)),
-      ridge_(std::move(ridge)),
+      partners_(std::move(partners)),
       options_(options) {
   for (ParticleNetwork& member : members_) {
     if (!options_.correlated_noise) member.noise_mix.resize(0, 0);
   }
 }
 
-std::vector<ParticleGenerator::View> ParticleGenerator::Views() const {
-  std::vector<View> views;
-  for (const bool mirrored : {false, true}) {
-    if (mirrored && !options_.mirror) break;
-    for (const ParticleNetwork& member : members_) views.push_back({member, mirrored});
-  }
-  return views;
-}
-
-std::vector<ObservedMotion> ParticleGenerator::Seen(
-    const View& view, const std::vector<ObservedMotion>& people) const {
-  if (!view.mirrored) return people;
-  std::vector<ObservedMotion> seen;
-  for (const ObservedMotion& person : people) {
-    seen.push_back({Mirrored(person.frames, layout_),
-                    MirroredControls(person.controls, options_.mirrored_controls)});
-  }
-  return seen;
-}
-
-Trajectories ParticleGenerator::Back(const View& view, const Trajectories& motion) const {
-  return view.mirrored ? Mirrored(motion, layout_) : motion;
-}
-
-std::vector<Trajectories> ParticleGenerator::MeanOfViews(const std::vector<ObservedMotion>& people,
-                                                         int frames) const {
+std::vector<Trajectories> ParticleGenerator::MeanOfMembers(
+    const std::vector<ObservedMotion>& people, int frames) const {
   std::vector<Trajectories> motions = Empty(people, 1, frames);
-  const std::vector<View> views = Views();
-  const float share = 1.0f / static_cast<float>(views.size());
-  for (const View& view : views) {
-    const std::vector<ObservedMotion> seen = Seen(view, people);
-    ParticleRollout rollout(view.member, seen);
+  const float share = 1.0f / static_cast<float>(members_.size());
+  for (const ParticleNetwork& member : members_) {
+    ParticleRollout rollout(member, people);
     for (int t = 0; t < frames; ++t) {
-      const Eigen::MatrixXf poses = Back(view, rollout.Step());
+      const Eigen::MatrixXf& poses = rollout.Step();
       for (size_t n = 0; n < people.size(); ++n) {
         motions[n].col(t) += share * poses.col(static_cast<Eigen::Index>(n));
       }
@@ -100,12 +75,25 @@ std::vector<Trajectories> ParticleGenerator::MeanOfViews(const std::vector<Obser
 
 void ParticleGenerator::Blend(const std::vector<ObservedMotion>& people,
                               std::vector<Trajectories>* motions) const {
-  const float share = static_cast<float>(options_.ridge_share);
-  if (share <= 0.0f) return;
+  const Eigen::Index frames = motions->front().cols();
+  const Eigen::ArrayXf fading =
+      (-Eigen::ArrayXf::LinSpaced(frames, 1.0f, static_cast<float>(frames)) / kBlendFrames).exp();
+  // A share of the partner for every frame, and the rest of what was there.
+  const auto blend = [](const Eigen::ArrayXf& share, const Trajectories& partner,
+                        const Trajectories& members, Trajectories* motion) {
+    *motion += (partner - members) * share.matrix().asDiagonal();
+  };
   for (size_t n = 0; n < people.size(); ++n) {
-    Trajectories& motion = (*motions)[n];
-    motion =
-        (1.0f - share) * motion + share * ridge_.Forecast(people[n].frames).leftCols(motion.cols());
+    const Trajectories members = (*motions)[n], &seen = people[n].frames;
+    if (options_.ridge_share > 0.0) {
+      blend(static_cast<float>(options_.ridge_share) * fading,
+            partners_.ridge.Forecast(seen).leftCols(frames), members, &(*motions)[n]);
+    }
+    if (options_.simlpe_share > 0.0) {
+      blend(static_cast<float>(options_.simlpe_share) * (1.0f - fading),
+            MeanForecast(partners_.simlpe, seen, static_cast<int>(frames)), members,
+            &(*motions)[n]);
+    }
   }
 }
 
@@ -117,7 +105,7 @@ void ParticleGenerator::Finish(const ObservedMotion& person, Trajectories* motio
 std::vector<Trajectories> ParticleGenerator::Forecast(const std::vector<ObservedMotion>& people,
                                                       int frames) const {
   if (people.empty()) return {};
-  std::vector<Trajectories> motions = MeanOfViews(people, frames);
+  std::vector<Trajectories> motions = MeanOfMembers(people, frames);
   Blend(people, &motions);
   for (size_t n = 0; n < people.size(); ++n) Finish(people[n], &motions[n]);
   return motions;
@@ -128,19 +116,17 @@ std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
     const NormalSource& normal) const {
   std::vector<std::vector<SampledFuture>> futures(people.size());
   if (people.empty() || count <= 0) return futures;
-  const std::vector<Trajectories> mean = MeanOfViews(people, frames);
+  const std::vector<Trajectories> mean = MeanOfMembers(people, frames);
   std::vector<Trajectories> blend = mean;
   Blend(people, &blend);
-  const std::vector<View> views = Views();
-  const int num_views = static_cast<int>(views.size());
-  for (int v = 0; v < num_views; ++v) {
-    const int share = count / num_views + (v < count % num_views ? 1 : 0);
+  const int num_members = static_cast<int>(members_.size());
+  for (int m = 0; m < num_members; ++m) {
+    const int share = count / num_members + (m < count % num_members ? 1 : 0);
     if (share == 0) continue;
-    const std::vector<ObservedMotion> seen = Seen(views[v], people);
     std::vector<Trajectories> motions = Empty(people, share, frames);
     Eigen::MatrixXf jitter(layout_.num_coordinates(), static_cast<Eigen::Index>(motions.size()));
     for (float& value : jitter.reshaped()) value = static_cast<float>(options_.jitter * normal());
-    ParticleRollout rollout(views[v].member, seen, share, &jitter);
+    ParticleRollout rollout(members_[m], people, share, &jitter);
     Eigen::VectorXf log_likelihood = Eigen::VectorXf::Zero(static_cast<int>(motions.size()));
     ColouredNoise noise(layout_.num_coordinates(), log_likelihood.size(), options_);
     for (int t = 0; t < frames; ++t) {
@@ -152,7 +138,7 @@ std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
     }
     for (size_t i = 0; i < motions.size(); ++i) {
       const size_t n = i / static_cast<size_t>(share);
-      motions[i] = Back(views[v], motions[i]) + blend[n] - mean[n];
+      motions[i] += blend[n] - mean[n];
       Finish(people[n], &motions[i]);
       futures[n].push_back(
           {std::move(motions[i]), static_cast<double>(log_likelihood(static_cast<int>(i)))});
@@ -164,7 +150,7 @@ std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
 std::vector<SampledFuture> ParticleGenerator::Driven(const ObservedMotion& person, int frames,
                                                      const Eigen::MatrixXf& noise) const {
   const std::vector<ObservedMotion> people = {person};
-  const std::vector<Trajectories> mean = MeanOfViews(people, frames);
+  const std::vector<Trajectories> mean = MeanOfMembers(people, frames);
   std::vector<Trajectories> blend = mean;
   Blend(people, &blend);
   const int copies = static_cast<int>(noise.cols()), coordinates = layout_.num_coordinates();

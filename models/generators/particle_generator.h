@@ -1,19 +1,24 @@
-// models: several particle networks of different seeds, averaged, blended with the linear forecast,
-// and brought back to the person's bones.
+// models: several particle networks of different seeds, averaged, blended with the linear forecast
+// and with siMLPe, and brought back to the person's bones.
 //
-// Every member looks twice: at the motion as it is, and in the mirror, whose forecast is mirrored
-// back. The mean of both is the same left and right, as what was learned from is; it brings one
-// network to what three without it reach.
+//   S_t = (1 - r_t - s_t) particles_t + r_t ridge_t + s_t siMLPe_t
+//   r_t = ridge_share exp(-t / T),   s_t = simlpe_share (1 - exp(-t / T)),   T = 10 frames
 //
-// A sampled future is a sampled path of one view (a member, mirrored or not), the views taking
-// turns, with a draw of the pose's jitter, moved by what the blend differs from the views' mean: so
-// futures spread around the forecast as noise, views and what is not known of the pose do.
+// The linear forecast is good for the next frames alone, siMLPe for the far ones, both on actions
+// that none of them has learned from. Rejected: members that also forecast the mirror image, which
+// gain nothing beside siMLPe.
+//
+// A sampled future is a sampled path of one member, the members taking turns, with a draw of the
+// pose's jitter, moved by what the blend differs from the members' mean: so futures spread around
+// the forecast as noise, members and what is not known of the pose do. siMLPe and the ridge move
+// them all alike.
 #pragma once
 
 #include <vector>
 
 #include "models/generators/motion_generator.h"
 #include "models/generators/particle_network.h"
+#include "models/generators/simlpe_network.h"
 #include "models/particles.h"
 
 namespace pushid {
@@ -49,23 +54,30 @@ class RidgeFit {
   double count_ = 0.0;
 };
 
+// What is blended with the networks; empty where its share is 0.
+struct BlendPartners {
+  RidgeForecast ridge;
+  std::vector<SimlpeNetwork> simlpe = {};
+};
+
+inline constexpr float kBlendFrames = 10.0f;  // T
+
 struct ParticleGeneratorOptions {
-  double ridge_share = 0.3;   // of the linear forecast in the blend; 0 needs none
+  double ridge_share = 0.4;   // of the linear forecast before the first frame; 0 needs none
+  double simlpe_share = 0.5;  // of siMLPe in the far future; 0 needs none
   bool project_bones = true;  // to the lengths of the last frame that was seen
   double jitter = 0.7;        // of the pose in sampled futures; as the members were trained
   // Of the noise of sampled futures: e_t = memory e_{t-1} + sqrt(1 - memory^2) N(0, 1), times
   // scale. Both were chosen on the validation split, where the noise that was learned, drawn anew
   // every frame, covers 80 ms but too little of 1000 ms: errors of a forecast last.
   double noise_memory = 0.32, noise_scale = 1.0;
-  bool correlated_noise = true;               // off: coordinates are drawn independently
-  bool mirror = true;                         // members also look in the mirror
-  std::vector<float> mirrored_controls = {};  // the sign of each control there
+  bool correlated_noise = true;  // off: coordinates are drawn independently
 };
 
 class ParticleGenerator : public MotionGenerator {
  public:
   ParticleGenerator(ParticleLayout layout, std::vector<ParticleNetwork> members,
-                    RidgeForecast ridge, const ParticleGeneratorOptions& options);
+                    BlendPartners partners, const ParticleGeneratorOptions& options);
 
   const ParticleLayout& layout() const override { return layout_; }
   std::vector<Trajectories> Forecast(const std::vector<ObservedMotion>& people,
@@ -73,28 +85,20 @@ class ParticleGenerator : public MotionGenerator {
   std::vector<std::vector<SampledFuture>> Sample(const std::vector<ObservedMotion>& people,
                                                  int frames, int count,
                                                  const NormalSource& normal) const override;
-  // Of the first member, told the pose as it is and not in the mirror.
+  // Of the first member, told the pose as it is.
   std::vector<SampledFuture> Driven(const ObservedMotion& person, int frames,
                                     const Eigen::MatrixXf& noise) const override;
 
  private:
-  struct View {
-    const ParticleNetwork& member;
-    bool mirrored;
-  };
-  std::vector<View> Views() const;  // the members, then the members in the mirror
-  std::vector<ObservedMotion> Seen(const View& view,
-                                   const std::vector<ObservedMotion>& people) const;
-  Trajectories Back(const View& view, const Trajectories& motion) const;
-  // What the views forecast in the mean, without bones.
-  std::vector<Trajectories> MeanOfViews(const std::vector<ObservedMotion>& people,
-                                        int frames) const;
+  // What the members forecast in the mean, without bones.
+  std::vector<Trajectories> MeanOfMembers(const std::vector<ObservedMotion>& people,
+                                          int frames) const;
   void Blend(const std::vector<ObservedMotion>& people, std::vector<Trajectories>* motions) const;
   void Finish(const ObservedMotion& person, Trajectories* motion) const;
 
   ParticleLayout layout_;
   std::vector<ParticleNetwork> members_;
-  RidgeForecast ridge_;
+  BlendPartners partners_;
   ParticleGeneratorOptions options_;
 };
 

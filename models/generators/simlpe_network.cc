@@ -72,13 +72,18 @@ SimlpeNetwork TakeSimlpe(const std::string& name, int observed, int coordinates,
   return network;
 }
 
+Trajectories MeanForecast(const std::vector<SimlpeNetwork>& members, const Trajectories& seen,
+                          int frames) {
+  Trajectories sum = Trajectories::Zero(seen.rows(), frames);
+  for (const SimlpeNetwork& member : members) sum += member.Forecast(seen, frames);
+  return sum / static_cast<float>(members.size());
+}
+
 std::vector<Trajectories> SimlpeGenerator::Forecast(const std::vector<ObservedMotion>& people,
                                                     int frames) const {
   std::vector<Trajectories> motions;
   for (const ObservedMotion& person : people) {
-    Trajectories sum = Trajectories::Zero(person.frames.rows(), frames);
-    for (const SimlpeNetwork& member : members_) sum += member.Forecast(person.frames, frames);
-    motions.push_back(sum / static_cast<float>(members_.size()));
+    motions.push_back(MeanForecast(members_, person.frames, frames));
   }
   return motions;
 }

@@ -1,6 +1,6 @@
-// models: siMLPe, a peer to compare generators with: a perceptron over the cosine coefficients of
-// what was observed, without recurrence, displacements or noise (Guo et al., "Back to MLP: A Simple
-// Baseline for Human Motion Prediction", WACV 2023).
+// models: siMLPe, to blend particles with and to compare with: a perceptron over the cosine
+// coefficients of what was observed, without recurrence, displacements or noise (Guo et al., "Back
+// to MLP: A Simple Baseline for Human Motion Prediction", WACV 2023).
 //
 //   Z = D (S - pose_mean) / pose_spread        D: the orthonormal DCT-II over the T frames observed
 //   Y = Z W_in + b_in                          all coordinates, each coefficient alone
@@ -37,6 +37,10 @@ inline constexpr float kNormSmooth = 1e-5f;  // added to the variance
 void AddTensors(const std::string& name, const SimlpeNetwork& network, TensorList* tensors);
 SimlpeNetwork TakeSimlpe(const std::string& name, int observed, int coordinates, int blocks,
                          TensorReader* reader);
+
+// The mean of several seeds.
+Trajectories MeanForecast(const std::vector<SimlpeNetwork>& members, const Trajectories& seen,
+                          int frames);
 
 // Networks of several seeds averaged. It has no noise: there is nothing to sample.
 class SimlpeGenerator : public MotionGenerator {

@@ -194,7 +194,7 @@ TEST_F(DiffusionAppTest, MistakesAreNamed) {
   ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
   EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"needs --physics"}));
   EXPECT_TRUE(Refused(Generate({"--noise_scale=2"}), {"--noise_scale", "of diffusion"}));
-  EXPECT_TRUE(Refused(Generate({"--nomirror"}), {"--mirror", "of diffusion"}));
+  EXPECT_TRUE(Refused(Generate({"--simlpe_share=1"}), {"--simlpe_share", "of diffusion"}));
   EXPECT_TRUE(Refused(Generate({"--sampler=ode"}), {"--sampler is 'ode'"}));
   EXPECT_TRUE(Refused(Generate({"--id=nobody", "--page_out=" + Path("p.html")}), {"nobody"}));
 }

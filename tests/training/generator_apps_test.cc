@@ -31,7 +31,7 @@ class GeneratorAppTest : public TempDirTest {
                                  const std::vector<std::string>& more = {}) const {
     std::vector<std::string> flags = {
         "--folder=" + Path("clips"), "--out=" + Path(out), "--seeds=2", "--steps=20",
-        "--noise_steps=10",          "--batch=8",          "--quiet"};
+        "--noise_steps=10",          "--simlpe_steps=10",  "--batch=8", "--quiet"};
     flags.insert(flags.end(), more.begin(), more.end());
     return flags;
   }
@@ -113,8 +113,26 @@ TEST_F(GeneratorAppTest, SimlpeOnTheSameWindows) {
       Refused(Generate({"--samples=19"}), {"--samples has no effect on a generator of simlpe"}));
   EXPECT_TRUE(Refused(Train("g", {"--kind=simlpe"}), {"--noise_steps needs --kind=particles"}));
   EXPECT_TRUE(Refused(Train("g", {"--blocks=2"}), {"--blocks needs --kind=simlpe"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-train-generator", {"--kind=simlpe", "--dataset=pushes"}),
-                      {"trains on clips"}));
+}
+
+// Particles hold siMLPe beside them, of the same bits as one that is trained by itself.
+TEST_F(GeneratorAppTest, SimlpeIsBlendedWith) {
+  ASSERT_EQ(Train("g").exit_code, 0);
+  const auto settings = Json("g/generator.json")["settings"];
+  EXPECT_EQ(settings["simlpe"]["members"], 1);
+  const auto errors = [&](const std::vector<std::string>& flags) {
+    std::vector<std::string> all = {"--json_out=" + Path("e.json")};
+    all.insert(all.end(), flags.begin(), flags.end());
+    EXPECT_EQ(Generate(all).exit_code, 0);
+    return Json("e.json")["mean"]["MPJPE_mm"];
+  };
+  const auto without = errors({"--simlpe_share=0"});
+  EXPECT_NE(errors({}), without);
+  ASSERT_EQ(Train("g", {"--simlpe_share=0"}).exit_code, 0);
+  EXPECT_EQ(errors({}), without) << "particles are trained alike";
+  EXPECT_TRUE(Refused(Generate({"--simlpe_share=0.5"}), {"trained without siMLPe"}));
+  EXPECT_TRUE(Refused(Generate({"--simlpe_share=2"}), {"--simlpe_share is 2"}));
+  EXPECT_TRUE(Refused(Train("g", {"--simlpe_steps=0"}), {"--simlpe_steps is 0"}));
 }
 
 TEST_F(GeneratorAppTest, TheSameSeedGivesTheSameBits) {
@@ -240,6 +258,25 @@ TEST_F(PushGeneratorAppTest, ForecastsPushes) {
     EXPECT_LT(json["mean"]["MBLE_m"].get<double>(), 5e-3);
     EXPECT_TRUE(Contains(ReadText(Path("p.html")), id_));
   }
+}
+
+TEST_F(PushGeneratorAppTest, SimlpeForecastsPushesFromTwelveFrames) {
+  const std::vector<std::string> simlpe = {"--kind=simlpe", Recordings(), "--dataset=pushes",
+                                           "--steps=20",    "--blocks=2", "--quiet"};
+  std::vector<std::string> train = simlpe, validate = simlpe;
+  train.push_back("--out=" + Path("g"));
+  const AppRun trained = RunApp("pushid-train-generator", train);
+  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  EXPECT_EQ(Json(Path("g/generator.json"))["settings"]["observed"], 12);
+  const AppRun run = RunApp("pushid-generate",
+                            {"--model=" + Path("g"), Recordings(), "--json_out=" + Path("e.json")});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_GT(Json(Path("e.json"))["mean"]["MPJPE_m"].get<double>(), 0.0);
+  validate.insert(validate.end(), {"--crossvalidate=2", "--json_out=" + Path("v.json")});
+  ASSERT_EQ(RunApp("pushid-train-generator", validate).exit_code, 0);
+  EXPECT_EQ(Json(Path("v.json"))["recordings"].size(), 12u);
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--simlpe_share=0.5"}),
+                      {"--simlpe_share needs --dataset=cmu"}));
 }
 
 TEST_F(PushGeneratorAppTest, CrossValidates) {

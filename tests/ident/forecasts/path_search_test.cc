@@ -25,9 +25,8 @@ ParticleGenerator Steady() {
   network.drift.bias.setConstant(kDrift);
   network.noise.bias.setConstant(kLogNoise);
   ParticleGeneratorOptions options;
-  options.ridge_share = 0.0;
+  options.ridge_share = options.simlpe_share = 0.0;
   options.project_bones = false;
-  options.mirror = false;  // there the drift is another one
   return ParticleGenerator(FourParticles(), {network}, {}, options);
 }
 
@@ -59,7 +58,7 @@ TEST(PathToPose, OfIndependentStepsIsStraight) {
 TEST(PathToPose, IsAnOptimum) {
   ParticleNetwork network = RandomParticles(4);
   ParticleGeneratorOptions options;
-  options.ridge_share = 0.0;
+  options.ridge_share = options.simlpe_share = 0.0;
   const ParticleGenerator generator(FourParticles(), {network}, {}, options);
   const ObservedMotion seen = {SwayingMotion(25, 0.3f)};
   const Eigen::VectorXf target = SwayingMotion(40, 0.35f).col(25 + kFrames);

@@ -22,8 +22,9 @@ class GeneratorFilesTest : public TempDirTest {
     particles.members = {RandomParticles(1), RandomParticles(2)};
     RidgeFit fit;
     fit.Add(SwayingMotion(100, 0.0f), 12, 6);
-    particles.ridge = fit.Solve(1e-3);
-    particles.ridge_share = 0.3;
+    particles.partners = {fit.Solve(1e-3), {RandomSimlpe(1)}};
+    particles.ridge_share = 0.4;
+    particles.simlpe_share = 0.5;
     particles.jitter = 0.7;
   }
   std::string ErrorOf(const std::string& folder, const GeneratorChanges& changes = {}) {
@@ -64,16 +65,22 @@ TEST_F(GeneratorFilesTest, WhatMayChangeChanges) {
   ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
   GeneratorChanges changes;
   changes.ridge_share = 1.0;
+  changes.simlpe_share = 0.2;
   changes.particles.project_bones = false;
   const auto loaded = LoadGenerator(Path("g"), changes);
   ASSERT_TRUE(loaded.ok());
-  EXPECT_LT((loaded.value().generator->Forecast(people_, 6)[0] -
-             Particles().ridge.Forecast(people_[0].frames))
-                .norm(),
-            1e-5f);
+  ParticleGeneratorOptions options;
+  options.ridge_share = 1.0, options.simlpe_share = 0.2, options.project_bones = false;
+  const ParticleGenerator expected(FourParticles(), Particles().members, Particles().partners,
+                                   options);
+  EXPECT_EQ(loaded.value().generator->Forecast(people_, 6)[0], expected.Forecast(people_, 6)[0]);
   Particles().ridge_share = 0.0;
   ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
   EXPECT_TRUE(Contains(ErrorOf(Path("g"), changes), "trained without a ridge"));
+  changes.ridge_share.reset();
+  Particles().simlpe_share = 0.0;
+  ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
+  EXPECT_TRUE(Contains(ErrorOf(Path("g"), changes), "trained without siMLPe"));
 }
 
 TEST_F(GeneratorFilesTest, MistakesAreNamed) {
@@ -87,6 +94,16 @@ TEST_F(GeneratorFilesTest, MistakesAreNamed) {
   EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"lstm\""), "member0.input"));
   EXPECT_TRUE(Contains(ErrorAfter("\"members\": 2", "\"members\": 3"), "member2"));
   EXPECT_TRUE(Contains(ErrorAfter("\"members\": 2", "\"members\": 0"), "1 to 100"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"observed\": 3"), "simlpe0.block0.mix"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"simlpe_share\": 0.5", "\"simlpe_share\": 1.5"),
+                       "simlpe_share must lie between 0 and 1"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"blocks\": 2", "\"blocks\": 0"), "1 to 1000"));
+  Particles().partners.simlpe.clear();
+  EXPECT_TRUE(Contains(ErrorAfter("\"members\": 0", "\"members\": 1"), "blocks must be 1 to 1000"));
+  EXPECT_TRUE(Contains(
+      ErrorAfter("\"members\": 0,\n      \"blocks\": 0", "\"members\": 1,\n      \"blocks\": 2"),
+      "simlpe0.pose_mean is missing; train again"));
+  Particles().simlpe_share = 0.0;
   EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"observed\": 3"), "more observed frames"));
   EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"seen\": 12"), "observed"));
   EXPECT_TRUE(Contains(ErrorAfter("\"parent\": 0", "\"parent\": 7"), "particle 1"));

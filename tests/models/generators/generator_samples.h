@@ -66,4 +66,20 @@ inline ParticleNetwork RandomParticles(uint64_t seed, const ParticleStructure& s
   return network;
 }
 
+// Two blocks over twelve frames.
+inline SimlpeNetwork RandomSimlpe(uint64_t seed) {
+  Random random(seed);
+  const int size = FourParticles().num_coordinates();
+  const auto values = [&random](int count) { return RandomLayer(count, 1, 0.1, &random).bias; };
+  SimlpeNetwork network = {SwayingMotion(50, 0.0f).rowwise().mean(),
+                           Eigen::VectorXf::Constant(size, 0.1f),
+                           RandomLayer(size, size, 0.1, &random),
+                           RandomLayer(size, size, 0.1, &random),
+                           {}};
+  for (int i = 0; i < 2; ++i) {
+    network.blocks.push_back({RandomLayer(12, 12, 0.1, &random), values(size), values(size)});
+  }
+  return network;
+}
+
 }  // namespace pushid

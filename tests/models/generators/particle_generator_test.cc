@@ -133,22 +133,35 @@ class ParticleGeneratorTest : public ::testing::Test {
     for (float phase : {0.0f, 1.0f, 2.0f}) fit.Add(SwayingMotion(100, phase), 12, 6);
     ridge_ = fit.Solve(1e-4);
   }
-  ParticleGenerator Generator(double ridge_share, bool project_bones, bool mirror = false) const {
-    ParticleGeneratorOptions options;
-    options.ridge_share = ridge_share, options.project_bones = project_bones;
-    options.jitter = 0.0, options.mirror = mirror;
-    return {FourParticles(), {RandomParticles(1), RandomParticles(2)}, ridge_, options};
+  ParticleGenerator Generator(double ridge_share, bool project_bones,
+                              double simlpe_share = 0.0) const {
+    const ParticleGeneratorOptions options = {ridge_share, simlpe_share, project_bones, 0.0};
+    return {FourParticles(),
+            {RandomParticles(1), RandomParticles(2)},
+            {ridge_, {RandomSimlpe(1), RandomSimlpe(2)}},
+            options};
   }
   RidgeForecast ridge_;
   std::vector<ObservedMotion> people_ = {{SwayingMotion(12, 0.4f)}};
 };
 
-TEST_F(ParticleGeneratorTest, BlendsMembersAndTheLinearForecast) {
+// Shares by hand: the ridge fades by 1/e in ten frames, and siMLPe comes in as it goes.
+TEST_F(ParticleGeneratorTest, BlendsMembersTheLinearForecastAndSimlpe) {
   const Trajectories mean =
       0.5f * (Moved(RandomParticles(1), people_[0], 6) + Moved(RandomParticles(2), people_[0], 6));
-  const Trajectories expected = 0.7f * mean + 0.3f * ridge_.Forecast(people_[0].frames);
-  EXPECT_LT((Generator(0.3, false).Forecast(people_, 6)[0] - expected).norm(), 1e-5f);
   EXPECT_LT((Generator(0.0, false).Forecast(people_, 6)[0] - mean).norm(), 1e-5f);
+  const Trajectories& seen = people_[0].frames;
+  const Trajectories ridge = ridge_.Forecast(seen);
+  const Trajectories simlpe =
+      0.5f * (RandomSimlpe(1).Forecast(seen, 6) + RandomSimlpe(2).Forecast(seen, 6));
+  const Trajectories blend = Generator(0.4, false, 0.5).Forecast(people_, 6)[0];
+  for (int t = 1; t <= 6; ++t) {
+    const float fading = std::exp(-0.1f * static_cast<float>(t));
+    const float r = 0.4f * fading, s = 0.5f * (1.0f - fading);
+    const Eigen::VectorXf expected =
+        (1.0f - r - s) * mean.col(t - 1) + r * ridge.col(t - 1) + s * simlpe.col(t - 1);
+    EXPECT_LT((blend.col(t - 1) - expected).norm(), 1e-5f) << t;
+  }
 }
 
 TEST_F(ParticleGeneratorTest, NoiseMayBeDrawnIndependently) {
@@ -156,8 +169,8 @@ TEST_F(ParticleGeneratorTest, NoiseMayBeDrawnIndependently) {
   together.noise_mix.col(0).setConstant(0.5f);
   const auto first = [&](const ParticleNetwork& network, bool correlated) {
     ParticleGeneratorOptions options;
-    options.correlated_noise = correlated;
-    const ParticleGenerator generator(FourParticles(), {network}, ridge_, options);
+    options.simlpe_share = 0.0, options.correlated_noise = correlated;
+    const ParticleGenerator generator(FourParticles(), {network}, {ridge_}, options);
     Random random(1);
     return generator.Sample(people_, 6, 1, [&] { return random.Normal(); })[0][0].motion;
   };
@@ -165,39 +178,8 @@ TEST_F(ParticleGeneratorTest, NoiseMayBeDrawnIndependently) {
   EXPECT_EQ(first(together, false), first(RandomParticles(1), false));
 }
 
-// In the mirror the same members are asked of the mirrored past; half of the mean is theirs.
-TEST_F(ParticleGeneratorTest, LooksInTheMirror) {
-  const ParticleLayout layout = FourParticles();
-  const ObservedMotion turned = {Mirrored(people_[0].frames, layout)};
-  const Trajectories plain = Generator(0.0, false).Forecast(people_, 6)[0];
-  const Trajectories back = Mirrored(Generator(0.0, false).Forecast({turned}, 6)[0], layout);
-  ASSERT_GT((plain - back).norm(), 1e-3f);
-  const ParticleGenerator both = Generator(0.0, false, true);
-  const Trajectories forecast = both.Forecast(people_, 6)[0];
-  EXPECT_LT((forecast - 0.5f * (plain + back)).norm(), 1e-5f);
-  EXPECT_LT((both.Forecast({turned}, 6)[0] - Mirrored(forecast, layout)).norm(), 1e-5f);
-}
-
-TEST_F(ParticleGeneratorTest, PushesTurnInTheMirrorToo) {
-  ParticleStructure structure;
-  structure.controls = 2;
-  ParticleGeneratorOptions options;
-  options.ridge_share = 0.0, options.project_bones = false;
-  options.mirrored_controls = {1.0f, -1.0f};
-  const ParticleLayout layout = FourParticles();
-  const ParticleGenerator generator(layout, {RandomParticles(3, structure)}, {}, options);
-  ObservedMotion pushed = {people_[0].frames, Eigen::MatrixXf::Random(2, 18)};
-  const Trajectories forecast = generator.Forecast({pushed}, 6)[0];
-  pushed.frames = Mirrored(pushed.frames, layout);
-  const Trajectories otherwise = generator.Forecast({pushed}, 6)[0];
-  pushed.controls.row(1) *= -1.0f;
-  const Trajectories turned = generator.Forecast({pushed}, 6)[0];
-  EXPECT_LT((turned - Mirrored(forecast, layout)).norm(), 1e-5f);
-  EXPECT_GT((turned - otherwise).norm(), 1e-3f);
-}
-
 TEST_F(ParticleGeneratorTest, BonesKeepTheLengthsThatWereSeen) {
-  const ParticleGenerator generator = Generator(0.3, true);
+  const ParticleGenerator generator = Generator(0.3, true, 0.5);
   const Eigen::VectorXf seen = BoneLengths(people_[0].frames.rightCols(1), FourParticles());
   Random random(1);
   std::vector<Trajectories> motions = generator.Forecast(people_, 6);
@@ -213,7 +195,7 @@ TEST_F(ParticleGeneratorTest, BonesKeepTheLengthsThatWereSeen) {
 }
 
 TEST_F(ParticleGeneratorTest, SamplesSpreadAroundTheForecastAndRepeatThemselves) {
-  const ParticleGenerator generator = Generator(0.3, false);
+  const ParticleGenerator generator = Generator(0.3, false, 0.5);
   const auto sample = [&](uint64_t seed) {
     Random random(seed);
     return generator.Sample(people_, 6, 400, [&] { return random.Normal(); })[0];
@@ -232,8 +214,8 @@ TEST_F(ParticleGeneratorTest, SamplesSpreadAroundTheForecastAndRepeatThemselves)
 // Jitter alone spreads the futures too, and the forecast knows nothing of it.
 TEST_F(ParticleGeneratorTest, JitterOfThePoseSpreadsFutures) {
   const auto ends = [&](double jitter) {
-    const ParticleGenerator generator(FourParticles(), {RandomParticles(1)}, ridge_,
-                                      {0.0, false, jitter});
+    const ParticleGenerator generator(FourParticles(), {RandomParticles(1)}, {},
+                                      {0.0, 0.0, false, jitter});
     Random random(1);
     const auto futures = generator.Sample(people_, 6, 2, [&] { return random.Normal(); });
     const Trajectories forecast = generator.Forecast(people_, 6)[0];
@@ -253,19 +235,18 @@ TEST_F(ParticleGeneratorTest, JitterOfThePoseSpreadsFutures) {
   EXPECT_LT((a - b).norm(), 1e-5f);
 }
 
-// Noise of nothing: a future is its member's forecast, moved as the blend is, in the mirror or not.
+// Noise of nothing: a future is its member's forecast, moved as the blend moves their mean.
 TEST_F(ParticleGeneratorTest, WithoutNoiseTheMembersThemselvesAreSampled) {
-  const ParticleLayout layout = FourParticles();
-  const auto views = Generator(0.0, false, true).Sample(people_, 6, 4, [] { return 0.0; })[0];
-  const ObservedMotion turned = {Mirrored(people_[0].frames, layout)};
-  for (uint64_t m = 0; m < 2; ++m) {
-    const ParticleNetwork member = RandomParticles(m + 1);
-    EXPECT_LT((views[m].motion - Moved(member, people_[0], 6)).norm(), 1e-5f);
-    EXPECT_LT((views[m + 2].motion - Mirrored(Moved(member, turned, 6), layout)).norm(), 1e-5f);
+  for (const double share : {0.0, 0.5}) {
+    const ParticleGenerator generator = Generator(share, false, share);
+    const Trajectories moved =
+        generator.Forecast(people_, 6)[0] - Generator(0.0, false).Forecast(people_, 6)[0];
+    const auto futures = generator.Sample(people_, 6, 2, [] { return 0.0; })[0];
+    for (uint64_t m = 0; m < 2; ++m) {
+      const Trajectories expected = Moved(RandomParticles(m + 1), people_[0], 6) + moved;
+      EXPECT_LT((futures[m].motion - expected).norm(), 1e-5f);
+    }
   }
-  const auto futures = Generator(0.0, false).Sample(people_, 6, 2, [] { return 0.0; })[0];
-  EXPECT_LT((futures[0].motion - Moved(RandomParticles(1), people_[0], 6)).norm(), 1e-5f);
-  EXPECT_LT((futures[1].motion - Moved(RandomParticles(2), people_[0], 6)).norm(), 1e-5f);
 }
 
 // Noise that remembers: after two frames, of steps g e_1 and g e_2 with a correlation of 0.5, the
@@ -278,8 +259,8 @@ TEST_F(ParticleGeneratorTest, NoiseMayLast) {
   }
   network.skip.setZero();
   const auto spread = [&](double memory, double scale) {
-    const ParticleGenerator generator(FourParticles(), {network}, ridge_,
-                                      {0.0, false, 0.0, memory, scale});
+    const ParticleGenerator generator(FourParticles(), {network}, {},
+                                      {0.0, 0.0, false, 0.0, memory, scale});
     Random random(1);
     const auto futures = generator.Sample(people_, 2, 2000, [&] { return random.Normal(); });
     double square = 0.0;
@@ -291,8 +272,8 @@ TEST_F(ParticleGeneratorTest, NoiseMayLast) {
   EXPECT_NEAR(spread(0.0, 1.0), std::sqrt(2.0), 0.03);
   EXPECT_NEAR(spread(0.5, 1.0), std::sqrt(3.0), 0.04);
   EXPECT_NEAR(spread(0.5, 2.0), 2.0 * std::sqrt(3.0), 0.08);
-  const ParticleGenerator generator(FourParticles(), {network}, ridge_,
-                                    {0.0, false, 0.0, 0.5, 2.0});
+  const ParticleGenerator generator(FourParticles(), {network}, {},
+                                    {0.0, 0.0, false, 0.0, 0.5, 2.0});
   const auto still = generator.Sample(people_, 2, 1, [] { return 1.0; });
   // g is 1: -log(share scale) - 1/2 - log(2 pi) / 2 for each coordinate and frame.
   const double constant = -0.5 - 0.5 * std::log(2.0 * M_PI) - std::log(2.0);
