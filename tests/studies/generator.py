@@ -32,7 +32,8 @@ APART = [(SHORT,
            ("three networks and ridge", ["--simlpe_share=0"]),
            ("three networks and siMLPe", ["--ridge_share=0"]),
            ("**three networks, ridge and siMLPe** (default)", [])]),
-         ([*SHORT, *ALONE, "--correction=false"], [("three networks, `--correction=false`", [])])]
+         ([*SHORT, *ALONE, "--correction=false"], [("three networks, `--correction=false`", [])]),
+         (["--kind=simlpe"], [("siMLPe", [])])]
 ABLATIONS = [("as it is", []),
              ("without displacements, `--particles=false`", ["--particles=false"]),
              ("without the sum, `--pose_operator=false`", ["--pose_operator=false"]),

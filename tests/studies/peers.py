@@ -4,7 +4,7 @@ groups    MRT, siMLPe and the chain on all groups, five folds (models/restoratio
 sizes     what an epoch of MRT costs in its two sizes (models/restoration/README.md); five minutes
 
 Peers are given everybody's first frames; the chain the first one and the push, and with --observed as many as MRT. Times
-are those of one core. Needs pushid-train-restoration, which is built where LibTorch is found.
+are those of one core. Needs pushid-train-restoration and pushid-train-generator, which are built where LibTorch is found.
 """
 import json
 import os
@@ -43,10 +43,14 @@ def groups():
     physics = f"physics and `window {view}`"
     rows = [cells("the last pose held", "20 frames", "after those", still["static"]),
             cells("constant velocity", "20 frames", "after those", still["constant_velocity"])]
-    for kind, title, given in [("simlpe", "siMLPe", "12 frames"), ("mrt", "MRT", "20 frames")]:
-        found = crossvalidate(model, f"--kind={kind}")
-        rows.append(cells(title, given, "after those", found["baselines"][kind], seconds(found)))
-        rows.append(cells(title, given, "all", found["baselines"][f"{kind}_all_frames"]))
+    simlpe = studies.on_recordings("pushid-train-generator", "groups", "--kind=simlpe", "--dataset=pushes",
+                                   "--crossvalidate=5", "--quiet").json
+    mrt = crossvalidate(model, "--kind=mrt")
+    for title, given, found, after, whole in [
+            ("siMLPe", "12 frames", simlpe, simlpe, simlpe["baselines"]["generator_all_frames"]),
+            ("MRT", "20 frames", mrt, mrt["baselines"]["mrt"], mrt["baselines"]["mrt_all_frames"])]:
+        rows.append(cells(title, given, "after those", after, seconds(found)))
+        rows.append(cells(title, given, "all", whole))
     rows.append(cells(physics, "1 frame, the push", "all", first, seconds(first)))
     rows.append(cells(physics, "20 frames, the push", "after those", seen))  # trained as before
     rows.append(cells(physics, "20 frames, the push", "all", still["restoration_all_frames"]))

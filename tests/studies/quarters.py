@@ -190,26 +190,36 @@ def trained(setting, part, *flags):
     return folder
 
 
+def others(setting, part):
+    return ",".join(e["id"] for e in recordings(setting) if e["id"] not in part)
+
+
 def chain(setting, part):
-    """The chain and siMLPe, trained on a part and judged on all else; siMLPe is given 12 frames, which count as well."""
-    judged = [e["id"] for e in recordings(setting) if e["id"] not in part]
+    """The chain, trained on a part and judged on all else."""
     view = "--sees=neighbours" if setting == "groups" else "--sees=pendulum"
     return studies.on_recordings("pushid-evaluate", setting, f"--model={fitted(setting, part).path}",
-                                 f"--ids={','.join(judged)}", f"--restoration={trained(setting, part, view)}",
-                                 f"--peer={trained(setting, part, '--kind=simlpe')}", "--quiet").json
+                                 f"--ids={others(setting, part)}", f"--restoration={trained(setting, part, view)}",
+                                 "--quiet").json
+
+
+def simlpe(setting, part):
+    """siMLPe on the same recordings; it is given 12 frames, which do not count."""
+    model = studies.on_recordings("pushid-train-generator", setting, "--kind=simlpe", "--dataset=pushes",
+                                  f"--ids={','.join(part)}", "--quiet", out="out").path
+    return studies.on_recordings("pushid-generate", setting, f"--model={model}", f"--ids={others(setting, part)}",
+                                 "--quiet").json
 
 
 def bodies():
     rows = []
     for setting in ("single", "groups"):
-        found = [chain(setting, part) for part in parts(setting, 4)]
-        for title, of in [("physics and `window`", lambda one: one["mean"]),
-                          ("siMLPe, given 12 frames", lambda one: one["baselines"]["simlpe"]["mean"])]:
+        for title, method in [("physics and `window`", chain), ("siMLPe, given 12 frames", simlpe)]:
+            found = [method(setting, part)["mean"] for part in parts(setting, 4)]
             cells = []
             for key in ("MPJPE_m", "hipADE_m", "hipFDE_m", "FSE_cm"):
-                values = [of(one)[key] for one in found]
+                values = [one[key] for one in found]
                 cells.append(f"{number(statistics.mean(values))} ({number(min(values), 2)} to {number(max(values), 2)})")
-            cells.insert(3, f"{statistics.mean(of(one)['MBLE_m'] for one in found):.3f}")
+            cells.insert(3, f"{statistics.mean(one['MBLE_m'] for one in found):.3f}")
             rows.append([setting, title, *cells])
     return studies.table(["a quarter", "", *[title for _, title in METRICS], "MBLE, m", "FSE, cm a frame"], rows)
 
