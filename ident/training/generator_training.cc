@@ -45,9 +45,8 @@ std::string KeyOf(const GeneratorSamples& samples, const ParticleTrainingOptions
 }
 
 std::string KeyOf(const GeneratorSamples& samples, const SimlpeTrainingOptions& o) {
-  const ParticleTrainingOptions& of_particles = o;
   return "simlpe " + std::to_string(o.blocks) + " " + DoubleText(o.weight_decay) + " " +
-         KeyOf(samples, of_particles);
+         KeyOf(samples, static_cast<const ParticleTrainingOptions&>(o));
 }
 
 std::string KeyOf(const GeneratorSamples& samples, const DiffusionTrainingOptions& o) {
@@ -211,15 +210,6 @@ std::vector<ObservedGroup> ObservedGroups(const std::vector<BodyRecording>& reco
   return groups;
 }
 
-std::vector<PushKind> PushKindsAmong(const std::vector<BodyRecording>& recordings,
-                                     const std::vector<int>& among) {
-  std::set<PushKind> kinds;
-  for (int i : among) {
-    for (const PushKind kind : PushKindsOf(recordings[i].pendulum.scene)) kinds.insert(kind);
-  }
-  return {kinds.begin(), kinds.end()};
-}
-
 }  // namespace
 
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation) {
@@ -267,7 +257,11 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
   settings.rate = 1.0 / recordings.front().pendulum.scene.dt;
   settings.layout = PushLayout(recordings.front().joint_names);
   settings.pendulum = !pendulums.empty();
-  settings.push_kinds = PushKindsAmong(recordings, among);
+  std::set<PushKind> kinds;
+  for (int i : among) {
+    for (const PushKind kind : PushKindsOf(recordings[i].pendulum.scene)) kinds.insert(kind);
+  }
+  settings.push_kinds.assign(kinds.begin(), kinds.end());
   samples.learnt = People(recordings, among);
   samples.held = People(recordings, held);
   samples.groups = ObservedGroups(recordings, among, pendulums);
