@@ -94,7 +94,7 @@ TEST_F(GeneratorFilesTest, MistakesAreNamed) {
   EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"lstm\""), "member0.input"));
   EXPECT_TRUE(Contains(ErrorAfter("\"members\": 2", "\"members\": 3"), "member2"));
   EXPECT_TRUE(Contains(ErrorAfter("\"members\": 2", "\"members\": 0"), "1 to 100"));
-  EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"observed\": 3"), "simlpe0.block0.mix"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"observed\": 11"), "simlpe0.block0.mix"));
   EXPECT_TRUE(Contains(ErrorAfter("\"simlpe_share\": 0.5", "\"simlpe_share\": 1.5"),
                        "simlpe_share must lie between 0 and 1"));
   EXPECT_TRUE(Contains(ErrorAfter("\"blocks\": 2", "\"blocks\": 0"), "1 to 1000"));
