@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/explore/explore_section.h"
 #include "apps/figure_outputs.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
@@ -17,6 +18,9 @@
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
 DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");
 DEFINE_string(html_out, "", "write the whole report here: one self-contained page (HTML)");
+DEFINE_bool(explore, true,
+            "the page has a person to try the model on, with sliders (programs that were built "
+            "with emscripten)");
 DEFINE_bool(text, false, "print the whole report, not only the parameters");
 DEFINE_int32(num_threads, 1, "threads");
 
@@ -37,13 +41,14 @@ int WriteWhole(const FittedModel& model) {
   BuildReportOptions options;
   options.num_threads = FLAGS_num_threads;
   options.progress = line.OfJobs("recording");
-  const Report report = BuildReport(model, recordings.value(), options);
+  Report report = BuildReport(model, recordings.value(), options);
   line.Finish();
   if (FLAGS_text) std::printf("%s", ToText(report).c_str());
   if (FiguresAsked()) {
     if (MaybeError error = WriteFigures(model, report)) return Fail(*error);
   }
   if (FLAGS_html_out.empty()) return kDone;
+  if (FLAGS_explore) report.sections.insert(report.sections.begin() + 1, ExploreSection(model));
   if (MaybeError error = WriteFileAtomically(FLAGS_html_out, ToPage(report))) return Fail(*error);
   std::fprintf(stderr, "report written to %s\n", FLAGS_html_out.c_str());
   if (recordings.value().empty()) {

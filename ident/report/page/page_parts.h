@@ -56,7 +56,9 @@ svg .paper{fill:#fff}svg .ink,svg .axis{fill:#222}svg .faint{fill:#666}svg line.
 inline constexpr char kPageScript[] = R"js(
 (function () {
   'use strict';
-  const data = JSON.parse(document.getElementById('fig-data').textContent);
+  const holder = document.getElementById('fig-data');
+  if (!holder) return;
+  const data = JSON.parse(holder.textContent);
   const find = id => document.getElementById('fig-' + id);
   const list = find('recording'), time = find('time'), turn = find('turn');
   const play = find('play'), clock = find('clock'), stage = find('stage');
