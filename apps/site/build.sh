@@ -14,6 +14,9 @@ if [ ! -x "$bin/pushid-fit" ]; then
   exit 1
 fi
 rm -rf build/site
-PYTHONDONTWRITEBYTECODE=1 /usr/bin/env python3 apps/site/pages.py "$bin"
+python=/usr/bin/python3  # Debian's, which the module is built for
+export PYTHONDONTWRITEBYTECODE=1
+[ -x $python ] || python=python3
+$python apps/site/pages.py "$bin"
 mkdocs build --quiet --config-file apps/site/mkdocs.yml
-PYTHONDONTWRITEBYTECODE=1 /usr/bin/env python3 apps/site/links.py build/site/html
+$python apps/site/links.py build/site/html

@@ -78,7 +78,7 @@ def write(target, text):
 
 def tutorial_pages():
     """With what the commands print, run now. Python's, where the module is not built, without."""
-    able = tutorials.available()
+    able = tutorials.available(BIN)
     for name, (title, introduction, readme, _, _) in tutorials.TUTORIALS.items():
         target = f"tutorials/{name}.md"
         text = tutorials.with_outputs(name, BIN) if name in able else tutorials.text_of(name)
@@ -92,6 +92,19 @@ def flags():
             continue
         lines.append(f"## {program.name}\n\n```\n{output_of(program, '--helpfull').strip()}\n```\n")
     write("reference/flags.md", "\n".join(lines))
+
+
+def door():
+    """C++: what ident/fit.h and the headers that it opens say, as they say it."""
+    text = (ROOT / "ident/fit.h").read_text()
+    example = re.sub(r"^// ?", "", text.partition("#pragma once")[0], flags=re.M)
+    lines = [f"# C++\n\n`#include \"ident/fit.h\"`, `find_package(pushid)` and `pushid::ident` "
+             f"([how to install](../apps/README.md#installing)).\n\n```text\n{example.strip()}\n```\n"]
+    for header in re.findall(r'#include "(.*)"', text):
+        code = re.sub(r'^#(?:pragma|include).*\n', "", (ROOT / header).read_text(), flags=re.M)
+        code = re.sub(r"\n{3,}", "\n\n", code)
+        lines.append(f"## {header}\n\n```cpp\n{code.strip()}\n```\n")
+    write("reference/cpp.md", "\n".join(lines))
 
 
 def validation():
@@ -112,8 +125,12 @@ def main():
     for page in sources():
         name = page.relative_to(ROOT)
         write(name, place(page.read_text(), name, name))
+    for page in sorted((ROOT / "apps/site/pages").glob("*.md")):
+        name = page.relative_to(ROOT)
+        write(f"guides/{page.name}", place(page.read_text(), name, f"guides/{page.name}"))
     tutorial_pages()
     flags()
+    door()
     write("reference/parameters.md", "# Parameters\n\n" + output_of(BIN / "pushid-fit", "--list_parameters"))
     stubs = (ROOT / "apps/python/pushid/__init__.pyi").read_text()
     write("reference/python.md", "# Python\n\n[How to use it](../apps/python/README.md). Every function and its types:\n\n"

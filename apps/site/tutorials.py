@@ -1,8 +1,8 @@
 """The tutorials of the site: sections of READMEs whose commands (```sh, ```toml and ```python blocks) are run as they are
 written, on synthetic recordings, with what they print put below them.
 
-  tutorials.py BIN    runs them all; fails with the first command that does (PYTHONPATH: where `import pushid` is; without it
-                      the tutorial of Python is left out)
+  tutorials.py BIN [NAME ...]    runs those named, or all; fails with the first command that does. `import pushid` is that of
+                                 BIN/../python, or an installed one; where it does not work, Python's is left out of all.
 """
 import os
 import pathlib
@@ -79,7 +79,7 @@ def with_outputs(name, binaries):
                 commands = f"'{sys.executable}' - <<'END_OF_PYTHON'\n{commands}END_OF_PYTHON\n"
             script += f"exec >'{folder}/{i}.txt'\n{commands}"
         done = subprocess.run(["bash", "-c", script], cwd=folder, capture_output=True, text=True, check=False,
-                              env=dict(os.environ, PATH=f"{binaries}:{os.environ['PATH']}", OPENBLAS_NUM_THREADS="1"))
+                              env=surroundings(binaries))
         if done.returncode != 0:
             reached = sum(os.path.exists(f"{folder}/{i}.txt") for i in range(len(blocks)))
             sys.exit(f"tutorial {name}: exit code {done.returncode} in block {reached} of {len(blocks)}:\n"
@@ -94,15 +94,21 @@ def with_outputs(name, binaries):
     return text
 
 
-def available():
+def surroundings(binaries):
+    return dict(os.environ, PATH=f"{binaries}:{os.environ['PATH']}", OPENBLAS_NUM_THREADS="1",
+                PYTHONPATH=f"{binaries.parent}/python:{os.environ.get('PYTHONPATH', '')}")
+
+
+def available(binaries):
     """Python's tutorial only where `import pushid` works."""
-    module = subprocess.run([sys.executable, "-c", "import pushid; pushid.simulate"], capture_output=True, check=False)
+    module = subprocess.run([sys.executable, "-c", "import pushid; pushid.simulate"], capture_output=True, check=False,
+                            env=surroundings(binaries))
     return [name for name in TUTORIALS if name != "python" or module.returncode == 0]
 
 
 def main():
     binaries = pathlib.Path(sys.argv[1]).resolve()
-    for name in sys.argv[2:] or available():
+    for name in sys.argv[2:] or available(binaries):
         printed = with_outputs(name, binaries).count("```text")
         print(f"{name}: {len(BLOCK.findall(text_of(name)))} blocks, {printed} outputs")
 
