@@ -22,8 +22,8 @@ using Json = nlohmann::json;
 
 constexpr char kHtml[] = R"html(<style>
 .exp-sliders{display:grid;grid-template-columns:repeat(auto-fill,minmax(17rem,1fr));gap:.1rem 1.4rem;font-size:.85rem}
-.exp-sliders label{display:grid;grid-template-columns:7.5rem 1fr 6.5rem;gap:.5rem;align-items:center}
-.exp-sliders input{min-width:0}.exp-sliders output{font-variant-numeric:tabular-nums}
+.exp-sliders label{display:grid;grid-template-columns:6rem 1fr 8rem;gap:.5rem;align-items:center}
+.exp-sliders input{min-width:0}.exp-sliders output{font-variant-numeric:tabular-nums;white-space:nowrap}
 .exp-pictures{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(20rem,100%),1fr));gap:.6rem;margin-top:.6rem}
 .exp-pictures svg{background:var(--box);border-radius:4px;width:100%;height:300px}
 .exp-band{fill:#3b82f6;fill-opacity:.2}.exp-path{stroke:#3b82f6;stroke-width:2}

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "tests/apps/run_app.h"
 
@@ -86,11 +87,18 @@ onload = () => document.body.append(
 }
 
 // The page's elements after its scripts ran, on stdout; what the console said, on stderr. profile:
-// a folder for the browser's own files.
-inline AppRun Browse(const std::string& profile, const std::string& page) {
-  return RunProgram(Browser(), {"--headless", "--no-sandbox", "--disable-gpu",
-                                "--enable-logging=stderr", "--window-size=1000,800",
-                                "--user-data-dir=" + profile, "--dump-dom", "file://" + page});
+// a folder for the browser's own files. milliseconds: of the page's time, for what it has to wait
+// for; 0: none.
+inline AppRun Browse(const std::string& profile, const std::string& page, int milliseconds = 0) {
+  std::vector<std::string> flags = {"--headless",
+                                    "--no-sandbox",
+                                    "--disable-gpu",
+                                    "--enable-logging=stderr",
+                                    "--window-size=1000,800",
+                                    "--user-data-dir=" + profile};
+  if (milliseconds > 0) flags.push_back("--virtual-time-budget=" + std::to_string(milliseconds));
+  flags.insert(flags.end(), {"--dump-dom", "file://" + page});
+  return RunProgram(Browser(), flags);
 }
 
 // What a probe said; a remark of its own where the page's script stopped early.
