@@ -45,7 +45,7 @@ install(DIRECTORY ${PROJECT_BINARY_DIR}/share/pushid/models DESTINATION ${CMAKE_
 install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT programs)
 
 # Debian packages: a component each, as its policy has them (lintian, tests/install/consumer_test.sh).
-set(maintainer "The pushid authors <pushid@users.noreply.github.com>")
+set(maintainer "The pushid authors <nobody@pushid.invalid>")
 string(TIMESTAMP today "%a, %d %b %Y %H:%M:%S +0000" UTC)
 file(WRITE ${PROJECT_BINARY_DIR}/changelog
   "pushid (${PROJECT_VERSION}) unstable; urgency=medium\n\n  * CHANGELOG.md of the sources says what changed.\n\n"
