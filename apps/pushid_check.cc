@@ -79,7 +79,7 @@ int Run() {
   if (!checks.value().Any()) {
     return Fail(
         "nothing is asked; give one of --profile, --bootstrap=199, --prior_check, "
-        "--push_check, --horizon_check, --design=all and --population");
+        "--push_check, --horizon_check, --learn_forecasts, --design=all and --population");
   }
   const std::string& out = FLAGS_model_out.empty() ? FLAGS_model : FLAGS_model_out;
   const bool writes = checks.value().Adds() || !FLAGS_model_out.empty();

@@ -38,6 +38,9 @@ DEFINE_bool(prior_check, false, "refit with the means and widths of all priors h
 DEFINE_bool(
     horizon_check, false,
     "refit the first 8, 16, 32 and 64 frames: a parameter with physical meaning keeps its value");
+DEFINE_bool(learn_forecasts, false,
+            "learn what predictions from first frames (--observed of pushid-predict and "
+            "pushid-evaluate) are put together by, on recordings left out in turn");
 
 namespace pushid {
 
@@ -58,6 +61,7 @@ Result<ModelChecks> ModelChecksFromCommandLine(uint64_t seed, int num_threads) {
   checks.push_check = FLAGS_push_check;
   checks.prior_check = FLAGS_prior_check;
   checks.horizon_check = FLAGS_horizon_check;
+  checks.learn_forecasts = FLAGS_learn_forecasts;
   checks.pushes.sensor_noise = FLAGS_push_check_noise;
   checks.population = FLAGS_population;
   checks.design = FLAGS_design;

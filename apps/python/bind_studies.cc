@@ -81,6 +81,12 @@ void CheckHorizonsOf(Model* model, int num_threads, const py::object& progress) 
   });
 }
 
+void LearnForecastsOf(Model* model, int num_threads) {
+  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
+    return AddForecasts(recordings, num_threads, fitted);
+  });
+}
+
 using Json = nlohmann::ordered_json;
 
 // A number for each name; none where there are none.
@@ -145,6 +151,7 @@ void BindStudies(py::module_* module) {
   module->def("prior_check", &CheckPriorsOf);
   module->def("push_check", &CheckPushesOf);
   module->def("horizon_check", &CheckHorizonsOf);
+  module->def("learn_forecasts", &LearnForecastsOf);
   module->def("design", &DesignOf);
 }
 

@@ -5,6 +5,7 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "ident/fit/cross_fit.h"
 #include "ident/observed/recording_effect.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/push/push_check.h"
@@ -62,6 +63,11 @@ MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
     return Error{
         "--horizon_check compares rollouts of many lengths, including single steps; leave "
         "--likelihood out"};
+  }
+  if (checks.learn_forecasts && options.model.push_tail == PushTail::kNone) {
+    return Error{
+        "--learn_forecasts needs a push tail, and the model has none; add --push_tail=exponential "
+        "(the presets tail and group have it)"};
   }
   if (checks.population && options.model.push_tail == PushTail::kNone) {
     return Error{
@@ -159,6 +165,11 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
   if (checks.horizon_check) {
     AddHorizonCheck(recordings, checks.num_threads, progress("horizon"), model);
   }
+  if (checks.learn_forecasts) {
+    if (MaybeError error = AddForecasts(recordings, checks.num_threads, model)) {
+      return Error{"--learn_forecasts: " + error->ToString()};
+    }
+  }
   model->advice = Advise(*model);
   return std::nullopt;
 }
@@ -168,7 +179,9 @@ Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordin
   std::string text;
   if (checks.population && fit.recording_effect) {
     text = "\n" + PopulationText(*fit.recording_effect);
-    if (fit.forecasts) text += "\n" + ForecastText(*fit.forecasts);
+  }
+  if ((checks.population || checks.learn_forecasts) && fit.forecasts) {
+    text += "\n" + ForecastText(*fit.forecasts);
   }
   if (checks.design.empty()) return text;
   const Result<std::string> design = DesignText(DesignExperiments(recordings, fit), checks.design);
@@ -240,6 +253,20 @@ void AddPriorCheck(const std::vector<PendulumRecording>& recordings, FittedModel
       if (e.name == known.name) e.status = EstimateStatus::kWeak;
     }
   }
+}
+
+MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int num_threads,
+                        FittedModel* model) {
+  FitResult& fit = model->fit;
+  if (!fit.recording_effect) {
+    return Error{"the model tells no effects of recordings, which forecasts estimate first; it "
+                 "needs a push tail, and a recording with a push"};
+  }
+  const FitProblem problem(recordings, fit.options);
+  const FitPoint& optimum = fit.starts[fit.best_start].to;
+  fit.forecasts = CrossFitForecasts(problem, optimum, ModelOf(fit), recordings, num_threads);
+  if (fit.forecasts) return std::nullopt;
+  return Error{"no recording stays in the model's domain"};
 }
 
 void AddHorizonCheck(const std::vector<PendulumRecording>& recordings, int num_threads,

@@ -17,6 +17,7 @@ struct ModelChecks {
   std::string profile;         // names, comma-separated; all; empty: none
   BootstrapOptions bootstrap;  // of which `replicas` may be 0: none
   bool push_check = false, prior_check = false, horizon_check = false;
+  bool learn_forecasts = false;
   PushVariantOptions pushes;  // of push_check
   bool population = false;
   std::string design;  // a parameter, or all; empty: none
@@ -24,7 +25,8 @@ struct ModelChecks {
 
   // Whether they add to the model; population and design are only printed.
   bool Adds() const {
-    return !profile.empty() || bootstrap.replicas > 0 || push_check || prior_check || horizon_check;
+    return !profile.empty() || bootstrap.replicas > 0 || push_check || prior_check || horizon_check ||
+           learn_forecasts;
   }
   bool Any() const { return Adds() || population || !design.empty(); }
 };
@@ -63,6 +65,9 @@ MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
                         FittedModel* model);
 // An identified parameter that leaves its interval under other priors becomes weak.
 void AddPriorCheck(const std::vector<PendulumRecording>& recordings, FittedModel* model);
+// What predictions from first frames need. Errors: the model has no push tail.
+MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int num_threads,
+                        FittedModel* model);
 void AddHorizonCheck(const std::vector<PendulumRecording>& recordings, int num_threads,
                      const JobProgress& progress, FittedModel* model);
 

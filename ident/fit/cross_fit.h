@@ -1,6 +1,8 @@
-// ident: a fitted model again, without a fold of its recordings (observed/learn_forecasts.h).
+// ident: a fitted model again, without a fold of its recordings, and what its forecasts then teach
+// (observed/learn_forecasts.h).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "ident/observed/learn_forecasts.h"
@@ -15,5 +17,13 @@ namespace pushid {
 // large networks, bodies. Folds without a usable optimum are left out.
 std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optimum,
                                 const IdentifiedModel& model, int num_threads);
+
+// What forecasts from first frames are put together by, learned on recordings left out in turn. Of
+// a model with a recording effect; none where no recording stays in its domain. recordings: the
+// problem's, in the axes of their files.
+std::optional<ForecastStack> CrossFitForecasts(const FitProblem& problem, const FitPoint& optimum,
+                                               const IdentifiedModel& model,
+                                               const std::vector<PendulumRecording>& recordings,
+                                               int num_threads);
 
 }  // namespace pushid

@@ -10,7 +10,6 @@
 #include "ident/fit/step_probability.h"
 #include "ident/fit/weighted_solve.h"
 #include "ident/model/push_range.h"
-#include "ident/observed/learn_forecasts.h"
 #include "ident/observed/recording_effect.h"
 #include "ident/solver/likelihood_solve.h"
 #include "ident/uncertainty/model_verdict.h"
@@ -90,28 +89,16 @@ void AddTakeover(const std::vector<PendulumRecording>& recordings, FitResult* re
   }
 }
 
-// How recordings differ, and what is known of forecasts that see them begin.
-template <typename Fitted>
-void AddForecasts(const SolvedFit& fit, const std::vector<PendulumRecording>& recordings,
-                  IdentifiedModel model, Fitted* fitted) {
-  const int threads = fit.problem.options().num_threads;
-  model.recording_effect = fitted->recording_effect =
-      FitRecordingEffect(model, recordings, threads);
-  if (!model.recording_effect) return;
-  const std::vector<FoldModel> folds = CrossFit(fit.problem, fit.Best().to, model, threads);
-  fitted->forecasts = LearnForecasts(model, recordings, folds, threads);
-}
-
 // What predictions need to know of the recordings.
-void AddFittedTo(const SolvedFit& fit, const std::vector<PendulumRecording>& recordings,
-                 FitResult* result) {
+void AddFittedTo(const std::vector<PendulumRecording>& recordings, FitResult* result) {
   if (const PushedFeet feet = FeetOf(recordings); feet.seen > 0) result->feet = feet;
   result->push_range = FittedPushRange(ModelOf(*result), recordings);
   const auto steps = FitStepProbability(ModelOf(*result), recordings);
   if (steps && steps->stepped > 0 && steps->stepped < steps->tracks) {
     result->step_probability = steps;
   }
-  AddForecasts(fit, recordings, ModelOf(*result), result);
+  result->recording_effect =
+      FitRecordingEffect(ModelOf(*result), recordings, result->options.num_threads);
 }
 
 void AddWarnings(const SolvedFit& fit, FitResult* result) {
@@ -145,6 +132,8 @@ FitResult Judge(const SolvedFit& fit) {
   const FitProblem& problem = fit.problem;
   const FitPoint& optimum = fit.Best().to;
   const std::optional<FitPoint>& free = fit.solved.free;
+  WorkLog work = fit.solved.work;
+  work.Add("noise");
 
   // Errors clustered by person, and the shares of data and priors (uncertainty.h).
   result.uncertainty = ComputeUncertainty(problem, optimum, free ? &*free : nullptr);
@@ -152,7 +141,9 @@ FitResult Judge(const SolvedFit& fit) {
 
   // The verdict: whether the model fits, what would change if what was taken as known were not,
   // and which estimates may be called identified (model_verdict.h).
+  work.Add("standard errors");
   result.verdict = JudgeModel(problem, optimum, &result.uncertainty);
+  work.Add("verdict");
 
   // Tables: parameters, what ties units together, combinations, values of every unit.
   result.estimates = TableOfEstimates(problem, result.parameters, result.uncertainty);
@@ -163,8 +154,10 @@ FitResult Judge(const SolvedFit& fit) {
   result.contrast = ContrastAt(problem, optimum, result.uncertainty);
 
   // The recordings that it was fitted to: their pushes, steps and effects.
+  work.Add("tables");
   AddTakeover(problem.recordings(), &result);
-  AddFittedTo(fit, problem.recordings(), &result);
+  AddFittedTo(problem.recordings(), &result);
+  work.Add("recording effects");
 
   // Residuals: what the model leaves unexplained, recording by recording.
   result.diagnostics = Diagnose(problem, fit.Best(), result.uncertainty);
@@ -173,8 +166,11 @@ FitResult Judge(const SolvedFit& fit) {
     result.likelihood = ScoreByLikelihood(problem, optimum);
   }
 
+  work.Add("diagnostics");
+
   // Warnings; and what a model keeps of its covariance.
   AddWarnings(fit, &result);
+  result.work = work.parts();
   ForgetWeights(static_cast<Eigen::Index>(optimum.weights.size()), &result);
   return result;
 }
@@ -204,7 +200,13 @@ Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordi
   IdentifiedModel model = ModelOf(ResultOf(fit.value()));
   model.push_range = FittedPushRange(model, recordings);
   model.step_probability = FitStepProbability(model, recordings);
-  if (forecasts) AddForecasts(fit.value(), recordings, model, &model);
+  if (!forecasts) return model;
+  const SolvedFit& solved = fit.value();
+  model.recording_effect = FitRecordingEffect(model, recordings, options.num_threads);
+  if (model.recording_effect) {
+    model.forecasts = CrossFitForecasts(solved.problem, solved.Best().to, model, recordings,
+                                        options.num_threads);
+  }
   return model;
 }
 

@@ -167,14 +167,18 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
   WeightedSolution solved;
   Solution& solution = solved.solution;
   solution = Solve(Roughly(*problem), progress);
+  solved.work.Add("starts and horizons");
   bool again = solution.best >= 0;
   for (int change = 0; again && change <= kMostChanges; ++change) {
     problem->set_settling_weight(0.0);
     solved.settling = {};
     solved.free.reset();
     solved.weights_settled = Weigh(problem, &solution.starts[solution.best]);
+    solved.work.Add("weights");
     Demand(weight, problem, &solved);
+    solved.work.Add("settling");
     again = SolveOthers(*problem, &solution);
+    solved.work.Add("other starts");
   }
   if (again) solved.free.reset();  // that of another start
   if (solution.best < 0) problem->set_settling_weight(weight);
@@ -191,6 +195,7 @@ WeightedSolution SolveAsAsked(FitProblem* problem, const SolveProgress& progress
   WeightedSolution solved;
   solved.solution = std::move(by_steps.solution);
   solved.weights_settled = by_steps.stays;
+  solved.work.Add("likelihood");
   return solved;
 }
 

@@ -22,6 +22,7 @@
 #include "ident/model/identified_model.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/work.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/uncertainty.h"
 
@@ -32,6 +33,7 @@ struct WeightedSolution {
   bool weights_settled = false;  // within 1 %
   SettlingDemand settling;
   std::optional<FitPoint> free;  // the optimum without the demand, where that binds and holds
+  WorkLog work;                  // since the solve began
 };
 
 // problem: on return as it was weighed last, without a demand that was dropped.

@@ -12,6 +12,7 @@
 #include "ident/parameters/fit_options.h"
 #include "ident/parameters/pushed_feet.h"
 #include "ident/problem/behaviour.h"
+#include "ident/problem/work.h"
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/contrast.h"
@@ -72,6 +73,7 @@ struct FitResult {
   std::string message;
   Warnings warnings;
   double solve_seconds = 0.0;
+  std::vector<Work> work;  // of solve and judgement; empty in older files
 
   bool ok() const { return best_start >= 0; }
 };

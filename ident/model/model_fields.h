@@ -87,6 +87,14 @@ void Fields(Archive& a, SolveStart& s) {
 }
 
 template <class Archive>
+void Fields(Archive& a, Work& w) {
+  a("purpose", w.purpose);
+  a("jacobians", w.evaluations.jacobians);
+  a("costs", w.evaluations.costs);
+  a("seconds", w.seconds);
+}
+
+template <class Archive>
 void Fields(Archive& a, FittedRecording& r) {
   a("id", r.id);
   a("frames", r.frames);

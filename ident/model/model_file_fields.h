@@ -75,6 +75,7 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
     g("manifest", from.manifest);
     g.Written("model_out", [&] { return run.model_path; });
     g("solve_seconds", fit.solve_seconds);
+    if (g.Has("work")) g("work", fit.work);
     g.Written("total_seconds", [&] { return run.total_seconds; });
     g.Written("num_threads", [&] { return run.num_threads; });
   });

@@ -22,8 +22,8 @@ MaybeError CheckLearnsFromFrames(const IdentifiedModel& model) {
   if (model.recording_effect && model.forecasts) return std::nullopt;
   const bool tail = model.options.push_tail != PushTail::kNone;
   return Error{
-      tail ? "the model has nothing to put forecasts together by, which predictions from observed "
-             "frames need: it was fitted by an older version; fit it again with pushid-fit"
+      tail ? "the model has learned no forecasts, which predictions from observed frames need: add "
+             "them with pushid-check --learn_forecasts (or fit with it)"
            : "the model has no push tail, which predictions from observed frames need: fit one "
              "with --push_tail=exponential (the presets tail and group have it)",
       model.source};

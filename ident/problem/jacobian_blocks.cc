@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "ident/problem/work.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
@@ -150,6 +151,7 @@ class Gatherer {
 }  // namespace
 
 JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built, bool robust) {
+  CountEvaluation(true);
   JacobianBlocks score;
   Gatherer gatherer(built, robust, &score);
   const std::vector<std::optional<RolloutSums>> sums =

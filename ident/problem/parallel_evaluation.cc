@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "ident/problem/parallel.h"
+#include "ident/problem/work.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 
 namespace pushid {
@@ -137,6 +138,7 @@ void ParallelEvaluation::SetTasks() {
 }
 
 void ParallelEvaluation::PrepareForEvaluation(bool evaluate_jacobians, bool) {
+  CountEvaluation(evaluate_jacobians);
   if (tasks_.empty()) SetTasks();
   ParallelFor(static_cast<int>(tasks_.size()), num_threads_,
               [&](int i) { tasks_[i].Prepare(evaluate_jacobians, *problem_); });

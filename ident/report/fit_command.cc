@@ -42,7 +42,7 @@ std::string ShellQuoted(const std::string& value) {
 const std::vector<std::string>& CheckFlagNames() {
   static const std::vector<std::string> names = {
       "profile",     "bootstrap",     "bootstrap_file", "push_check", "push_check_noise",
-      "prior_check", "horizon_check", "design",         "population"};
+      "prior_check", "horizon_check", "design",         "population", "learn_forecasts"};
   return names;
 }
 

@@ -9,7 +9,7 @@
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/fitted_columns.h"
-#include "ident/uncertainty/rows_by_frame.h"
+#include "ident/uncertainty/rows_by_horizon.h"
 #include "models/decompositions.h"
 
 namespace pushid {
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMostEstimates = 120;
 constexpr int kFewestClusters = 3;
-constexpr int kHorizons[] = {8, 16, 32, 64};  // frames
+const std::vector<int> kHorizons = {8, 16, 32, 64};  // frames
 constexpr double kLeastShare = 0.5;         // of the data, of an estimate that parts are asked for
 constexpr double kReach = 30.0;             // errors of stated ones, beyond which nothing is told
 constexpr double kLeastInformation = 1e-6;  // of an assumption, beside what estimates explain
@@ -31,9 +31,9 @@ std::string WhyNot(const FitOptions& options, size_t estimates) {
 }
 
 // s_g, a column for each cluster, of the rows that are held.
-Eigen::MatrixXd Scores(const RowsByFrame& by_frame, const RowClusters& clusters,
+Eigen::MatrixXd Scores(const RowsByHorizon& by_horizon, const RowClusters& clusters,
                        const std::vector<bool>& held) {
-  const JacobianBlocks& rows = by_frame.rows;
+  const JacobianBlocks& rows = by_horizon.rows;
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(rows.jacobian.cols(), clusters.count);
   for (size_t i = 0; i < clusters.of_row.size(); ++i) {
     if (clusters.of_row[i] < 0 || !held[i]) continue;
@@ -89,7 +89,7 @@ class ModelJudge {
     verdict_.not_checked = WhyNot(problem.options(), columns_.size());
     if (!verdict_.checked()) return;
     assumptions_ = AssumptionsOf(problem, point);
-    rows_ = EvaluateByFrame(problem, point, assumptions_);
+    rows_ = EvaluateByHorizon(problem, point, assumptions_, kHorizons);
     if (rows_.num_estimates == 0) verdict_.not_checked = "a rollout fails at the optimum";
   }
 
@@ -105,7 +105,7 @@ class ModelJudge {
     beside_ = InformationBeside(beside);
     const Eigen::MatrixXd hessian = own.transpose() * own + beside_;
     inverse_ = SolveSymmetric(hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
-    scores_ = Scores(rows_, clustering_.first, std::vector<bool>(rows_.frame_of_row.size(), true));
+    scores_ = Scores(rows_, clustering_.first, std::vector<bool>(rows_.part_of_row.size(), true));
     if (clusters_.count() >= kFewestClusters) {
       TestAssumptions(own);
       TestParts(own);
@@ -164,14 +164,9 @@ class ModelJudge {
 
   // The parts of the data that are asked, by the rows they hold.
   void TestParts(const Eigen::MatrixXd& own) {
-    std::vector<int> begins;  // by recording: to find where ground leaves its place takes its time
-    for (const PendulumRecording& r : problem_.recordings()) begins.push_back(PushFrame(r));
-    for (int frames : kHorizons) {
-      TestPart("the first " + std::to_string(frames) + " frames from the push on", own,
-               [&](size_t row) {
-                 const auto recording = static_cast<size_t>(rows_.rows.cluster_of_row[row]);
-                 return rows_.frame_of_row[row] <= begins[recording] + frames;
-               });
+    for (size_t h = 0; h < kHorizons.size(); ++h) {
+      TestPart("the first " + std::to_string(kHorizons[h]) + " frames from the push on", own,
+               [&](size_t row) { return rows_.part_of_row[row] <= static_cast<int>(h); });
     }
     // Only where sideways is as forwards must pushes from the side ask for the same.
     if (problem_.options().model.directions == Directions::kIsotropic) {
@@ -185,9 +180,9 @@ class ModelJudge {
     const Eigen::Index n = rows_.num_estimates, shared = problem_.map().num_shared();
     Eigen::MatrixXd first = Eigen::MatrixXd::Zero(n, n);
     std::set<int> inside, outside;  // clusters
-    std::vector<bool> held(rows_.frame_of_row.size(), false);
+    std::vector<bool> held(rows_.part_of_row.size(), false);
     for (size_t i = 0; i < held.size(); ++i) {
-      if (rows_.frame_of_row[i] < 0 || clustering_.first.of_row[i] < 0) continue;
+      if (rows_.part_of_row[i] < 0 || clustering_.first.of_row[i] < 0) continue;
       held[i] = holds(i);
       (held[i] ? inside : outside).insert(clustering_.first.of_row[i]);
       if (!held[i]) continue;
@@ -256,7 +251,7 @@ class ModelJudge {
   Clusters clusters_;
   std::vector<FittedColumn> columns_;
   std::vector<Assumption> assumptions_;
-  RowsByFrame rows_;
+  RowsByHorizon rows_;
   Clustering clustering_;
   Eigen::MatrixXd beside_, inverse_, scores_;
   ModelVerdict verdict_;

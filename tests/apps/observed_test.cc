@@ -26,7 +26,7 @@ class ObservedTest : public AppTest {
 };
 
 TEST_F(ObservedTest, OneFrameIsWhatThereIsWithoutTheFlag) {
-  const std::string model = "--model=" + FitModel();
+  const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
   for (const bool asked : {false, true}) {
     std::vector<std::string> more = {model, Recordings(),
                                      "--json_out=" + Path(asked ? "one.json" : "none.json")};
@@ -43,7 +43,7 @@ TEST_F(ObservedTest, OneFrameIsWhatThereIsWithoutTheFlag) {
 }
 
 TEST_F(ObservedTest, FramesThatAreSeenHelp) {
-  const std::string model = "--model=" + FitModel();
+  const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
   double before = 1e9;
   for (const int k : {1, 10, 25}) {
     const AppRun run = RunApp(
@@ -65,7 +65,7 @@ TEST_F(ObservedTest, FramesThatAreSeenHelp) {
 }
 
 TEST_F(ObservedTest, PredictWritesBandsBehindWhatWasSeen) {
-  const std::string model = "--model=" + FitModel();
+  const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
   const AppRun run = RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--observed=12",
                                                "--out=" + Path("t.csv")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -93,7 +93,7 @@ TEST_F(ObservedTest, HeldOutRecordingsAreScoredBehindTheirFirstFrames) {
 }
 
 TEST_F(ObservedTest, WhatCannotBeIsRefused) {
-  const std::string model = "--model=" + FitModel();
+  const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
   const auto evaluate = [&](const std::string& observed) {
     return RunApp("pushid-evaluate", {model, Recordings(), observed});
   };
@@ -116,13 +116,18 @@ TEST_F(ObservedTest, WhatCannotBeIsRefused) {
   });
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {external, "--population", "--quiet"}),
                       {"--population", "pushed alone", "no recording is of that kind"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--preset=ldp", "--learn_forecasts"}),
+                      {"--learn_forecasts", "push tail, and the model has none"}));
+  const std::string plain = "--model=" + FitModel("plain.json");
+  EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {plain, Recordings(), "--observed=9"}),
+                      {"plain.json", "learned no forecasts", "pushid-check --learn_forecasts"}));
   const std::string ldp = "--model=" + FitModel("ldp.json", {"--preset=ldp"});
   EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {ldp, Recordings(), "--observed=9"}),
                       {"ldp.json", "no push tail"}));
 }
 
 TEST_F(ObservedTest, PopulationIsPrintedAndKept) {
-  const std::string model = FitModel("model.json", {"--population"});
+  const std::string model = FitModel("model.json", {"--population", "--learn_forecasts"});
   EXPECT_NE(fit_.out.find("Recordings differ by a factor exp(b) on the push tail"),
             std::string::npos);
   EXPECT_NE(fit_.out.find("alone"), std::string::npos);

@@ -11,4 +11,6 @@ def made():
 
 @pytest.fixture(scope="session")
 def result(made):
-    return pushid.fit(made[0])
+    fitted = pushid.fit(made[0])
+    fitted.learn_forecasts()
+    return fitted

@@ -123,7 +123,7 @@ def first():
 
 
 def population():
-    fitted = studies.fit("single").json
+    fitted = studies.fit("single", "--learn_forecasts").json
     effect, forecasts = fitted["recording_effect"], fitted["forecasts"]
     rows = [["spread w of b", with_error(effect["spread"], effect["spread_standard_error"])],
             ["error scale s, m", number(effect["error_scale_m"])],
@@ -159,6 +159,7 @@ def unseen():
             people = sorted({r.subjects[0] for r in recordings})
             for left_out in people:
                 result = pushid.fit([r for r in recordings if r.subjects[0] != left_out], stance="slide")
+                result.learn_forecasts()
                 for recording, truth in zip(recordings, truths):
                     if recording.subjects[0] != left_out:
                         continue

@@ -169,6 +169,14 @@ class Result:
         _pushid.horizon_check(self._model, num_threads, progress)
         return self._part("horizon_check")
 
+    def learn_forecasts(self, *, num_threads=1):
+        """Learns what predictions from first frames (`observed`) are put together by, on recordings left out in turn.
+
+        Returns the JSON's part `forecasts`.
+        """
+        _pushid.learn_forecasts(self._model, num_threads)
+        return self._part("forecasts")
+
     def design(self, parameter="all"):
         """Finds the further push that would reduce the error of a parameter (or of all together) most; see Design."""
         return Design(_pushid.design(self._model, parameter))

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/observed/recording_effect.h"
 #include "ident/solver/solver.h"
@@ -62,14 +63,20 @@ TEST(CrossFit, LooksAtNothingHeldOut) {
   EXPECT_EQ(times, std::vector<int>(recordings.size(), 1));
 }
 
+FitResult FitAndLearn(const std::vector<PendulumRecording>& recordings, const FitOptions& options) {
+  FittedModel model;
+  model.fit = Fit(recordings, options);
+  EXPECT_FALSE(AddForecasts(recordings, 1, &model));
+  return model.fit;
+}
+
 // Recordings that a model was fitted to are forecast better by it than those that were held out,
-// and a fit says the latter.
+// and scores say the latter.
 TEST(CrossFit, ScoresAreThoseOfOthers) {
   SyntheticOptions study = DifferingPeople();
   study.subject_spread = 0.3;
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  FitOptions options = UnbiasedFit(study);
-  const FitResult result = Fit(recordings, options);
+  const FitResult result = FitAndLearn(recordings, UnbiasedFit(study));
   ASSERT_TRUE(result.forecasts.has_value());
   EXPECT_EQ(result.forecasts->folds, 4);
   EXPECT_EQ(result.forecasts->recordings, 16);
@@ -84,12 +91,12 @@ TEST(CrossFit, NeedsThreeRecordings) {
   const SyntheticOptions study = DifferingPeople();
   std::vector<PendulumRecording> recordings = MakePendulums(study);
   recordings.resize(2);
-  const FitResult two = Fit(recordings, UnbiasedFit(study));
+  const FitResult two = FitAndLearn(recordings, UnbiasedFit(study));
   ASSERT_TRUE(two.forecasts.has_value());
   EXPECT_EQ(two.forecasts->folds, 0);
   recordings = MakePendulums(study);
   recordings.resize(4);  // of one person
-  const FitResult one = Fit(recordings, UnbiasedFit(study));
+  const FitResult one = FitAndLearn(recordings, UnbiasedFit(study));
   ASSERT_TRUE(one.forecasts.has_value());
   EXPECT_EQ(one.forecasts->folds, 4);
 }

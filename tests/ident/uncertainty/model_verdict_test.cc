@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "ident/fit/fit.h"
-#include "ident/uncertainty/rows_by_frame.h"
+#include "ident/uncertainty/rows_by_horizon.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -45,18 +45,18 @@ int Count(const FitResult& result, EstimateStatus status) {
 }
 
 // Differences of raw residuals give the gradient that the solver's Jacobian gives.
-TEST(ModelVerdict, RowsByFrameHaveTheGradientOfTheCost) {
+TEST(ModelVerdict, RowsByHorizonHaveTheGradientOfTheCost) {
   const auto recordings = MakePendulums(TinyStudy());
   FitOptions options = MakePreset("tail").value();
   ASSERT_FALSE(PrepareFit(recordings, &options));
   const FitProblem problem(recordings, options);
   FitPoint point = problem.NominalPoint();
-  const RowsByFrame by_frame = EvaluateByFrame(problem, point, {});
+  const RowsByHorizon by_horizon = EvaluateByHorizon(problem, point, {}, {8, 16});
   const JacobianBlocks condensed = EvaluateJacobianBlocks(problem.Build(&point, 0), true);
   const auto gradient = [](const JacobianBlocks& rows) {
     return Eigen::VectorXd(rows.jacobian.transpose() * rows.residuals);
   };
-  const Eigen::VectorXd a = gradient(by_frame.rows), b = gradient(condensed);
+  const Eigen::VectorXd a = gradient(by_horizon.rows), b = gradient(condensed);
   ASSERT_EQ(a.size(), b.size());
   for (Eigen::Index i = 0; i < a.size(); ++i) {
     EXPECT_NEAR(a[i], b[i], 1e-3 * (1e-3 + std::abs(b[i]))) << i;

@@ -1,0 +1,36 @@
+// ident: counts of evaluations.
+#include "ident/problem/work.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace pushid {
+namespace {
+
+std::atomic<int> jacobians_so_far{0}, costs_so_far{0};
+
+}  // namespace
+
+void CountEvaluation(bool with_jacobian) {
+  (with_jacobian ? jacobians_so_far : costs_so_far).fetch_add(1, std::memory_order_relaxed);
+}
+
+Evaluations EvaluationsSoFar() { return {jacobians_so_far, costs_so_far}; }
+
+void WorkLog::Add(const std::string& purpose) {
+  auto part = std::find_if(parts_.begin(), parts_.end(),
+                           [&](const Work& w) { return w.purpose == purpose; });
+  if (part == parts_.end()) {
+    parts_.push_back({purpose, {}, 0.0});
+    part = parts_.end() - 1;
+  }
+  const Evaluations now = EvaluationsSoFar();
+  part->evaluations.jacobians += now.jacobians - from_.jacobians;
+  part->evaluations.costs += now.costs - from_.costs;
+  from_ = now;
+  const auto time = std::chrono::steady_clock::now();
+  part->seconds += std::chrono::duration<double>(time - since_).count();
+  since_ = time;
+}
+
+}  // namespace pushid

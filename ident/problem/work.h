@@ -1,0 +1,41 @@
+// ident: what a fit spends, and on what: evaluations of its problem, and time.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace pushid {
+
+// Of all residual blocks of a problem.
+struct Evaluations {
+  int jacobians = 0;  // residuals and their Jacobian
+  int costs = 0;      // residuals alone
+};
+
+// Counts one that is about to be made; any thread.
+void CountEvaluation(bool with_jacobian);
+// Of the process so far, over all threads.
+Evaluations EvaluationsSoFar();
+
+struct Work {
+  std::string purpose;  // "start", "horizons", "weights", ...
+  Evaluations evaluations;
+  double seconds = 0.0;
+};
+
+// Splits the time from its construction on by purpose. Where several fits run at a time their
+// evaluations are counted together.
+class WorkLog {
+ public:
+  // Adds what was spent since the last call, or since construction, to a purpose.
+  void Add(const std::string& purpose);
+  const std::vector<Work>& parts() const { return parts_; }  // in order of their first mention
+
+ private:
+  std::vector<Work> parts_;
+  Evaluations from_ = EvaluationsSoFar();
+  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace pushid
