@@ -240,7 +240,7 @@ TEST_F(OnlinePredictorTest, ModelsThatCannotLearnAreRefused) {
   MaybeError error = CheckLearnsFromFrames(model_);
   ASSERT_TRUE(error);
   EXPECT_TRUE(
-      Contains(error->ToString(), "old.json: the model has nothing to put forecasts together by"));
+      Contains(error->ToString(), "old.json: the model has learned no forecasts"));
   model_.options.push_tail = PushTail::kNone;
   error = CheckLearnsFromFrames(model_);
   ASSERT_TRUE(error);
