@@ -14,6 +14,7 @@ AHEAD = 30  # frames
 
 recordings, _ = pushid.simulate(people=4, recordings_per_person=6, seed=1)
 result = pushid.fit(recordings[:-1])
+result.learn_forecasts()
 new = recordings[-1]
 milliseconds = []
 print(f"error {AHEAD / new.fps:.1f} s ahead against the time since the push")
