@@ -18,11 +18,6 @@ namespace {
 
 constexpr double kStartBox = 5.0;
 constexpr double kOffBound = 0.1;
-// Gauss-Newton's curvature may be several times the true one, and its steps then reach the optimum
-// by a constant share of the way each: after so many, secants go on from its information.
-constexpr int kFewSteps = 10;
-constexpr double kLoose = 1e-6;  // a function tolerance that asks for no such optimum
-constexpr double kNetworkTolerance = 1e-6;  // of the cost: what more would bring cannot be seen
 
 class ProgressCallback : public ceres::IterationCallback {
  public:
@@ -88,50 +83,6 @@ SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& op
     stage.trace.push_back({horizon, i.iteration, i.cost - built->Offset(), i.gradient_max_norm});
   }
   return stage;
-}
-
-SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network,
-                 int num_threads) {
-  SolveStart start;
-  start.kind = "warm";
-  start.from = start.to = from;
-  if (problem.options().likelihood != Likelihood::kTrajectory) {
-    const SolveStage stage = SolveByBfgs(problem, {}, &start.to, &start.message);
-    start.stages.push_back(stage);
-    start.iterations = stage.iterations;
-    start.cost = stage.final_cost;
-    start.converged = start.usable = stage.converged;
-    return start;
-  }
-  const bool network = !from.weights.empty() && !hold_network;
-  const auto solve = [&](int max_iterations) {
-    FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads);
-    ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
-    solver.max_num_iterations = std::min(max_iterations, solver.max_num_iterations);
-    if (network) solver.function_tolerance = std::max(kNetworkTolerance, solver.function_tolerance);
-    const SolveStage stage = SolveBuilt(&built, solver, 0, &start.message);
-    start.failed = std::move(built.shortened);
-    start.stages.push_back(stage);
-    start.iterations += stage.iterations;
-    start.cost = stage.final_cost;
-    start.converged = stage.converged;
-  };
-  const int most = problem.options().max_iterations;
-  const bool by_secants = from.weights.empty() && problem.options().function_tolerance < kLoose;
-  solve(by_secants ? kFewSteps : most);
-  if (!start.converged && start.iterations < most) {
-    FitPoint point = start.to;
-    std::string message;
-    const SolveStage stage = SolveByBfgs(problem, {}, &point, &message);
-    if (stage.final_cost < start.cost) {
-      start.to = std::move(point);
-      start.stages.push_back(stage);
-      start.iterations += stage.iterations;
-    }
-    solve(most);
-  }
-  start.usable = start.converged && start.failed.empty();
-  return start;
 }
 
 double CostAt(const FitProblem& problem, FitPoint point) {

@@ -11,6 +11,9 @@
 
 namespace pushid {
 
+// Of the cost, where a network is fitted: what more would bring cannot be seen.
+inline constexpr double kNetworkTolerance = 1e-6;
+
 // The solver's settings: those of every fit, refit and reference check.
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem);
 

@@ -171,7 +171,6 @@ std::vector<Condensed> Condense(const FitProblem& problem, const std::vector<dou
   return parts;
 }
 
-// Puts rows under each other.
 class RowStack {
  public:
   RowStack(Eigen::Index rows, Eigen::Index columns, RowsByHorizon* result) : result_(*result) {
@@ -180,7 +179,6 @@ class RowStack {
     all.residuals = Eigen::VectorXd::Zero(rows);
   }
 
-  // Returns the row.
   Eigen::Index Next(int cluster, int person, int part) {
     result_.rows.cluster_of_row.push_back(cluster);
     result_.rows.person_of_row.push_back(person);
