@@ -2,6 +2,7 @@
 // (CMakeLists.txt; explore.js calls it).
 #include "apps/explore/explore.h"
 
+#include <type_traits>
 #include <vector>
 
 #include "models/rollout.h"
@@ -26,13 +27,9 @@ struct Block {
 
 ModelOptions Options(const ExploredPush& in) {
   ModelOptions options;
-  options.posture = static_cast<Posture>(in.posture);
-  options.gain_scaling = static_cast<GainScaling>(in.gain_scaling);
-  options.friction = static_cast<FrictionKind>(in.friction);
-  options.cart_derivative = static_cast<CartDerivative>(in.cart_derivative);
-  options.stance = static_cast<Stance>(in.stance);
-  options.delay = static_cast<Delay>(in.delay);
-  options.body = static_cast<BodyModel>(in.body);
+  ForEachChoice(options, in, [](auto& choice, double number) {
+    choice = static_cast<std::remove_reference_t<decltype(choice)>>(number);
+  });
   return options;
 }
 

@@ -19,6 +19,18 @@ struct ExploredPush {
   double body = 0;
 };
 
+// Each choice of ModelOptions beside its number in the push: visit(choice, number).
+template <typename Options, typename Push, typename Visit>
+void ForEachChoice(Options& options, Push& push, const Visit& visit) {
+  visit(options.posture, push.posture);
+  visit(options.gain_scaling, push.gain_scaling);
+  visit(options.friction, push.friction);
+  visit(options.cart_derivative, push.cart_derivative);
+  visit(options.stance, push.stance);
+  visit(options.delay, push.delay);
+  visit(options.body, push.body);
+}
+
 inline constexpr int kMostDraws = 60;
 inline constexpr double kPushSeconds = 0.2;
 

@@ -99,13 +99,8 @@ ExploredPush PushOf(const FittedModel& model) {
   push.mass = model.fit.subjects.empty()
                   ? kReferenceMass
                   : push.mass / static_cast<double>(model.fit.subjects.size());
-  push.posture = static_cast<double>(options.posture);
-  push.gain_scaling = static_cast<double>(options.gain_scaling);
-  push.friction = static_cast<double>(options.friction);
-  push.cart_derivative = static_cast<double>(options.cart_derivative);
-  push.stance = static_cast<double>(options.stance);
-  push.delay = static_cast<double>(options.delay);
-  push.body = static_cast<double>(options.body);
+  ForEachChoice(options, push,
+                [](auto choice, double& number) { number = static_cast<double>(choice); });
   return push;
 }
 

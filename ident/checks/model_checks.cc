@@ -259,8 +259,9 @@ MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int nu
                         FittedModel* model) {
   FitResult& fit = model->fit;
   if (!fit.recording_effect) {
-    return Error{"the model tells no effects of recordings, which forecasts estimate first; it "
-                 "needs a push tail, and a recording with a push"};
+    return Error{
+        "the model tells no effects of recordings, which forecasts estimate first; it "
+        "needs a push tail, and a recording with a push"};
   }
   const FitProblem problem(recordings, fit.options);
   const FitPoint& optimum = fit.starts[fit.best_start].to;

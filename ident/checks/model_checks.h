@@ -25,8 +25,8 @@ struct ModelChecks {
 
   // Whether they add to the model; population and design are only printed.
   bool Adds() const {
-    return !profile.empty() || bootstrap.replicas > 0 || push_check || prior_check || horizon_check ||
-           learn_forecasts;
+    return !profile.empty() || bootstrap.replicas > 0 || push_check || prior_check ||
+           horizon_check || learn_forecasts;
   }
   bool Any() const { return Adds() || population || !design.empty(); }
 };

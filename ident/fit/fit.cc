@@ -204,8 +204,8 @@ Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordi
   const SolvedFit& solved = fit.value();
   model.recording_effect = FitRecordingEffect(model, recordings, options.num_threads);
   if (model.recording_effect) {
-    model.forecasts = CrossFitForecasts(solved.problem, solved.Best().to, model, recordings,
-                                        options.num_threads);
+    model.forecasts =
+        CrossFitForecasts(solved.problem, solved.Best().to, model, recordings, options.num_threads);
   }
   return model;
 }

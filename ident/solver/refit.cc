@@ -43,7 +43,7 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
   const int most = problem.options().max_iterations;
   const bool by_secants = from.weights.empty() && problem.options().function_tolerance < kLoose;
   solve(by_secants ? kFewSteps : most);
-  if (!start.converged && start.iterations < most) {
+  if (by_secants && !start.converged && start.iterations < most) {
     FitPoint point = start.to;
     std::string message;
     const SolveStage stage = SolveByBfgs(problem, {}, &point, &message);

@@ -23,9 +23,8 @@ RawResiduals RawOf(const FitProblem& problem, const FitPoint& point,
   RawResiduals raw;
   for (size_t i = 0; i < problem.recordings().size(); ++i) {
     const int recording = static_cast<int>(i);
-    raw.push_back(problem.Count(recording) > 0 && wanted[i]
-                      ? problem.RawResiduals(point, recording)
-                      : std::vector<double>());
+    raw.push_back(problem.Count(recording) > 0 && wanted[i] ? problem.RawResiduals(point, recording)
+                                                            : std::vector<double>());
   }
   return raw;
 }
@@ -81,7 +80,7 @@ struct Probes {
 // A column whose changed rollout has another length, or which does not reach the recording, is left
 // out.
 ColumnDifferences DifferencesOf(const FitProblem& problem, const Probes& probes,
-                          const std::vector<Assumption>& assumptions, int recording) {
+                                const std::vector<Assumption>& assumptions, int recording) {
   const std::vector<double>& here = probes.here[recording];
   const Eigen::Index estimates =
       static_cast<Eigen::Index>(probes.there.size() - assumptions.size());
@@ -141,8 +140,8 @@ void AddFrame(const Eigen::Ref<const Eigen::VectorXd>& r,
 
 // By person and part of one recording, people within a part.
 std::vector<Condensed> Condense(const FitProblem& problem, const std::vector<double>& raw,
-                                const ColumnDifferences& differences, const std::vector<int>& horizons,
-                                int recording) {
+                                const ColumnDifferences& differences,
+                                const std::vector<int>& horizons, int recording) {
   const PendulumRecording& r = problem.recordings()[recording];
   const int people = r.num_people(), begin = PushFrame(r);
   const int columns = static_cast<int>(differences.columns.size());
@@ -250,9 +249,9 @@ Probes Probe(const FitProblem& problem, const FitPoint& point,
     const double step = probes.step[c] =
         of_estimate ? kStep * unit[c] : assumptions[c - estimates].step;
     if (step == 0.0) return;  // on a bound
-    probes.there[c] =
-        of_estimate ? RawOf(problem, Moved(point, c, step), MovedBy(score, c, recordings))
-                    : RawUnder(assumptions[c - estimates], problem, point);
+    probes.there[c] = of_estimate
+                          ? RawOf(problem, Moved(point, c, step), MovedBy(score, c, recordings))
+                          : RawUnder(assumptions[c - estimates], problem, point);
   });
   return probes;
 }

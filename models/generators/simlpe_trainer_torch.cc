@@ -88,8 +88,8 @@ struct SimlpeTrainer::Torch : WindowsRun<Run, Torch, SimlpeTrainingOptions> {
   }
 
   double Step() override {
-    SetLearningRate(optimizer.get(), options.learning_rate *
-                                         RateShareToZero(step, options.steps, options.warm_up));
+    SetLearningRate(optimizer.get(),
+                    options.learning_rate * RateShareToZero(step, options.steps, options.warm_up));
     const torch::Tensor loss = Loss(windows.Draw(), options.jitter);
     Improve(optimizer.get(), kLossUnits * loss, module->parameters(), options.clip);
     return loss.item<double>();

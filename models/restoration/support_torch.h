@@ -188,7 +188,7 @@ struct StepsRun : KeptRun<Run, Self> {
   virtual const char* Stage(int of_step) const = 0;
   virtual int StageEnd(int /*of_step*/) const { return AllSteps(); }
   virtual double HeldLoss(int of_step) = 0;  // NaN where nothing is held
-  virtual void Finish() {}  // after the last step
+  virtual void Finish() {}                   // after the last step
 
   bool Done() const override { return step >= AllSteps(); }
   double ShareDone() const override { return static_cast<double>(step) / AllSteps(); }
@@ -201,7 +201,8 @@ struct StepsRun : KeptRun<Run, Self> {
   }
 };
 
-// Training by epochs that keeps the best one: what the trainers of windows and of MRT share. Network: a module; `best` has the weights of the epoch with the least held-out loss.
+// Training by epochs that keeps the best one: what the trainers of windows and of MRT share.
+// Network: a module; `best` has the weights of the epoch with the least held-out loss.
 template <typename Network>
 struct Epochs {
   std::shared_ptr<Network> network, best;

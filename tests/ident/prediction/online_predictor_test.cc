@@ -239,8 +239,7 @@ TEST_F(OnlinePredictorTest, ModelsThatCannotLearnAreRefused) {
   model_.recording_effect.reset();
   MaybeError error = CheckLearnsFromFrames(model_);
   ASSERT_TRUE(error);
-  EXPECT_TRUE(
-      Contains(error->ToString(), "old.json: the model has learned no forecasts"));
+  EXPECT_TRUE(Contains(error->ToString(), "old.json: the model has learned no forecasts"));
   model_.options.push_tail = PushTail::kNone;
   error = CheckLearnsFromFrames(model_);
   ASSERT_TRUE(error);
