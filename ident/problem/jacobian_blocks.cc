@@ -151,7 +151,7 @@ class Gatherer {
 }  // namespace
 
 JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built, bool robust) {
-  CountEvaluation(true);
+  CountEvaluations({1, 0, 0});
   JacobianBlocks score;
   Gatherer gatherer(built, robust, &score);
   const std::vector<std::optional<RolloutSums>> sums =
@@ -171,26 +171,28 @@ std::vector<int> JacobianBlocks::RowsOf(int cluster) const {
 
 void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps,
                   JacobianBlocks* score) {
+  built.evaluation->set_gradients_only();
+  ceres::Problem::EvaluateOptions by_all;
+  by_all.parameter_blocks = built.parameter_blocks;
   const Eigen::Index size = score->jacobian.cols();
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
   Eigen::Index column = 0;
+  std::vector<double> above, below;
   for (double* block : built.parameter_blocks) {
     for (int k = 0; k < built.problem->ParameterBlockSize(block); ++k, ++column) {
       const double step = steps[column];
       if (step == 0.0) continue;
       const double value = block[k];
+      double cost = 0.0;
       block[k] = value + step;
-      const JacobianBlocks above = EvaluateJacobianBlocks(built);
+      bool evaluated = built.problem->Evaluate(by_all, &cost, nullptr, &above, nullptr);
       block[k] = value - step;
-      const JacobianBlocks below = EvaluateJacobianBlocks(built);
+      evaluated = evaluated && built.problem->Evaluate(by_all, &cost, nullptr, &below, nullptr);
       block[k] = value;
-      if (above.cluster_of_row != score->cluster_of_row ||
-          below.cluster_of_row != score->cluster_of_row) {
-        return;
+      if (!evaluated) return;
+      for (Eigen::Index row = 0; row < size; ++row) {
+        hessian(row, column) = (above[row] - below[row]) / (2.0 * step);
       }
-      hessian.col(column) = (above.jacobian.transpose() * above.residuals -
-                             below.jacobian.transpose() * below.residuals) /
-                            (2.0 * step);
     }
   }
   score->curvature =

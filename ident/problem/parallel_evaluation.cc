@@ -103,7 +103,8 @@ struct ParallelEvaluation::Task {
   std::vector<Prepared*> members;
   std::optional<LaneGroup> lanes;
 
-  void Prepare(bool with_jacobians, const ceres::Problem& problem) {
+  void Prepare(LaneSums wanted, const ceres::Problem& problem) {
+    const bool with_jacobians = wanted != LaneSums::kSquares;
     if (!lanes) return members[0]->Prepare(with_jacobians, problem);
     std::vector<double const* const*> blocks;
     bool there = true;
@@ -112,8 +113,7 @@ struct ParallelEvaluation::Task {
       there = there && member->IsPrepared(with_jacobians);
     }
     if (there) return;
-    const std::vector<RolloutSums> sums =
-        lanes->Evaluate(blocks, with_jacobians ? LaneSums::kPlain : LaneSums::kSquares);
+    const std::vector<RolloutSums> sums = lanes->Evaluate(blocks, wanted);
     for (size_t i = 0; i < members.size(); ++i) {
       members[i]->Prepare(sums[i], with_jacobians, problem);
     }
@@ -138,10 +138,12 @@ void ParallelEvaluation::SetTasks() {
 }
 
 void ParallelEvaluation::PrepareForEvaluation(bool evaluate_jacobians, bool) {
-  CountEvaluation(evaluate_jacobians);
+  const LaneSums wanted = evaluate_jacobians ? with_jacobian_ : LaneSums::kSquares;
+  const bool gradient = wanted == LaneSums::kGradient, cost = wanted == LaneSums::kSquares;
+  CountEvaluations({!gradient && !cost, gradient, cost});
   if (tasks_.empty()) SetTasks();
   ParallelFor(static_cast<int>(tasks_.size()), num_threads_,
-              [&](int i) { tasks_[i].Prepare(evaluate_jacobians, *problem_); });
+              [&](int i) { tasks_[i].Prepare(wanted, *problem_); });
 }
 
 }  // namespace pushid

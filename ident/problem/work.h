@@ -10,11 +10,12 @@ namespace pushid {
 // Of all residual blocks of a problem.
 struct Evaluations {
   int jacobians = 0;  // residuals and their Jacobian
+  int gradients = 0;  // the cost and its gradient
   int costs = 0;      // residuals alone
 };
 
-// Counts one that is about to be made; any thread.
-void CountEvaluation(bool with_jacobian);
+// Counts those that are about to be made; any thread.
+void CountEvaluations(const Evaluations& more);
 // Of the process so far, over all threads.
 Evaluations EvaluationsSoFar();
 

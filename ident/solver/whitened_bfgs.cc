@@ -64,6 +64,7 @@ class WhitenedCost : public ceres::FirstOrderFunction {
         bounds_(BoundsOf(problem, origin_.size())) {
     problem_.set_fall_of_noise(kAnyFall);
     built_ = problem_.Build(&point_, 0);
+    built_.evaluation->set_gradients_only();
     double at_origin = 0.0;
     built_.problem->Evaluate({}, &at_origin, nullptr, nullptr, nullptr);
     const bool of_squares = problem.options().likelihood == Likelihood::kTrajectory;

@@ -118,8 +118,8 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
   const RolloutProblem& first = *problems_[0];
   const int columns = first.layout.num_acting();
   // A thread's own, used again.
-  thread_local std::vector<double> constants, parameters, slopes, failed, squares, plain, robust,
-      storage;
+  thread_local std::vector<double> constants, parameters, slopes, failed, squares, gradient, plain,
+      robust, storage;
   thread_local std::vector<LaneEntry> entries;
   constants = constants_;
   parameters.assign(kLaneParameters * width_, 1.0);
@@ -164,16 +164,24 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
   const int size = (columns + 1) * (columns + 1) * width_;
   failed.resize(width_);
   squares.resize(width_);
+  gradient.resize(columns * width_);
   plain.resize(size);
   robust.resize(size);
-  storage.resize(LaneStorage(width_, columns));
+  storage.resize(LaneStorage(width_, columns, frames_));
   lanes_->roll(in, sums,
-               {failed.data(), squares.data(), plain.data(), robust.data(), storage.data()});
+               {failed.data(), squares.data(), gradient.data(), plain.data(), robust.data(),
+                storage.data()});
   std::vector<RolloutSums> results(problems_.size());
   for (size_t lane = 0; lane < results.size(); ++lane) {
     results[lane].ok = failed[lane] == 0.0;
     results[lane].squares = squares[lane];
     if (sums == LaneSums::kSquares || !results[lane].ok) continue;
+    if (sums == LaneSums::kGradient) {
+      using EveryLane = Eigen::InnerStride<Eigen::Dynamic>;
+      results[lane].gradient = Eigen::Map<const Eigen::VectorXd, 0, EveryLane>(
+          gradient.data() + lane, columns, EveryLane(width_));
+      continue;
+    }
     results[lane].plain = NormalEquations(columns, plain.data() + lane, width_);
     if (sums != LaneSums::kRobust) continue;
     results[lane].robust = NormalEquations(columns, robust.data() + lane, width_);

@@ -1,7 +1,10 @@
-// residuals: where lanes are kept between frames. For person_lanes_loops.h, after its scalar.
+// residuals: where lanes are kept between frames, and their sums of products. For
+// person_lanes_loops.h, after its scalar.
 #pragma once
 
 #include <Eigen/Core>
+
+#include "residuals/frame_residual.h"
 
 namespace pushid {
 namespace {
@@ -17,11 +20,12 @@ Eigen::Matrix<Lanes, kSize, 1> LoadVector(const double* from) {
 
 // The derivatives that are carried from step to step, and what they are summed up to.
 struct Carried {
-  Lanes* by_column;  // P x 8: [q, qd]
-  Lanes* before;     // P x 2: of the cart's velocity, one frame earlier
-  Lanes* rows;       // (P + 1) x kFrameResiduals: [J r] of one frame
-  Lanes* plain;      // (P + 1) x (P + 1)
-  Lanes* robust;     // the same
+  Lanes* by_column = nullptr;  // P x 8: [q, qd]
+  Lanes* before = nullptr;     // P x 2: of the cart's velocity, one frame earlier
+  Lanes* rows = nullptr;       // (P + 1) x kFrameResiduals: [J r] of one frame
+  Lanes* plain = nullptr;      // (P + 1) x (P + 1)
+  Lanes* robust = nullptr;     // the same
+  Lanes* path = nullptr;       // frames x 8: [q, qd], of the gradient alone
 };
 
 // Lanes of which storage has room for, one after the other.
@@ -40,6 +44,39 @@ class Room {
  private:
   Lanes* at_;
 };
+
+// gram, of size x size, grows by the products of `size` columns of kFrameResiduals rows each.
+template <int kBlock>
+void AddGramBlock(const Lanes* rows, int size, int i, int j, Lanes* gram) {
+  const Lanes* const left = rows + kFrameResiduals * i;
+  const Lanes* const right = rows + kFrameResiduals * j;
+  Lanes sum[kBlock][kBlock];
+  for (int a = 0; a < kBlock; ++a) {
+    for (int b = 0; b < kBlock; ++b) sum[a][b] = gram[(i + a) * size + j + b];
+  }
+  for (int k = 0; k < kFrameResiduals; ++k) {
+    for (int a = 0; a < kBlock; ++a) {
+      for (int b = 0; b < kBlock; ++b) {
+        sum[a][b] += left[kFrameResiduals * a + k] * right[kFrameResiduals * b + k];
+      }
+    }
+  }
+  for (int a = 0; a < kBlock; ++a) {
+    for (int b = 0; b < kBlock; ++b) gram[(i + a) * size + j + b] = sum[a][b];
+  }
+}
+
+// The upper triangle, by blocks whose sums stay in registers.
+inline void AddGram(const Lanes* rows, int size, Lanes* gram) {
+  constexpr int kBlock = 3;
+  const int whole = size / kBlock * kBlock;
+  for (int j = 0; j < whole; j += kBlock) {
+    for (int i = 0; i <= j; i += kBlock) AddGramBlock<kBlock>(rows, size, i, j, gram);
+  }
+  for (int j = whole; j < size; ++j) {
+    for (int i = 0; i <= j; ++i) AddGramBlock<1>(rows, size, i, j, gram);
+  }
+}
 
 }  // namespace
 }  // namespace pushid

@@ -65,23 +65,27 @@ struct LaneInputs {
 };
 
 enum class LaneSums {
-  kSquares,  // r'r alone
-  kPlain,    // [J r]'[J r]
-  kRobust    // and that with the robust loss's own Hessian (CorrectForRobustLoss)
+  kSquares,   // r'r alone
+  kGradient,  // and J'r, by the adjoint: a third of the work of [J r]'[J r]
+  kPlain,     // [J r]'[J r]
+  kRobust     // and that with the robust loss's own Hessian (CorrectForRobustLoss)
 };
 
 struct LaneOutputs {
-  double* failed = nullptr;   // 1 where a rollout left the domain
-  double* squares = nullptr;  // r'r
-  double* plain = nullptr;    // (P + 1) x (P + 1), the upper triangle
-  double* robust = nullptr;   // the same
-  double* storage = nullptr;  // LaneStorage
+  double* failed = nullptr;    // 1 where a rollout left the domain
+  double* squares = nullptr;   // r'r
+  double* gradient = nullptr;  // P
+  double* plain = nullptr;     // (P + 1) x (P + 1), the upper triangle
+  double* robust = nullptr;    // the same
+  double* storage = nullptr;   // LaneStorage
 };
 
 // Doubles that a rollout needs besides.
-constexpr int LaneStorage(int lanes, int columns) {
+constexpr int LaneStorage(int lanes, int columns, int frames) {
   const int size = columns + 1;
-  return lanes * (10 * columns + kFrameResiduals * size + 2 * size * size + 1);
+  const int equations = 10 * columns + kFrameResiduals * size + 2 * size * size;
+  const int gradient = 8 * frames + columns;
+  return lanes * ((equations > gradient ? equations : gradient) + 1);
 }
 
 struct PersonLanes {

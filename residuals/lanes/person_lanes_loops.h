@@ -7,282 +7,134 @@
 // has an inline definition (tests/residuals/shared_code.sh looks into the objects).
 #pragma once
 
-#ifndef PUSHID_LANE_SCALAR
-#define PUSHID_LANE_SCALAR "residuals/lanes/lane_scalar.h"
-#endif
-#include PUSHID_LANE_SCALAR
-
-#include "models/push.h"
-#include "residuals/lanes/lane_storage.h"
-#include "residuals/lanes/person_lanes.h"
+#include "residuals/lanes/person_roller.h"
 
 namespace pushid {
 namespace {
 
-// Of FrameLoss::kHip, the nonzero entries of RawFrameJacobian.
-constexpr int kOfRow[kFrameResiduals][3] = {{0, 2, -1},  {1, 2, 3},   {2, 3, -1},
-                                            {4, -1, -1}, {5, -1, -1}, {2, -1, -1},
-                                            {3, -1, -1}, {6, -1, -1}, {7, -1, -1}};
-
-class Roller {
+// The gradient J'r by the adjoint, as in adjoint/adjoint_gradient.h: with L = d(r'r/2)/d[q, qd] of
+// the next frame and g = L_qd + dt L_q,
+//   f = dt M^-1 g,  L_q <- L_q + J_q' f,  L_qd <- g + J_qd' f,  J = dF/ds - d(M a + C + G)/ds
+// and J'r += (dF/d column)' f. Its work does not grow with the columns. Where a rollout has ended
+// its residuals weigh nothing, so that L is zero until it goes on.
+class BackwardRoller : public Roller {
  public:
-  Roller(const LaneInputs& in, LaneSums sums, const Carried& carried)
-      : in_(in), sums_(sums), carried_(carried) {
-    const double* const c = in.constants;
-    const auto constant = [c](int id) { return LoadLanes(c + id * kWidth); };
-    self_.body = {constant(kLaneMass), constant(kLaneRod), constant(kLaneHeight),
-                  constant(kLanePointShare), constant(kLanePendulumRatio)};
-    self_.scale.force = constant(kLaneScale);
-    self_.scale.stiffness = constant(kLaneScale + 1);
-    self_.scale.damping = constant(kLaneScale + 2);
-    self_.friction = in.friction;
-    self_.cart_derivative = in.cart_derivative;
-    self_.posture = LoadVector<2>(c + kLanePosture * kWidth);
-    self_.hold = LoadVector<2>(c + kLaneHold * kWidth);
-    self_.dt = constant(kLaneStep);
-    for (int i = 0; i < kLaneParameters; ++i) {
-      p_[i] = LoadLanes(in.parameters + i * kWidth);
-    }
-    state_.q = LoadVector<4>(c + kLaneStart * kWidth);
-    state_.qd = LoadVector<4>(c + (kLaneStart + 4) * kWidth);
-    previous_ = state_.qd;
-    if (sums != LaneSums::kSquares) StartDerivatives();
-  }
+  using Roller::Roller;
 
-  void Roll() {
-    Bits alive = Bits{} - 1;
-    for (int t = 0; t < in_.frames; ++t) {
-      angles_ = Angles<Lanes>(state_.q);
-      const double* const step = in_.steps + t * kLaneFields * kWidth;
-      if (t > 0) AddResidual(step);
-      alive &= LoadLanes(step + kLaneGoesOn * kWidth) != Lanes(0.0);
-      if (t + 1 < in_.frames) StepOn(t, step, &alive);
+  // After Roll. gradient: P.
+  void RollBack(Lanes* gradient) {
+    for (int c = 0; c < in_.columns; ++c) gradient[c] = 0.0;
+    for (Lanes& value : adjoint_) value = 0.0;
+    for (int t = in_.frames - 1; t > 0; --t) {
+      SetFrame(t);
+      AddResidualBack(in_.steps + t * kLaneFields * kWidth);
+      AddOwed();
+      SetFrame(t - 1);
+      StepBack(t - 1, gradient);
+    }
+    AddOwed();
+    AddOwed();  // at frame 0 the velocity before is that of frame 0
+    for (int i = 0; in_.velocity_column >= 0 && i < 4; ++i) {
+      gradient[in_.velocity_column + i] += adjoint_[4 + i];
     }
   }
-
-  Lanes failed() const { return failed_; }
-  Lanes squares() const { return squares_; }
 
  private:
-  using Matrix = Matrix4<Lanes>;
-  using Force = Vector4<Lanes>;
-
-  void StartDerivatives() {
-    for (int c = 0; c < in_.columns; ++c) {
-      for (int i = 0; i < 8; ++i) carried_.by_column[8 * c + i] = 0.0;
-      for (int i = 0; i < 2; ++i) carried_.before[2 * c + i] = 0.0;
-    }
-    for (int i = 0; in_.velocity_column >= 0 && i < 4; ++i) {
-      const int column = in_.velocity_column + i;
-      carried_.by_column[8 * column + 4 + i] = 1.0;
-      if (i < 2) carried_.before[2 * column + i] = 1.0;
-    }
-    const int size = (in_.columns + 1) * (in_.columns + 1);
-    for (int i = 0; i < size; ++i) carried_.plain[i] = 0.0;
-    for (int i = 0; sums_ == LaneSums::kRobust && i < size; ++i) carried_.robust[i] = 0.0;
-  }
-
-  TailOf<Lanes> Tail(int k, int frame) const {
-    const double* const tail = in_.tails + k * kLaneTails * kWidth;
-    const Lanes since = static_cast<double>(frame) - LoadLanes(tail + kLaneEnd * kWidth);
-    const Lanes acts = Select(0.0 > since, 0.0, 1.0);
-    return {acts * LoadVector<4>(tail + kLaneMean * kWidth),
-            LoadLanes(tail + kLaneMassPerForce * kWidth),
-            LoadLanes(tail + kLaneLogDuration * kWidth), acts * since * self_.dt};
-  }
-
-  // One step on, where `alive` and within the domain.
-  void StepOn(int t, const double* step, Bits* alive) {
-    const Lanes acts = LoadLanes(step + kLaneActs * kWidth);
-    const Lanes slides = LoadLanes(step + kLaneSlides * kWidth);
-    Force force = self_.Balance(p_, state_, previous_) + self_.Linear(p_, state_);
-    for (int k = 0; k < in_.num_tails; ++k) force += Tail(k, t).Force(p_);
-    force = (acts * force + slides * self_.Friction(p_, state_.qd)).eval();
-    force += LoadVector<4>(step + kLanePush * kWidth);
-    const Matrix inverse = InverseMassMatrix(self_.body, angles_, self_.body.mass);
-    const Force right =
-        force - Coriolis(self_.body, angles_, state_.qd) - Gravity(self_.body, angles_);
-    const Force a = inverse * right;
-    PendulumState<Lanes> next;
-    next.qd = state_.qd + self_.dt * a;
-    next.q = state_.q + self_.dt * next.qd;
-    const Bits outside = Outside(next);
-    failed_ = Select(*alive & outside, 1.0, failed_);
-    *alive &= ~outside;
-    if (sums_ != LaneSums::kSquares) {
-      CarryOn(t, acts, slides, a, Select(*alive, self_.dt, 0.0) * inverse);
-    }
-    previous_ = state_.qd;
+  void SetFrame(int t) {
+    const Lanes* const now = carried_.path + 8 * t;
+    const Lanes* const before = carried_.path + 8 * (t > 0 ? t - 1 : 0);
     for (int i = 0; i < 4; ++i) {
-      state_.q[i] = Select(*alive, next.q[i], state_.q[i]);
-      state_.qd[i] = Select(*alive, next.qd[i], state_.qd[i]);
+      state_.q[i] = now[i];
+      state_.qd[i] = now[4 + i];
+      previous_[i] = before[4 + i];
     }
+    angles_ = Angles<Lanes>(state_.q);
   }
 
-  // As OutsideDomain (models/rollout.h).
-  static Bits Outside(const PendulumState<Lanes>& state) {
-    const Lanes sum = (state.q + state.qd).sum();
-    return (abs(state.q[2]) > Lanes(kMaxAngle)) | (abs(state.q[3]) > Lanes(kMaxAngle)) |
-           (sum * 0.0 != Lanes(0.0));
-  }
-
-  // The derivatives at the next frame (rollout_sensitivities.h); inverse: of the mass matrix, times
-  // dt. A person alone does not care where the cart is: six columns of the state.
-  void CarryOn(int t, Lanes acts, Lanes slides, const Force& a, const Matrix& inverse) {
-    Linearize(t, acts, slides);
-    Eigen::Matrix<Lanes, 4, 6> by_state = jacobian_.by_state.rightCols<6>();
-    const Matrix rigid = InverseDynamicsJacobian(self_.body, angles_, state_.qd, a);
-    by_state.leftCols<2>() -= rigid.leftCols<2>();
-    by_state.rightCols<2>() -= rigid.rightCols<2>();
-    const Eigen::Matrix<Lanes, 4, 6> on = inverse * by_state;
-    for (int c = 0; c < in_.columns; ++c) {
-      Lanes* const s = carried_.by_column + 8 * c;
-      Lanes change[4];
-      for (int r = 0; r < 4; ++r) {
-        change[r] = on(r, 0) * s[2];
-        for (int k = 1; k < 6; ++k) change[r] += on(r, k) * s[2 + k];
-      }
-      if (in_.cart_derivative) {
-        Lanes* const before = carried_.before + 2 * c;
-        for (int i = 0; i < 2; ++i) {
-          const Lanes back = jacobian_.by_previous[i] * before[i];
-          for (int r = 0; r < 4; ++r) change[r] += inverse(r, i) * back;
-          before[i] = s[4 + i];
-        }
-      }
-      for (int r = 0; r < 4; ++r) s[4 + r] += change[r];
-    }
-    AddParameters(inverse);
-    for (int c = 0; c < in_.columns; ++c) {
-      Lanes* const s = carried_.by_column + 8 * c;
-      for (int r = 0; r < 4; ++r) s[r] += self_.dt * s[4 + r];
-    }
-  }
-
-  void AddParameters(const Matrix& inverse) {
-    int last = -1;
-    Force by_parameter = Force::Zero();
-    for (int i = 0; i < in_.num_entries; ++i) {
-      const LaneEntry& entry = in_.entries[i];
-      if (entry.parameter != last)
-        by_parameter = inverse * jacobian_.by_parameter.col(entry.parameter);
-      last = entry.parameter;
-      const Lanes slope = LoadLanes(in_.slopes + i * kWidth);
-      Lanes* const s = carried_.by_column + 8 * entry.column;
-      for (int r = 0; r < 4; ++r) s[4 + r] += slope * by_parameter[r];
-    }
-  }
-
-  // Derivatives of the forces that act.
-  void Linearize(int t, Lanes acts, Lanes slides) {
-    constexpr int kOwn = kKpX - kMu;  // of friction's own parameters
-    Eigen::Matrix<Lanes, 2, 2> by_velocity = Eigen::Matrix<Lanes, 2, 2>::Zero();
-    Eigen::Matrix<Lanes, 2, kOwn> by_friction = Eigen::Matrix<Lanes, 2, kOwn>::Zero();
-    if (in_.friction_alone) {
-      self_.FrictionJacobian(p_, state_.qd, &jacobian_);
-      by_velocity = (slides - acts) * jacobian_.by_state.block<2, 2>(0, 4);
-      by_friction = (slides - acts) * jacobian_.by_parameter.block<2, kOwn>(0, kMu);
-    }
-    self_.MotionJacobian(p_, state_, previous_, &jacobian_);
-    for (int k = 0; k < in_.num_tails; ++k) Tail(k, t).AddJacobian(p_, &jacobian_.by_parameter);
-    jacobian_.by_state *= acts;
-    jacobian_.by_previous *= acts;
-    jacobian_.by_parameter.leftCols<kLaneParameters>() *= acts;
-    if (!in_.friction_alone) return;
-    jacobian_.by_state.block<2, 2>(0, 4) += by_velocity;
-    jacobian_.by_parameter.block<2, kOwn>(0, kMu) += by_friction;
-  }
-
-  void AddResidual(const double* step) {
-    MeasuredFrameOf<Lanes> measured;
-    measured.hip = LoadVector<3>(step + kLaneHip * kWidth);
-    measured.state.q = LoadVector<4>(step + kLanePose * kWidth);
-    measured.state.qd = LoadVector<4>(step + kLaneVelocity * kWidth);
-    const Lanes weight = LoadLanes(step + kLaneWeight * kWidth);
+  // By the row w r, w of the loss included: J'w'w r, with d(w r) = w dr + r twice r' dr.
+  void AddResidualBack(const double* step) {
     const FrameVector<Lanes> r =
-        RawFrameResidual(self_.body, state_, angles_, measured, in_.sigmas);
-    const Lanes squares = r.squaredNorm();
-    const RobustSlope<Lanes> robust(squares, in_.sigmas.robust);
-    const Lanes scale = weight * robust.w;
-    squares_ += scale * scale * squares;
-    if (sums_ == LaneSums::kSquares) return;
+        RawFrameResidual(self_.body, state_, angles_, Measured(step), in_.sigmas);
     FrameJacobian<8, Lanes> by_state;
     RawFrameJacobian(self_.body, Lanes(0.0), state_, angles_, in_.sigmas, &by_state);
-    const Lanes twice = weight * robust.twice;
-    for (int c = 0; c < in_.columns; ++c) {
-      const Lanes* const s = carried_.by_column + 8 * c;
-      Lanes* const row = carried_.rows + kFrameResiduals * c;
-      Lanes along = 0.0;
-      for (int k = 0; k < kFrameResiduals; ++k) {
-        row[k] = 0.0;
-        for (int at : kOfRow[k]) {
-          if (at >= 0) row[k] += by_state(k, at) * s[at];
-        }
-        along += r[k] * row[k];
-      }
-      along *= twice;
-      for (int k = 0; k < kFrameResiduals; ++k) row[k] = scale * row[k] + r[k] * along;
-    }
+    const Lanes weight = LoadLanes(step + kLaneWeight * kWidth);
+    const Lanes squares = r.squaredNorm();
+    const RobustSlope<Lanes> robust(squares, in_.sigmas.robust);
+    const Lanes along = weight * weight * robust.w * (robust.w + squares * robust.twice);
     for (int k = 0; k < kFrameResiduals; ++k) {
-      carried_.rows[kFrameResiduals * in_.columns + k] = scale * r[k];
-    }
-    AddGram(carried_.plain);
-    if (sums_ != LaneSums::kRobust) return;
-    if (in_.sigmas.robust > 0.0) Correct(robust.w * robust.w * squares, weight);
-    AddGram(carried_.robust);
-  }
-
-  // CorrectForRobustLoss; squares: |w r|^2 without the weight.
-  void Correct(Lanes squares, Lanes weight) {
-    const RobustHessian<Lanes> factor(squares, in_.sigmas.robust);
-    const Lanes* const r = carried_.rows + kFrameResiduals * in_.columns;
-    const Lanes length = weight * weight * squares;
-    const Lanes along = Select(length > Lanes(0.0), (factor.along - factor.across) / length, 0.0);
-    for (int c = 0; c < in_.columns; ++c) {
-      Lanes* const row = carried_.rows + kFrameResiduals * c;
-      Lanes by_r = 0.0;
-      for (int k = 0; k < kFrameResiduals; ++k) by_r += r[k] * row[k];
-      by_r *= along;
-      for (int k = 0; k < kFrameResiduals; ++k) row[k] = factor.across * row[k] + r[k] * by_r;
-    }
-  }
-
-  void AddGram(Lanes* gram) const {
-    const int size = in_.columns + 1;
-    for (int i = 0; i < size; ++i) {
-      const Lanes* const left = carried_.rows + kFrameResiduals * i;
-      for (int j = i; j < size; ++j) {
-        const Lanes* const right = carried_.rows + kFrameResiduals * j;
-        Lanes sum = gram[i * size + j];
-        for (int k = 0; k < kFrameResiduals; ++k) sum += left[k] * right[k];
-        gram[i * size + j] = sum;
+      for (int at : kOfRow[k]) {
+        if (at >= 0) adjoint_[at] += along * r[k] * by_state(k, at);
       }
     }
   }
 
-  const LaneInputs& in_;
-  const LaneSums sums_;
-  const Carried carried_;
-  SelfTerms<Lanes> self_;
-  ParameterSet<Lanes> p_{};
-  PendulumState<Lanes> state_;
-  Vector4<Lanes> previous_;
-  Angles<Lanes> angles_;
-  SelfJacobian<Lanes> jacobian_;
-  Lanes failed_ = 0.0, squares_ = 0.0;
+  // What steps hand to the velocity of the frame before theirs, a frame later on the way back.
+  void AddOwed() {
+    for (int i = 0; i < 2; ++i) {
+      adjoint_[4 + i] += owed_[1][i];
+      owed_[1][i] = owed_[0][i];
+      owed_[0][i] = 0.0;
+    }
+  }
+
+  void StepBack(int t, Lanes* gradient) {
+    const double* const step = in_.steps + t * kLaneFields * kWidth;
+    const Lanes dt = self_.dt;
+    Force g, a;
+    for (int i = 0; i < 4; ++i) {
+      g[i] = adjoint_[4 + i] + dt * adjoint_[i];
+      a[i] = (carried_.path[8 * (t + 1) + 4 + i] - state_.qd[i]) / dt;
+    }
+    const Matrix inverse = InverseMassMatrix(self_.body, angles_, self_.body.mass);
+    const Force f = dt * (inverse * g);
+    const Lanes acts = LoadLanes(step + kLaneActs * kWidth);
+    const Lanes slides = LoadLanes(step + kLaneSlides * kWidth);
+    Linearize(t, acts, slides);
+    const Matrix rigid = InverseDynamicsJacobian(self_.body, angles_, state_.qd, a);
+    for (int i = 0; i < 2; ++i) {
+      adjoint_[2 + i] += (jacobian_.by_state.col(2 + i) - rigid.col(i)).dot(f);
+      adjoint_[4 + i] = g[i] + jacobian_.by_state.col(4 + i).dot(f);
+      adjoint_[6 + i] = g[2 + i] + (jacobian_.by_state.col(6 + i) - rigid.col(2 + i)).dot(f);
+      if (in_.cart_derivative) owed_[0][i] = jacobian_.by_previous[i] * f[i];
+    }
+    int last = -1;
+    Lanes by_parameter = 0.0;
+    for (int i = 0; i < in_.num_entries; ++i) {
+      const LaneEntry& entry = in_.entries[i];
+      if (entry.parameter != last) {
+        by_parameter = Acting(entry.parameter, acts, slides) *
+                       jacobian_.by_parameter.col(entry.parameter).dot(f);
+      }
+      last = entry.parameter;
+      gradient[entry.column] += LoadLanes(in_.slopes + i * kWidth) * by_parameter;
+    }
+  }
+
+  Lanes adjoint_[8];
+  Lanes owed_[2][2] = {{0.0, 0.0}, {0.0, 0.0}};
 };
 
 void RollLanes(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) {
   Room room(out.storage);
   const int columns = in.columns, size = (columns + 1) * (columns + 1);
-  const Carried carried{room.Take(8 * columns), room.Take(2 * columns),
-                        room.Take(kFrameResiduals * (columns + 1)), room.Take(size),
-                        room.Take(size)};
-  Roller roller(in, sums, carried);
+  const bool equations = sums == LaneSums::kPlain || sums == LaneSums::kRobust;
+  Carried carried;
+  if (sums == LaneSums::kGradient) {
+    carried.path = room.Take(8 * in.frames);
+  } else {
+    carried = {room.Take(8 * columns), room.Take(2 * columns),
+               room.Take(kFrameResiduals * (columns + 1)), room.Take(size), room.Take(size)};
+  }
+  BackwardRoller roller(in, sums, carried);
   roller.Roll();
   Store(roller.failed(), out.failed);
   Store(roller.squares(), out.squares);
-  for (int i = 0; sums != LaneSums::kSquares && i < size; ++i) {
+  if (sums == LaneSums::kGradient) {
+    Lanes* const gradient = room.Take(columns);
+    roller.RollBack(gradient);
+    for (int c = 0; c < columns; ++c) Store(gradient[c], out.gradient + c * kWidth);
+  }
+  for (int i = 0; equations && i < size; ++i) {
     Store(carried.plain[i], out.plain + i * kWidth);
     if (sums == LaneSums::kRobust) Store(carried.robust[i], out.robust + i * kWidth);
   }

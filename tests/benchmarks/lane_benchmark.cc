@@ -42,7 +42,8 @@ double PeakRate(const VectorKernels& kernels) {
 }
 
 // Arguments: the preset (0: tail, 1: ldp), the width.
-void EquationsSideBySide(benchmark::State& state) {
+template <LaneSums kSums>
+void SumsSideBySide(benchmark::State& state) {
   if (state.range(1) >= static_cast<int>(SupportedPersonLanes().size())) {
     state.SkipWithError("this processor has no such vectors");
     return;
@@ -71,7 +72,7 @@ void EquationsSideBySide(benchmark::State& state) {
   const auto evaluate = [&blocks](const std::vector<LaneGroup>& all, int lanes) {
     for (const LaneGroup& group : all) {
       const std::vector<double const* const*> at(lanes, blocks.data());
-      benchmark::DoNotOptimize(group.Evaluate(at, LaneSums::kPlain));
+      benchmark::DoNotOptimize(group.Evaluate(at, kSums));
     }
   };
   counted = {};
@@ -91,7 +92,10 @@ void EquationsSideBySide(benchmark::State& state) {
                  " columns, " + std::to_string(problems.size()) + " " + people.origin +
                  " recordings");
 }
+void EquationsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kPlain>(state); }
+void GradientsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kGradient>(state); }
 BENCHMARK(EquationsSideBySide)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1}, {0, 1, 2}});
+BENCHMARK(GradientsSideBySide)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1}, {0, 1, 2}});
 
 }  // namespace
 }  // namespace pushid

@@ -1,0 +1,271 @@
+// residuals: a rollout in lanes, forwards. For person_lanes_loops.h.
+#pragma once
+
+#ifndef PUSHID_LANE_SCALAR
+#define PUSHID_LANE_SCALAR "residuals/lanes/lane_scalar.h"
+#endif
+#include PUSHID_LANE_SCALAR
+
+#include "models/push.h"
+#include "residuals/lanes/lane_storage.h"
+#include "residuals/lanes/person_lanes.h"
+
+namespace pushid {
+namespace {
+
+// Of FrameLoss::kHip, the nonzero entries of RawFrameJacobian.
+constexpr int kOfRow[kFrameResiduals][3] = {{0, 2, -1},  {1, 2, 3},   {2, 3, -1},
+                                            {4, -1, -1}, {5, -1, -1}, {2, -1, -1},
+                                            {3, -1, -1}, {6, -1, -1}, {7, -1, -1}};
+
+class Roller {
+ public:
+  Roller(const LaneInputs& in, LaneSums sums, const Carried& carried)
+      : in_(in), sums_(sums), carried_(carried) {
+    const double* const c = in.constants;
+    const auto constant = [c](int id) { return LoadLanes(c + id * kWidth); };
+    self_.body = {constant(kLaneMass), constant(kLaneRod), constant(kLaneHeight),
+                  constant(kLanePointShare), constant(kLanePendulumRatio)};
+    self_.scale.force = constant(kLaneScale);
+    self_.scale.stiffness = constant(kLaneScale + 1);
+    self_.scale.damping = constant(kLaneScale + 2);
+    self_.friction = in.friction;
+    self_.cart_derivative = in.cart_derivative;
+    self_.posture = LoadVector<2>(c + kLanePosture * kWidth);
+    self_.hold = LoadVector<2>(c + kLaneHold * kWidth);
+    self_.dt = constant(kLaneStep);
+    for (int i = 0; i < kLaneParameters; ++i) {
+      p_[i] = LoadLanes(in.parameters + i * kWidth);
+    }
+    state_.q = LoadVector<4>(c + kLaneStart * kWidth);
+    state_.qd = LoadVector<4>(c + (kLaneStart + 4) * kWidth);
+    previous_ = state_.qd;
+    if (CarriesColumns()) StartDerivatives();
+  }
+
+  void Roll() {
+    Bits alive = Bits{} - 1;
+    for (int t = 0; t < in_.frames; ++t) {
+      angles_ = Angles<Lanes>(state_.q);
+      const double* const step = in_.steps + t * kLaneFields * kWidth;
+      if (t > 0) AddResidual(step);
+      if (sums_ == LaneSums::kGradient) Remember(t);
+      alive &= LoadLanes(step + kLaneGoesOn * kWidth) != Lanes(0.0);
+      if (t + 1 < in_.frames) StepOn(t, step, &alive);
+    }
+  }
+
+  Lanes failed() const { return failed_; }
+  Lanes squares() const { return squares_; }
+
+ protected:
+  using Matrix = Matrix4<Lanes>;
+  using Force = Vector4<Lanes>;
+
+  // Forwards: [J r]'[J r] is summed up on the way, the gradient alone on the way back.
+  bool CarriesColumns() const { return sums_ == LaneSums::kPlain || sums_ == LaneSums::kRobust; }
+
+  void Remember(int t) {
+    for (int i = 0; i < 4; ++i) {
+      carried_.path[8 * t + i] = state_.q[i];
+      carried_.path[8 * t + 4 + i] = state_.qd[i];
+    }
+  }
+
+  void StartDerivatives() {
+    for (int c = 0; c < in_.columns; ++c) {
+      for (int i = 0; i < 8; ++i) carried_.by_column[8 * c + i] = 0.0;
+      for (int i = 0; i < 2; ++i) carried_.before[2 * c + i] = 0.0;
+    }
+    for (int i = 0; in_.velocity_column >= 0 && i < 4; ++i) {
+      const int column = in_.velocity_column + i;
+      carried_.by_column[8 * column + 4 + i] = 1.0;
+      if (i < 2) carried_.before[2 * column + i] = 1.0;
+    }
+    const int size = (in_.columns + 1) * (in_.columns + 1);
+    for (int i = 0; i < size; ++i) carried_.plain[i] = 0.0;
+    for (int i = 0; sums_ == LaneSums::kRobust && i < size; ++i) carried_.robust[i] = 0.0;
+  }
+
+  TailOf<Lanes> Tail(int k, int frame) const {
+    const double* const tail = in_.tails + k * kLaneTails * kWidth;
+    const Lanes since = static_cast<double>(frame) - LoadLanes(tail + kLaneEnd * kWidth);
+    const Lanes acts = Select(0.0 > since, 0.0, 1.0);
+    return {acts * LoadVector<4>(tail + kLaneMean * kWidth),
+            LoadLanes(tail + kLaneMassPerForce * kWidth),
+            LoadLanes(tail + kLaneLogDuration * kWidth), acts * since * self_.dt};
+  }
+
+  // One step on, where `alive` and within the domain.
+  void StepOn(int t, const double* step, Bits* alive) {
+    const Lanes acts = LoadLanes(step + kLaneActs * kWidth);
+    const Lanes slides = LoadLanes(step + kLaneSlides * kWidth);
+    Force force = self_.Balance(p_, state_, previous_) + self_.Linear(p_, state_);
+    for (int k = 0; k < in_.num_tails; ++k) force += Tail(k, t).Force(p_);
+    force = (acts * force + slides * self_.Friction(p_, state_.qd)).eval();
+    force += LoadVector<4>(step + kLanePush * kWidth);
+    const Matrix inverse = InverseMassMatrix(self_.body, angles_, self_.body.mass);
+    const Force right =
+        force - Coriolis(self_.body, angles_, state_.qd) - Gravity(self_.body, angles_);
+    const Force a = inverse * right;
+    PendulumState<Lanes> next;
+    next.qd = state_.qd + self_.dt * a;
+    next.q = state_.q + self_.dt * next.qd;
+    const Bits outside = Outside(next);
+    failed_ = Select(*alive & outside, 1.0, failed_);
+    *alive &= ~outside;
+    if (CarriesColumns()) {
+      CarryOn(t, acts, slides, a, Select(*alive, self_.dt, 0.0) * inverse);
+    }
+    previous_ = state_.qd;
+    for (int i = 0; i < 4; ++i) {
+      state_.q[i] = Select(*alive, next.q[i], state_.q[i]);
+      state_.qd[i] = Select(*alive, next.qd[i], state_.qd[i]);
+    }
+  }
+
+  // As OutsideDomain (models/rollout.h).
+  static Bits Outside(const PendulumState<Lanes>& state) {
+    const Lanes sum = (state.q + state.qd).sum();
+    return (abs(state.q[2]) > Lanes(kMaxAngle)) | (abs(state.q[3]) > Lanes(kMaxAngle)) |
+           (sum * 0.0 != Lanes(0.0));
+  }
+
+  // The derivatives at the next frame (rollout_sensitivities.h); inverse: of the mass matrix, times
+  // dt. A person alone does not care where the cart is: six columns of the state.
+  void CarryOn(int t, Lanes acts, Lanes slides, const Force& a, const Matrix& inverse) {
+    Linearize(t, acts, slides);
+    Eigen::Matrix<Lanes, 4, 6> by_state = jacobian_.by_state.rightCols<6>();
+    const Matrix rigid = InverseDynamicsJacobian(self_.body, angles_, state_.qd, a);
+    by_state.leftCols<2>() -= rigid.leftCols<2>();
+    by_state.rightCols<2>() -= rigid.rightCols<2>();
+    const Eigen::Matrix<Lanes, 4, 6> on = inverse * by_state;
+    for (int c = 0; c < in_.columns; ++c) {
+      Lanes* const s = carried_.by_column + 8 * c;
+      Lanes change[4];
+      for (int r = 0; r < 4; ++r) {
+        change[r] = on(r, 0) * s[2];
+        for (int k = 1; k < 6; ++k) change[r] += on(r, k) * s[2 + k];
+      }
+      if (in_.cart_derivative) {
+        Lanes* const before = carried_.before + 2 * c;
+        for (int i = 0; i < 2; ++i) {
+          const Lanes back = jacobian_.by_previous[i] * before[i];
+          for (int r = 0; r < 4; ++r) change[r] += inverse(r, i) * back;
+          before[i] = s[4 + i];
+        }
+      }
+      for (int r = 0; r < 4; ++r) s[4 + r] += change[r];
+    }
+    AddParameters(inverse, acts, slides);
+    for (int c = 0; c < in_.columns; ++c) {
+      Lanes* const s = carried_.by_column + 8 * c;
+      for (int r = 0; r < 4; ++r) s[r] += self_.dt * s[4 + r];
+    }
+  }
+
+  void AddParameters(const Matrix& inverse, Lanes acts, Lanes slides) {
+    int last = -1;
+    Force by_parameter = Force::Zero();
+    for (int i = 0; i < in_.num_entries; ++i) {
+      const LaneEntry& entry = in_.entries[i];
+      if (entry.parameter != last) {
+        by_parameter = inverse * (Acting(entry.parameter, acts, slides) *
+                                  jacobian_.by_parameter.col(entry.parameter));
+      }
+      last = entry.parameter;
+      const Lanes slope = LoadLanes(in_.slopes + i * kWidth);
+      Lanes* const s = carried_.by_column + 8 * entry.column;
+      for (int r = 0; r < 4; ++r) s[4 + r] += slope * by_parameter[r];
+    }
+  }
+
+  // Derivatives of the forces that act; those by parameters still times Acting.
+  void Linearize(int t, Lanes acts, Lanes slides) {
+    Eigen::Matrix<Lanes, 2, 2> by_velocity = Eigen::Matrix<Lanes, 2, 2>::Zero();
+    if (in_.friction_alone) {
+      self_.FrictionJacobian(p_, state_.qd, &jacobian_);
+      by_velocity = (slides - acts) * jacobian_.by_state.block<2, 2>(0, 4);
+    }
+    self_.MotionJacobian(p_, state_, previous_, &jacobian_);
+    for (int k = 0; k < in_.num_tails; ++k) Tail(k, t).AddJacobian(p_, &jacobian_.by_parameter);
+    jacobian_.by_state *= acts;
+    jacobian_.by_previous *= acts;
+    if (in_.friction_alone) jacobian_.by_state.block<2, 2>(0, 4) += by_velocity;
+  }
+  static Lanes Acting(int parameter, Lanes acts, Lanes slides) {
+    return parameter >= kMu && parameter < kKpX ? slides : acts;
+  }
+
+  static MeasuredFrameOf<Lanes> Measured(const double* step) {
+    MeasuredFrameOf<Lanes> measured;
+    measured.hip = LoadVector<3>(step + kLaneHip * kWidth);
+    measured.state.q = LoadVector<4>(step + kLanePose * kWidth);
+    measured.state.qd = LoadVector<4>(step + kLaneVelocity * kWidth);
+    return measured;
+  }
+
+  void AddResidual(const double* step) {
+    const Lanes weight = LoadLanes(step + kLaneWeight * kWidth);
+    const FrameVector<Lanes> r =
+        RawFrameResidual(self_.body, state_, angles_, Measured(step), in_.sigmas);
+    const Lanes squares = r.squaredNorm();
+    const RobustSlope<Lanes> robust(squares, in_.sigmas.robust);
+    const Lanes scale = weight * robust.w;
+    squares_ += scale * scale * squares;
+    if (!CarriesColumns()) return;
+    FrameJacobian<8, Lanes> by_state;
+    RawFrameJacobian(self_.body, Lanes(0.0), state_, angles_, in_.sigmas, &by_state);
+    const Lanes twice = weight * robust.twice;
+    for (int c = 0; c < in_.columns; ++c) {
+      const Lanes* const s = carried_.by_column + 8 * c;
+      Lanes* const row = carried_.rows + kFrameResiduals * c;
+      Lanes along = 0.0;
+      for (int k = 0; k < kFrameResiduals; ++k) {
+        row[k] = 0.0;
+        for (int at : kOfRow[k]) {
+          if (at >= 0) row[k] += by_state(k, at) * s[at];
+        }
+        along += r[k] * row[k];
+      }
+      along *= twice;
+      for (int k = 0; k < kFrameResiduals; ++k) row[k] = scale * row[k] + r[k] * along;
+    }
+    for (int k = 0; k < kFrameResiduals; ++k) {
+      carried_.rows[kFrameResiduals * in_.columns + k] = scale * r[k];
+    }
+    AddGram(carried_.rows, in_.columns + 1, carried_.plain);
+    if (sums_ != LaneSums::kRobust) return;
+    if (in_.sigmas.robust > 0.0) Correct(robust.w * robust.w * squares, weight);
+    AddGram(carried_.rows, in_.columns + 1, carried_.robust);
+  }
+
+  // CorrectForRobustLoss; squares: |w r|^2 without the weight.
+  void Correct(Lanes squares, Lanes weight) {
+    const RobustHessian<Lanes> factor(squares, in_.sigmas.robust);
+    const Lanes* const r = carried_.rows + kFrameResiduals * in_.columns;
+    const Lanes length = weight * weight * squares;
+    const Lanes along = Select(length > Lanes(0.0), (factor.along - factor.across) / length, 0.0);
+    for (int c = 0; c < in_.columns; ++c) {
+      Lanes* const row = carried_.rows + kFrameResiduals * c;
+      Lanes by_r = 0.0;
+      for (int k = 0; k < kFrameResiduals; ++k) by_r += r[k] * row[k];
+      by_r *= along;
+      for (int k = 0; k < kFrameResiduals; ++k) row[k] = factor.across * row[k] + r[k] * by_r;
+    }
+  }
+
+  const LaneInputs& in_;
+  const LaneSums sums_;
+  const Carried carried_;
+  SelfTerms<Lanes> self_;
+  ParameterSet<Lanes> p_{};
+  PendulumState<Lanes> state_;
+  Vector4<Lanes> previous_;
+  Angles<Lanes> angles_;
+  SelfJacobian<Lanes> jacobian_;
+  Lanes failed_ = 0.0, squares_ = 0.0;
+};
+
+}  // namespace
+}  // namespace pushid
