@@ -172,7 +172,7 @@ int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags)
   const ForecastErrors errors = ErrorsOf(windows, Forecasts(*loaded.generator, windows), layout);
   const double per_window = (Now() - before) / static_cast<double>(windows.size());
   std::printf("%s", ForecastErrorsText(errors).c_str());
-  Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
+  Json json = ResultHead("pushid-forecasts/1");
   json.update(ToJson(errors));
   json["baselines"]["zero_velocity"] = ToJson(ErrorsOf(windows, ZeroVelocity(windows), layout));
   if (flags.samples > 0 && flags.target_window < 0) {

@@ -190,8 +190,7 @@ MaybeError CheckFlags(const Setups& setups) {
 }
 
 nlohmann::ordered_json ScoresJson(const std::vector<CrossValidation>& validations) {
-  nlohmann::ordered_json json = {
-      {"schema", kScoresSchema}, {"version", Version()}, {"configuration", EffectiveFlags()}};
+  nlohmann::ordered_json json = ResultHead(kScoresSchema);
   for (const CrossValidation& validation : validations) {
     json["predictors"].push_back(ToJson(validation));
     if (&validation != &validations[0]) {

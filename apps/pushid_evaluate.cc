@@ -99,7 +99,8 @@ int Run() {
       Evaluate(model.value(), pendulums, ObservedFrames(), group_by, ForecastUseFlag());
   std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
   std::printf("\n%s", StepsReport(pendulums, FLAGS_per_recording).c_str());
-  nlohmann::ordered_json json = ToJson(evaluation);
+  nlohmann::ordered_json json = ResultHead(kScoresSchema);
+  json.update(ToJson(evaluation));
   if (const int draws = drawn.value().samples; draws > 0) {
     const auto futures = EvaluateFutures(model.value(), pendulums, draws, drawn.value().seed);
     if (!futures.ok()) return Fail(futures.error());
@@ -112,9 +113,6 @@ int Run() {
     AddBodyJson(*bodies.value(), &json);
   }
   if (!FLAGS_json_out.empty()) {
-    json["schema"] = kScoresSchema;
-    json["version"] = Version();
-    json["configuration"] = EffectiveFlags();
     if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);
   }
   return kDone;

@@ -12,6 +12,7 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/generators/push_particles.h"
 #include "ident/problem/parallel.h"
+#include "ident/validation/scores_report.h"
 
 namespace {
 
@@ -119,7 +120,7 @@ int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
       return Fail(*error);
     }
   }
-  Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
+  Json json = ResultHead(kScoresSchema);
   AddBodyJson(evaluation, &json);
   if (social) json["social"] = ToJson(*social);
   if (flags.samples > 0 && RowOf(loaded.kind).groups) {

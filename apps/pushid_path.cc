@@ -89,15 +89,15 @@ nlohmann::ordered_json ActionJson(const ProbablePath& path) {
 }
 
 // The CSV of the path and the JSON.
-int Write(const ProbablePath& path, double dt, nlohmann::ordered_json json) {
+int Write(const ProbablePath& path, double dt, const nlohmann::ordered_json& json) {
   if (!FLAGS_out.empty()) {
     if (MaybeError error = WritePathCsv(FLAGS_out, path, dt)) return Fail(*error);
     std::printf("%d frames written to %s\n", path.states.num_frames(), FLAGS_out.c_str());
   }
   if (FLAGS_json_out.empty()) return kDone;
-  json["version"] = Version();
-  json["configuration"] = EffectiveFlags();
-  if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);
+  nlohmann::ordered_json whole = ResultHead("pushid-path/1");
+  whole.update(json);
+  if (MaybeError error = WriteJson(FLAGS_json_out, whole)) return Fail(*error);
   return kDone;
 }
 

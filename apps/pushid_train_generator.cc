@@ -18,6 +18,7 @@
 #include "ident/training/generator_crossvalidation.h"
 #include "ident/training/restoration_training.h"
 #include "ident/training/training_run.h"
+#include "ident/validation/scores_report.h"
 
 namespace {
 
@@ -47,7 +48,7 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
   const GroupSpread& spread = validation.value().spread;
   if (spread.samples > 0) std::printf("\n%s", SpreadText(spread).c_str());
   if (flags.json_out.empty()) return kDone;
-  Json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
+  Json json = ResultHead(kScoresSchema);
   AddBodyJson(validation.value().evaluation, &json);
   if (spread.samples > 0) {
     json["spread"] = ToJson(spread);

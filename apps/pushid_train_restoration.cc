@@ -16,6 +16,7 @@
 #include "ident/bodies/restoration_files.h"
 #include "ident/training/restoration_chain.h"
 #include "ident/training/training_run.h"
+#include "ident/validation/scores_report.h"
 
 namespace {
 
@@ -31,7 +32,7 @@ int CrossValidate(const TrainRestorationFlags& flags, const std::vector<BodyReco
   if (!validation.ok()) return Fail(validation.error());
   std::printf("%s", BodyText(validation.value().evaluation).c_str());
   if (flags.json_out.empty()) return kDone;
-  nlohmann::ordered_json json = {{"version", Version()}, {"configuration", EffectiveFlags()}};
+  nlohmann::ordered_json json = ResultHead(kScoresSchema);
   AddBodyJson(validation.value().evaluation, &json);
   json["run"] = {{"training_seconds", validation.value().training_seconds},
                  {"rounds", validation.value().rounds}};

@@ -109,14 +109,10 @@ std::string StatusFile(const std::string& folder) { return folder + "/status.jso
 
 MaybeError WriteJobStatus(const std::string& folder, const BatchJob& job, const JobStatus& status,
                           const std::vector<std::vector<std::string>>& commands) {
-  const nlohmann::ordered_json json = {{"id", job.id},
-                                       {"variant", job.variant},
-                                       {"group", job.group},
-                                       {"replica", job.replica},
-                                       {"status", NameOf(status.state)},
-                                       {"reason", status.reason},
-                                       {"commands", commands},
-                                       {"run", {{"seconds", status.seconds}}}};
+  const nlohmann::ordered_json json = {
+      {"schema", "pushid-job/1"}, {"id", job.id},           {"variant", job.variant},
+      {"group", job.group},       {"replica", job.replica}, {"status", NameOf(status.state)},
+      {"reason", status.reason},  {"commands", commands},   {"run", {{"seconds", status.seconds}}}};
   return WriteJson(StatusFile(folder), json);
 }
 

@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
@@ -187,6 +188,10 @@ std::map<std::string, std::string> EffectiveFlags() {
     if (IsPartOfResult(flag)) flags[flag.name] = WithoutDust(flag, flag.current_value);
   }
   return flags;
+}
+
+nlohmann::ordered_json ResultHead(const char* schema) {
+  return {{"schema", schema}, {"version", Version()}, {"configuration", EffectiveFlags()}};
 }
 
 std::vector<std::string> ChangedFlags() {

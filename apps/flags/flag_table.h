@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,6 +63,10 @@ MaybeError TakeLength(const std::string& unit, double scale, std::optional<Lengt
 // The effective flags of this executable that are part of a result: not outputs, threads,
 // verbosity.
 std::map<std::string, std::string> EffectiveFlags();
+
+// What a program's JSON begins with: the name of its schema (apps/schemas), version, effective
+// flags.
+nlohmann::ordered_json ResultHead(const char* schema);
 
 // Names of those that are not at their defaults.
 std::vector<std::string> ChangedFlags();

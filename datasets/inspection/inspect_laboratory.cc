@@ -96,7 +96,8 @@ void InspectLaboratory(const ManifestRecording& entry, const Recording& recordin
 }
 
 Json InspectionJson(const Inspection& inspection) {
-  Json json = {{"file", inspection.path}, {"format", inspection.format}};
+  Json json = {
+      {"schema", "pushid-inspection/1"}, {"file", inspection.path}, {"format", inspection.format}};
   json["facts"] = Json::array();
   for (const auto& [what, text] : inspection.facts) {
     json["facts"].push_back({{"what", what}, {"text", text}});

@@ -234,6 +234,8 @@ MaybeError WriteLaboratoryStudy(const std::string& folder, const LaboratoryOptio
   const std::vector<LaboratoryPerson> people = DrawLaboratoryPeople(options);
   Random random(options.seed + 1), noise(options.seed + 2);
   nlohmann::ordered_json manifest, truth;
+  manifest["schema"] = "pushid-manifest/1";
+  truth["schema"] = "pushid-truth/1";
   truth["synthetic"]["truth"] = QuotedTruth(people);
   for (int i = 0; i < options.people; ++i) {
     const std::string subject = (i < 9 ? "S0" : "S") + std::to_string(i + 1);

@@ -215,7 +215,8 @@ MaybeError WriteJointsCsv(const std::string& path, const BodyScene& scene) {
 
 nlohmann::ordered_json ToJson(const BodyScene& scene) {
   const BodySkeleton first = scene.skeleton(0);
-  nlohmann::ordered_json json = {{"id", scene.id},
+  nlohmann::ordered_json json = {{"schema", "pushid-joints/1"},
+                                 {"id", scene.id},
                                  {"dt_s", scene.dt},
                                  {"joint_names", first.names},
                                  {"joint_parents", first.parents}};

@@ -69,7 +69,7 @@ MaybeError WriteTensorFolder(const TensorFolderKind& kind, const std::string& fo
   if (MaybeError error = WriteNpy(weights, numbers)) return error;
   const Result<std::string> hash = HashFile(weights);
   if (!hash.ok()) return hash.error();
-  Json json = {{"format", kind.format}, {"kind", content.kind}};
+  Json json = {{"schema", "pushid-network/1"}, {"format", kind.format}, {"kind", content.kind}};
   json["settings"] = *content.settings;
   json["weights"] = kWeightsFile;
   json["weights_hash"] = hash.value();

@@ -1,6 +1,7 @@
 // ident: a network in a folder: a JSON file that says what it is, and weights.npy with its numbers.
 //
-//   {"format": 1, "kind": "window", "settings": {...}, "weights": "weights.npy",
+//   {"schema": "pushid-network/1", "format": 1, "kind": "window", "settings": {...}, "weights":
+//   "weights.npy",
 //    "weights_hash": "...",
 //    "tensors": [{"name": "network.0.weights", "rows": 256, "columns": 107}, ...],
 //    "training": {...}}

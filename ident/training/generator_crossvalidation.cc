@@ -220,7 +220,7 @@ nlohmann::ordered_json ToJson(const std::vector<ForecastCandidate>& candidates) 
                     {"blend", candidate.choice.blend},
                     {"mean", MeanJson(candidate.summary.mean)}});
   }
-  return rows;
+  return {{"schema", "pushid-candidates/1"}, {"candidates", rows}};
 }
 
 }  // namespace pushid

@@ -46,6 +46,7 @@ GROUP_STRENGTHS = {"row_1": "w.mmss.wmmwwmms.", "row_2": "www.mm.ssww.ww.m.mmmms
                    "wait_2": "mmmmmmmmmm"}
 
 HEAD = {
+    "schema": "pushid-manifest/1",
     "name": "FZJ Push, as released with LDP (CVPR 2024)",
     "source": SOURCE,
     "units": {"bvh_length": "mm", "bvh_angle": "deg", "force": "N", "torque": "N*m", "mass": "kg"},
