@@ -211,62 +211,89 @@ py::list FindingsIn(const std::vector<SharedRecording>& recordings) {
 
 void BindRecordings(py::module_* module) {
   py::class_<Recording, std::shared_ptr<Recording>>(*module, "Recording")
-      .def_readonly("id", &Recording::id)
-      .def_property_readonly("setting", [](const Recording& r) { return r.labels.setting(); })
-      .def_property_readonly("magnitude", [](const Recording& r) { return r.labels.magnitude(); })
-      .def_property_readonly("condition", [](const Recording& r) { return r.labels.condition(); })
-      .def_readonly("fps", &Recording::fps)
-      .def_readonly("pushed_person", &Recording::pushed_person)
-      .def_readonly("content_hash", &Recording::content_hash)
-      .def_property_readonly("num_frames", &Recording::num_frames)
-      .def_property_readonly("num_people", [](const Recording& r) { return r.people.size(); })
-      .def_property_readonly("push_kind", [](const Recording& r) { return NameOf(r.push_kind); })
-      .def_property_readonly("initial_velocity",
-                             [](const Recording& r) { return NameOf(r.initial_velocity); })
-      .def_property_readonly("subjects",
-                             [](const Recording& r) {
-                               std::vector<std::string> ids;
-                               for (const RecordedPerson& p : r.people) ids.push_back(p.subject_id);
-                               return ids;
-                             })
-      .def_property_readonly("mass",
-                             [](const Recording& r) {
-                               std::vector<double> masses;
-                               for (const RecordedPerson& p : r.people) masses.push_back(p.mass_kg);
-                               return masses;
-                             })
-      .def_property_readonly("known",
-                             [](const Recording& r) {
-                               py::list people;
-                               for (const RecordedPerson& p : r.people) {
-                                 py::dict known;
-                                 for (const auto& [key, number] : p.known.numbers)
-                                   known[py::str(key)] = number;
-                                 for (const auto& [key, text] : p.known.texts)
-                                   known[py::str(key)] = text;
-                                 people.append(known);
-                               }
-                               return people;
-                             })
+      .def_readonly("id", &Recording::id, "Name, one of its own among those of a fit.")
+      .def_property_readonly(
+          "setting", [](const Recording& r) { return r.labels.setting(); },
+          "Label: what was recorded, as in the manifest.")
+      .def_property_readonly(
+          "magnitude", [](const Recording& r) { return r.labels.magnitude(); },
+          "Label: how strong the push was said to be.")
+      .def_property_readonly(
+          "condition", [](const Recording& r) { return r.labels.condition(); },
+          "Label: of a comparison.")
+      .def_readonly("fps", &Recording::fps, "Frames per second.")
+      .def_readonly("pushed_person", &Recording::pushed_person,
+                    "Index of the person who is pushed.")
+      .def_readonly("content_hash", &Recording::content_hash,
+                    "Of everything that a fit takes from it.")
+      .def_property_readonly("num_frames", &Recording::num_frames, "Number of frames.")
+      .def_property_readonly(
+          "num_people", [](const Recording& r) { return r.people.size(); }, "Number of people.")
+      .def_property_readonly(
+          "push_kind", [](const Recording& r) { return NameOf(r.push_kind); },
+          "What the push means: \"external\", \"net\" or \"net_without_friction\".")
+      .def_property_readonly(
+          "initial_velocity", [](const Recording& r) { return NameOf(r.initial_velocity); },
+          "\"zero\", \"estimated\" or \"free\".")
+      .def_property_readonly(
+          "subjects",
+          [](const Recording& r) {
+            std::vector<std::string> ids;
+            for (const RecordedPerson& p : r.people) ids.push_back(p.subject_id);
+            return ids;
+          },
+          "Id of each person.")
+      .def_property_readonly(
+          "mass",
+          [](const Recording& r) {
+            std::vector<double> masses;
+            for (const RecordedPerson& p : r.people) masses.push_back(p.mass_kg);
+            return masses;
+          },
+          "Of each person, kg.")
+      .def_property_readonly(
+          "known",
+          [](const Recording& r) {
+            py::list people;
+            for (const RecordedPerson& p : r.people) {
+              py::dict known;
+              for (const auto& [key, number] : p.known.numbers) known[py::str(key)] = number;
+              for (const auto& [key, text] : p.known.texts) known[py::str(key)] = text;
+              people.append(known);
+            }
+            return people;
+          },
+          "Of each person: what the manifest says beside the mass, {key: number or text}.")
       .def_property_readonly(
           "hip",
-          [](const std::shared_ptr<Recording>& r) { return TrackArray(r, &RecordedPerson::hip); })
-      .def_property_readonly("left_ankle",
-                             [](const std::shared_ptr<Recording>& r) {
-                               return TrackArray(r, &RecordedPerson::left_ankle);
-                             })
-      .def_property_readonly("right_ankle",
-                             [](const std::shared_ptr<Recording>& r) {
-                               return TrackArray(r, &RecordedPerson::right_ankle);
-                             })
-      .def_property_readonly("states",
-                             [](const std::shared_ptr<Recording>& r) { return StatesArray(r); })
-      .def_property_readonly("push",
-                             [](const std::shared_ptr<Recording>& r) { return PushArray(r); })
-      .def_property_readonly("ground",
-                             [](const std::shared_ptr<Recording>& r) { return GroundArray(r); })
-      .def_property_readonly("plates",
-                             [](const std::shared_ptr<Recording>& r) { return PlatesArray(r); });
+          [](const std::shared_ptr<Recording>& r) { return TrackArray(r, &RecordedPerson::hip); },
+          "(frames, people, 3), m; NaN where missing.")
+      .def_property_readonly(
+          "left_ankle",
+          [](const std::shared_ptr<Recording>& r) {
+            return TrackArray(r, &RecordedPerson::left_ankle);
+          },
+          "(frames, people, 3), m.")
+      .def_property_readonly(
+          "right_ankle",
+          [](const std::shared_ptr<Recording>& r) {
+            return TrackArray(r, &RecordedPerson::right_ankle);
+          },
+          "(frames, people, 3), m.")
+      .def_property_readonly(
+          "states", [](const std::shared_ptr<Recording>& r) { return StatesArray(r); },
+          "(frames, people, 8): cart x, y (m), theta, phi (rad), and their rates (m/s, rad/s).")
+      .def_property_readonly(
+          "push", [](const std::shared_ptr<Recording>& r) { return PushArray(r); },
+          "(rows, 4): generalized forces along x, y (N), theta, phi (N m), from frame push_start "
+          "on.")
+      .def_property_readonly(
+          "ground", [](const std::shared_ptr<Recording>& r) { return GroundArray(r); },
+          "(frames, 4): x, y (m), theta, phi (rad) of ground that moves; None where it rests.")
+      .def_property_readonly(
+          "plates", [](const std::shared_ptr<Recording>& r) { return PlatesArray(r); },
+          "(frames, people, 5): force on the person fx, fy, fz (N) and centre of pressure px, py "
+          "(m); None without.");
   module->attr("defaults") = Defaults();
   module->def("read", &Read);
   module->def("simulate", &Simulate);

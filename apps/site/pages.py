@@ -1,5 +1,5 @@
 """The site's pages in build/site/docs: the READMEs at their places, sections of them as tutorials, and references made of
-what the programs, the Python module's stubs and the studies' blocks say. Nothing is written twice.
+what the programs, the Python module and the studies' blocks say. Nothing is written twice.
 
   pages.py BIN    BIN: the folder of the programs
 """
@@ -10,6 +10,7 @@ import shutil
 import subprocess
 import sys
 
+import python_reference
 import tutorials
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -107,6 +108,18 @@ def door():
     write("reference/cpp.md", "\n".join(lines))
 
 
+def python():
+    """A page for each module; from the built module, whose place sys.path gets."""
+    sys.path.insert(0, str(BIN.parent / "python"))
+    made = python_reference.pages()
+    for name, text in made:
+        write(f"reference/{name}.md", text)
+    lines = [f"- [{text.splitlines()[0][2:]}]({name}.md)" for name, text in made] or [
+        "The module is not built here: `cmake --build --preset release --target _pushid`, and build the site again."]
+    write("reference/python.md", "# Python\n\n[How to use it](../apps/python/README.md). Every public name, with its types, "
+          "shapes and units:\n\n" + "\n".join(lines) + "\n")
+
+
 def validation():
     version = re.search(r"project\(pushid VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     lines = ["# All study tables\n", f"pushid {version}. Each block is printed by the command in its heading; the date is "
@@ -132,9 +145,7 @@ def main():
     flags()
     door()
     write("reference/parameters.md", "# Parameters\n\n" + output_of(BIN / "pushid-fit", "--list_parameters"))
-    stubs = (ROOT / "apps/python/pushid/__init__.pyi").read_text()
-    write("reference/python.md", "# Python\n\n[How to use it](../apps/python/README.md). Every function and its types:\n\n"
-          f"```python\n{stubs.strip()}\n```\n")
+    python()
     validation()
 
 

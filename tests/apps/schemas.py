@@ -96,7 +96,9 @@ def of_networks(run, data, model, first):
     run("pushid-train-restoration", model, data, *quick, "--crossvalidate=2", "--json_out=chain.json")
     run("pushid-evaluate", model, data, "--restoration=restoration", "--json_out=bodies.json")
     run("pushid-predict", model, data, "--restoration=restoration", f"--id={first}", "--out=motion.bvh", "--json_out=joints.json")
-    quick = (data, "--kind=diffusion", "--steps=2", "--batch=2")
+    run("pushid-simulate", "--out=short", "--people=2", "--recordings_per_person=2", "--frames=40", "--seed=1")
+    data = "--recordings=short/manifest.json"
+    quick = (data, "--kind=diffusion", "--steps=2", "--batch=2", "--seeds=1")
     run("pushid-train-generator", *quick, "--accuracy=best", "--out=groups")
     run("pushid-train-generator", *quick, "--crossvalidate=2", "--json_out=crossvalidated.json")
     run("pushid-generate", "--model=groups", data, "--samples=19", "--averaged=1", "--sampling_steps=2",

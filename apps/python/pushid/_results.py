@@ -98,7 +98,7 @@ class Result:
 
     @property
     def covariance(self):
-        """(names, matrix) of the fitted parameters, on the fitted scale (positive parameters: their logarithm)."""
+        """(names, (n, n) matrix) of the n fitted parameters, on the fitted scale (positive parameters: their logarithm)."""
         found = self.json["uncertainty"]
         return found["fitted"], np.array(found["covariance_fitted_scale"], dtype=float)
 
@@ -203,7 +203,8 @@ class Result:
         start, end: {"x": 0.4, "theta": 0.05, "xd": 0.3, ...}: x, y (m), theta, phi (rad) and their rates xd, yd,
         thetad, phid; components not named are 0, and all final rates are free if none is named. Returns "states"
         (frames, 1, 8), "noise" (frames, 1, 4), the generalized force along the path, and "action", -log of its
-        probability density up to a constant: the most probable of several ends has the lowest action.
+        probability density up to a constant: the most probable of several ends has the lowest action. fps: frames per
+        second; mass: kg; rod: from ankles to hip, m.
         """
         return _pushid.path_between(self._model, text_of("start", start), text_of("end", end), frames, fps, mass, rod)
 
@@ -221,7 +222,7 @@ class Result:
         "stiffness_ratio" (of the ankles, over m g l), "stable", "fastest_growth" (1/s), "damping_ratio" and "natural_hz"
         of the oscillation that dies out last, "phase_margin" (rad) at "crossover_hz", "delay_margin" (s), and
         "gain_down" and "gain_up": the factors between which gains may change. None where there is none. Raises
-        UsageError for models with learned terms.
+        UsageError for models with learned terms. mass: kg; rod: m.
         """
         return _pushid.loop(self._model, mass, rod)
 

@@ -65,11 +65,12 @@ class PendulumModel:
 
     @staticmethod
     def apply_update(update, agent):
+        """Gives the agent what compute_new_state returned."""
         agent.q, agent.qd = update
 
     @staticmethod
     def own_force(agent):
-        """Drag of the feet, balance, and how the feet follow the lean."""
+        """Drag of the feet, balance, and how the feet follow the lean: (N, N, N m, N m)."""
         p, (xd, yd, thd, phd) = agent.parameters, agent.qd
         balance, steps = p["balance"], p["steps"]
         lean = [agent.q[2 + i] - balance["posture_rad"][i] for i in (0, 1)]
@@ -83,22 +84,23 @@ class PendulumModel:
                 torque[0] + steps["speed_torque_Ns"][0] * xd, torque[1] - steps["speed_torque_Ns"][1] * yd]
 
     def point(self, agent, q):
-        """Where the agent may touch others, m."""
+        """(x, y) where the agent, at q, may touch others, m."""
         reach = self.contact["height_of_rod"] * agent.parameters["rod_m"]
         return q[0] + reach * math.sin(q[2]), q[1] - reach * math.cos(q[2]) * math.sin(q[3])
 
     def point_velocity(self, agent):
+        """(x, y) of that point's velocity, m/s."""
         reach = self.contact["height_of_rod"] * agent.parameters["rod_m"]
         (_, _, theta, phi), (xd, yd, thd, phd) = agent.q, agent.qd
         return (xd + reach * math.cos(theta) * thd,
                 yd + reach * (math.sin(theta) * math.sin(phi) * thd - math.cos(theta) * math.cos(phi) * phd))
 
     def distance(self, along, across):
-        """In which people are deeper than wide."""
+        """Distance of points that are so far apart (m), in which people are deeper than wide."""
         return math.sqrt(along * along + (self.contact["depth_over_width"] * across)**2 + 1e-12)
 
     def contact_force(self, agent, other):
-        """On the agent, as a generalized force."""
+        """By the other on the agent: (N, N, N m, N m)."""
         c = self.contact
         (x, y), (ox, oy) = self.point(agent, agent.q), self.point(other, other.q)
         d = self.distance(x - ox, y - oy)
@@ -117,6 +119,7 @@ class PendulumModel:
         return self.at_point(agent, size * along[0], size * along[1])
 
     def at_point(self, agent, fx, fy):
+        """A force (N) at the point of contact as a generalized one: (N, N, N m, N m)."""
         reach = self.contact["height_of_rod"] * agent.parameters["rod_m"]
         theta, phi = agent.q[2], agent.q[3]
         return [fx, fy, reach * (fx * math.cos(theta) + fy * math.sin(theta) * math.sin(phi)),
@@ -124,7 +127,7 @@ class PendulumModel:
 
     @staticmethod
     def acceleration(agent, force):
-        """M qdd + C + G = force, by the Schur complement of the cart's block."""
+        """qdd of M qdd + C + G = force (m/s^2, rad/s^2), by the Schur complement of the cart's block."""
         p = agent.parameters
         m, l, total = p["point_mass_kg"], p["pendulum_m"], p["mass_kg"]
         (_, _, theta, phi), (_, _, thd, phd) = agent.q, agent.qd
@@ -157,9 +160,11 @@ class Crowd:
 
     @property
     def time(self):
+        """Since the start, s."""
         return self.steps * self.dt
 
     def push_on(self, agent):
+        """What pushes of the file do at this time: (N, N, N m, N m)."""
         total = [0.0] * 4
         for push in self.pushes:
             row = self.steps - round(push["start_s"] / self.dt)
