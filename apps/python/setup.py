@@ -1,4 +1,6 @@
-"""pip install ./apps/python --no-build-isolation: builds the extension by the project's own CMake."""
+"""pip install ./apps/python --no-build-isolation: builds the extension by the project's own CMake.
+
+PUSHID_BUILD=build/release: takes that of a build that is there."""
 import os
 import shutil
 import subprocess
@@ -8,16 +10,19 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-BUILD = os.path.join(SOURCE, "build", "pip")  # all that is left of a build, setuptools' own files among it
+THERE = os.environ.get("PUSHID_BUILD")
+BUILD = os.path.abspath(THERE or os.path.join(SOURCE, "build", "pip"))
+LEFT = os.path.join(BUILD, "setuptools")  # its own files
 
 
 class ByCMake(build_ext):
     def build_extension(self, ext):
         target = os.path.abspath(self.get_ext_fullpath(ext.name))
         ninja = ["-G", "Ninja"] if shutil.which("ninja") else []  # so that ccache knows what other builds compiled
-        subprocess.run(["cmake", *ninja, "-S", SOURCE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release", "-DPUSHID_TESTS=OFF",
-                        "-DPUSHID_BENCHMARKS=OFF", "-DPUSHID_PYTHON=ON", "-DPUSHID_TORCH=OFF",
-                        f"-DPython_EXECUTABLE={sys.executable}"], check=True)
+        if not THERE:
+            subprocess.run(["cmake", *ninja, "-S", SOURCE, "-B", BUILD, "-DCMAKE_BUILD_TYPE=Release", "-DPUSHID_TESTS=OFF",
+                            "-DPUSHID_BENCHMARKS=OFF", "-DPUSHID_PYTHON=ON", "-DPUSHID_TORCH=OFF",
+                            f"-DPython_EXECUTABLE={sys.executable}"], check=True)
         subprocess.run(["cmake", "--build", BUILD, "--target", "_pushid", "--parallel", str(os.cpu_count())],
                        check=True)
         os.makedirs(os.path.dirname(target), exist_ok=True)
@@ -25,6 +30,6 @@ class ByCMake(build_ext):
         self.copy_file(built, target)
 
 
-os.makedirs(BUILD, exist_ok=True)
+os.makedirs(LEFT, exist_ok=True)
 setup(ext_modules=[Extension("pushid._pushid", sources=[])], cmdclass={"build_ext": ByCMake},
-      options={"build": {"build_base": os.path.join(BUILD, "setuptools")}, "egg_info": {"egg_base": BUILD}})
+      options={"build": {"build_base": LEFT}, "egg_info": {"egg_base": LEFT}})
