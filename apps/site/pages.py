@@ -108,18 +108,6 @@ def door():
     write("reference/cpp.md", "\n".join(lines))
 
 
-def python():
-    """A page for each module; from the built module, whose place sys.path gets."""
-    sys.path.insert(0, str(BIN.parent / "python"))
-    made = python_reference.pages()
-    for name, text in made:
-        write(f"reference/{name}.md", text)
-    lines = [f"- [{text.splitlines()[0][2:]}]({name}.md)" for name, text in made] or [
-        "The module is not built here: `cmake --build --preset release --target _pushid`, and build the site again."]
-    write("reference/python.md", "# Python\n\n[How to use it](../apps/python/README.md). Every public name, with its types, "
-          "shapes and units:\n\n" + "\n".join(lines) + "\n")
-
-
 def validation():
     version = re.search(r"project\(pushid VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     lines = ["# All study tables\n", f"pushid {version}. Each block is printed by the command in its heading; the date is "
@@ -145,7 +133,9 @@ def main():
     flags()
     door()
     write("reference/parameters.md", "# Parameters\n\n" + output_of(BIN / "pushid-fit", "--list_parameters"))
-    python()
+    sys.path.insert(0, str(BIN.parent / "python"))
+    for name, made in python_reference.pages():
+        write(f"reference/{name}.md", made)
     validation()
 
 

@@ -1,7 +1,7 @@
 """The reference of `import pushid`: types of the stubs (__init__.pyi), docstrings and defaults of the built module.
 
-  pages(): [(name of the page, its text)]; empty where the module cannot be imported. Exits where a public name has no
-           docstring.
+  pages(): [(name of the page, its text)], which say so where the module cannot be imported. Exits where a public name
+           has no docstring.
 """
 import ast
 import importlib
@@ -95,8 +95,9 @@ def pages():
         pushid = importlib.import_module("pushid")
         compiled = importlib.import_module("pushid._pushid")
         importlib.import_module("pushid.agents")
-    except ImportError:
-        return []
+    except ImportError as missing:
+        return [(page, f"# {title}\n\nThe module is not built here ({missing}): `cmake --build --preset release --target _pushid`, "
+                 "and build the site again.\n") for page, title, _ in PAGES]
     stubs = {node.name: node for node in ast.parse(STUBS.read_text()).body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
     result = []
     for page, title, module in PAGES:
@@ -105,7 +106,7 @@ def pages():
         values = {name: getattr(source, name) for name in public if getattr(getattr(source, name, None), "__module__", "") == module}
         if module == "pushid._options":
             values.update({name: getattr(compiled, name) for name in ("DataError", "UsageError", "FitError")})
-        text = [f"# {title}\n", marked(source.__doc__) + "\n"]
+        text = [f"# {title}\n", "[How to use it](../apps/python/README.md).\n", marked(source.__doc__) + "\n"]
         for name, value in sorted(values.items(), key=lambda item: item[0].lower()):
             make = of_class if inspect.isclass(value) else lambda *them: of_function(*them, "##")
             text += make(name, stubs.get(name), value)
