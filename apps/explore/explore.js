@@ -62,8 +62,8 @@
     const scale = Math.min(width / (high - low), (height - 50) / 1.45), middle = (low + high) / 2;
     const place = (x, z) => [width / 2 + scale * (x - middle), height - 30 - scale * z];
     let shapes = line([[0, height - 30], [width, height - 30]], 'g');
-    const every = steps((high - low) * Math.max(1, 400 / width));
-    for (let m = Math.ceil(low / every) * every; m <= high; m += every) {
+    const half = width / 2 / scale, every = steps(6 * 64 / scale);  // labels of 64 pixels
+    for (let m = Math.ceil((middle - half) / every) * every; m <= middle + half; m += every) {
       const [x] = place(m, 0);
       if (x > 20 && x < width - 20) shapes += line([[x, height - 30], [x, height - 24]], 'g') + words(x, height - 11, signed(m) + ' m', 'faint small middle');
     }

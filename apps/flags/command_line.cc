@@ -14,6 +14,7 @@
 #include "apps/flags/man_page.h"
 #include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 
 DEFINE_bool(quiet, false, "suppress progress on stderr");
@@ -63,10 +64,10 @@ MaybeError CheckFlags(int argc, char** argv) {
       if (equals != std::string::npos) {
         error = CheckValue(flag, word.substr(equals + 1));
       } else if (flag.type != "bool") {  // its value is the next word
-        if (++i == argc) return Error{"--" + name + " has no value: --" + name + "=..."};
+        const std::string wanted = ": --" + name + "=... (" + flag.description + ")";
+        if (++i == argc) return Error{"--" + name + " has no value" + wanted};
         if (NamesFlag(argv[i])) {
-          return Error{"--" + name + " has no value, as " + argv[i] + " is a flag: --" + name +
-                       "=..."};
+          return Error{"--" + name + " has no value, as " + argv[i] + " is a flag" + wanted};
         }
         error = CheckValue(flag, argv[i]);
       }
@@ -123,7 +124,11 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   if (words != nullptr) {
     words->assign(argv + 1, argv + argc);
   } else if (argc > 1) {
-    return Fail("'" + std::string(argv[1]) + "' is not a flag; see " + ProgramName() + " --help");
+    const std::string word = argv[1];
+    const bool manifest = EndsWith(word, ".json") && NamesFlag("--recordings");
+    return Fail(
+        "'" + word + "' is not a flag; " +
+        (manifest ? "is it --recordings=" + word + "?" : "see " + ProgramName() + " --help"));
   }
   if (MaybeError error = CheckOutputs()) return Fail(*error);
   SayWhenInterrupted("no partial file is left; run the same command to start again");

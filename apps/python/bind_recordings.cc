@@ -285,8 +285,7 @@ void BindRecordings(py::module_* module) {
           "(frames, people, 8): cart x, y (m), theta, phi (rad), and their rates (m/s, rad/s).")
       .def_property_readonly(
           "push", [](const std::shared_ptr<Recording>& r) { return PushArray(r); },
-          "(rows, 4): generalized forces along x, y (N), theta, phi (N m), from frame push_start "
-          "on.")
+          "(frames, people, 4): generalized forces along x, y (N), theta, phi (N m).")
       .def_property_readonly(
           "ground", [](const std::shared_ptr<Recording>& r) { return GroundArray(r); },
           "(frames, 4): x, y (m), theta, phi (rad) of ground that moves; None where it rests.")

@@ -99,10 +99,13 @@ std::string Replaced(const std::string& text, const std::regex& what, Replace re
 
 std::string InPython(const std::string& text) {
   static const std::regex saving("pushid-fit --model_out");
+  static const std::regex axes("set \"up\" and \"forward\" in the manifest");
   static const std::regex program("pushid-([a-z]+)((?: " + kFlag + ")*)");
   static const std::regex flag("(^|[^A-Za-z0-9_-])(" + kFlag + ")");
-  const std::string calls = Replaced(std::regex_replace(text, saving, "result.save"), program,
-                                     [](const std::smatch& m) { return CallOf(m[1], m[2]); });
+  const std::string calls =
+      Replaced(std::regex_replace(std::regex_replace(text, saving, "result.save"), axes,
+                                  "$& (or turn arrays: z up, x forward)"),
+               program, [](const std::smatch& m) { return CallOf(m[1], m[2]); });
   return Replaced(calls, flag, [](const std::smatch& m) { return m[1].str() + Option(m[2]); });
 }
 

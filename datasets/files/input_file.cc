@@ -36,7 +36,11 @@ MaybeError InputFile::Open(const std::string& path) {
   }
   struct stat info {};
   if (::fstat(descriptor_, &info) == 0) {
-    if (S_ISDIR(info.st_mode)) return Error{"this is a folder, not a file", path, 0};
+    if (S_ISDIR(info.st_mode)) {
+      const std::string manifest = path + "/manifest.json";
+      const bool there = ::access(manifest.c_str(), R_OK) == 0;
+      return Error{"this is a folder, not a file" + (there ? "; give " + manifest : ""), path, 0};
+    }
     if (S_ISREG(info.st_mode)) size_ = info.st_size;
   }
   return std::nullopt;

@@ -112,6 +112,8 @@ TEST_F(CommandLineTest, AValueThatIsNoneIsAnOrdinaryError) {
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--quiet=maybe"}), {"'maybe' is not true or false"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--push_check_noise=x"}), {"'x' is not a number"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--bootstrap"}), {"--bootstrap has no value"}));
+  EXPECT_TRUE(
+      Refused(RunApp("pushid-fit", {"M/manifest.json"}), {"--recordings=M/manifest.json?"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--design", "--check"}),
                       {"--design has no value, as --check is a flag: --design=..."}));
 }
