@@ -34,13 +34,19 @@ def marked(text):
     return "\n".join(lines)
 
 
+def typed(node):
+    """A type, with the stubs' own abbreviations written out."""
+    names = {part.targets[0].id: ast.unparse(part.value) for part in ast.parse(STUBS.read_text()).body if isinstance(part, ast.Assign)}
+    return re.sub(r"\b_\w+", lambda match: names.get(match[0], match[0].lstrip("_")), ast.unparse(node))
+
+
 def signature(name, node, value):
     """Types of the stub with the defaults of the module: one parameter a line where they are many."""
     types = {}
     if node is not None:
         given = node.args
         rows = [*given.posonlyargs, *given.args, *given.kwonlyargs, *filter(None, [given.vararg, given.kwarg])]
-        types = {row.arg: ast.unparse(row.annotation) for row in rows if row.annotation}
+        types = {row.arg: typed(row.annotation) for row in rows if row.annotation}
     parameters = []
     for parameter in inspect.signature(value).parameters.values():
         if parameter.name in ("self", "cls"):
@@ -50,7 +56,7 @@ def signature(name, node, value):
         text = {parameter.VAR_POSITIONAL: "*", parameter.VAR_KEYWORD: "**"}.get(parameter.kind, "") + parameter.name
         text += f": {types[parameter.name]}" if parameter.name in types else ""
         parameters.append(text if parameter.default is parameter.empty else f"{text} = {parameter.default!r}")
-    returned = f" -> {ast.unparse(node.returns)}" if node is not None and node.returns else ""
+    returned = f" -> {typed(node.returns)}" if node is not None and node.returns else ""
     line = f"{name}({', '.join(parameters)}){returned}"
     if len(line) > 100:
         line = f"{name}(\n    " + ",\n    ".join(parameters) + f"){returned}"
@@ -73,7 +79,7 @@ def of_class(name, node, value):
         if callable(getattr(value, member)) and not isinstance(what, property):
             methods += of_function(f"{name}.{member}", stub, getattr(value, member), "###")
         elif isinstance(what, property):
-            types = ast.unparse(stub.annotation if isinstance(stub, ast.AnnAssign) else stub.returns) if stub else ""
+            types = typed(stub.annotation if isinstance(stub, ast.AnnAssign) else stub.returns) if stub else ""
             types = types.replace(" | ", " or ")  # a | would end the cell
             rows.append(f"| `{member}` | " + (f"`{types}` | " if types else "| ") + doc(f"{name}.{member}", what).replace("\n", " ").replace("|", "or") + " |")
     text = [f"## {name}\n", (doc(name, value) if name else "") + "\n"]
