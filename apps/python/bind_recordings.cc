@@ -210,6 +210,9 @@ py::list FindingsIn(const std::vector<SharedRecording>& recordings) {
 }  // namespace
 
 void BindRecordings(py::module_* module) {
+  const auto track = [](auto part) {
+    return [part](const std::shared_ptr<Recording>& r) { return TrackArray(r, part); };
+  };
   py::class_<Recording, std::shared_ptr<Recording>>(*module, "Recording")
       .def_readonly("id", &Recording::id, "Name, one of its own among those of a fit.")
       .def_property_readonly(
@@ -264,22 +267,12 @@ void BindRecordings(py::module_* module) {
             return people;
           },
           "Of each person: what the manifest says beside the mass, {key: number or text}.")
-      .def_property_readonly(
-          "hip",
-          [](const std::shared_ptr<Recording>& r) { return TrackArray(r, &RecordedPerson::hip); },
-          "(frames, people, 3), m; NaN where missing.")
-      .def_property_readonly(
-          "left_ankle",
-          [](const std::shared_ptr<Recording>& r) {
-            return TrackArray(r, &RecordedPerson::left_ankle);
-          },
-          "(frames, people, 3), m.")
-      .def_property_readonly(
-          "right_ankle",
-          [](const std::shared_ptr<Recording>& r) {
-            return TrackArray(r, &RecordedPerson::right_ankle);
-          },
-          "(frames, people, 3), m.")
+      .def_property_readonly("hip", track(&RecordedPerson::hip),
+                             "(frames, people, 3), m; NaN where missing.")
+      .def_property_readonly("left_ankle", track(&RecordedPerson::left_ankle),
+                             "(frames, people, 3), m.")
+      .def_property_readonly("right_ankle", track(&RecordedPerson::right_ankle),
+                             "(frames, people, 3), m.")
       .def_property_readonly(
           "states", [](const std::shared_ptr<Recording>& r) { return StatesArray(r); },
           "(frames, people, 8): cart x, y (m), theta, phi (rad), and their rates (m/s, rad/s).")
