@@ -83,6 +83,7 @@ def tutorial_pages():
     for name, (title, introduction, readme, _, _) in tutorials.TUTORIALS.items():
         target = f"tutorials/{name}.md"
         text = tutorials.with_outputs(name, BIN) if name in able else tutorials.text_of(name)
+        text = re.sub(r"\A# .*\n+", "", text)  # a README's own title names its folder
         write(target, f"# {title}\n\n{introduction}\n\n" + place(text, readme, target))
 
 

@@ -16,11 +16,13 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BLOCK = re.compile(r"^( *)```(sh|python)\n(.*?)^ *```\n", re.S | re.M)
 MOST_LINES = 30  # of an output
 
-# Arrays of two people, at 100 frames a second, as the README of Python names them.
+# Arrays of four people, at 100 frames a second, as the README of Python names them. Pushes are whole ones, as a sensor
+# measures them; the masses must be those of the README.
 ARRAYS = """
 import numpy as np, pushid
-made = pushid.simulate(people=2, recordings_per_person=2, fps=100, seed=4)[0]
-for recording, name in zip(made, ("anna_1", "anna_2", "ben_1", "ben_2")):
+made = pushid.simulate(people=4, recordings_per_person=2, fps=100, seed=4, push_kind="external")[0]
+assert [one.mass[0] for one in made[::2]] == [61.9, 94.3, 78.2, 60.7], [one.mass[0] for one in made[::2]]
+for recording, name in zip(made, [f"{name}_{take}" for name in ("anna", "ben", "cleo", "dan") for take in (1, 2)]):
     for part, values in (("hip", recording.hip), ("left_ankle", recording.left_ankle), ("right_ankle", recording.right_ankle),
                          ("push", recording.push[:, 0])):
         np.save(f"{name}_{part}.npy", values)
@@ -42,7 +44,7 @@ TUTORIALS = {
                       "From a folder of files to a manifest"), ":"),
     "row": ("A row of people", f"`M` are recordings of groups; here of synthetic people, made by `{GROUPS}`.",
             "ident/formations/README.md", ("ident/formations: simulated formations of people",), GROUPS),
-    "python": ("Python", "The arrays are of two synthetic people.", "apps/python/README.md", ("apps/python: import pushid",),
+    "python": ("Python", "The arrays are of four synthetic people, whose mu is 30, Kp_theta 1800, Kd_theta 70 and a_x -10.", "apps/python/README.md", ("apps/python: import pushid",),
                f"'{sys.executable}' - <<'END'{ARRAYS}END"),
     "batch": ("A batch, also on a cluster", "Many fits from one plan. Outputs are those of the plan below without the line "
               "`restoration`, which needs a training.", "apps/README.md", ("Many fits: pushid-batch",), PLAN)}
