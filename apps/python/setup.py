@@ -1,6 +1,6 @@
 """pip install ./apps/python --no-build-isolation: builds the extension by the project's own CMake.
 
-PUSHID_BUILD=build/release: takes that of a build that is there."""
+PUSHID_BUILD=build/release: takes that of an existing build; a relative path starts at the project's folder."""
 import os
 import shutil
 import subprocess
@@ -11,7 +11,9 @@ from setuptools.command.build_ext import build_ext
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 THERE = os.environ.get("PUSHID_BUILD")
-BUILD = os.path.abspath(THERE or os.path.join(SOURCE, "build", "pip"))
+BUILD = os.path.join(SOURCE, THERE or os.path.join("build", "pip"))  # pip runs this in apps/python
+if THERE and not os.path.exists(os.path.join(BUILD, "CMakeCache.txt")):
+    sys.exit(f"PUSHID_BUILD: {BUILD} is no build of CMake; make one (cmake --preset release), or leave PUSHID_BUILD out")
 LEFT = os.path.join(BUILD, "setuptools")  # its own files
 
 

@@ -13,7 +13,12 @@ fi
 scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
 unset PYTHONPATH
-PUSHID_BUILD="$build" "$python" -m pip wheel -q "$source_dir/apps/python" --no-build-isolation --no-deps -w "$scratch/wheels"
+wheel() { PUSHID_BUILD="$1" "$python" -m pip wheel -q "$source_dir/apps/python" --no-build-isolation --no-deps -w "$scratch/wheels"; }
+if wheel "$scratch/none" 2>"$scratch/refused" || ! grep -q "$scratch/none is no build" "$scratch/refused"; then
+  echo "a build that is not there: no error says so"
+  exit 1
+fi
+wheel "${build#"$source_dir/"}"  # relative, as apps/README.md says, where the build is in the project
 ls "$scratch/wheels"
 "$python" -m venv --system-site-packages "$scratch/venv"
 "$scratch/venv/bin/python" -m pip install -q --no-index --no-deps "$scratch"/wheels/pushid-*.whl
