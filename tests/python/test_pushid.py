@@ -104,6 +104,7 @@ def test_options_are_those_of_the_flags(made):
     held = pushid.fit(made[0], fix={"mu": np.float64(25)}, prior={"Kp_theta": (1500, np.float32(300))})
     assert held["mu"].value == 25.0 and held["mu"].fixed
     assert "tail" in pushid.options()["preset"][0]
+    assert not [name for name, (meaning, _) in pushid.options().items() if "--" in meaning], "flags in Python's words"
 
 
 @pytest.mark.parametrize("order", ["C", "F"])

@@ -10,7 +10,7 @@ from . import _pushid
 
 def options():
     """The options of a fit: {name: (meaning, default)}; a default of None is set by the preset."""
-    return {name: (meaning, default) for name, meaning, default in _pushid.options()}
+    return {name: (_pushid.in_python(meaning), default) for name, meaning, default in _pushid.options()}
 
 
 def _word(value):
@@ -33,7 +33,7 @@ def text_of(name, value):
 
 def given(asked):
     """Keyword arguments as (name, text), with checked names; None counts as not given."""
-    known = options()
+    known = [name for name, _, _ in _pushid.options()]
     for name in asked:
         if name in known:
             continue
@@ -66,7 +66,7 @@ def as_call(command):
         return f"result.bootstrap({flags['bootstrap']})"
     candidate = flags.pop("compare", None)
     left_out = flags.pop("leave_out", "")
-    known = options()
+    known = [name for name, _, _ in _pushid.options()]
     words = [f"[r for r in recordings if r.id not in {left_out.split(',')!r}]" if left_out else "recordings"]
     if candidate:
         name, _, more = candidate.partition(": ")

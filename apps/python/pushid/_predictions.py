@@ -26,9 +26,9 @@ def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=
                        mass=85.0, rod=0.95, duration=4.0, fps=60.0, set=None, onset_bands=False):
     """Rolls a fitted model out on a formation of people; see Formation.
 
-    shape: "line", "diamond" or "grid"; spacing in m, push in N s along +x at the hip of person `pushed` for push_duration (s). mass: kg; rod: m;
-    duration: s; fps: frames per second. onset_bands:
-    also compute 90 % bands of the onsets, by drawing parameters from their covariance.
+    shape: "line", "diamond" or "grid"; spacing: m. push: N s along +x at the hip of person `pushed`, within push_duration
+    (s). mass (kg) and rod (ankles to hip, m): of everybody. duration (s) of the simulation; fps: frames per second.
+    onset_bands: also compute 90 % bands of the onsets, by drawing parameters from their covariance.
     """
     return Formation(_pushid.simulate_formation(result._model, shape, people, spacing, pushed, push, push_duration, mass,
                                                 rod, duration, fps, text_of("set", set or {}), onset_bands))

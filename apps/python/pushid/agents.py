@@ -160,7 +160,7 @@ class Crowd:
 
     @property
     def time(self):
-        """Since the start, s."""
+        """Time since the start, s."""
         return self.steps * self.dt
 
     def push_on(self, agent):
