@@ -1,7 +1,7 @@
 """The reference of `import pushid`: types of the stubs (__init__.pyi), docstrings and defaults of the built module.
 
   pages(): [(name of the page, its text)], which say so where the module cannot be imported. Exits where a public name
-           has no docstring.
+           has no docstring, or no page.
 """
 import ast
 import importlib
@@ -10,7 +10,8 @@ import pathlib
 import re
 import sys
 
-STUBS = pathlib.Path(__file__).resolve().parents[2] / "apps/python/pushid/__init__.pyi"
+STUBS = ast.parse((pathlib.Path(__file__).resolve().parents[2] / "apps/python/pushid/__init__.pyi").read_text()).body
+ABBREVIATIONS = {part.targets[0].id: ast.unparse(part.value) for part in STUBS if isinstance(part, ast.Assign)}
 # Name of the page, its title, and the module whose public names stand there.
 PAGES = [("python_recordings", "Recordings", "pushid._recordings"), ("python_fits", "Fits and results", "pushid._results"),
          ("python_predictions", "Predictions", "pushid._predictions"), ("python_options", "Options and errors", "pushid._options"),
@@ -36,8 +37,7 @@ def marked(text):
 
 def typed(node):
     """A type, with the stubs' own abbreviations written out."""
-    names = {part.targets[0].id: ast.unparse(part.value) for part in ast.parse(STUBS.read_text()).body if isinstance(part, ast.Assign)}
-    return re.sub(r"\b_\w+", lambda match: names.get(match[0], match[0].lstrip("_")), ast.unparse(node))
+    return re.sub(r"\b_\w+", lambda match: ABBREVIATIONS.get(match[0], match[0].lstrip("_")), ast.unparse(node))
 
 
 def signature(name, node, value):
@@ -81,7 +81,8 @@ def of_class(name, node, value):
         elif isinstance(what, property):
             types = typed(stub.annotation if isinstance(stub, ast.AnnAssign) else stub.returns) if stub else ""
             types = types.replace(" | ", " or ")  # a | would end the cell
-            rows.append(f"| `{member}` | " + (f"`{types}` | " if types else "| ") + doc(f"{name}.{member}", what).replace("\n", " ").replace("|", "or") + " |")
+            text = doc(f"{name}.{member}", what).replace("\n", " ").replace("|", "or")
+            rows.append(f"| `{member}` | {f'`{types}`' if types else ''} | {text} |")
     text = [f"## {name}\n", (doc(name, value) if name else "") + "\n"]
     if "__init__" in known:
         text.insert(1, signature(name, known["__init__"], value))
@@ -91,9 +92,12 @@ def of_class(name, node, value):
 
 
 def options(pushid):
-    rows = "\n".join(f"| `{name}` | {marked(' '.join(meaning.split()))} | {'' if default is None else f'`{default}`' if default else 'none'} |"
-                     for name, (meaning, default) in pushid.options().items()).replace(r"\|", "or")
-    return f"## Options of a fit\n\nKeyword arguments of `fit`. Without a default the preset decides.\n\n| option | meaning | default |\n|---|---|---|\n{rows}\n"
+    lines = ["## Options of a fit\n\nKeyword arguments of `fit`. Where the default is empty, the preset decides.\n\n"
+             "| option | meaning | default |\n|---|---|---|"]
+    for name, (meaning, default) in pushid.options().items():
+        shown = "" if default is None else f"`{default}`" if default else "not given"
+        lines.append(f"| `{name}` | {marked(meaning)} | {shown} |")
+    return "\n".join(lines) + "\n"
 
 
 def pages():
@@ -104,14 +108,15 @@ def pages():
     except ImportError as missing:
         return [(page, f"# {title}\n\nThe module is not built here ({missing}): `cmake --build --preset release --target _pushid`, "
                  "and build the site again.\n") for page, title, _ in PAGES]
-    stubs = {node.name: node for node in ast.parse(STUBS.read_text()).body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
-    result = []
+    stubs = {node.name: node for node in STUBS if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    result, left = [], set(pushid.__all__)
     for page, title, module in PAGES:
         source = importlib.import_module(module)
         public = pushid.__all__ if module != "pushid.agents" else ["Agent", "PendulumModel", "Crowd"]
         values = {name: getattr(source, name) for name in public if getattr(getattr(source, name, None), "__module__", "") == module}
         if module == "pushid._options":
             values.update({name: getattr(compiled, name) for name in ("DataError", "UsageError", "FitError")})
+        left -= values.keys()
         text = [f"# {title}\n", "[How to use it](../apps/python/README.md).\n", marked(source.__doc__) + "\n"]
         for name, value in sorted(values.items(), key=lambda item: item[0].lower()):
             make = of_class if inspect.isclass(value) else lambda *them: of_function(*them, "##")
@@ -119,6 +124,8 @@ def pages():
         if module == "pushid._recordings":
             text += ["## Attributes of a recording\n", *of_class("", stubs["_Recording"], compiled.Recording)[2:]]
         result.append((page, "\n".join(text + ([options(pushid)] if module == "pushid._options" else []))))
+    if left:
+        sys.exit(f"pushid: on no page of the reference: {', '.join(sorted(left))}")
     return result
 
 

@@ -38,8 +38,8 @@ TUTORIALS = {
     "own_recordings": ("Your own recordings, step by step", "After `bash apps/quickstart.sh`, in the folder of the project.",
                        "README.md", ("Your own recordings, step by step", "How to read the result"),
                        f"PUSHID_BIN=$PWD/build/release/bin bash '{ROOT}/apps/quickstart.sh' --out=quickstart-output"),
-    "force_plates": ("Force plates and load cells", "The files of a laboratory that `pushid-simulate --laboratory` makes, and how "
-                     "C3D files name the same.", "datasets/README.md",
+    "force_plates": ("Force plates and load cells", "The files of a laboratory (TRC, CSV, MOT) that `pushid-simulate --laboratory` "
+                     "makes, and what is different with C3D files.", "datasets/README.md",
                      ("A laboratory's files, from start to end", "Pushes and sensors", "Moving ground and force platforms",
                       "From a folder of files to a manifest"), ":"),
     "row": ("A row of people", f"`M` are recordings of groups; here of synthetic people, made by `{GROUPS}`.",

@@ -34,7 +34,7 @@ class Agent:
 
     @property
     def position(self):
-        """Of the hip, m."""
+        """Position of the hip, m."""
         rod, (x, y, theta, phi) = self.parameters["rod_m"], self.q
         return x + rod * math.sin(theta), y - rod * math.cos(theta) * math.sin(phi)
 
