@@ -77,7 +77,7 @@ int Help() {
 // word: a command, or its program's name.
 int Run(const std::string& word, const std::vector<std::string>& arguments) {
   const std::string command = word.rfind("pushid-", 0) == 0 ? word.substr(7) : word;
-  std::vector<std::string> known = {"help", "completion", "man"};
+  std::vector<std::string> known = {"help", "completion", "man", "schema"};
   bool found = false;
   for (const Command& one : AllCommands()) {
     known.push_back(one.name);
@@ -150,6 +150,11 @@ int main(int argc, char** argv) {
     return arguments.empty() ? Help() : HelpOn(arguments[0]);
   }
   if (command == "schema") {
+    if (!arguments.empty() && arguments[0] != "model") {
+      return Fail(
+          "pushid schema prints the schema of a model's file alone; those of other files are "
+          "in share/pushid/schemas (in the source: apps/schemas)");
+    }
     std::printf("%s\n", ModelSchema().dump(1).c_str());
     return kDone;
   }

@@ -214,21 +214,21 @@ void BindRecordings(py::module_* module) {
     return [part](const std::shared_ptr<Recording>& r) { return TrackArray(r, part); };
   };
   py::class_<Recording, std::shared_ptr<Recording>>(*module, "Recording")
-      .def_readonly("id", &Recording::id, "Name, one of its own among those of a fit.")
+      .def_readonly("id", &Recording::id, "Name, unique among the recordings of a fit.")
       .def_property_readonly(
           "setting", [](const Recording& r) { return r.labels.setting(); },
-          "Label: what was recorded, as in the manifest.")
+          "Label of the arrangement, as in the manifest.")
       .def_property_readonly(
           "magnitude", [](const Recording& r) { return r.labels.magnitude(); },
-          "Label: how strong the push was said to be.")
+          "Label of the push strength, as in the manifest.")
       .def_property_readonly(
           "condition", [](const Recording& r) { return r.labels.condition(); },
-          "Label: of a comparison.")
+          "Label of the protocol condition, as in the manifest.")
       .def_readonly("fps", &Recording::fps, "Frames per second.")
       .def_readonly("pushed_person", &Recording::pushed_person,
                     "Index of the person who is pushed.")
       .def_readonly("content_hash", &Recording::content_hash,
-                    "Of everything that a fit takes from it.")
+                    "Hash of everything that a fit reads from the recording.")
       .def_property_readonly("num_frames", &Recording::num_frames, "Number of frames.")
       .def_property_readonly(
           "num_people", [](const Recording& r) { return r.people.size(); }, "Number of people.")
@@ -253,7 +253,7 @@ void BindRecordings(py::module_* module) {
             for (const RecordedPerson& p : r.people) masses.push_back(p.mass_kg);
             return masses;
           },
-          "Of each person, kg.")
+          "Mass of each person, kg.")
       .def_property_readonly(
           "known",
           [](const Recording& r) {

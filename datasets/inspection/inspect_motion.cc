@@ -192,7 +192,8 @@ class MotionInspector {
                   "; set \"forward\" according to the room");
     }
     if (up_ != "z") {
-      found_.Warn(up_ + " is up in the file: set \"up\" and \"forward\" in the manifest");
+      found_.Warn(up_ + " is up in the file: set \"up\": \"" + up_ + "\"" +
+                  (faces == "?" ? "" : ", \"forward\": \"" + faces + "\"") + " in the manifest");
     }
     if (!motion_.up.empty() && motion_.up != "+" + up_ && motion_.up != up_) {
       found_.Warn("the file declares " + motion_.up + " as up, but the person stands along " + up_);

@@ -166,7 +166,10 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
                                         const ForceLaws& laws) {
   if (!json.is_object() || !json.contains("format") || json["format"] != "pushid model" ||
       !json.contains("format_version") || !json["format_version"].is_number()) {
-    return Error{"this is not a pushid model (pushid-fit --model_out writes one)", file};
+    const bool named = json.is_object() && json.contains("schema") && json["schema"].is_string();
+    return Error{"this is not a pushid model (pushid-fit --model_out writes one)" +
+                     (named ? "; its schema is " + json["schema"].get<std::string>() : ""),
+                 file};
   }
   if (json["format_version"] > kModelFormat) {
     return Error{"written by a newer pushid; update pushid to read it", file};

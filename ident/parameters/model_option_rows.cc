@@ -222,7 +222,7 @@ std::vector<Row> ModelOptionRows() {
           "directions", "/directions", [](O & o) -> auto& { return o.model.directions; },
           "isotropic (people answer alike in all directions; fitted along each push), body (along "
           "what people face, sideways parameters free where forward ones are) or axes (those of "
-          "the file, sideways parameters as the preset has them"))),
+          "the file; sideways parameters as the preset has them)"))),
       Decided(NameRow<GainScaling>(
           "gain_scaling", "/gain_scaling", [](O & o) -> auto& { return o.model.gain_scaling; },
           "gains of other bodies: none, mass, or body (mass and rod length)")),

@@ -66,7 +66,7 @@ TEST_F(InspectionTest, Axes) {
   }
   const std::string said = Said();
   EXPECT_TRUE(Contains(said, "y is up, the person faces z"));
-  EXPECT_TRUE(Contains(said, "warning: y is up in the file: set \"up\" and \"forward\""));
+  EXPECT_TRUE(Contains(said, "warning: y is up in the file: set \"up\": \"y\", \"forward\": "));
 }
 
 // In mid-stride the line between the ankles says little; the pelvis does.

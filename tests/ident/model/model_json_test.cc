@@ -195,6 +195,8 @@ TEST(ResultJson, DamageIsNamed) {
   EXPECT_TRUE(Contains(message(Json::array()), "some.json: this is not a pushid model"));
   EXPECT_TRUE(Contains(message({{"recordings", 3}}), "this is not a pushid model"));
   EXPECT_TRUE(Contains(message({{"format", 7}}), "this is not a pushid model"));
+  EXPECT_TRUE(
+      Contains(message({{"schema", "pushid-manifest/1"}}), "its schema is pushid-manifest/1"));
   Json json = good;
   json["format_version"] = 99;
   EXPECT_TRUE(Contains(message(json), "newer pushid"));
