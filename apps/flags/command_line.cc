@@ -126,9 +126,9 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   } else if (argc > 1) {
     const std::string word = argv[1];
     const bool manifest = EndsWith(word, ".json") && NamesFlag("--recordings");
-    return Fail(
-        "'" + word + "' is not a flag; " +
-        (manifest ? "is it --recordings=" + word + "?" : "see " + ProgramName() + " --help"));
+    return Fail("'" + word + "' is not a flag; " +
+                (manifest ? "is it --recordings=" + word + "?; " : "") + "see " + ProgramName() +
+                " --help");
   }
   if (MaybeError error = CheckOutputs()) return Fail(*error);
   SayWhenInterrupted("no partial file is left; run the same command to start again");
