@@ -32,8 +32,8 @@ ROWS = [
     ("normal equations of the 32 recordings side by side, `tail` (8 columns): 256-bit / 128",
      [f"EquationsSideBySide/0/{w}" for w in (1, 0)]),
     ("their gradient alone, by the adjoint: 256 / 128", [f"GradientsSideBySide/0/{w}" for w in (1, 0)]),
-    ("the same by Jets, stride 4", [f"JacobianByJets<4>/{p}" for p in (6, 12, 64)]),
-    ("the same by Jets, full width", ["JacobianByJets<6>/6", "JacobianByJets<12>/12", "JacobianByJets<28>/64"]),
+    ("Jacobian by Jets, stride 4", [f"JacobianByJets<4>/{p}" for p in (6, 12, 64)]),
+    ("Jacobian by Jets, full width", ["JacobianByJets<6>/6", "JacobianByJets<12>/12", "JacobianByJets<28>/64"]),
     ("solve of the 32 recordings, `tail` / `ldp`", ["SolveOnly/tail", "SolveOnly/ldp"]),
     ("the same 32 by the innovation likelihood, `tail`", ["SolveByInnovations"]),
     ("fit with uncertainty and behaviour, `tail` / `ldp`", ["WholeFit/tail", "WholeFit/ldp"]),
@@ -48,7 +48,7 @@ ROWS = [
      [f"CrowdSecond/people:{n}/threads:1/real_time" for n in (1000, 10000)]),
     ("the same of 10,000 who do not", ["CrowdSecondWithoutContact/people:10000/threads:1/real_time"]),
     ("learning from first frames: one frame / a prediction after 30 / a whole recording",
-     ["OnlineObserve", "OnlinePredict", "OnlineRecording"]),
+     ["OnlineObserve/1", "OnlinePredict/1", "OnlineRecording"]),
     ("reading a BVH file / C3D / TRC / CSV", [f"BM_Read{f}" for f in ("BvhHipAndAnkles", "C3d", "Trc", "Csv")]),
 ]
 
