@@ -9,10 +9,13 @@ if ! command -v mkdocs >/dev/null; then
   exit 77  # skipped, for ctest
 fi
 bin=${PUSHID_BIN:-build/release/bin}
-if [ ! -x "$bin/pushid-fit" ]; then
-  echo "$bin has no pushid-fit; build the programs (bash apps/quickstart.sh), or set PUSHID_BIN" >&2
-  exit 1
-fi
+for program in fit simulate report formation batch check; do  # quickstart.sh builds some of them
+  if [ ! -x "$bin/pushid-$program" ]; then
+    echo "$bin has no pushid-$program; build all programs (cmake --preset release && cmake --build --preset release)," >&2
+    echo "or set PUSHID_BIN to where they are" >&2
+    exit 1
+  fi
+done
 rm -rf build/site
 python=/usr/bin/python3  # Debian's, which the module is built for
 export PYTHONDONTWRITEBYTECODE=1
