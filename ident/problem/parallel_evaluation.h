@@ -26,8 +26,8 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   // What to add to the problem in place of `cost`, which acts on `blocks`.
   std::unique_ptr<ceres::CostFunction> Wrap(std::unique_ptr<ceres::CostFunction> cost,
                                             const std::vector<double*>& blocks);
-  // From now on Jacobians need be right in J'r alone, as long as evaluations serve gradients: a
-  // third of the work for people alone.
+  // From now on Jacobians are right in J'r alone, which is less work for people side by side
+  // (lane_group.h): for callers that ask for gradients and nothing else.
   void set_gradients_only() { with_jacobian_ = LaneSums::kGradient; }
   // Whose constant blocks need no derivatives.
   void set_problem(const ceres::Problem* problem) { problem_ = problem; }

@@ -66,7 +66,7 @@ struct LaneInputs {
 
 enum class LaneSums {
   kSquares,   // r'r alone
-  kGradient,  // and J'r, by the adjoint: a third of the work of [J r]'[J r]
+  kGradient,  // and J'r, by the adjoint: work that columns do not add to
   kPlain,     // [J r]'[J r]
   kRobust     // and that with the robust loss's own Hessian (CorrectForRobustLoss)
 };
