@@ -22,9 +22,10 @@ constexpr int kMostChanges = 2;     // of which start is the best
 constexpr double kSameCost = 1e-6;  // relative: another start at the same optimum
 constexpr double kRough = 1e-3;     // function tolerance on the way
 constexpr double kContradicted = 0.05;
-// The demand joins in two steps: all of it at once outweighs everything else where people are far
-// from settled, and the solver creeps along its edge.
-constexpr double kFirstStep = 0.1;
+// The demand joins in three steps, each solved as the last: all of it at once outweighs everything
+// else where people are far from settled, and the solver creeps along its edge. A thirtieth moves
+// the optimum near the edge, and from there along it by steps of ordinary length.
+constexpr double kDemandSteps[] = {0.03, 0.3, 1.0};
 
 double Change(double from, double to) {
   return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;
@@ -103,15 +104,16 @@ double SlowestSeconds(const FitProblem& problem, const FitPoint& point) {
 // A fit that meets the demand, from one that does not. Where simulated people fall or run out of
 // the domain there, Ceres cannot see them: then on the way from the start, where they need not.
 SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
-  FitProblem first = Roughly(demanding);
-  first.set_settling_weight(kFirstStep * demanding.options().settling_weight);
+  FitProblem part = demanding;
   SolveStart held = free;
-  if (std::isinf(CostAt(first, free.to))) {
-    held = SolveFrom(first, first.NominalPoint(), "nominal", "", nullptr);
-  } else {
-    SolveOn(first, &held);
+  for (double share : kDemandSteps) {
+    part.set_settling_weight(share * demanding.options().settling_weight);
+    if (share == kDemandSteps[0] && std::isinf(CostAt(part, free.to))) {
+      held = SolveFrom(Roughly(part), part.NominalPoint(), "nominal", "", nullptr);
+    } else {
+      SolveOn(part, &held);
+    }
   }
-  SolveOn(demanding, &held);
   return held;
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 // Gauss-Newton's curvature may be several times the true one, and its steps then reach the optimum
 // by a constant share of the way each: after so many, secants go on from its information.
-constexpr int kFewSteps = 10;
+constexpr int kFewSteps = 5;
 constexpr double kLoose = 1e-6;  // a function tolerance that asks for no such optimum
 
 }  // namespace

@@ -76,13 +76,18 @@ TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
   EXPECT_NE(drawn, mean);
 }
 
-// Pendulums with rods that move, restored and fitted to bodies through the chain.
+// Pendulums with rods that move, restored and fitted to bodies through the chain: of four recordings, as the derivative
+// of each goes through all frames' networks.
 TEST_F(CvaeAppTest, IsTrainedAsAWholeOnRodsThatMove) {
   const std::string model = "--model=" + FitModel("rod.json", {"--rod=linear", "--max_iterations=2",
                                                                "--fix=Kd_theta=70"});
+  const std::string few = ChangedManifest([](nlohmann::ordered_json& json) {
+    auto& all = json["recordings"];
+    all = {all[0], all[1], all[6], all[7]};
+  });
   const AppRun run = RunApp(
       "pushid-train-restoration",
-      {Recordings(), model, "--crossvalidate=2", "--kind=cvae", "--effort=0.001", "--body_weight=1",
+      {few, model, "--crossvalidate=2", "--kind=cvae", "--effort=0.001", "--body_weight=1",
        "--rounds=1", "--predicted_pendulums=false", "--quiet", "--json_out=" + Path("cv.json")},
       400);
   ASSERT_EQ(run.exit_code, 0) << run.err;

@@ -176,7 +176,7 @@ TEST_F(GeneratorAppTest, ThePageWorksInABrowser) {
 // Killed at a checkpoint, it goes on and ends with the bits of a training that was not disturbed.
 TEST_F(GeneratorAppTest, GoesOnWhereItWasKilled) {
   // The first checkpoint comes after 50 steps: time enough between it and the end.
-  const std::vector<std::string> longer = {"--steps=300", "--seeds=1", "--checkpoint_seconds=0"};
+  const std::vector<std::string> longer = {"--steps=150", "--seeds=1", "--checkpoint_seconds=0"};
   ASSERT_EQ(Train("whole", longer).exit_code, 0);
   bool killed = false;
   for (double seconds = 1.0; !killed && seconds < 60.0; seconds *= 2.0) {
