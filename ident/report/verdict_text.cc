@@ -107,7 +107,7 @@ std::string FailureText(const ModelVerdict& v) {
   }
   if (v.motion.explained < kLeastExplained) {
     add("it explains " + Rounded(100.0 * v.motion.explained, 2) +
-        " % of the hip's squared way in the median recording");
+        " % of the hip's squared displacement in the median recording");
   }
   return text;
 }
@@ -130,7 +130,7 @@ std::string ModelVerdictText(const ModelVerdict& v) {
          (std::isnan(v.motion.explained)
               ? std::string("; nobody saw the motion.")
               : "; it explains " + Rounded(100.0 * v.motion.explained, 3) +
-                    " % of the hip's squared way in the median "
+                    " % of the hip's squared displacement in the median "
                     "recording.");
 }
 

@@ -82,8 +82,8 @@ def written(folder, binaries):
     run("pushid-path", "--model=noisy.json", "--from=xd=0.5", "--to=x=0.4,xd=0; x=0.8,xd=0", "--json_out=paths.json")
     run("pushid-path", "--model=noisy.json", data, f"--id={first}", "--json_out=smoothed.json")
     files = [("manifest", "people/manifest.json"), ("manifest", "rows/manifest.json"), ("manifest", "lab/manifest.json"),
-             ("truth", "lab/truth.json"), ("model", "model.json"), ("model", "learned.json"), ("model", "noisy.json"), ("scores", "evaluation.json"),
-             ("scores", "folds.json"), ("summary", "out/summary.json"), ("agents", "agents.json"),
+             ("truth", "lab/truth.json"), ("model", "model.json"), ("model", "learned.json"), ("model", "noisy.json"),
+             ("scores", "evaluation.json"), ("scores", "folds.json"), ("summary", "out/summary.json"), ("agents", "agents.json"),
              ("inspection", "inspection.json"), ("path", "paths.json"), ("path", "smoothed.json")]
     files += [("job", str(file.relative_to(folder))) for file in sorted(folder.glob("out/jobs/*/status.json"))[:1]]
     return files + (of_networks(run, data, model, first) if (binaries / "pushid-train-generator").exists() else [])

@@ -1,5 +1,5 @@
-// benchmarks: the normal equations of the recordings of single people, side by side at every width
-// of vectors, and how near that is to what the processor can do.
+// benchmarks: costs, gradients and normal equations of the recordings of single people, side by
+// side at every width of vectors, and how near that is to what the processor can do.
 //
 // The limit: sums and products, as one person's loops count them, at the rate that this core
 // reaches in products of small matrices whose sums stay in registers (packed/vector_kernels.h).
@@ -82,7 +82,10 @@ void SumsSideBySide(benchmark::State& state) {
   const double peak = PeakRate(*SupportedVectorKernels()[state.range(1)]);
   const std::vector<LaneGroup> all = groups(lanes);
   for (auto _ : state) evaluate(all, lanes.lanes);
+  size_t frames = 0;
+  for (const PendulumRecording& recording : people.recordings) frames += recording.states[0].size();
   state.counters["million_operations"] = operations / 1e6;
+  state.counters["operations_a_frame"] = operations / static_cast<double>(frames);
   state.counters["quotients_and_roots"] = counted.quotients_and_roots / operations;
   state.counters["transcendental"] = counted.transcendental / operations;
   state.counters["peak"] = peak;
@@ -92,8 +95,10 @@ void SumsSideBySide(benchmark::State& state) {
                  " columns, " + std::to_string(problems.size()) + " " + people.origin +
                  " recordings");
 }
+void CostsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kSquares>(state); }
 void EquationsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kPlain>(state); }
 void GradientsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kGradient>(state); }
+BENCHMARK(CostsSideBySide)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1}, {0, 1, 2}});
 BENCHMARK(EquationsSideBySide)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1}, {0, 1, 2}});
 BENCHMARK(GradientsSideBySide)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1}, {0, 1, 2}});
 

@@ -79,8 +79,10 @@ def faults(text):
 def main():
     text = (ROOT / "apps/packaging/Containerfile").read_text()
     wrong = faults(text)
-    for before, after in ((":bookworm-20241016-slim", ":bookworm-slim"), (":bookworm-", ":trixie-"), ("-20241016", "-20241316"),
-                          ("-20241016", "-20201016"), ("docker.io/library/debian", "docker.io/library/ubuntu"), ("RUN apt-get", "RUN sudo apt-get"), ("USER pushid\n", ""),
+    for before, after in ((":bookworm-20241016-slim", ":bookworm-slim"), (":bookworm-", ":trixie-"),
+                          ("-20241016", "-20241316"), ("-20241016", "-20201016"),
+                          ("docker.io/library/debian", "docker.io/library/ubuntu"), ("RUN apt-get", "RUN sudo apt-get"),
+                          ("USER pushid\n", ""),
                           (" /var/lib/apt/lists/* \\\n  && useradd", " \\\n  && useradd"), (" --no-install-recommends", ""),
                           ("RUN apt-get update \\\n  && ", "RUN "), ("/tmp/pushid_*.deb \\\n  && rm", "libceres3 \\\n  && rm"),
                           ("COPY models models", "COPY . ."), ("package_packages", "other_packages"), ("FROM ${BASE}\nCOPY", "COPY"),

@@ -5,6 +5,7 @@ crowds      tests/benchmarks/README.md; four minutes; needs pushid-benchmarks
 processes   tests/benchmarks/README.md; two minutes
 batch       tests/benchmarks/README.md; a batch of 101 fits; half a minute
 rivals      tests/benchmarks/README.md; the same fit in SciPy and PyTorch (python3-scipy, python3-torch); a minute
+limits      tests/benchmarks/README.md; what the processor could do in the same time; half a minute
 against     tests/benchmarks/README.md; this commit's fits and another's, whose folder of programs PUSHID_BIN_BEFORE
             names; three minutes
 
@@ -188,6 +189,45 @@ def rivals():
             f"\n\nMedians of five, in turns, one thread; {machine()}.")
 
 
+SOLVING = ("starts and horizons", "weights", "settling", "other starts")  # purposes of run.work
+LANES = {"cost": "CostsSideBySide", "gradient, by the adjoint": "GradientsSideBySide",
+         "normal equations": "EquationsSideBySide"}
+
+
+def limits():
+    """Sums and products alone, at the rate of products of small matrices (lane_benchmark.cc); a group's by the step of a
+    person alone, times 1 + columns: contact, quotients and roots come on top."""
+    names = "|".join(f"{name}/0/1" for name in LANES.values())
+    report = studies.run("pushid-benchmarks", f"--benchmark_filter=^({names})$", "--benchmark_format=json", out=None)
+    of = {b["name"].split("/")[0]: b for b in json.loads(report.text)["benchmarks"]}
+    peak = of["CostsSideBySide"]["peak"]
+    rows = []
+
+    def add(title, evaluations, operations, seconds):
+        limit = operations / peak
+        rows.append([title, evaluations, f"{number(operations / 1e6)} million", f"{number(1e3 * limit)} ms",
+                     f"{number(1e3 * seconds)} ms", number(seconds / limit, 2)])
+
+    for title, name in LANES.items():
+        add(f"{title} of the 32 recordings", "1", 1e6 * of[name]["million_operations"], 1e-3 * of[name]["cpu_time"])
+    for setting, title in (("single", "the 32 recordings"), ("groups", "the 49 of groups")):
+        fit = studies.on_recordings("pushid-fit", setting, "--quiet", out="model_out", keep=False).json
+        work = [w for w in fit["run"]["work"] if w["purpose"] in SOLVING]
+        jacobians, gradients, costs = (sum(w[kind] for w in work) for kind in ("jacobians", "gradients", "costs"))
+        if setting == "single":
+            operations = 1e6 * (jacobians * of["EquationsSideBySide"]["million_operations"] +
+                                gradients * of["GradientsSideBySide"]["million_operations"] +
+                                costs * of["CostsSideBySide"]["million_operations"])
+        else:
+            frames = sum(r["frames"] * r["people"] for r in fit["data"]["recordings"])
+            columns = sum(p["status"] != "fixed" for p in fit["parameters"])
+            operations = (frames * of["CostsSideBySide"]["operations_a_frame"] *
+                          (jacobians * (1 + columns) + costs))
+        add(f"a solve of {title}", f"{jacobians} / {gradients} / {costs}", operations, sum(w["seconds"] for w in work))
+    text = studies.table(["", "normal equations / gradients / costs", "sums and products", "limit", "measured", "ratio"], rows)
+    return f"{text}\n\nAt {number(peak / 1e9)} thousand million sums and products a second, one core, 256-bit vectors; {machine()}."
+
+
 def machine():
     with open("/proc/cpuinfo", encoding="utf-8") as file:
         lines = dict(line.split(":", 1) for line in file if ":" in line)
@@ -219,4 +259,4 @@ def against():
 
 if __name__ == "__main__":
     studies.main(__file__, {"benchmarks": benchmarks, "crowds": crowds, "processes": processes, "batch": batch,
-                            "rivals": rivals, "against": against})
+                            "rivals": rivals, "limits": limits, "against": against})

@@ -88,8 +88,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   report.title = "pushid: " + std::to_string(result.recordings.size()) + " recordings (" +
                  model.provenance.setting + "), preset " + result.options.preset;
   report.subtitle =
-      "friction, gains and push tails, their uncertainty and their predictions; pushid " +
-      model.provenance.version;
+      "parameters, their uncertainty and their predictions; pushid " + model.provenance.version;
   ReportSource source{model};
   source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
   const IdentifiedModel identified = ModelOf(result);
