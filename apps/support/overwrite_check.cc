@@ -22,10 +22,12 @@ constexpr const char* kInputs[] = {
     "people_from", "sensor",   "masses",   "sensors", "mapping",   "generator",
     "plan",        "flagfile", "formation"};
 
-// Through symbolic and hard links too; a file need not exist.
+// Through symbolic and hard links too. One file that exists is never another that does not.
 bool Same(const std::string& a, const std::string& b) {
   std::error_code failed;
-  if (fs::equivalent(a, b, failed) && !failed) return true;
+  const bool exists = fs::exists(a, failed);
+  if (exists != fs::exists(b, failed)) return false;
+  if (exists) return fs::equivalent(a, b, failed);
   const auto whole = [](const std::string& path) {
     std::error_code ignored;
     std::string text = fs::weakly_canonical(fs::absolute(path), ignored).string();
