@@ -17,7 +17,8 @@ namespace pushid {
 namespace {
 
 constexpr double kSettled = 0.01;  // relative change
-constexpr int kMostRounds = 12;
+constexpr int kMostRounds = 20;
+constexpr int kFewIterations = 4;  // of a rough round: by weights that will change
 constexpr int kMostChanges = 2;     // of which start is the best
 constexpr double kSameCost = 1e-6;  // relative: another start at the same optimum
 constexpr double kRough = 1e-3;     // function tolerance on the way
@@ -61,6 +62,16 @@ FitProblem Roughly(FitProblem problem) {
   return problem;
 }
 
+// Between two estimates of the weights.
+FitProblem Briefly(const FitProblem& problem) {
+  FitProblem rough = Roughly(problem);
+  const FitOptions& options = problem.options();
+  if (options.model.learned == nullptr) {
+    rough.set_max_iterations(std::min(kFewIterations, options.max_iterations));
+  }
+  return rough;
+}
+
 // From the optimum under other weights to that under these.
 void SolveOn(const FitProblem& problem, SolveStart* start) {
   const FitOptions& options = problem.options();
@@ -85,7 +96,7 @@ bool Weigh(FitProblem* problem, SolveStart* start) {
     if (settled && exact) return true;
     exact = exact || settled;
     if (!settled) problem->Weigh(now);
-    SolveOn(exact ? *problem : Roughly(*problem), start);
+    SolveOn(exact ? *problem : Briefly(*problem), start);
   }
   if (!exact) SolveOn(*problem, start);
   return false;

@@ -52,6 +52,7 @@ class FitProblem {
   void Weigh(const CostWeights& weights);
   void set_settling_weight(double weight) { options_.settling_weight = weight; }
   void set_function_tolerance(double tolerance) { options_.function_tolerance = tolerance; }
+  void set_max_iterations(int most) { options_.max_iterations = most; }
   void set_gradient_tolerance(double tolerance) { options_.gradient_tolerance = tolerance; }
 
   const ParameterMap& map() const { return map_; }
