@@ -15,7 +15,7 @@
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
 #include "ident/model/model_json.h"
-#include "ident/prediction/prediction.h"
+#include "ident/prediction/predicted_steps.h"
 
 namespace {
 
@@ -51,6 +51,9 @@ void PrintPeople(const FormationRun& run, bool named) {
     table.Add(row);
   }
   std::printf("%s%s", table.ToString().c_str(), OutcomeLegend().c_str());
+  if (run.prediction.feet_step) {
+    std::printf("%s", PredictedStepsText(run.recording, run.prediction).c_str());
+  }
 }
 
 // What the fit warned of holds for what is simulated with it.

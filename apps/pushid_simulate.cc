@@ -47,7 +47,7 @@ DEFINE_bool(plates, false, "also write what force platforms under the feet measu
 DEFINE_double(plate_noise, pushid::SyntheticOptions{}.plate_noise_m,
               "with --plates, standard deviation of the centre of pressure, m");
 DEFINE_choice(truth_stance, pushid::SyntheticOptions{}.model.stance,
-              "without --model: behaviour of the synthetic people's feet: slide, threshold "
+              "without --model: behaviour of the synthetic people's feet: slide, steps "
               "(hold, then step) or fixed (hold)");
 DEFINE_choice(
     truth_delay, pushid::SyntheticOptions{}.model.delay,

@@ -26,6 +26,7 @@ inline constexpr double kMaxAngle = 1.4;   // rad: beyond it a rollout has left 
 inline constexpr double kFallAngle = 1.0;  // rad: beyond it a person is said to fall
 inline constexpr double kCartShare = 0.1;  // of the body's mass
 inline constexpr double kReferenceMass = 85;   // kg
+inline constexpr double kFeetApart = 0.2;      // m, between the ankles where they are not known
 inline constexpr double kReferenceRod = 0.95;  // m
 
 // L: of what is constant (double), unless a rod moves, or several people stand side by side in a
@@ -48,12 +49,22 @@ struct BodyOf {
 // What does not change during a recording; the lengths are those of frame 0.
 using Body = BodyOf<double>;
 
+// The feet of who stands and steps (stance.h); elsewhere it stays as it is.
+template <typename T>
+struct FeetState {
+  Eigen::Matrix<T, 2, 1> apart{T(0.0), T(kFeetApart)};  // the left foot from the right one, m
+  T clock = T(0.0);        // s: how far a step is prepared; of a swing, since lift-off
+  T swing_time = T(0.0);   // s, of the swing
+  signed char swings = 0;  // 1: the left foot is in the air, -1: the right one, 0: both stand
+  signed char landed = 0;  // which landed last; 0: none has yet
+};
+
 template <typename T>
 struct PendulumState {
   Vector4<T> q = Vector4<T>::Zero();
   Vector4<T> qd = Vector4<T>::Zero();
-  T rod = T(0.0);   // l - l_0, m: how far a rod that moves has moved
-  T step = T(0.0);  // 0: stands, 1: steps; where feet hold and step (stance.h)
+  T rod = T(0.0);  // l - l_0, m: how far a rod that moves has moved
+  FeetState<T> feet;
 };
 
 // The body once its rod has moved. The cart rises as the rod shortens, h = h_0 + k (l_0 - l) with
@@ -174,14 +185,14 @@ Vector4<T> Acceleration(const BodyOf<L>& body, const PendulumState<T>& state,
   return Acceleration(body, Angles<T>(state.q), state.qd, force);
 }
 
-// The same on ground that resists the cart's velocity after the step, qd + dt qdd, by `ground`
-// (N s/m): implicit, so that any resistance is stable.
+// The same on ground that takes the cart's velocity after the step, qd + dt qdd, to that of the
+// feet, by `ground` (N s/m): implicit, so that any resistance is stable.
 template <typename T, typename L>
 Vector4<T> AccelerationOnGround(const BodyOf<L>& body, const Angles<T>& angles,
                                 const Vector4<T>& qd, const Vector4<T>& force, const T& ground,
-                                double dt) {
+                                const Eigen::Matrix<T, 2, 1>& feet, double dt) {
   Vector4<T> right = force - Coriolis(body, angles, qd) - Gravity(body, angles);
-  for (int i = 0; i < 2; ++i) right[i] -= ground * qd[i];
+  for (int i = 0; i < 2; ++i) right[i] -= ground * (qd[i] - feet[i]);
   return InverseMassMatrix(body, angles, T(body.mass + dt * ground)) * right;
 }
 
@@ -191,7 +202,7 @@ PendulumState<T> Step(const PendulumState<T>& state, const Vector4<T>& qdd, doub
   next.qd = state.qd + dt * qdd;
   next.q = state.q + dt * next.qd;
   next.rod = state.rod;
-  next.step = state.step;
+  next.feet = state.feet;
   return next;
 }
 

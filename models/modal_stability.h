@@ -52,8 +52,10 @@ Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSe
     force += self.Friction(p, state.qd);
     force.template head<2>() += of_cart.template head<2>();
     force.template tail<2>() += of_angles.template tail<2>();
-  } else if (stance == Stance::kThreshold) {
-    force.template tail<2>() += AnkleTorque(self, StanceParameters<T>(value), perceived.ankle);
+  } else if (stance == Stance::kSteps) {
+    FeetState<T> feet;
+    feet.apart = self.feet_apart.template cast<T>();
+    force.template tail<2>() += StanceAt(self, StanceParameters<T>(value), feet, perceived).torque;
   } else {
     force.template tail<2>() += StandingTorque(self, StandingParameters<T>(value),
                                                Angles<T>(perceived.ankle.q), perceived.ankle.qd);
@@ -91,15 +93,11 @@ RestJacobian<T> LinearizeAtRest(const ModelOptions& options, const SelfForce& se
       ForceNearRest(stance, self, parameters, state, perceived, previous) -
       Gravity<RestDual>(BodyAtRest(options, self.body, parameters), state.q);
   RestJacobian<T> jacobian;
-  if (stance == Stance::kFixed) jacobian.ground = T(kHeldFast * self.body.mass);
+  if (stance != Stance::kSlide) jacobian.ground = T(kHeldFast * self.body.mass);
   for (int row = 0; row < 4; ++row) {
     jacobian.by_state.row(row) = force[row].v.template head<6>().transpose();
   }
   for (int i = 0; i < 2; ++i) jacobian.by_previous[i] = force[i].v[6 + i];
-  if (stance == Stance::kThreshold) {
-    const StanceParameters<T> stands([&p](Parameter id) { return p[id]; });
-    jacobian.ground = GroundResistance(stands, self.body.mass, PendulumState<T>());
-  }
   return jacobian;
 }
 

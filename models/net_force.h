@@ -3,7 +3,7 @@
 //   F_net = the sum of the parts of options.h, where by push kind (push.h)
 //   and PushUse (options.h) a `net` push may replace all other forces, and a `net_without_friction`
 //   push all but the friction, while it lasts. Where feet stand and step (stance.h), what a person
-//   does about being pushed depends on the step state as well.
+//   does about being pushed depends on the feet as well.
 //
 // Templated, so that the same lines serve doubles and automatic differentiation.
 #pragma once
@@ -36,9 +36,12 @@ template <typename T>
 struct NetForce {
   std::array<Vector4<T>, kNumForceParts> parts;
   Angles<T> angles;  // of the state at which it acts
-  // Where feet hold: the ground's resistance (N s/m) to the cart's velocity after the step, a part
-  // of the friction once that is known (AddGround); where they step as well, the next step state.
-  T ground = T(0.0), next_step = T(0.0);
+  // Where feet hold: the ground's resistance (N s/m) to what the cart's velocity after the step is
+  // more than that of the feet, a part of the friction once that is known (AddGround); where they
+  // step as well, the feet after the step.
+  T ground = T(0.0);
+  Horizontal<T> feet_velocity{T(0.0), T(0.0)};  // m/s, of the middle between them
+  FeetState<T> next_feet;
 
   NetForce() { parts.fill(Vector4<T>::Zero()); }
   Vector4<T>& operator[](ForcePart part) { return parts[static_cast<int>(part)]; }
@@ -51,7 +54,9 @@ struct NetForce {
   }
 
   void AddGround(const Vector4<T>& next_qd) {
-    for (int i = 0; i < 2; ++i) (*this)[ForcePart::kFriction][i] -= ground * next_qd[i];
+    for (int i = 0; i < 2; ++i) {
+      (*this)[ForcePart::kFriction][i] -= ground * (next_qd[i] - feet_velocity[i]);
+    }
   }
 };
 
@@ -100,28 +105,20 @@ void AddPublishedFriction(const PendulumState<T>& state, NetForce<T>* force) {
   }
 }
 
-// The same of feet that stand and step.
+// The same of feet that stand and step: nothing slides, so that neither drag nor the terms of a
+// sliding cart act.
 template <typename T>
 void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
                      const PendulumState<T>& state, const Perceived<T>& perceived,
                      NetForce<T>* force) {
-  using Cart = Eigen::Matrix<T, 2, 1>;
-  const T& s = state.step;
-  const PendulumState<T>& of_cart = perceived.step;
-  const Cart friction = self.Friction(p, state.qd).template head<2>();
-  const Cart balance = self.Balance(p, of_cart, of_cart.qd).template head<2>();
-  const Cart linear = self.LinearOnCart(p, of_cart), cart_force = friction + balance + linear;
   const StanceParameters<T> stance([&p](Parameter id) { return p[id]; });
-  const StanceForces<T> of_stance =
-      StanceAt(self, stance, force->angles, state, perceived, cart_force);
-  force->next_step = of_stance.next_step;
-  if (active == ActiveForces::kPushOnly) return;
-  if (active == ActiveForces::kPushAndFriction) return AddPublishedFriction(state, force);
-  force->ground = of_stance.ground;
-  (*force)[ForcePart::kFriction] = {s * friction[0], s * friction[1], T(0.0), T(0.0)};
-  (*force)[ForcePart::kBalance] = {s * balance[0], s * balance[1], of_stance.torque[0],
-                                   of_stance.torque[1]};
-  (*force)[ForcePart::kLinear] = {s * linear[0], s * linear[1], T(0.0), T(0.0)};
+  const StanceForces<T> of_stance = StanceAt(self, stance, state.feet, perceived);
+  force->next_feet = of_stance.next;
+  if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(state, force);
+  if (active != ActiveForces::kAll) return;
+  force->ground = T(kHeldFast * self.body.mass);
+  force->feet_velocity = of_stance.velocity;
+  (*force)[ForcePart::kBalance].template tail<2>() = of_stance.torque;
 }
 
 // The same of feet that hold, whatever happens; felt: by the ankles. While a push is the whole
@@ -165,7 +162,7 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
     case Stance::kSlide:
       AddSlidingForces(self, p, active, state, qd_previous, &force, perceived);
       break;
-    case Stance::kThreshold:
+    case Stance::kSteps:
       AddStanceForces(self, p, active, state,
                       perceived != nullptr ? *perceived : Perceived<T>(state), &force);
       break;
@@ -185,7 +182,7 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   if (active != ActiveForces::kAll) return force;
   // Only here: a push that is the whole force includes the tail of an earlier one.
   if (options.push_tail == PushTail::kExponential && options.stance != Stance::kFixed) {
-    const bool stands = options.stance == Stance::kThreshold;
+    const bool stands = options.stance == Stance::kSteps;
     for (const ScenePush& push : scene.pushes) {
       if (push.person != person) continue;
       force[ForcePart::kTail] +=

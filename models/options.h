@@ -178,14 +178,13 @@ constexpr EnumNames<PushTail, 2> Names(PushTail) {
 
 // What the feet do.
 enum class Stance {
-  kSlide,      // the cart is free from the first newton on
-  kThreshold,  // the feet hold until the capture point leaves their support; then they step
-               // (stance.h)
-  kFixed       // the feet hold, whatever happens (standing.h)
+  kSlide,  // the cart is free from the first newton on
+  kSteps,  // the feet hold; one of them steps once the capture point has left their support
+           // (stance.h)
+  kFixed   // the feet hold, whatever happens (standing.h)
 };
 constexpr EnumNames<Stance, 3> Names(Stance) {
-  return {
-      {{"slide", Stance::kSlide}, {"threshold", Stance::kThreshold}, {"fixed", Stance::kFixed}}};
+  return {{{"slide", Stance::kSlide}, {"steps", Stance::kSteps}, {"fixed", Stance::kFixed}}};
 }
 
 // Kd_x and Kd_y multiply the cart's acceleration: an algebraic loop, hence off by default.

@@ -22,24 +22,24 @@
 #define PUSHID_PARAMETERS(X) \
   /* friction and balance: the cart's gains may turn negative, the data must be able to say so */ \
   X(kMu, "mu", "mu", "N s/m", 100, -2000, 2000, 100, kIdentity, \
-    m.stance != Stance::kFixed, false, \
+    m.stance == Stance::kSlide, false, \
     "drag of the stepping feet (not floor friction)", \
     "always: with Kp_x and Kp_y held it is the whole drag of the stepping feet") \
   X(kMuY, "mu_y", "mu_y", "N s/m", 100, -2000, 2000, 100, kIdentity, \
-    m.friction == FrictionKind::kAnisotropic && m.stance != Stance::kFixed, false, \
+    m.friction == FrictionKind::kAnisotropic && m.stance == Stance::kSlide, false, \
     "drag of the stepping feet along y", \
     "with pushes to the side, and anisotropic friction") \
   X(kCoulombFriction, "mu_coulomb", "mu_c", "1", 0.02, 0, 5, 0.05, kIdentity, \
-    m.friction == FrictionKind::kCoulomb && m.stance != Stance::kFixed, \
+    m.friction == FrictionKind::kCoulomb && m.stance == Stance::kSlide, \
     m.friction == FrictionKind::kCoulomb, \
     "dry friction of the cart over its weight", \
     "with --friction=coulomb: rigs and robots whose cart comes to a stop") \
   X(kKpX, "Kp_x", "Kp_x", "N s/m", 0, -2000, 2000, 100, kIdentity, \
-    m.stance != Stance::kFixed, false, \
+    m.stance == Stance::kSlide, false, \
     "balance gain on the cart's velocity, x", \
     "never together with mu: only mu + Kp_x is identifiable") \
   X(kKpY, "Kp_y", "Kp_y", "N s/m", 0, -2000, 2000, 100, kIdentity, \
-    m.stance != Stance::kFixed, false, \
+    m.stance == Stance::kSlide, false, \
     "balance gain on the cart's velocity, y", \
     "never together with mu or mu_y: only the sum is identifiable") \
   X(kKpTheta, "Kp_theta", "Kp_theta", "N m/rad", 1500, 1, 1e5, 1500, kLog, \
@@ -86,11 +86,11 @@
     "with --delay: muscles and tendons do not wait") \
   /* the body and its drive, of robots and rigs (mass_distribution.h) */ \
   X(kCartMassShare, "cart_share", "s_c", "1", 0.1, 0.001, 0.98, 0.1, kLogit, \
-    m.body == BodyModel::kTable && m.stance != Stance::kFixed, false, \
+    m.body == BodyModel::kTable && m.stance == Stance::kSlide, false, \
     "share of the mass that is in the cart", \
     "with --body=table, where it is not known") \
   X(kGyrationRadius, "gyration_radius", "r", "1", 0, 0, 3, 0.3, kIdentity, \
-    m.body == BodyModel::kTable && m.stance != Stance::kFixed, false, \
+    m.body == BodyModel::kTable && m.stance == Stance::kSlide, false, \
     "radius of gyration about the centre of mass over the rod", \
     "with --body=table, where it is not known") \
   X(kPushGain, "push_gain", "g_u", "1", 1, 0.01, 100, 1, kLog, \
@@ -99,19 +99,19 @@
     "with --body=table, where a motor's force is known up to a factor") \
   /* the linear self force */ \
   X(kAx, "a_x", "a_x", "m/s^2/rad", 0, -200, 200, 10, kIdentity, \
-    m.stance != Stance::kFixed, false, \
+    m.stance == Stance::kSlide, false, \
     "cart force from the lean, x", \
     "where the feet follow the lean, as they do after most pushes") \
   X(kAy, "a_y", "a_y", "m/s^2/rad", 0, -200, 200, 10, kIdentity, \
-    m.stance != Stance::kFixed, false, \
+    m.stance == Stance::kSlide, false, \
     "cart force from the lean, y", \
     "with pushes to the side") \
   X(kBx, "b_x", "b_x", "m/s/rad", 0, -50, 50, 2, kIdentity, \
-    m.stance != Stance::kFixed, false, \
+    m.stance == Stance::kSlide, false, \
     "cart force from the lean's rate, x", \
     "with many recordings: only fast motion separates it from a_x") \
   X(kBy, "b_y", "b_y", "m/s/rad", 0, -50, 50, 2, kIdentity, \
-    m.stance != Stance::kFixed, false, \
+    m.stance == Stance::kSlide, false, \
     "cart force from the lean's rate, y", \
     "with many pushes to the side") \
   X(kTx, "t_x", "t_x", "m/s", 0, -50, 50, 2, kIdentity, \
@@ -123,7 +123,7 @@
     "torque from the cart's velocity, y", \
     "with many pushes to the side") \
   X(kCq, "c_q", "c_q", "1/m", 0, -20, 20, 0.5, kIdentity, \
-    m.stance != Stance::kFixed, false, \
+    m.stance == Stance::kSlide, false, \
     "quadratic damping of the cart", \
     "with pushes of very different strength") \
   X(kDq, "d_q", "d_q", "1/rad", 0, -50, 50, 1, kIdentity, \
@@ -199,37 +199,33 @@
     "with a learned rod, always") \
   /* feet that stand and step (stance.h) */ \
   X(kSupportFront, "support_front", "b", "m", 0.1, 0.01, 0.5, 0.1, kLog, \
-    m.stance == Stance::kThreshold, false, \
-    "how far feet support in front of where the hip rests", \
+    m.stance == Stance::kSteps, false, \
+    "how far before the ankles the capture point goes before a step is due", \
     "with pushes forwards, some of which make people step and some not") \
   X(kSupportBack, "support_back", "b_back", "m", 0.06, 0.01, 0.5, 0.06, kLog, \
-    m.stance == Stance::kThreshold, false, \
-    "how far feet support behind where the hip rests", \
+    m.stance == Stance::kSteps, false, \
+    "how far behind the ankles the capture point goes before a step is due", \
     "with pushes backwards, some of which make people step and some not") \
   X(kSupportSide, "support_side", "b_side", "m", 0.1, 0.01, 0.5, 0.1, kLog, \
-    m.stance == Stance::kThreshold, false, \
-    "how far feet support to the side of where the hip rests", \
+    m.stance == Stance::kSteps, false, \
+    "how far beside an ankle the capture point goes before a step is due", \
     "with pushes to the side, some of which make people step and some not") \
-  X(kAnkleReach, "ankle_reach", "r_a", "1", 1.5, 0.2, 10, 1, kLog, \
-    m.stance == Stance::kThreshold, false, \
-    "largest ankle torque over the weight times the support", \
-    "never: few recorded people reach the limit; 1 is a foot as long as the support") \
-  X(kStepGain, "step_gain", "kappa", "1", 1, 0.05, 5, 1, kLog, \
-    m.stance == Stance::kThreshold, false, \
-    "speed of stepping feet over that of the capture point", \
+  X(kFootFront, "foot_front", "f", "m", 0.2, 0.02, 0.5, 0.1, kLog, \
+    m.stance == Stance::kSteps, false, \
+    "how far before the ankles the centre of pressure reaches", \
+    "never without force plates: few recorded people reach the limit") \
+  X(kStepGain, "step_gain", "kappa", "1", 0.9, 0.05, 5, 1, kLog, \
+    m.stance == Stance::kSteps, false, \
+    "length of a step over the way of the capture point at landing", \
     "with recordings long enough to show where the feet end") \
-  X(kStepOnset, "step_onset", "t_on", "s", 0.13, 0.005, 2, 0.13, kLog, \
-    m.stance == Stance::kThreshold, m.stance == Stance::kThreshold, \
-    "how long feet take to let go", \
+  X(kStepOnset, "step_onset", "t_on", "s", 0.5, 0.005, 2, 0.2, kLog, \
+    m.stance == Stance::kSteps, false, \
+    "how long a step is prepared at the edge of the support", \
     "where feet hold and step") \
-  X(kStepRelease, "step_release", "t_off", "s", 0.4, 0.01, 5, 0.4, kLog, \
-    m.stance == Stance::kThreshold, m.stance == Stance::kThreshold, \
-    "how long feet take to hold again", \
+  X(kStepSwing, "step_swing", "t_s", "s", 0.32, 0.05, 2, 0.2, kLog, \
+    m.stance == Stance::kSteps, false, \
+    "how long the foot of a first step is in the air", \
     "where feet hold and step") \
-  X(kStaticFriction, "static_friction", "mu_s", "1", 1, 0.05, 10, 1, kLog, \
-    m.stance == Stance::kThreshold, false, \
-    "largest force of standing feet over the weight", \
-    "never without slippery ground") \
   /* feet that hold, whatever happens (standing.h) */ \
   X(kComHeight, "com_height", "k", "1", 1.09, 0.1, 2, 0.1, kLog, \
     m.stance == Stance::kFixed || m.body == BodyModel::kTable, false, \

@@ -30,7 +30,7 @@ using ForceTrace = FrameTable<NetForce<double>>;
 template <typename T>
 std::string_view OutsideDomain(const Body& body, const PendulumState<T>& state) {
   const double rod = RealPart(state.rod), length = body.rod_length + rod;
-  double sum = rod + RealPart(state.step);
+  double sum = rod + RealPart(state.feet.clock);
   for (int i = 0; i < 4; ++i) sum += RealPart(state.q[i]) + RealPart(state.qd[i]);
   if (!std::isfinite(sum)) return "state";
   if (std::abs(RealPart(state.q[2])) > kMaxAngle) return "theta";
@@ -103,6 +103,7 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
   for (int n = 0; n < people; ++n) {
     path->At(0, n).q = scene.people[n].start.q.template cast<T>();
     path->At(0, n).qd = initial_velocity[n];
+    path->At(0, n).feet.apart = scene.people[n].start.feet.apart.template cast<T>();
   }
   return RollOn<T>(scene, options, &forces, 0, path, trace, noise);
 }

@@ -94,11 +94,12 @@ class SceneForces {
     const PendulumState<T>& state = states_[person];
     if (HoldsFast(force)) {
       return AccelerationOnGround(StandingBody<T>(body, Parameters(person)[kComHeight]),
-                                  force.angles, state.qd, force.Total(), force.ground, scene_->dt);
+                                  force.angles, state.qd, force.Total(), force.ground,
+                                  force.feet_velocity, scene_->dt);
     }
-    if (options_->stance == Stance::kThreshold) {
+    if (options_->stance == Stance::kSteps) {
       return AccelerationOnGround(body, force.angles, state.qd, force.Total(), force.ground,
-                                  scene_->dt);
+                                  force.feet_velocity, scene_->dt);
     }
     const Vector4<T> total = force.Total();
     if (options_->body == BodyModel::kTable) {
@@ -113,12 +114,11 @@ class SceneForces {
     return options_->stance == Stance::kFixed && RealPart(force.ground) > 0.0;
   }
 
-  // One step on: the pendulum under qdd, the step state and, where the model has a law for it, the
-  // rod.
+  // One step on: the pendulum under qdd, the feet and, where the model has a law for it, the rod.
   PendulumState<T> Next(int person, const Vector4<T>& qdd, const NetForce<T>& force,
                         const Vector4<T>& qd_previous) {
     PendulumState<T> next = Step(states_[person], qdd, scene_->dt);
-    next.step = force.next_step;
+    if (options_->stance == Stance::kSteps) next.feet = force.next_feet;
     if (!rods_.empty()) next.rod += scene_->dt * RodVelocityOf(person, qd_previous);
     return next;
   }

@@ -5,13 +5,6 @@
 
 namespace pushid {
 
-double FootRate(double step) {
-  constexpr double kFootTime = 0.02;  // s
-  // Explicit in time: at 30 frames a second as well, but not much below.
-  constexpr double kLeastOfStep = 0.6;
-  return 1.0 / std::max(kFootTime, kLeastOfStep * step);
-}
-
 void SelfForce::AddOwnJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
                                Jacobian* jacobian) const {
   int column = kFirstOwnParameter;

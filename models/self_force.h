@@ -12,17 +12,15 @@
 
 namespace pushid {
 
-// How fast stepping feet (stance.h) get their speed, 1/s: within 20 ms, or 0.6 steps of the rollout
-// where these are longer.
-double FootRate(double step);
+inline constexpr double kHeldFast = 1e8;  // 1/s, times the mass: the ground on feet that hold
 
 // One person's self force, with everything constant over a rollout computed once.
 struct SelfForce : SelfTerms<double> {
   // Of feet that stand and step (stance.h): 1/s, sqrt(g / l); the hip before the cart in the
-  // reference posture, m; how fast stepping feet get their speed, 1/s.
+  // reference posture, m; the left foot from the right one at frame 0, m.
   double capture_rate;
   Eigen::Vector2d rest_offset;
-  double foot_rate;
+  Eigen::Vector2d feet_apart = {0.0, kFeetApart};
   Vector3<double> rest_direction = Vector3<double>::UnitZ();  // along the rod, of the posture
   std::vector<std::shared_ptr<const ForceLaw>> laws;          // the user's own
 
@@ -30,7 +28,6 @@ struct SelfForce : SelfTerms<double> {
   SelfForce(const ModelOptions& options, const Body& person, const Vector4<double>& q0, double step)
       : capture_rate(std::sqrt(kGravity / person.rod_length)),
         rest_offset(Eigen::Vector2d::Zero()),
-        foot_rate(FootRate(step)),
         laws(options.own_laws) {
     body = person;
     scale = GainScale(options.gain_scaling, person);
@@ -45,6 +42,9 @@ struct SelfForce : SelfTerms<double> {
       rest_direction = {rest.s_th, -rest.c_th * rest.s_ph, rest.c_th * rest.c_ph};
     }
   }
+
+  // N: times the sine of the lean and the rod's length, gravity's torque.
+  double weight() const { return kGravity * body.point_mass() * body.pendulum_ratio; }
 
   // The laws that a user brings.
   template <typename T>

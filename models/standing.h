@@ -25,7 +25,6 @@ namespace pushid {
 inline constexpr double kMassAboveAnkles = 0.97;  // of the body's
 inline constexpr double kInertiaRatio = 1.15;     // about the ankles, over m h^2
 inline constexpr double kComOverHip = 1.09;       // k of an average body
-inline constexpr double kHeldFast = 1e8;          // 1/s, times the mass: the ground on held feet
 
 // The parameters of standing, which derivatives are taken by.
 template <typename T>

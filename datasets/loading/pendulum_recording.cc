@@ -137,6 +137,7 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
       if (t == 0) in_scene.body = {person.mass_kg, pose.rod_length, pose.cart_height};
     }
     in_scene.start.q = states[0].q;
+    in_scene.start.feet.apart = (person.left_ankle[0] - person.right_ankle[0]).head<2>();
     if (recording.initial_velocity != InitialVelocity::kZero && states.size() > 1) {
       in_scene.start.qd = states[1].qd;
     }
@@ -216,6 +217,7 @@ Scene TurnedScene(const PendulumRecording& recording, double angle) {
   for (ScenePerson& person : scene.people) {
     person.start.qd = axes.PoseJacobian(person.start.q) * person.start.qd;
     person.start.q = axes.Pose(person.start.q);
+    person.start.feet.apart = axes.Horizontal(person.start.feet.apart);
   }
   return scene;
 }

@@ -33,19 +33,12 @@ ParameterSet<double> PublishedGroupParameters() {
 
 ParameterSet<double> PublishedStanceParameters() {
   ParameterSet<double> p{};
-  p[kMu] = p[kMuY] = 90.0;
-  p[kKpTheta] = p[kKpPhi] = 1150.0;
-  p[kKdTheta] = p[kKdPhi] = 330.0;
-  p[kAx] = p[kAy] = 16.0;
-  p[kTailGain] = 2.0;
-  p[kTailTime] = 0.15;
-  p[kSupportFront] = p[kSupportSide] = 0.1;
-  p[kSupportBack] = 0.06;
-  p[kAnkleReach] = 1.5;
-  p[kStepGain] = 1.0;
-  p[kStepOnset] = 0.13;
-  p[kStepRelease] = 0.4;
-  p[kStaticFriction] = 1.0;
+  p[kKpTheta] = 900.0, p[kKpPhi] = 950.0;
+  p[kKdTheta] = 200.0, p[kKdPhi] = 320.0;
+  p[kTailGain] = 0.3, p[kTailTime] = 0.35, p[kTailBase] = 0.4;
+  p[kSupportFront] = 0.12, p[kSupportBack] = 0.08, p[kSupportSide] = 0.03;
+  p[kFootFront] = 0.2;
+  p[kStepGain] = 0.95, p[kStepOnset] = 0.5, p[kStepSwing] = 0.31;
   return p;
 }
 

@@ -126,8 +126,9 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
     };
     const Vector3<double> cart(q[0], q[1], body.cart_height);
     person.hip.push_back(observed(HipPosition(body, q)));
-    person.left_ankle.push_back(observed(cart + subject.skeleton.HalfStance()));
-    person.right_ankle.push_back(observed(cart - subject.skeleton.HalfStance()));
+    const Vector3<double> half(0.5 * state.feet.apart[0], 0.5 * state.feet.apart[1], 0.0);
+    person.left_ankle.push_back(observed(cart + half));
+    person.right_ankle.push_back(observed(cart - half));
   }
   return person;
 }
@@ -194,6 +195,7 @@ void PlaceRow(const SyntheticOptions& options, const std::vector<const Subject*>
     const double theta = motion->Normal(0.0, options.lean_sigma_rad);
     const double phi = motion->Normal(0.0, options.lean_sigma_rad);
     person.start.q = {x, y, theta, phi};
+    person.start.feet.apart = 2.0 * subject->skeleton.HalfStance().head<2>();
     made->scene.people.push_back(person);
   }
 }

@@ -144,7 +144,7 @@ bool GoesTogether(const FitOptions& o, const std::vector<PendulumRecording>& rec
       std::all_of(o.table.specs.begin(), o.table.specs.end(),
                   [&o](const ParameterSpec& spec) { return !spec.free || Acts(spec.id, o.model); });
   return states_alone && all_act &&
-         (o.model.stance != Stance::kThreshold ||
+         (o.model.stance != Stance::kSteps ||
           std::all_of(recordings.begin(), recordings.end(), [](const PendulumRecording& r) {
             return r.scene.dt * kLeastSteppingRate <= 1.0;
           }));

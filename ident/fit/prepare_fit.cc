@@ -92,12 +92,12 @@ MaybeError CheckBodies(const std::vector<PendulumRecording>& recordings,
 
 MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options) {
-  if (options.model.stance != Stance::kThreshold) return std::nullopt;
+  if (options.model.stance != Stance::kSteps) return std::nullopt;
   for (const PendulumRecording& recording : recordings) {
     const double rate = 1.0 / recording.scene.dt;
     if (rate >= kLeastSteppingRate) continue;
     return Error{"recording " + recording.id + " has " + Rounded(rate, 3) +
-                 " frames per second, too few for --stance=threshold; resample it "
+                 " frames per second, too few for --stance=steps; resample it "
                  "(--resample_fps=60), or let feet slide"};
   }
   return std::nullopt;
@@ -141,48 +141,6 @@ MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
   return std::nullopt;
 }
 
-// Holds the support at what the recorded feet have.
-MaybeError TakeSupportFromFeet(const std::vector<PendulumRecording>& recordings,
-                               FitOptions* options, Warnings* told) {
-  if (options->support != SupportSource::kFromFeet) return std::nullopt;
-  if (options->model.stance != Stance::kThreshold) {
-    return Error{"--support=feet is for feet that hold; add --stance=threshold"};
-  }
-  std::vector<double> forward, back, side;
-  // The capture point counts from where it rests, which need not be over the ankles.
-  const bool initial = options->model.posture == Posture::kInitial;
-  for (const PendulumRecording& recording : recordings) {
-    for (size_t n = 0; n < recording.foot_support.size(); ++n) {
-      const FootSupport& feet = recording.foot_support[n];
-      const double rest = initial ? recording.hip[n][0].x() - recording.states[n][0].q[0] : 0.0;
-      if (feet.forward && *feet.forward > rest) forward.push_back(*feet.forward - rest);
-      if (feet.back && *feet.back > -rest) back.push_back(*feet.back + rest);
-      if (feet.side > 0.0) side.push_back(feet.side);
-    }
-  }
-  if (forward.empty()) {
-    return Error{
-        "--support=feet, but no toes are recorded; name them in the mapping, or leave "
-        "it out"};
-  }
-  const auto hold = [options](Parameter id, const std::vector<double>& values) {
-    ParameterSpec& spec = options->table[id];
-    if (!values.empty()) spec.nominal = std::clamp(Median(values), spec.lower, spec.upper);
-    spec.free = spec.pooled = false;
-  };
-  hold(kSupportFront, forward);
-  hold(kSupportBack, back);
-  hold(kSupportSide, side);
-  options->table[kAnkleReach].nominal = 1.0;
-  told->emplace_back("--support=feet: held at the medians of " + std::to_string(forward.size()) +
-                     " people with toes: support_front " +
-                     DoubleText(std::round(1e3 * options->table[kSupportFront].nominal) / 1e3) +
-                     " m, support_side " +
-                     DoubleText(std::round(1e3 * options->table[kSupportSide].nominal) / 1e3) +
-                     " m" + (back.empty() ? "; no heels: support_back as in the table" : ""));
-  return std::nullopt;
-}
-
 }  // namespace
 
 MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptions* options,
@@ -199,7 +157,6 @@ MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptio
   if (MaybeError error = CheckLaboratory(recordings, *options)) return error;
   if (MaybeError error = CheckLikelihood(recordings, *options)) return error;
   Warnings told;
-  if (MaybeError error = TakeSupportFromFeet(recordings, options, &told)) return error;
   UnpoolOneUnit(recordings, options, &told);
   std::string invalid;
   if (!options->IsValid(&invalid)) return Error{invalid};

@@ -49,32 +49,82 @@ Eigen::Vector2d MostLikelyCoefficients(const std::vector<StepOutcome>& outcomes,
 
 }  // namespace
 
-double StepMargin(const ModelOptions& options, const ParameterSet<double>& parameters,
-                  const ScenePerson& person, const RolloutPath<double>& path, int index) {
+namespace {
+
+// Of a support that goes with the cart.
+double MarginOfPath(const ModelOptions& options, const ParameterSet<double>& parameters,
+                    const ScenePerson& person, const RolloutPath<double>& path, int index) {
   const SelfForce self(options, person.body, person.start.q, 1.0);
   const StanceParameters<double> p([&parameters](Parameter id) { return parameters[id]; });
   double most = 0.0;
   for (int t = 0; t < path.num_frames(); ++t) {
     const PendulumState<double>& state = path.At(t, index);
-    const Eigen::Vector2d capture = CaptureOffset(self, Angles<double>(state.q), state.qd);
-    most = std::max(most, SupportRatio<double>(p, capture));
+    const HipOverFeet<double> hip(self, Angles<double>(state.q), state.qd);
+    const Eigen::Vector2d xi = hip.Capture(self) - self.rest_offset;
+    most = std::max(most, SupportRatio<double>(p, xi, Eigen::Vector2d::Zero()));
   }
   return p.front * (most - 1.0);
+}
+
+// Whether somebody steps, or falls before that, with a support so many times as large.
+bool StepsWith(double factor, int person, std::vector<ParameterSet<double>> parameters,
+               const RollWith& roll) {
+  ParameterSet<double>& own = parameters[parameters.size() == 1 ? 0 : person];
+  for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) own[id] *= factor;
+  RolloutPath<double> path;
+  const RolloutStatus status = roll(parameters, &path);
+  if (!status.ok && status.person == person) return true;
+  const FeetState<double>& end =
+      path.At(status.ok ? path.num_frames() - 1 : status.frame - 1, person).feet;
+  return end.landed != 0 || end.swings != 0;
+}
+
+}  // namespace
+
+std::vector<double> StepMargins(const ModelOptions& options,
+                                const std::vector<ParameterSet<double>>& parameters,
+                                const Scene& scene, const RolloutPath<double>& path,
+                                const RollWith& roll) {
+  // Each person asks for ten rollouts of all: seconds at this number, hours in a crowd.
+  constexpr int kHalvings = 10, kMostPeople = 20;
+  if (options.stance == Stance::kSteps && scene.num_people() > kMostPeople) return {};
+  std::vector<double> margins;
+  for (int n = 0; n < scene.num_people(); ++n) {
+    const ParameterSet<double>& own = parameters[parameters.size() == 1 ? 0 : n];
+    if (options.stance != Stance::kSteps) {
+      margins.push_back(MarginOfPath(options, own, scene.people[n], path, n));
+      continue;
+    }
+    double steps = std::log(0.25), stands = std::log(4.0);
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = 0.5 * (steps + stands);
+      (StepsWith(std::exp(middle), n, parameters, roll) ? steps : stands) = middle;
+    }
+    margins.push_back(own[kSupportFront] * (std::exp(0.5 * (steps + stands)) - 1.0));
+  }
+  return margins;
+}
+
+std::vector<double> StepMargins(const IdentifiedModel& model, const PendulumRecording& recording,
+                                const RolloutPath<double>& path) {
+  return StepMargins(model.options, PeoplesParameters(model, recording), recording.scene, path,
+                     [&](const std::vector<ParameterSet<double>>& p, RolloutPath<double>* other) {
+                       return RolloutInOwnAxes(recording, model.options, p, path.num_frames(),
+                                               other);
+                     });
 }
 
 std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
                                       const PendulumRecording& recording) {
   if (!recording.StepsKnown()) return {};
-  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
   RolloutPath<double> path;
-  const RolloutStatus status =
-      RolloutInOwnAxes(recording, model.options, parameters, recording.num_frames(), &path);
+  const RolloutStatus status = RolloutInOwnAxes(
+      recording, model.options, PeoplesParameters(model, recording), recording.num_frames(), &path);
   std::vector<StepOutcome> outcomes;
   if (!status.ok) return outcomes;
-  for (int n = 0; n < recording.num_people(); ++n) {
-    outcomes.push_back(
-        {StepMargin(model.options, parameters[n], recording.scene.people[n], path, n),
-         recording.Stepped(n), PersonKey(recording, n)});
+  const std::vector<double> margins = StepMargins(model, recording, path);
+  for (int n = 0; n < static_cast<int>(margins.size()); ++n) {
+    outcomes.push_back({margins[n], recording.Stepped(n), PersonKey(recording, n)});
   }
   return outcomes;
 }

@@ -1,15 +1,21 @@
 // ident: how probable it is that a pushed person steps.
 //
-// The margin of a person in a predicted motion is how far the capture point (models/stance.h) gets
-// beyond the edge of the feet's support, at most, as if it were in front:
-//   margin = b (max over frames of rho - 1)      m; negative while it stays inside, -b at rest
-//   P(step) = 1 / (1 + exp(-(a + margin / w)))
+// The margin of a person who is pushed is by how much the support in front might be larger, and the
+// person would still just step:
+//   feet that step (models/stance.h)  margin = b (the largest factor on the support - 1),
+//     found by rollouts with other supports, between 1/4 and 4 times that of the model
+//   else  margin = b (max over frames of rho - 1): how far the capture point gets beyond the edge
+//     of a support that goes with the cart
+//   P(step) = 1 / (1 + exp(-(a + margin / w)))     m; both -b at rest at least
+// So P(step) is how probable it is that somebody's support is smaller than that, where supports are
+// spread by w (a logistic distribution) about a mean that is a w smaller than the model's.
 // a, w by maximum likelihood over everybody in the fitted recordings, after the trajectories, with
 // a weak prior that holds them finite where a margin tells all who step from all who do not. Errors
 // are clustered by person (CR1), and those of a probability are by the delta method. What is known
 // of a person is what was recorded: who would step after the recording's end counts as standing.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,8 +33,16 @@ struct StepOutcome {
   std::string person;  // PersonKey
 };
 
-double StepMargin(const ModelOptions& options, const ParameterSet<double>& parameters,
-                  const ScenePerson& person, const RolloutPath<double>& path, int index);
+// Of everybody in a scene; path: the model's own rollout. roll: the same with other parameters.
+using RollWith =
+    std::function<RolloutStatus(const std::vector<ParameterSet<double>>&, RolloutPath<double>*)>;
+std::vector<double> StepMargins(const ModelOptions& options,
+                                const std::vector<ParameterSet<double>>& parameters,
+                                const Scene& scene, const RolloutPath<double>& path,
+                                const RollWith& roll);
+// Of everybody in a recording.
+std::vector<double> StepMargins(const IdentifiedModel& model, const PendulumRecording& recording,
+                                const RolloutPath<double>& path);
 
 // Of everybody, in order; none where the model's rollout of the recording leaves its domain.
 std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,

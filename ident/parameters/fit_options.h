@@ -65,15 +65,6 @@ constexpr EnumNames<NetworkOptimizer, 2> Names(NetworkOptimizer) {
   return {{{"lbfgs", NetworkOptimizer::kLbfgs}, {"adam", NetworkOptimizer::kAdam}}};
 }
 
-// Where the support of standing feet comes from (models/stance.h).
-enum class SupportSource {
-  kTable,    // the table's values, free or fixed
-  kFromFeet  // held at the people's own feet: ankle to toe and heel, half the ankles' distance
-};
-constexpr EnumNames<SupportSource, 2> Names(SupportSource) {
-  return {{{"table", SupportSource::kTable}, {"feet", SupportSource::kFromFeet}}};
-}
-
 // Whose errors are independent of each other.
 enum class ClusterBy {
   kAuto,      // people where some were recorded more than once, otherwise recordings
@@ -96,7 +87,6 @@ struct FitOptions {
   ParameterTable table;
   bool preset_priors = true;  // false: FreeTerms takes the weak priors away
 
-  SupportSource support = SupportSource::kTable;
   Likelihood likelihood = Likelihood::kTrajectory;  // by SetLikelihood (presets.h)
 
   // Where they are estimated: where the estimation starts, and in a result what it found.

@@ -44,9 +44,10 @@ void SetLearned(const LearnedTerms& network, FitOptions* o) {
 Row StanceRow() {
   Row row = NameRow<Stance>(
       "stance", "/stance", [](FitOptions & o) -> auto& { return o.model.stance; },
-      "behaviour of the feet: slide (the cart moves under any force), threshold (they hold until "
-      "the capture point leaves their support, then step), fixed (they hold), or auto (fixed where "
-      "no pushed person's feet moved, threshold where fewer than three in four did, else slide; "
+      "behaviour of the feet: slide (the cart moves under any force), steps (they hold until the "
+      "capture point leaves their support, then one of them steps), fixed (they hold), or auto "
+      "(fixed where no pushed person's feet moved, steps where fewer than three in four did, else "
+      "slide; "
       "ldp presets: slide)");
   row.choices.insert(row.choices.begin(), kAutoStance);
   row.text = [](const FitOptions&) { return std::string(kAutoStance); };
@@ -205,11 +206,6 @@ std::vector<Row> ModelOptionRows() {
   return {
       PresetRow(),
       StanceRow(),
-      MayBeAbsent(NameRow<SupportSource>(
-          "support", "/support", [](O & o) -> auto& { return o.support; },
-          "with --stance=threshold, area that the feet support: table (support_front etc., free or "
-          "fixed) or feet (held at the distances from ankles to toes and heels, where recorded, "
-          "with ankle torques up to the weight times these)")),
       SelfForceRow(),
       RodRow(),
       NameRow<SkeletonMapping>(

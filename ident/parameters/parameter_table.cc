@@ -194,7 +194,7 @@ MaybeError Assign(const std::string& list, const std::string& flag, std::optiona
       const bool free_after = make_free.value_or(spec->free);
       const bool may_be_zero =
           !free_after && spec->transform == Transform::kLog && spec->id != kTailTime &&
-          !(spec->id >= kSupportFront && spec->id <= kStaticFriction && spec->id != kStepGain);
+          !(spec->id >= kSupportFront && spec->id <= kStepSwing && spec->id != kStepGain);
       if (!may_be_zero || item.value().value != 0.0) {
         if (MaybeError error = CheckInBounds(*spec, item.value().value, flag)) return error;
       }

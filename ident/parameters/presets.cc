@@ -139,18 +139,16 @@ void SetStance(Stance stance, FitOptions* options) {
   options->model.directions = Directions::kAxes;  // the feet's support has a front
   // Who stands gives way about the ankles, not at them: people push at the hip, or above.
   table[kContactHeight].nominal = 0.95;
-  table[kAy].nominal = 15;
-  // Ankles that bring the capture point back: 1.6 m g l of stiffness, and as much damping as keeps
-  // the way back from swinging. Few of those who were recorded stand: the data say little of them,
-  // and free with these priors they predict no worse (hipADE 0.102 m either way, by person).
-  for (Parameter id : {kKpTheta, kKpPhi}) table[id].nominal = 1150;
-  for (Parameter id : {kKdTheta, kKdPhi}) table[id].nominal = 330;
-  for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) {
-    table[id].free = true;
-    table[id].prior = Prior{table[id].nominal, 0.3 * table[id].nominal};
-  }
-  for (const WeakStart& start : {WeakStart{kMu, 80, 80}, WeakStart{kAx, 15, 10},
-                                 WeakStart{kTailGain, 2, 2}, WeakStart{kSupportFront, 0.1, 0.03}}) {
+  table[kSupportBack].nominal = 0.08;
+  table[kSupportSide].nominal = 0.03;
+  // Few of those who were recorded stand, and none of them for long: that they can, and step from
+  // 0.25 to 0.3 m/s on, comes from these priors.
+  for (const WeakStart& start :
+       {WeakStart{kKpTheta, 900, 100}, WeakStart{kKpPhi, 950, 200}, WeakStart{kKdTheta, 200, 60},
+        WeakStart{kKdPhi, 320, 120}, WeakStart{kSupportFront, 0.12, 0.03},
+        WeakStart{kFootFront, 0.2, 0.02}, WeakStart{kStepGain, 0.95, 0.1},
+        WeakStart{kStepOnset, 0.5, 0.15}, WeakStart{kStepSwing, 0.31, 0.06},
+        WeakStart{kTailGain, 0.3, 0.3}, WeakStart{kTailTime, 0.35, 0.2}}) {
     FreeFrom(start, &table);
   }
 }

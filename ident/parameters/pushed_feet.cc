@@ -56,7 +56,7 @@ Stance StanceOf(const PushedFeet& feet) {
   if (feet.seen == 0 || feet.moved >= kEverybody * feet.seen) return Stance::kSlide;
   if (feet.moved == 0) return Stance::kFixed;
   // Feet that move and never leave the ground slide, if little.
-  return feet.stepped > 0 ? Stance::kThreshold : Stance::kSlide;
+  return feet.stepped > 0 ? Stance::kSteps : Stance::kSlide;
 }
 
 std::string FeetText(const PushedFeet& feet, Stance stance) {
@@ -77,7 +77,7 @@ std::string FeetWarning(const PushedFeet& feet, Stance stance) {
   if (stance == Stance::kFixed && feet.moved > 0) {
     return "feet moved in " + OfAll(feet) +
            ", but those of the model hold: leave these recordings out, or fit with "
-           "--stance=threshold";
+           "--stance=steps";
   }
   return "";
 }

@@ -20,14 +20,13 @@ struct PushedFeet {
   int stepped = 0;  // a foot left the ground (foot_steps.h) while the other did not
 };
 
-// 1/s: stepping feet (models/stance.h) get their speed within 20 ms, and longer steps of the
-// rollout lag behind.
+// 1/s: in longer frames a foot is in the air for less than ten (models/stance.h).
 inline constexpr double kLeastSteppingRate = 29.0;
 
 PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings);
 
 // Nobody moved: fixed. Three in four moved, none left the ground, or nobody's feet were recorded:
-// slide. Else: threshold.
+// slide. Else: steps.
 Stance StanceOf(const PushedFeet& feet);
 
 // What the feet of a model do and what those of the recordings did; empty: none were recorded.

@@ -83,12 +83,13 @@ StepTiming TimingOf(const PendulumRecording& recording, const Prediction& predic
   StepTiming timing;
   if (const FootStep* first = recording.steps[person].First()) {
     timing.recorded_lift_off = first->lift_off * dt;
+    if (first->finished) timing.recorded_travel = first->travel;
   }
-  const std::vector<SteppingPhase> phases = SteppingPhases(prediction.path, person);
-  if (phases.empty()) return timing;
-  timing.lift_off = phases.front().lift_off * dt;
-  if (phases.front().finished) timing.landing = phases.front().landing * dt;
-  timing.travel = phases.front().travel;
+  const std::vector<FootStep> steps = PredictedSteps(prediction.path, person);
+  if (steps.empty()) return timing;
+  timing.lift_off = steps.front().lift_off * dt;
+  if (steps.front().finished) timing.landing = steps.front().landing * dt;
+  timing.travel = steps.front().travel;
   return timing;
 }
 

@@ -1,4 +1,4 @@
-// ident: stepping phases from step states.
+// ident: steps of a path, and how well they are predicted.
 #include "ident/prediction/predicted_steps.h"
 
 #include <algorithm>
@@ -12,50 +12,36 @@
 #include "ident/problem/statistics.h"
 
 namespace pushid {
-namespace {
 
-// At 0.85 the ground holds with a fortieth of its strength: before, feet hardly move.
-constexpr double kSteps = 0.85, kStandsAgain = 0.75;
-
-std::string PhaseText(const SteppingPhase& phase, double dt) {
-  const std::string from = "from " + Rounded(phase.lift_off * dt, 3) + " s ";
-  return from + (phase.finished ? "to " + Rounded(phase.landing * dt, 3) + " s" : "on") + ", " +
-         TravelText(phase.travel) + (phase.finished ? "" : " by the end");
+Eigen::Vector2d PlaceOf(Foot foot, const PendulumState<double>& state) {
+  return state.q.head<2>() + (foot == Foot::kLeft ? 0.5 : -0.5) * state.feet.apart;
 }
 
-std::string PhasesText(const std::vector<SteppingPhase>& phases, double dt) {
-  if (phases.empty()) return "stands";
-  std::string text = "steps ";
-  for (size_t i = 0; i < phases.size(); ++i) {
-    text += (i > 0 ? "; " : "") + PhaseText(phases[i], dt);
-  }
-  return text;
-}
-
-}  // namespace
-
-std::vector<SteppingPhase> SteppingPhases(const RolloutPath<double>& path, int person) {
-  std::vector<SteppingPhase> phases;
-  const auto cart = [&](int t) { return path.At(t, person).q.head<2>(); };
-  bool steps = false;
+std::vector<FootStep> PredictedSteps(const RolloutPath<double>& path, int person) {
+  std::vector<FootStep> steps;
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();
   for (int t = 0; t < path.num_frames(); ++t) {
-    const bool did = steps;
-    steps = path.At(t, person).step > (did ? kStandsAgain : kSteps);
-    if (steps && !did) phases.push_back({t, t, false});
-    if (!did && !steps) continue;
-    SteppingPhase& phase = phases.back();
-    phase.finished = !steps;
-    phase.landing = steps ? t + 1 : t;
-    phase.travel = cart(t) - cart(phase.lift_off);
+    const PendulumState<double>& state = path.At(t, person);
+    const bool flies = state.feet.swings != 0, flew = !steps.empty() && !steps.back().finished;
+    if (flies && !flew) {
+      const Foot foot = state.feet.swings > 0 ? Foot::kLeft : Foot::kRight;
+      steps.push_back({foot, t, t, false, Eigen::Vector2d::Zero()});
+      from = PlaceOf(foot, path.At(std::max(t - 1, 0), person));
+    }
+    if (!flies && !flew) continue;
+    FootStep& step = steps.back();
+    step.finished = !flies;
+    step.landing = flies ? path.num_frames() : t;
+    step.travel = PlaceOf(step.foot, state) - from;
   }
-  return phases;
+  return steps;
 }
 
 std::vector<bool> StandingFrames(const Prediction& prediction, int person) {
   if (!prediction.feet_step) return {};
   std::vector<bool> stands(prediction.path.num_frames(), true);
-  for (const SteppingPhase& phase : SteppingPhases(prediction.path, person)) {
-    std::fill(stands.begin() + phase.lift_off, stands.begin() + phase.landing, false);
+  for (const FootStep& step : PredictedSteps(prediction.path, person)) {
+    std::fill(stands.begin() + step.lift_off, stands.begin() + step.landing, false);
   }
   return stands;
 }
@@ -68,7 +54,10 @@ std::string PredictedStepsText(const PendulumRecording& recording, const Predict
       parts.push_back("P(step) " + Rounded(prediction.steps[n].probability, 2));
     }
     if (prediction.feet_step) {
-      parts.push_back(PhasesText(SteppingPhases(prediction.path, n), recording.scene.dt));
+      PersonSteps steps;
+      steps.steps = PredictedSteps(prediction.path, n);
+      parts.push_back(steps.Stepped() ? "steps " + StepsText(steps, 1.0 / recording.scene.dt)
+                                      : "stands");
     }
     if (parts.empty()) continue;
     text += recording.subject_ids[n] + ": ";
@@ -156,6 +145,12 @@ LiftOffError LiftOffErrorOf(const std::vector<StepPrediction>& predictions) {
   result.people = static_cast<int>(errors.size());
   result.mean_absolute /= result.people;
   result.median = Median(errors);
+  for (const StepPrediction& p : predictions) {
+    if (!p.timing || !p.timing->landing || !p.timing->recorded_travel) continue;
+    ++result.landed;
+    result.place += (p.timing->travel - *p.timing->recorded_travel).norm();
+  }
+  if (result.landed > 0) result.place /= result.landed;
   return result;
 }
 
@@ -194,11 +189,13 @@ double ProbabilityAfter(const IdentifiedModel& model, double impulse, double dur
                                 HalfSinePush(body, impulse * body.mass, rows, scene.dt))};
   const int frames = rows + static_cast<int>(std::lround(kWatched / scene.dt));
   RolloutPath<double> path;
-  const RolloutStatus status = Rollout<double>(scene, model.options, {model.parameters},
-                                               InitialVelocities(scene), frames, &path);
-  if (!status.ok) return 1.0;
-  return model.step_probability->At(
-      StepMargin(model.options, model.parameters, scene.people[0], path, 0));
+  const RollWith roll = [&](const std::vector<ParameterSet<double>>& p,
+                            RolloutPath<double>* rolled) {
+    return Rollout<double>(scene, model.options, p, InitialVelocities(scene), frames, rolled);
+  };
+  const std::vector<ParameterSet<double>> parameters = {model.parameters};
+  if (!roll(parameters, &path).ok) return 1.0;
+  return model.step_probability->At(StepMargins(model.options, parameters, scene, path, roll)[0]);
 }
 
 }  // namespace

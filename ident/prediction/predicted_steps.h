@@ -1,10 +1,5 @@
-// ident: when people step in a predicted path, for how long and how far.
-//
-// A path with step states (models/stance.h) says of a person, not of a foot, how much the feet are
-// let go. A stepping phase begins with the first frame in which the state is above 0.85, where feet
-// begin to move, and lasts until it falls below 0.75: a state that flickers makes one phase. It may
-// hold several steps of a real person: compare its beginning with the recorded first lift-off
-// (datasets/loading/foot_steps.h); its travel is the cart's, not a foot's.
+// ident: which foot steps in a predicted path, when and how far, as recorded steps are told
+// (datasets/loading/foot_steps.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -18,20 +13,17 @@
 
 namespace pushid {
 
-struct SteppingPhase {
-  int lift_off = 0;      // the first frame that steps
-  int landing = 0;       // the first frame that stands again; the path's end if not finished
-  bool finished = true;  // false: still stepping in the last frame
-  Eigen::Vector2d travel = Eigen::Vector2d::Zero();  // of the cart, lift-off to landing, m
-};
+// A person's foot in a path, m.
+Eigen::Vector2d PlaceOf(Foot foot, const PendulumState<double>& state);
 
-std::vector<SteppingPhase> SteppingPhases(const RolloutPath<double>& path, int person);
+// In order; lift-off: the first frame after that in which the foot still stood.
+std::vector<FootStep> PredictedSteps(const RolloutPath<double>& path, int person);
 
-// Whether somebody stands, frame by frame; empty where the path has no step states.
+// Whether somebody stands on both feet, frame by frame; empty where the model's feet do not step.
 std::vector<bool> StandingFrames(const Prediction& prediction, int person);
 
-// A line per person: "S01: P(step) 0.93, steps from 0.42 s to 0.95 s, 0.31 m forwards"; empty
-// where the model says nothing of steps.
+// A line per person: "S01: P(step) 0.93, steps left 0.42-0.78 s 0.31 m forwards"; empty where the
+// model says nothing of steps.
 std::string PredictedStepsText(const PendulumRecording& recording, const Prediction& prediction);
 
 // How well it is predicted who steps.
@@ -40,15 +32,17 @@ std::string PredictedStepsText(const PendulumRecording& recording, const Predict
 //   AUC          probability that somebody who steps has a higher p than somebody who does not
 //   fifths       tracks by p, five groups of one size: mean p beside the share that stepped
 //   lift-off     predicted minus recorded time of the first, of those who step in both
+//   place        how far the first landings are apart, where both were finished
 // Standard errors by leaving out one person after the other (jackknife): one body and one habit
 // make all of a person's tracks.
 
-// When somebody steps, and how far, s from frame 0: the first phase that a model with step states
-// predicts, and the first lift-off that was recorded.
+// When somebody steps, and how far, s from frame 0: the first step that a model whose feet step
+// predicts, and the first that was recorded.
 struct StepTiming {
-  std::optional<double> lift_off, landing;           // no landing: still stepping in the last frame
-  Eigen::Vector2d travel = Eigen::Vector2d::Zero();  // of the cart, m
+  std::optional<double> lift_off, landing;           // no landing: in the air in the last frame
+  Eigen::Vector2d travel = Eigen::Vector2d::Zero();  // of the foot, m
   std::optional<double> recorded_lift_off;
+  std::optional<Eigen::Vector2d> recorded_travel;  // of a first step that was finished
 };
 
 // One person in one recording.
@@ -57,7 +51,7 @@ struct StepPrediction {
   double probability = 0.0;  // of a step
   bool stepped = false;
   std::string person = {};  // PersonKey
-  // Where the model has step states. In a cross-validation: of the first fold that held it out.
+  // Where the model's feet step. In a cross-validation: of the first fold that held it out.
   std::optional<StepTiming> timing = {};
 };
 
@@ -69,6 +63,8 @@ struct StepFifth {
 struct LiftOffError {
   int people = 0;                            // who step in both
   double median = 0.0, mean_absolute = 0.0;  // s; positive: predicted too late
+  int landed = 0;                            // who land in both
+  double place = 0.0;                        // m, mean over these
 };
 
 struct StepScore {

@@ -11,6 +11,7 @@
 #include "ident/fit/step_probability.h"
 #include "ident/model/push_range.h"
 #include "ident/prediction/laboratory_frame.h"
+#include "ident/prediction/predicted_steps.h"
 #include "ident/problem/own_axes.h"
 #include "ident/problem/statistics.h"
 #include "models/learned_terms.h"
@@ -25,7 +26,7 @@ Prediction PredictOne(const ModelOptions& options,
   Prediction prediction;
   prediction.parts = ReportedParts(options);
   prediction.rod_moves = RodMoves(options);
-  prediction.feet_step = options.stance == Stance::kThreshold;
+  prediction.feet_step = options.stance == Stance::kSteps;
   for (const ParameterSet<double>& own : parameters) prediction.rod_lift.push_back(own[kRodLift]);
   prediction.status = RolloutInOwnAxes(recording, options, parameters, frames, &prediction.path,
                                        &prediction.forces);
@@ -44,10 +45,7 @@ Prediction PredictOne(const ModelOptions& options,
 void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
               Prediction* prediction) {
   if (!model.step_probability) return;
-  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
-  for (int n = 0; n < recording.scene.num_people(); ++n) {
-    const double margin =
-        StepMargin(model.options, parameters[n], recording.scene.people[n], prediction->path, n);
+  for (double margin : StepMargins(model, recording, prediction->path)) {
     prediction->steps.push_back(
         {margin, model.step_probability->At(margin), model.step_probability->ErrorAt(margin)});
   }
@@ -90,7 +88,7 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
     }
   }
   if (prediction.rod_moves) text += ",rod_length_m,cart_height_m";
-  if (prediction.feet_step) text += ",step_state";
+  if (prediction.feet_step) text += ",left_foot_x_m,left_foot_y_m,right_foot_x_m,right_foot_y_m";
   if (!prediction.steps.empty()) text += ",step_probability";
   if (!prediction.bands.empty()) {
     for (const char* axis : {"x", "y", "z"}) {
@@ -121,7 +119,10 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
         for (int i = 0; i < 4; ++i) add(force[part][i]);
       }
       if (prediction.rod_moves) add(body.rod_length), add(body.cart_height);
-      if (prediction.feet_step) add(state.step);
+      for (Foot foot : kFeet) {
+        const Eigen::Vector2d place = PlaceOf(foot, state);
+        if (prediction.feet_step) add(place[0]), add(place[1]);
+      }
       if (!prediction.steps.empty()) add(prediction.steps[n].probability);
       for (int i = 0; i < 3 && !prediction.bands.empty(); ++i) {
         // A frame that was seen is known.
@@ -180,7 +181,6 @@ Prediction MedianPrediction(const PendulumRecording& recording,
       state.qd = MedianVector<Vector4<double>>(
           predictions, [&](const Prediction& p) { return p.path.At(t, n).qd; });
       state.rod = MedianOf(predictions, [&](const Prediction& p) { return p.path.At(t, n).rod; });
-      state.step = MedianOf(predictions, [&](const Prediction& p) { return p.path.At(t, n).step; });
       median.hip[n][t] = HipPosition(median.BodyAt(recording.scene, t, n), state.q);
       median.forces.At(t, n) = MedianForce(predictions, t, n);
     }

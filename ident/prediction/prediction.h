@@ -32,7 +32,7 @@ struct Prediction {
   std::vector<std::vector<Vector3<double>>> hip;  // [person][frame], m; empty after a failure
   bool rod_moves = false;
   std::vector<double> rod_lift;  // of each person, or one for everybody
-  bool feet_step = false;        // the path has step states
+  bool feet_step = false;        // the path has feet that step
   // One per person; empty after a failure and where the model says nothing of steps.
   std::vector<PredictedStep> steps;
   // Where first frames were seen (online_predictor.h): how many, with frame 0, what they say of the

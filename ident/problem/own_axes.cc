@@ -21,6 +21,7 @@ void TurnBack(double angle, RolloutPath<double>* path, FrameTable<NetForce<doubl
       }
       state.qd = axes.PoseJacobian(state.q) * state.qd;
       state.q = axes.Pose(state.q);
+      state.feet.apart = axes.Horizontal(state.feet.apart);
     }
   }
 }

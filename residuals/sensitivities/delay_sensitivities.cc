@@ -65,28 +65,18 @@ void PerceivedSensitivities::Update(const ModelOptions& options, const Parameter
 
 void PerceivedSensitivities::AddTo(
     const Eigen::Matrix<double, 4, 8>& by_ankle, const Eigen::Matrix<double, 4, 8>& by_step,
-    Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>* by_column) const {
-  by_column->noalias() += by_ankle * ankle_;
-  if (steps_) by_column->noalias() += by_step * step_;
+    Eigen::Ref<Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>> by_column) const {
+  by_column.noalias() += by_ankle * ankle_;
+  if (steps_) by_column.noalias() += by_step * step_;
 }
 
-void PerceivedSensitivities::AddParameters(const Eigen::Matrix<double, 4, 8>& by_ankle,
-                                           const Eigen::Matrix<double, 4, 8>& by_step,
-                                           SelfForce::Jacobian* jacobian) const {
-  auto& by_parameter = jacobian->by_parameter;
-  by_parameter.col(kReactionDelay) += by_ankle * ankle_by_delay_;
-  if (steps_) by_parameter.col(step_delay_) += by_step * step_by_delay_;
-  by_parameter.col(kPassiveStiffness) += by_ankle * by_stiffness_share_;
-  by_parameter.col(kPassiveDamping) += by_ankle * by_damping_share_;
-}
-
-void PerceivedSensitivities::AddToStep(StanceJacobian* stance) const {
-  stance->next_by_parameter[step_delay_] += stance->next_by_foot.dot(step_by_delay_);
-}
-
-void PerceivedSensitivities::AddToStepState(const StanceJacobian& stance,
-                                            Eigen::Ref<Eigen::RowVectorXd> next) const {
-  next.noalias() += stance.next_by_foot * step_;
+void PerceivedSensitivities::AddParameters(
+    const Eigen::Matrix<double, 4, 8>& by_ankle, const Eigen::Matrix<double, 4, 8>& by_step,
+    Eigen::Matrix<double, 4, kNumParameters>* by_parameter) const {
+  by_parameter->col(kReactionDelay) += by_ankle * ankle_by_delay_;
+  if (steps_) by_parameter->col(step_delay_) += by_step * step_by_delay_;
+  by_parameter->col(kPassiveStiffness) += by_ankle * by_stiffness_share_;
+  by_parameter->col(kPassiveDamping) += by_ankle * by_damping_share_;
 }
 
 }  // namespace pushid

@@ -8,7 +8,6 @@
 
 #include "models/scene_forces.h"
 #include "residuals/sensitivities/rollout_sensitivities.h"
-#include "residuals/sensitivities/stance_sensitivities.h"
 
 namespace pushid {
 
@@ -22,20 +21,15 @@ class PerceivedSensitivities {
               const DelayedPlaces<double>& delayed, const RolloutPath<double>& path,
               const RolloutSensitivities& sensitivities, int frame, int person);
 
-  // Adds what the forces change by through what was perceived: by_ankle and by_step are their
-  // derivatives by the two perceived states, over [q, qd].
+  // Adds what the forces (or the feet after the step) change by through what was perceived:
+  // by_ankle and by_step are their derivatives by the two perceived states, over [q, qd].
   void AddTo(const Eigen::Matrix<double, 4, 8>& by_ankle,
              const Eigen::Matrix<double, 4, 8>& by_step,
-             Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>* by_column) const;
+             Eigen::Ref<Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>> by_column) const;
   // The same through the delays and the shares.
   void AddParameters(const Eigen::Matrix<double, 4, 8>& by_ankle,
                      const Eigen::Matrix<double, 4, 8>& by_step,
-                     SelfForce::Jacobian* jacobian) const;
-
-  // The same of the next step state: its derivative by the delay, and what it changes by through
-  // what steps perceive.
-  void AddToStep(StanceJacobian* stance) const;
-  void AddToStepState(const StanceJacobian& stance, Eigen::Ref<Eigen::RowVectorXd> next) const;
+                     Eigen::Matrix<double, 4, kNumParameters>* by_parameter) const;
 
  private:
   using Block = RolloutSensitivities::Block;

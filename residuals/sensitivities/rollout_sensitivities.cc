@@ -9,7 +9,6 @@
 #include "residuals/sensitivities/delay_sensitivities.h"
 #include "residuals/sensitivities/network_sensitivities.h"
 #include "residuals/sensitivities/received_sensitivities.h"
-#include "residuals/sensitivities/stance_sensitivities.h"
 
 namespace pushid {
 namespace {
@@ -38,18 +37,6 @@ std::vector<NetworkSensitivities> StartNetworks(const Scene& scene, const ModelO
   return networks;
 }
 
-// d (step state) / d columns, one step on; by_state: d [q, qd] / d columns.
-template <typename Rows>
-void AdvanceStepState(const StanceJacobian& stance, const std::vector<ColumnEntry>& entries,
-                      const Rows& by_state, Eigen::Ref<const Eigen::RowVectorXd> now,
-                      Eigen::Ref<Eigen::RowVectorXd> next) {
-  next.noalias() = stance.next_by_state * by_state;
-  next += stance.next_by_step * now;
-  for (const ColumnEntry& entry : entries) {
-    next[entry.column] += entry.derivative * stance.next_by_parameter[entry.parameter];
-  }
-}
-
 // What one person does in one step.
 struct PersonStep {
   int frame, person;
@@ -74,7 +61,7 @@ class SensitivityRollout {
         inputs_(inputs),
         path_(*path),
         sensitivities_(*sensitivities),
-        stands_(options.stance == Stance::kThreshold),
+        stands_(options.stance == Stance::kSteps),
         late_(options.delay != Delay::kNone),
         forces_(scene, options, inputs.parameters, inputs.network_weights),
         received_(scene, options, inputs),
@@ -116,10 +103,11 @@ class SensitivityRollout {
  private:
   void Start(int n) {
     path_.At(0, n) = {scene_.people[n].start.q, inputs_.initial_velocity[n]};
+    path_.At(0, n).feet.apart = scene_.people[n].start.feet.apart;
     auto start = sensitivities_.At(0, n);
     start.setZero();
     sensitivities_.Rod(0, n).setZero();
-    sensitivities_.StepState(0, n).setZero();
+    sensitivities_.Feet(0, n).setZero();
     if (inputs_.velocity_column >= 0) {
       start.block<4, 4>(4, inputs_.velocity_column + 4 * n).setIdentity();
     }
@@ -148,8 +136,8 @@ class SensitivityRollout {
     const auto& [t, n, self, p, state, previous, force, a, holds_fast, ground] = step;
     const Perceived<double>* perceived = forces_.perceived(n);
     switch (options_.stance) {
-      case Stance::kThreshold:
-        NetForceJacobianOfStance(scene_, options_, self, p, n, t, state, a, &jacobian_, &stance_,
+      case Stance::kSteps:
+        NetForceJacobianOfStance(scene_, options_, self, p, n, t, state, &jacobian_, &stance_,
                                  perceived, &by_perceived_);
         break;
       case Stance::kFixed:
@@ -197,8 +185,9 @@ class SensitivityRollout {
     }
     if (late_) {
       perceived_.Update(options_, step.p, forces_.delayed(n), path_, sensitivities_, t, n);
-      perceived_.AddTo(by_perceived_.by_ankle, by_perceived_.by_step, &by_column_);
-      perceived_.AddParameters(by_perceived_.by_ankle, by_perceived_.by_step, &jacobian_);
+      perceived_.AddTo(by_perceived_.by_ankle, by_perceived_.by_step, by_column_);
+      perceived_.AddParameters(by_perceived_.by_ankle, by_perceived_.by_step,
+                               &jacobian_.by_parameter);
     }
     if (step.self.cart_derivative) {
       by_column_.topRows<2>() += jacobian_.by_previous.asDiagonal() *
@@ -207,7 +196,7 @@ class SensitivityRollout {
     for (const ColumnEntry& entry : own_entries_[n]) {
       AddWhereAny(entry, jacobian_.by_parameter.col(entry.parameter), &by_column_);
     }
-    if (stands_) AddStepState(t, n);
+    if (stands_) AdvanceFeet(t, n);
     if (rod_) by_column_.noalias() += by_rod_ * sensitivities_.Rod(t, n);
     if (!networks_.empty()) networks_[n].Advance(forces_.network(n), now);
     if (ForcesAt(scene_, options_.push, n, t) != ActiveForces::kAll) return;
@@ -215,13 +204,20 @@ class SensitivityRollout {
     if (!networks_.empty()) networks_[n].AddTo(&by_column_);
   }
 
-  void AddStepState(int t, int n) {
-    if (late_) perceived_.AddToStep(&stance_);
-    const auto now = sensitivities_.StepState(t, n);
-    AdvanceStepState(stance_, inputs_.entries[n], sensitivities_.At(t, n), now,
-                     sensitivities_.StepState(t + 1, n));
-    if (late_) perceived_.AddToStepState(stance_, sensitivities_.StepState(t + 1, n));
-    by_column_.noalias() += stance_.by_step * now;
+  void AdvanceFeet(int t, int n) {
+    const auto now = sensitivities_.Feet(t, n);
+    auto next = sensitivities_.Feet(t + 1, n);
+    next.noalias() = stance_.next_by_state * sensitivities_.At(t, n);
+    next.noalias() += stance_.next_by_feet * now;
+    if (late_) {
+      perceived_.AddTo(stance_.next_by_ankle, stance_.next_by_foot, next);
+      perceived_.AddParameters(stance_.next_by_ankle, stance_.next_by_foot,
+                               &stance_.next_by_parameter);
+    }
+    for (const ColumnEntry& entry : own_entries_[n]) {
+      next.col(entry.column) += entry.derivative * stance_.next_by_parameter.col(entry.parameter);
+    }
+    by_column_.noalias() += stance_.by_feet * now;
   }
 
   void AdvanceRod(const PersonStep& step) {

@@ -6,8 +6,8 @@
 // Only d(M a + C + G), over the four states it depends on, and the interaction of two people who
 // touch need automatic differentiation; a whole Jet rollout costs as many sweeps as there are
 // columns (measured in tests/benchmarks). States beside s are carried in the same way: a network's
-// memory and a rod that moves (network_sensitivities.h), and the step state of
-// feet that stand and step (stance_sensitivities.h).
+// memory and a rod that moves (network_sensitivities.h), and the feet of who
+// stands and steps (stance_sensitivities.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,6 +16,7 @@
 #include "models/rollout.h"
 #include "residuals/parameter_map.h"
 #include "residuals/sensitivities/pair_jacobian.h"
+#include "residuals/sensitivities/stance_sensitivities.h"
 
 namespace pushid {
 
@@ -31,10 +32,11 @@ struct SensitivityInputs {
 };
 
 // d [q, qd] / d columns at every frame and person; beside it of the rod, where it moves, and of the
-// step state, where feet stand and step.
+// feet, where they stand and step.
 class RolloutSensitivities {
  public:
   using Block = Eigen::Matrix<double, 8, Eigen::Dynamic, Eigen::RowMajor>;
+  using FeetBlock = Eigen::Matrix<double, kFeetStates, Eigen::Dynamic, Eigen::RowMajor>;
   using Row = Eigen::Map<Eigen::RowVectorXd>;
   using ConstRow = Eigen::Map<const Eigen::RowVectorXd>;
   void Resize(int num_frames, int num_people, int num_columns, bool rod_moves = false,
@@ -45,7 +47,7 @@ class RolloutSensitivities {
     if (storage_.size() < 8 * all) storage_.resize(8 * all);
     angles_.resize(static_cast<size_t>(num_frames) * num_people);
     rod_.resize(rod_moves ? all : 0);
-    step_.resize(feet_step ? all : 0);
+    feet_.resize(feet_step ? kFeetStates * all : 0);
   }
   Eigen::Map<Block> At(int frame, int person) {
     return {storage_.data() + 8 * Offset(frame, person), 8, num_columns_};
@@ -64,9 +66,10 @@ class RolloutSensitivities {
   ConstRow Rod(int frame, int person) const {
     return {rod_.data() + RowOffset(rod_, frame, person), RowSize(rod_)};
   }
-  // d (step state) / d columns; empty where feet slide.
-  Row StepState(int frame, int person) {
-    return {step_.data() + RowOffset(step_, frame, person), RowSize(step_)};
+  // d [apart, clock, swing_time] / d columns; empty where feet slide.
+  Eigen::Map<FeetBlock> Feet(int frame, int person) {
+    return {feet_.data() + kFeetStates * RowOffset(feet_, frame, person), kFeetStates,
+            RowSize(feet_)};
   }
 
  private:
@@ -79,7 +82,7 @@ class RolloutSensitivities {
   }
   int num_people_ = 0, num_columns_ = 0;
   Eigen::VectorXd storage_;  // the blocks, one after the other; never shrinks
-  Eigen::RowVectorXd rod_, step_;
+  Eigen::RowVectorXd rod_, feet_;
   std::vector<Angles<double>> angles_;
 };
 

@@ -8,71 +8,84 @@ namespace {
 
 using Ids = StanceParameters<double>;
 
-// Inputs of the jets: theta, phi, qd, s, the cart's own forces, what ankles perceive (two angles
-// and their rates), what steps perceive (two angles, qd), then the parameters.
-constexpr int kVelocityAt = 2, kStepAt = 6, kCartForceAt = 7, kAnkleAt = 9, kFootAt = 13;
-constexpr int kParametersAt = 19;
-constexpr int kInputs = kParametersAt + Ids::kCount;
-using StanceJet = ceres::Jet<double, kInputs>;
+// Inputs of the jets: the feet, what ankles and steps perceive (two angles, qd each), then the
+// parameters. Where nothing is late both perceive the same, and share their inputs.
+constexpr int kPerceived = 6, kAnkleAt = kFeetStates;
 
-StanceForces<StanceJet> JetsOfStance(const SelfForce& self, const ParameterSet<double>& p,
-                                     const PendulumState<double>& state,
-                                     const Perceived<double>& perceived,
-                                     const Eigen::Vector2d& cart_force) {
-  PendulumState<StanceJet> jets;
-  Perceived<StanceJet> felt;
-  for (int i = 0; i < 2; ++i) {
-    felt.ankle.q[2 + i] = StanceJet(perceived.ankle.q[2 + i], kAnkleAt + i);
-    felt.ankle.qd[2 + i] = StanceJet(perceived.ankle.qd[2 + i], kAnkleAt + 2 + i);
-    felt.step.q[2 + i] = StanceJet(perceived.step.q[2 + i], kFootAt + i);
+template <bool kLate>
+struct StanceInputs {
+  static constexpr int kFootAt = kLate ? kAnkleAt + kPerceived : kAnkleAt;
+  static constexpr int kParametersAt = kFootAt + kPerceived;
+  static constexpr int kCount = kParametersAt + Ids::kCount;
+  using Jet = ceres::Jet<double, kCount>;
+
+  static PendulumState<Jet> Felt(const PendulumState<double>& state, int first) {
+    PendulumState<Jet> jets;
+    for (int i = 0; i < 2; ++i) jets.q[2 + i] = Jet(state.q[2 + i], first + i);
+    for (int i = 0; i < 4; ++i) jets.qd[i] = Jet(state.qd[i], first + 2 + i);
+    return jets;
   }
-  for (int i = 0; i < 4; ++i) {
-    felt.step.qd[i] = StanceJet(perceived.step.qd[i], kFootAt + 2 + i);
-  }
-  Eigen::Matrix<StanceJet, 2, 1> force;
-  for (int i = 0; i < 2; ++i) {
-    jets.q[i] = StanceJet(state.q[i]);
-    jets.q[2 + i] = StanceJet(state.q[2 + i], i);
-    force[i] = StanceJet(cart_force[i], kCartForceAt + i);
-  }
-  for (int i = 0; i < 4; ++i) jets.qd[i] = StanceJet(state.qd[i], kVelocityAt + i);
-  jets.step = StanceJet(state.step, kStepAt);
-  int input = kParametersAt;
+};
+
+template <bool kLate>
+auto JetsOfStance(const SelfForce& self, const ParameterSet<double>& p,
+                  const FeetState<double>& feet, const Perceived<double>& perceived) {
+  using Inputs = StanceInputs<kLate>;
+  using Jet = typename Inputs::Jet;
+  FeetState<Jet> jets;
+  for (int i = 0; i < 2; ++i) jets.apart[i] = Jet(feet.apart[i], i);
+  jets.clock = Jet(feet.clock, 2);
+  jets.swing_time = Jet(feet.swing_time, 3);
+  jets.swings = feet.swings;
+  jets.landed = feet.landed;
+  Perceived<Jet> felt;
+  felt.ankle = Inputs::Felt(perceived.ankle, kAnkleAt);
+  felt.step = Inputs::Felt(perceived.step, Inputs::kFootAt);
+  int input = Inputs::kParametersAt;
   // In the order of kIds, which is that of the members.
-  const StanceParameters<StanceJet> parameters(
-      [&](Parameter id) { return StanceJet(p[id], input++); });
-  return StanceAt(self, parameters, Angles<StanceJet>(jets.q), jets, felt, force);
+  const StanceParameters<Jet> parameters([&](Parameter id) { return Jet(p[id], input++); });
+  return StanceAt(self, parameters, jets, felt);
 }
 
-// The cart's own forces: friction of the state, what is perceived of the rest.
-struct CartForceJacobian {
-  Eigen::Matrix<double, 2, 8> by_state, by_perceived;
-  Eigen::Matrix<double, 2, kNumParameters> by_parameter;
-};
-
-// One output's derivatives by the state, by what is perceived, by s and by the parameters. own: of
-// the cart's forces.
-struct OutputJacobian {
-  Eigen::Matrix<double, 1, 8> by_state = Eigen::Matrix<double, 1, 8>::Zero();
-  Eigen::Matrix<double, 1, 8> by_ankle = by_state, by_foot = by_state;
-  double by_step = 0.0;
-  Eigen::Matrix<double, 1, kNumParameters> by_parameter;
-
-  OutputJacobian(const StanceJet& output, const CartForceJacobian& own) {
-    by_state.segment<2>(2) = output.v.head<2>().transpose();
-    by_state.tail<4>() = output.v.segment<4>(kVelocityAt).transpose();
-    by_ankle.segment<2>(2) = output.v.segment<2>(kAnkleAt).transpose();
-    by_ankle.tail<2>() = output.v.segment<2>(kAnkleAt + 2).transpose();
-    by_foot.segment<2>(2) = output.v.segment<2>(kFootAt).transpose();
-    by_foot.tail<4>() = output.v.segment<4>(kFootAt + 2).transpose();
-    by_step = output.v[kStepAt];
-    const Eigen::RowVector2d by_force = output.v.segment<2>(kCartForceAt).transpose();
-    by_state += by_force * own.by_state;
-    by_foot += by_force * own.by_perceived;
-    by_parameter = by_force * own.by_parameter;
-    for (int i = 0; i < Ids::kCount; ++i) by_parameter[Ids::kIds[i]] += output.v[kParametersAt + i];
+// One output's derivatives, times `factor`, into row `row` of each.
+template <bool kLate, typename ByState, typename ByFeet, typename ByParameter>
+void SetRow(const typename StanceInputs<kLate>::Jet& output, double factor, int row,
+            ByState* by_ankle, ByState* by_foot, ByFeet* by_feet, ByParameter* by_parameter) {
+  using Inputs = StanceInputs<kLate>;
+  const auto set = [&](ByState* by, int first) {
+    by->row(row).template segment<2>(2) = factor * output.v.template segment<2>(first).transpose();
+    by->row(row).template tail<4>() = factor * output.v.template segment<4>(first + 2).transpose();
+  };
+  set(by_ankle, kAnkleAt);
+  if (kLate) set(by_foot, Inputs::kFootAt);
+  by_feet->row(row) = factor * output.v.template head<kFeetStates>().transpose();
+  for (int i = 0; i < Ids::kCount; ++i) {
+    (*by_parameter)(row, Ids::kIds[i]) = factor * output.v[Inputs::kParametersAt + i];
   }
-};
+}
+
+// by_ankle, by_foot: of the force; where nothing is late, by_ankle is by the state.
+template <bool kLate>
+void StanceRows(const SelfForce& self, const ParameterSet<double>& p,
+                const PendulumState<double>& state, const Perceived<double>& perceived, bool acts,
+                Eigen::Matrix<double, 4, 8>* by_ankle, Eigen::Matrix<double, 4, 8>* by_foot,
+                SelfForce::Jacobian* jacobian, StanceJacobian* stance) {
+  const auto jets = JetsOfStance<kLate>(self, p, state.feet, perceived);
+  auto* next_by_ankle = kLate ? &stance->next_by_ankle : &stance->next_by_state;
+  const typename StanceInputs<kLate>::Jet* next[] = {&jets.next.apart[0], &jets.next.apart[1],
+                                                     &jets.next.clock, &jets.next.swing_time};
+  for (int i = 0; i < kFeetStates; ++i) {
+    SetRow<kLate>(*next[i], 1.0, i, next_by_ankle, &stance->next_by_foot, &stance->next_by_feet,
+                  &stance->next_by_parameter);
+  }
+  if (!acts) return;
+  const double ground = kHeldFast * self.body.mass;
+  for (int i = 0; i < 4; ++i) {
+    SetRow<kLate>(i < 2 ? jets.velocity[i] : jets.torque[i - 2], i < 2 ? ground : 1.0, i, by_ankle,
+                  by_foot, &stance->by_feet, &jacobian->by_parameter);
+  }
+  for (int i = 0; i < 2; ++i) jacobian->by_state(i, 4 + i) -= ground;
+}
 
 // StandingTorque's derivatives, and the order of its parameters.
 using StandingIds = StandingParameters<double>;
@@ -175,57 +188,24 @@ void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
                               int frame, const PendulumState<double>& state,
-                              const Vector4<double>& a, SelfForce::Jacobian* jacobian,
-                              StanceJacobian* stance, const Perceived<double>* late,
-                              PerceivedJacobian* by_perceived) {
-  const Perceived<double> perceived = late != nullptr ? *late : Perceived<double>(state);
-  const PendulumState<double>& of_step = perceived.step;
-  const Vector4<double> own =
-      self.Friction(p, state.qd) + self.Balance(p, of_step, of_step.qd) + self.Linear(p, of_step);
-  SelfForce::Jacobian of_friction, of_control;
-  self.FrictionJacobian(p, state.qd, &of_friction);
-  self.ControlJacobian(p, of_step, of_step.qd, &of_control);
-  const CartForceJacobian of_own{
-      of_friction.by_state.topRows<2>(), of_control.by_state.topRows<2>(),
-      of_friction.by_parameter.topRows<2>() + of_control.by_parameter.topRows<2>()};
-  const StanceForces<StanceJet> jets = JetsOfStance(self, p, state, perceived, own.head<2>());
-  const OutputJacobian next(jets.next_step, of_own);
-  stance->next_by_state = next.by_state;
-  stance->next_by_ankle = next.by_ankle;
-  stance->next_by_foot = next.by_foot;
-  stance->next_by_step = next.by_step;
-  stance->next_by_parameter = next.by_parameter;
-  if (late == nullptr) stance->next_by_state += next.by_ankle + next.by_foot;
+                              SelfForce::Jacobian* jacobian, StanceJacobian* stance,
+                              const Perceived<double>* late, PerceivedJacobian* by_perceived) {
   if (by_perceived != nullptr) by_perceived->SetZero();
-  stance->by_step.setZero();
+  stance->SetZero();
   jacobian->by_state.setZero();
   jacobian->by_previous.setZero();
   jacobian->by_parameter.setZero();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
-  if (active == ActiveForces::kPushOnly) return;
-  if (active == ActiveForces::kPushAndFriction) return AddPublishedFriction(jacobian);
-  const OutputJacobian ground(jets.ground, of_own);
-  for (int i = 0; i < 2; ++i) {
-    const double after = state.qd[i] + scene.dt * a[i];
-    jacobian->by_state.row(i) = state.step * of_own.by_state.row(i) - after * ground.by_state;
-    jacobian->by_state(i, 4 + i) -= jets.ground.a;
-    const Eigen::Matrix<double, 1, 8> of_cart = state.step * of_own.by_perceived.row(i);
-    jacobian->by_parameter.row(i) =
-        state.step * of_own.by_parameter.row(i) - after * ground.by_parameter;
-    stance->by_step[i] = own[i] - after * ground.by_step;
-    const OutputJacobian torque(jets.torque[i], of_own);
-    jacobian->by_state.row(2 + i) = torque.by_state;
-    if (late == nullptr) {
-      jacobian->by_state.row(i) += of_cart;
-      jacobian->by_state.row(2 + i) += torque.by_ankle + torque.by_foot;
-    } else {
-      by_perceived->by_step.row(i) = of_cart;
-      by_perceived->by_step.row(2 + i) = torque.by_foot;
-      by_perceived->by_ankle.row(2 + i) = torque.by_ankle;
-    }
-    jacobian->by_parameter.row(2 + i) = torque.by_parameter;
-    stance->by_step[2 + i] = torque.by_step;
+  const bool acts = active == ActiveForces::kAll;
+  if (late != nullptr) {
+    StanceRows<true>(self, p, state, *late, acts, &by_perceived->by_ankle, &by_perceived->by_step,
+                     jacobian, stance);
+  } else {
+    StanceRows<false>(self, p, state, Perceived<double>(state), acts, &jacobian->by_state, nullptr,
+                      jacobian, stance);
   }
+  if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(jacobian);
+  if (!acts) return;
   self.AddOwnJacobian(p, state, jacobian);
   if (options.push_tail == PushTail::kNone) return;
   for (const ScenePush& push : scene.pushes) {

@@ -39,7 +39,7 @@ TEST_F(CheckTest, AFileIsCheckedLikeAFitThatHasJustEnded) {
       {{}, all},
       {{"--pool=mu", "--pool_by=subject", "--sigmas=fixed", "--seed=3"}, all},
       {{"--self_force=linear,mlp:2"}, few},
-      {{"--stance=threshold"}, few},
+      {{"--stance=steps"}, few},
       {{"--replica=2", "--bootstrap_by=recording"}, few}};
   for (const auto& [fit, checks] : cases) {
     SCOPED_TRACE(fit.empty() ? "default" : fit[0]);

@@ -214,7 +214,7 @@ TEST_F(FitAppTest, TheHeaderNamesPoolingAndTheSelfModel) {
   EXPECT_TRUE(Contains(fit_.out, "pooled by subject, self parameters from " + alone));
   EXPECT_TRUE(Contains(fit_.out, "spread between subjects"));
   EXPECT_TRUE(
-      Refused(RunApp("pushid-fit", {Recordings(), "--self_from=" + alone, "--stance=threshold"}),
+      Refused(RunApp("pushid-fit", {Recordings(), "--self_from=" + alone, "--stance=steps"}),
               {"was fitted with --stance=slide"}));
   // All of them stand in one setting.
   FitModel("m.json", {"--pool=mu", "--pool_by=setting"});

@@ -54,7 +54,7 @@ TEST_F(FrontTest, CompletionKnowsFlagsAndTheirWords) {
     const AppRun run = RunApp("pushid", {"completion", shell});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_TRUE(Contains(run.out, "settling_weight"));
-    EXPECT_TRUE(Contains(run.out, "slide threshold"));  // --stance
+    EXPECT_TRUE(Contains(run.out, "slide steps"));  // --stance
     EXPECT_EQ(run.out.find("minloglevel"), std::string::npos);
   }
 }
@@ -113,7 +113,7 @@ TEST_F(FrontTest, BashCompletes) {
   };
   EXPECT_EQ(completed("pushid fi", 1).out, "fit\n");
   EXPECT_EQ(completed("pushid fit --settling_", 2).out, "--settling_weight=\n");
-  EXPECT_EQ(completed("pushid-fit --stance = thr", 3).out, "threshold\n");
+  EXPECT_EQ(completed("pushid-fit --stance = ste", 3).out, "steps\n");
   EXPECT_EQ(completed("pushid check --prior", 2).out, "--prior_check\n");
   EXPECT_EQ(completed("pushid-fit --prof", 1).out, "\n") << "a flag that moved";
 }

@@ -128,7 +128,7 @@ TEST_F(LangevinAppTest, BadUse) {
       {{"--process_noise=diagonal,full"}, "diagonal or full"},
       {{"--process_noise=white"}, "'white'"},
       {{"--likelihood=posterior"}, "--likelihood"},
-      {{"--likelihood=innovation", "--stance=threshold"}, "--stance=threshold"},
+      {{"--likelihood=innovation", "--stance=steps"}, "--stance=steps"},
       {{"--likelihood=innovation", "--horizon_check"}, "--horizon_check"},
   };
   for (const auto& [flags, says] : fits) {

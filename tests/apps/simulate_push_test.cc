@@ -76,9 +76,9 @@ TEST_F(SimulateAppTest, TheTruthOfGroupsIsFound) {
 
 // Feet that hold, with default flags: errors of the fit hold the truth of most parameters.
 TEST_F(SimulateAppTest, TheTruthMayStand) {
-  const std::string manifest = Simulate("made", {"--truth_stance=threshold", "--people=5"});
-  EXPECT_EQ(Json(manifest)["synthetic"]["stance"], "threshold");
-  const AppRun fit = RunApp("pushid-fit", {"--recordings=" + manifest, "--stance=threshold",
+  const std::string manifest = Simulate("made", {"--truth_stance=steps", "--people=5"});
+  EXPECT_EQ(Json(manifest)["synthetic"]["stance"], "steps");
+  const AppRun fit = RunApp("pushid-fit", {"--recordings=" + manifest, "--stance=steps",
                                            "--model_out=" + Path("model.json")});
   ASSERT_EQ(fit.exit_code, 0) << fit.err;
   const AppRun report =

@@ -39,12 +39,14 @@ BENCHMARK(IpmStep)->Unit(benchmark::kNanosecond);
 void IpmStepOfStance(benchmark::State& state) {
   const PendulumRecording& recording = SinglePeople().recordings[0];
   ModelOptions options;
-  options.stance = Stance::kThreshold;
+  options.stance = Stance::kSteps;
   const ParameterSet<double> p = PublishedStanceParameters();
   const std::vector<SelfForce> self = SelfForces(recording.scene, options);
   const Body& body = recording.scene.people[0].body;
   PendulumState<double> pose = recording.states[0][20];
-  pose.step = 0.6;
+  pose.feet.swings = 1;
+  pose.feet.clock = 0.1;
+  pose.feet.swing_time = 0.3;
   for (auto _ : state) {
     benchmark::DoNotOptimize(pose);
     const NetForce<double> force = NetForceAt(recording.scene, options, self[0], p, 0, 20,
@@ -52,9 +54,9 @@ void IpmStepOfStance(benchmark::State& state) {
     PendulumState<double> next =
         Step(pose,
              AccelerationOnGround(body, force.angles, pose.qd, force.Total(), force.ground,
-                                  recording.scene.dt),
+                                  force.feet_velocity, recording.scene.dt),
              recording.scene.dt);
-    next.step = force.next_step;
+    next.feet = force.next_feet;
     benchmark::DoNotOptimize(next);
   }
 }

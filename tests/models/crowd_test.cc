@@ -14,8 +14,8 @@ ParameterSet<double> BlockParameters() {
   p[kTailGain] = 1.0, p[kTailTime] = 0.2, p[kTailExponent] = 1.0;
   p[kContactStiffness] = 2500.0, p[kContactDistance] = 0.42, p[kContactKappa] = 0.5;
   p[kContactDamping] = 200.0, p[kContactHeight] = 0.5;
-  p[kSupportFront] = p[kSupportBack] = p[kSupportSide] = 0.08, p[kAnkleReach] = 1.5;
-  p[kStepGain] = p[kStaticFriction] = 1.0, p[kStepOnset] = 0.1, p[kStepRelease] = 0.3;
+  p[kSupportFront] = p[kSupportBack] = p[kSupportSide] = 0.08, p[kFootFront] = 0.2;
+  p[kStepGain] = 1.0, p[kStepOnset] = 0.1, p[kStepSwing] = 0.3;
   return p;
 }
 
@@ -66,7 +66,7 @@ TEST_P(CrowdOf, IsTheRolloutForAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(SlidingAndStanding, CrowdOf,
-                         testing::Values(Stance::kSlide, Stance::kThreshold));
+                         testing::Values(Stance::kSlide, Stance::kSteps));
 
 TEST(Crowd, NamesWhoFallsAndStaysBefore) {
   Scene scene = Block(2, 3);

@@ -116,7 +116,7 @@ TEST(Covariates, ForwardSensitivitiesEqualJets) {
   ModelOptions group;
   group.interaction.spring = group.interaction.damping = true;
   ModelOptions holds;
-  holds.stance = Stance::kThreshold;
+  holds.stance = Stance::kSteps;
   for (const ModelOptions& options : {ModelOptions{}, group, holds}) {
     SCOPED_TRACE(Describe(options));
     PendulumRecording recording = TwoPeople(options, 30, &random);

@@ -30,8 +30,8 @@ inline ParameterSet<double> RecoveringParameters() {
   p[kPotentialStrength] = 120.0, p[kPotentialLength] = 0.4, p[kNeighbourRange] = 0.9;
   p[kLeanTheta] = 30.0, p[kLeanPhi] = 20.0;
   p[kRodLift] = 0.8;
-  p[kSupportFront] = 0.1, p[kSupportBack] = 0.07, p[kSupportSide] = 0.09, p[kAnkleReach] = 1.3;
-  p[kStepGain] = 1.1, p[kStepOnset] = 0.12, p[kStepRelease] = 0.35, p[kStaticFriction] = 0.8;
+  p[kSupportFront] = 0.1, p[kSupportBack] = 0.07, p[kSupportSide] = 0.04, p[kFootFront] = 0.18;
+  p[kStepGain] = 1.0, p[kStepOnset] = 0.25, p[kStepSwing] = 0.3;
   p[kComHeight] = 1.07;
   p[kCoulombFriction] = 0.02, p[kReactionDelay] = 0.043, p[kStepDelay] = 0.071;
   p[kPassiveStiffness] = 0.3, p[kPassiveDamping] = 0.4;
@@ -232,7 +232,7 @@ inline std::vector<ModelOptions> EveryModelOptions() {
             for (const auto& [stance, derivative] :
                  {std::pair(Stance::kSlide, CartDerivative::kNone),
                   std::pair(Stance::kSlide, CartDerivative::kBackward),
-                  std::pair(Stance::kThreshold, CartDerivative::kNone)})
+                  std::pair(Stance::kSteps, CartDerivative::kNone)})
               all.push_back({posture, scaling, Directions::kAxes, friction, use, tail, stance,
                              Delay::kNone, BodyModel::kLdp, derivative,
                              interactions[all.size() % interactions.size()], nullptr, nullptr});

@@ -81,10 +81,10 @@ TEST(FitSetup, StanceBringsWhatGoesWithIt) {
   const FitOptions slide = MakeFitOptions({{"preset", "tail"}}).value();
   EXPECT_EQ(slide.model.stance, Stance::kSlide);
   EXPECT_FALSE(slide.table[kStepOnset].free);
-  const FitOptions holds = MakeFitOptions({{"preset", "tail"}, {"stance", "threshold"}}).value();
+  const FitOptions holds = MakeFitOptions({{"preset", "tail"}, {"stance", "steps"}}).value();
   EXPECT_EQ(holds.model.push, PushUse::kAsRecorded);
   EXPECT_EQ(holds.start, FitStart::kNominal);
-  for (Parameter id : {kMu, kAx, kTailGain, kSupportFront, kStepOnset, kStepRelease, kKpTheta,
+  for (Parameter id : {kTailGain, kSupportFront, kStepOnset, kStepSwing, kKpTheta,
                        kKpPhi, kKdTheta, kKdPhi}) {
     EXPECT_TRUE(holds.table[id].free) << holds.table[id].name;
     EXPECT_TRUE(holds.table[id].prior.has_value()) << holds.table[id].name;
@@ -96,39 +96,18 @@ TEST(FitSetup, StanceBringsWhatGoesWithIt) {
        {std::pair("rod", "linear"), std::pair("start", "equation_error"),
         std::pair("push", "added"),  // a net push holds the feet's reaction already
         std::pair("cart_derivative", "backward"), std::pair("self_force", "lstm:64")}) {
-    EXPECT_TRUE(Contains(Complaint({{"preset", "tail"}, {"stance", "threshold"}, {flag, value}}),
+    EXPECT_TRUE(Contains(Complaint({{"preset", "tail"}, {"stance", "steps"}, {flag, value}}),
                          "is for feet that slide"))
         << flag;
   }
   EXPECT_TRUE(Contains(Complaint({{"stance", "walk"}}), "--stance is 'walk'"));
 }
 
-TEST(PrepareFit, TakesTheSupportFromTheFeet) {
+TEST(PrepareFit, StepsNeedFrames) {
   std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
-  FitOptions options =
-      MakeFitOptions({{"preset", "tail"}, {"stance", "threshold"}, {"support", "feet"}}).value();
-  for (PendulumRecording& recording : recordings) {
-    recording.foot_support.assign(1, FootSupport{0.12, std::nullopt, std::nullopt});
-  }
-  FitOptions without = options;
-  const MaybeError no_toes = PrepareFit(recordings, &without);
-  ASSERT_TRUE(no_toes.has_value());
-  EXPECT_TRUE(Contains(no_toes->ToString(), "no toes are recorded"));
-  // From where the capture point rests.
-  for (size_t i = 0; i < recordings.size(); ++i) {
-    const double rest = recordings[i].hip[0][0].x() - recordings[i].states[0][0].q[0];
-    recordings[i].foot_support[0].forward = rest + 0.16 + 0.01 * static_cast<double>(i);
-  }
-  ASSERT_FALSE(PrepareFit(recordings, &options).has_value());
-  EXPECT_NEAR(options.table[kSupportFront].nominal, 0.185, 0.006);
-  EXPECT_EQ(options.table[kSupportSide].nominal, 0.12);
-  EXPECT_EQ(options.table[kAnkleReach].nominal, 1.0);
-  EXPECT_FALSE(options.table[kSupportFront].free);
+  FitOptions options = MakeFitOptions({{"preset", "tail"}, {"stance", "steps"}}).value();
   recordings[2].scene.dt = 0.05;
   EXPECT_TRUE(Contains(PrepareFit(recordings, &options)->ToString(), "20 frames per second"));
-  recordings[2].scene.dt = recordings[0].scene.dt;
-  FitOptions slide = MakeFitOptions({{"preset", "tail"}, {"support", "feet"}}).value();
-  EXPECT_TRUE(Contains(PrepareFit(recordings, &slide)->ToString(), "--stance=threshold"));
 }
 
 TEST(FitSetup, PoolingSigmaIsANumberOrEstimated) {

@@ -169,7 +169,7 @@ TEST(Likelihoods, ModelsWithAMemoryAreRefused) {
     ASSERT_TRUE(error) << says;
     EXPECT_NE(error->ToString().find(says), std::string::npos) << error->ToString();
   };
-  refused({{"stance", "threshold"}}, "--stance=threshold");
+  refused({{"stance", "steps"}}, "--stance=steps");
   refused({{"self_force", "mlp:4"}}, "a network");
   recordings[1].initial_velocity = InitialVelocity::kFree;
   refused({}, recordings[1].id);

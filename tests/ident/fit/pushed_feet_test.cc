@@ -31,7 +31,7 @@ TEST(FitSetup, FeetTellTheStance) {
     return made.value().model.stance;
   };
   EXPECT_EQ(stance(0, {}), Stance::kFixed);
-  EXPECT_EQ(stance(3, {}), Stance::kThreshold);
+  EXPECT_EQ(stance(3, {}), Stance::kSteps);
   EXPECT_EQ(StanceOf(FeetOf(WhereMoved(3, false))), Stance::kSlide) << "who slides a little";
   EXPECT_EQ(stance(5, {}), Stance::kSlide);
   EXPECT_EQ(stance(6, {}), Stance::kSlide);
@@ -61,8 +61,8 @@ TEST(PushedFeet, InWords) {
   const PushedFeet stand = FeetOf(WhereMoved(0)), some = FeetOf(WhereMoved(2));
   EXPECT_EQ(FeetText(stand, Stance::kFixed),
             "feet hold (--stance=fixed; they moved in 0 of 6 pushes)");
-  EXPECT_EQ(FeetText(some, Stance::kThreshold),
-            "feet hold, then step (--stance=threshold; they moved in 2 of 6 pushes)");
+  EXPECT_EQ(FeetText(some, Stance::kSteps),
+            "feet hold, then step (--stance=steps; they moved in 2 of 6 pushes)");
   EXPECT_EQ(FeetText(PushedFeet(), Stance::kSlide), "");
   EXPECT_EQ(FeetWarning(stand, Stance::kFixed), "");
   EXPECT_TRUE(Contains(FeetWarning(stand, Stance::kSlide), "--stance=fixed"));

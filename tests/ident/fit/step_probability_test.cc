@@ -84,11 +84,45 @@ TEST(StepProbability, MarginIsTheDistanceBeyondTheSupport) {
   p[kSupportFront] = 0.1, p[kSupportBack] = 0.06, p[kSupportSide] = 0.12;
   ScenePerson person;
   RolloutPath<double> path(3, 1);
-  EXPECT_NEAR(StepMargin(options, p, person, path, 0), -0.1, 1e-6);
+  Scene scene;
+  scene.people = {person};
+  const auto margin = [&] { return StepMargins(options, {p}, scene, path, nullptr)[0]; };
+  EXPECT_NEAR(margin(), -0.1, 1e-6);
   path.At(1, 0).q[2] = std::asin(0.15 / kReferenceRod);
-  EXPECT_NEAR(StepMargin(options, p, person, path, 0), 0.05, 1e-6);
+  EXPECT_NEAR(margin(), 0.05, 1e-6);
   path.At(1, 0).q[2] = std::asin(-0.15 / kReferenceRod);
-  EXPECT_NEAR(StepMargin(options, p, person, path, 0), 0.1 * (0.15 / 0.06 - 1.0), 1e-6);
+  EXPECT_NEAR(margin(), 0.1 * (0.15 / 0.06 - 1.0), 1e-6);
+}
+
+// Of feet that step: with a support that is larger by the margin a person just steps no more.
+TEST(StepProbability, MarginOfFeetThatStepIsTheirOwn) {
+  ModelOptions options;
+  options.stance = Stance::kSteps;
+  double before = -1.0;
+  for (double velocity : {0.1, 0.2, 0.3, 0.4}) {
+    Scene scene = SettlingScene(75.0, 75.0 * velocity);
+    RolloutPath<double> path;
+    const RollWith roll = [&](const std::vector<ParameterSet<double>>& p,
+                              RolloutPath<double>* rolled) {
+      return Rollout<double>(scene, options, p, InitialVelocities(scene), 180, rolled);
+    };
+    const auto steps = [&](const ParameterSet<double>& p) {
+      EXPECT_TRUE(roll({p}, &path).ok);
+      return path.At(path.num_frames() - 1, 0).feet.landed != 0;
+    };
+    ParameterSet<double> p = PublishedStanceParameters();
+    const double margin = StepMargins(options, {p}, scene, path, roll)[0];
+    EXPECT_GT(margin, before);
+    before = margin;
+    EXPECT_EQ(margin > 0.0, steps(p)) << velocity;
+    const double factor = 1.0 + margin / p[kSupportFront];
+    if (factor < 0.26 || factor > 3.9) continue;
+    for (double wider : {0.98, 1.02}) {
+      ParameterSet<double> other = p;
+      for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) other[id] *= factor * wider;
+      EXPECT_EQ(steps(other), wider < 1.0) << velocity;
+    }
+  }
 }
 
 }  // namespace

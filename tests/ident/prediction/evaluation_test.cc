@@ -75,9 +75,9 @@ TEST(Evaluation, BaselinesAfterFirstFramesByHand) {
 
 // The model's own motion goes on from any of its frames as it did.
 TEST(Evaluation, ReanchoredMotionIsTheMotion) {
-  for (const Stance stance : {Stance::kSlide, Stance::kThreshold}) {
+  for (const Stance stance : {Stance::kSlide, Stance::kSteps}) {
     SyntheticOptions study = TinyStudy();
-    if (stance == Stance::kThreshold) study.parameters = PublishedStanceParameters();
+    if (stance == Stance::kSteps) study.parameters = PublishedStanceParameters();
     study.model.stance = stance;
     IdentifiedModel model;
     model.options = study.model;

@@ -1,4 +1,4 @@
-// Stepping phases of a path, how they are told, and what lift-offs err.
+// Steps of a path, how they are told, and what lift-offs err.
 #include "ident/prediction/predicted_steps.h"
 
 #include <gtest/gtest.h>
@@ -6,14 +6,19 @@
 namespace pushid {
 namespace {
 
-// One person, 0.01 m forwards a frame.
-Prediction PathWith(const std::vector<double>& step_states) {
+// One person; which foot is in the air, frame by frame: the left one (1), the right one (-1) or
+// none. It goes 0.1 m forwards a frame, from that in which it leaves to that in which it lands.
+Prediction PathWith(const std::vector<int>& swings) {
   Prediction prediction;
   prediction.feet_step = true;
-  prediction.path = RolloutPath<double>(static_cast<int>(step_states.size()), 1);
+  prediction.path = RolloutPath<double>(static_cast<int>(swings.size()), 1);
   for (int t = 0; t < prediction.path.num_frames(); ++t) {
-    prediction.path.At(t, 0).q[0] = 0.01 * t;
-    prediction.path.At(t, 0).step = step_states[t];
+    PendulumState<double>& state = prediction.path.At(t, 0);
+    const int moves = t == 0 ? 0 : swings[t] != 0 ? swings[t] : swings[t - 1];
+    if (t > 0) state = prediction.path.At(t - 1, 0);
+    state.q[0] += moves != 0 ? 0.05 : 0.0;
+    state.feet.apart[0] += 0.1 * moves;
+    state.feet.swings = static_cast<signed char>(swings[t]);
   }
   return prediction;
 }
@@ -25,45 +30,40 @@ std::string Text(const Prediction& prediction) {
   return PredictedStepsText(recording, prediction);
 }
 
-TEST(PredictedSteps, APhaseFromLiftOffToLanding) {
-  Prediction prediction = PathWith({0.0, 0.3, 0.9, 0.95, 0.8, 0.3, 0.1});
-  const std::vector<SteppingPhase> phases = SteppingPhases(prediction.path, 0);
-  ASSERT_EQ(phases.size(), 1u);
-  EXPECT_EQ(phases[0].lift_off, 2);
-  EXPECT_EQ(phases[0].landing, 5);
-  EXPECT_TRUE(phases[0].finished);
-  EXPECT_NEAR(phases[0].travel.x(), 0.03, 1e-15);
+TEST(PredictedSteps, AStepFromLiftOffToLanding) {
+  Prediction prediction = PathWith({0, 0, 1, 1, 1, 0, 0});
+  const std::vector<FootStep> steps = PredictedSteps(prediction.path, 0);
+  ASSERT_EQ(steps.size(), 1u);
+  EXPECT_EQ(steps[0].foot, Foot::kLeft);
+  EXPECT_EQ(steps[0].lift_off, 2);
+  EXPECT_EQ(steps[0].landing, 5);
+  EXPECT_TRUE(steps[0].finished);
+  EXPECT_NEAR(steps[0].travel.x(), 0.4, 1e-12);
+  EXPECT_NEAR(steps[0].travel.y(), 0.0, 1e-12);
+  const PendulumState<double>& end = prediction.path.At(6, 0);
+  EXPECT_NEAR(PlaceOf(Foot::kLeft, end).x(), 0.4, 1e-12);
+  EXPECT_NEAR(PlaceOf(Foot::kRight, end).x(), 0.0, 1e-12);
   EXPECT_EQ(StandingFrames(prediction, 0),
             std::vector<bool>({true, true, false, false, false, true, true}));
-  EXPECT_EQ(Text(prediction), "S01: steps from 0.2 s to 0.5 s, 0.03 m forwards\n");
+  EXPECT_EQ(Text(prediction), "S01: steps left 0.20-0.50 s 0.40 m forwards\n");
   prediction.steps = {{0.1, 0.934, 0.01}};
-  EXPECT_EQ(Text(prediction), "S01: P(step) 0.93, steps from 0.2 s to 0.5 s, 0.03 m forwards\n");
+  EXPECT_EQ(Text(prediction), "S01: P(step) 0.93, steps left 0.20-0.50 s 0.40 m forwards\n");
   prediction.feet_step = false;  // a model that only knows the probability
   EXPECT_EQ(Text(prediction), "S01: P(step) 0.93\n");
   EXPECT_TRUE(StandingFrames(prediction, 0).empty());
 }
 
 TEST(PredictedSteps, TheEdgesOfAPath) {
-  EXPECT_TRUE(SteppingPhases(RolloutPath<double>(), 0).empty());
-  EXPECT_TRUE(SteppingPhases(PathWith({0.0, 0.85, 0.85}).path, 0).empty());
-  EXPECT_EQ(Text(PathWith({0.0, 0.0})), "S01: stands\n");
-  const Prediction cut_off = PathWith({0.0, 0.87, 0.9});
-  const std::vector<SteppingPhase> phases = SteppingPhases(cut_off.path, 0);
-  ASSERT_EQ(phases.size(), 1u);
-  EXPECT_FALSE(phases[0].finished);
-  EXPECT_EQ(phases[0].landing, 3);
-  EXPECT_NEAR(phases[0].travel.x(), 0.01, 1e-15);
-  EXPECT_EQ(StandingFrames(cut_off, 0), std::vector<bool>({true, false, false}));
-  EXPECT_EQ(Text(cut_off), "S01: steps from 0.1 s on, 0.01 m forwards by the end\n");
-}
-
-TEST(PredictedSteps, AFlickerIsOnePhaseAndARestPartsTwo) {
-  EXPECT_EQ(SteppingPhases(PathWith({0.86, 0.84, 0.86, 0.8, 0.9, 0.0}).path, 0).size(), 1u);
-  const Prediction twice = PathWith({0.9, 0.2, 0.9, 0.95});
-  EXPECT_EQ(SteppingPhases(twice.path, 0).size(), 2u);
-  EXPECT_EQ(Text(twice),
-            "S01: steps from 0 s to 0.1 s, 0.01 m forwards; from 0.2 s on, 0.01 m forwards by the "
-            "end\n");
+  EXPECT_TRUE(PredictedSteps(RolloutPath<double>(), 0).empty());
+  EXPECT_EQ(Text(PathWith({0, 0})), "S01: stands\n");
+  const Prediction cut_off = PathWith({0, 0, -1, -1});
+  const std::vector<FootStep> steps = PredictedSteps(cut_off.path, 0);
+  ASSERT_EQ(steps.size(), 1u);
+  EXPECT_FALSE(steps[0].finished);
+  EXPECT_EQ(steps[0].landing, 4);
+  EXPECT_EQ(steps[0].foot, Foot::kRight);
+  EXPECT_EQ(StandingFrames(cut_off, 0), std::vector<bool>({true, true, false, false}));
+  EXPECT_EQ(PredictedSteps(PathWith({0, 1, 1, 0, -1, -1, 0}).path, 0).size(), 2u);
 }
 
 TEST(PredictedSteps, LiftOffErrorsOfThoseWhoStepInBoth) {

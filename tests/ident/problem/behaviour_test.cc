@@ -212,10 +212,10 @@ TEST(Behaviour, GrowthIsThatOfTheLinearizedRollout) {
     ModelOptions options = Anisotropic();
     options.posture = trial % 2 == 0 ? Posture::kInitial : Posture::kUpright;
     options.gain_scaling = static_cast<GainScaling>(trial % 3);
-    if (trial % 4 == 3) options.stance = Stance::kThreshold;
+    if (trial % 4 == 3) options.stance = Stance::kSteps;
     ParameterSet<double> p = FirmParameters();
-    p[kSupportFront] = p[kSupportBack] = p[kSupportSide] = 0.1, p[kAnkleReach] = 1.5;
-    p[kStepGain] = p[kStaticFriction] = 1.0, p[kStepOnset] = p[kStepRelease] = 0.2;
+    p[kSupportFront] = p[kSupportBack] = p[kSupportSide] = 0.1, p[kFootFront] = 0.2;
+    p[kStepGain] = 1.0, p[kStepOnset] = p[kStepSwing] = 0.3;
     p[kMu] = random.Uniform(-40, 60), p[kMuY] = random.Uniform(20, 60);
     for (Parameter id : {kAx, kAy}) p[id] = random.Uniform(-15, 2);
     for (Parameter id : {kBx, kBy, kTx, kTy, kKdX, kKdY}) p[id] = random.Uniform(-1, 1);

@@ -276,7 +276,7 @@ TEST(AdjointGradient, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(complaint(options, map), "");
   EXPECT_NE(complaint({}, map).find("needs a network"), std::string::npos);
   ModelOptions standing = options;
-  standing.stance = Stance::kThreshold;
+  standing.stance = Stance::kSteps;
   EXPECT_NE(complaint(standing, map).find("feet that slide"), std::string::npos);
   EXPECT_NE(complaint(options, EveryParameterMap({kMu})).find("deviations"), std::string::npos);
   made[0].initial_velocity = InitialVelocity::kFree;

@@ -39,7 +39,7 @@ PendulumRecording OnThePlate(const ModelOptions& options, double lean, double pu
 
 std::vector<ModelOptions> LaboratoryModels() {
   std::vector<ModelOptions> all;
-  for (Stance stance : {Stance::kSlide, Stance::kThreshold, Stance::kFixed})
+  for (Stance stance : {Stance::kSlide, Stance::kSteps, Stance::kFixed})
     for (Delay delay : {Delay::kNone, Delay::kOne, Delay::kAnkleAndStep})
       for (PushUse use : {PushUse::kAsRecorded, PushUse::kAdded})
         for (Posture posture : {Posture::kUpright, Posture::kInitial}) {

@@ -187,7 +187,7 @@ TEST(LaneGroup, HasNoPlaceForWhatItsLoopsDoNotKnow) {
   const Crowd crowd(kRegimes[0]);
   RolloutProblem problem = *crowd.problems[0];
   EXPECT_TRUE(HasLanes(problem));
-  problem.options.stance = Stance::kThreshold;
+  problem.options.stance = Stance::kSteps;
   EXPECT_FALSE(HasLanes(problem));
   problem = *crowd.problems[0];
   problem.sigmas = kLdpSigmas;

@@ -56,7 +56,7 @@ TEST_P(RolloutTwins, ForwardSensitivitiesEqualJetsForEveryModel) {
                      regime.deviation, regime.velocity, &random);
     ASSERT_EQ(blocks.size(), 4u);
     // Ankles that hold against LDP's repulsion: torques of 100 N m nearly cancel.
-    const bool cancels = options.stance == Stance::kThreshold && options.interaction.ldp_published;
+    const bool cancels = options.stance == Stance::kSteps && options.interaction.ldp_published;
     ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), blocks,
                           {1e-10, std::max(regime.absolute, cancels ? 3e-17 : 0.0), 1e-12});
     if (HasFailure()) return;  // one model's report is enough

@@ -108,7 +108,7 @@ TEST_P(Sensitivities, EqualJetsForEveryModel) {
           // Ankles hold by torques that nearly cancel, of 100 N m against LDP's repulsion: what
           // rounding leaves of them.
           const double cancelled = options.interaction.ldp_published ? 3e-17 : 1e-18;
-          const double rounding = options.stance == Stance::kThreshold ? cancelled : 0.0;
+          const double rounding = options.stance == Stance::kSteps ? cancelled : 0.0;
           const double allowed =
               1e-10 * expected.col(column).cwiseAbs().maxCoeff() + regime.absolute + rounding;
           for (int row = 0; row < 8; ++row) {
