@@ -64,7 +64,7 @@ struct PendulumState {
   Vector4<T> q = Vector4<T>::Zero();
   Vector4<T> qd = Vector4<T>::Zero();
   T rod = T(0.0);  // l - l_0, m: how far a rod that moves has moved
-  FeetState<T> feet;
+  FeetState<T> feet = {};
 };
 
 // The body once its rod has moved. The cart rises as the rod shortens, h = h_0 + k (l_0 - l) with

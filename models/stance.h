@@ -91,10 +91,13 @@ struct HipOverFeet {
   }
 };
 
+// d above.
 template <typename T>
 Horizontal<T> HalfApart(const FeetState<T>& feet) {
-  using std::abs;
-  return {0.5 * abs(feet.apart[0]), 0.5 * abs(feet.apart[1])};
+  const auto half = [](const T& apart) -> T {
+    return (RealPart(apart) < 0.0 ? -0.5 : 0.5) * apart;
+  };
+  return {half(feet.apart[0]), half(feet.apart[1])};
 }
 
 // How far xi, from the ankles along x and from where it rests along y, has left the support of feet

@@ -151,7 +151,6 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     result.plates.push_back(PlateFrames(recording, person));
     result.masses.push_back(MassesOf(person));
     result.steps.push_back(FindSteps(person, recording.fps));
-    result.foot_support.push_back(SupportOf(person));
     std::vector<double> weight = person.weight;
     for (size_t t = 1; t < weight.size(); ++t) {
       weight[t] = std::min(person.weight[t - 1], person.weight[t]);

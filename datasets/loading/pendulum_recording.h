@@ -41,7 +41,6 @@ struct PendulumRecording {
   std::vector<MassDistribution> masses;  // one per person, by the segments; empty: not known
   // One per person, from the feet; empty where a recording was not made from one.
   std::vector<PersonSteps> steps;
-  std::vector<FootSupport> foot_support;
   StatedErrors stated_errors;
   std::string content_hash;  // of the files and of what the manifest makes of them
 

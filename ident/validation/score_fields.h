@@ -35,6 +35,8 @@ void Fields(Archive& a, StepScore& s) {
     g("people", s.lift_off.people);
     g("median_error_s", s.lift_off.median);
     g("mean_absolute_error_s", s.lift_off.mean_absolute);
+    g("landed", s.lift_off.landed);
+    g("place_error_m", s.lift_off.place);
   });
 }
 

@@ -130,10 +130,6 @@ TEST_F(LoadPointsTest, ToesAndHeelsWhereThereAreSome) {
   EXPECT_LT((person.left_toe[7] - Eigen::Vector3d(0.2, 0.11, 0.02)).norm(), 1e-5);
   EXPECT_LT((person.right_toe[7] - Eigen::Vector3d(0.19, -0.11, 0.02)).norm(), 1e-5);
   EXPECT_TRUE(person.right_heel.empty());
-  const FootSupport support = SupportOf(person);
-  EXPECT_NEAR(support.forward.value(), 0.195, 1e-5);
-  EXPECT_FALSE(support.back);  // of one heel nothing is known
-  EXPECT_NEAR(support.side, 0.1, 1e-5);
 
   // Lost for two frames it is filled; lost for ten it is not used, and the frames count on.
   for (int t = 5; t < 7; ++t) motion_.positions[6][t] = kHidden;
