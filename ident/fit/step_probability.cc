@@ -47,10 +47,6 @@ Eigen::Vector2d MostLikelyCoefficients(const std::vector<StepOutcome>& outcomes,
   return coefficients;
 }
 
-}  // namespace
-
-namespace {
-
 // Of a support that goes with the cart.
 double MarginOfPath(const ModelOptions& options, const ParameterSet<double>& parameters,
                     const ScenePerson& person, const RolloutPath<double>& path, int index) {
