@@ -117,7 +117,8 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
 
 std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model) {
   const bool slides = Acts(kMu, model);
-  const double m = (slides ? 1.0 - kCartShare : 1.0) * kReferenceMass, l = kReferenceRod;
+  const bool at_hip = model.stance != Stance::kFixed;  // where the mass is
+  const double m = (at_hip ? 1.0 - kCartShare : 1.0) * kReferenceMass, l = kReferenceRod;
   const double stiffness = 1.0 / (m * kGravity * l), damping = 1.0 / (m * l * l);
   const double by_mass = 1.0 / kReferenceMass;
   std::vector<CombinationSpec> combinations;

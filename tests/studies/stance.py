@@ -1,10 +1,11 @@
-"""Feet that hold and step (--stance=threshold) against feet that slide.
+"""Feet that hold and step (--stance=steps) against feet that slide.
 
 single    errors on held-out recordings of single people, every scheme (models/README.md); 8 minutes
 groups    the same of groups, 5 folds, with who moves for nothing (models/README.md); 15 minutes
-sways     80 kg pushed for 0.7 s: where the person ends, and how probable a step is (models/README.md); seconds
+sways     75 kg pushed for 0.7 s: who steps, when, where the person ends, P(step) (models/README.md); seconds
 values    what the fit of single people says of the feet (models/README.md); seconds
-steps     who steps: AUC, Brier score, calibration, held out (ident/prediction/README.md); with single and groups
+steps     who steps: AUC, Brier score, calibration, lift-off and first place, held out (ident/prediction/README.md);
+          with single and groups
 
 Times are those of one core.
 """
@@ -13,16 +14,16 @@ import re
 import studies
 from studies import number, with_error
 
-STANCE = "--stance=threshold"
+STANCE = "--stance=steps"
 SCHEMES = [("5 x 4 folds", "stratified", ("--repeats=5",)), ("a person left out", "subject", ()),
            ("strong pushes left out", "strong", ())]
-IMPULSES = [5, 10, 15, 20, 25, 30, 40, 60]
+VELOCITIES = [0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8]  # m/s: impulse over mass
 
 
 def compared(setting, scheme, *arguments):
     """Cross-validations by name, and their paired differences from the first."""
     out = studies.on_recordings("pushid-crossvalidate", setting, f"--scheme={scheme}", "--yardsticks=false",
-                                *arguments, f"--compare=threshold: {STANCE}").json
+                                *arguments, f"--compare=steps: {STANCE}").json
     scores = {p["name"]: p for p in out["predictors"][1:]}
     return {"slide": out["predictors"][0], **scores}, {d["to"]: d for d in out["paired_differences"]}
 
@@ -72,19 +73,23 @@ def groups():
 def sways():
     model = studies.fit("single", STANCE).path
     rows = []
-    for impulse in IMPULSES:
-        out = studies.run("pushid-formation", f"--model={model}", "--formation=line", "--people=1",
-                          f"--push={impulse}", "--push_duration=0.7", "--duration=6", out=None).text
+    for velocity in VELOCITIES:
+        out = studies.run("pushid-formation", f"--model={model}", "--formation=line", "--people=1", "--mass=75",
+                          f"--push={75 * velocity}", "--push_duration=0.7", "--duration=8", out=None).text
         lines = out.splitlines()
         row = dict(zip(*(re.split("  +", line.strip()) for line in lines[1:3])))
-        rows.append([impulse, row["displaced m"], row["peak m/s"], row["P(step)"], row["outcome"]])
-    return studies.table(["impulse of 0.7 s on 80 kg, N s", "hip after 6 s, m", "peak speed, m/s", "P(step)", "outcome"], rows)
+        told = next(line for line in lines if line.startswith("p00: "))
+        steps = told.split("steps ")[1].split("; ") if "steps " in told else []
+        rows.append([velocity, row["displaced m"], row["peak m/s"], row["P(step)"], len(steps),
+                     steps[0] if steps else "stands"])
+    return studies.table(["velocity given, m/s", "hip after 8 s, m", "peak speed, m/s", "P(step)", "steps", "the first"],
+                         rows)
 
 
 def values():
     shared = {p["name"]: p for p in studies.fit("single", STANCE).json["parameters"]}
     rows = []
-    for name in ("mu", "a_x", "support_front", "step_onset", "step_release"):
+    for name in ("Kp_theta", "Kd_theta", "support_front", "foot_front", "step_gain", "step_onset", "step_swing"):
         p = shared[name]
         rows.append([f"`{name}`", with_error(p["value"], p["standard_error"]), p["unit"],
                      f"{100 * p['shares']['data']:.0f}", p["status"]])
@@ -104,6 +109,13 @@ def pooled(*predictors):
     return [f"{len(stepped)} of {len(tracks)}", number(auc), number(brier), number(worst, 2)]
 
 
+def timing_cells(lift_off):
+    if lift_off is None:
+        return [None, None]
+    return [f"{number(lift_off['mean_absolute_error_s'], 2)} ({lift_off['people']} people)",
+            f"{number(lift_off['place_error_m'], 2)} ({lift_off['landed']})"]
+
+
 def steps():
     single_people = compared("single", *SCHEMES[0][1:2], *SCHEMES[0][2])[0]
     tried = [("single people, 5 x 4 folds", single_people),
@@ -116,10 +128,11 @@ def steps():
             worst = max(abs(f["predicted"] - f["observed"]) for f in s["fifths"])
             rows.append([title, f"`{name}`", f"{s['stepped']} of {s['tracks']}",
                          with_error(s["auc"], s["auc_error"]), with_error(s["brier"], s["brier_error"]),
-                         number(worst, 2)])
+                         number(worst, 2), *timing_cells(s.get("lift_off"))])
     for name in single_people:
-        rows.append(["both together", f"`{name}`", *pooled(single_people[name], groups_compared()[0][name])])
-    return studies.table(["held out", "feet", "step", "AUC", "Brier score", "worst fifth: P(step) - share"], rows)
+        rows.append(["both together", f"`{name}`", *pooled(single_people[name], groups_compared()[0][name]), None, None])
+    return studies.table(["held out", "feet", "step", "AUC", "Brier score", "worst fifth: P(step) - share",
+                          "lift-off, mean error, s", "first place, mean error, m"], rows)
 
 
 if __name__ == "__main__":
