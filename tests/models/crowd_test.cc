@@ -60,7 +60,8 @@ TEST_P(CrowdOf, IsTheRolloutForAnyNumberOfThreads) {
     for (int n = 0; n < scene.num_people(); ++n) {
       ASSERT_EQ(crowd.states()[n].q, path.At(kFrames - 1, n).q) << n << ", " << threads;
       ASSERT_EQ(crowd.states()[n].qd, path.At(kFrames - 1, n).qd) << n << ", " << threads;
-      ASSERT_EQ(crowd.states()[n].step, path.At(kFrames - 1, n).step) << n << ", " << threads;
+      ASSERT_EQ(crowd.states()[n].feet.clock, path.At(kFrames - 1, n).feet.clock)
+          << n << ", " << threads;
     }
   }
 }
