@@ -23,9 +23,10 @@
 // landing the support is new, and a = t_on - 0.03 s if xi' is beyond that too. Legs have no mass:
 // a foot in the air moves the cart by half its own way, and the hip does not feel it.
 //
-// What happens within a step of the rollout, lifting off and landing, happens at its moment: c is
-// the mean over the step, and the clock goes on from there. So paths are continuous in all
-// parameters, and have derivatives but for which foot steps (tests/residuals/sensitivities).
+// Lifting off and landing happen at their moments within a step of the rollout, and the clock goes
+// on from there; c is the mean over the step in which a foot leaves. In that in which it lands c is
+// still that of one foot: there paths jump, by some 0.02 m, as a parameter moves the landing to
+// another step. Paths have derivatives between these jumps, but for which foot steps.
 //
 // While a `net` push lasts the ground does nothing, since its rows hold the feet's reaction. From a
 // `net_without_friction` push LDP's friction of 100 N s/m was taken out, and it gets that back.
