@@ -140,14 +140,14 @@ struct StanceForces {
 template <typename T>
 class StanceStep {
  public:
-  // ankle, foot: the hip as the ankles feel it, and as the feet do.
+  // ankle: the hip as the ankles feel it; xi: as the feet do.
   StanceStep(const SelfForce& self, const StanceParameters<T>& p, const FeetState<T>& feet,
-             const HipOverFeet<T>& ankle, const HipOverFeet<T>& foot)
+             const HipOverFeet<T>& ankle, const Horizontal<T>& xi)
       : self_(self),
         p_(p),
         feet_(feet),
         ankle_(ankle),
-        xi_(foot.Capture(self)),
+        xi_(xi),
         d_(HalfApart(feet)),
         rest_(self.rest_offset[0], self.rest_offset[1]) {}
 
@@ -174,7 +174,8 @@ class StanceStep {
     const T faster = 1.0 + 0.5 * (over + sqrt(over * over + kRushEdge * kRushEdge));
     T otherwise = feet_.clock * (-1.0 / kForgets);
     if (feet_.landed != 0) {
-      const T stride = d_[0] * d_[0] / (d_[0] * d_[0] + kShortStride * kShortStride);
+      const T wide = SpreadSideways(), far = d_[0] * d_[0] + wide * wide;
+      const T stride = far / (far + kShortStride * kShortStride);
       otherwise = stride * p_.onset * (1.0 / kBringsUp) + (1.0 - stride) * otherwise;
     }
     return beyond * faster + (1.0 - beyond) * otherwise;
@@ -199,7 +200,9 @@ class StanceStep {
     lifted.clock = late - dt;  // so that it is `late` after this step
     const Horizontal<T> standing = pressure_;
     Swing(lifted);
-    pressure_ = standing + (late * (1.0 / dt)) * (pressure_ - standing);
+    if (RealPart(late) < dt) {
+      pressure_ = standing + (late * (1.0 / dt)) * (pressure_ - standing);
+    }
   }
 
   // Of xi from the middle of the support, by its extent: a unit vector.
@@ -211,8 +214,12 @@ class StanceStep {
     return {x / norm, y / norm};
   }
 
+  // How far half the feet are farther apart along y than they were.
+  T SpreadSideways() const { return d_[1] - 0.5 * std::abs(self_.feet_apart[1]); }
+
   signed char LiftedFoot() const {
-    if (feet_.landed != 0 && RealPart(d_[0]) > kAbreast) return -feet_.landed;
+    const double far = std::hypot(RealPart(d_[0]), RealPart(SpreadSideways()));
+    if (feet_.landed != 0 && far > kAbreast) return -feet_.landed;
     const double ahead = RealPart(feet_.apart[0]) * RealPart(Direction()[0]);  // the left foot
     if (std::abs(ahead) > kStaggered) return ahead > 0.0 ? -1 : 1;
     return RealPart(xi_[1]) >= RealPart(rest_[1]) ? 1 : -1;
@@ -228,8 +235,10 @@ class StanceStep {
     return (self_.scale.stiffness / moment) * p_.Kp[i] * off +
            (self_.scale.damping / moment) * p_.Kd[i] * ankle_.velocity[i];
   }
-  T Sideways() const {
-    return rest_[1] + SmoothLimit<T>(Pressure(1, T(rest_[1])), d_[1] + kFootSide);
+  // foot: that which will stay, 1 or -1; how_far: of the way towards where it will be one of two.
+  T Sideways(double foot, const T& how_far) const {
+    const T from = how_far * (0.5 * foot) * (feet_.apart[1] - self_.feet_apart[1]) + rest_[1];
+    return rest_[1] + SmoothLimit<T>(from - rest_[1] + Pressure(1, from), d_[1] + kFootSide);
   }
   T Forwards(const T& foot, const T& from, const T& back, const T& front) const {
     const T start = foot + rest_[0], wanted = from - start + Pressure(0, from);
@@ -237,11 +246,10 @@ class StanceStep {
     return start + SmoothLimit<T>(wanted, RealPart(most) > kLeastReach ? most : T(kLeastReach));
   }
   Horizontal<T> StandingPressure() const {
-    T from = T(rest_[0]);
-    if (feet_.landed != 0) {
-      from += SmoothRise(T(feet_.clock / p_.onset)) * (0.5 * feet_.landed) * feet_.apart[0];
-    }
-    return {Forwards(T(0.0), from, d_[0] + kFootBack, d_[0] + p_.foot_front), Sideways()};
+    const double foot = feet_.landed;
+    const T rise = foot != 0.0 ? SmoothRise(T(feet_.clock / p_.onset)) : T(0.0);
+    const T from = rise * (0.5 * foot) * feet_.apart[0] + rest_[0];
+    return {Forwards(T(0.0), from, d_[0] + kFootBack, d_[0] + p_.foot_front), Sideways(foot, rise)};
   }
 
   // On with the foot in the air, which was as in `feet` when the step began; its clock may be
@@ -251,7 +259,8 @@ class StanceStep {
     const double dt = self_.dt, omega = self_.capture_rate;
     const T& total = feet.swing_time;
     const Horizontal<T> own = (0.5 * feet.swings) * feet.apart, stands = -own;
-    pressure_ = {Forwards(stands[0], T(stands[0] + rest_[0]), T(kFootBack), p_.front), Sideways()};
+    pressure_ = {Forwards(stands[0], T(stands[0] + rest_[0]), T(kFootBack), p_.front),
+                 Sideways(-feet.swings, T(feet_.landed != 0 ? 1.0 : 0.0))};
     const T left = total - feet.clock, after = feet.clock + dt;
     const bool lands = RealPart(after) >= RealPart(total);
     const T growth = exp(omega * (RealPart(left) > 0.0 ? left : T(0.0)));
@@ -273,27 +282,33 @@ class StanceStep {
     out_.next = feet;
     out_.next.apart = feet.apart + double(feet.swings) * gone;
     out_.next.clock = after;
-    if (lands) Land(landing - 0.5 * gone, T(after - total));
+    if (lands) Land(gone, landing, T(after - total));
   }
 
-  // xi: as it will be then, from where the ankles will be.
-  void Land(const Horizontal<T>& xi, const T& since) {
+  // gone: by the foot in this step; landing: xi then, seen from where the ankles were; since: s.
+  void Land(const Horizontal<T>& gone, const Horizontal<T>& landing, const T& since) {
     using std::exp;
     FeetState<T>& next = out_.next;
     next.landed = next.swings;
     next.swings = 0;
-    const T d = HalfApart(next)[0];
-    const T ratio = RealPart(xi[0]) < 0.0 ? T(-xi[0] / (p_.back + d)) : T(xi[0] / (p_.front + d));
-    const T beyond = 1.0 / (1.0 + exp((1.0 - ratio) * (1.0 / kSupportEdge)));
+    Horizontal<T> xi = landing - 0.5 * gone;
+    xi[1] -= rest_[1];
+    const T over = SupportRatio(p_, xi, HalfApart(next)) - 1.0;
+    const T beyond = 1.0 / (1.0 + exp(over * (-1.0 / kSupportEdge)));
     const T prepared = p_.onset - kAgain;
-    next.clock = (RealPart(prepared) > 0.0 ? prepared : T(0.0)) * beyond + since;
+    next.clock = (RealPart(prepared) > 0.0 ? prepared : T(0.0)) * beyond;
+    HipOverFeet<T> hip = ankle_;
+    hip.place -= 0.5 * gone;
+    const StanceStep then(self_, p_, next, hip, xi_ - 0.5 * gone);
+    pressure_ += (since * (1.0 / self_.dt)) * (then.StandingPressure() + 0.5 * gone - pressure_);
+    next.clock += since * then.ClockRate();
   }
 
   static constexpr double kRushEdge = 0.2;      // of S
   static constexpr double kForgets = 0.2;       // s, until a step is not prepared any more
   static constexpr double kBringsUp = 1.5;      // s, until the rear foot is brought up
   static constexpr double kAgain = 0.03;        // s, between two steps of who is not caught yet
-  static constexpr double kShortStride = 0.05;  // m
+  static constexpr double kShortStride = 0.02;  // m
   static constexpr double kAbreast =
       0.02;  // m: of half a stride; feet that are no nearer go in turns
   static constexpr double kStaggered = 0.15;  // m: of feet that are, the rear one goes
@@ -301,12 +316,12 @@ class StanceStep {
   static constexpr double kCaptureGain = 1.5;
   static constexpr double kFootBack = 0.05, kFootSide = 0.03, kLeastReach = 0.02;  // m
   static constexpr double kReach = 0.95;                       // of the rod: the longest step
-  static constexpr double kSideShare = 0.5, kSideReach = 0.4;  // m
+  static constexpr double kSideShare = 1.0, kSideReach = 0.4;  // m
 
   const SelfForce& self_;
   const StanceParameters<T>& p_;
   const FeetState<T>& feet_;
-  const HipOverFeet<T>& ankle_;
+  const HipOverFeet<T> ankle_;
   const Horizontal<T> xi_, d_;
   const Eigen::Vector2d rest_;
   Horizontal<T> pressure_;
@@ -319,7 +334,8 @@ StanceForces<T> StanceAt(const SelfForce& self, const StanceParameters<T>& p,
   const auto hip = [&self](const PendulumState<T>& state) {
     return HipOverFeet<T>(self, Angles<T>(state.q), state.qd);
   };
-  return StanceStep<T>(self, p, feet, hip(perceived.ankle), hip(perceived.step)).Run();
+  return StanceStep<T>(self, p, feet, hip(perceived.ankle), hip(perceived.step).Capture(self))
+      .Run();
 }
 
 }  // namespace pushid
