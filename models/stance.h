@@ -7,20 +7,20 @@
 // The centre of pressure c under both feet carries the hip, h'' = omega^2 (h - c):
 //   c = h0 + lim(k (h - h0) + k' v),   k = Kp / (m g l), k' = Kd / (m g l)
 // lim keeps it, smoothly, within the feet: d + f in front, d + 0.05 m behind, d + 0.03 m beside the
-// ankles. Who has stepped takes hold of xi, k = 1.5, k' = 1.5 / omega, about h0 + z d towards the
+// ankles. Who has stepped takes hold of xi, k = 2.5, k' = 2.5 / omega, about h0 + z d towards the
 // foot that landed; z goes from 0 to 1 while the other is prepared. Under one foot, the same about
-// that foot, in front up to b.
+// that foot, in front up to b / 2.
 //
 // A step is prepared while the capture point is beyond the support. With the clock a (s),
 //   rho^2 = (xi_x / (b + d_x))^2 + ((xi_y - h0_y) / (b_side + d_y))^2,   b_back where xi_x < 0
-//   a' = B (1 + S(rho - 1)) + (1 - B) (w t_on / 1.5 s - (1 - w) a / 0.2 s)
+//   a' = B (1 + S(rho - 1)) + (1 - B) (w t_on / 1 s - (1 - w) a / 0.2 s)
 //   B = 1 / (1 + exp((1 - rho) / 0.05)),   S(u) = (u + sqrt(u^2 + 0.04)) / 2,
-// w of a stride: d_x^2 / (d_x^2 + (0.05 m)^2) after a step, 0 before: the rear foot is brought up.
+// w of a stride: e^2 / (e^2 + (0.02 m)^2) after a step, 0 before: the rear foot is brought up.
 // At a = t_on the rear foot (of feet side by side, the one on the side of xi) leaves the ground,
 // for t_s + (how far it is behind) / 4.4 m/s. With xi' where the capture point will be at landing,
 //   place = the standing foot + kappa (xi'_x - h0_x - the standing foot), at most 0.95 l;
 // sideways it keeps its distance, and goes half of what xi' is off the middle of the two. On
-// landing the support is new, and a = t_on - 0.03 s if xi' is beyond that too. Legs have no mass:
+// landing the support is new, and a = t_on - 0.06 s if xi' is beyond that too. Legs have no mass:
 // a foot in the air moves the cart by half its own way, and the hip does not feel it.
 //
 // Lifting off and landing happen at their moments within a step of the rollout, and the clock goes
@@ -259,7 +259,7 @@ class StanceStep {
     const double dt = self_.dt, omega = self_.capture_rate;
     const T& total = feet.swing_time;
     const Horizontal<T> own = (0.5 * feet.swings) * feet.apart, stands = -own;
-    pressure_ = {Forwards(stands[0], T(stands[0] + rest_[0]), T(kFootBack), p_.front),
+    pressure_ = {Forwards(stands[0], T(stands[0] + rest_[0]), T(kFootBack), T(kOneFront * p_.front)),
                  Sideways(-feet.swings, T(feet_.landed != 0 ? 1.0 : 0.0))};
     const T left = total - feet.clock, after = feet.clock + dt;
     const bool lands = RealPart(after) >= RealPart(total);
@@ -304,16 +304,17 @@ class StanceStep {
     next.clock += since * then.ClockRate();
   }
 
+  static constexpr double kOneFront = 0.5;      // of b: how far c goes forwards under one foot
   static constexpr double kRushEdge = 0.2;      // of S
   static constexpr double kForgets = 0.2;       // s, until a step is not prepared any more
-  static constexpr double kBringsUp = 1.5;      // s, until the rear foot is brought up
-  static constexpr double kAgain = 0.03;        // s, between two steps of who is not caught yet
+  static constexpr double kBringsUp = 1.0;      // s, until the rear foot is brought up
+  static constexpr double kAgain = 0.06;        // s, between two steps of who is not caught yet
   static constexpr double kShortStride = 0.02;  // m
   static constexpr double kAbreast =
       0.02;  // m: of half a stride; feet that are no nearer go in turns
   static constexpr double kStaggered = 0.15;  // m: of feet that are, the rear one goes
   static constexpr double kFootSpeed = 4.4;   // m/s
-  static constexpr double kCaptureGain = 1.5;
+  static constexpr double kCaptureGain = 2.5;
   static constexpr double kFootBack = 0.05, kFootSide = 0.03, kLeastReach = 0.02;  // m
   static constexpr double kReach = 0.95;                       // of the rod: the longest step
   static constexpr double kSideShare = 1.0, kSideReach = 0.4;  // m

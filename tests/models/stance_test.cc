@@ -197,7 +197,10 @@ TEST(Stance, LimitIsSmoothAndKept) {
 // A net push holds the feet's reaction: while it lasts nothing is added, and the ground does not.
 TEST(Stance, ANetPushIsTheWholeForce) {
   Scene scene = Pushed(0.4);
-  scene.pushes[0].kind = PushKind::kNet;
+  // So short that who is not held by the ground does not fall.
+  std::vector<Vector4<double>> rows = scene.pushes[0].force;
+  rows.resize(12);
+  scene.pushes[0] = MakeScenePush(0, 0, PushKind::kNet, rows);
   ForceTrace trace;
   PathOf(scene, SteppingParameters(), 1.5, &trace);
   for (int t = 0; t < scene.pushes[0].EndFrame(); ++t) {
