@@ -7,36 +7,38 @@
 // The centre of pressure c under both feet carries the hip, h'' = omega^2 (h - c):
 //   c = h0 + lim(k (h - h0) + k' v),   k = Kp / (m g l), k' = Kd / (m g l)
 // lim keeps it, smoothly, within the feet: d + f in front, d + 0.05 m behind, d + 0.03 m beside the
-// ankles. Who has stepped takes hold of xi, k = 2.5, k' = 2.5 / omega, about h0 + z d towards the
-// foot that landed; z goes from 0 to 1 while the other is prepared. Under one foot, the same about
-// that foot, in front up to b / 2.
+// ankles. Who has stepped takes hold of xi, k = 2.5, k' = 2.5 / omega, about where the middle will
+// be once the other foot stands beside the one that landed, or z of the way there; z goes from 0 to
+// 1 while that step is prepared. Under one foot the same about that foot: in front up to b / 2
+// during the first step, in which people let themselves fall, and up to f after it. Sideways c
+// stays between both feet, the one in the air as well: people shift their weight beforehand.
 //
 // A step is prepared while the capture point is beyond the support. With the clock a (s),
 //   rho^2 = (xi_x / (b + d_x))^2 + ((xi_y - h0_y) / (b_side + d_y))^2,   b_back where xi_x < 0
-//   a' = B (1 + S(rho - 1)) + (1 - B) (w t_on / 1 s - (1 - w) a / 0.2 s)
+//   a' = B (1 + S(rho - 1)) + (1 - B) (w t_on / 0.6 s - (1 - w) a / 0.2 s)
 //   B = 1 / (1 + exp((1 - rho) / 0.05)),   S(u) = (u + sqrt(u^2 + 0.04)) / 2,
-// w of a stride: e^2 / (e^2 + (0.02 m)^2) after a step, 0 before: the rear foot is brought up.
-// At a = t_on the rear foot (of feet side by side, the one on the side of xi) leaves the ground,
-// for t_s + (how far it is behind) / 4.4 m/s. With xi' where the capture point will be at landing,
-//   place = the standing foot + kappa (xi'_x - h0_x - the standing foot), at most 0.95 l;
-// sideways it keeps its distance, and goes half of what xi' is off the middle of the two. On
-// landing the support is new, and a = t_on - 0.06 s if xi' is beyond that too. Legs have no mass:
-// a foot in the air moves the cart by half its own way, and the hip does not feel it.
+// w = e^2 / (e^2 + (0.02 m)^2) after a step, 0 before; e is d less its value at the start, of feet
+// abreast: the rear foot is brought up. At a = t_on the foot that did not land last (at first the
+// rear one; of feet side by side, that on the side of xi) leaves the ground, for t_s + (how far it
+// is behind) / 4.4 m/s. With xi' where the capture point will be at landing,
+//   place = the standing foot + kappa (xi'_x - h0_x - the standing foot), at most 1.2 l;
+// sideways it keeps its distance, and goes as far as xi' is off the middle of the two. On landing
+// the support is new, and a = t_on - 0.06 s if xi' is beyond that too. Legs have no mass: a foot in
+// the air moves the cart by half its own way, and the hip does not feel it.
 //
-// Lifting off and landing happen at their moments within a step of the rollout, and the clock goes
-// on from there; c is the mean over the step in which a foot leaves. In that in which it lands c is
-// still that of one foot: there paths jump, by some 0.02 m, as a parameter moves the landing to
-// another step. Paths have derivatives between these jumps, but for which foot steps.
+// Lifting off and landing happen at their moments within a step of the rollout: the clock goes on
+// from there, and c is the mean over the step. So paths are continuous in the parameters, with
+// derivatives, but for which foot steps and whether it does.
 //
 // While a `net` push lasts the ground does nothing, since its rows hold the feet's reaction. From a
 // `net_without_friction` push LDP's friction of 100 N s/m was taken out, and it gets that back.
 //
 // Sources: capture point and support, Hof, Human Movement Science 2008; capturability, Koolen et
 // al., Int. J. Robotics Research 2012. The clock and the numbers without a name were chosen by how
-// well they predict recordings (tests/studies/stance.py). Rejected: a clock that does not know how
-// far xi is beyond (steps come at 0.2 m/s already), support from the hip's place at rest (hipADE
-// 0.116 against 0.097 m, a person left out), one cart that chases the capture point (who is pushed
-// hard walks on).
+// well they predict recordings of a person left out, and by that who is pushed hard stands again.
+// Rejected: a clock that does not know how far xi is beyond (steps come at 0.2 m/s already),
+// support from the hip's place at rest, c under one foot up to b always or up to b / 2 always (who
+// is pushed hard falls), one cart that chases the capture point (who is pushed hard walks on).
 #pragma once
 
 #include <cmath>
@@ -78,12 +80,13 @@ using Horizontal = Eigen::Matrix<T, 2, 1>;
 // The hip and its velocity, from the ankles; of the rod of frame 0.
 template <typename T>
 struct HipOverFeet {
-  Horizontal<T> place, velocity;
+  Horizontal<T> place, velocity, cart;  // cart: its velocity
 
   HipOverFeet(const SelfForce& self, const Angles<T>& angles, const Vector4<T>& qd) {
     const double l = self.body.rod_length;
     const auto& [s_th, c_th, s_ph, c_ph] = angles;
     place = {l * s_th, -l * c_th * s_ph};
+    cart = {qd[0], qd[1]};
     velocity = {qd[0] + l * c_th * qd[2], qd[1] + l * (s_th * s_ph * qd[2] - c_th * c_ph * qd[3])};
   }
   // xi above.
@@ -158,12 +161,20 @@ class StanceStep {
       Swing(feet_);
     }
     const double weight = self_.weight();
-    out_.torque = {self_.hold[0] - weight * (pressure_[0] - rest_[0]),
-                   self_.hold[1] + weight * (pressure_[1] - rest_[1])};
+    const Horizontal<T> carried = pressure_ + Carried();
+    out_.torque = {self_.hold[0] - weight * (carried[0] - rest_[0]),
+                   self_.hold[1] + weight * (carried[1] - rest_[1])};
     return out_;
   }
 
  private:
+  // A rod that leans by an angle e takes sin(e)^2 of its cart's acceleration along: the c that
+  // takes that back, since legs have no mass.
+  Horizontal<T> Carried() const {
+    const double by = 1.0 / (self_.body.rod_length * kGravity * self_.dt);
+    return by * ankle_.place.cwiseProduct(ankle_.place).cwiseProduct(out_.velocity - ankle_.cart);
+  }
+
   // a' above.
   T ClockRate() const {
     using std::exp;
@@ -259,7 +270,8 @@ class StanceStep {
     const double dt = self_.dt, omega = self_.capture_rate;
     const T& total = feet.swing_time;
     const Horizontal<T> own = (0.5 * feet.swings) * feet.apart, stands = -own;
-    pressure_ = {Forwards(stands[0], T(stands[0] + rest_[0]), T(kFootBack), T(kOneFront * p_.front)),
+    pressure_ = {Forwards(stands[0], T(stands[0] + rest_[0]), T(kFootBack),
+                          feet_.landed != 0 ? p_.foot_front : T(0.5 * p_.front)),
                  Sideways(-feet.swings, T(feet_.landed != 0 ? 1.0 : 0.0))};
     const T left = total - feet.clock, after = feet.clock + dt;
     const bool lands = RealPart(after) >= RealPart(total);
@@ -304,10 +316,9 @@ class StanceStep {
     next.clock += since * then.ClockRate();
   }
 
-  static constexpr double kOneFront = 0.5;      // of b: how far c goes forwards under one foot
   static constexpr double kRushEdge = 0.2;      // of S
   static constexpr double kForgets = 0.2;       // s, until a step is not prepared any more
-  static constexpr double kBringsUp = 1.0;      // s, until the rear foot is brought up
+  static constexpr double kBringsUp = 0.6;      // s, until the rear foot is brought up
   static constexpr double kAgain = 0.06;        // s, between two steps of who is not caught yet
   static constexpr double kShortStride = 0.02;  // m
   static constexpr double kAbreast =
@@ -316,7 +327,7 @@ class StanceStep {
   static constexpr double kFootSpeed = 4.4;   // m/s
   static constexpr double kCaptureGain = 2.5;
   static constexpr double kFootBack = 0.05, kFootSide = 0.03, kLeastReach = 0.02;  // m
-  static constexpr double kReach = 0.95;                       // of the rod: the longest step
+  static constexpr double kReach = 1.2;                        // of the rod: the longest step
   static constexpr double kSideShare = 1.0, kSideReach = 0.4;  // m
 
   const SelfForce& self_;

@@ -144,9 +144,9 @@ void SetStance(Stance stance, FitOptions* options) {
   // Few of those who were recorded stand, and none of them for long: that they can, and step from
   // 0.25 to 0.3 m/s on, comes from these priors.
   for (const WeakStart& start :
-       {WeakStart{kKpTheta, 900, 100}, WeakStart{kKpPhi, 950, 200}, WeakStart{kKdTheta, 200, 60},
+       {WeakStart{kKpTheta, 900, 100}, WeakStart{kKpPhi, 950, 200}, WeakStart{kKdTheta, 200, 40},
         WeakStart{kKdPhi, 320, 120}, WeakStart{kSupportFront, 0.12, 0.03},
-        WeakStart{kFootFront, 0.2, 0.02}, WeakStart{kStepGain, 0.95, 0.1},
+        WeakStart{kFootFront, 0.2, 0.02}, WeakStart{kStepGain, 0.85, 0.1},
         WeakStart{kStepOnset, 0.5, 0.15}, WeakStart{kStepSwing, 0.31, 0.06},
         WeakStart{kTailGain, 0.3, 0.3}, WeakStart{kTailTime, 0.35, 0.2}}) {
     FreeFrom(start, &table);

@@ -21,7 +21,7 @@ ParameterSet<double> SteppingParameters() {
   p[kKpTheta] = 900.0, p[kKpPhi] = 950.0, p[kKdTheta] = 200.0, p[kKdPhi] = 320.0;
   p[kTailGain] = 0.3, p[kTailTime] = 0.35;
   p[kSupportFront] = 0.12, p[kSupportBack] = 0.08, p[kSupportSide] = 0.03, p[kFootFront] = 0.2;
-  p[kStepGain] = 0.95, p[kStepOnset] = 0.5, p[kStepSwing] = 0.31;
+  p[kStepGain] = 0.85, p[kStepOnset] = 0.5, p[kStepSwing] = 0.31;
   return p;
 }
 
