@@ -54,6 +54,7 @@ TEST(StanceSensitivities, EqualJetsThroughTheSteps) {
   int stepped = 0, stood = 0, twice = 0;
   for (double impulse : {8.0, 25.0, 35.0, 60.0}) {
     for (double direction : {0.0, M_PI, 0.5 * M_PI, -0.7}) {
+      SCOPED_TRACE(std::to_string(impulse) + " N s towards " + std::to_string(direction));
       const Scene scene = PushedAtTheHip(impulse, direction, &random);
       const ModelOptions options = Steps();
       PendulumRecording recording =
