@@ -149,9 +149,14 @@ Scene FormationScene(const std::vector<Eigen::Vector2d>& positions, const Body& 
 void AddHipPush(int person, const HipPush& push, Scene* scene) {
   const int frames = std::max(1, static_cast<int>(std::lround(push.duration / scene->dt)));
   const int start = static_cast<int>(std::lround(push.start / scene->dt));
-  scene->pushes.push_back(
-      MakeScenePush(person, start, PushKind::kExternal,
-                    HalfSinePush(scene->people[person].body, push.impulse, frames, scene->dt)));
+  std::vector<Vector4<double>> rows =
+      HalfSinePush(scene->people[person].body, push.impulse, frames, scene->dt);
+  const double along = std::cos(push.direction), across = std::sin(push.direction);
+  // At an upright person phi turns towards -y.
+  for (Vector4<double>& row : rows) {
+    row = {along * row[0], across * row[0], along * row[2], -across * row[2]};
+  }
+  scene->pushes.push_back(MakeScenePush(person, start, PushKind::kExternal, std::move(rows)));
 }
 
 }  // namespace pushid

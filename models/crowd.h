@@ -70,11 +70,12 @@ std::vector<Eigen::Vector2d> FormationPositions(FormationShape shape, int people
 // Everybody upright, at rest, with the same body.
 Scene FormationScene(const std::vector<Eigen::Vector2d>& positions, const Body& body, double dt);
 
-// A half-sine along +x at the hip.
+// A half-sine at the hip.
 struct HipPush {
-  double impulse = 0.0;   // N s
-  double start = 0.0;     // s
-  double duration = 0.2;  // s
+  double impulse = 0.0;    // N s
+  double start = 0.0;      // s
+  double duration = 0.2;   // s
+  double direction = 0.0;  // rad from +x, positive to the left
 };
 
 // Start and duration are rounded to frames; the impulse is kept.

@@ -31,9 +31,10 @@ DEFINE_string(pushed, "0",
               "who is pushed, comma-separated numbers; people are counted from 0, from "
               "back to front, and in a row from right to left");
 DEFINE_string(push, "80",
-              "pushes at the hip along +x, comma-separated, N s or N s@start in s, as "
+              "pushes at the hip, comma-separated, N s or N s@start in s, as "
               "in 80@0,80@1,112@2; every push acts on all of --pushed");
 DEFINE_double(push_duration, pushid::HipPush{}.duration, "duration of each push (a half-sine), s");
+DEFINE_double(push_direction, 0.0, "direction of all pushes, degrees from +x to the left");
 DEFINE_double(mass, 80.0, "mass of each person, kg");
 DEFINE_double(rod_length, pushid::kReferenceRod, "rod length (ankles to hip) of each person, m");
 DEFINE_string(people_from, "",
@@ -139,6 +140,7 @@ Result<std::vector<int>> PushedPeople(const Places& places) {
 Result<HipPush> ParsePush(const std::string& word) {
   HipPush push;
   push.duration = FLAGS_push_duration;
+  push.direction = FLAGS_push_direction * M_PI / 180.0;
   const size_t at = word.find('@');
   const std::string start = at == std::string::npos ? "0" : word.substr(at + 1);
   if (!ParseDouble(word.substr(0, at), &push.impulse) || !ParseDouble(start, &push.start)) {
@@ -170,6 +172,7 @@ MaybeError CheckFormationNumbers() {
        {CheckRange("people", FLAGS_people, 1, kMostPeople), CheckRange("fps", FLAGS_fps, 10, 10000),
         CheckRange("spacing", FLAGS_spacing, 0.05, 100),
         CheckRange("push_duration", FLAGS_push_duration, 0.001, 60),
+        CheckRange("push_direction", FLAGS_push_direction, -360, 360),
         CheckRange("mass", FLAGS_mass, 1, 400), CheckRange("rod_length", FLAGS_rod_length, 0.2, 2),
         CheckRange("duration", FLAGS_duration, 0, 3600)}) {
     if (error) return error;
@@ -218,6 +221,7 @@ std::string RunTitle(int people, const std::vector<HipPush>& pushes) {
   }
   text << (FLAGS_pushed.find(',') == std::string::npos ? " on person " : " on people ")
        << FLAGS_pushed;
+  if (FLAGS_push_direction != 0.0) text << ", " << FLAGS_push_direction << " degrees to the left";
   return text.str();
 }
 

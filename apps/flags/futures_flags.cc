@@ -8,8 +8,10 @@
 #include "apps/flags/command_line.h"
 #include "ident/prediction/futures.h"
 
-DEFINE_int32(samples, pushid::FuturesFlags{}.samples,
-             "number of futures drawn from the model's process noise; 0: none");
+DEFINE_int32(
+    samples, pushid::FuturesFlags{}.samples,
+    "number of futures drawn from the model's process noise, or of --stance=steps from the "
+    "spread of supports; 0: none");
 DEFINE_uint64(samples_seed, pushid::FuturesFlags{}.seed, "with --samples: seed of the draws");
 DEFINE_string(samples_out, "",
               "with --samples: write every future here (CSV: draw, frame, person, hip, angles)");

@@ -254,13 +254,14 @@ class Panel {
         const double value = chart_.cells[i][j];
         const double x = x_(static_cast<double>(j)), y = y_(static_cast<double>(i) - 0.5);
         const double share = std::clamp(std::abs(value) / chart_.full_cell, 0.0, 1.0);
-        if (share >= kLeastShare) {  // most cells of a large map are paper
+        const bool known = std::isfinite(value);
+        if (known && share >= kLeastShare) {  // most cells of a large map are paper
           svg_.Rect(
               {x + 0.5, y + 0.5, wide - 1, high - 1}, CellLook(value, share),
               chart_.y_categories[i] + ", " + chart_.x_categories[j] + ": " + Rounded(value, 3));
         }
         if (wide > kValueWidth)
-          svg_.Text(x + 0.5 * wide, y + 12, SvgNumber(value), "ink small middle");
+          svg_.Text(x + 0.5 * wide, y + 12, known ? SvgNumber(value) : "-", "ink small middle");
       }
     }
   }

@@ -72,7 +72,7 @@ struct Chart {
   // A table of signed numbers as colours, blue below zero and orange above; full_cell: the value of
   // the strongest one.
   std::vector<std::string> x_categories;
-  std::vector<std::vector<double>> cells;  // [row][column]
+  std::vector<std::vector<double>> cells;  // [row][column]; NaN: "-"
   double full_cell = 1.0;
   double width = kPanelWidth,
          height = kPanelHeight;  // wanted; rows of categories have their own height

@@ -41,7 +41,7 @@ std::string OutcomeLegend();
 struct PersonSummary {
   int onset_frame = -1;       // of 2 cm of hip motion (propagation.h); -1: never
   double peak_speed = 0.0;    // m/s, of the hip
-  double displacement = 0.0;  // m along x, of the hip at the end
+  double displacement = 0.0;  // m along the first push, of the hip at the end
   Outcome outcome = Outcome::kNotJudged;
 };
 

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/figures/text_table.h"
 #include "ident/model/model_rollout.h"
+#include "ident/prediction/predicted_steps.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
@@ -33,6 +36,31 @@ double Energy(const std::vector<Eigen::Vector2d>& draws, const Eigen::Vector2d& 
   return to_value / n - apart / (n * (n - 1.0));
 }
 
+bool StepsAreSpread(const IdentifiedModel& model) {
+  return model.options.stance == Stance::kSteps && model.step_probability &&
+         model.step_probability->coefficients[1] > 0.0;
+}
+
+// A person steps if the support is smaller than b + margin, which has the probability At(margin).
+void DrawSupport(const StepProbability& p, Random* random, ParameterSet<double>* own) {
+  const double u = random->Unit();
+  const double more = (std::log(u / (1.0 - u)) - p.coefficients[0]) / p.coefficients[1];
+  const double factor = std::clamp(1.0 + more / (*own)[kSupportFront], 0.1, 4.0);
+  for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) (*own)[id] *= factor;
+}
+
+// "0: 0.05, 1: 0.62, 2: 0.33"
+std::string StepShares(const Futures& futures, size_t person) {
+  std::map<int, int> counts;
+  for (const std::vector<int>& draw : futures.steps) ++counts[draw[person]];
+  std::string text;
+  for (const auto& [steps, count] : counts) {
+    text += (text.empty() ? "" : ", ") + std::to_string(steps) + ": " +
+            Rounded(count / static_cast<double>(futures.steps.size()), 2);
+  }
+  return text;
+}
+
 }  // namespace
 
 double Crps(std::vector<double> draws, double value) {
@@ -51,10 +79,11 @@ uint64_t SeedOfRecording(uint64_t seed, int recording) {
 }
 
 MaybeError CheckDrawsFrom(const IdentifiedModel& model) {
-  if (model.options.process_noise.Any()) return std::nullopt;
+  if (model.options.process_noise.Any() || StepsAreSpread(model)) return std::nullopt;
   return Error{(model.source.empty() ? "the model" : model.source) +
                " has no process noise to draw futures from; fit it with "
-               "--process_noise=diagonal or --likelihood=innovation"};
+               "--process_noise=diagonal or --likelihood=innovation, or, where it is known who "
+               "steps, with --stance=steps"};
 }
 
 Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecording& recording,
@@ -66,27 +95,36 @@ Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecordin
   Futures futures;
   futures.id = recording.id;
   Random random(seed);
+  const bool noisy = model.options.process_noise.Any(), spread = StepsAreSpread(model);
   for (int draw = 0; draw < draws; ++draw) {
+    std::vector<ParameterSet<double>> own = parameters;
+    for (size_t n = 0; spread && n < own.size(); ++n) {
+      DrawSupport(*model.step_probability, &random, &own[n]);
+    }
     FrameTable<Vector4<double>> noise(frames, scene.num_people());
-    for (int t = 0; t < frames; ++t) {
+    for (int t = 0; noisy && t < frames; ++t) {
       for (int n = 0; n < scene.num_people(); ++n) {
         for (double& w : noise.At(t, n)) w = random.Normal();
       }
     }
     RolloutPath<double> path;
-    if (!Rollout<double>(scene, model.options, parameters, InitialVelocities(scene), frames, &path,
-                         nullptr, nullptr, &noise)
+    if (!Rollout<double>(scene, model.options, own, InitialVelocities(scene), frames, &path,
+                         nullptr, nullptr, noisy ? &noise : nullptr)
              .ok) {
       ++futures.failed;
       continue;
     }
     std::vector<std::vector<BandPoint>> people(scene.num_people());
+    if (spread) futures.steps.emplace_back();
     for (int n = 0; n < scene.num_people(); ++n) {
       for (int t = 0; t < frames; ++t) {
         const PendulumState<double>& state = path.At(t, n);
         BandPoint point;
         point << HipPosition(scene.people[n].body, state.q), state.q.tail<2>();
         people[n].push_back(point);
+      }
+      if (spread) {
+        futures.steps.back().push_back(static_cast<int>(PredictedSteps(path, n).size()));
       }
     }
     futures.paths.push_back(std::move(people));
@@ -127,6 +165,8 @@ FuturesScore ScoreFutures(const IdentifiedModel& model, const PendulumRecording&
       score.energy += share * Energy(places, measured.head<2>());
     }
   }
+  score.deviance = std::numeric_limits<double>::quiet_NaN();
+  if (!model.options.process_noise.Any()) return score;
   ParameterMap map;
   map.pool_by = model.pool_by;
   const Deviance deviance = DevianceOf(
@@ -137,8 +177,10 @@ FuturesScore ScoreFutures(const IdentifiedModel& model, const PendulumRecording&
 }
 
 std::string LastFrameText(const Futures& futures) {
-  TextTable table({"person", "x m", "5 %", "95 %", "y m", "5 %", "95 %"},
-                  {false, false, false, false, false, false, false});
+  std::vector<std::string> titles = {"person", "x m", "5 %", "95 %", "y m", "5 %", "95 %"};
+  std::vector<bool> left(titles.size(), false);
+  if (!futures.steps.empty()) titles.push_back("steps: share"), left.push_back(true);
+  TextTable table(titles, left);
   if (futures.paths.empty()) return "";
   for (size_t n = 0; n < futures.paths[0].size(); ++n) {
     std::vector<std::string> row = {std::to_string(n)};
@@ -147,6 +189,7 @@ std::string LastFrameText(const Futures& futures) {
       for (const auto& draw : futures.paths) values.push_back(draw[n].back()[axis]);
       for (double share : {0.5, 0.05, 0.95}) row.push_back(Rounded(Quantile(values, share), 3));
     }
+    if (!futures.steps.empty()) row.push_back(StepShares(futures, n));
     table.Add(row);
   }
   return table.ToString();

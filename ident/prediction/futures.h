@@ -1,5 +1,6 @@
-// ident: futures drawn from a model with process noise: rollouts that the noise drives, from the
-// same start and push.
+// ident: futures drawn from a model: rollouts from the same start and push, driven by its process
+// noise; where feet step (models/stance.h), people whose supports are spread as P(step) has it
+// (fit/step_probability.h), so that the share of draws in which a person steps is P(step).
 //
 // Noise of single steps adds up: what a hundred drawn steps scatter by is the model's own word on
 // how far people stray. Beside it stand the bands of predictive_bands.h, which take the errors of
@@ -23,12 +24,13 @@ struct Futures {
   int failed = 0;  // draws that left the domain: in none of the paths
   // [draw][person][frame]: hip (m), theta and phi (rad).
   std::vector<std::vector<std::vector<BandPoint>>> paths;
+  std::vector<std::vector<int>> steps;  // [draw][person]: how many; empty where feet do not step
 };
 
-// What is wrong with drawing from a model: it has no process noise.
+// What is wrong with drawing from a model: nothing in it is spread.
 MaybeError CheckDrawsFrom(const IdentifiedModel& model);
 
-// num_frames: 0 means as many as the recording has. Errors: no process noise in the model.
+// num_frames: 0 means as many as the recording has. Errors: as CheckDrawsFrom.
 Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecording& recording,
                             int draws, uint64_t seed, int num_frames = 0);
 
@@ -44,7 +46,7 @@ struct FuturesScore {
   // and of theta and phi.
   double inside50[4] = {}, inside90[4] = {}, crps[4] = {};
   double energy = 0.0;    // m, of the hip's horizontal place
-  double deviance = 0.0;  // -2 log innovation likelihood, of one measured number
+  double deviance = 0.0;  // -2 log innovation likelihood, of one measured number; NaN without noise
 
   std::vector<double> Values() const;  // of the metrics below
 };
@@ -82,7 +84,8 @@ FuturesSummary SummarizeFutures(const std::string& name,
                                 const std::vector<std::vector<double>>& values, int draws,
                                 int failed);
 
-// The hip of everybody at the last frame: median and central 90 % of the draws.
+// The hip of everybody at the last frame: median and central 90 % of the draws; shares of draws by
+// number of steps.
 std::string LastFrameText(const Futures& futures);
 
 // draw, frame, person, hip x, y, z (m), theta, phi (rad).

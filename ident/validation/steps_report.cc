@@ -103,10 +103,11 @@ std::string FifthText(const StepFifth& fifth) {
   return Rounded(fifth.predicted, 2) + " -> " + Rounded(fifth.observed, 2);
 }
 
-// "+0.05 s, mean |.| 0.11 s, 23 people"
+// "+0.05 s, mean |.| 0.11 s, 23 people; place off by 0.14 m"
 std::string LiftOffText(const LiftOffError& error) {
   return (error.median > 0.0 ? "+" : "") + Rounded(error.median, 2) + " s, mean |.| " +
-         Rounded(error.mean_absolute, 2) + " s, " + std::to_string(error.people) + " people";
+         Rounded(error.mean_absolute, 2) + " s, " + std::to_string(error.people) + " people" +
+         (error.landed > 0 ? "; place off by " + Rounded(error.place, 2) + " m" : "");
 }
 
 // Nothing where no model has step states.

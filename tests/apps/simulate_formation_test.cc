@@ -105,6 +105,29 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   EXPECT_LT(Json(Path("scores.json"))["mean"]["hipADE_m"].get<double>(), 1e-9) << scores.out;
 }
 
+// Displacements are along the push; of feet that step there are foot, times and place.
+TEST_F(SimulateFormationTest, APushToTheLeftAndWhatTheFeetDo) {
+  nlohmann::ordered_json json = Json(alone_);
+  json["model"]["stance"] = "steps";
+  const std::string steps = "--model=" + WriteText("steps.json", json.dump(1));
+  const auto pushed = [&steps](const std::string& impulse) {
+    return RunApp("pushid-formation", {steps, "--formation=line", "--people=1", "--push=" + impulse,
+                                       "--push_duration=0.7", "--push_direction=90"});
+  };
+  const AppRun weak = pushed("3"), hard = pushed("60");
+  ASSERT_EQ(weak.exit_code + hard.exit_code, 0) << weak.err << hard.err;
+  EXPECT_TRUE(Contains(weak.out, "3 N s at 0 s on person 0, 90 degrees to the left; "));
+  EXPECT_TRUE(Contains(weak.out, "p00: stands\n")) << weak.out;
+  EXPECT_TRUE(Contains(hard.out, "p00: steps left ")) << hard.out;
+  EXPECT_TRUE(Contains(hard.out, " m to the left"));
+  std::istringstream row(hard.out.substr(hard.out.find("\n     0") + 1));
+  std::string person, x, y, onset, peak, displaced;
+  row >> person >> x >> y >> onset >> peak >> displaced;
+  EXPECT_GT(std::stod(displaced), 0.03) << hard.out;
+  EXPECT_TRUE(
+      Refused(Simulate({"--formation=line", "--push_direction=400"}), {"--push_direction", "360"}));
+}
+
 TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {
   const AppRun run = Simulate({"--formation=diamond", "--people=13", "--pushed=0,1,3"});
   ASSERT_EQ(run.exit_code, 0) << run.err;

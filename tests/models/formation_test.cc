@@ -86,5 +86,23 @@ TEST(Formation, PushesKeepTheirImpulseAtAnyFrameRate) {
   }
 }
 
+// At once the hip goes where it is pushed, and the cart stays: the push acts at the hip.
+TEST(Formation, APushActsAtTheHipInItsDirection) {
+  const Body body{70.0, 0.9, 0.08};
+  for (double degrees : {0.0, 45.0, 90.0, 180.0, 300.0}) {
+    SCOPED_TRACE(degrees);
+    const double direction = degrees * M_PI / 180.0;
+    Scene scene = FormationScene({Eigen::Vector2d::Zero()}, body, 0.01);
+    AddHipPush(0, {10.0, 0.0, 0.01, direction}, &scene);
+    const Vector4<double> qdd =
+        Acceleration<double>(body, PendulumState<double>(), scene.pushes[0].force[0]);
+    EXPECT_LT(qdd.head<2>().norm(), 1e-9);
+    const Eigen::Vector2d hip(body.rod_length * qdd[2], -body.rod_length * qdd[3]);
+    const Eigen::Vector2d wanted = Eigen::Vector2d(std::cos(direction), std::sin(direction)) *
+                                   (10.0 / 0.01 / body.point_mass());
+    EXPECT_LT((hip - wanted).norm(), 1e-9 * wanted.norm());
+  }
+}
+
 }  // namespace
 }  // namespace pushid

@@ -6,7 +6,7 @@
 #include "ident/figures/chart.h"
 #include "ident/prediction/baselines.h"
 #include "ident/prediction/evaluation.h"
-#include "ident/prediction/predicted_steps.h"
+#include "ident/prediction/push_response.h"
 #include "ident/report/page/sections.h"
 #include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
@@ -14,28 +14,48 @@
 namespace pushid {
 namespace {
 
+// A panel with a row for each impulse over mass, and its columns in the numbers.
+Chart MapPanel(const std::string& title, const std::string& across, const std::string& unit,
+               const PushResponse& response, const std::vector<double>& columns,
+               const std::vector<std::vector<double>>& values) {
+  Chart panel;
+  panel.title = title;
+  panel.x_label = across + "; rows: impulse over mass, m/s";
+  for (double column : columns) panel.x_categories.push_back(Rounded(column, 3) + unit);
+  for (double impulse : response.impulse_per_mass) {
+    panel.y_categories.push_back(Rounded(impulse, 2));
+  }
+  panel.cells = values;
+  return panel;
+}
+
 ReportFigure MapFigure(const IdentifiedModel& model) {
-  const StepMap map = ComputeStepMap(model);
-  Chart picture;
-  picture.title = "P(step)";
-  picture.x_label = "duration of the push; rows: impulse over mass";
+  const PushResponse response = ComputePushResponse(model);
+  const std::vector<Chart> panels = {MapPanel("P(step)", "duration of the push", " s", response,
+                                              response.duration_s, response.step_by_duration),
+                                     MapPanel("P(step), 0.7 s", "direction", " deg", response,
+                                              response.direction_deg, response.step_by_direction),
+                                     MapPanel("displacement, m", "direction", " deg", response,
+                                              response.direction_deg, response.end_by_direction)};
   std::vector<std::string> header = {"impulse_per_mass_m_s"};
-  for (double duration : map.duration_s) {
-    picture.x_categories.push_back(Rounded(duration, 2) + " s");
-    header.push_back("p_step_after_" + Rounded(duration, 2) + "_s");
+  for (const Chart& panel : panels) {
+    for (const std::string& column : panel.x_categories) {
+      header.push_back(panel.title + " " + column);
+    }
   }
   TextTable numbers(header, std::vector<bool>(header.size(), false));
-  for (size_t i = 0; i < map.impulse_per_mass.size(); ++i) {
-    picture.y_categories.push_back(Rounded(map.impulse_per_mass[i], 2) + " m/s");
-    std::vector<std::string> row = {DoubleText(map.impulse_per_mass[i])};
-    for (double p : map.probability[i]) row.push_back(DoubleText(p));
+  for (size_t i = 0; i < response.impulse_per_mass.size(); ++i) {
+    std::vector<std::string> row = {DoubleText(response.impulse_per_mass[i])};
+    for (const Chart& panel : panels) {
+      for (double value : panel.cells[i]) row.push_back(DoubleText(value));
+    }
     numbers.Add(row);
   }
-  picture.cells = map.probability;
   return {"step_probability",
-          "Probability that a person of 80 kg steps after a forward push at the hip, by the "
-          "duration of the push and its impulse divided by the mass.",
-          {{}, {picture}},
+          "Whether a person of 80 kg steps after a push at the hip, and where along the push the "
+          "hip is 6 s after it, as the model's feet have it; -: falls. Directions are from "
+          "forwards (0) to the left (90).",
+          {{}, panels},
           numbers};
 }
 

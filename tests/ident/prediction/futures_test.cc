@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "ident/fit/fit_setup.h"
+#include "ident/fit/step_probability.h"
+#include "ident/model/model_rollout.h"
+#include "ident/problem/own_axes.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -87,6 +90,29 @@ TEST(Futures, TheTruthScoresBest) {
     if (name != "energy" && name != "crps_x" && name != "deviance") continue;
     EXPECT_LT(truth.mean[i].mean, narrow.mean[i].mean) << name;
     EXPECT_LT(truth.mean[i].mean, wide.mean[i].mean) << name;
+  }
+}
+
+// Feet step in as many draws as P(step) says.
+TEST(Futures, OfFeetThatStepHaveTheirProbability) {
+  SyntheticOptions study = TinyStudy();
+  study.model.stance = Stance::kSteps;
+  study.parameters = PublishedStanceParameters();
+  IdentifiedModel model = TruthOf(study, BaseTable());
+  model.step_probability = StepProbability();
+  for (const PendulumRecording& recording : MakePendulums(study)) {
+    RolloutPath<double> path;
+    ASSERT_TRUE(RolloutInOwnAxes(recording, model.options, PeoplesParameters(model, recording),
+                                 recording.num_frames(), &path)
+                    .ok);
+    const double margin = StepMargins(model, recording, path)[0];
+    model.step_probability->coefficients = {1.0 - 20.0 * margin, 20.0};
+    const double probability = model.step_probability->At(margin);
+    const Futures futures = DrawFutures(model, recording, 300, 1).value();
+    ASSERT_EQ(futures.failed, 0);
+    double stepped = 0.0;
+    for (const std::vector<int>& draw : futures.steps) stepped += draw[0] > 0;
+    EXPECT_NEAR(stepped / 300.0, probability, 0.08) << recording.id << ", margin " << margin;
   }
 }
 

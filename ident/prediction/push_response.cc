@@ -1,0 +1,88 @@
+// ident: rollouts of one person under pushes of all sizes, durations and directions.
+#include "ident/prediction/push_response.h"
+
+#include <cmath>
+#include <limits>
+
+#include "ident/fit/step_probability.h"
+#include "ident/problem/behaviour.h"
+#include "models/crowd.h"
+
+namespace pushid {
+namespace {
+
+constexpr double kDuration = 0.7;                        // s, of pushes in all directions
+constexpr double kStepSeconds = 1.5, kEndSeconds = 6.0;  // after the push
+
+class PushedPerson {
+ public:
+  PushedPerson(const IdentifiedModel& model, double impulse_per_mass, double duration,
+               double degrees)
+      : model_(model), scene_(SettlingScene(kSettlingMass, 0.0)), degrees_(degrees) {
+    scene_.pushes.clear();
+    AddHipPush(0, {impulse_per_mass * kSettlingMass, 0.0, duration, degrees * M_PI / 180.0},
+               &scene_);
+  }
+
+  // In the first 1.5 s: later only who does not settle would step.
+  double StepProbability() const {
+    RolloutPath<double> path;
+    const RollWith roll = [this](const std::vector<ParameterSet<double>>& p,
+                                 RolloutPath<double>* rolled) {
+      return Roll(p, kStepSeconds, rolled);
+    };
+    if (!roll({model_.parameters}, &path).ok) return 1.0;
+    return model_.step_probability->At(
+        StepMargins(model_.options, {model_.parameters}, scene_, path, roll)[0]);
+  }
+
+  double End() const {
+    RolloutPath<double> path;
+    if (!Roll({model_.parameters}, kEndSeconds, &path).ok) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    const Body& body = scene_.people[0].body;
+    const Vector3<double> way = HipPosition(body, path.At(path.num_frames() - 1, 0).q) -
+                                HipPosition(body, scene_.people[0].start.q);
+    const double direction = degrees_ * M_PI / 180.0;
+    return way.x() * std::cos(direction) + way.y() * std::sin(direction);
+  }
+
+ private:
+  RolloutStatus Roll(const std::vector<ParameterSet<double>>& p, double seconds,
+                     RolloutPath<double>* path) const {
+    const int frames =
+        scene_.pushes[0].EndFrame() + static_cast<int>(std::lround(seconds / scene_.dt));
+    return Rollout<double>(scene_, model_.options, p, InitialVelocities(scene_), frames, path);
+  }
+
+  const IdentifiedModel& model_;
+  Scene scene_;
+  double degrees_;
+};
+
+}  // namespace
+
+PushResponse ComputePushResponse(const IdentifiedModel& model) {
+  PushResponse response;
+  response.impulse_per_mass = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8};
+  response.duration_s = {0.1, 0.2, 0.3, 0.5, kDuration, 1.0};
+  response.direction_deg = {0, 45, 90, 135, 180};
+  for (double impulse : response.impulse_per_mass) {
+    std::vector<double> by_duration, by_direction, ends;
+    for (double duration : response.duration_s) {
+      by_duration.push_back(PushedPerson(model, impulse, duration, 0.0).StepProbability());
+    }
+    for (double degrees : response.direction_deg) {
+      const PushedPerson person(model, impulse, kDuration, degrees);
+      by_direction.push_back(person.StepProbability());
+      ends.push_back(person.End());
+    }
+    response.step_by_duration.push_back(std::move(by_duration));
+    response.step_by_direction.push_back(std::move(by_direction));
+    response.end_by_direction.push_back(std::move(ends));
+  }
+  return response;
+}
+
+}  // namespace pushid
