@@ -81,7 +81,8 @@ int PushPerson() {
     const PendulumState<double>& state = path.At(t, 0);
     const Vector3<double> hip = HipPosition(scene.people[0].body, state.q);
     const double push = t < static_cast<int>(rows.size()) ? rows[t][0] : 0.0;
-    block.path[t] = {state.q[0], hip[0], hip[2], state.step, push, hip[0], hip[0]};
+    block.path[t] = {state.q[0], hip[0], hip[2], state.feet.swings != 0 ? 1.0 : 0.0,
+                     push,       hip[0], hip[0]};
   }
   AddBand(scene, inside);
   return inside;
