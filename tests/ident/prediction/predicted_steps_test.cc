@@ -45,9 +45,9 @@ TEST(PredictedSteps, AStepFromLiftOffToLanding) {
   EXPECT_NEAR(PlaceOf(Foot::kRight, end).x(), 0.0, 1e-12);
   EXPECT_EQ(StandingFrames(prediction, 0),
             std::vector<bool>({true, true, false, false, false, true, true}));
-  EXPECT_EQ(Text(prediction), "S01: steps left 0.20-0.50 s 0.40 m forwards\n");
+  EXPECT_EQ(Text(prediction), "S01: steps left 0.2-0.5 s 0.4 m forwards\n");
   prediction.steps = {{0.1, 0.934, 0.01}};
-  EXPECT_EQ(Text(prediction), "S01: P(step) 0.93, steps left 0.20-0.50 s 0.40 m forwards\n");
+  EXPECT_EQ(Text(prediction), "S01: P(step) 0.93, steps left 0.2-0.5 s 0.4 m forwards\n");
   prediction.feet_step = false;  // a model that only knows the probability
   EXPECT_EQ(Text(prediction), "S01: P(step) 0.93\n");
   EXPECT_TRUE(StandingFrames(prediction, 0).empty());
