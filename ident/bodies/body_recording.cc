@@ -94,13 +94,30 @@ std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& rec
   return pendulums;
 }
 
+namespace {
+
+std::vector<FootPath> FeetOf(const RolloutPath<double>& path, int person) {
+  std::vector<FootPath> feet(path.num_frames());
+  for (int t = 0; t < path.num_frames(); ++t) {
+    const PendulumState<double>& state = path.At(t, person);
+    for (const bool left : {false, true}) {
+      const Foot foot = left ? Foot::kLeft : Foot::kRight;
+      feet[t].moved[left] = PlaceOf(foot, state) - PlaceOf(foot, path.At(0, person));
+      feet[t].flies[left] = state.feet.swings == (left ? 1 : -1);
+    }
+  }
+  return feet;
+}
+
+}  // namespace
+
 void FollowPrediction(const Prediction& prediction, std::vector<RestorationInput>* people) {
   for (int n = 0; n < static_cast<int>(people->size()); ++n) {
     RestorationInput& person = (*people)[n];
     for (int t = 0; t < prediction.path.num_frames(); ++t) {
       person.Follow(prediction.path.At(t, n), prediction.rod_moves, prediction.Lift(n));
     }
-    person.stands = StandingFrames(prediction, n);
+    if (prediction.feet_step) person.feet = FeetOf(prediction.path, n);
   }
 }
 

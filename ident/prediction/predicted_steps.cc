@@ -35,15 +35,6 @@ std::vector<FootStep> PredictedSteps(const RolloutPath<double>& path, int person
   return steps;
 }
 
-std::vector<bool> StandingFrames(const Prediction& prediction, int person) {
-  if (!prediction.feet_step) return {};
-  std::vector<bool> stands(prediction.path.num_frames(), true);
-  for (const FootStep& step : PredictedSteps(prediction.path, person)) {
-    std::fill(stands.begin() + step.lift_off, stands.begin() + step.landing, false);
-  }
-  return stands;
-}
-
 std::string PredictedStepsText(const PendulumRecording& recording, const Prediction& prediction) {
   std::string text;
   for (int n = 0; n < prediction.path.num_people(); ++n) {

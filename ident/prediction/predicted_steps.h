@@ -19,9 +19,6 @@ Eigen::Vector2d PlaceOf(Foot foot, const PendulumState<double>& state);
 // In order; lift-off: the first frame after that in which the foot still stood.
 std::vector<FootStep> PredictedSteps(const RolloutPath<double>& path, int person);
 
-// Whether somebody stands on both feet, frame by frame; empty where the model's feet do not step.
-std::vector<bool> StandingFrames(const Prediction& prediction, int person);
-
 // A line per person: "S01: P(step) 0.93, steps left 0.42-0.78 s 0.31 m forwards"; empty where the
 // model says nothing of steps.
 std::string PredictedStepsText(const PendulumRecording& recording, const Prediction& prediction);

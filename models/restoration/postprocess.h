@@ -5,8 +5,8 @@
 //      as they were, and all that follows begins with the last of them.
 //   2. The person's own skeleton carries it out (FitSkeleton of body.h): bones keep their length.
 //   3. Feet are locked: while an ankle is low and slow it stays where it came to rest, by two-bone
-//      inverse kinematics; when it leaves, the correction fades over 4 frames. Where the model says
-//      when feet stand (RestorationInput::stands), they stand then (PlantFeet, below), unless more
+//      inverse kinematics; when it leaves, the correction fades over 4 frames. Where the model
+//      has feet (RestorationInput::feet), they are where these are (PlantFeet, below), unless more
 //      than one frame was seen: these know better.
 #pragma once
 
@@ -40,25 +40,10 @@ void LockFeet(const Pose& first_pose, double dt, const PostprocessOptions& optio
 // All that the options ask for, in this order.
 void Finish(const RestorationInput& person, const PostprocessOptions& options, BodyMotion* motion);
 
-// Only the feet, where the model says when they stand: feet that stand while the pendulum's model
-// says so, and land where its cart is.
-//
-//   standing   ankle and toe do not move, however high and fast the restoration has them
-//   stepping   they go where the restoration has them, and rest where it has them rest (the other
-//              foot stands while one steps, and the model says nothing of which); what held them
-//              fades over release_frames
-//   landing    over the step's last fade_frames they come to the places where they will stand: as
-//              far apart as in the restoration, at the height of frame 0, their midpoint as far
-//              from the cart as at frame 0
-// A place that the leg misses by more than out_of_reach is let go; once that has faded the foot
-// stands where the restoration has it.
-//
-// Rejected: both feet free while the model steps (the standing one slides). Each foot's own landing
-// place from the cart (its stance at frame 0 again). A person who ends astride would be pulled into
-// parallel feet.
-
-// person.stands has an entry for each frame of the motion.
-void PlantFeet(const RestorationInput& person, const PostprocessOptions& options,
-               BodyMotion* motion);
+// Only the feet, where the model has some: each is where its own is, moved from frame 0. One that
+// stands is as it was at frame 0; one in the air is as high as the restoration has it, 5 cm at
+// least, and pitches as there, both fading towards lift-off and landing. A leg that is too short
+// reaches as far as it can. person.feet has an entry for each frame of the motion.
+void PlantFeet(const RestorationInput& person, BodyMotion* motion);
 
 }  // namespace pushid

@@ -76,6 +76,12 @@ struct SeenPush {
   Vector3<double> place = Vector3<double>::Zero();  // m: hip of who is pushed, at frame 0
 };
 
+// The right and the left foot of a model.
+struct FootPath {
+  Eigen::Vector2d moved[2];  // m, since frame 0
+  bool flies[2];             // off the ground
+};
+
 struct RestorationInput {
   Pose first_pose;                 // m, world
   Body body;                       // mass, rod length and cart height, at frame 0
@@ -83,8 +89,7 @@ struct RestorationInput {
   double dt = 1.0 / 60.0;          // s
   double push_start = 0.0;         // s, of the first push on anybody
   SeenPush push = {};
-  // Frame by frame, whether the feet stand; empty: the model says nothing of them.
-  std::vector<bool> stands = {};
+  std::vector<FootPath> feet = {};  // frame by frame; empty: the model says nothing of them
   // Where the rod moves: its length and the cart's height at every frame of q, m; empty: as in
   // body.
   std::vector<Eigen::Vector2d> lengths = {};

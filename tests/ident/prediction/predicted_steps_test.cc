@@ -43,14 +43,11 @@ TEST(PredictedSteps, AStepFromLiftOffToLanding) {
   const PendulumState<double>& end = prediction.path.At(6, 0);
   EXPECT_NEAR(PlaceOf(Foot::kLeft, end).x(), 0.4, 1e-12);
   EXPECT_NEAR(PlaceOf(Foot::kRight, end).x(), 0.0, 1e-12);
-  EXPECT_EQ(StandingFrames(prediction, 0),
-            std::vector<bool>({true, true, false, false, false, true, true}));
   EXPECT_EQ(Text(prediction), "S01: steps left 0.2-0.5 s 0.4 m forwards\n");
   prediction.steps = {{0.1, 0.934, 0.01}};
   EXPECT_EQ(Text(prediction), "S01: P(step) 0.93, steps left 0.2-0.5 s 0.4 m forwards\n");
   prediction.feet_step = false;  // a model that only knows the probability
   EXPECT_EQ(Text(prediction), "S01: P(step) 0.93\n");
-  EXPECT_TRUE(StandingFrames(prediction, 0).empty());
 }
 
 TEST(PredictedSteps, TheEdgesOfAPath) {
@@ -62,7 +59,6 @@ TEST(PredictedSteps, TheEdgesOfAPath) {
   EXPECT_FALSE(steps[0].finished);
   EXPECT_EQ(steps[0].landing, 4);
   EXPECT_EQ(steps[0].foot, Foot::kRight);
-  EXPECT_EQ(StandingFrames(cut_off, 0), std::vector<bool>({true, true, false, false}));
   EXPECT_EQ(PredictedSteps(PathWith({0, 1, 1, 0, -1, -1, 0}).path, 0).size(), 2u);
 }
 
