@@ -1,0 +1,95 @@
+// models: the feet of who stands and steps: parameters, the hip over them, their support.
+//
+// The letters are those of stance.h, which has the equations.
+#pragma once
+
+#include <cmath>
+
+#include "models/self_force.h"
+
+namespace pushid {
+
+inline constexpr double kSupportEdge = 0.05;         // of rho: where a step begins to be prepared
+inline constexpr double kPublishedFriction = 100.0;  // N s/m, taken out of net_without_friction
+
+// The parameters of stance, which derivatives are taken by.
+template <typename T>
+struct StanceParameters {
+  static constexpr Parameter kIds[] = {kKpTheta,      kKpPhi,       kKdTheta,     kKdPhi,
+                                       kSupportFront, kSupportBack, kSupportSide, kFootFront,
+                                       kStepGain,     kStepOnset,   kStepSwing};
+  static constexpr int kCount = sizeof(kIds) / sizeof(kIds[0]);
+  T Kp[2], Kd[2], front, back, side, foot_front, gain, onset, swing;
+
+  // value(id): of a parameter.
+  template <typename Value>
+  explicit StanceParameters(const Value& value)
+      : Kp{value(kKpTheta), value(kKpPhi)},
+        Kd{value(kKdTheta), value(kKdPhi)},
+        front(value(kSupportFront)),
+        back(value(kSupportBack)),
+        side(value(kSupportSide)),
+        foot_front(value(kFootFront)),
+        gain(value(kStepGain)),
+        onset(value(kStepOnset)),
+        swing(value(kStepSwing)) {}
+};
+
+template <typename T>
+using Horizontal = Eigen::Matrix<T, 2, 1>;
+
+// The hip and its velocity, from the ankles; of the rod of frame 0.
+template <typename T>
+struct HipOverFeet {
+  Horizontal<T> place, velocity, cart;  // cart: its velocity
+
+  HipOverFeet(const SelfForce& self, const Angles<T>& angles, const Vector4<T>& qd) {
+    const double l = self.body.rod_length;
+    const auto& [s_th, c_th, s_ph, c_ph] = angles;
+    place = {l * s_th, -l * c_th * s_ph};
+    cart = {qd[0], qd[1]};
+    velocity = {qd[0] + l * c_th * qd[2], qd[1] + l * (s_th * s_ph * qd[2] - c_th * c_ph * qd[3])};
+  }
+  // xi above.
+  Horizontal<T> Capture(const SelfForce& self) const {
+    return place + (1.0 / self.capture_rate) * velocity;
+  }
+};
+
+// d above.
+template <typename T>
+Horizontal<T> HalfApart(const FeetState<T>& feet) {
+  const auto half = [](const T& apart) -> T {
+    return (RealPart(apart) < 0.0 ? -0.5 : 0.5) * apart;
+  };
+  return {half(feet.apart[0]), half(feet.apart[1])};
+}
+
+// How far xi, from the ankles along x and from where it rests along y, has left the support of feet
+// that are 2 d apart; 1 at its edge.
+template <typename T>
+T SupportRatio(const StanceParameters<T>& p, const Horizontal<T>& xi, const Horizontal<T>& d) {
+  using std::sqrt;
+  constexpr double kTiny = 1e-12;  // a derivative also at rest
+  const T x = xi[0] / ((RealPart(xi[0]) < 0.0 ? p.back : p.front) + d[0]);
+  const T y = xi[1] / (p.side + d[1]);
+  return sqrt(x * x + y * y + kTiny);
+}
+
+// x limited to -most .. most: smooth, and within 9 % of x up to 0.8 most.
+template <typename T>
+T SmoothLimit(const T& x, const T& most) {
+  using std::sqrt;
+  const T x2 = x * x, most2 = most * most;
+  return x * most / sqrt(sqrt(x2 * x2 + most2 * most2));
+}
+
+// 0 to 1 while u goes from 0 to 1, without a jerk.
+template <typename T>
+T SmoothRise(const T& u) {
+  if (RealPart(u) <= 0.0) return T(0.0);
+  if (RealPart(u) >= 1.0) return T(1.0);
+  return u * u * (3.0 - 2.0 * u);
+}
+
+}  // namespace pushid
