@@ -253,14 +253,13 @@ class Panel {
       for (size_t j = 0; j < chart_.cells[i].size(); ++j) {
         const double value = chart_.cells[i][j];
         const double x = x_(static_cast<double>(j)), y = y_(static_cast<double>(i) - 0.5);
-        const double share =
-            std::isfinite(value) ? std::min(std::abs(value) / chart_.full_cell, 1.0) : 0.0;
-        if (share >= kLeastShare) {  // most cells of a large map are paper
+        const double share = std::clamp(std::abs(value) / chart_.full_cell, 0.0, 1.0);
+        if (share >= kLeastShare) {  // most cells of a large map are paper; NaN never is
           svg_.Rect(
               {x + 0.5, y + 0.5, wide - 1, high - 1}, CellLook(value, share),
               chart_.y_categories[i] + ", " + chart_.x_categories[j] + ": " + Rounded(value, 3));
         }
-        const std::string number = std::isfinite(value) ? SvgNumber(value) : "-";
+        const std::string number = std::isnan(value) ? "-" : SvgNumber(value);
         if (wide > kValueWidth) svg_.Text(x + 0.5 * wide, y + 12, number, "ink small middle");
       }
     }

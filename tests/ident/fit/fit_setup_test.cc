@@ -84,8 +84,8 @@ TEST(FitSetup, StanceBringsWhatGoesWithIt) {
   const FitOptions holds = MakeFitOptions({{"preset", "tail"}, {"stance", "steps"}}).value();
   EXPECT_EQ(holds.model.push, PushUse::kAsRecorded);
   EXPECT_EQ(holds.start, FitStart::kNominal);
-  for (Parameter id : {kTailGain, kSupportFront, kStepOnset, kStepSwing, kKpTheta,
-                       kKpPhi, kKdTheta, kKdPhi}) {
+  for (Parameter id :
+       {kTailGain, kSupportFront, kStepOnset, kStepSwing, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) {
     EXPECT_TRUE(holds.table[id].free) << holds.table[id].name;
     EXPECT_TRUE(holds.table[id].prior.has_value()) << holds.table[id].name;
   }

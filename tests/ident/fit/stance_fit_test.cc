@@ -25,7 +25,8 @@ SyntheticOptions StandingStudy(PushKind kind, double noise) {
   return study;
 }
 
-constexpr Parameter kFree[] = {kKpTheta, kKdTheta, kSupportFront, kStepGain, kStepOnset, kStepSwing};
+constexpr Parameter kFree[] = {kKpTheta,  kKdTheta,   kSupportFront,
+                               kStepGain, kStepOnset, kStepSwing};
 
 FitOptions FreeStance(const SyntheticOptions& study) {
   FitOptions options = MakePreset("tail").value();
@@ -44,8 +45,8 @@ FitOptions FreeStance(const SyntheticOptions& study) {
   return options;
 }
 
-// Whether a foot steps has no derivative: where one more step is taken the cost jumps, and a fit may
-// end beside it.
+// Whether a foot steps has no derivative: where one more step is taken the cost jumps, and a fit
+// may end beside it.
 constexpr double kBeside = 0.01;  // of the truth
 
 TEST(StanceFit, ExactRecordingsGiveTheTruthFromAnotherStart) {
