@@ -15,12 +15,10 @@ namespace pushid {
 namespace {
 
 // A panel with a row for each impulse over mass, and its columns in the numbers.
-Chart MapPanel(const std::string& title, const std::string& across, const std::string& unit,
-               const PushResponse& response, const std::vector<double>& columns,
-               const std::vector<std::vector<double>>& values) {
+Chart MapPanel(const std::string& title, const std::string& unit, const PushResponse& response,
+               const std::vector<double>& columns, const std::vector<std::vector<double>>& values) {
   Chart panel;
   panel.title = title;
-  panel.x_label = across + "; rows: impulse over mass, m/s";
   for (double column : columns) panel.x_categories.push_back(Rounded(column, 3) + unit);
   for (double impulse : response.impulse_per_mass) {
     panel.y_categories.push_back(Rounded(impulse, 2));
@@ -31,12 +29,12 @@ Chart MapPanel(const std::string& title, const std::string& across, const std::s
 
 ReportFigure MapFigure(const IdentifiedModel& model) {
   const PushResponse response = ComputePushResponse(model);
-  const std::vector<Chart> panels = {MapPanel("P(step)", "duration of the push", " s", response,
-                                              response.duration_s, response.step_by_duration),
-                                     MapPanel("P(step), 0.7 s", "direction", " deg", response,
-                                              response.direction_deg, response.step_by_direction),
-                                     MapPanel("displacement, m", "direction", " deg", response,
-                                              response.direction_deg, response.end_by_direction)};
+  const std::vector<Chart> panels = {
+      MapPanel("P(step)", " s", response, response.duration_s, response.step_by_duration),
+      MapPanel("P(step), 0.7 s", " deg", response, response.direction_deg,
+               response.step_by_direction),
+      MapPanel("displacement, m", " deg", response, response.direction_deg,
+               response.end_by_direction)};
   std::vector<std::string> header = {"impulse_per_mass_m_s"};
   for (const Chart& panel : panels) {
     for (const std::string& column : panel.x_categories) {
@@ -52,9 +50,9 @@ ReportFigure MapFigure(const IdentifiedModel& model) {
     numbers.Add(row);
   }
   return {"step_probability",
-          "Whether a person of 80 kg steps after a push at the hip, and where along the push the "
-          "hip is 6 s after it, as the model's feet have it; -: falls. Directions are from "
-          "forwards (0) to the left (90).",
+          "Whether a person of 80 kg steps after a push at the hip, by its impulse over the mass "
+          "(rows, m/s) and its duration or direction (0 forwards, 90 to the left), and where along "
+          "the push the hip is 6 s after it, as the model's feet have it; -: falls.",
           {{}, panels},
           numbers};
 }
