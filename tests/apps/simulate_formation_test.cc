@@ -109,21 +109,23 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
 TEST_F(SimulateFormationTest, APushToTheLeftAndWhatTheFeetDo) {
   nlohmann::ordered_json json = Json(alone_);
   json["model"]["stance"] = "steps";
-  const std::string steps = "--model=" + WriteText("steps.json", json.dump(1));
-  const auto pushed = [&steps](const std::string& impulse) {
-    return RunApp("pushid-formation", {steps, "--formation=line", "--people=1", "--push=" + impulse,
-                                       "--push_duration=0.7", "--push_direction=90"});
+  const std::string steps = WriteText("steps.json", json.dump(1));
+  const auto pushed = [](const std::string& model, const std::string& impulse, int degrees) {
+    return RunApp("pushid-formation",
+                  {"--model=" + model, "--formation=line", "--people=1", "--push=" + impulse,
+                   "--push_duration=0.7", "--push_direction=" + std::to_string(degrees)});
   };
-  const AppRun weak = pushed("3"), hard = pushed("60");
-  ASSERT_EQ(weak.exit_code + hard.exit_code, 0) << weak.err << hard.err;
-  EXPECT_TRUE(Contains(weak.out, "3 N s at 0 s on person 0, 90 degrees to the left; "));
-  EXPECT_TRUE(Contains(weak.out, "p00: stands\n")) << weak.out;
-  EXPECT_TRUE(Contains(hard.out, "p00: steps left ")) << hard.out;
-  EXPECT_TRUE(Contains(hard.out, " m to the left"));
-  std::istringstream row(hard.out.substr(hard.out.find("\n     0") + 1));
+  const AppRun weak = pushed(steps, "3", 0), hard = pushed(steps, "60", 0);
+  const AppRun left = pushed(alone_, "60", 90);
+  ASSERT_EQ(weak.exit_code + hard.exit_code + left.exit_code, 0) << weak.err << hard.err;
+  EXPECT_TRUE(Contains(weak.out, "p00: stands\n"));
+  EXPECT_TRUE(Contains(hard.out, "p00: steps "));
+  EXPECT_TRUE(Contains(hard.out, " m forwards"));
+  EXPECT_TRUE(Contains(left.out, "60 N s at 0 s on person 0, 90 degrees to the left; "));
+  std::istringstream row(left.out.substr(left.out.find("\n     0") + 1));
   std::string person, x, y, onset, peak, displaced;
   row >> person >> x >> y >> onset >> peak >> displaced;
-  EXPECT_GT(std::stod(displaced), 0.03) << hard.out;
+  EXPECT_GT(std::stod(displaced), 0.03) << left.out;
   EXPECT_TRUE(
       Refused(Simulate({"--formation=line", "--push_direction=400"}), {"--push_direction", "360"}));
 }
