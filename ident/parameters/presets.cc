@@ -141,9 +141,9 @@ void SetStance(Stance stance, FitOptions* options) {
   table[kContactHeight].nominal = 0.95;
   table[kSupportBack].nominal = 0.08;
   table[kSupportSide].nominal = 0.03;
-  // Few of those who were recorded stand, and none of them for long: that they can, and half of them
-  // step at 0.34 m/s, comes from these priors. Twice as wide they predict people left out alike
-  // (hipADE 0.0843 m against 0.0848), who step earlier.
+  // Few of those who were recorded stand, and none of them for long: that they can, and half of
+  // them step at 0.34 m/s, comes from these priors. Twice as wide they predict people left out
+  // alike (hipADE 0.0843 m against 0.0848), who step earlier.
   for (const WeakStart& start :
        {WeakStart{kKpTheta, 900, 50}, WeakStart{kKpPhi, 950, 100}, WeakStart{kKdTheta, 200, 20},
         WeakStart{kKdPhi, 320, 60}, WeakStart{kSupportFront, 0.12, 0.015},
