@@ -14,32 +14,6 @@ constexpr double kLeastUnit = 0.3;  // m/s, of a push that hardly moves anybody:
 const Vector3<double> kAxisScale(1.0, 0.3, 0.3);
 constexpr double kFailed = std::numeric_limits<double>::infinity();
 
-// Of an odd node, on the cubic through the four even ones around it, which is 1e-5 m from its own
-// rollout; empty where one of these failed.
-HipPaths Between(const std::vector<HipPaths>& of_node, int node) {
-  constexpr int kPoints = 4;
-  const int last = static_cast<int>(of_node.size()) - 1;
-  const int first = std::clamp(node - 3, 0, last - 2 * (kPoints - 1));
-  double weight[kPoints];
-  for (int i = 0; i < kPoints; ++i) {
-    const int at = first + 2 * i;
-    if (of_node[at].empty()) return {};
-    weight[i] = 1.0;
-    for (int k = 0; k < kPoints; ++k) {
-      const int other = first + 2 * k;
-      if (k != i) weight[i] *= double(node - other) / (at - other);
-    }
-  }
-  HipPaths hips = of_node[first];
-  for (size_t n = 0; n < hips.size(); ++n) {
-    for (size_t t = 0; t < hips[n].size(); ++t) {
-      hips[n][t] *= weight[0];
-      for (int i = 1; i < kPoints; ++i) hips[n][t] += weight[i] * of_node[first + 2 * i][n][t];
-    }
-  }
-  return hips;
-}
-
 }  // namespace
 
 Eigen::Matrix3d PushAxes(const PendulumRecording& recording) {
@@ -67,22 +41,12 @@ RecordingFilter::RecordingFilter(const IdentifiedModel& model, const PendulumRec
       process_(recording.scene.num_people(), ErrorProcess(recording.scene.dt)),
       nodes_(EffectActs(model.options, recording) ? kEffectNodes : 1),
       misfit_(nodes_.size(), 0.0) {
-  const int count = static_cast<int>(nodes_.size());
-  // Paths of feet that slide are smooth in the effect; others jump where somebody steps or not.
-  const bool smooth = model.options.stance == Stance::kSlide;
-  std::vector<HipPaths> hips(count);
-  const auto roll = [&](int node) {
-    return HipsOfRollout(model, recording, acts() ? EffectNode(node) : 0.0, frames);
-  };
-  for (int j = 0; j < count; j += 2) hips[j] = roll(j);
-  for (int j = 1; j < count; j += 2) {
-    if (smooth) hips[j] = Between(hips, j);
-    if (hips[j].empty()) hips[j] = roll(j);
-  }
-  for (int j = 0; j < count; ++j) {
-    nodes_[j].hip = std::move(hips[j]);
-    nodes_[j].error.resize(nodes_[j].hip.size());
-    if (nodes_[j].hip.empty()) misfit_[j] = kFailed;
+  for (size_t j = 0; j < nodes_.size(); ++j) {
+    Node& node = nodes_[j];
+    node.hip =
+        HipsOfRollout(model, recording, acts() ? EffectNode(static_cast<int>(j)) : 0.0, frames);
+    node.error.resize(node.hip.size());
+    if (node.hip.empty()) misfit_[j] = kFailed;
   }
 }
 

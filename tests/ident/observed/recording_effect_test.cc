@@ -69,28 +69,6 @@ TEST(RecordingEffect, DoesNotCareWhereAPushComesFrom) {
   EXPECT_NEAR(filter.Axes().determinant(), 1.0, 1e-12);
 }
 
-// Every second node is not rolled out: its path lies between those of the others.
-TEST(RecordingEffect, NodesInBetweenAreAsRolledOut) {
-  const SyntheticOptions study = SmallStudy();
-  const IdentifiedModel model = TrueModel(study);
-  double most = 0.0;
-  for (const PendulumRecording& recording : MakePendulums(study)) {
-    const int frames = recording.num_frames();
-    const RecordingFilter filter(model, recording, frames);
-    std::vector<double> weights;
-    const auto mixture = filter.Mixture({}, &weights);
-    for (int node = 1; node < kEffectNodes; node += 2) {
-      const HipPaths own = HipsOfRollout(model, recording, EffectNode(node), frames);
-      for (int t = 1; t < frames; ++t) {
-        const Vector3<double> between = filter.Axes() * mixture[0][t - 1].mean[node];
-        most = std::max(most, (between - own[0][t]).norm());
-      }
-    }
-  }
-  EXPECT_LT(most, 1e-4) << "m";
-  EXPECT_GT(most, 0.0);
-}
-
 TEST(RecordingEffect, NeedsATailAndOnePersonAlone) {
   const SyntheticOptions study = TinyStudy();
   IdentifiedModel model = TrueModel(study);
