@@ -26,7 +26,7 @@ from studies import number
 
 # Row of the table, and the benchmarks whose times stand in it.
 ROWS = [
-    ("one step of the model / with feet that hold and step", ["IpmStep", "IpmStepOfStance"]),
+    ("one step of the model / with feet that step", ["IpmStep", "IpmStepOfStance"]),
     ("one rollout of 72 frames", ["RolloutOfDoubles"]),
     ("Jacobian of the 32 recordings by forward sensitivities, P = 6 / 12 / 64",
      [f"JacobianBySensitivities/{p}" for p in (6, 12, 64)]),
@@ -190,8 +190,8 @@ def rivals():
 
 
 SOLVING = ("starts and horizons", "weights", "settling", "other starts")  # purposes of run.work
-LANES = {"cost": "CostsSideBySide", "gradient, by the adjoint": "GradientsSideBySide",
-         "normal equations": "EquationsSideBySide"}
+LANES = {"cost of": "CostsSideBySide", "gradient by the adjoint, of": "GradientsSideBySide",
+         "normal equations of": "EquationsSideBySide"}
 
 
 def limits():
@@ -209,7 +209,7 @@ def limits():
                      f"{number(1e3 * seconds)} ms", number(seconds / limit, 2)])
 
     for title, name in LANES.items():
-        add(f"{title} of the 32 recordings", "1", 1e6 * of[name]["million_operations"], 1e-3 * of[name]["cpu_time"])
+        add(f"{title} the 32 recordings", "1", 1e6 * of[name]["million_operations"], 1e-3 * of[name]["cpu_time"])
     for setting, title in (("single", "the 32 recordings"), ("groups", "the 49 of groups")):
         fit = studies.on_recordings("pushid-fit", setting, "--quiet", out="model_out", keep=False).json
         work = [w for w in fit["run"]["work"] if w["purpose"] in SOLVING]
