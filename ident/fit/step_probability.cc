@@ -81,8 +81,8 @@ std::vector<double> StepMargins(const ModelOptions& options,
                                 const std::vector<ParameterSet<double>>& parameters,
                                 const Scene& scene, const RolloutPath<double>& path,
                                 const RollWith& roll) {
-  // Each person asks for ten rollouts of all: seconds at this number, hours in a crowd.
-  constexpr int kHalvings = 10, kMostPeople = 20;
+  // Each person asks for so many rollouts of all: seconds at this number, hours in a crowd.
+  constexpr int kHalvings = 12, kMostPeople = 20;
   if (options.stance == Stance::kSteps && scene.num_people() > kMostPeople) return {};
   std::vector<double> margins;
   for (int n = 0; n < scene.num_people(); ++n) {
@@ -91,7 +91,7 @@ std::vector<double> StepMargins(const ModelOptions& options,
       margins.push_back(MarginOfPath(options, own, scene.people[n], path, n));
       continue;
     }
-    double steps = std::log(0.25), stands = std::log(4.0);
+    double steps = std::log(0.01), stands = std::log(4.0);
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (steps + stands);
       (StepsWith(std::exp(middle), n, parameters, roll) ? steps : stands) = middle;

@@ -3,12 +3,13 @@
 // The margin of a person who is pushed is by how much the support in front might be larger, and the
 // person would still just step:
 //   feet that step (models/stance.h)  margin = b (the largest factor on the support - 1),
-//     found by rollouts with other supports, between 1/4 and 4 times that of the model
+//     found by rollouts with other supports, between 1/100 and 4 times that of the model; who steps
+//     with one support is taken to step with every smaller one
 //   else  margin = b (max over frames of rho - 1): how far the capture point gets beyond the edge
 //     of a support that goes with the cart
-//   P(step) = 1 / (1 + exp(-(a + margin / w)))     m; both -b at rest at least
+//   P(step) = 1 / (1 + exp(-(a + margin / w)))     m; -b at rest
 // So P(step) is how probable it is that somebody's support is smaller than that, where supports are
-// spread by w (a logistic distribution) about a mean that is a w smaller than the model's.
+// spread by w (a logistic distribution) about a mean of b - a w.
 // a, w by maximum likelihood over everybody in the fitted recordings, after the trajectories, with
 // a weak prior that holds them finite where a margin tells all who step from all who do not. Errors
 // are clustered by person (CR1), and those of a probability are by the delta method. What is known
@@ -34,6 +35,7 @@ struct StepOutcome {
 };
 
 // Of everybody in a scene; path: the model's own rollout. roll: the same with other parameters.
+// None where more than 20 people have feet that step: it would take too long.
 using RollWith =
     std::function<RolloutStatus(const std::vector<ParameterSet<double>>&, RolloutPath<double>*)>;
 std::vector<double> StepMargins(const ModelOptions& options,

@@ -18,14 +18,14 @@ namespace {
 
 constexpr double kSettled = 0.01;  // relative change
 constexpr int kMostRounds = 20;
-constexpr int kFewIterations = 4;  // of a rough round: by weights that will change
+constexpr int kFewIterations = 4;   // of a rough round: by weights that will change
 constexpr int kMostChanges = 2;     // of which start is the best
 constexpr double kSameCost = 1e-6;  // relative: another start at the same optimum
 constexpr double kRough = 1e-3;     // function tolerance on the way
 constexpr double kContradicted = 0.05;
-// The demand joins in three steps, each solved as the last: all of it at once outweighs everything
-// else where people are far from settled, and the solver creeps along its edge. A thirtieth moves
-// the optimum near the edge, and from there along it by steps of ordinary length.
+// The demand joins in three steps, each solved to its own optimum: all of it at once outweighs
+// everything else where people are far from settled, and the solver creeps along its edge. A
+// thirtieth moves the optimum near the edge, and from there along it by steps of ordinary length.
 constexpr double kDemandSteps[] = {0.03, 0.3, 1.0};
 
 double Change(double from, double to) {

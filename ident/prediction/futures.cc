@@ -12,6 +12,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/model/model_rollout.h"
 #include "ident/prediction/predicted_steps.h"
+#include "ident/problem/own_axes.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
@@ -45,7 +46,7 @@ bool StepsAreSpread(const IdentifiedModel& model) {
 void DrawSupport(const StepProbability& p, Random* random, ParameterSet<double>* own) {
   const double u = random->Unit();
   const double more = (std::log(u / (1.0 - u)) - p.coefficients[0]) / p.coefficients[1];
-  const double factor = std::clamp(1.0 + more / (*own)[kSupportFront], 0.1, 4.0);
+  const double factor = std::clamp(1.0 + more / (*own)[kSupportFront], 0.01, 4.0);
   for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) (*own)[id] *= factor;
 }
 
@@ -108,8 +109,8 @@ Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecordin
       }
     }
     RolloutPath<double> path;
-    if (!Rollout<double>(scene, model.options, own, InitialVelocities(scene), frames, &path,
-                         nullptr, nullptr, noisy ? &noise : nullptr)
+    if (!RolloutInOwnAxes(recording, model.options, own, frames, &path, nullptr,
+                          noisy ? &noise : nullptr)
              .ok) {
       ++futures.failed;
       continue;
@@ -238,6 +239,10 @@ std::string FuturesText(const std::vector<FuturesSummary>& summaries) {
   }
   TextTable table(titles, left);
   for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
+    const bool known = std::any_of(
+        summaries.begin(), summaries.end(),
+        [i](const FuturesSummary& summary) { return !std::isnan(summary.mean[i].mean); });
+    if (!known) continue;  // the deviance of who draws nothing but supports
     std::vector<std::string> row = {kFuturesMetrics[i].Title()};
     for (const FuturesSummary& summary : summaries) {
       row.push_back(Rounded(summary.mean[i].mean, 3));

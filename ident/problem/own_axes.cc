@@ -61,9 +61,11 @@ std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
 
 RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
                                const std::vector<ParameterSet<double>>& parameters, int num_frames,
-                               RolloutPath<double>* path, FrameTable<NetForce<double>>* trace) {
+                               RolloutPath<double>* path, FrameTable<NetForce<double>>* trace,
+                               const FrameTable<Vector4<double>>* noise) {
   const auto roll = [&](const Scene& scene) {
-    return Rollout(scene, options, parameters, InitialVelocities(scene), num_frames, path, trace);
+    return Rollout<double>(scene, options, parameters, InitialVelocities(scene), num_frames, path,
+                           trace, nullptr, noise);
   };
   const double angle = OwnAxes(recording, options.directions);
   if (angle == 0.0) return roll(WithBodies(recording.scene, recording, options.body));

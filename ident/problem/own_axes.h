@@ -28,6 +28,7 @@ std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
 RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
                                const std::vector<ParameterSet<double>>& parameters, int num_frames,
                                RolloutPath<double>* path,
-                               FrameTable<NetForce<double>>* trace = nullptr);
+                               FrameTable<NetForce<double>>* trace = nullptr,
+                               const FrameTable<Vector4<double>>* noise = nullptr);
 
 }  // namespace pushid

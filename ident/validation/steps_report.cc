@@ -126,14 +126,14 @@ void AddLiftOff(const NamedStepScores& scores, TextTable* table) {
 
 std::string StepProbabilityText(const StepProbability& p) {
   const double a = p.coefficients[0], b = p.coefficients[1];
-  std::string text =
-      "P(step) = 1 / (1 + exp(-(" + Rounded(a, 3) + " + " + Rounded(b, 3) +
-      " margin))), margin in m: how far the capture point gets beyond the feet's "
-      "support (negative: stays within; in any direction as if in front); errors +- " +
-      Rounded(std::sqrt(p.covariance(0, 0)), 2) + " and +- " +
-      Rounded(std::sqrt(p.covariance(1, 1)), 2) + " clustered by " + std::to_string(p.clusters) +
-      " people, of " + std::to_string(p.tracks) + " tracks with " + std::to_string(p.stepped) +
-      " who step";
+  std::string text = "P(step) = 1 / (1 + exp(-(" + Rounded(a, 3) + " + " + Rounded(b, 3) +
+                     " margin))), margin in m: how much larger the feet's support in front might "
+                     "be, and the person "
+                     "would just step (negative: smaller); errors +- " +
+                     Rounded(std::sqrt(p.covariance(0, 0)), 2) + " and +- " +
+                     Rounded(std::sqrt(p.covariance(1, 1)), 2) + " clustered by " +
+                     std::to_string(p.clusters) + " people, of " + std::to_string(p.tracks) +
+                     " tracks with " + std::to_string(p.stepped) + " who step";
   if (b > 0.0) text += "; half of all people step at a margin of " + Rounded(-a / b, 2) + " m";
   return text + ".";
 }

@@ -100,7 +100,10 @@ TEST(Futures, OfFeetThatStepHaveTheirProbability) {
   study.parameters = PublishedStanceParameters();
   IdentifiedModel model = TruthOf(study, BaseTable());
   model.step_probability = StepProbability();
-  for (const PendulumRecording& recording : MakePendulums(study)) {
+  std::vector<PendulumRecording> recordings = MakePendulums(study);
+  model.options.directions = Directions::kBody;
+  recordings.front().facing = 0.4;  // pushed aslant
+  for (const PendulumRecording& recording : recordings) {
     RolloutPath<double> path;
     ASSERT_TRUE(RolloutInOwnAxes(recording, model.options, PeoplesParameters(model, recording),
                                  recording.num_frames(), &path)
