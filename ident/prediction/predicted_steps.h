@@ -29,7 +29,7 @@ std::string PredictedStepsText(const PendulumRecording& recording, const Predict
 //   AUC          probability that somebody who steps has a higher p than somebody who does not
 //   fifths       tracks by p, five groups of one size: mean p beside the share that stepped
 //   lift-off     predicted minus recorded time of the first, of those who step in both
-//   place        how far the first landings are apart, where both were finished
+//   place        how far the travels of first steps are apart, where both were finished
 // Standard errors by leaving out one person after the other (jackknife): one body and one habit
 // make all of a person's tracks.
 
