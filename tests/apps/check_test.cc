@@ -30,9 +30,8 @@ class CheckTest : public AppTest {
 // A model from its file has lost nothing that a refit starts from: whatever it is made of.
 TEST_F(CheckTest, AFileIsCheckedLikeAFitThatHasJustEnded) {
   // Every refit of a network or of feet that step takes a second: they are checked by fewer.
-  const std::vector<std::string> all = {
-      "--profile=mu", "--bootstrap=9", "--bootstrap_by=recording",
-      "--push_check", "--prior_check", "--horizon_check"};
+  const std::vector<std::string> all = {"--profile=mu", "--bootstrap=9", "--bootstrap_by=recording",
+                                        "--push_check", "--prior_check", "--horizon_check"};
   const std::vector<std::string> few = {"--bootstrap=3", "--bootstrap_by=recording",
                                         "--prior_check"};
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases = {
@@ -46,7 +45,8 @@ TEST_F(CheckTest, AFileIsCheckedLikeAFitThatHasJustEnded) {
     std::vector<std::string> both = fit;
     both.insert(both.end(), checks.begin(), checks.end());
     const std::string old = FitModel("old.json", both);
-    EXPECT_TRUE(Contains(fit_.err, "pushid-fit: note: " + checks[0].substr(0, checks[0].find('='))));
+    EXPECT_TRUE(
+        Contains(fit_.err, "pushid-fit: note: " + checks[0].substr(0, checks[0].find('='))));
     const std::string plain = FitModel("plain.json", fit);
     EXPECT_EQ(fit_.err.find("note"), std::string::npos);
     const AppRun run = Check(plain, checks);

@@ -85,7 +85,8 @@ def main():
                           ("USER pushid\n", ""),
                           (" /var/lib/apt/lists/* \\\n  && useradd", " \\\n  && useradd"), (" --no-install-recommends", ""),
                           ("RUN apt-get update \\\n  && ", "RUN "), ("/tmp/pushid_*.deb \\\n  && rm", "libceres3 \\\n  && rm"),
-                          ("COPY models models", "COPY . ."), ("package_packages", "other_packages"), ("FROM ${BASE}\nCOPY", "COPY"),
+                          ("COPY models models", "COPY . ."), ("package_packages", "other_packages"),
+                          ("FROM ${BASE}\nCOPY", "COPY"),
                           ('["pushid"]', "pushid"), ("COPY ident", "ADD ident"), ("--from=build", "--from=built")):
         if before not in text or not faults(text.replace(before, after)):
             wrong.append(f"'{after}' instead of '{before}' is not found")

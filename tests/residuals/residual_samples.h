@@ -219,8 +219,8 @@ inline std::vector<InteractionTerms> SomeInteractions() {
   return some;
 }
 
-// Every combination of options that changes a rollout of one person, with the interactions in turn: every three values of
-// the options meet, those of an interaction among them.
+// Every combination of options that changes a rollout of one person, with the interactions in turn:
+// every three values of the options meet, those of an interaction among them.
 inline std::vector<ModelOptions> EveryModelOptions() {
   std::vector<ModelOptions> all;
   const std::vector<InteractionTerms> interactions = SomeInteractions();

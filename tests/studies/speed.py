@@ -210,7 +210,7 @@ def limits():
 
     for title, name in LANES.items():
         add(f"{title} the 32 recordings", "1", 1e6 * of[name]["million_operations"], 1e-3 * of[name]["cpu_time"])
-    for setting, title in (("single", "the 32 recordings"), ("groups", "the 49 of groups")):
+    for setting, title in (("single", "the 32 recordings"), ("groups", "the 49 recordings of groups")):
         fit = studies.on_recordings("pushid-fit", setting, "--quiet", out="model_out", keep=False).json
         work = [w for w in fit["run"]["work"] if w["purpose"] in SOLVING]
         jacobians, gradients, costs = (sum(w[kind] for w in work) for kind in ("jacobians", "gradients", "costs"))
@@ -222,10 +222,12 @@ def limits():
             frames = sum(r["frames"] * r["people"] for r in fit["data"]["recordings"])
             columns = sum(p["status"] != "fixed" for p in fit["parameters"])
             operations = (frames * of["CostsSideBySide"]["operations_a_frame"] *
-                          (jacobians * (1 + columns) + costs))
+                          (jacobians * (1 + columns) + gradients + costs))
         add(f"a solve of {title}", f"{jacobians} / {gradients} / {costs}", operations, sum(w["seconds"] for w in work))
-    text = studies.table(["", "normal equations / gradients / costs", "sums and products", "limit", "measured", "ratio"], rows)
-    return f"{text}\n\nAt {number(peak / 1e9)} thousand million sums and products a second, one core, 256-bit vectors; {machine()}."
+    text = studies.table(["", "normal equations / gradients / costs", "sums and products", "limit", "measured", "ratio"],
+                         rows)
+    return (f"{text}\n\nAt {number(peak / 1e9)} 10^9 sums and products a second, one core, "
+            f"{of['CostsSideBySide']['label'].split(',')[0]} vectors; {machine()}.")
 
 
 def machine():

@@ -76,8 +76,8 @@ TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
   EXPECT_NE(drawn, mean);
 }
 
-// Pendulums with rods that move, restored and fitted to bodies through the chain: of four recordings, as the derivative
-// of each goes through all frames' networks.
+// Pendulums with rods that move, restored and fitted to bodies through the chain: of four
+// recordings, as the derivative of each goes through all frames' networks.
 TEST_F(CvaeAppTest, IsTrainedAsAWholeOnRodsThatMove) {
   const std::string model = "--model=" + FitModel("rod.json", {"--rod=linear", "--max_iterations=2",
                                                                "--fix=Kd_theta=70"});
