@@ -220,7 +220,7 @@
     "with recordings long enough to show where the feet end") \
   X(kStepOnset, "step_onset", "t_on", "s", 0.5, 0.005, 2, 0.2, kLog, \
     m.stance == Stance::kSteps, false, \
-    "how long a step is prepared at the edge of the support", \
+    "how long a step is prepared just beyond the edge of the support", \
     "where feet hold and step") \
   X(kStepSwing, "step_swing", "t_s", "s", 0.32, 0.05, 2, 0.2, kLog, \
     m.stance == Stance::kSteps, false, \

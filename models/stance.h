@@ -2,7 +2,9 @@
 //
 // All places are seen from the middle between the ankles, where the cart is, in m. h is the hip, v
 // its velocity, h0 the hip in the rest posture, omega = sqrt(g / l), xi = h + v / omega the capture
-// point, d half the way between the feet, along x and y.
+// point, d half the way between the feet, along x and y, l the rod. b, b_back and b_side are the
+// parameters support_front, _back and _side; f is foot_front, kappa step_gain, t_on step_onset and
+// t_s step_swing.
 //
 // The centre of pressure c under both feet carries the hip, h'' = omega^2 (h - c):
 //   c = h0 + lim(k (h - h0) + k' v),   k = Kp / (m g l), k' = Kd / (m g l)
@@ -22,9 +24,9 @@
 // rear one; of feet side by side, that on the side of xi) leaves the ground, for t_s + (how far it
 // is behind) / 4.4 m/s. With xi' where the capture point will be at landing,
 //   place = the standing foot + kappa (xi'_x - h0_x - the standing foot), at most 1.2 l;
-// sideways it keeps its distance, and goes as far as xi' is off the middle of the two. On landing
-// the support is new, and a = t_on - 0.06 s if xi' is beyond that too. Legs have no mass: a foot in
-// the air moves the cart by half its own way, and the hip does not feel it.
+// sideways it keeps its distance, and goes as far as xi' is off the middle of the two, at most 0.4
+// m. On landing the support is new, and a = t_on - 0.06 s if xi' is beyond that too. Legs have no
+// mass: a foot in the air moves the cart by half its own way, and the hip does not feel it.
 //
 // Lifting off and landing happen at their moments within a step of the rollout: the clock goes on
 // from there, and c is the mean over the step. So paths are continuous in the parameters, with
@@ -35,7 +37,7 @@
 //
 // Sources: capture point and support, Hof, Human Movement Science 2008; capturability, Koolen et
 // al., Int. J. Robotics Research 2012. The clock and the numbers without a name were chosen by how
-// well they predict recordings of a person left out, and by that who is pushed hard stands again.
+// well they predict recordings of a person left out, and whether who is pushed hard comes to rest.
 // Rejected: a clock that does not know how far xi is beyond (steps come at 0.2 m/s already),
 // support from the hip's place at rest, c under one foot up to b always or up to b / 2 always (who
 // is pushed hard falls), one cart that chases the capture point (who is pushed hard walks on).
@@ -199,8 +201,7 @@ class StanceStep {
                                           T(kReach * self_.body.rod_length));
     const double lane = feet.swings * self_.feet_apart[1];
     place[1] = stands[1] + lane +
-               SmoothLimit<T>(kSideShare * (landing[1] - rest_[1] - stands[1] - 0.5 * lane),
-                              T(kSideReach));
+               SmoothLimit<T>(landing[1] - rest_[1] - stands[1] - 0.5 * lane, T(kSideReach));
     T way = T(1.0);  // of what is left of it
     if (!lands) {
       const T before = SmoothRise(T(feet.clock / total));
@@ -244,8 +245,8 @@ class StanceStep {
   static constexpr double kFootSpeed = 4.4;  // m/s
   static constexpr double kCaptureGain = 2.5;
   static constexpr double kFootBack = 0.05, kFootSide = 0.03, kLeastReach = 0.02;  // m
-  static constexpr double kReach = 1.2;                        // of the rod: the longest step
-  static constexpr double kSideShare = 1.0, kSideReach = 0.4;  // m
+  static constexpr double kReach = 1.2;      // of the rod: the longest step
+  static constexpr double kSideReach = 0.4;  // m: the longest to the side
 
   const SelfForce& self_;
   const StanceParameters<T>& p_;

@@ -55,14 +55,6 @@ Outcome Judge(const FormationRun& run, int person, int onset_frame) {
   return settled ? Outcome::kSettled : Outcome::kSlow;
 }
 
-// Horizontal; without a push, forwards.
-Eigen::Vector2d WayOfPush(const Scene& scene) {
-  if (scene.pushes.empty() || scene.pushes[0].mean.head<2>().isZero(0.0)) {
-    return Eigen::Vector2d::UnitX();
-  }
-  return scene.pushes[0].mean.head<2>().normalized();
-}
-
 PersonSummary Summarize(const FormationRun& run, int person) {
   const std::vector<Vector3<double>>& hip = run.prediction.hip[person];
   PersonSummary summary;
@@ -70,7 +62,7 @@ PersonSummary Summarize(const FormationRun& run, int person) {
     summary.peak_speed = std::max(summary.peak_speed, HipSpeed(run, person, t));
   }
   summary.onset_frame = OnsetFrame(hip);
-  summary.displacement = WayOfPush(run.recording.scene).dot((hip.back() - hip.front()).head<2>());
+  summary.displacement = PushDirection(run.recording).dot((hip.back() - hip.front()).head<2>());
   summary.outcome = Judge(run, person, summary.onset_frame);
   return summary;
 }

@@ -6,6 +6,7 @@
 
 #include "ident/fit/step_probability.h"
 #include "ident/problem/behaviour.h"
+#include "ident/problem/own_axes.h"
 #include "models/crowd.h"
 
 namespace pushid {
@@ -18,10 +19,11 @@ class PushedPerson {
  public:
   PushedPerson(const IdentifiedModel& model, double impulse_per_mass, double duration,
                double degrees)
-      : model_(model), scene_(SettlingScene(kSettlingMass, 0.0)), degrees_(degrees) {
-    scene_.pushes.clear();
+      : model_(model), degrees_(degrees) {
+    recording_.scene = SettlingScene(kSettlingMass, 0.0);
+    recording_.scene.pushes.clear();
     AddHipPush(0, {impulse_per_mass * kSettlingMass, 0.0, duration, degrees * M_PI / 180.0},
-               &scene_);
+               &recording_.scene);
   }
 
   // In the first 1.5 s: later only who does not settle would step.
@@ -33,7 +35,7 @@ class PushedPerson {
     };
     if (!roll({model_.parameters}, &path).ok) return 1.0;
     return model_.step_probability->At(
-        StepMargins(model_.options, {model_.parameters}, scene_, path, roll)[0]);
+        StepMargins(model_.options, {model_.parameters}, recording_.scene, path, roll)[0]);
   }
 
   double End() const {
@@ -41,9 +43,9 @@ class PushedPerson {
     if (!Roll({model_.parameters}, kEndSeconds, &path).ok) {
       return std::numeric_limits<double>::quiet_NaN();
     }
-    const Body& body = scene_.people[0].body;
+    const Body& body = recording_.scene.people[0].body;
     const Vector3<double> way = HipPosition(body, path.At(path.num_frames() - 1, 0).q) -
-                                HipPosition(body, scene_.people[0].start.q);
+                                HipPosition(body, recording_.scene.people[0].start.q);
     const double direction = degrees_ * M_PI / 180.0;
     return way.x() * std::cos(direction) + way.y() * std::sin(direction);
   }
@@ -51,13 +53,14 @@ class PushedPerson {
  private:
   RolloutStatus Roll(const std::vector<ParameterSet<double>>& p, double seconds,
                      RolloutPath<double>* path) const {
+    const Scene& scene = recording_.scene;
     const int frames =
-        scene_.pushes[0].EndFrame() + static_cast<int>(std::lround(seconds / scene_.dt));
-    return Rollout<double>(scene_, model_.options, p, InitialVelocities(scene_), frames, path);
+        scene.pushes[0].EndFrame() + static_cast<int>(std::lround(seconds / scene.dt));
+    return RolloutInOwnAxes(recording_, model_.options, p, frames, path);
   }
 
   const IdentifiedModel& model_;
-  Scene scene_;
+  PendulumRecording recording_;
   double degrees_;
 };
 

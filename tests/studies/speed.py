@@ -6,8 +6,6 @@ processes   tests/benchmarks/README.md; two minutes
 batch       tests/benchmarks/README.md; a batch of 101 fits; half a minute
 rivals      tests/benchmarks/README.md; the same fit in SciPy and PyTorch (python3-scipy, python3-torch); a minute
 limits      tests/benchmarks/README.md; what the processor could do in the same time; half a minute
-against     tests/benchmarks/README.md; this commit's fits and another's, whose folder of programs PUSHID_BIN_BEFORE
-            names; three minutes
 
 Times on one core, busy with nothing else if they are to be compared.
 """
@@ -17,7 +15,6 @@ import re
 import resource
 import statistics
 import subprocess
-import sys
 import tempfile
 import time
 
@@ -237,28 +234,6 @@ def machine():
     return f"{names['model name'].strip()}, {os.cpu_count()} cores"
 
 
-def against():
-    """In turns, so that what else the machine does hits both alike."""
-    folder = os.environ.get("PUSHID_BIN_BEFORE")
-    if not folder:
-        sys.exit("speed.py: against needs PUSHID_BIN_BEFORE, the folder of the other commit's programs")
-    rows = []
-    for title, runs, flags in [
-            ("the 32 recordings of single people, `--setting=single`", 9, ["--setting=single"]),
-            ("... `--bootstrap=99`", 3, ["--setting=single", "--bootstrap=99"]),
-            ("... `--profile`", 1, ["--setting=single", "--profile"]),
-            ("the 49 recordings of groups, `--setting=groups`", 3, ["--setting=groups"])]:
-        seconds = {folder: [], studies.BIN: []}
-        for _ in range(runs):
-            for programs, times in seconds.items():
-                command = [os.path.join(programs, "pushid-fit"), f"--recordings={studies.MANIFEST}", "--quiet", *flags]
-                times.append(processor_seconds_once(*command))
-        before, now = (statistics.median(times) for times in seconds.values())
-        rows.append([title, f"{number(before, 2)} s", f"{number(now, 2)} s", f"{number(before / now, 2)}"])
-    text = studies.table(["a whole `pushid-fit`, one thread, medians of processor time", "before", "now", "ratio"], rows)
-    return f"{text}\n\nMeasured on {machine()}."
-
-
 if __name__ == "__main__":
     studies.main(__file__, {"benchmarks": benchmarks, "crowds": crowds, "processes": processes, "batch": batch,
-                            "rivals": rivals, "limits": limits, "against": against})
+                            "rivals": rivals, "limits": limits})

@@ -59,6 +59,22 @@ TEST(PushResponse, DirectionsDifferWhereTheSupportDoes) {
   EXPECT_EQ(response.step_by_duration[at][4], steps[0]);
 }
 
+// A model that is the same in all directions is so of feet that step, too.
+TEST(PushResponse, ModelsOfNoDirectionHaveNone) {
+  SyntheticOptions study;
+  study.model.stance = Stance::kSteps;
+  study.parameters = PublishedStanceParameters();
+  IdentifiedModel model = SlidingModel();
+  model.options = study.model;
+  model.options.directions = Directions::kIsotropic;
+  model.parameters = study.parameters;
+  const PushResponse response = ComputePushResponse(model);
+  for (const std::vector<double>& steps : response.step_by_direction) {
+    for (double probability : steps) EXPECT_NEAR(probability, steps[0], 1e-6);
+  }
+  EXPECT_GT(response.step_by_direction.back()[0], response.step_by_direction[0][0] + 0.1);
+}
+
 TEST(PushResponse, WhoFallsEndsNowhere) {
   IdentifiedModel falling = SlidingModel();
   falling.parameters[kKpTheta] = falling.parameters[kKpPhi] = 0.0;
