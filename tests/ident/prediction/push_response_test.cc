@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "models/self_terms.h"
@@ -59,8 +60,9 @@ TEST(PushResponse, DirectionsDifferWhereTheSupportDoes) {
   EXPECT_EQ(response.step_by_duration[at][4], steps[0]);
 }
 
-// A model that is the same in all directions is so of feet that step, too.
-TEST(PushResponse, ModelsOfNoDirectionHaveNone) {
+// A model that is the same in all directions knows none but that of the feet, which stand side by
+// side: forwards is as backwards, and who is pushed to the side has the wider support.
+TEST(PushResponse, AlikeInAllDirectionsButForTheFeet) {
   SyntheticOptions study;
   study.model.stance = Stance::kSteps;
   study.parameters = PublishedStanceParameters();
@@ -69,9 +71,15 @@ TEST(PushResponse, ModelsOfNoDirectionHaveNone) {
   model.options.directions = Directions::kIsotropic;
   model.parameters = study.parameters;
   const PushResponse response = ComputePushResponse(model);
+  double widest = 0.0;
   for (const std::vector<double>& steps : response.step_by_direction) {
-    for (double probability : steps) EXPECT_NEAR(probability, steps[0], 1e-6);
+    EXPECT_NEAR(steps[4], steps[0], 1e-6);
+    EXPECT_NEAR(steps[3], steps[1], 1e-6);
+    EXPECT_LE(steps[1], steps[0]);
+    EXPECT_LE(steps[2], steps[1]);
+    widest = std::max(widest, steps[0] - steps[2]);
   }
+  EXPECT_GT(widest, 0.3);
   EXPECT_GT(response.step_by_direction.back()[0], response.step_by_direction[0][0] + 0.1);
 }
 
