@@ -151,7 +151,7 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
   }
   if (checks.bootstrap.replicas > 0) {
     if (MaybeError error =
-            AddBootstrap(recordings, checks.bootstrap, progress("bootstrap replica"), model)) {
+            AddBootstrap(recordings, checks.bootstrap, progress("bootstrap draw"), model)) {
       return *error;
     }
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <mutex>
 
 #include "datasets/files/random.h"
@@ -54,6 +55,22 @@ ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
   if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", "", nullptr);
   if (!fit.converged || !fit.failed.empty()) return {};
   return ValuesAt(drawn, fit.to, combinations);
+}
+
+// Replicas that are the same fit: of few people there are few different draws.
+struct Draw {
+  std::vector<int> counts, replicas;
+};
+std::vector<Draw> DistinctDraws(const ResamplingUnits& from, const BootstrapOptions& options) {
+  std::vector<Draw> draws;
+  std::map<std::vector<int>, size_t> found;
+  for (int k = 0; k < options.replicas; ++k) {
+    std::vector<int> counts = DrawRecordings(from, options.seed, k);
+    const auto [at, is_new] = found.try_emplace(counts, draws.size());
+    if (is_new) draws.push_back({std::move(counts), {}});
+    draws[at->second].replicas.push_back(k);
+  }
+  return draws;
 }
 
 void Summarize(Bootstrap* bootstrap) {
@@ -152,24 +169,25 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
   BootstrapFile file;
   if (MaybeError error = file.Open(problem, options, bootstrap)) return *error;
   std::vector<ReplicaValues> replicas(options.replicas);
+  const std::vector<Draw> draws = DistinctDraws(from, options);
   std::mutex writing;
   std::atomic<bool> stopped{false};
   MaybeError failed;
   ParallelFor(
-      options.replicas, options.num_threads,
-      [&](int k) {
+      static_cast<int>(draws.size()), options.num_threads,
+      [&](int i) {
         if (stopped) return;
-        const auto kept = file.finished().find(k);
-        if (kept != file.finished().end()) {
-          replicas[k] = kept->second;
-          return;
-        }
-        replicas[k] =
-            FitReplica(problem, estimate, DrawRecordings(from, options.seed, k), combinations);
+        const Draw& draw = draws[i];
+        const auto kept = file.finished().find(draw.replicas.front());
+        const ReplicaValues values = kept != file.finished().end()
+                                         ? kept->second
+                                         : FitReplica(problem, estimate, draw.counts, combinations);
         const std::lock_guard<std::mutex> lock(writing);
-        if (stopped) return;
-        failed = file.Append(k, replicas[k]);
-        stopped = failed.has_value();
+        for (int k : draw.replicas) {
+          replicas[k] = values;
+          if (!stopped && file.finished().count(k) == 0) failed = file.Append(k, values);
+          stopped = stopped || failed.has_value();
+        }
       },
       progress);
   if (failed) return *failed;

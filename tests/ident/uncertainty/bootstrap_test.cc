@@ -144,6 +144,28 @@ TEST_F(BootstrapRun, ThreadsAndFilesChangeNothing) {
   }
 }
 
+// Three recordings can be drawn in ten ways: so many fits, however many replicas.
+TEST_F(BootstrapRun, EachDrawIsFittedOnce) {
+  const std::vector<PendulumRecording> three(recordings_.begin(), recordings_.begin() + 3);
+  const FitProblem problem(three, options_);
+  int fits = 0;
+  const Bootstrap many = ComputeBootstrap(problem, estimate_, {300, 1, Path("many.jsonl"), 1},
+                                          [&fits](int, int total) { fits = total; })
+                             .value();
+  EXPECT_EQ(fits, 10);
+  EXPECT_EQ(many.values.size() + many.failed, 300u);
+  const ResamplingUnits from = MakeResamplingUnits(three, problem.options().cluster);
+  for (int k : {0, 150, 299}) {
+    const std::vector<int> counts = DrawRecordings(from, 1, k);
+    SolveStart alone = Refit(FitProblem(three, options_, counts), estimate_);
+    ASSERT_TRUE(alone.usable);
+    EXPECT_NEAR(many.values[k][0], alone.to.shared[0], 1e-2 * many.values[k][0]);
+  }
+  // Those that a file holds are not fitted again, in whatever order it holds them.
+  EXPECT_EQ(ComputeBootstrap(problem, estimate_, {300, 1, Path("many.jsonl"), 2}).value().values,
+            many.values);
+}
+
 TEST_F(BootstrapRun, GoesOnAfterAKill) {
   const Bootstrap whole = Run(10, 1, Path("whole.jsonl")).value();
   // Killed in the middle of a line: half of the last one reached the disk.
