@@ -4,7 +4,7 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(pushid_libraries models restoration peers datasets residuals adjoint ident large_networks peer_files forecasts)
+get_target_property(pushid_libraries pushid_shared PUSHID_LIBRARIES)
 install(TARGETS pushid_options EXPORT pushid_targets)
 set_target_properties(pushid_options PROPERTIES EXPORT_NAME options)
 foreach(library ${pushid_libraries})
@@ -28,8 +28,11 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/pushidConfigVersion.cmake
 install(FILES ${PROJECT_BINARY_DIR}/pushidConfig.cmake ${PROJECT_BINARY_DIR}/pushidConfigVersion.cmake
         DESTINATION ${package_folder} COMPONENT development)
 
+set(private_folder ${CMAKE_INSTALL_LIBDIR}/pushid)
+install(TARGETS pushid_shared LIBRARY DESTINATION ${private_folder} COMPONENT programs NAMELINK_SKIP)
 get_property(programs GLOBAL PROPERTY PUSHID_PROGRAMS)
 foreach(program ${programs})
+  set_target_properties(${program} PROPERTIES INSTALL_RPATH "$ORIGIN/../${private_folder}")
   set(component programs)
   if(program MATCHES "^pushid-train-")
     set(component training)
@@ -90,6 +93,8 @@ if(PUSHID_PYTHON)
 endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/ident)
+set(CPACK_DEBIAN_TRAINING_PACKAGE_DEPENDS "pushid (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS snakemake)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libceres-dev, libeigen3-dev, nlohmann-json3-dev, libxxhash-dev, libsqlite3-dev")
