@@ -12,7 +12,9 @@ namespace {
 
 // Lengths are in half widths: where a quadratic cost would cross the threshold.
 constexpr int kMaxSteps = 60;
-constexpr int kStepsToThreshold = 4;    // aimed at, on a quadratic cost
+// Aimed at, on a quadratic cost. With 4 the first step of a profile to 13 standard errors (few
+// people) lands so far from the path that the held fit ends in another basin.
+constexpr int kStepsToThreshold = 8;
 constexpr double kMaxGrowth = 3.0;      // of a step over the one before
 constexpr double kSmallestStep = 1e-3;  // what may be left of a step that keeps failing
 constexpr double kFlatReach = 1e4;      // this far without a rise is flat
