@@ -122,6 +122,26 @@ TEST(ProfileSearch, FollowsTheClosedForm) {
   }
 }
 
+// The other number goes with the square of the held one, and a fit that starts 1 beside it ends in
+// another basin: over 12.7 standard errors, those of two people, no step is as long as that.
+TEST(ProfileSearch, StaysOnACurvedPath) {
+  ProfileSearch search;
+  search.point = {0.0, 0.0};
+  search.direction = {1.0, 0.0};
+  search.naive_error = 1.0;
+  search.threshold = 0.5 * 12.7 * 12.7;
+  search.lower = -100.0;
+  search.upper = 100.0;
+  const HoldFit hold = [](double wanted, const std::vector<double>& from) {
+    const double path = 0.1 * wanted * wanted;
+    const double basin = std::abs(from[1] - path) > 1.0 ? 300.0 : 0.0;
+    return HeldFit{true, wanted, 0.5 * wanted * wanted + basin, {wanted, path}};
+  };
+  for (int sign : {-1, 1}) {
+    EXPECT_NEAR(TraceProfile(search, sign, hold).crossing, sign * 12.7, 0.02);
+  }
+}
+
 TEST(ProfileSearch, NeedNotLocateACrossing) {
   const Saturation s = NoisyData({0.1, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0}, 0.05);
   ProfileSearch search = SearchAround(s, 0.5 * 0.05 * 0.05 * 3.84);
