@@ -72,14 +72,11 @@ MaybeError CheckPicture(const std::string& flag, const std::string& file, int pe
                " people; leave it out or lower --people"};
 }
 
-constexpr int kPosesOfStrip = 6;
-
-BodyScene SceneOfRun(const FormationRun& run, std::vector<BodyMotion> bodies) {
+BodyScene SceneOfRun(const FormationRun& run) {
   BodyScene scene;
   scene.id = run.recording.id;
   scene.dt = run.recording.scene.dt;
   scene.subject_ids = run.recording.subject_ids;
-  scene.bodies = std::move(bodies);
   return scene;
 }
 
@@ -186,13 +183,14 @@ MaybeError WriteFormationBodies(const PostprocessOptions& postprocess,
                                 const std::optional<FormationBodyPlan>& plan,
                                 const FormationRun& run, const std::string& title) {
   const bool generates = plan && plan->generator;
-  BodyScene scene = SceneOfRun(run, {});
+  BodyScene scene = SceneOfRun(run);
   if (plan) {
     Result<std::vector<BodyMotion>> bodies =
         generates ? GeneratedBodies(run, plan->first_poses, *plan->generator)
                   : FormationBodies(run, plan->first_poses, *plan->restoration, postprocess);
     if (!bodies.ok()) return bodies.error();
     scene.bodies = std::move(bodies.value());
+    if (!generates) scene.footprints = PredictedFootprints(run.recording, run.prediction);
   }
   Animation animation;
   animation.title = title + (generates ? "; bodies by diffusion" : "");
@@ -202,13 +200,14 @@ MaybeError WriteFormationBodies(const PostprocessOptions& postprocess,
   AddPrediction(run.recording, run.prediction, generates ? std::vector<BodyMotion>() : scene.bodies,
                 &animation);
   AddPushes(run.recording, &animation);
+  animation.figures = FeetSvg(run);
   using File = const std::string&;
   return WriteNamed(
       {{FLAGS_html_out,
         [&](File file) { return WriteFileAtomically(file, AnimationHtml(animation)); }},
        {FLAGS_strip_out,
         [&](File file) {
-          return WriteFileAtomically(file, PoseStripSvg(animation, kPosesOfStrip));
+          return WriteFileAtomically(file, PoseStrip(animation, kPosesOfStrip).ToString());
         }},
        {FLAGS_joints_out, [&](File file) { return WriteJointsCsv(file, scene); }},
        {FLAGS_bodies_out, [&](File file) -> MaybeError {

@@ -171,7 +171,7 @@ Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
   Animation animation;
   animation.title = recording.pendulum.id + ", " + NameOf(loaded.kind);
   animation.dt = recording.pendulum.scene.dt;
-  AddRecorded(recording.pendulum.subject_ids, recording.bodies, &animation);
+  AddRecorded(recording.pendulum, recording.bodies, &animation);
   AddForecast(recording.pendulum.subject_ids, bodies.value(), &animation);
   AddPushes(recording.pendulum, &animation);
   animation.figures = figures;
@@ -188,7 +188,7 @@ Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
   }
   MaybeError error;
   if (!flags.strip_out.empty()) {
-    error = WriteFileAtomically(flags.strip_out, PoseStripSvg(animation, flags.poses));
+    error = WriteFileAtomically(flags.strip_out, PoseStrip(animation, flags.poses).ToString());
     files.push_back(flags.strip_out);
   }
   if (!error && !flags.page_out.empty()) {

@@ -14,6 +14,7 @@
 #include "datasets/files/names.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
+#include "ident/formations/formation_files.h"
 #include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/prediction.h"
 
@@ -102,7 +103,7 @@ int Run() {
   if (recording.ok() && FLAGS_recorded) {
     std::vector<BodyMotion> seen = recording.value().bodies;
     ToLaboratory(pendulum.scene, &seen);
-    AddRecorded(pendulum.subject_ids, seen, &animation);
+    AddRecorded(pendulum, seen, &animation);
   }
   for (const WhatIf& one : what_ifs.value()) {
     const Prediction prediction = Predict(one.model, pendulum);
@@ -116,6 +117,7 @@ int Run() {
       bodies = RestoreBodies(*restoration.value(), flags.value().postprocess,
                              PredictedPeople(recording.value(), prediction));
     }
+    if (animation.figures.empty()) animation.figures = FeetSvg({pendulum, prediction, {}});
     ToLaboratory(pendulum.scene, &bodies);
     AddPrediction(InLaboratory(pendulum), InLaboratory(pendulum, prediction), bodies, &animation,
                   one.what);
@@ -123,7 +125,7 @@ int Run() {
   MaybeError error;
   if (!FLAGS_out.empty()) error = Write(FLAGS_out, AnimationHtml(animation));
   if (!error && !FLAGS_strip_out.empty()) {
-    error = Write(FLAGS_strip_out, PoseStripSvg(animation, FLAGS_poses));
+    error = Write(FLAGS_strip_out, PoseStrip(animation, FLAGS_poses).ToString());
   }
   return error ? Fail(*error) : kDone;
 }

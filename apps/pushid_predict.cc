@@ -148,7 +148,8 @@ int WriteBodies(const RestorationFlags& flags, const Recording& recorded, Skelet
     score = ScoreBodies(recording.value(), bodies, std::max(1, prediction.observed));
   }
   ToLaboratory(recording.value().pendulum.scene, &bodies);
-  const BodyScene scene = SceneOf(recording.value(), std::move(bodies));
+  BodyScene scene = SceneOf(recording.value(), std::move(bodies));
+  scene.footprints = PredictedFootprints(recording.value().pendulum, prediction);
   const Result<std::vector<std::string>> files = WriteScene(scene, recording.value(), prediction);
   if (!files.ok()) return Fail(files.error());
   std::printf("%s: %d frames of %d %s predicted (%s)\n", scene.id.c_str(), scene.num_frames(),

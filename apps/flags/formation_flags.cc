@@ -221,7 +221,10 @@ std::string RunTitle(int people, const std::vector<HipPush>& pushes) {
   }
   text << (FLAGS_pushed.find(',') == std::string::npos ? " on person " : " on people ")
        << FLAGS_pushed;
-  if (FLAGS_push_direction != 0.0) text << ", " << FLAGS_push_direction << " degrees to the left";
+  if (FLAGS_push_direction != 0.0) {
+    text << ", " << std::abs(FLAGS_push_direction) << " degrees to the "
+         << (FLAGS_push_direction > 0.0 ? "left" : "right");
+  }
   return text.str();
 }
 

@@ -7,7 +7,7 @@ namespace pushid {
 namespace {
 
 py::dict DictOf(const Chart& chart) {
-  py::list lines, bands, lanes, bars;
+  py::list lines, bands, lanes, bars, labels;
   for (const ChartLine& line : chart.lines) {
     lines.append(py::make_tuple(line.points, line.look, line.dots));
   }
@@ -20,6 +20,9 @@ py::dict DictOf(const Chart& chart) {
   for (const ChartBar& bar : chart.bars) {
     bars.append(py::make_tuple(bar.row, bar.from, bar.to, bar.look));
   }
+  for (const ChartLabel& label : chart.labels) {
+    labels.append(py::make_tuple(label.x, label.y, label.text));
+  }
   py::dict dict;
   dict["title"] = chart.title;
   dict["x_label"] = chart.x_label;
@@ -28,6 +31,8 @@ py::dict DictOf(const Chart& chart) {
   dict["bands"] = bands;
   dict["lanes"] = lanes;
   dict["bars"] = bars;
+  dict["labels"] = labels;
+  dict["is_map"] = chart.is_map;
   dict["levels"] = chart.levels;
   dict["marks"] = chart.marks;
   dict["x_range"] = py::make_tuple(chart.x_from, chart.x_to);

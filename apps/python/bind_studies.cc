@@ -160,7 +160,7 @@ namespace {
 struct FormationAsked {
   std::string shape;
   int people, pushed;
-  double spacing, push, push_duration, mass, rod, duration, fps;
+  double spacing, push, push_duration, push_direction, mass, rod, duration, fps;
 };
 
 Scene SceneOf(const FormationAsked& asked) {
@@ -182,7 +182,8 @@ Scene SceneOf(const FormationAsked& asked) {
   body.rod_length = asked.rod;
   Scene scene = FormationScene(FormationPositions(how->second, asked.people, asked.spacing), body,
                                1.0 / asked.fps);
-  AddHipPush(asked.pushed, {asked.push, 0.0, asked.push_duration}, &scene);
+  AddHipPush(asked.pushed,
+             {asked.push, 0.0, asked.push_duration, asked.push_direction * M_PI / 180.0}, &scene);
   return scene;
 }
 
@@ -221,10 +222,11 @@ void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dic
 }
 
 py::dict OnFormation(const Model& model, const std::string& shape, int people, double spacing,
-                     int pushed, double push, double push_duration, double mass, double rod,
-                     double duration, double fps, const std::string& set, bool bands) {
-  const Scene scene =
-      SceneOf({shape, people, pushed, spacing, push, push_duration, mass, rod, duration, fps});
+                     int pushed, double push, double push_duration, double push_direction,
+                     double mass, double rod, double duration, double fps, const std::string& set,
+                     bool bands) {
+  const Scene scene = SceneOf({shape, people, pushed, spacing, push, push_duration, push_direction,
+                               mass, rod, duration, fps});
   const IdentifiedModel identified = With(model, set);
   const std::shared_ptr<const FittedModel> fitted = model.fitted;
   FormationRun run;

@@ -1,4 +1,4 @@
-// ident: what an animation shows, collected, and its page.
+// ident: the page of an animation.
 #include "ident/bodies/animation.h"
 
 #include <algorithm>
@@ -13,72 +13,6 @@
 #include "ident/figures/svg.h"
 
 namespace pushid {
-namespace {
-
-void AddBodies(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
-               bool recorded, Animation* animation) {
-  for (size_t n = 0; n < bodies.size(); ++n) {
-    AnimatedPerson person;
-    person.name = names[n];
-    person.recorded = recorded;
-    person.body = bodies[n];
-    animation->people.push_back(std::move(person));
-  }
-}
-
-}  // namespace
-
-int Animation::num_frames() const {
-  size_t frames = 0;
-  for (const AnimatedPerson& person : people) {
-    frames = std::max({frames, person.body.size(), person.tip.size()});
-  }
-  return static_cast<int>(frames);
-}
-
-std::vector<std::string> WhatsOf(const Animation& animation) {
-  std::vector<std::string> whats;
-  for (const AnimatedPerson& person : animation.people) {
-    const bool known = std::find(whats.begin(), whats.end(), person.what) != whats.end();
-    if (!person.recorded && !known) whats.push_back(person.what);
-  }
-  return whats;
-}
-
-void AddPrediction(const PendulumRecording& recording, const Prediction& prediction,
-                   const std::vector<BodyMotion>& bodies, Animation* animation,
-                   const std::string& what) {
-  for (int n = 0; n < recording.scene.num_people(); ++n) {
-    AnimatedPerson person;
-    person.name = recording.subject_ids[n];
-    person.what = what;
-    if (n < static_cast<int>(bodies.size())) person.body = bodies[n];
-    person.tip = prediction.hip[n];
-    for (int t = 0; t < prediction.path.num_frames(); ++t) {
-      const Vector4<double>& q = prediction.path.At(t, n).q;
-      person.cart.emplace_back(q[0], q[1], prediction.BodyAt(recording.scene, t, n).cart_height);
-      person.force.push_back(prediction.forces.At(t, n).Total());
-    }
-    animation->people.push_back(std::move(person));
-  }
-}
-
-void AddPushes(const PendulumRecording& recording, Animation* animation) {
-  for (const ScenePush& push : recording.scene.pushes) {
-    animation->pushes.push_back({recording.subject_ids[push.person], push.start_frame, push.force});
-  }
-}
-
-void AddRecorded(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
-                 Animation* animation) {
-  AddBodies(names, bodies, true, animation);
-}
-
-void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
-                 Animation* animation) {
-  AddBodies(names, bodies, false, animation);
-}
-
 namespace {
 
 constexpr double kBrightest = 0.85;  // of the scale of colours, that is seen on paper
@@ -114,6 +48,11 @@ function floor(){const grid=style('--grid'),step=500,n=Math.ceil(size/step)+1;
  for(let i=-n;i<=n;i++){const m=Math.round((cx-origin[0])/step)+i;if(m%2)continue;
   const p=project(origin[0]+m*step,front,0);words(String(m/2).replace('-','\u2212')+' m',p[0],p[1]+14*d,style('--ink'));}}
 function body(f,colour){for(let j=1;j<22;j++)line(at(f,parents[j]),at(f,j),colour,28);dot(at(f,5),95,colour);}
+// A foot on the ground, which fades when it leaves; with the time at which it landed.
+function sole(p,[x,y,from,to]){if(frame<from)return;const c=Math.cos(p.facing),s=Math.sin(p.facing);pen.beginPath();
+ for(let i=0;i<24;i++){const a=i*Math.PI/12,u=data.sole[0]+data.sole[1]*Math.cos(a),v=45*Math.sin(a),q=project(x+c*u-s*v,y+s*u+c*v,0);pen.lineTo(q[0],q[1]);}
+ pen.globalAlpha=frame<to?0.6:0.2;pen.fillStyle=colourOf(p);pen.fill();pen.globalAlpha=1;
+ const q=project(x+c*data.sole[0],y+s*data.sole[0],0);if(from&&!p.recorded)words((from*data.dt).toFixed(2)+' s',q[0],q[1]+4*(devicePixelRatio||1),style('--ink'));}
 // Ends where it meets the hip.
 function arrow(hip,force){const n=Math.hypot(...force);if(n<5)return;const c=style('--push'),d=devicePixelRatio||1;
  const tail=[hip[0]-force[0],hip[1]-force[1],hip[2]],u=[force[0]/n,force[1]/n];line(tail,hip,c,30);
@@ -150,6 +89,7 @@ if(data.story)data.story.moments.forEach((m,i)=>{$('moment'+i).onclick=()=>{play
 function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.height=view.clientHeight*d;
  pen.lineCap='round';pen.clearRect(0,0,view.width,view.height);floor();
  const hips=new Map(),labels=[];
+ if(on('footprints'))for(const p of data.people)if(shown(p))for(const print of p.footprints)sole(p,print);
  for(const p of data.people){const f=frameOf(p),colour=colourOf(p);
   if(!shown(p))continue;
   hips.set(p.name,hip(p,f));
@@ -194,6 +134,9 @@ std::string Choices(const Animation& animation, const std::vector<std::string>& 
   }
   if (any([](const AnimatedPerson& p) { return !p.force.empty(); })) {
     html += Box("forces", "net forces (1 m = 1000 N)", "#e0a100");
+  }
+  if (any([](const AnimatedPerson& p) { return !p.footprints.empty(); })) {
+    html += Box("footprints", "footprints");
   }
   html += Box("names", "names");
   if (names.size() > 1) html += Box("above", "from above");
@@ -250,10 +193,16 @@ nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::s
     body.push_back(std::move(numbers));
   }
   for (const auto& f : person.force) force.push_back({Whole(f[0]), Whole(f[1])});
+  nlohmann::json prints = nlohmann::json::array();
+  for (const Footprint& p : person.footprints) {
+    prints.push_back({Whole(1000 * p.place[0]), Whole(1000 * p.place[1]), p.landing, p.lift_off});
+  }
   return {{"name", person.name},
           {"recorded", person.recorded},
           {"what", std::find(whats.begin(), whats.end(), person.what) - whats.begin()},
           {"body", std::move(body)},
+          {"footprints", std::move(prints)},
+          {"facing", person.facing},
           {"cart", Millimetres(person.cart)},
           {"tip", Millimetres(person.tip)},
           {"force", std::move(force)}};
@@ -263,13 +212,15 @@ nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::s
 
 std::string AnimationHtml(const Animation& animation) {
   const std::vector<std::string> whats = WhatsOf(animation);
-  nlohmann::json data = {{"title", animation.title},
-                         {"dt", animation.dt},
-                         {"frames", animation.num_frames()},
-                         {"whats", whats},
-                         {"colours", ColoursOf(animation, whats)},
-                         {"people", nlohmann::json::array()},
-                         {"pushes", nlohmann::json::array()}};
+  nlohmann::json data = {
+      {"title", animation.title},
+      {"dt", animation.dt},
+      {"frames", animation.num_frames()},
+      {"whats", whats},
+      {"sole", {500 * (kSoleBefore - kSoleBehind), 500 * (kSoleBefore + kSoleBehind)}},
+      {"colours", ColoursOf(animation, whats)},
+      {"people", nlohmann::json::array()},
+      {"pushes", nlohmann::json::array()}};
   for (const AnimatedPerson& person : animation.people) {
     data["people"].push_back(PersonJson(person, whats));
   }

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "ident/bodies/body_files.h"
+#include "ident/figures/svg.h"
 #include "ident/prediction/force_story.h"
+#include "ident/prediction/predicted_steps.h"
 
 namespace pushid {
 
@@ -18,6 +20,8 @@ struct AnimatedPerson {
   std::vector<Vector3<double>> cart;  // empty: none
   std::vector<Vector3<double>> tip;
   std::vector<Vector4<double>> force;  // net, generalized: N and N m; empty: none
+  std::vector<Footprint> footprints;   // empty: unknown
+  double facing = 0.0;                 // of the feet, rad from x
   std::string what;                    // of a what-if: "mu=10"; empty: the model as it was fitted
 };
 
@@ -56,13 +60,14 @@ void AddPrediction(const PendulumRecording& recording, const Prediction& predict
                    const std::string& what = "");
 void AddPushes(const PendulumRecording& recording, Animation* animation);
 // Bodies alone: recorded, or forecast without a pendulum.
-void AddRecorded(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
+void AddRecorded(const PendulumRecording& recording, const std::vector<BodyMotion>& bodies,
                  Animation* animation);
 void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
                  Animation* animation);
 
 // One self-contained page: no network, no library. Play, time slider, orbit by mouse or touch,
-// zoom by wheel, and what is shown by check boxes. The ground has marks in metres from where the
+// zoom by wheel, and what is shown by check boxes. Feet that step leave their prints, with the
+// times of landings, which fade when they leave. The ground has marks in metres from where the
 // pushed person starts; a group is seen from above as well; a story stands beside with its forces,
 // and its moments lead to their frames.
 std::string AnimationHtml(const Animation& animation);
@@ -75,7 +80,11 @@ inline constexpr char kAnimatedPushColour[] = "#d55e00";
 
 // `poses` moments from first to last frame, between which people move equally far, and the hardest
 // moment of a push among them, seen from the side (x to the right, z up), recorded bodies grey
-// behind predicted ones in colour.
-std::string PoseStripSvg(const Animation& animation, int poses);
+// behind predicted ones in colour; under the ground the feet that stand.
+SvgPicture PoseStrip(const Animation& animation, int poses);
+inline constexpr int kPosesOfStrip = 6;  // where nobody says how many
+
+// From an ankle to the ends of a foot as it is drawn, m.
+inline constexpr double kSoleBehind = 0.06, kSoleBefore = 0.19;
 
 }  // namespace pushid

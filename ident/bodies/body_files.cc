@@ -152,6 +152,32 @@ BvhMotion ToBvh(const BodySkeleton& skeleton, const BodyMotion& motion, double d
   return HierarchyMotion(skeleton).Write(motion, dt);
 }
 
+namespace {
+
+// From the heel to beyond the toe of the first pose, on the ground below it.
+GltfFootprint ToGltf(const BodyScene& scene, int person, const Footprint& print) {
+  constexpr double kHeel = 0.05, kTips = 0.06, kSole = 0.03;  // m: behind, before, below joints
+  const Pose& first = scene.bodies[person].front();
+  const bool left = print.foot == Foot::kLeft;
+  const Eigen::Vector3d toe = first.col(left ? kLeftToe : kRightToe);
+  const Eigen::Vector2d foot = (toe - first.col(left ? kLeftAnkle : kRightAnkle)).head<2>();
+  const Eigen::Vector2d middle =
+      print.place + 0.5 * (foot.norm() + kTips - kHeel) * foot.normalized();
+  const double from = print.landing * scene.dt, to = print.lift_off * scene.dt;
+  GltfFootprint box;
+  box.name = NameOf(print.foot) + " foot of " + scene.subject_ids[person] + ", " +
+             Rounded(from, 3) + "-" + Rounded(to, 3) + " s";
+  box.person = person;
+  box.middle = {middle[0], middle[1], std::min(0.0, toe[2] - kSole)};
+  box.heading = std::atan2(foot[1], foot[0]);
+  box.length = foot.norm() + kTips + kHeel;
+  box.from = from;
+  box.to = to;
+  return box;
+}
+
+}  // namespace
+
 GltfScene ToGltf(const BodyScene& scene) {
   GltfScene gltf;
   gltf.name = scene.id;
@@ -167,6 +193,10 @@ GltfScene ToGltf(const BodyScene& scene) {
     if (head != skeleton.roles.end()) person.head = static_cast<int>(head - skeleton.roles.begin());
     for (const Pose& pose : scene.bodies[n]) person.frames.push_back(Retarget(skeleton, pose));
     gltf.people.push_back(std::move(person));
+    if (n >= static_cast<int>(scene.footprints.size())) continue;
+    for (const Footprint& print : scene.footprints[n]) {
+      gltf.footprints.push_back(ToGltf(scene, n, print));
+    }
   }
   return gltf;
 }

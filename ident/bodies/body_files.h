@@ -11,6 +11,7 @@
 #include "datasets/formats/bvh.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/gltf_file.h"
+#include "ident/prediction/predicted_steps.h"
 #include "models/restoration/body.h"
 
 namespace pushid {
@@ -22,6 +23,7 @@ struct BodyScene {
   std::vector<std::string> subject_ids;  // one per person
   std::vector<BodySkeleton> skeletons;   // one per person; empty: the 22 roles
   std::vector<BodyMotion> bodies;        // [person][frame], by role
+  FootprintsOfPeople footprints = {};    // where a model's feet stand; empty: it has none
 
   BodySkeleton skeleton(int person) const;
   int num_people() const { return static_cast<int>(bodies.size()); }
@@ -39,7 +41,7 @@ BodyScene SceneOf(const BodyRecording& recording, std::vector<BodyMotion> bodies
 // FitTree does.
 BvhMotion ToBvh(const BodySkeleton& skeleton, const BodyMotion& motion, double dt);
 
-// Everybody in one scene, under the joints' names.
+// Everybody in one scene, under the joints' names; footprints as "left foot of S01, 0.42-0.78 s".
 GltfScene ToGltf(const BodyScene& scene);
 
 // One file per person: `path` itself for one person, "motion_0_ID.bvh", ... beside it for more.

@@ -12,6 +12,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
+#include "ident/bodies/gltf_shapes.h"
 
 namespace pushid {
 namespace {
@@ -22,8 +23,9 @@ using Json = nlohmann::ordered_json;
 constexpr int kFloat = 5126, kArrayBuffer = 34962;
 constexpr std::uint32_t kGlbMagic = 0x46546C67, kJsonChunk = 0x4E4F534A, kBinaryChunk = 0x004E4942;
 
-constexpr double kBoneWidth = 0.11;     // of its length
-constexpr double kHeadHeight = 0.2;     // m
+constexpr double kBoneWidth = 0.11;                                  // of its length
+constexpr float kFootprintWidth = 0.09f, kFootprintHeight = 0.004f;  // m
+constexpr double kHeadHeight = 0.2;                                  // m
 constexpr double kShortestBone = 1e-4;  // m; shorter ones are not drawn
 constexpr double kSameLength = 1e-6;    // m; bones that change by less keep their length
 
@@ -70,8 +72,9 @@ class GltfWriter {
     std::vector<float> times;
     for (std::size_t t = 0; t < frames; ++t) times.push_back(static_cast<float>(t * scene.dt));
     times_ = Accessor(times, 1);
-    MakeOctahedron();
+    octahedron_ = Shape(GltfShape::Octahedron());
     for (std::size_t n = 0; n < scene.people.size(); ++n) AddPerson(scene.people[n], n);
+    for (const GltfFootprint& print : scene.footprints) AddFootprint(print);
   }
 
   // Without buffers, which the two kinds of files hold differently.
@@ -117,23 +120,9 @@ class GltfWriter {
     return static_cast<int>(accessors_.size()) - 1;
   }
 
-  // From the origin to (0, 1, 0), one unit thick on either side a fifth of the way up.
-  void MakeOctahedron() {
-    std::vector<float> places, normals;
-    const Eigen::Vector3f ends[] = {{0, 0, 0}, {0, 1, 0}};
-    const Eigen::Vector3f ring[] = {{1, 0.2f, 0}, {0, 0.2f, -1}, {-1, 0.2f, 0}, {0, 0.2f, 1}};
-    for (int i = 0; i < 4; ++i) {
-      for (const bool top : {false, true}) {
-        // Counter-clockwise, seen from outside.
-        const Eigen::Vector3f &a = ring[top ? i : (i + 1) % 4], &b = ring[top ? (i + 1) % 4 : i];
-        const Eigen::Vector3f normal = (b - a).cross(ends[top] - a).normalized();
-        for (const Eigen::Vector3f& corner : {a, b, ends[top]}) {
-          places.insert(places.end(), corner.data(), corner.data() + 3);
-          normals.insert(normals.end(), normal.data(), normal.data() + 3);
-        }
-      }
-    }
-    octahedron_ = {{"POSITION", Accessor(places, 3, true)}, {"NORMAL", Accessor(normals, 3, true)}};
+  Json Shape(const GltfShape& shape) {
+    return {{"POSITION", Accessor(shape.places, 3, true)},
+            {"NORMAL", Accessor(shape.normals, 3, true)}};
   }
 
   int AddNode(Json node, Json* siblings) {
@@ -222,20 +211,48 @@ class GltfWriter {
       before = turn;
       turns.insert(turns.end(), turn.coeffs().data(), turn.coeffs().data() + 4);
     }
-    if (rotates) AddChannel(node, "rotation", Accessor(turns, 4));
-    if (moves) AddChannel(node, "translation", Accessor(places, 3));
+    if (rotates) AddChannel(node, "rotation", Accessor(turns, 4), times_);
+    if (moves) AddChannel(node, "translation", Accessor(places, 3), times_);
   }
 
-  void AddChannel(int node, const char* path, int accessor) {
+  // A flat box as high as nothing while nobody stands on it.
+  void AddFootprint(const GltfFootprint& print) {
+    if (box_.is_null()) box_ = Shape(GltfShape::Box());
+    const Json primitive = {{"attributes", box_}, {"material", print.person}};
+    meshes_.push_back({{"name", print.name}, {"primitives", Json::array({primitive})}});
+    const Eigen::Matrix3d turned =
+        axes_ * Eigen::AngleAxisd(print.heading, Eigen::Vector3d::UnitZ()) * axes_.transpose();
+    const Eigen::Quaterniond turn(turned);
+    const float size[] = {kFootprintWidth, kFootprintHeight, static_cast<float>(print.length)};
+    const int node = AddNode({{"name", print.name},
+                              {"mesh", meshes_.size() - 1},
+                              {"translation", List(axes_ * print.middle)},
+                              {"rotation", {turn.x(), turn.y(), turn.z(), turn.w()}},
+                              {"scale", size}},
+                             &people_);
+    std::vector<float> times, scales;
+    const auto key = [&](double time, float factor) {
+      times.push_back(static_cast<float>(time));
+      for (const float length : size) scales.push_back(factor * length);
+    };
+    if (print.from > 0.0) key(0.0, 0.0f);
+    key(print.from, 1.0f);
+    key(print.to, 0.0f);
+    const int input = Accessor(times, 1);
+    AddChannel(node, "scale", Accessor(scales, 3), input, "STEP");
+  }
+
+  void AddChannel(int node, const char* path, int accessor, int input,
+                  const char* interpolation = "LINEAR") {
     channels_.push_back(
         {{"sampler", samplers_.size()}, {"target", {{"node", node}, {"path", path}}}});
-    samplers_.push_back({{"input", times_}, {"output", accessor}, {"interpolation", "LINEAR"}});
+    samplers_.push_back({{"input", input}, {"output", accessor}, {"interpolation", interpolation}});
   }
 
   const GltfScene& scene_;
   const Eigen::Matrix3d axes_;
   int times_ = 0;
-  Json octahedron_;
+  Json octahedron_, box_;
   Json people_ = Json::array(), nodes_ = Json::array(), meshes_ = Json::array(),
        materials_ = Json::array(), channels_ = Json::array(), samplers_ = Json::array(),
        accessors_ = Json::array(), views_ = Json::array();

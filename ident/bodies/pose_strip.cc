@@ -67,6 +67,19 @@ class Panel {
     Bone(person.tip[t], person.tip[t] + force / kNewtonsPerMetre, kForceLook);
   }
 
+  // The feet that stand, the left one paler; recorded ones under predicted ones.
+  void DrawFeet(const AnimatedPerson& person, int what, int t) {
+    for (const Footprint& print : person.footprints) {
+      if (t < print.landing || t >= print.lift_off) continue;
+      const double ahead = std::cos(person.facing), x = x_ + scale_ * print.place.x();
+      const double y = floor_ + (person.recorded ? 6.5 : 2.5);
+      const char* const paler = print.foot == Foot::kLeft ? ";opacity:0.5" : "";
+      svg_->Line(x - scale_ * kSoleBehind * ahead, y, x + scale_ * kSoleBefore * ahead, y,
+                 "stroke-width:3;stroke:" +
+                     (person.recorded ? std::string("#9a9a9a") : ColourOfWhat(what)) + paler);
+    }
+  }
+
   // A ring round the hip of who is pushed; while it acts the push, which ends there, and its size.
   void Mark(const Eigen::Vector3d& hip, const AnimatedPush& push, int t) {
     svg_->Circle(X(hip), Y(hip), 7, PushLook());
@@ -193,7 +206,7 @@ std::pair<double, double> ExtentX(const Animation& animation) {
 
 }  // namespace
 
-std::string PoseStripSvg(const Animation& animation, int poses) {
+SvgPicture PoseStrip(const Animation& animation, int poses) {
   const auto [low, high] = ExtentX(animation);
   const double scale = (kStripHeight - kTop - kBottom) / kHighest;
   const double panel = scale * (high - low) + kSide;
@@ -215,6 +228,7 @@ std::string PoseStripSvg(const Animation& animation, int poses) {
         if (person.recorded != recorded) continue;
         const auto what = std::find(whats.begin(), whats.end(), person.what) - whats.begin();
         drawn.Draw(person, static_cast<int>(what), whats.size() > 1, t);
+        drawn.DrawFeet(person, static_cast<int>(what), t);
       }
     }
     for (const AnimatedPush& push : animation.pushes) {
@@ -226,10 +240,10 @@ std::string PoseStripSvg(const Animation& animation, int poses) {
         break;
       }
     }
-    svg.Text(left + 0.5 * (panel - kSide), floor + 18, Rounded(t * animation.dt, 3) + " s",
+    svg.Text(left + 0.5 * (panel - kSide), floor + 22, Rounded(t * animation.dt, 3) + " s",
              "axis middle");
   }
-  return svg.ToString();
+  return svg;
 }
 
 }  // namespace pushid

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "datasets/files/number_text.h"
 
@@ -113,6 +112,9 @@ class Panel {
     for (double level : chart_.levels) svg_.Line(left_, y_(level), right_, y_(level), kLimitLook);
     for (double mark : chart_.marks) svg_.Line(x_(mark), top_, x_(mark), bottom_, kMarkLook);
     for (const ChartLine& line : chart_.lines) Line(line);
+    for (const ChartLabel& label : chart_.labels) {
+      svg_.Text(x_(label.x), y_(label.y) + 3.5, label.text, label.look + " small middle");
+    }
     Lanes();
   }
 
@@ -255,8 +257,10 @@ class Panel {
         const double x = x_(static_cast<double>(j)), y = y_(static_cast<double>(i) - 0.5);
         const double share = std::clamp(std::abs(value) / chart_.full_cell, 0.0, 1.0);
         if (share >= kLeastShare) {  // most cells of a large map are paper; NaN never is
+          const std::string look = std::string("fill:") + (value < 0.0 ? "#3b82f6" : "#e69f00") +
+                                   ";fill-opacity:" + SvgNumber(0.85 * share);
           svg_.Rect(
-              {x + 0.5, y + 0.5, wide - 1, high - 1}, CellLook(value, share),
+              {x + 0.5, y + 0.5, wide - 1, high - 1}, look,
               chart_.y_categories[i] + ", " + chart_.x_categories[j] + ": " + Rounded(value, 3));
         }
         const std::string number = std::isnan(value) ? "-" : SvgNumber(value);
@@ -264,17 +268,8 @@ class Panel {
       }
     }
   }
-  static std::string CellLook(double value, double share) {
-    return std::string("fill:") + (value < 0.0 ? "#3b82f6" : "#e69f00") +
-           ";fill-opacity:" + SvgNumber(0.85 * share);
-  }
 
-  // "0.002", "1e-05": enough digits for round numbers.
-  static std::string TickText(double tick) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", std::abs(tick) < 1e-12 ? 0.0 : tick);
-    return text;
-  }
+  static std::string TickText(double tick) { return Rounded(std::abs(tick) < 1e-12 ? 0.0 : tick); }
 
   const Chart& chart_;
   const SvgBox box_;
@@ -286,6 +281,11 @@ class Panel {
 }  // namespace
 
 double HeightOf(const Chart& chart, double width) {
+  if (chart.is_map) {
+    const Margins m(chart, width);
+    const double metre = (width - m.left - m.right) / (*chart.x_to - *chart.x_from);
+    return m.top + m.bottom + metre * (*chart.y_to - *chart.y_from);
+  }
   // Lower where it is narrower; strips of a row or two keep their height.
   if (chart.y_categories.empty())
     return chart.bare_y ? chart.height : chart.height * std::clamp(width / chart.width, 0.8, 1.0);

@@ -53,6 +53,12 @@ struct ChartBar {
   std::string look, tooltip;
 };
 
+// Written in the plot, its middle there.
+struct ChartLabel {
+  double x = 0.0, y = 0.0;
+  std::string text, look;
+};
+
 struct Chart {
   std::string title, x_label;
   std::string y_label;  // at the right end of the title's line
@@ -60,10 +66,12 @@ struct Chart {
   std::vector<ChartLine> lines;
   std::vector<ChartLane> lanes;
   std::vector<ChartBar> bars;
+  std::vector<ChartLabel> labels;
   std::vector<double> levels;          // dashed, across
   std::vector<double> marks;           // upright
   std::optional<double> x_from, x_to;  // instead of the data's own range
   std::optional<double> y_from, y_to;
+  bool is_map = false;         // a metre is as long upwards as across; x_from to y_to are given
   bool logarithmic_x = false;  // x and y are given as log10
   bool logarithmic_y = false;
   bool bare_y = false;  // no numbers upwards: the rows are few and named

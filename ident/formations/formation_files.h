@@ -2,10 +2,12 @@
 // pushid itself read.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "datasets/files/error.h"
 #include "ident/figures/chart.h"
+#include "ident/figures/text_table.h"
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
 
@@ -42,5 +44,12 @@ enum class ForceScale { kShared, kOwn };
 Figure ForcesFigure(const FormationRun& run, ForceScale scale = ForceScale::kShared);
 std::string ForcesSvg(const FormationRun& run, const std::string& title,
                       ForceScale scale = ForceScale::kShared);
+
+// Feet from above: where they stood and where the model's are put, with the times of landings, and
+// the paths of the capture points (prediction/predicted_steps.h); nothing where the model has no feet
+// that step. And the numbers behind it.
+std::optional<Figure> FeetFigure(const FormationRun& run);
+std::vector<std::string> FeetSvg(const FormationRun& run);  // for a page with SvgStyle
+TextTable FeetNumbers(const FormationRun& run);
 
 }  // namespace pushid

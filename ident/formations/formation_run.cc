@@ -156,6 +156,7 @@ std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene) {
     person.body.rod_length = mapped.rod_length;
     person.body.cart_height = mapped.cart_height;
     person.start.q.tail<2>() = mapped.q.tail<2>();
+    person.start.feet.apart = (pose.col(kLeftAnkle) - pose.col(kRightAnkle)).head<2>();
     placed.push_back(pose);
   }
   return placed;

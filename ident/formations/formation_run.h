@@ -80,8 +80,8 @@ double SignedHipSpeed(const FormationRun& run, int person, int frame);
 Pose SyntheticPose(double rod_length);
 
 // Puts poses (in turn, should there be fewer than people) where the formation's people stand,
-// facing +x, and gives those people the pendulum that goes with the pose: rod length, cart height
-// and lean. Masses and pushes stay. Returns the first pose of each person.
+// facing +x, and gives those people the pendulum that goes with the pose: rod length, cart height,
+// lean and places of the feet. Masses and pushes stay. Returns the first pose of each person.
 std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene);
 
 // Restored and post-processed, one motion per person. first_poses: as TakePoses returned them.

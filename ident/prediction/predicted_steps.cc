@@ -35,6 +35,60 @@ std::vector<FootStep> PredictedSteps(const RolloutPath<double>& path, int person
   return steps;
 }
 
+std::vector<Footprint> Footprints(const PendulumState<double>& start,
+                                  const std::vector<FootStep>& steps, int num_frames) {
+  std::vector<Footprint> prints;
+  for (Foot foot : kFeet) {
+    Footprint print{foot, 0, num_frames, PlaceOf(foot, start)};
+    for (const FootStep& step : steps) {
+      if (step.foot != foot) continue;
+      print.lift_off = step.lift_off;
+      if (print.landing < print.lift_off) prints.push_back(print);
+      print = {foot, step.finished ? step.landing : num_frames, num_frames,
+               print.place + step.travel};
+    }
+    if (print.landing < num_frames) prints.push_back(print);
+  }
+  std::stable_sort(prints.begin(), prints.end(),
+                   [](const Footprint& a, const Footprint& b) { return a.landing < b.landing; });
+  return prints;
+}
+
+FootprintsOfPeople RecordedFootprints(const PendulumRecording& recording) {
+  FootprintsOfPeople people;
+  for (size_t n = 0; n < recording.steps.size() && !recording.scene.ground.moves(); ++n) {
+    people.push_back(Footprints(recording.scene.people[n].start, recording.steps[n].steps,
+                                recording.num_frames()));
+  }
+  return people;
+}
+
+FootprintsOfPeople PredictedFootprints(const PendulumRecording& recording,
+                                       const Prediction& prediction) {
+  FootprintsOfPeople people;
+  const bool from_frame_0 = prediction.observed <= 1;
+  if (!prediction.feet_step || !from_frame_0 || recording.scene.ground.moves()) return people;
+  for (int n = 0; n < prediction.path.num_people(); ++n) {
+    people.push_back(Footprints(prediction.path.At(0, n), PredictedSteps(prediction.path, n),
+                                prediction.path.num_frames()));
+  }
+  return people;
+}
+
+std::vector<Eigen::Vector2d> CapturePath(const std::vector<Vector3<double>>& hip, double rod_length,
+                                         double dt) {
+  const int last = static_cast<int>(hip.size()) - 1;
+  const int wing = std::max(1, static_cast<int>(std::lround(0.05 / dt)));
+  const double omega = std::sqrt(kGravity / rod_length);
+  std::vector<Eigen::Vector2d> path;
+  for (int t = 0; t <= last; ++t) {
+    const int from = std::max(0, t - wing), to = std::min(last, t + wing);
+    const Vector3<double> way = hip[to] - hip[from];
+    path.emplace_back((hip[t] + way / (omega * std::max(1, to - from) * dt)).head<2>());
+  }
+  return path;
+}
+
 std::string PredictedStepsText(const PendulumRecording& recording, const Prediction& prediction) {
   std::string text;
   for (int n = 0; n < prediction.path.num_people(); ++n) {

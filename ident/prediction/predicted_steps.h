@@ -19,6 +19,27 @@ Eigen::Vector2d PlaceOf(Foot foot, const PendulumState<double>& state);
 // In order; lift-off: the first frame after that in which the foot still stood.
 std::vector<FootStep> PredictedSteps(const RolloutPath<double>& path, int person);
 
+// Where a foot stands: from a landing, or frame 0, to the lift-off after it, or the end.
+struct Footprint {
+  Foot foot = Foot::kLeft;
+  int landing = 0, lift_off = 0;                    // frames: the first on it, the first off again
+  Eigen::Vector2d place = Eigen::Vector2d::Zero();  // of the ankle, m
+};
+// By landing. start: of frame 0; steps: by lift-off.
+std::vector<Footprint> Footprints(const PendulumState<double>& start,
+                                  const std::vector<FootStep>& steps, int num_frames);
+// Of everybody, as recorded and as predicted; nobody's on ground that moves, and no predicted ones
+// where the model's feet do not step, or where later frames than the first were seen.
+using FootprintsOfPeople = std::vector<std::vector<Footprint>>;
+FootprintsOfPeople RecordedFootprints(const PendulumRecording& recording);
+FootprintsOfPeople PredictedFootprints(const PendulumRecording& recording,
+                                       const Prediction& prediction);
+
+// The capture point hip + v / omega of a hip's path, m: omega as models/stance.h has it, v over
+// +-50 ms, so that 2 mm of noise stays below 1 cm.
+std::vector<Eigen::Vector2d> CapturePath(const std::vector<Vector3<double>>& hip, double rod_length,
+                                         double dt);
+
 // A line per person: "S01: P(step) 0.93, steps left 0.42-0.78 s 0.31 m forwards"; empty where the
 // model says nothing of steps.
 std::string PredictedStepsText(const PendulumRecording& recording, const Prediction& prediction);

@@ -122,6 +122,7 @@ TEST_F(SimulateFormationTest, APushToTheLeftAndWhatTheFeetDo) {
   EXPECT_TRUE(Contains(hard.out, "p00: steps "));
   EXPECT_TRUE(Contains(hard.out, " m forwards"));
   EXPECT_TRUE(Contains(left.out, "60 N s at 0 s on person 0, 90 degrees to the left; "));
+  EXPECT_TRUE(Contains(pushed(alone_, "60", -90).out, " on person 0, 90 degrees to the right; "));
   std::istringstream row(left.out.substr(left.out.find("\n     0") + 1));
   std::string person, x, y, onset, peak, displaced;
   row >> person >> x >> y >> onset >> peak >> displaced;

@@ -110,6 +110,8 @@ def test_formations(result):
     low, high = line["onset_band90"][0]
     assert low <= high and line["fps"] == 60.0
     assert line["wave_speed"] is None or line["wave_speed"] > 0.0
+    right = pushid.simulate_formation(result, "line", 1, push=60.0, push_direction=-90.0)
+    assert right["hip"][-1, 0, 1] < -0.03 and right["displacement"][0] > 0.03
     for wrong in (dict(shape="circle"), dict(people=0), dict(spacing=-1.0), dict(set={"nu": 1})):
         with pytest.raises(pushid.UsageError):
             pushid.simulate_formation(result, **{"shape": "line", "people": 4, **wrong})

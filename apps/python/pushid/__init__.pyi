@@ -130,8 +130,8 @@ def crossvalidate(recordings: Iterable[_Recording], candidates: Mapping[str, Map
                   forecast: str = ...,
                   baselines: bool = ..., num_threads: int = ..., progress: _Jobs = ..., **asked: Any) -> list[dict[str, Any]]: ...
 def simulate_formation(result: Result, shape: str = ..., people: int = ..., *, spacing: float = ..., pushed: int = ...,
-                       push: float = ..., push_duration: float = ..., mass: float = ..., rod: float = ...,
-                       duration: float = ..., fps: float = ..., set: Mapping[str, float] | None = ...,
+                       push: float = ..., push_duration: float = ..., push_direction: float = ..., mass: float = ...,
+                       rod: float = ..., duration: float = ..., fps: float = ..., set: Mapping[str, float] | None = ...,
                        onset_bands: bool = ...) -> Formation: ...
 
 class OnlinePredictor:

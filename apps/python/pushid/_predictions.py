@@ -12,7 +12,7 @@ class Formation(dict):
     """A formation of people after a push; plot() draws the wave.
 
     "hip" (frames, people, 3), "states" (frames, people, 8), "speed" (frames, people), in m/s, negative backwards,
-    "onset_s" (None: never), "displacement" (m along x), "outcome", "fps", "wave_speed" (m/s, from the first person
+    "onset_s" (None: never), "displacement" (m along the push), "outcome", "fps", "wave_speed" (m/s, from the first person
     that moves to the foremost; None: undefined), and "onset_band90" and "wave_speed_band90" if requested.
     """
 
@@ -23,15 +23,16 @@ class Formation(dict):
 
 
 def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=0, push=80.0, push_duration=0.2,
-                       mass=85.0, rod=0.95, duration=4.0, fps=60.0, set=None, onset_bands=False):
+                       push_direction=0.0, mass=85.0, rod=0.95, duration=4.0, fps=60.0, set=None, onset_bands=False):
     """Rolls a fitted model out on a formation of people; see Formation.
 
-    shape: "line", "diamond" or "grid"; spacing: m. push: N s along +x at the hip of person `pushed`, within push_duration
-    (s). mass (kg) and rod (ankles to hip, m): of everybody. duration (s) of the simulation; fps: frames per second.
-    onset_bands: also compute 90 % bands of the onsets, by drawing parameters from their covariance.
+    shape: "line", "diamond" or "grid"; spacing: m. push: N s at the hip of person `pushed`, within push_duration (s),
+    push_direction degrees from +x to the left. mass (kg) and rod (ankles to hip, m): of everybody. duration (s) of the
+    simulation; fps: frames per second. onset_bands: also compute 90 % bands of the onsets, by drawing parameters from their covariance.
     """
-    return Formation(_pushid.simulate_formation(result._model, shape, people, spacing, pushed, push, push_duration, mass,
-                                                rod, duration, fps, text_of("set", set or {}), onset_bands))
+    return Formation(_pushid.simulate_formation(result._model, shape, people, spacing, pushed, push, push_duration,
+                                                push_direction, mass, rod, duration, fps, text_of("set", set or {}),
+                                                onset_bands))
 
 
 class OnlinePredictor:

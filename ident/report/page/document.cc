@@ -208,7 +208,7 @@ std::string SectionHtml(const ReportSection& section) {
   for (const ReportFold& fold : section.folds) {
     std::string figures;
     for (const ReportFigure& figure : fold.figures) figures += FigureHtml(figure);
-    html += Fold(fold.title, figures);
+    html += Fold(fold.title, figures + fold.widget);
   }
   return html + "</section>\n";
 }

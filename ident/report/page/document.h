@@ -28,6 +28,7 @@ struct ReportFigure {
 struct ReportFold {
   std::string title;
   std::vector<ReportFigure> figures;
+  std::string widget = {};  // as that of a section
 };
 
 struct ReportSection {

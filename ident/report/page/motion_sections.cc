@@ -3,7 +3,9 @@
 #include <cmath>
 #include <optional>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "ident/bodies/animation.h"
 #include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_files.h"
@@ -87,27 +89,11 @@ Chart AngleChart(const RecordingView& view, int person, int row, const std::stri
 }
 
 TextTable PathNumbers(const RecordingView& view) {
-  TextTable table({"person",
-                   "frame",
-                   "time_s",
-                   "measured_x_m",
-                   "measured_y_m",
-                   "predicted_x_m",
-                   "predicted_y_m",
-                   "lower90_x_m",
-                   "upper90_x_m",
-                   "lower90_y_m",
-                   "upper90_y_m",
-                   "lower50_x_m",
-                   "upper50_x_m",
-                   "lower50_y_m",
-                   "upper50_y_m",
-                   "measured_theta_rad",
-                   "predicted_theta_rad",
-                   "measured_phi_rad",
-                   "predicted_phi_rad",
-                   "left_foot_stands",
-                   "right_foot_stands"});
+  TextTable table(SplitList(
+      "person,frame,time_s,measured_x_m,measured_y_m,predicted_x_m,predicted_y_m,lower90_x_m,"
+      "upper90_x_m,lower90_y_m,upper90_y_m,lower50_x_m,upper50_x_m,lower50_y_m,upper50_y_m,"
+      "measured_theta_rad,predicted_theta_rad,measured_phi_rad,predicted_phi_rad,left_foot_stands,"
+      "right_foot_stands"));
   const FormationRun& run = view.run;
   for (int n = 0; n < run.recording.num_people(); ++n) {
     for (int t = 0; t < run.recording.num_frames(); ++t) {
@@ -185,6 +171,19 @@ Figure PathFigure(const RecordingView& view) {
     }
   }
   return figure;
+}
+
+// The recorded bodies and the predicted pendulums at a few moments, from the side.
+std::string StripOf(const RecordingView& view) {
+  const PendulumRecording& recording = view.run.recording;
+  Animation animation;
+  animation.title = "from the side";
+  animation.dt = recording.scene.dt;
+  const auto bodies = MakeBodyRecording(*view.recording, SkeletonMapping::kExact);
+  if (bodies.ok()) AddRecorded(recording, bodies.value().bodies, &animation);
+  AddPrediction(recording, view.run.prediction, {}, &animation);
+  AddPushes(recording, &animation);
+  return PoseStrip(animation, kPosesOfStrip).ToInline();
 }
 
 std::string FoldTitle(const RecordingView& view) {
@@ -275,6 +274,14 @@ ReportSection MotionSection(const ReportSource& source) {
     const std::string& id = view.run.recording.id;
     fold.figures.push_back({"motion_" + id, "Measured and predicted motion of " + id + ".",
                             PathFigure(view), PathNumbers(view)});
+    if (const std::optional<Figure> feet = FeetFigure(view.run)) {
+      fold.figures.push_back({"feet_" + id,
+                              "Feet and capture points of " + id +
+                                  ", with the times of landings: within a predicted foot, beside "
+                                  "a recorded one.",
+                              *feet, FeetNumbers(view.run)});
+      fold.widget = StripOf(view);
+    }
     if (view.run.prediction.status.ok) {
       const ForceStory story = RichestStory(view.run.recording, view.run.prediction);
       fold.figures.push_back({"forces_" + id,

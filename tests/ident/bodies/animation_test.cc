@@ -19,7 +19,9 @@ namespace {
 Animation AnimatedPair() {
   Animation animation;
   animation.title = "a </script> & \"b\"";
-  AddRecorded({"x"}, {BodyMotion(5, StandingPose())}, &animation);
+  PendulumRecording recording;
+  recording.subject_ids = {"x"};
+  AddRecorded(recording, {BodyMotion(5, StandingPose())}, &animation);
   AnimatedPerson predicted;
   predicted.name = "x";
   predicted.body = BodyMotion(5, StandingPose());
@@ -60,9 +62,9 @@ Animation Moving(const std::vector<double>& x) {
 
 // Who stands for four frames and then goes 1 m in the last is seen going, not waiting.
 TEST(AnimationTest, PosesAreSpacedByMotion) {
-  const std::string svg = PoseStripSvg(Moving({0, 0, 0, 0, 0, 0.2, 0.4, 0.6, 0.8, 1.0}), 3);
+  const std::string svg = PoseStrip(Moving({0, 0, 0, 0, 0, 0.2, 0.4, 0.6, 0.8, 1.0}), 3).ToString();
   for (const char* time : {">0 s<", ">0.117 s<", ">0.15 s<"}) EXPECT_TRUE(Contains(svg, time));
-  const std::string still = PoseStripSvg(Moving({0, 0, 0, 0, 0}), 3);
+  const std::string still = PoseStrip(Moving({0, 0, 0, 0, 0}), 3).ToString();
   for (const char* time : {">0 s<", ">0.0333 s<", ">0.0667 s<"}) {
     EXPECT_TRUE(Contains(still, time));
   }
@@ -74,7 +76,7 @@ TEST(AnimationTest, AShortPushIsAmongThePoses) {
   for (int t = 20; t < 40; ++t) x[t] = 0.05 * (t - 19);
   Animation animation = Moving(x);
   animation.pushes.push_back({"p", 3, {{50.0, 0, 0, 0}, {180.0, 0, 0, 0}, {60.0, 0, 0, 0}}});
-  EXPECT_TRUE(Contains(PoseStripSvg(animation, 5), ">180 N<"));
+  EXPECT_TRUE(Contains(PoseStrip(animation, 5).ToString(), ">180 N<"));
 }
 
 TEST(AnimationTest, ALongRowHasAColourForEverybody) {
@@ -92,7 +94,7 @@ TEST(AnimationTest, ALongRowHasAColourForEverybody) {
 
 TEST(AnimationTest, NothingRecordedNothingCalledSo) {
   const Animation animation = Moving({0, 1});
-  EXPECT_EQ(PoseStripSvg(animation, 2).find("recorded"), std::string::npos);
+  EXPECT_EQ(PoseStrip(animation, 2).ToString().find("recorded"), std::string::npos);
   EXPECT_EQ(AnimationHtml(animation).find("> recorded<"), std::string::npos);
   EXPECT_TRUE(Contains(AnimationHtml(AnimatedPair()), "> recorded<"));
 }
@@ -100,7 +102,7 @@ TEST(AnimationTest, NothingRecordedNothingCalledSo) {
 TEST(AnimationTest, APushIsDrawnWithItsSizeAndItsPersonMarkedThroughout) {
   Animation animation = Moving({0, 0.1, 0.2, 0.3});
   animation.pushes.push_back({"p", 0, {{120.0, 0.0, 0.0, 0.0}}});
-  const std::string svg = PoseStripSvg(animation, 4);
+  const std::string svg = PoseStrip(animation, 4).ToString();
   size_t rings = 0;
   for (size_t at = 0; (at = svg.find("r=\"7\"", at)) != std::string::npos; ++at) ++rings;
   EXPECT_EQ(rings, 4u);
@@ -114,7 +116,7 @@ TEST(AnimationTest, WhatIfsHaveEntriesOfTheirOwn) {
   animation.people.push_back(animation.people[0]);
   animation.people[1].what = "mu=10";
   EXPECT_EQ(WhatsOf(animation), std::vector<std::string>({"", "mu=10"}));
-  for (const std::string& file : {PoseStripSvg(animation, 2), AnimationHtml(animation)}) {
+  for (const std::string& file : {PoseStrip(animation, 2).ToString(), AnimationHtml(animation)}) {
     EXPECT_TRUE(Contains(file, kAsFitted));
     EXPECT_TRUE(Contains(file, "mu=10"));
     EXPECT_TRUE(Contains(file, kAnimationColours[1]));
@@ -122,7 +124,7 @@ TEST(AnimationTest, WhatIfsHaveEntriesOfTheirOwn) {
 }
 
 TEST(AnimationTest, TheStripHasItsPosesAndTimes) {
-  const std::string svg = PoseStripSvg(AnimatedPair(), 3);
+  const std::string svg = PoseStrip(AnimatedPair(), 3).ToString();
   EXPECT_TRUE(Contains(svg, "0.0667 s"));
   EXPECT_TRUE(Contains(svg, "a &lt;/script&gt;"));
   size_t heads = 0;
