@@ -21,15 +21,15 @@ constexpr char kSeenSoleLook[] = "ink";
 constexpr char kPredictedSoleLook[] = "stroke:none;fill:#3b82f6;fill-opacity:.28";
 
 // What one source says of one person.
-struct Track {
+struct FeetTrack {
   int person;
   bool predicted;
   std::vector<Footprint> prints;
   std::vector<Eigen::Vector2d> capture;
 };
 
-std::vector<Track> TracksOf(const FormationRun& run) {
-  std::vector<Track> tracks;
+std::vector<FeetTrack> TracksOf(const FormationRun& run) {
+  std::vector<FeetTrack> tracks;
   const auto add = [&](const FootprintsOfPeople& prints, const HipPaths& hips, bool predicted) {
     for (size_t n = 0; n < prints.size(); ++n) {
       const double rod = run.recording.scene.people[n].body.rod_length;
@@ -104,7 +104,7 @@ std::optional<Figure> FeetFigure(const FormationRun& run) {
   chart.x_label = "forward, m";
   chart.y_label = "to the left, m";
   bool recorded = false;
-  for (const Track& track : TracksOf(run)) {
+  for (const FeetTrack& track : TracksOf(run)) {
     recorded = recorded || !track.predicted;
     for (const Footprint& print : track.prints) AddSole(run, print, track.predicted, &chart);
     ChartPoints capture;
@@ -134,7 +134,7 @@ std::vector<std::string> FeetSvg(const FormationRun& run) {
 
 TextTable FeetNumbers(const FormationRun& run) {
   TextTable table({"person", "source", "what", "from_s", "to_s", "x_m", "y_m"});
-  for (const Track& track : TracksOf(run)) {
+  for (const FeetTrack& track : TracksOf(run)) {
     const auto add = [&](const std::string& what, int from, int to, const Eigen::Vector2d& place) {
       table.Add({run.recording.subject_ids[track.person],
                  track.predicted ? "predicted" : "recorded", what, DoubleText(run.Seconds(from)),

@@ -111,6 +111,29 @@ TEST(AnimationTest, APushIsDrawnWithItsSizeAndItsPersonMarkedThroughout) {
   EXPECT_TRUE(Contains(AnimationHtml(animation), "\"force\":[[120,0]]"));
 }
 
+size_t Bars(const Animation& animation, int poses) {
+  const std::string svg = PoseStrip(animation, poses).ToString();
+  size_t bars = 0;
+  for (size_t at = 0; (at = svg.find("stroke-width:3;stroke:#", at)) != std::string::npos; ++at) {
+    ++bars;
+  }
+  return bars;
+}
+
+// Frames 0, 2 and 4: the left foot stands in the first and the last, the right one in all.
+TEST(AnimationTest, FeetAreDrawnWhileTheyStand) {
+  Animation animation = Moving({0, 0, 0, 0, 0});
+  EXPECT_EQ(Bars(animation, 3), 0u);
+  EXPECT_FALSE(Contains(AnimationHtml(animation), "id=\"footprints\""));
+  animation.people[0].footprints = {{Foot::kLeft, 0, 1, {0, 0.1}},
+                                    {Foot::kRight, 0, 5, {0, -0.1}},
+                                    {Foot::kLeft, 3, 5, {0.4, 0.1}}};
+  EXPECT_EQ(Bars(animation, 3), 5u);
+  const std::string html = AnimationHtml(animation);
+  EXPECT_TRUE(Contains(html, "id=\"footprints\""));
+  EXPECT_TRUE(Contains(html, "[400,100,3,5]"));
+}
+
 TEST(AnimationTest, WhatIfsHaveEntriesOfTheirOwn) {
   Animation animation = Moving({0, 1});
   animation.people.push_back(animation.people[0]);

@@ -206,6 +206,46 @@ TEST_F(GltfTest, BonesLieAlongTheBody) {
   EXPECT_EQ(position["min"], (std::vector<float>{-1, 0, -1}));
 }
 
+// Ben's left foot stands from frame 3 to 9 and again from 11 on, where it points: 0.3 rad to the
+// left.
+TEST_F(GltfTest, AFootprintIsThereWhileTheFootStands) {
+  BodyScene scene = TwoPeople();
+  for (Pose& pose : scene.bodies[1]) pose = Placed(StandingPose(), 0.3, {0.5, 0.2, 0.0});
+  const Eigen::Vector3d ankle = scene.bodies[1][0].col(kLeftAnkle);
+  scene.footprints = {{}, {{Foot::kLeft, 3, 9, ankle.head<2>()}, {Foot::kLeft, 0, 2, {0, 0}}}};
+  ASSERT_TRUE(WriteBodyFiles(Path("m.gltf"), scene).ok());
+  const Json json = Json::parse(ReadText(Path("m.gltf")));
+  const GltfReader file(json, FromBase64(std::string(json["buffers"][0]["uri"]).substr(37)));
+  const int node = file.Find("left foot of Ben, 0.05-0.15 s");
+  ASSERT_GE(node, 0);
+  EXPECT_GE(file.Find("left foot of Ben, 0-0.0333 s"), 0);
+  EXPECT_EQ(json["scenes"][0]["nodes"].size(), 4u);
+  const Json& mesh = json["meshes"][json["nodes"][node]["mesh"].get<int>()];
+  EXPECT_EQ(json["materials"][mesh["primitives"][0]["material"].get<int>()]["name"], "Ben");
+  for (const Json& channel : json["animations"][0]["channels"]) {
+    if (channel["target"]["node"] != node) continue;
+    EXPECT_EQ(channel["target"]["path"], "scale");
+    const Json& sampler = json["animations"][0]["samplers"][channel["sampler"].get<int>()];
+    EXPECT_EQ(sampler["interpolation"], "STEP");
+    EXPECT_EQ(file.Numbers(sampler["input"]), (std::vector<float>{0.0f, 0.05f, 0.15f}));
+    const std::vector<float> scales = file.Numbers(sampler["output"]);
+    ASSERT_EQ(scales.size(), 9u);
+    EXPECT_EQ(scales[2], 0.0f);
+    EXPECT_GT(scales[5], 0.2f);
+    EXPECT_EQ(scales[8], 0.0f);
+  }
+  // Its long side lies under ankle and toe.
+  const Eigen::Affine3d place = file.World(node, 0);
+  const Eigen::Vector3d middle = place.translation(), along = place.linear().col(2);
+  const Eigen::Vector3d foot = scene.bodies[1][0].col(kLeftToe) - ankle;
+  const Eigen::Vector2d forward(along.z(), along.x()), way = foot.head<2>().normalized();
+  EXPECT_LT((forward - way).norm(), 1e-6);
+  const Eigen::Vector2d off = Eigen::Vector2d(middle.z(), middle.x()) - ankle.head<2>();
+  EXPECT_NEAR(off.x() * way.y() - off.y() * way.x(), 0.0, 1e-6);
+  EXPECT_GT(off.dot(way), 0.0);
+  EXPECT_LE(middle.y(), 0.0);
+}
+
 TEST_F(GltfTest, NamesThatAreNoTextDoNotBreakIt) {
   BodyScene scene = TwoPeople();
   scene.subject_ids = {"\"Anna\\", "\xff\xfe"};

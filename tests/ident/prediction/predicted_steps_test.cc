@@ -62,6 +62,44 @@ TEST(PredictedSteps, TheEdgesOfAPath) {
   EXPECT_EQ(PredictedSteps(PathWith({0, 1, 1, 0, -1, -1, 0}).path, 0).size(), 2u);
 }
 
+// The left foot goes from 0 to 0.4 m, the right one stays; then the right one leaves for good.
+TEST(PredictedSteps, FootprintsFromLandingToLiftOff) {
+  const Prediction prediction = PathWith({0, 0, 1, 1, 1, 0, 0, -1});
+  PendulumRecording recording;
+  const FootprintsOfPeople people = PredictedFootprints(recording, prediction);
+  ASSERT_EQ(people.size(), 1u);
+  ASSERT_EQ(people[0].size(), 3u);
+  const auto expect = [&](int i, Foot foot, int landing, int lift_off, double x) {
+    const Footprint& print = people[0][i];
+    EXPECT_EQ(print.foot, foot);
+    EXPECT_EQ(print.landing, landing);
+    EXPECT_EQ(print.lift_off, lift_off);
+    EXPECT_NEAR(print.place.x(), x, 1e-12);
+    EXPECT_NEAR(print.place.y(), foot == Foot::kLeft ? 0.5 * kFeetApart : -0.5 * kFeetApart, 1e-12);
+  };
+  expect(0, Foot::kLeft, 0, 2, 0.0);
+  expect(1, Foot::kRight, 0, 7, 0.0);
+  expect(2, Foot::kLeft, 5, 8, 0.4);
+  Prediction seen = prediction;
+  seen.observed = 2;
+  EXPECT_TRUE(PredictedFootprints(recording, seen).empty()) << "bodies follow the feet seen";
+  seen = prediction;
+  seen.feet_step = false;
+  EXPECT_TRUE(PredictedFootprints(recording, seen).empty());
+}
+
+// At 0.5 m/s the capture point is 0.5 / omega ahead throughout.
+TEST(PredictedSteps, TheCapturePointIsAheadByVelocity) {
+  std::vector<Vector3<double>> hip;
+  for (int t = 0; t < 30; ++t) hip.emplace_back(0.5 * t / 60.0, -0.1, 0.9);
+  const std::vector<Eigen::Vector2d> path = CapturePath(hip, 0.9, 1.0 / 60.0);
+  ASSERT_EQ(path.size(), hip.size());
+  for (size_t t = 0; t < path.size(); ++t) {
+    EXPECT_NEAR(path[t].x(), hip[t].x() + 0.5 / std::sqrt(kGravity / 0.9), 1e-12) << t;
+    EXPECT_NEAR(path[t].y(), -0.1, 1e-12);
+  }
+}
+
 TEST(PredictedSteps, LiftOffErrorsOfThoseWhoStepInBoth) {
   const auto person = [](std::optional<double> predicted, std::optional<double> recorded) {
     StepPrediction p;

@@ -77,6 +77,14 @@ TEST(ReportDocument, TablesWithACaptionFold) {
   EXPECT_LT(page.find("<figure>"), page.find("<p>one"));
 }
 
+TEST(ReportDocument, AFoldShowsItsWidgetOnThePageAlone) {
+  Report report;
+  report.sections = {{"motion", "Motion", {}, {}, {}, {}, {{"S01", {}, "<b>strip</b>"}}, ""}};
+  const std::string page = ToPage(report);
+  EXPECT_LT(page.find("<summary>S01</summary>"), page.find("<b>strip</b>"));
+  EXPECT_EQ(ToText(report).find("strip"), std::string::npos);
+}
+
 // A lane takes its height from the plot: the axis stays, the line moves up.
 TEST(Chart, LanesLieBetweenPlotAndAxis) {
   Chart chart;
