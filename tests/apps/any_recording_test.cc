@@ -157,7 +157,7 @@ TEST_F(AnyRecordingTest, Inspect) {
   const std::string svg = ReadText(Path("a.svg"));
   EXPECT_EQ(svg.rfind("<svg", 0), 0u);
   EXPECT_TRUE(Contains(svg, "Anna:RANK hidden, frames 3 to 4"));
-  EXPECT_TRUE(Contains(svg, "forces, N"));
+  EXPECT_TRUE(Contains(svg, ", N</text>"));
   EXPECT_EQ(svg.find("nan"), std::string::npos);
   // One bad file among good ones.
   const AppRun twice = RunApp("pushid-inspect", {manifest_ + "," + manifest_});
