@@ -4,8 +4,10 @@
 // Positions are millimetres as whole numbers, each the difference from the sample before: small,
 // and exact enough for a picture.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "ident/report/page/sections.h"
 
@@ -22,14 +24,13 @@ class Track {
     if (last_.size() <= channel) last_.resize(channel + 1, {0, 0, 0});
     for (int axis = 0; axis < 3; ++axis) {
       const long now = std::lround(1000.0 * position[axis]);
-      text_ += (text_.empty() ? "" : ",") + std::to_string(now - last_[channel][axis]);
+      json.push_back(now - last_[channel][axis]);
       last_[channel][axis] = now;
     }
   }
-  std::string Json() const { return "[" + text_ + "]"; }
+  nlohmann::json json = nlohmann::json::array();
 
  private:
-  std::string text_;
   std::vector<std::array<long, 3>> last_;
 };
 
@@ -37,21 +38,7 @@ Vector3<double> Cart(const PendulumState<double>& state, const Body& body) {
   return {state.q[0], state.q[1], body.cart_height};
 }
 
-// Ids come from files: nothing in them may end the script element or the string.
-std::string JsonText(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    if (c == '<') {
-      quoted += "\\u003c";
-    } else {
-      quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return quoted + "\"";
-}
-
-std::string PersonJson(const RecordingView& view, int person, int every) {
+nlohmann::json PersonJson(const RecordingView& view, int person, int every) {
   const FormationRun& run = view.run;
   const PendulumRecording& recording = run.recording;
   const Body& body = recording.scene.people[person].body;
@@ -68,42 +55,46 @@ std::string PersonJson(const RecordingView& view, int person, int every) {
     if (recorded.joints.empty()) continue;
     for (size_t j = 0; j < recorded.joints[t].size(); ++j) joints.Add(recorded.joints[t][j], j);
   }
-  std::string bones;
+  nlohmann::json bones = nlohmann::json::array();
   for (size_t j = 0; j < recorded.joint_parents.size(); ++j) {
-    if (recorded.joint_parents[j] < 0) continue;
-    bones += (bones.empty() ? "[" : ",[") + std::to_string(recorded.joint_parents[j]) + "," +
-             std::to_string(j) + "]";
+    if (recorded.joint_parents[j] >= 0) bones.push_back({recorded.joint_parents[j], j});
   }
-  return "{\"name\":" + JsonText(recording.subject_ids[person]) + ",\"m\":" + measured.Json() +
-         ",\"p\":" + predicted.Json() + ",\"j\":" + joints.Json() + ",\"bones\":[" + bones + "]}";
+  return {{"name", recording.subject_ids[person]},
+          {"m", std::move(measured.json)},
+          {"p", std::move(predicted.json)},
+          {"j", std::move(joints.json)},
+          {"bones", std::move(bones)}};
 }
 
 // [person, sample of its start, force along x and y at each sample (N)]; a push that is shorter
 // than a sample has one.
-std::string PushJson(const ScenePush& push, int every) {
-  std::string force;
+nlohmann::json PushJson(const ScenePush& push, int every) {
+  nlohmann::json force = nlohmann::json::array();
   for (size_t row = 0; row < push.force.size(); row += static_cast<size_t>(every)) {
-    force += (force.empty() ? "[" : ",[") + std::to_string(std::lround(push.force[row][0])) + "," +
-             std::to_string(std::lround(push.force[row][1])) + "]";
+    force.push_back({std::lround(push.force[row][0]), std::lround(push.force[row][1])});
   }
-  return "[" + std::to_string(push.person) + "," + std::to_string(push.start_frame / every) + ",[" +
-         force + "]]";
+  return {push.person, push.start_frame / every, std::move(force)};
 }
 
-std::string ViewJson(const RecordingView& view, double sample_seconds) {
+nlohmann::json ViewJson(const RecordingView& view, double sample_seconds) {
   const PendulumRecording& recording = view.run.recording;
   const int every = std::max(1, static_cast<int>(std::lround(sample_seconds / recording.scene.dt)));
-  std::string people, pushes;
-  for (int n = 0; n < recording.num_people(); ++n) {
-    people += (n > 0 ? "," : "") + PersonJson(view, n, every);
+  nlohmann::json people = nlohmann::json::array(), pushes = nlohmann::json::array();
+  for (int n = 0; n < recording.num_people(); ++n) people.push_back(PersonJson(view, n, every));
+  for (const ScenePush& push : recording.scene.pushes) pushes.push_back(PushJson(push, every));
+  return {{"id", recording.id},
+          {"step", every * recording.scene.dt},
+          {"people", std::move(people)},
+          {"pushes", std::move(pushes)}};
+}
+
+// Ids come from files: nothing in them may end the script element.
+std::string ForElement(const nlohmann::json& json) {
+  std::string text = json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  for (size_t at = 0; (at = text.find('<', at)) != std::string::npos;) {
+    text.replace(at, 1, "\\u003c");
   }
-  for (const ScenePush& push : recording.scene.pushes) {
-    pushes += (pushes.empty() ? "" : ",") + PushJson(push, every);
-  }
-  char step[32];
-  std::snprintf(step, sizeof step, "%.6g", every * recording.scene.dt);
-  return "{\"id\":" + JsonText(recording.id) + ",\"step\":" + step + ",\"people\":[" + people +
-         "],\"pushes\":[" + pushes + "]}";
+  return text;
 }
 
 constexpr char kControls[] = R"html(
@@ -149,12 +140,11 @@ ReportSection FigureSection(const ReportSource& source) {
   int skeletons = 0;
   for (const RecordingView& view : source.views) skeletons += view.run.num_people();
   const double seconds = skeletons > kManySkeletons ? kSeldomSeconds : kSampleSeconds;
-  std::string data;
-  for (const RecordingView& view : source.views) {
-    data += (data.empty() ? "" : ",\n") + ViewJson(view, seconds);
-  }
-  section.widget = std::string(kControls) + KeyHtml(source.views) +
-                   "<script type=\"application/json\" id=\"fig-data\">[" + data + "]</script>\n";
+  nlohmann::json data = nlohmann::json::array();
+  for (const RecordingView& view : source.views) data.push_back(ViewJson(view, seconds));
+  section.widget = kControls + KeyHtml(source.views) +
+                   "<script type=\"application/json\" id=\"fig-data\">" + ForElement(data) +
+                   "</script>\n";
   return section;
 }
 

@@ -183,7 +183,8 @@ std::string StripOf(const RecordingView& view) {
   if (bodies.ok()) AddRecorded(recording, bodies.value().bodies, &animation);
   AddPrediction(recording, view.run.prediction, {}, &animation);
   AddPushes(recording, &animation);
-  return PoseStrip(animation, kPosesOfStrip).ToInline();
+  return "<div class=\"scroll\" tabindex=\"0\">" + PoseStrip(animation, kPosesOfStrip).ToInline() +
+         "</div>\n";
 }
 
 std::string FoldTitle(const RecordingView& view) {
