@@ -237,7 +237,9 @@ class GltfWriter {
     };
     if (print.from > 0.0) key(0.0, 0.0f);
     key(print.from, 1.0f);
-    key(print.to, 0.0f);
+    const double last = (scene_.people[print.person].frames.size() - 1) * scene_.dt;
+    if (print.to <= last) key(print.to, 0.0f);
+    if (times.size() < 2) return;  // it stands throughout
     const int input = Accessor(times, 1);
     AddChannel(node, "scale", Accessor(scales, 3), input, "STEP");
   }
