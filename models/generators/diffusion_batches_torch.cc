@@ -31,53 +31,97 @@ int DrawnPast(int frames) {
   return std::min(past, frames - 1);
 }
 
-// A column per person and frame to [person, row, frame].
-torch::Tensor ByPerson(const Eigen::MatrixXf& columns, int people) {
-  const torch::Tensor all = ToTensor(columns);
-  return all.view({people, all.size(0) / people, all.size(1)}).transpose(1, 2);
-}
-
 int FramesOf(const ObservedGroup& group) { return static_cast<int>(group.front().frames.cols()); }
 
-int Padded(int frames) {
-  return (frames + kDiffusionFrames - 1) / kDiffusionFrames * kDiffusionFrames;
+int64_t Halved(int64_t frames) { return (frames + 1) / 2; }
+
+int64_t RowsOf(const DiffusionBatch& batch, const std::vector<int64_t>& frames) {
+  int64_t rows = 0;
+  for (size_t g = 0; g < frames.size(); ++g) rows += batch.sizes[g] * frames[g];
+  return rows;
 }
 
-// Groups of one batch, padded to the longest.
+// frames, above, below: of every group at this level and the next ones.
+LevelMaps MapsOf(const DiffusionBatch& batch, const std::vector<int64_t>& above,
+                 const std::vector<int64_t>& frames, const std::vector<int64_t>& below) {
+  LevelMaps maps;
+  const int64_t all = RowsOf(batch, frames);
+  const auto of = [](int64_t inputs) { return c10::make_intrusive<RowMap>(inputs); };
+  maps.taps = of(RowsOf(batch, above)), maps.tapped = of(kTaps * all);
+  maps.doubled = of(RowsOf(batch, below)), maps.people = of(batch.statics.size(0));
+  maps.seen = of(all);
+  int64_t first_above = 0, first = 0, first_below = 0, person = 0;  // of this person
+  for (size_t g = 0; g < frames.size(); ++g) {
+    const int64_t group = first;
+    for (int64_t n = 0; n < batch.sizes[g]; ++n, ++person) {
+      for (int64_t t = 0; t < frames[g]; ++t) {
+        for (int tap = 0; tap < kTaps; ++tap) {
+          const int64_t back = kTaps - 1 - tap;
+          if (2 * t >= back) maps.taps->Add(first_above + 2 * t - back);
+          maps.taps->EndRow();
+          if (t >= back) maps.tapped->Add(kTaps * (first + t - back) + tap);
+        }
+        maps.tapped->EndRow();
+        const int64_t late = first_below + t / 2;
+        if (t % 2 == 0 && t > 0) maps.doubled->Add(late - 1, 0.5f);
+        maps.doubled->Add(late, t % 2 == 0 && t > 0 ? 0.5f : 1.0f);
+        maps.doubled->EndRow();
+        maps.people->Add(person);
+        maps.people->EndRow();
+        for (const Eigen::MatrixXf& view : batch.views[g]) {
+          for (int64_t other = 0; other < batch.sizes[g]; ++other) {
+            if (view(n, other) != 0.0f)
+              maps.seen->Add(group + other * frames[g] + t, view(n, other));
+          }
+          maps.seen->EndRow();
+        }
+      }
+      first_above += above[g], first += frames[g], first_below += below[g];
+    }
+    maps.group_rows.push_back(first - group);
+  }
+  return maps;
+}
+
+void AddMaps(DiffusionBatch* batch) {
+  std::vector<std::vector<int64_t>> frames = {batch->frames};
+  for (int level = 0; level <= kDiffusionLevels; ++level) {
+    frames.push_back(frames.back());
+    for (int64_t& of_group : frames.back()) of_group = Halved(of_group);
+  }
+  for (int level = 0; level <= kDiffusionLevels; ++level) {
+    batch->levels.push_back(
+        MapsOf(*batch, frames[std::max(0, level - 1)], frames[level], frames[level + 1]));
+  }
+}
+
+// Groups of one batch.
 DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vector<int>& past,
                       const MotionScales& scales, const DiffusionTrainingOptions& options) {
-  int longest = 0;
-  int64_t people = 0;
-  for (const ObservedGroup& group : groups) {
-    longest = std::max(longest, Padded(FramesOf(group)));
-    people += static_cast<int64_t>(group.size());
-  }
   const bool pendulum = options.structure.pendulum;
+  std::vector<torch::Tensor> truth, given, weights, step_weights, statics;
   DiffusionBatch all;
-  all.truth = torch::zeros({people, scales.rows(), longest});
-  all.given = torch::zeros({people, GivenRows(pendulum, scales.rows()), longest});
-  all.weights = torch::zeros({people, 1, longest});
-  all.statics = torch::zeros({people, kStaticRows});
-  int64_t begin = 0;
   for (size_t g = 0; g < groups.size(); ++g) {
-    const int frames = FramesOf(groups[g]), count = static_cast<int>(groups[g].size());
+    const int frames = FramesOf(groups[g]);
     const GroupFeatures features =
         FeaturesOf(groups[g], scales, past[g], frames, options.dt, pendulum);
-    Eigen::MatrixXf rows(scales.rows(), count * frames);
-    for (int n = 0; n < count; ++n) {
-      rows.middleCols(n * frames, frames) = MotionRows(groups[g][n], scales, pendulum);
-    }
     const DiffusionBatch one = BatchOf(features, options.structure);
-    const auto place = [&](torch::Tensor& to) { return to.narrow(0, begin, count); };
-    place(all.truth).narrow(2, 0, frames).copy_(ByPerson(rows, count));
-    place(all.given).narrow(2, 0, frames).copy_(one.given.narrow(2, 0, frames));
-    place(all.weights).narrow(2, 0, past[g]).fill_(kObservedWeight);
-    place(all.weights).narrow(2, past[g], frames - past[g]).fill_(1.0);
-    place(all.statics).copy_(one.statics);
-    all.sizes.push_back(count);
+    torch::Tensor of_person = torch::ones({frames, 1});
+    of_person.narrow(0, 0, past[g]).fill_(kObservedWeight);
+    for (const ObservedMotion& person : groups[g]) {
+      truth.push_back(ToTensor(MotionRows(person, scales, pendulum)));
+      weights.push_back(of_person);
+    }
+    of_person = of_person.clone();
+    of_person[0] = 0.0;
+    step_weights.insert(step_weights.end(), groups[g].size(), of_person);
+    given.push_back(one.given), statics.push_back(one.statics);
+    all.sizes.push_back(one.sizes.front()), all.frames.push_back(frames);
     all.views.push_back(one.views.front());
-    begin += count;
   }
+  all.truth = torch::cat(truth), all.given = torch::cat(given), all.weights = torch::cat(weights);
+  all.step_weights = torch::cat(step_weights), all.statics = torch::cat(statics);
+  AddMaps(&all);
   return all;
 }
 
@@ -85,14 +129,12 @@ DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vecto
 
 DiffusionBatch BatchOf(const GroupFeatures& features, const DiffusionStructure& structure) {
   DiffusionBatch batch;
-  const torch::Tensor given = ByPerson(features.given, features.people);
-  batch.given = torch::constant_pad_nd(given, {0, Padded(features.frames) - features.frames});
+  batch.given = ToTensor(features.given);
   batch.statics = ToTensor(features.statics);
   batch.sizes = {features.people};
-  batch.views.emplace_back();
-  for (const Eigen::MatrixXf& view : PoolingWeights(structure.pooling, features.places)) {
-    batch.views.back().push_back(ToTensor(Eigen::MatrixXf(view.transpose())));
-  }
+  batch.frames = {features.frames};
+  batch.views = {PoolingWeights(structure.pooling, features.places)};
+  AddMaps(&batch);
   return batch;
 }
 

@@ -27,10 +27,9 @@ MotionScales ScalesOf(const std::vector<ObservedGroup>& learnt, MotionFrame fram
   return scales;
 }
 
-// x_t, whose signal has the share a of [person].
-torch::Tensor Noised(const torch::Tensor& truth, const torch::Tensor& share,
+// x_t, whose signal has the share a of [row, 1].
+torch::Tensor Noised(const torch::Tensor& truth, const torch::Tensor& a,
                      const torch::Tensor& noise) {
-  const torch::Tensor a = share.view({-1, 1, 1});
   return a.sqrt() * truth + (1.0 - a).sqrt() * noise;
 }
 
@@ -43,13 +42,19 @@ struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
         scales(ScalesOf(learnt, given.structure.frame)),
         batches(learnt, scales, options),
         held_batches(held, scales, options) {
-    joint_scales = torch::zeros({kBodyJoints});
-    for (int j = 0; j < kBodyJoints; ++j) joint_scales[j] = scales.joints[j];
+    Eigen::MatrixXf of_rows = Eigen::MatrixXf::Zero(kMotionRows, kMotionRows);
+    Eigen::MatrixXf sums = Eigen::MatrixXf::Zero(kBodyJoints, kMotionRows);
+    for (int row = 0; row < kMotionRows; ++row) {
+      of_rows(row, row % 3) = scales.joints[0];
+      of_rows(row, row) = scales.joints[row / 3];
+      sums(row / 3, row) = 1.0f;
+    }
+    joints_of_rows = ToTensor(of_rows), sums_of_joints = ToTensor(sums);
   }
 
   DiffusionTrainingOptions options;
   MotionScales scales;
-  torch::Tensor joint_scales;
+  torch::Tensor joints_of_rows, sums_of_joints;  // [row, row], m; [row, joint]
   DiffusionBatches batches, held_batches;
   std::shared_ptr<DiffusionModule> module, mean;  // mean: of the weights
   std::unique_ptr<torch::optim::AdamW> optimizer;
@@ -62,24 +67,29 @@ struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
     fields->Numbers("step", &step);
   }
 
-  // time: [person].
-  torch::Tensor Estimate(DiffusionModule* of, const torch::Tensor& noisy, const torch::Tensor& time,
-                         const DiffusionBatch& batch) const {
+  // times: of the groups, whose people are at the same stage of the way back.
+  torch::Tensor Estimate(DiffusionModule* of, const torch::Tensor& noisy,
+                         const std::vector<double>& times, const DiffusionBatch& batch) const {
     std::vector<torch::Tensor> features;
-    for (int64_t n = 0; n < time.size(0); ++n) {
-      features.push_back(ToTensor(TimeFeatures(time[n].item<double>())));
+    for (size_t g = 0; g < times.size(); ++g) {
+      features.insert(features.end(), batch.sizes[g], ToTensor(TimeFeatures(times[g])));
     }
     return of->Estimate(noisy, torch::stack(features), batch);
   }
 
+  static torch::Tensor Shares(const std::vector<double>& times, const DiffusionBatch& batch) {
+    std::vector<torch::Tensor> shares;
+    for (size_t g = 0; g < times.size(); ++g) {
+      shares.push_back(torch::full({batch.levels[0].group_rows[g], 1}, SignalShare(times[g])));
+    }
+    return torch::cat(shares);
+  }
+
   // Distances of joints in m: a hip that is off takes all joints along.
   torch::Tensor JointError(const torch::Tensor& miss) const {
-    const torch::Tensor joints = miss.view({miss.size(0), kBodyJoints, 3, miss.size(2)}) *
-                                 joint_scales.view({1, kBodyJoints, 1, 1});
-    const torch::Tensor hip = joints.narrow(1, 0, 1);
-    const torch::Tensor others = joints.narrow(1, 1, kBodyJoints - 1) + hip;
     constexpr double kSmooth = 1e-12;  // m^2; a root has no derivative at 0
-    return (torch::cat({hip, others}, 1).square().sum(2) + kSmooth).sqrt().mean(1, true);
+    const torch::Tensor squares = torch::mm(miss, joints_of_rows).square();
+    return (torch::mm(squares, sums_of_joints) + kSmooth).sqrt().mean(1, true);
   }
 
   torch::Tensor Loss(const torch::Tensor& estimate, const DiffusionBatch& batch) const {
@@ -92,25 +102,22 @@ struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
       loss = loss + options.joint_weight * weighted(JointError(miss), batch.weights);
     }
     if (options.difference_weight > 0.0) {
-      const int64_t frames = miss.size(2);
-      const torch::Tensor steps = miss.narrow(2, 1, frames - 1) - miss.narrow(2, 0, frames - 1);
+      const int64_t later = miss.size(0) - 1;
+      const torch::Tensor steps = miss.narrow(0, 1, later) - miss.narrow(0, 0, later);
       loss = loss + options.difference_weight *
-                        weighted(steps.abs().mean(1, true), batch.weights.narrow(2, 1, frames - 1));
+                        weighted(steps.abs().mean(1, true), batch.step_weights.narrow(0, 1, later));
     }
     return loss;
   }
 
   double Step() override {
     const DiffusionBatch batch = batches.Draw(step);
-    // One time for a group: its people are at the same stage of the way back.
-    const torch::Tensor by_group =
-        kDiffusionTime * torch::rand({static_cast<int64_t>(batch.sizes.size())});
-    const torch::Tensor time = by_group.repeat_interleave(torch::tensor(batch.sizes));
-    torch::Tensor share = torch::empty_like(time);
-    for (int64_t n = 0; n < time.size(0); ++n) share[n] = SignalShare(time[n].item<double>());
-    const torch::Tensor noisy = Noised(batch.truth, share, torch::randn_like(batch.truth));
+    std::vector<double> times(batch.sizes.size());
+    for (double& time : times) time = kDiffusionTime * torch::rand({1}).item<double>();
+    const torch::Tensor noisy =
+        Noised(batch.truth, Shares(times, batch), torch::randn_like(batch.truth));
     module->train();
-    const torch::Tensor loss = Loss(Estimate(module.get(), noisy, time, batch), batch);
+    const torch::Tensor loss = Loss(Estimate(module.get(), noisy, times, batch), batch);
     SetLearningRate(optimizer.get(),
                     options.learning_rate * RateShareToFloor(step, options.steps, options.warm_up));
     Improve(optimizer.get(), loss, module->parameters(), options.clip);
@@ -134,11 +141,10 @@ struct DiffusionTrainer::Torch : StepsRun<Run, Torch> {
     const DiffusionBatch batch = held_batches.AsTheyAre(kHeldGroups);
     auto generator = at::detail::createCPUGenerator(kHeldSeed);
     const torch::Tensor noise = torch::randn(batch.truth.sizes(), generator);
-    const torch::Tensor time = torch::full({batch.truth.size(0)}, kHeldTime);
-    const torch::Tensor share = torch::full_like(time, SignalShare(kHeldTime));
+    const std::vector<double> times(batch.sizes.size(), kHeldTime);
     mean->eval();
-    return Loss(Estimate(mean.get(), Noised(batch.truth, share, noise), time, batch), batch)
-        .item<double>();
+    const torch::Tensor noisy = Noised(batch.truth, Shares(times, batch), noise);
+    return Loss(Estimate(mean.get(), noisy, times, batch), batch).item<double>();
   }
 
   int AllSteps() const override { return options.steps; }
@@ -170,14 +176,8 @@ Eigen::MatrixXf DiffusionTrainer::Estimate(const GroupFeatures& features,
   torch::NoGradGuard no_grad;
   const Torch& training = As<Torch>();
   const DiffusionBatch batch = BatchOf(features, training.options.structure);
-  const int64_t frames = features.frames;
-  const torch::Tensor all =
-      ToTensor(noisy).view({features.people, frames, noisy.rows()}).transpose(1, 2);
-  const torch::Tensor padded = torch::constant_pad_nd(all, {0, batch.given.size(2) - frames});
-  const torch::Tensor time = torch::full({features.people}, t);
   training.mean->eval();
-  const torch::Tensor estimate = training.Estimate(training.mean.get(), padded, time, batch);
-  return ToMatrix(estimate.narrow(2, 0, frames).transpose(1, 2).flatten(0, 1)).transpose();
+  return ToMatrix(training.Estimate(training.mean.get(), ToTensor(noisy), {t}, batch)).transpose();
 }
 
 }  // namespace pushid
