@@ -33,52 +33,51 @@ int DrawnPast(int frames) {
 
 int FramesOf(const ObservedGroup& group) { return static_cast<int>(group.front().frames.cols()); }
 
-int64_t Halved(int64_t frames) { return (frames + 1) / 2; }
-
 int64_t RowsOf(const DiffusionBatch& batch, const std::vector<int64_t>& frames) {
   int64_t rows = 0;
   for (size_t g = 0; g < frames.size(); ++g) rows += batch.sizes[g] * frames[g];
   return rows;
 }
 
-// frames, above, below: of every group at this level and the next ones.
+// above, frames, below: of every group at the level before, at this one and at the next.
 LevelMaps MapsOf(const DiffusionBatch& batch, const std::vector<int64_t>& above,
                  const std::vector<int64_t>& frames, const std::vector<int64_t>& below) {
-  LevelMaps maps;
+  const auto map = [](int64_t out, int64_t in) { return c10::make_intrusive<RowMap>(out, in); };
   const int64_t all = RowsOf(batch, frames);
-  const auto of = [](int64_t inputs) { return c10::make_intrusive<RowMap>(inputs); };
-  maps.taps = of(RowsOf(batch, above)), maps.tapped = of(kTaps * all);
-  maps.doubled = of(RowsOf(batch, below)), maps.people = of(batch.statics.size(0));
-  maps.seen = of(all);
-  int64_t first_above = 0, first = 0, first_below = 0, person = 0;  // of this person
+  const int64_t views = static_cast<int64_t>(batch.views.front().size());
+  LevelMaps maps = {
+      map(kTaps * all, RowsOf(batch, above)), map(all, kTaps * all), map(all, RowsOf(batch, below)),
+      map(all, batch.statics.size(0)),        map(views * all, all), {}};
+  int64_t first_above = 0, first = 0, first_below = 0, person = 0;
   for (size_t g = 0; g < frames.size(); ++g) {
     const int64_t group = first;
     for (int64_t n = 0; n < batch.sizes[g]; ++n, ++person) {
       for (int64_t t = 0; t < frames[g]; ++t) {
-        for (int tap = 0; tap < kTaps; ++tap) {
-          const int64_t back = kTaps - 1 - tap;
+        maps.tapped->BeginRow();
+        for (int64_t back = kTaps - 1, tap = 0; back >= 0; --back, ++tap) {
+          maps.taps->BeginRow();
           if (2 * t >= back) maps.taps->Add(first_above + 2 * t - back);
-          maps.taps->EndRow();
           if (t >= back) maps.tapped->Add(kTaps * (first + t - back) + tap);
         }
-        maps.tapped->EndRow();
-        const int64_t late = first_below + t / 2;
-        if (t % 2 == 0 && t > 0) maps.doubled->Add(late - 1, 0.5f);
-        maps.doubled->Add(late, t % 2 == 0 && t > 0 ? 0.5f : 1.0f);
-        maps.doubled->EndRow();
+        const bool between = t % 2 == 0 && t > 0;
+        maps.doubled->BeginRow();
+        if (between) maps.doubled->Add(first_below + t / 2 - 1, 0.5f);
+        maps.doubled->Add(first_below + t / 2, between ? 0.5f : 1.0f);
+        maps.people->BeginRow();
         maps.people->Add(person);
-        maps.people->EndRow();
         for (const Eigen::MatrixXf& view : batch.views[g]) {
+          maps.seen->BeginRow();
           for (int64_t other = 0; other < batch.sizes[g]; ++other) {
-            if (view(n, other) != 0.0f)
-              maps.seen->Add(group + other * frames[g] + t, view(n, other));
+            maps.seen->Add(group + other * frames[g] + t, view(n, other));
           }
-          maps.seen->EndRow();
         }
       }
       first_above += above[g], first += frames[g], first_below += below[g];
     }
     maps.group_rows.push_back(first - group);
+  }
+  for (const RowMapPointer& of : {maps.taps, maps.tapped, maps.doubled, maps.people, maps.seen}) {
+    of->sums.finalize();
   }
   return maps;
 }
@@ -87,12 +86,22 @@ void AddMaps(DiffusionBatch* batch) {
   std::vector<std::vector<int64_t>> frames = {batch->frames};
   for (int level = 0; level <= kDiffusionLevels; ++level) {
     frames.push_back(frames.back());
-    for (int64_t& of_group : frames.back()) of_group = Halved(of_group);
+    for (int64_t& of_group : frames.back()) of_group = (of_group + 1) / 2;
   }
   for (int level = 0; level <= kDiffusionLevels; ++level) {
     batch->levels.push_back(
         MapsOf(*batch, frames[std::max(0, level - 1)], frames[level], frames[level + 1]));
   }
+}
+
+DiffusionBatch WithoutMaps(const GroupFeatures& features, const DiffusionStructure& structure) {
+  DiffusionBatch batch;
+  batch.given = ToTensor(features.given);
+  batch.statics = ToTensor(features.statics);
+  batch.sizes = {features.people};
+  batch.frames = {features.frames};
+  batch.views = {PoolingWeights(structure.pooling, features.places)};
+  return batch;
 }
 
 // Groups of one batch.
@@ -105,7 +114,7 @@ DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vecto
     const int frames = FramesOf(groups[g]);
     const GroupFeatures features =
         FeaturesOf(groups[g], scales, past[g], frames, options.dt, pendulum);
-    const DiffusionBatch one = BatchOf(features, options.structure);
+    const DiffusionBatch one = WithoutMaps(features, options.structure);
     torch::Tensor of_person = torch::ones({frames, 1});
     of_person.narrow(0, 0, past[g]).fill_(kObservedWeight);
     for (const ObservedMotion& person : groups[g]) {
@@ -128,12 +137,7 @@ DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vecto
 }  // namespace
 
 DiffusionBatch BatchOf(const GroupFeatures& features, const DiffusionStructure& structure) {
-  DiffusionBatch batch;
-  batch.given = ToTensor(features.given);
-  batch.statics = ToTensor(features.statics);
-  batch.sizes = {features.people};
-  batch.frames = {features.frames};
-  batch.views = {PoolingWeights(structure.pooling, features.places)};
+  DiffusionBatch batch = WithoutMaps(features, structure);
   AddMaps(&batch);
   return batch;
 }

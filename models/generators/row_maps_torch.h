@@ -2,28 +2,27 @@
 // products of matrices. Included by *_torch.cc files alone.
 //
 // Rows are frames: those of the first person, then those of the next, as many as each has. Nothing
-// is padded, and products are over all rows at once, which is half of the time of convolutions by
-// LibTorch: those compile their kernels anew for every number of people and of frames.
+// is padded, and products are over all rows at once. LibTorch's convolutions take twice as long:
+// their kernels are compiled anew for every number of people and of frames.
 #pragma once
 
-#include <utility>
-#include <vector>
+#include <Eigen/SparseCore>
 
 #include "models/restoration/support_torch.h"
 
 namespace pushid {
 
-// Row i of the result: the sum of weights times rows of what comes in.
+// A row of `sums` for every row that comes out: what it sums, with which weights. Filled row by
+// row.
 struct RowMap : torch::CustomClassHolder {
-  int64_t inputs = 0;                // rows that come in
-  std::vector<int64_t> begin = {0};  // of each row's entries, and their end
-  std::vector<int64_t> rows;
-  std::vector<float> weights;
+  Eigen::SparseMatrix<float, Eigen::RowMajor> sums;
 
-  explicit RowMap(int64_t all_inputs) : inputs(all_inputs) {}
-  int64_t outputs() const { return static_cast<int64_t>(begin.size()) - 1; }
-  void Add(int64_t row, float weight = 1.0f) { rows.push_back(row), weights.push_back(weight); }
-  void EndRow() { begin.push_back(static_cast<int64_t>(rows.size())); }
+  RowMap(int64_t out, int64_t in) : sums(out, in) {}
+  void BeginRow() { sums.startVec(++row_); }
+  void Add(int64_t in, float weight = 1.0f) { sums.insertBack(row_, in) = weight; }
+
+ private:
+  int64_t row_ = -1;
 };
 using RowMapPointer = c10::intrusive_ptr<RowMap>;
 
@@ -38,14 +37,9 @@ class MappedRows : public torch::autograd::Function<MappedRows> {
   static torch::Tensor forward(torch::autograd::AutogradContext* context, const torch::Tensor& x,
                                const RowMapPointer& map) {
     context->saved_data["map"] = c10::IValue::make_capsule(map);
+    const torch::Tensor to = torch::empty({map->sums.rows(), x.size(1)});
     const torch::Tensor from = x.contiguous();
-    torch::Tensor to = torch::zeros({map->outputs(), from.size(1)});
-    auto in = AsMatrix(from), out = AsMatrix(to);
-    for (int64_t i = 0; i < map->outputs(); ++i) {
-      for (int64_t k = map->begin[i]; k < map->begin[i + 1]; ++k) {
-        out.row(i) += map->weights[k] * in.row(map->rows[k]);
-      }
-    }
+    AsMatrix(to).noalias() = map->sums * AsMatrix(from);
     return to;
   }
 
@@ -54,13 +48,8 @@ class MappedRows : public torch::autograd::Function<MappedRows> {
     const auto map =
         c10::static_intrusive_pointer_cast<RowMap>(context->saved_data["map"].toCapsule());
     const torch::Tensor from = gradients[0].contiguous();
-    torch::Tensor to = torch::zeros({map->inputs, from.size(1)});
-    auto in = AsMatrix(from), out = AsMatrix(to);
-    for (int64_t i = 0; i < map->outputs(); ++i) {
-      for (int64_t k = map->begin[i]; k < map->begin[i + 1]; ++k) {
-        out.row(map->rows[k]) += map->weights[k] * in.row(i);
-      }
-    }
+    const torch::Tensor to = torch::empty({map->sums.cols(), from.size(1)});
+    AsMatrix(to).noalias() = map->sums.transpose() * AsMatrix(from);
     return {to, torch::Tensor()};
   }
 };
