@@ -47,7 +47,8 @@ class FoldJudge {
   }
 
   MaybeError Score(const BodyRecording& recording, std::map<std::string, BodyScore>* scores) const {
-    const GeneratorChanges& changes = validation_.changes;
+    GeneratorChanges changes = validation_.changes;
+    changes.diffusion.sampled = std::make_shared<std::vector<Trajectories>>();
     if (MaybeError error = Add("generator", recording, validation_.observed, changes, scores)) {
       return error;
     }
@@ -62,8 +63,9 @@ class FoldJudge {
       error = Add(BlendName(validation_.blends[b]), recording, validation_.observed, alone, scores);
     }
     alone.diffusion.blend = 0.0;
+    alone.diffusion.sampled.reset();
     if (!error && RowOf(trained_.kind()).any_observed && validation_.observed != kShown &&
-        recording.num_frames() > kShown) {
+        validation_.blends.empty() && recording.num_frames() > kShown) {
       error = Add("generator_shown_20", recording, kShown, alone, scores);
     }
     const int observed = validation_.observed, seen = SeenByBaselines(observed);

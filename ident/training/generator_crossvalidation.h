@@ -7,7 +7,8 @@
 //   generator_blend_0.25       the same with another share of physics, where such are compared
 //   rigid                      those physics alone, first poses carried by the rods' tips; where
 //                              they go into the network, they know frame 0 alone
-//   generator_shown_20         of kinds that are trained for it: shown 20 frames, no physics
+//   generator_shown_20         of kinds that are trained for it: shown 20 frames, no physics; not
+//                              where shares of physics are compared
 //   static, constant_velocity  as in body_evaluation.h, shown as many frames as the generator
 //
 // All but generator_all_frames and generator_shown_20 count the frames that the generator was not

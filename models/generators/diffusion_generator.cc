@@ -123,19 +123,27 @@ Trajectories DiffusionGenerator::Finished(const ObservedMotion& person, Trajecto
   return motion.rightCols(motion.cols() - seen);
 }
 
+std::vector<Trajectories> DiffusionGenerator::SampledMean(const std::vector<ObservedMotion>& people,
+                                                          int frames) const {
+  const NormalSource normal = noise_();
+  std::vector<Trajectories> mean = SampleWhole(people, Member(0), frames, normal);
+  for (int k = 1; k < options_.averaged; ++k) {
+    const std::vector<Trajectories> sample = SampleWhole(people, Member(k), frames, normal);
+    for (size_t n = 0; n < people.size(); ++n) mean[n] += sample[n];
+  }
+  for (Trajectories& motion : mean) motion /= static_cast<float>(options_.averaged);
+  return mean;
+}
+
 std::vector<Trajectories> DiffusionGenerator::Forecast(const std::vector<ObservedMotion>& people,
                                                        int frames) const {
   if (people.empty()) return {};
-  const NormalSource normal = noise_();
   const int whole = ObservedFrames(people) + frames;
-  std::vector<Trajectories> mean = SampleWhole(people, Member(0), whole, normal);
-  for (int k = 1; k < options_.averaged; ++k) {
-    const std::vector<Trajectories> sample = SampleWhole(people, Member(k), whole, normal);
-    for (size_t n = 0; n < people.size(); ++n) mean[n] += sample[n];
-  }
-  for (size_t n = 0; n < people.size(); ++n) {
-    mean[n] = Finished(people[n], mean[n] / static_cast<float>(options_.averaged));
-  }
+  std::vector<Trajectories> mean;
+  if (options_.sampled && !options_.sampled->empty()) mean = *options_.sampled;
+  if (mean.empty()) mean = SampledMean(people, whole);
+  if (options_.sampled) *options_.sampled = mean;
+  for (size_t n = 0; n < people.size(); ++n) mean[n] = Finished(people[n], std::move(mean[n]));
   return mean;
 }
 

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "models/enum_names.h"
@@ -94,6 +95,9 @@ struct DiffusionGeneratorOptions {
   double blend = 0.0;        // share of the way to the pendulum's hip
   double push_spread = 0.8;  // of the logarithm of the push, between sampled futures
   PostprocessOptions postprocess = {true, 20};
+  // Keeps what Forecast samples, for forecasts of the same people that differ by what is done to
+  // samples afterwards (blend, postprocess).
+  std::shared_ptr<std::vector<Trajectories>> sampled = nullptr;
 };
 
 class DiffusionGenerator : public MotionGenerator {
@@ -114,6 +118,9 @@ class DiffusionGenerator : public MotionGenerator {
   std::vector<Trajectories> SampleWhole(const std::vector<ObservedMotion>& people,
                                         const DiffusionNetwork& network, int frames,
                                         const NormalSource& normal) const;
+  // The mean of several.
+  std::vector<Trajectories> SampledMean(const std::vector<ObservedMotion>& people,
+                                        int frames) const;
   // Networks take turns.
   const DiffusionNetwork& Member(int sample) const { return members_[sample % members_.size()]; }
   // The frames after those seen.
