@@ -76,7 +76,7 @@ class GltfReader {
     std::vector<float> turn = one.value("rotation", std::vector<float>{0, 0, 0, 1});
     const Json& animation = json_["animations"][0];
     for (const Json& channel : animation["channels"]) {
-      if (channel["target"]["node"] != node) continue;
+      if (channel["target"]["node"] != node || channel["target"]["path"] == "scale") continue;
       const Json& sampler = animation["samplers"][channel["sampler"].get<int>()];
       const std::vector<float> all = Numbers(sampler["output"]);
       const bool turns = channel["target"]["path"] == "rotation";
