@@ -5,7 +5,7 @@ motion     what groups do: social states, words of motion, who moved first; with
 crowds     people who were not recorded, ahead of a group and beside it
 spread     whether sampled futures hold what was recorded; with the first run
 seconds    six seconds of every group, beside physics
-poolings   errors by how people see each other; seven minutes of one core each
+poolings   errors by how people see each other; ten minutes of one core each
 
 PUSHID_RECORDINGS is the folder of the recordings. The same runs serve both, a quarter of an hour of one core for
 diffusion and ten minutes for `window` bodies, which carry physics on the same folds.
