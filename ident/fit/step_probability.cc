@@ -81,9 +81,8 @@ std::vector<double> StepMargins(const ModelOptions& options,
                                 const std::vector<ParameterSet<double>>& parameters,
                                 const Scene& scene, const RolloutPath<double>& path,
                                 const RollWith& roll) {
-  // Each person asks for so many rollouts of all: seconds at this number, hours in a crowd.
-  constexpr int kHalvings = 12, kMostPeople = 20;
-  if (options.stance == Stance::kSteps && scene.num_people() > kMostPeople) return {};
+  constexpr int kHalvings = 12;
+  if (options.stance == Stance::kSteps && scene.num_people() > kMostPeopleWithMargins) return {};
   std::vector<double> margins;
   for (int n = 0; n < scene.num_people(); ++n) {
     const ParameterSet<double>& own = parameters[parameters.size() == 1 ? 0 : n];

@@ -14,6 +14,8 @@
 // a weak prior that holds them finite where a margin tells all who step from all who do not. Errors
 // are clustered by person (CR1), and those of a probability are by the delta method. What is known
 // of a person is what was recorded: who would step after the recording's end counts as standing.
+// So w holds all that makes people do otherwise than the margin says, errors of the recorded pushes
+// among it; of a push that is known less well than those, P(step) is too sure.
 #pragma once
 
 #include <functional>
@@ -34,8 +36,11 @@ struct StepOutcome {
   std::string person;  // PersonKey
 };
 
+// Each person asks for a dozen rollouts of all: seconds at this number, hours in a crowd.
+inline constexpr int kMostPeopleWithMargins = 20;
+
 // Of everybody in a scene; path: the model's own rollout. roll: the same with other parameters.
-// None where more than 20 people have feet that step: it would take too long.
+// None where more people than that have feet that step.
 using RollWith =
     std::function<RolloutStatus(const std::vector<ParameterSet<double>>&, RolloutPath<double>*)>;
 std::vector<double> StepMargins(const ModelOptions& options,

@@ -54,7 +54,11 @@ Row StanceRow() {
   row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
     if (text == kAutoStance) return std::nullopt;
     Stance stance;
-    if (MaybeError error = ParseName("--stance", text, &stance)) return error;
+    if (MaybeError error = ParseName("--stance", text, &stance)) {
+      // Earlier versions had feet that step by this name.
+      const char* const now = text == "threshold" ? "; steps took its place" : "";
+      return Error{error->message + ", or " + kAutoStance + now};
+    }
     SetStance(stance, o);
     return std::nullopt;
   };

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
+#include "ident/fit/step_probability.h"
 #include "ident/problem/statistics.h"
 
 namespace pushid {
@@ -106,6 +107,10 @@ std::string PredictedStepsText(const PendulumRecording& recording, const Predict
     text += recording.subject_ids[n] + ": ";
     for (size_t i = 0; i < parts.size(); ++i) text += (i > 0 ? ", " : "") + parts[i];
     text += "\n";
+  }
+  if (prediction.feet_step && prediction.path.num_people() > kMostPeopleWithMargins) {
+    text += "P(step) is left out: it is computed for at most " +
+            std::to_string(kMostPeopleWithMargins) + " people\n";
   }
   return text;
 }

@@ -110,7 +110,7 @@ std::string LiftOffText(const LiftOffError& error) {
          (error.landed > 0 ? "; place off by " + Rounded(error.place, 2) + " m" : "");
 }
 
-// Nothing where no model has step states.
+// Nothing where in no model feet step.
 void AddLiftOff(const NamedStepScores& scores, TextTable* table) {
   std::vector<std::string> row = {"first lift-off, predicted - recorded: median"};
   bool any = false;
