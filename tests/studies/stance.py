@@ -6,6 +6,7 @@ sways     75 kg pushed for 0.7 s: who steps, when, where the person ends, P(step
 values    what the fit of single people says of the feet (models/README.md); seconds
 steps     who steps: AUC, Brier score, calibration, lift-off and first place, held out (ident/prediction/README.md);
           with single and groups
+reliability  P(step) held out against the share that stepped (ident/prediction/README.md); with single and groups
 
 Times are those of one core.
 """
@@ -135,5 +136,29 @@ def steps():
                           "lift-off, mean error, s", "first place, mean error, m"], rows)
 
 
+def reliability():
+    """How many tracks have a P(step) in a fifth of 0 to 1, their mean P(step) and the share that stepped."""
+    tried = [("single people, a person left out", compared("single", "subject")[0]),
+             ("groups, 5 folds", groups_compared()[0])]
+    rows = []
+    for title, scores in tried:
+        for name, p in scores.items():
+            bins = [[] for _ in range(5)]
+            for track in (t for r in p["recordings"] for t in r.get("predicted_steps", [])):
+                bins[min(4, int(5 * track["probability"]))].append(track)
+            rows.append([title, f"`{name}`", *(reliability_cell(tracks) for tracks in bins)])
+    return studies.table(["held out: P(step) -> share that stepped (tracks)", "feet",
+                          *(f"{k / 5:.1f} to {(k + 1) / 5:.1f}" for k in range(5))], rows)
+
+
+def reliability_cell(tracks):
+    if not tracks:
+        return None
+    mean = sum(t["probability"] for t in tracks) / len(tracks)
+    share = sum(t["stepped"] for t in tracks) / len(tracks)
+    return f"{mean:.2f} -> {share:.2f} ({len(tracks)})"
+
+
 if __name__ == "__main__":
-    studies.main(__file__, {"single": single, "groups": groups, "sways": sways, "values": values, "steps": steps})
+    studies.main(__file__, {"single": single, "groups": groups, "sways": sways, "values": values, "steps": steps,
+                            "reliability": reliability})
