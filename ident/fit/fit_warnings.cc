@@ -9,7 +9,8 @@
 namespace pushid {
 namespace {
 
-constexpr double kPullToTell = 0.5;  // standard errors
+constexpr double kPullToTell = 0.5;    // standard errors
+constexpr double kHeldByDemand = 0.9;  // share of what determines a parameter
 
 void AddVerdict(const FitResult& result, Warnings* warnings) {
   const ModelOptions& model = result.options.model;
@@ -59,17 +60,25 @@ void AddSettlingWarning(const Uncertainty& u, size_t shared, Warnings* warnings)
                            Rounded(s.rise, 2) + "), and the constraint was dropped");
     return;
   }
-  std::string moved;
+  std::string moved, held;
   for (size_t i = 0; i < shared; ++i) {
     const Estimate& e = u.estimates[i];
     const double pull = e.standard_error > 0.0 ? e.shares.settling_pull / e.standard_error : 0.0;
     if (std::abs(pull) < kPullToTell || !std::isfinite(pull)) continue;
+    if (e.shares.settling > kHeldByDemand) {  // its error says nothing of the data
+      held += (held.empty() ? "" : ", ") + e.name;
+      continue;
+    }
     moved +=
         (moved.empty() ? "" : ", ") + e.name + " by " + (pull > 0.0 ? "+" : "") + Rounded(pull, 2);
   }
-  warnings->emplace_back(
-      wanted + "; the constraint to settle within " + Rounded(kWaitSeconds, 2) + " s moved " +
-      (moved.empty() ? "no parameter by half a standard error" : moved + " standard errors"));
+  std::string what = moved.empty() ? "" : moved + " standard errors";
+  if (!held.empty()) {
+    what += (what.empty() ? "" : ", and ") + held + " to where nothing else holds it";
+  }
+  if (what.empty()) what = "no parameter by half a standard error";
+  warnings->emplace_back(wanted + "; the constraint to settle within " + Rounded(kWaitSeconds, 2) +
+                         " s moved " + what);
 }
 
 }  // namespace
