@@ -15,9 +15,12 @@
 namespace pushid {
 namespace {
 
-ParameterSet<double> Identified() {
-  ParameterSet<double> p = PublishedTailParameters();
-  p[kMu] = 21.0, p[kKpTheta] = 2200.0, p[kAx] = -16.0;
+ParameterSet<double> Identified(Stance stance) {
+  ParameterSet<double> p = PublishedStanceParameters();
+  if (stance == Stance::kSlide) {
+    p = PublishedTailParameters();
+    p[kMu] = 21.0, p[kKpTheta] = 2200.0, p[kAx] = -16.0;
+  }
   p[kContactStiffness] = 2900.0, p[kContactDistance] = 0.42, p[kContactKappa] = 0.41;
   p[kContactDamping] = 270.0, p[kContactHeight] = 0.5;
   return p;
@@ -38,15 +41,16 @@ Scene Crowded(int people) {
 
 // Arguments: people, threads. A second of 60 frames from the same start, so that contacts are as
 // many whatever the number of people.
-void Second(benchmark::State& state, bool contact) {
+void Second(benchmark::State& state, bool contact, Stance stance = Stance::kSlide) {
   constexpr int kFrames = 60;
   const int people = static_cast<int>(state.range(0)), threads = static_cast<int>(state.range(1));
   const Scene scene = Crowded(people);
   ModelOptions options;
+  options.stance = stance;
   options.interaction.spring = options.interaction.damping = contact;
   for (auto _ : state) {
     state.PauseTiming();
-    Crowd crowd(scene, options, {Identified()}, threads);
+    Crowd crowd(scene, options, {Identified(stance)}, threads);
     state.ResumeTiming();
     for (int t = 0; t < kFrames; ++t) {
       if (!crowd.Advance().ok) state.SkipWithError("a person falls");
@@ -63,6 +67,13 @@ BENCHMARK(CrowdSecond)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime()
     ->ArgsProduct({{100, 1000, 10000, 100000, 1000000}, {1, 2}})
+    ->ArgNames({"people", "threads"});
+
+void CrowdSecondOfSteps(benchmark::State& state) { Second(state, true, Stance::kSteps); }
+BENCHMARK(CrowdSecondOfSteps)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime()
+    ->ArgsProduct({{10000}, {1}})
     ->ArgNames({"people", "threads"});
 
 void CrowdSecondWithoutContact(benchmark::State& state) { Second(state, false); }
