@@ -46,8 +46,8 @@ std::string ForcesSvg(const FormationRun& run, const std::string& title,
                       ForceScale scale = ForceScale::kShared);
 
 // Feet from above: where they stood and where the model's are put, with the times of landings, and
-// the paths of the capture points (prediction/predicted_steps.h); nothing where the model has no feet
-// that step. And the numbers behind it.
+// the paths of the capture points (prediction/predicted_steps.h); nothing where the model has no
+// feet that step. And the numbers behind it.
 std::optional<Figure> FeetFigure(const FormationRun& run);
 std::vector<std::string> FeetSvg(const FormationRun& run);  // for a page with SvgStyle
 TextTable FeetNumbers(const FormationRun& run);

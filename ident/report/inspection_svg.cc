@@ -33,8 +33,8 @@ void AddHip(const Inspection& found, Figure* figure) {
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
     for (const Eigen::Vector3d& position : found.hip) values.push_back(position[axis]);
-    Chart chart = SignalChart(std::string("hip ") + "xyz"[axis] + " displacement, m",
-                              found.rate_hz, values);
+    Chart chart =
+        SignalChart(std::string("hip ") + "xyz"[axis] + " displacement, m", found.rate_hz, values);
     if (found.onset_frame > 0) {
       chart.marks = {found.onset_frame / found.rate_hz};
       chart.x_label = "time, s (line: the hip has moved by 2 cm)";
