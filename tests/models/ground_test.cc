@@ -11,7 +11,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kStep = 0.01;
+constexpr double kGroundStep = 0.01;
 
 Eigen::Matrix3d Turned(const GroundPose& pose) {
   return (Eigen::AngleAxisd(pose[3], Eigen::Vector3d::UnitX()) *
@@ -28,7 +28,7 @@ TEST(Ground, GravityIsThatOfTheTurnedFrame) {
   Random random(3);
   for (int trial = 0; trial < 20; ++trial) {
     const GroundPose pose = RandomPose(&random);
-    const GroundMotion ground = GroundThrough({pose, pose, pose}, kStep);
+    const GroundMotion ground = GroundThrough({pose, pose, pose}, kGroundStep);
     const Eigen::Vector3d gravity = Turned(pose).transpose() * Eigen::Vector3d(0, 0, -kGravity);
     for (int frame : {0, 1, 2, 7}) {
       const GroundStep& step = ground.StepAt(frame);
@@ -50,8 +50,8 @@ TEST(Ground, GravityIsThatOfTheTurnedFrame) {
 TEST(Ground, AfterItsRecordItRests) {
   std::vector<GroundPose> poses;
   for (int t = 0; t < 5; ++t) poses.emplace_back(0.01 * t * t, 0.0, 0.0, 0.0);
-  const GroundMotion ground = GroundThrough(poses, kStep);
-  EXPECT_NEAR(ground.StepAt(4).acceleration[0], 0.02 / (kStep * kStep), 1e-9);
+  const GroundMotion ground = GroundThrough(poses, kGroundStep);
+  EXPECT_NEAR(ground.StepAt(4).acceleration[0], 0.02 / (kGroundStep * kGroundStep), 1e-9);
   EXPECT_TRUE(ground.StepAt(5).acceleration.isZero(0.0));
   EXPECT_EQ(ground.PoseAt(9), poses.back());
   EXPECT_TRUE(GroundMotion{}.StepAt(3).acceleration.isZero(0.0));
@@ -76,15 +76,15 @@ TEST(Ground, StatesInTheLaboratoryAreExact) {
   const Body body{80.0, 0.9, 0.1};
   for (int trial = 0; trial < 20; ++trial) {
     GroundPose pose = RandomPose(&random), before = pose + 0.01 * RandomPose(&random);
-    const GroundMotion ground = GroundThrough({before, pose}, kStep);
+    const GroundMotion ground = GroundThrough({before, pose}, kGroundStep);
     PendulumState<double> first, second;
     first.q = 0.4 * Vector4<double>(random.Normal(), random.Normal(), random.Normal(), 0.3);
     second.qd = Vector4<double>(random.Normal(), random.Normal(), random.Normal(), 0.2);
-    second.q = first.q + kStep * second.qd;
+    second.q = first.q + kGroundStep * second.qd;
     const Vector3<double> origin(0.2, 0.1, body.cart_height);
     const PendulumState<double> a = InLaboratory(ground, 0, origin, first);
     const PendulumState<double> b = InLaboratory(ground, 1, origin, second);
-    EXPECT_LT((b.q - a.q - kStep * b.qd).norm(), 1e-12);
+    EXPECT_LT((b.q - a.q - kGroundStep * b.qd).norm(), 1e-12);
     const Vector3<double> cart(second.q[0], second.q[1], body.cart_height);
     const Vector3<double> rod = PointInLaboratory(pose, origin, HipPosition(body, second.q)) -
                                 PointInLaboratory(pose, origin, cart);
@@ -102,8 +102,9 @@ TEST(Ground, TurnsAsRodsDo) {
   const TurnedAxes axes(0.7);
   for (int trial = 0; trial < 10; ++trial) {
     const GroundPose pose = RandomPose(&random);
-    const GroundStep step = GroundThrough({pose, pose}, kStep).StepAt(0);
-    const GroundStep turned = GroundThrough({axes.Pose(pose), axes.Pose(pose)}, kStep).StepAt(0);
+    const GroundStep step = GroundThrough({pose, pose}, kGroundStep).StepAt(0);
+    const GroundStep turned =
+        GroundThrough({axes.Pose(pose), axes.Pose(pose)}, kGroundStep).StepAt(0);
     EXPECT_NEAR(turned.gravity, step.gravity, 1e-12);
     EXPECT_NEAR(turned.acceleration.head<2>().norm(), step.acceleration.head<2>().norm(), 1e-12);
   }
