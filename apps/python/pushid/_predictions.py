@@ -28,7 +28,8 @@ def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=
 
     shape: "line", "diamond" or "grid"; spacing: m. push: N s at the hip of person `pushed`, within push_duration (s),
     push_direction degrees from +x to the left. mass (kg) and rod (ankles to hip, m): of everybody. duration (s) of the
-    simulation; fps: frames per second. onset_bands: also compute 90 % bands of the onsets, by drawing parameters from their covariance.
+    simulation; fps: frames per second. onset_bands: also compute 90 % bands of the onsets, by drawing parameters from
+    their covariance.
     """
     return Formation(_pushid.simulate_formation(result._model, shape, people, spacing, pushed, push, push_duration,
                                                 push_direction, mass, rod, duration, fps, text_of("set", set or {}),
