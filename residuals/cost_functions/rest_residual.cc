@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "residuals/cost_functions/rollout_problem.h"
@@ -148,22 +149,25 @@ Eigen::Matrix<T, ModalStabilityResidual::kResiduals, 1> ModalStabilityResidual::
 }
 
 Eigen::Matrix<double, ModalStabilityResidual::kResiduals, kNumParameters>
-ModalStabilityResidual::ByFitted(const ParameterSet<double>& p) const {
+ModalStabilityResidual::ByParameter(const ParameterSet<double>& p,
+                                    const std::vector<ColumnEntry>& entries) const {
   // A few at a time: duals of jets of all parameters are a hundred times as long.
-  constexpr int kAtATime = 8;
+  constexpr size_t kAtATime = 8;
   using Jet = ceres::Jet<double, kAtATime>;
+  std::set<Parameter> moved;
+  for (const ColumnEntry& entry : entries) moved.insert(entry.parameter);
+  const std::vector<Parameter> parameters(moved.begin(), moved.end());
   Eigen::Matrix<double, kResiduals, kNumParameters> by_parameter;
   by_parameter.setZero();
-  const int fitted = static_cast<int>(map_.fitted.size());
-  for (int first = 0; first < fitted; first += kAtATime) {
-    const int count = std::min(kAtATime, fitted - first);
+  for (size_t first = 0; first < parameters.size(); first += kAtATime) {
+    const size_t count = std::min(kAtATime, parameters.size() - first);
     ParameterSet<Jet> jets;
     for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i]);
-    for (int k = 0; k < count; ++k) jets[map_.fitted[first + k].parameter].v[k] = 1.0;
+    for (size_t k = 0; k < count; ++k) jets[parameters[first + k]].v[k] = 1.0;
     const Eigen::Matrix<Jet, kResiduals, 1> hinges = Hinges(jets);
-    for (int k = 0; k < count; ++k) {
+    for (size_t k = 0; k < count; ++k) {
       for (int row = 0; row < kResiduals; ++row) {
-        by_parameter(row, map_.fitted[first + k].parameter) = hinges[row].v[k];
+        by_parameter(row, parameters[first + k]) = hinges[row].v[k];
       }
     }
   }
@@ -177,11 +181,12 @@ bool ModalStabilityResidual::Evaluate(double const* const* blocks, double* resid
   Eigen::Map<Eigen::Matrix<double, kResiduals, 1>> values(residuals);
   values = Hinges(p);
   if (jacobians == nullptr) return true;
-  const Eigen::Matrix<double, kResiduals, kNumParameters> by_parameter = ByFitted(p);
   const int shared = map_.num_shared();
+  const std::vector<ColumnEntry> entries = map_.Entries(p, of_unit ? shared : -1);
+  const Eigen::Matrix<double, kResiduals, kNumParameters> by_parameter = ByParameter(p, entries);
   RowMajorMatrix by_column =
       RowMajorMatrix::Zero(kResiduals, shared + (of_unit ? map_.num_deviations : 0));
-  for (const ColumnEntry& entry : map_.Entries(p, of_unit ? shared : -1)) {
+  for (const ColumnEntry& entry : entries) {
     for (int row = 0; row < kResiduals; ++row) {
       by_column(row, entry.column) += entry.derivative * by_parameter(row, entry.parameter);
     }

@@ -22,6 +22,7 @@
 #include <ceres/cost_function.h>
 
 #include <string>
+#include <vector>
 
 #include "models/modal_stability.h"
 #include "residuals/parameter_map.h"
@@ -64,8 +65,10 @@ class ModalStabilityResidual : public ceres::CostFunction {
  private:
   template <typename T>
   Eigen::Matrix<T, kResiduals, 1> Hinges(const ParameterSet<T>& p) const;
-  // Derivatives of the hinges by what is fitted; zero by all else.
-  Eigen::Matrix<double, kResiduals, kNumParameters> ByFitted(const ParameterSet<double>& p) const;
+  // Derivatives of the hinges by what the entries move, others of the same value among it; zero by
+  // all else.
+  Eigen::Matrix<double, kResiduals, kNumParameters> ByParameter(
+      const ParameterSet<double>& p, const std::vector<ColumnEntry>& entries) const;
 
   ModelOptions options_;
   Body body_;

@@ -1,6 +1,8 @@
 // A problem's points.
 #include "ident/problem/fit_problem.h"
 
+#include <cmath>
+
 #include "ident/problem/residual_families.h"
 #include "tests/ident/fit_samples.h"
 
@@ -74,6 +76,48 @@ TEST(FitProblem, BlocksFollowTheTable) {
   if (!point.unit.empty()) expected.push_back(FitProblem::kPoolingCluster);
   expected.push_back(FitProblem::kSettlingCluster);
   EXPECT_EQ(clusters, expected);
+}
+
+// Of everything that a preset puts into its cost, priors, demands and values that others follow
+// among it, where people neither settle nor stay stable.
+TEST(FitProblem, TheGradientIsThatOfTheCostInEveryPreset) {
+  SyntheticOptions study = TinyStudy();
+  study.subjects = study.people_in_row = 3;
+  study.frames = 40;
+  study.model.interaction.spring = study.model.interaction.damping = true;
+  for (Parameter id :
+       {kContactStiffness, kContactDistance, kContactKappa, kContactDamping, kContactHeight}) {
+    study.parameters[id] = BaseTable()[id].nominal;
+  }
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  for (const std::string preset : {"tail", "group", "ldp", "ldp_groups"}) {
+    FitOptions options = MakePreset(preset).value();
+    ASSERT_FALSE(PrepareFit(recordings, &options));
+    const FitProblem problem(recordings, options);
+    FitPoint point = problem.NominalPoint();
+    for (size_t i = 0; i < point.shared.size(); ++i) {
+      const Parameter id = problem.map().fitted[i].parameter;
+      if (id == kMu) point.shared[i] = -20.0;
+      if (id == kBx) point.shared[i] = -1.0;
+    }
+    const FitProblem::Built built = problem.Build(&point, 0);
+    std::vector<double> gradient, at = point.Flat();
+    ASSERT_TRUE(built.problem->Evaluate({}, nullptr, nullptr, &gradient, nullptr)) << preset;
+    ASSERT_EQ(gradient.size(), at.size());
+    for (size_t i = 0; i < at.size(); ++i) {
+      const double step = 1e-6 * std::max(1.0, std::abs(at[i]));
+      double cost[2];
+      for (int up : {0, 1}) {
+        std::vector<double> moved = at;
+        moved[i] += up == 1 ? step : -step;
+        point.SetFlat(moved);
+        ASSERT_TRUE(built.problem->Evaluate({}, &cost[up], nullptr, nullptr, nullptr));
+      }
+      const double numeric = (cost[1] - cost[0]) / (2.0 * step);
+      EXPECT_NEAR(gradient[i], numeric, 1e-4 * std::abs(numeric) + 1e-6 * cost[0])
+          << preset << ", number " << i;
+    }
+  }
 }
 
 }  // namespace

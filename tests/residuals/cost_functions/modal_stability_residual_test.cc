@@ -45,6 +45,16 @@ TEST(ModalStabilityResidual, OfAUnit) {
       {1e-6, 1e-8, 1e-14});
 }
 
+// Sideways as forwards: values that follow a fitted one move with it.
+TEST(ModalStabilityResidual, OthersOfTheSameValue) {
+  Random random(63);
+  ParameterMap map = EveryParameterMap({kKpTheta});
+  map.fitted = {{kMu, Transform::kIdentity, -1, kMuY}, {kKpTheta, Transform::kLog, 0, kKpPhi}};
+  const ModalStabilityResidual cost({}, kBody, map, 2.0, 10.0, true);
+  const ParameterSet<double> p = RandomRecoveringParameters(&random, 0.2);
+  ExpectCorrectJacobian(cost, {{p[kMu], std::log(p[kKpTheta])}, {0.1}}, {1e-6, 1e-8, 1e-14});
+}
+
 TEST(ModalStabilityResidual, SilentWhereEveryModeDecays) {
   EXPECT_LT(Residuals(Steady(), 0.0).maxCoeff(), 0.01);
 }
