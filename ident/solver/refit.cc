@@ -11,6 +11,11 @@ namespace {
 // by a constant share of the way each: after so many, secants go on from its information.
 constexpr int kFewSteps = 5;
 constexpr double kLoose = 1e-6;  // a function tolerance that asks for no such optimum
+// Where demands begin and contacts close, Gauss-Newton's steps shrink with the trust region until
+// one is within a loose tolerance, which is no optimum: a fresh region goes on while it brings more
+// than so many tolerances.
+constexpr double kWorthAnother = 50.0;
+constexpr int kMostFresh = 5;
 
 }  // namespace
 
@@ -43,6 +48,12 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
   const int most = problem.options().max_iterations;
   const bool by_secants = from.weights.empty() && problem.options().function_tolerance < kLoose;
   solve(by_secants ? kFewSteps : most);
+  const double worth = kWorthAnother * problem.options().function_tolerance;
+  for (int fresh = 0; !by_secants && !network && start.converged && fresh < kMostFresh; ++fresh) {
+    const double before = start.cost;
+    solve(most);
+    if (before - start.cost <= worth * before) break;
+  }
   if (by_secants && !start.converged && start.iterations < most) {
     FitPoint point = start.to;
     std::string message;
