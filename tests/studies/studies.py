@@ -11,7 +11,7 @@ README stands in such a block, between the lines
 
 PUSHID_RECORDINGS is the folder of the published recordings (default ../shared/fzj_push beside the source),
 PUSHID_BIN that of the programs (default build/release/bin). What a program printed is kept in
-build/studies under a hash of its command and of the program itself, so that a table's wording can be
+build/studies under a hash of its command, the program itself and the library of the programs, so that a table's wording can be
 changed without running again; remove the folder to measure times anew. Standard library alone.
 """
 import hashlib
@@ -43,6 +43,16 @@ class Output:
             return json.load(file)
 
 
+def program_bytes(executable):
+    """What makes its output: itself, and the library that the programs share, in a build or beside an installed bin."""
+    files = [executable] + [os.path.join(BIN, "..", *folders, "libpushid.so") for folders in (["ident"], ["lib", "pushid"])]
+    parts = []
+    for name in filter(os.path.exists, files):
+        with open(name, "rb") as file:
+            parts.append(hashlib.sha256(file.read()).digest())
+    return b"".join(parts)
+
+
 def run(program, *arguments, out="json_out", ending="json", keep=True, may_fail=False):
     """Runs a program with --OUT=FILE.ENDING added (out=None: without) unless it was run so before and keep is true.
 
@@ -50,8 +60,7 @@ def run(program, *arguments, out="json_out", ending="json", keep=True, may_fail=
     executable = os.path.join(BIN, program)
     if not os.path.exists(executable):
         sys.exit(f"{executable} is missing: build the programs, or name their folder by PUSHID_BIN")
-    with open(executable, "rb") as file:
-        key = hashlib.sha256(file.read() + "\0".join(arguments).encode()).hexdigest()[:16]
+    key = hashlib.sha256(program_bytes(executable) + "\0".join(arguments).encode()).hexdigest()[:16]
     os.makedirs(KEPT, exist_ok=True)
     text_file, path, kept = (os.path.join(KEPT, f"{program}-{key}.{e}") for e in ("txt", ending, "run"))
     if not (keep and os.path.exists(text_file)):
