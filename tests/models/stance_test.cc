@@ -273,7 +273,7 @@ TEST(Stance, ARowThatWasPushedStandsAgain) {
   for (double impulse : {20.0, 80.0}) {
     const Scene scene = SettlingScene(80.0, impulse, 5);
     RolloutPath<double> path;
-    const int settled = scene.SettledFrame(Stance::kSteps);
+    const int settled = scene.SettledFrame(AmongOthers());
     ASSERT_TRUE(
         Rollout<double>(scene, AmongOthers(), {p}, InitialVelocities(scene), settled + 60, &path)
             .ok);
