@@ -8,6 +8,7 @@
 
 #include "models/ground.h"
 #include "models/ipm.h"
+#include "models/options.h"
 #include "models/push.h"
 
 namespace pushid {
@@ -30,7 +31,7 @@ struct Scene {
     return end;
   }
   // The frame at which people who settle have settled.
-  int SettledFrame() const;
+  int SettledFrame(const ModelOptions& model) const;
 };
 
 // The same scene with every push multiplied by `factor`.
@@ -42,15 +43,21 @@ inline Scene ScalePushes(Scene scene, double factor) {
   return scene;
 }
 
-// Settled: so slow and so near the rest posture, so long after the last push.
-inline constexpr double kWaitSeconds = 2.0;
+// Settled: so slow and so near the rest posture, so long after the last push. People who touch and
+// step need longer: in a row a push takes 0.25 s from one to the next, and everybody's second step,
+// which brings the rear foot up, ends 1.2 s after the first began.
+inline constexpr double kWaitSeconds = 2.0, kWaitSecondsInRows = 3.0;
+inline double WaitSeconds(const ModelOptions& model) {
+  return model.stance == Stance::kSteps && model.interaction.Any() ? kWaitSecondsInRows
+                                                                   : kWaitSeconds;
+}
 inline constexpr double kSettledSpeed = 0.1;  // m/s
 inline constexpr double kSettledLean = 0.05;  // rad
 
 inline constexpr double kSettlingSpacing = 0.45;  // m
 
-inline int Scene::SettledFrame() const {
-  return LastPushEnd() + static_cast<int>(std::lround(kWaitSeconds / dt));
+inline int Scene::SettledFrame(const ModelOptions& model) const {
+  return LastPushEnd() + static_cast<int>(std::lround(WaitSeconds(model) / dt));
 }
 
 // People in a line along +x, upright, the first pushed along +x at the hip by a half-sine of 12

@@ -21,6 +21,7 @@ struct SelfForce : SelfTerms<double> {
   double capture_rate;
   Eigen::Vector2d rest_offset;
   Eigen::Vector2d feet_apart = {0.0, kFeetApart};
+  bool among_others;                                          // of a model of people who touch
   Vector3<double> rest_direction = Vector3<double>::UnitZ();  // along the rod, of the posture
   std::vector<std::shared_ptr<const ForceLaw>> laws;          // the user's own
 
@@ -28,6 +29,7 @@ struct SelfForce : SelfTerms<double> {
   SelfForce(const ModelOptions& options, const Body& person, const Vector4<double>& q0, double step)
       : capture_rate(std::sqrt(kGravity / person.rod_length)),
         rest_offset(Eigen::Vector2d::Zero()),
+        among_others(options.interaction.Any()),
         laws(options.own_laws) {
     body = person;
     scale = GainScale(options.gain_scaling, person);

@@ -28,6 +28,11 @@
 // m. On landing the support is new, and a = t_on - 0.06 s if xi' is beyond that too. Legs have no
 // mass: a foot in the air moves the cart by half its own way, and the hip does not feel it.
 //
+// Among others, that is in a model of people who touch, who is pressed against the one in front
+// does not hold on by the toes: while the first step is prepared f goes to b / 2, over the first
+// third of t_on. And who is pushed hard swings quicker, for t_s / (1 + S(rho - 1) / 4) with rho at
+// lift-off.
+//
 // Lifting off and landing happen at their moments within a step of the rollout: the clock goes on
 // from there, and c is the mean over the step. So paths are continuous in the parameters, with
 // derivatives, but for which foot steps and whether it does.
@@ -40,7 +45,8 @@
 // well they predict recordings of a person left out, and whether who is pushed hard comes to rest.
 // Rejected: a clock that does not know how far xi is beyond (steps come at 0.2 m/s already),
 // support from the hip's place at rest, c under one foot up to b always or up to b / 2 always (who
-// is pushed hard falls), one cart that chases the capture point (who is pushed hard walks on).
+// is pushed hard falls), one cart that chases the capture point (who is pushed hard walks on), the
+// law among others for who is alone (people left out are predicted worse).
 #pragma once
 
 #include <cmath>
@@ -97,18 +103,24 @@ class StanceStep {
   // a' above.
   T ClockRate() const {
     using std::exp;
-    using std::sqrt;
-    const Horizontal<T> xi{xi_[0], xi_[1] - rest_[1]};
-    const T over = SupportRatio(p_, xi, d_) - 1.0;
+    const T over = Over(xi_);
     const T beyond = 1.0 / (1.0 + exp(over * (-1.0 / kSupportEdge)));
-    const T faster = 1.0 + 0.5 * (over + sqrt(over * over + kRushEdge * kRushEdge));
     T otherwise = feet_.clock * (-1.0 / kForgets);
     if (feet_.landed != 0) {
       const T wide = SpreadSideways(), far = d_[0] * d_[0] + wide * wide;
       const T stride = far / (far + kShortStride * kShortStride);
       otherwise = stride * p_.onset * (1.0 / kBringsUp) + (1.0 - stride) * otherwise;
     }
-    return beyond * faster + (1.0 - beyond) * otherwise;
+    return beyond * (1.0 + Rush(over)) + (1.0 - beyond) * otherwise;
+  }
+
+  // rho - 1 above, and S of it.
+  T Over(const Horizontal<T>& xi) const {
+    return SupportRatio<T>(p_, {xi[0], xi[1] - rest_[1]}, d_) - 1.0;
+  }
+  static T Rush(const T& over) {
+    using std::sqrt;
+    return 0.5 * (over + sqrt(over * over + kRushEdge * kRushEdge));
   }
 
   void Stand() {
@@ -126,6 +138,10 @@ class StanceStep {
     const Horizontal<T> behind = -1.0 * lifted.swings * feet_.apart;  // the standing foot from it
     const T along = behind[0] * Direction()[0] + behind[1] * Direction()[1];
     lifted.swing_time = p_.swing;
+    if (self_.among_others) {
+      const Horizontal<T> xi = xi_ + (self_.capture_rate * (dt - late)) * (xi_ - pressure_);
+      lifted.swing_time = p_.swing / (1.0 + kQuicker * Rush(Over(xi)));
+    }
     if (RealPart(along) > 0.0) lifted.swing_time += along * (1.0 / kFootSpeed);
     lifted.clock = late - dt;  // so that it is `late` after this step
     const Horizontal<T> standing = pressure_;
@@ -179,7 +195,13 @@ class StanceStep {
     const double foot = feet_.landed;
     const T rise = foot != 0.0 ? SmoothRise(T(feet_.clock / p_.onset)) : T(0.0);
     const T from = rise * (0.5 * foot) * feet_.apart[0] + rest_[0];
-    return {Forwards(T(0.0), from, d_[0] + kFootBack, d_[0] + p_.foot_front), Sideways(foot, rise)};
+    return {Forwards(T(0.0), from, d_[0] + kFootBack, d_[0] + FrontReach()), Sideways(foot, rise)};
+  }
+  // Of c before the foremost ankle.
+  T FrontReach() const {
+    if (!self_.among_others || feet_.landed != 0) return p_.foot_front;
+    const T falls = SmoothRise(T(feet_.clock * kLetsFall / p_.onset));
+    return p_.foot_front + falls * (0.5 * p_.front - p_.foot_front);
   }
 
   // On with the foot in the air, which was as in `feet` when the step began; its clock may be
@@ -234,7 +256,9 @@ class StanceStep {
     next.clock += since * then.ClockRate();
   }
 
-  static constexpr double kRushEdge = 0.2;      // of S
+  static constexpr double kRushEdge = 0.2;  // of S
+  // Among others: by how much S makes a swing quicker; 1 / the share of t_on after which they fall.
+  static constexpr double kQuicker = 0.25, kLetsFall = 3.0;
   static constexpr double kForgets = 0.2;       // s, until a step is not prepared any more
   static constexpr double kBringsUp = 0.6;      // s, until the rear foot is brought up
   static constexpr double kAgain = 0.06;        // s, between two steps of who is not caught yet

@@ -20,7 +20,7 @@ void AddVerdict(const FitResult& result, Warnings* warnings) {
   // Holding it harder was tried, and dropped.
   const bool tried = slow && result.uncertainty.settling.dropped();
   warnings->emplace_back(
-      VerdictName(verdict) + ": " + VerdictSentence(verdict, result.behaviour) +
+      VerdictName(verdict) + ": " + VerdictSentence(verdict, result.behaviour, model) +
       (slow ? "" : "; such a fit may score well but cannot be trusted beyond the data") +
       (tried ? "" : " (" + VerdictRemedy(verdict, model) + ")"));
 }
@@ -42,7 +42,8 @@ void AddClusterWarning(const Uncertainty& u, Warnings* warnings) {
 }
 
 // What the demand to settle did, if anything.
-void AddSettlingWarning(const Uncertainty& u, size_t shared, Warnings* warnings) {
+void AddSettlingWarning(const Uncertainty& u, const ModelOptions& model, size_t shared,
+                        Warnings* warnings) {
   const SettlingDemand& s = u.settling;
   if (!s.binds) return;
   const std::string wanted =
@@ -50,13 +51,13 @@ void AddSettlingWarning(const Uncertainty& u, size_t shared, Warnings* warnings)
       (std::isfinite(s.free_seconds) ? "settles after " + Rounded(s.free_seconds, 2) + " s"
                                      : std::string("does not settle within 10 s"));
   if (s.unmet) {
-    warnings->emplace_back(wanted + ", and no fit that settles within " + Rounded(kWaitSeconds, 2) +
-                           " s was found: the constraint was dropped");
+    warnings->emplace_back(wanted + ", and no fit that settles within " + WaitText(model) +
+                           " was found: the constraint was dropped");
     return;
   }
   if (s.contradicted) {
-    warnings->emplace_back(wanted + "; settling within " + Rounded(kWaitSeconds, 2) +
-                           " s contradicts the data (twice the log likelihood would fall by " +
+    warnings->emplace_back(wanted + "; settling within " + WaitText(model) +
+                           " contradicts the data (twice the log likelihood would fall by " +
                            Rounded(s.rise, 2) + "), and the constraint was dropped");
     return;
   }
@@ -77,8 +78,8 @@ void AddSettlingWarning(const Uncertainty& u, size_t shared, Warnings* warnings)
     what += (what.empty() ? "" : ", and ") + held + " to where nothing else holds it";
   }
   if (what.empty()) what = "no parameter by half a standard error";
-  warnings->emplace_back(wanted + "; the constraint to settle within " + Rounded(kWaitSeconds, 2) +
-                         " s moved " + what);
+  warnings->emplace_back(wanted + "; the constraint to settle within " + WaitText(model) +
+                         " moved " + what);
 }
 
 }  // namespace
@@ -103,7 +104,7 @@ Warnings FitWarnings(const FitProblem& problem, const FitResult& result) {
                           SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
   AddClusterWarning(result.uncertainty, &warnings);
-  AddSettlingWarning(result.uncertainty, problem.map().fitted.size(), &warnings);
+  AddSettlingWarning(result.uncertainty, model, problem.map().fitted.size(), &warnings);
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kAtBound) warnings.emplace_back(e.name + " is at its bound");
   }

@@ -70,7 +70,7 @@ PersonSummary Summarize(const FormationRun& run, int person) {
 }  // namespace
 
 std::string OutcomeLegend() {
-  return "outcome: judged " + WaitText() +
+  return "outcome: judged " + WaitText({}) +
          " after the last push, or after the onset where that is later; " + kSettledText +
          ": slower than " + Rounded(kSettledSpeed, 4) + " m/s\nand within " +
          Rounded(kSettledLean, 4) + " rad of the rest posture then; " + kSlowToSettleText +

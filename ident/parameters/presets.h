@@ -4,7 +4,8 @@
 //          parameters, the tail's base partially pooled by condition
 //   ldp:   one person: plain PD balance and one friction from upright; five free parameters
 //   group: people who touch: tail with all linear self forces and contact, every parameter
-//          partially pooled by setting (condition); eighteen shared parameters
+//          partially pooled by setting (condition), contact and tail alone where feet step;
+//          eighteen shared parameters
 //   ldp_groups: people who touch, as LDP composes them: that with a potential, torques against
 //          leaning on each other and a learned interaction
 //   ldp_published: LDP as published (Yue et al., CVPR 2024), networks and all: PD and friction at

@@ -27,7 +27,7 @@ SettlingSimulation SimulateSettling(const ModelOptions& options,
   result.mass = mass;
   result.impulse = impulse;
   const Scene scene = SettlingScene(mass, impulse, people);
-  const int frames = scene.SettledFrame() + 1;
+  const int frames = scene.SettledFrame(options) + 1;
   RolloutPath<double> path;
   const RolloutStatus status =
       Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path);

@@ -25,7 +25,8 @@ std::vector<double> ImpulsesFor(Stance stance, const double (&impulses)[3]);
 
 inline constexpr double kBehind = 0.05;  // m behind the start that are worth a warning
 
-// The people of the settling simulations two seconds after the last push, which goes forwards.
+// The people of the settling simulations so long after the last push (WaitSeconds), which goes
+// forwards.
 struct SettlingSimulation {
   std::string setting;    // where settings differ: with whose parameters; empty: the shared ones
   int people = 1;         // more than one: in a line, the first one pushed

@@ -42,11 +42,11 @@ Simulated SimulatedOf(const Behaviour& behaviour, bool lines) {
 }
 
 // One that is unstable at rest does not settle, whatever the simulations show by then.
-std::string AllSettleText(const Behaviour& behaviour) {
+std::string AllSettleText(const Behaviour& behaviour, const ModelOptions& model) {
   const Simulated alone = SimulatedOf(behaviour, false), line = SimulatedOf(behaviour, true);
-  std::string text = "after a push of " + ListText(alone.impulses) + " N s, people of " +
-                     ListText(alone.masses) + " kg " +
-                     (behaviour.unstable() ? "stand still after " : "settle within ") + WaitText();
+  std::string text =
+      "after a push of " + ListText(alone.impulses) + " N s, people of " + ListText(alone.masses) +
+      " kg " + (behaviour.unstable() ? "stand still after " : "settle within ") + WaitText(model);
   if (line.people > 0) {
     text += "; so do lines of " + std::to_string(line.people) + " after " +
             ListText(line.impulses) + " N s";
@@ -80,14 +80,15 @@ std::string VerdictName(Verdict verdict) {
   return verdict == Verdict::kSlowToSettle ? kSlowToSettleText : "self-propelling";
 }
 
-std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour) {
-  const std::string settles = "the fitted person settles within " + WaitText();
-  const std::string stands = "the fitted person stands still after " + WaitText();
+std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour,
+                            const ModelOptions& model) {
+  const std::string settles = "the fitted person settles within " + WaitText(model);
+  const std::string stands = "the fitted person stands still after " + WaitText(model);
   switch (verdict) {
     case Verdict::kSettles:
       return settles + " after every push of the settling simulations";
     case Verdict::kSlowToSettle:
-      return "the fitted person settles later than " + WaitText() + " after some pushes";
+      return "the fitted person settles later than " + WaitText(model) + " after some pushes";
     case Verdict::kSelfPropelling:
       if (!behaviour.unstable() && AnyFell(behaviour)) {
         return "the fitted person falls after some pushes";
@@ -138,9 +139,9 @@ std::string VerdictRemedy(Verdict verdict, const ModelOptions& options) {
   return "";
 }
 
-std::string SettlingText(const Behaviour& behaviour) {
-  if (behaviour.settles) return AllSettleText(behaviour) + "\n";
-  std::string text = "NOT SETTLING, " + WaitText() + " after a push:\n";
+std::string SettlingText(const Behaviour& behaviour, const ModelOptions& model) {
+  if (behaviour.settles) return AllSettleText(behaviour, model) + "\n";
+  std::string text = "NOT SETTLING, " + WaitText(model) + " after a push:\n";
   for (const SettlingSimulation& d : behaviour.simulations) {
     if (d.settled) continue;
     text += "  " + SettlingSimulationName(d, SettingsDiffer(behaviour)) + ": " +
@@ -171,6 +172,6 @@ std::string SettlingSimulationName(const SettlingSimulation& d, bool settings_di
   return where + who + Rounded(d.mass, 4) + " kg after " + Rounded(d.impulse, 4) + " N s";
 }
 
-std::string WaitText() { return Rounded(kWaitSeconds, 4) + " s"; }
+std::string WaitText(const ModelOptions& model) { return Rounded(WaitSeconds(model), 4) + " s"; }
 
 }  // namespace pushid

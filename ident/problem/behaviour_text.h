@@ -2,7 +2,7 @@
 // their sentences from here, so that they cannot contradict each other.
 //
 //   const Verdict verdict = VerdictOf(behaviour, options);
-//   warning = VerdictName(verdict) + ": " + VerdictSentence(verdict, behaviour);
+//   warning = VerdictName(verdict) + ": " + VerdictSentence(verdict, behaviour, model);
 #pragma once
 
 #include <string>
@@ -31,7 +31,7 @@ Verdict VerdictOf(const Behaviour& behaviour, const ModelOptions& options);
 std::string VerdictName(Verdict verdict);
 
 // "the fitted forces drive the person after a push": no capital, no full stop.
-std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour);
+std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour, const ModelOptions& model);
 
 // As it begins a sentence.
 std::string Capitalized(std::string text);
@@ -40,7 +40,7 @@ std::string Capitalized(std::string text);
 std::string VerdictRemedy(Verdict verdict, const ModelOptions& options);
 
 // The settling simulations and the fastest free mode, on lines of their own.
-std::string SettlingText(const Behaviour& behaviour);
+std::string SettlingText(const Behaviour& behaviour, const ModelOptions& model);
 std::string FreeModeText(const Behaviour& behaviour);
 
 // "row_1: 5 people in a line, 80 kg after 20 N s". Where settings differ, those without one stand
@@ -49,6 +49,6 @@ bool SettingsDiffer(const Behaviour& behaviour);
 std::string SettlingSimulationName(const SettlingSimulation& d, bool settings_differ);
 
 // "2 s": when a settling simulation is judged.
-std::string WaitText();
+std::string WaitText(const ModelOptions& model);
 
 }  // namespace pushid

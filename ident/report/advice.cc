@@ -154,7 +154,7 @@ void Adviser::Person() {
   const FitOptions& o = result_.options;
   if (OfSteps() || o.network_training == NetworkTraining::kTogether) return;  // nothing holds them
   const Verdict verdict = VerdictOf(result_.behaviour, o.model);
-  const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour));
+  const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour, o.model));
   const bool tail = o.model.push_tail == PushTail::kExponential;
   switch (verdict) {
     case Verdict::kSettles:

@@ -49,13 +49,13 @@ std::string CorrelationText(const FitResult& result) {
 
 std::string BehaviourText(const FitResult& result) {
   const Behaviour& b = result.behaviour;
-  return SettlingText(b) + NoFartherText(b) + FreeModeText(b);
+  return SettlingText(b, result.options.model) + NoFartherText(b) + FreeModeText(b);
 }
 
 TextTable LinesTable(const FitResult& result) {
-  TextTable table =
-      TextTable::OfNumbers({"line pushed forwards, " + WaitText() + " later", "mean advance, m",
-                            "advance of pushed person, m", "mean displacement, m"});
+  TextTable table = TextTable::OfNumbers(
+      {"line pushed forwards, " + WaitText(result.options.model) + " later", "mean advance, m",
+       "advance of pushed person, m", "mean displacement, m"});
   const bool differ = SettingsDiffer(result.behaviour);
   for (const SettlingSimulation& d : result.behaviour.simulations) {
     if (d.people == 1) continue;
@@ -66,8 +66,8 @@ TextTable LinesTable(const FitResult& result) {
 }
 
 TextTable BehaviourTable(const FitResult& result) {
-  TextTable table({"settling simulation", WaitText() + " after the push", "m/s", "rad from rest",
-                   "mean advance, m", "advance of pushed person, m"},
+  TextTable table({"settling simulation", WaitText(result.options.model) + " after the push", "m/s",
+                   "rad from rest", "mean advance, m", "advance of pushed person, m"},
                   {true, true, false, false, false, false});
   const bool differ = SettingsDiffer(result.behaviour);
   for (const SettlingSimulation& d : result.behaviour.simulations) {

@@ -62,7 +62,7 @@ SettlingProblem MakeSettlingProblem(const Scene& scene, const ModelOptions& opti
   const std::vector<std::string> units(scene.people.size(), unit);
   problem.layout = BlockLayout(problem.map, units, false);
   problem.weight = weight;
-  problem.first_frame = scene.SettledFrame();
+  problem.first_frame = scene.SettledFrame(options);
   problem.last_frame = problem.first_frame + static_cast<int>(std::lround(kWatched / scene.dt));
   return problem;
 }

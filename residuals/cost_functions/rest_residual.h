@@ -1,6 +1,6 @@
 // residuals: people must come to rest: within a time after a push, and from small deviations.
 //
-// Settling, for the people of the settling simulations (models/scene.h), from two seconds after the
+// Settling, for the people of the settling simulations (models/scene.h), from WaitSeconds after the
 // push for a second, n = frames times people:
 //   r = weight / sqrt(n) [ hinge(speed / a_v - 1)             1
 //                          hinge(|angles - rest| / a_q - 1)   2 ]     hinge(x) = max(0, x)

@@ -168,32 +168,6 @@ TEST(Stance, PathsAreContinuousInTheParameters) {
   }
 }
 
-TEST(Stance, CapturePointIsThatOfTheHip) {
-  Random random(5);
-  for (int trial = 0; trial < 50; ++trial) {
-    const Body body = RandomBody(&random);
-    const PendulumState<double> state = RandomState(&random, 0.3);
-    constexpr double kStep = 1e-6;
-    const Vector4<double> after = state.q + kStep * state.qd, before = state.q - kStep * state.qd;
-    const Eigen::Vector2d velocity =
-        (HipPosition(body, after) - HipPosition(body, before)).head<2>() / (2 * kStep);
-    const Eigen::Vector2d place = HipPosition(body, state.q).head<2>() - state.q.head<2>();
-    const Eigen::Vector2d expected = place + velocity / std::sqrt(kGravity / body.rod_length);
-    const SelfForce self(Steps(), body, Vector4<double>::Zero(), 1.0 / 60);
-    const HipOverFeet<double> hip(self, Angles<double>(state.q), state.qd);
-    ExpectClose(hip.Capture(self), expected, 1e-8);
-  }
-}
-
-TEST(Stance, LimitIsSmoothAndKept) {
-  for (double u : {-30.0, -1.0, -0.8, -0.3, 0.0, 0.3, 0.8, 1.0, 5.0, 1e4}) {
-    EXPECT_LE(std::abs(SmoothLimit(u, 1.0)), 1.0);
-    EXPECT_NEAR(SmoothLimit(40.0 * u, 40.0), 40.0 * SmoothLimit(u, 1.0), 1e-12 * 40.0);
-    if (std::abs(u) > 0.8) continue;
-    EXPECT_NEAR(SmoothLimit(u, 1.0), u, 0.09 * std::abs(u));
-  }
-}
-
 // A net push holds the feet's reaction: while it lasts nothing is added, and the ground does not.
 TEST(Stance, ANetPushIsTheWholeForce) {
   Scene scene = Pushed(0.4);
@@ -212,6 +186,80 @@ TEST(Stance, ANetPushIsTheWholeForce) {
     const Vector4<double> rest = trace.At(t, 0).Total() - scene.pushes[0].force[t];
     const Vector4<double>& qd = other.At(t, 0).qd;
     ExpectClose(rest, Vector4<double>(-100.0 * qd[0], -100.0 * qd[1], 0.0, 0.0), 1e-10);
+  }
+}
+
+ModelOptions AmongOthers() {
+  ModelOptions options = Steps();
+  options.interaction.spring = options.interaction.damping = true;
+  return options;
+}
+
+// One leans 0.15 m forwards, k (h - h0) = 1.26 * 0.15 m = 0.189 m. Alone, and just beyond the edge,
+// c is as far as the feet let it (f = 0.2 m; SmoothLimit: 0.162 m). Among others they let
+// themselves fall from a third of t_on on: b / 2 = 0.06 m (SmoothLimit: 0.0599 m), while after a
+// step k = 2.5, and c is at f.
+TEST(Stance, WhoPreparesTheFirstStepAmongOthersLetsThemselvesFall) {
+  const ParameterSet<double> p = SteppingParameters();
+  const Body body{85.0, kReferenceRod, 0.0};
+  const auto pressure = [&](const ModelOptions& options, double clock, int landed) {
+    const SelfForce self(options, body, Vector4<double>::Zero(), 1e-4);
+    PendulumState<double> state;
+    state.q[2] = std::asin(0.15 / kReferenceRod);
+    state.feet.clock = clock;
+    state.feet.landed = static_cast<signed char>(landed);
+    const double torque =
+        StanceAt<double>(self, Stances(p), state.feet, Perceived<double>(state)).torque[0];
+    return -torque / self.weight();
+  };
+  const double k = 900.0 / (0.9 * 85.0 * kGravity * kReferenceRod);
+  for (double clock : {0.0, 0.5 / 6.0, 0.5 / 3.0}) {
+    EXPECT_NEAR(pressure(Steps(), clock, 0), SmoothLimit(k * 0.15, 0.2), 1e-6);
+  }
+  EXPECT_NEAR(pressure(AmongOthers(), 0.0, 0), SmoothLimit(k * 0.15, 0.2), 1e-6);
+  EXPECT_NEAR(pressure(AmongOthers(), 0.5 / 6.0, 0), SmoothLimit(k * 0.15, 0.13), 1e-6);  // halfway
+  EXPECT_NEAR(pressure(AmongOthers(), 0.5 / 3.0, 0), SmoothLimit(k * 0.15, 0.06), 1e-6);
+  EXPECT_NEAR(pressure(AmongOthers(), 0.0, 1), SmoothLimit(2.5 * 0.15, 0.2), 1e-6);
+}
+
+// The capture point 0.24 m before the ankles, twice the support: S(1) = 1.01, and a first step that
+// takes 0.31 s of who is alone takes 0.31 s / 1.25 among others.
+TEST(Stance, StepsAfterHarderPushesAreQuickerAmongOthers) {
+  const ParameterSet<double> p = SteppingParameters();
+  PendulumState<double> state;
+  state.q[2] = std::asin(0.24 / kReferenceRod);
+  state.feet.clock = p[kStepOnset];
+  for (const ModelOptions& options : {Steps(), AmongOthers()}) {
+    const SelfForce self(options, {85.0, kReferenceRod, 0.0}, Vector4<double>::Zero(), 1e-6);
+    const FeetState<double> next =
+        StanceAt<double>(self, Stances(p), state.feet, Perceived<double>(state)).next;
+    EXPECT_NE(next.swings, 0);
+    const double quicker = options.interaction.Any() ? 0.25 * 0.5 * (1.0 + std::sqrt(1.04)) : 0.0;
+    EXPECT_NEAR(next.swing_time, 0.31 / (1.0 + quicker), 1e-5);
+  }
+}
+
+// The push goes through the row, everybody steps forwards, nobody falls, and in time all stand.
+TEST(Stance, ARowThatWasPushedStandsAgain) {
+  ParameterSet<double> p = SteppingParameters();
+  p[kContactStiffness] = 4000.0, p[kContactDamping] = 500.0;
+  p[kContactDistance] = 0.42, p[kContactKappa] = 0.53, p[kContactHeight] = 0.95;
+  for (double impulse : {20.0, 80.0}) {
+    const Scene scene = SettlingScene(80.0, impulse, 5);
+    RolloutPath<double> path;
+    const int settled = scene.SettledFrame(AmongOthers());
+    ASSERT_TRUE(
+        Rollout<double>(scene, AmongOthers(), {p}, InitialVelocities(scene), settled + 60, &path)
+            .ok);
+    for (int n = 0; n < 5; ++n) {
+      SCOPED_TRACE(std::to_string(impulse) + " N s, person " + std::to_string(n));
+      for (int t = settled; t < settled + 60; ++t) {
+        EXPECT_LT(path.At(t, n).qd.head<2>().norm(), kSettledSpeed) << t;
+        EXPECT_LT(path.At(t, n).q.tail<2>().norm(), kSettledLean) << t;
+      }
+      const double way = path.At(settled, n).q[0] - scene.people[n].start.q[0];
+      EXPECT_NEAR(way, impulse > 50.0 ? 0.3 : 0.0, impulse > 50.0 ? 0.25 : 0.01);
+    }
   }
 }
 

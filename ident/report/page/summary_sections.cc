@@ -62,7 +62,7 @@ std::string Known(const FitResult& result) {
   return "What is known: " +
          (known.empty() ? "these recordings alone identify no parameter"
                         : "these recordings identify " + Listed(known)) +
-         "; " + VerdictSentence(verdict, result.behaviour) + ".";
+         "; " + VerdictSentence(verdict, result.behaviour, result.options.model) + ".";
 }
 
 // Which intervals ValueText shows, where it shows any.
@@ -178,7 +178,7 @@ std::string VerdictText(const FitResult& result) {
   std::string text = result.converged ? "The solve converged. " : "The solve did NOT converge. ";
   text += IdentifiedText(result) + " ";
   const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
-  text += Capitalized(VerdictSentence(verdict, result.behaviour)) + ".";
+  text += Capitalized(VerdictSentence(verdict, result.behaviour, result.options.model)) + ".";
   if (result.behaviour.self_propelling) text += " Do not use the gains.";
   return text;
 }

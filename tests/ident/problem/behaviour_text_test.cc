@@ -31,7 +31,7 @@ Behaviour Simulated(bool settled, double growth) {
 constexpr double kDecays = -0.5, kGrows = 1.5;  // 1/s
 
 std::string Said(const Behaviour& b, const ModelOptions& options) {
-  return VerdictSentence(VerdictOf(b, options), b);
+  return VerdictSentence(VerdictOf(b, options), b, options);
 }
 
 std::string Advised(const FitResult& result) {
@@ -80,19 +80,20 @@ TEST(BehaviourText, AFallWithStableModesIsNoDrive) {
   Behaviour b = Simulated(false, kDecays);
   b.simulations[1].fell = b.self_propelling = true;
   EXPECT_TRUE(Contains(Said(b, {}), "falls after some pushes")) << Said(b, {});
-  EXPECT_TRUE(Contains(SettlingText(b), "80 kg after 25 N s: fell")) << SettlingText(b);
+  EXPECT_TRUE(Contains(SettlingText(b, {}), "80 kg after 25 N s: fell")) << SettlingText(b, {});
   EXPECT_TRUE(Contains(FreeModeText(b), "(stable)"));
 }
 
 TEST(BehaviourText, SettlingNamesWhatWasSimulated) {
   Behaviour b = Simulated(true, kDecays);
-  EXPECT_EQ(SettlingText(b),
+  EXPECT_EQ(SettlingText(b, {}),
             "after a push of 4 and 25 N s, people of 60 and 80 kg settle within 2 s\n");
   SettlingSimulation line = b.simulations[0];
   line.people = kLinePeople;
   line.impulse = 20.0;
   b.simulations.push_back(line);
-  EXPECT_TRUE(Contains(SettlingText(b), "; so do lines of 5 after 20 N s\n")) << SettlingText(b);
+  EXPECT_TRUE(Contains(SettlingText(b, {}), "; so do lines of 5 after 20 N s\n"))
+      << SettlingText(b, {});
 }
 
 // A person who settles is not told to settle, and a finding never goes without a remedy.
@@ -103,7 +104,7 @@ TEST(BehaviourText, NoVerdictContradictsTheSimulations) {
         Behaviour b = Simulated(settled, growth);
         b.self_propelling = b.self_propelling || driven;
         const Verdict verdict = VerdictOf(b, {});
-        EXPECT_EQ(Contains(VerdictSentence(verdict, b), "settles within"),
+        EXPECT_EQ(Contains(VerdictSentence(verdict, b, {}), "settles within"),
                   settled && !b.unstable());
         EXPECT_EQ(Contains(VerdictRemedy(verdict, {}), "settling_weight"), !settled);
         EXPECT_EQ(VerdictName(verdict) == "self-propelling", b.self_propelling);

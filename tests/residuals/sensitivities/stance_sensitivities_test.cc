@@ -74,6 +74,31 @@ TEST(StanceSensitivities, EqualJetsThroughTheSteps) {
   EXPECT_GE(stood, 4);
 }
 
+// Three in a row who touch: nobody steps, the push is passed on by steps, and who stepped steps
+// again.
+TEST(StanceSensitivities, EqualJetsThroughTheStepsOfARow) {
+  Random random(80);
+  ModelOptions options = Steps();
+  options.interaction.spring = options.interaction.damping = true;
+  ParameterSet<double> p = SteppingParameters();
+  p[kContactStiffness] = 4000.0, p[kContactDamping] = 500.0;
+  p[kContactDistance] = 0.42, p[kContactKappa] = 0.53, p[kContactHeight] = 0.95;
+  int last_steps = 0;
+  for (double impulse : {10.0, 60.0, 110.0}) {
+    SCOPED_TRACE(impulse);
+    PendulumRecording recording =
+        RecordRollout(SettlingScene(80.0, impulse, 3), options, {p}, kStanceFrames);
+    last_steps = StepsIn(recording);
+    EXPECT_EQ(last_steps > 0, impulse > 50.0);
+    AddNoise(0.01, &random, &recording);
+    const ParameterMap map = EveryParameterMap({});
+    const auto problem = MakeRolloutProblem(recording, options, map, ResidualSigmas{}, 1.0, 0);
+    ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), {SharedBlock(map, p)},
+                          {1e-7, 1e-9, 1e-9});
+  }
+  EXPECT_GE(last_steps, 2);
+}
+
 // Jets see one sequence of frames; a parameter moves lift-off and landing within them. So the
 // derivatives hold for finite changes too, but where a foot begins to step.
 TEST(StanceSensitivities, AreThoseOfFiniteChanges) {
