@@ -204,7 +204,7 @@ MaybeError WriteFormationBodies(const PostprocessOptions& postprocess,
   using File = const std::string&;
   return WriteNamed(
       {{FLAGS_html_out,
-        [&](File file) { return WriteFileAtomically(file, AnimationHtml(animation)); }},
+        [&](File file) { return WriteFileAtomically(file, AnimationHtml({animation})); }},
        {FLAGS_strip_out,
         [&](File file) {
           return WriteFileAtomically(file, PoseStrip(animation, kPosesOfStrip).ToString());

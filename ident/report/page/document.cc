@@ -217,12 +217,11 @@ std::string SectionHtml(const ReportSection& section) {
 
 // The links stand behind the first section, whose pictures lead.
 std::string ToPage(const Report& report) {
-  std::string nav, lead, body, script;
+  std::string nav, lead, body;
   for (const ReportSection& section : report.sections) {
     if (IsEmpty(section)) continue;
     nav += "<li><a href=\"#" + section.id + "\">" + EscapeXml(section.title) + "</a></li>\n";
     (lead.empty() ? lead : body) += SectionHtml(section);
-    if (!section.widget.empty()) script = kPageScript;
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -231,7 +230,7 @@ std::string ToPage(const Report& report) {
          "</style>\n</head>\n<body>\n<header>" + Element("h1", report.title) +
          Element("p", report.subtitle) + "</header>\n<main>\n" + lead +
          "<nav aria-label=\"sections\"><ul>\n" + nav + "</ul></nav>\n" + body + "</main>\n" +
-         (script.empty() ? "" : "<script>" + script + "</script>\n") + "</body>\n</html>\n";
+         "<script>" + kPageScript + "</script>\n</body>\n</html>\n";
 }
 
 MaybeError CheckPageName(const std::string& flag, const std::string& path) {
