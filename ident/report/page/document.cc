@@ -137,7 +137,7 @@ std::string Element(const std::string& name, const std::string& text) {
   return "<" + name + ">" + EscapeXml(text) + "</" + name + ">\n";
 }
 
-std::string Fold(const std::string& title, const std::string& html) {
+std::string Folded(const std::string& title, const std::string& html) {
   return "<details><summary>" + EscapeXml(title) + "</summary>\n" + html + "</details>\n";
 }
 
@@ -158,7 +158,7 @@ std::string TableHtml(const ReportTable& table) {
     html += "</tr>\n";
   }
   html += "</table></div>\n";
-  return table.caption.empty() ? html : Fold(table.caption, html);
+  return table.caption.empty() ? html : Folded(table.caption, html);
 }
 
 // Entries and panels wrap where the window is narrow.
@@ -208,7 +208,7 @@ std::string SectionHtml(const ReportSection& section) {
   for (const ReportFold& fold : section.folds) {
     std::string figures;
     for (const ReportFigure& figure : fold.figures) figures += FigureHtml(figure);
-    html += Fold(fold.title, figures + fold.widget);
+    html += Folded(fold.title, figures + fold.widget);
   }
   return html + "</section>\n";
 }

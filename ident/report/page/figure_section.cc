@@ -1,6 +1,4 @@
 // ident: recordings as animations: measured, and as they are predicted.
-#include <cmath>
-#include <utility>
 
 #include "ident/bodies/animation.h"
 #include "ident/figures/svg.h"

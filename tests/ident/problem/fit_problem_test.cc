@@ -1,7 +1,6 @@
 // A problem's points.
 #include "ident/problem/fit_problem.h"
 
-#include "ident/problem/residual_families.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
