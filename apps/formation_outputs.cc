@@ -8,12 +8,11 @@
 
 #include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/overwrite_flag.h"
+#include "apps/flags/recording_flags.h"
 #include "datasets/exchange/crowd.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_files.h"
-#include "ident/formations/agent_file.h"
 #include "ident/formations/formation_files.h"
 #include "ident/generators/push_particles.h"
 
@@ -204,7 +203,7 @@ MaybeError WriteFormationBodies(const PostprocessOptions& postprocess,
   using File = const std::string&;
   return WriteNamed(
       {{FLAGS_html_out,
-        [&](File file) { return WriteFileAtomically(file, AnimationHtml(animation)); }},
+        [&](File file) { return WriteFileAtomically(file, AnimationHtml({animation})); }},
        {FLAGS_strip_out,
         [&](File file) {
           return WriteFileAtomically(file, PoseStrip(animation, kPosesOfStrip).ToString());

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/flags/restoration_flags.h"
+#include "apps/flags/body_flags.h"
 #include "ident/formations/formation_files.h"
 #include "ident/formations/formation_run.h"
 #include "models/generators/diffusion_generator.h"

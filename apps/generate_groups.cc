@@ -192,7 +192,7 @@ Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
     files.push_back(flags.strip_out);
   }
   if (!error && !flags.page_out.empty()) {
-    error = WriteFileAtomically(flags.page_out, AnimationHtml(animation));
+    error = WriteFileAtomically(flags.page_out, AnimationHtml({animation}));
     files.push_back(flags.page_out);
   }
   if (error) return *error;

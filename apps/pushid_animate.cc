@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/flags/restoration_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
@@ -25,7 +25,7 @@ DEFINE_int32(poses, 7, "poses of the strip");
 DEFINE_string(explain, "",
               "describe the forces on this person in words and plot them beside the motion: a "
               "person's id, or auto (the bystander with the most events)");
-DEFINE_bool(recorded, true, "also show the recorded bodies");
+DEFINE_bool(recorded, true, "also show what was recorded");
 
 namespace {
 
@@ -100,10 +100,11 @@ int Run() {
   animation.dt = pendulum.scene.dt;
   AddPushes(pendulum, &animation);
   if (recording.ok()) animation.title += ", " + std::string(restoration.value()->kind());
-  if (recording.ok() && FLAGS_recorded) {
-    std::vector<BodyMotion> seen = recording.value().bodies;
+  if (FLAGS_recorded) {
+    std::vector<BodyMotion> seen;
+    if (recording.ok()) seen = recording.value().bodies;
     ToLaboratory(pendulum.scene, &seen);
-    AddRecorded(pendulum, seen, &animation);
+    AddRecorded(InLaboratory(pendulum), seen, &animation);
   }
   for (const WhatIf& one : what_ifs.value()) {
     const Prediction prediction = Predict(one.model, pendulum);
@@ -123,7 +124,7 @@ int Run() {
                   one.what);
   }
   MaybeError error;
-  if (!FLAGS_out.empty()) error = Write(FLAGS_out, AnimationHtml(animation));
+  if (!FLAGS_out.empty()) error = Write(FLAGS_out, AnimationHtml({animation}));
   if (!error && !FLAGS_strip_out.empty()) {
     error = Write(FLAGS_strip_out, PoseStrip(animation, FLAGS_poses).ToString());
   }

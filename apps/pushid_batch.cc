@@ -7,8 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "apps/batch/batch_run.h"
-#include "apps/batch/batch_summary.h"
+#include "apps/batch/batch.h"
 #include "apps/flags/command_line.h"
 #include "apps/support/app_support.h"
 #include "apps/support/processes.h"

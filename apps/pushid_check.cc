@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "apps/flags/check_flags.h"
 #include "apps/flags/command_line.h"
+#include "apps/flags/fit_option_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "ident/bodies/restoration_files.h"

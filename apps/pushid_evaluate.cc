@@ -5,24 +5,21 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 
+#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
-#include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/flags/restoration_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/parameters/presets.h"
 #include "ident/peers/peer_files.h"
+#include "ident/prediction/evaluation.h"
 #include "ident/prediction/prediction.h"
-#include "ident/prediction/score_groups.h"
 #include "ident/validation/held_out_spread.h"
 #include "ident/validation/scores_report.h"
-#include "ident/validation/steps_report.h"
 
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");

@@ -10,7 +10,6 @@
 #include <system_error>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/exchange/bids_dataset.h"
 #include "datasets/exchange/crowd.h"

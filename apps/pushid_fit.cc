@@ -4,18 +4,15 @@
 #include <cstdio>
 #include <string>
 
-#include "apps/flags/check_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/fit_option_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/error.h"
-#include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/fit/fit.h"
-#include "ident/model/model_json.h"
 #include "ident/parameters/parameter_table.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"

@@ -11,7 +11,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/column_mapping.h"
-#include "ident/formations/measured_wave.h"
+#include "ident/formations/wave_speed.h"
 #include "ident/report/inspection_svg.h"
 
 DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/overwrite_flag.h"
+#include "apps/flags/recording_flags.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/names.h"
 #include "datasets/inspection/manifest_maker.h"
-#include "datasets/manifest/recording.h"
 
 const std::string kUnitHelp = "the files' unit: " + pushid::AnyName<pushid::LengthUnit>();
 const std::string kPushKindHelp = pushid::AnyName<pushid::PushKind>();

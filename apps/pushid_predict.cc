@@ -5,12 +5,11 @@
 #include <cstdio>
 #include <string>
 
+#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
-#include "apps/flags/observed_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/flags/restoration_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
@@ -20,7 +19,6 @@
 #include "ident/bodies/body_recording.h"
 #include "ident/model/model_rollout.h"
 #include "ident/parameters/presets.h"
-#include "ident/prediction/changed_pushes.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/online_predictor.h"

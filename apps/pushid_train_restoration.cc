@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/observed_flags.h"
+#include "apps/flags/futures_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/flags/train_restoration_flags.h"
 #include "apps/support/app_support.h"

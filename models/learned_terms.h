@@ -2,7 +2,6 @@
 // other; any of them, their weights in one flat array.
 #pragma once
 
-#include <cmath>
 #include <string>
 #include <vector>
 

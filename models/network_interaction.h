@@ -8,7 +8,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <optional>
 #include <type_traits>
 #include <vector>

@@ -8,8 +8,6 @@
 // terms that a model asks for.
 #pragma once
 
-#include <cmath>
-
 #include "models/dual.h"
 #include "models/ipm.h"
 #include "models/parameters.h"

@@ -15,7 +15,7 @@
 namespace pushid {
 
 // Slots after those with a row: for the parameters of a user's own force laws (force_law.h), then
-// for the slopes by which covariates shift other parameters (residuals/covariate.h).
+// for the slopes by which covariates shift other parameters (residuals/parameter_map.h).
 inline constexpr int kNumOwnParameters = 16;
 
 enum Parameter : int {

@@ -4,7 +4,7 @@
 //   update:  S = P_qq + R,  P <- P - P_q S^-1 P_q',  s <- s + P_q S^-1 (z - q)
 // B = [dt; 1] as the step has it; A by dual numbers through the very forces of the rollout, over
 // any scalar, so that derivatives by parameters pass through it (or from a step with derivatives of
-// its own: residuals/sensitivities/step_jacobian.h). Sources: Jazwinski, Stochastic
+// its own: residuals/sensitivities/net_force_jacobian.h). Sources: Jazwinski, Stochastic
 // Processes and Filtering Theory, 1970 (8.8); as used by CTSM-R and ctsmTMB.
 //
 // Of several people each has a covariance of their own: what people do to each other is taken at

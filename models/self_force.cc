@@ -1,8 +1,6 @@
 // models: Jacobians of the self force with the laws that a user brings.
 #include "models/self_force.h"
 
-#include <algorithm>
-
 namespace pushid {
 
 void SelfForce::AddOwnJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,

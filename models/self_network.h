@@ -34,7 +34,6 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <vector>
 
 #include "models/dual.h"
 #include "models/enum_names.h"

@@ -1,5 +1,4 @@
-// residuals: which likelihood of the recordings a fit maximizes, and how rollouts are
-// differentiated.
+// residuals: which likelihood of the recordings a fit maximizes.
 #pragma once
 
 #include "models/enum_names.h"
@@ -18,17 +17,6 @@ constexpr EnumNames<Likelihood, 4> Names(Likelihood) {
            {"transition", Likelihood::kTransition},
            {"transition_as_printed", Likelihood::kTransitionAsPrinted},
            {"innovation", Likelihood::kInnovation}}};
-}
-
-// The two ways to the Jacobian of a recording's residuals (cost_functions/condensed_rollout.h).
-enum class JacobianMethod {
-  kSensitivities,  // chained step by step (rollout_sensitivities.h)
-  kAutodiff        // Jets through the whole rollout by Ceres: a user's check of the chain; slower,
-                   // and slower still with many parameters
-};
-constexpr EnumNames<JacobianMethod, 2> Names(JacobianMethod) {
-  return {
-      {{"sensitivities", JacobianMethod::kSensitivities}, {"autodiff", JacobianMethod::kAutodiff}}};
 }
 
 }  // namespace pushid

@@ -1,11 +1,10 @@
 // apps: expanding plans.
-#include "apps/batch/batch_jobs.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "apps/batch/batch.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/input_file.h"

@@ -1,5 +1,5 @@
 // apps: reading plans.
-#include "apps/batch/batch_plan.h"
+#include "apps/batch/batch.h"
 
 #define TOML_EXCEPTIONS 0
 // toml++ asserts what a zero byte in a plan breaks, just before it reports it as an error.

@@ -1,10 +1,9 @@
 // apps: reading a job's files.
-#include "apps/batch/batch_results.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "apps/batch/batch.h"
 #include "datasets/files/json_fields.h"
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_evaluation.h"

@@ -1,6 +1,4 @@
 // apps: the pool of jobs.
-#include "apps/batch/batch_run.h"
-
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -8,6 +6,7 @@
 #include <fstream>
 #include <set>
 
+#include "apps/batch/batch.h"
 #include "apps/support/app_support.h"
 #include "apps/support/processes.h"
 #include "datasets/files/atomic_file.h"

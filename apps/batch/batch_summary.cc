@@ -1,12 +1,10 @@
 // apps: collecting a batch's results.
-#include "apps/batch/batch_summary.h"
-
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "apps/batch/batch_tables.h"
+#include "apps/batch/batch.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"

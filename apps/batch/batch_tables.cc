@@ -1,10 +1,9 @@
 // apps: what a batch's jobs found, in tables for people.
-#include "apps/batch/batch_tables.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "apps/batch/batch_summary.h"
+#include "apps/batch/batch.h"
 #include "datasets/files/number_text.h"
 #include "ident/uncertainty/bootstrap.h"
 

@@ -1,8 +1,6 @@
 // apps: the explorable person of a report page: the model that was fitted, at work in the page.
 #pragma once
 
-#include <string>
-
 #include "ident/model/fitted_model.h"
 #include "ident/report/page/document.h"
 

@@ -1,10 +1,9 @@
 // apps: checks of a model by flag.
-#include "apps/flags/check_flags.h"
-
 #include <gflags/gflags.h>
 
 #include <cstring>
 
+#include "apps/flags/fit_option_flags.h"
 #include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/names.h"

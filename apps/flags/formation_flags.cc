@@ -14,7 +14,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/loading/load_recordings.h"
-#include "ident/formations/recorded_people.h"
+#include "ident/formations/formation_run.h"
 
 DEFINE_string(
     formation, "",

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
+#include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/model/identified_model.h"
 
@@ -24,5 +26,21 @@ MaybeError CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model);
 // --samples. num_frames: 0 means as many as the recording has. Returns an exit code.
 int PrintFutures(const FuturesFlags& flags, const IdentifiedModel& model,
                  const PendulumRecording& recording, int num_frames);
+
+// --observed, of every program that predicts recordings.
+
+// How many first frames are seen; 0: none.
+int ObservedFrames();
+
+// Who forecasts then.
+ForecastUse ForecastUseFlag();
+
+// What is wrong with them, by themselves.
+MaybeError CheckObservedFlag();
+// For these recordings.
+MaybeError CheckObservedFlag(const std::vector<PendulumRecording>& recordings);
+// And this model.
+MaybeError CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
+                             const IdentifiedModel& model);
 
 }  // namespace pushid

@@ -1,7 +1,6 @@
 // apps: the flags of pushid-generate.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "datasets/loading/mocap_folder.h"

@@ -6,7 +6,8 @@
 
 #include <vector>
 
-#include "ident/generators/generator_kinds.h"
+#include "datasets/files/error.h"
+#include "ident/generators/generator_files.h"
 
 namespace pushid {
 
@@ -52,5 +53,16 @@ class KindFlags {
   std::vector<const char*> names_;
   MaybeError (*read_)(Flags* flags);
 };
+
+// --published: the settings of a paper, as other defaults of a program's own flags.
+
+struct PublishedFlags {
+  const char* paper;  // its name on the command line
+  std::vector<std::pair<const char*, const char*>> values;
+};
+
+// Makes the values of the paper that --published names the defaults, before any flag is read: flags
+// that are given win. Errors: no such paper.
+MaybeError TakePublished(const std::vector<PublishedFlags>& papers);
 
 }  // namespace pushid

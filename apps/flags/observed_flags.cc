@@ -1,9 +1,8 @@
 // apps: --observed.
-#include "apps/flags/observed_flags.h"
-
 #include <gflags/gflags.h>
 
 #include "apps/flags/command_line.h"
+#include "apps/flags/futures_flags.h"
 #include "ident/prediction/evaluation.h"
 
 DEFINE_int32(observed, 0,

@@ -1,10 +1,9 @@
 // apps: --overwrite.
-#include "apps/flags/overwrite_flag.h"
-
 #include <gflags/gflags.h>
 
 #include <filesystem>
 
+#include "apps/flags/recording_flags.h"
 #include "datasets/files/json_file.h"
 
 DEFINE_bool(overwrite, false, "replace existing recordings, manifests, pushes and figures");

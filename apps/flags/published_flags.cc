@@ -1,8 +1,7 @@
 // apps: --published by name.
-#include "apps/flags/published_flags.h"
-
 #include <gflags/gflags.h>
 
+#include "apps/flags/kind_flags.h"
 #include "datasets/files/names.h"
 
 DEFINE_string(

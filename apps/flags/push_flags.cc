@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/overwrite_flag.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/manifest/manifest.h"

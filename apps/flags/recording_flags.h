@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "datasets/loading/load_recordings.h"
-#include "datasets/loading/pendulum_recording.h"
 #include "ident/model/fitted_model.h"
 
 DECLARE_string(recordings);
@@ -56,5 +55,18 @@ Provenance ProvenanceOfRun();
 
 // Whether there is a push in every one of them: without it there is nothing to learn from.
 MaybeError CheckPushed(const std::vector<Recording>& recordings);
+
+// overwrite_flag.cc: --overwrite, of the programs that write what a person may have edited or
+// cannot make again.
+bool OverwriteGiven();
+
+// An Error where the file is there and --overwrite is not given. flag names the file. besides: what
+// else may be done ("; --update keeps ...").
+MaybeError CheckNew(const std::string& flag, const std::string& file,
+                    const std::string& besides = "");
+
+// The same for a folder of recordings that pushid-simulate writes. --overwrite replaces its earlier
+// output alone: real recordings stay.
+MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder);
 
 }  // namespace pushid

@@ -1,5 +1,4 @@
 // apps: loading what --restoration names.
-#include "apps/flags/restoration_flags.h"
 
 #include <gflags/gflags.h>
 

@@ -6,7 +6,6 @@
 #include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/kind_flags.h"
-#include "apps/flags/published_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/names.h"
 #include "ident/model/model_json.h"

@@ -5,7 +5,7 @@
 
 #include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/observed_flags.h"
+#include "apps/flags/futures_flags.h"
 #include "datasets/files/names.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_names.h"

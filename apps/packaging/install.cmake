@@ -4,10 +4,9 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-get_target_property(pushid_libraries pushid_shared PUSHID_LIBRARIES)
 install(TARGETS pushid_options EXPORT pushid_targets)
 set_target_properties(pushid_options PROPERTIES EXPORT_NAME options)
-foreach(library ${pushid_libraries})
+foreach(library ${PUSHID_LIBRARIES})
   set_target_properties(pushid_${library} PROPERTIES EXPORT_NAME ${library})
   install(TARGETS pushid_${library} EXPORT pushid_targets
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)

@@ -4,7 +4,6 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/prediction/changed_pushes.h"
 #include "ident/prediction/futures.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"

@@ -1,6 +1,5 @@
 // apps: recordings in Python: read from manifests, made by the model itself, as arrays.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "apps/python/bindings.h"

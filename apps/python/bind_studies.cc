@@ -10,8 +10,7 @@
 #include "ident/formations/wave_speed.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/push/push_check.h"
-#include "ident/report/advice.h"
-#include "ident/report/design_text.h"
+#include "ident/report/report_text.h"
 #include "models/crowd.h"
 
 namespace pushid {

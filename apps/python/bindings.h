@@ -12,7 +12,6 @@
 
 #include "datasets/files/error.h"
 #include "datasets/files/names.h"
-#include "datasets/formats/units.h"
 #include "datasets/loading/warning.h"
 #include "ident/fit.h"
 #include "ident/parameters/option_names.h"

@@ -1,11 +1,9 @@
 // apps: the Python module: errors, arrays, and what the other parts share.
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "apps/python/bindings.h"
 #include "datasets/inspection/findings.h"
-#include "datasets/loading/load_recordings.h"
 #include "datasets/loading/recording_from_tracks.h"
 #include "datasets/manifest/recording.h"
 #include "ident/push/push_from_sensor.h"

@@ -6,7 +6,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/loading/warning.h"

@@ -4,7 +4,6 @@
 #include <gflags/gflags.h>
 
 #include <filesystem>
-#include <utility>
 #include <vector>
 
 #include "datasets/files/atomic_file.h"

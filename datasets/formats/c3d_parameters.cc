@@ -7,7 +7,6 @@
 #include "datasets/formats/c3d_parameters.h"
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <map>
 

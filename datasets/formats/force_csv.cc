@@ -2,7 +2,6 @@
 #include "datasets/formats/force_csv.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <string_view>
 

@@ -6,7 +6,6 @@
 #include <unordered_map>
 
 #include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 
 namespace pushid {
 

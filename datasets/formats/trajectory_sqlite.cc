@@ -1,7 +1,6 @@
 // datasets: JuPedSim's SQLite files.
 #include <sqlite3.h>
 
-#include <cstdlib>
 #include <memory>
 
 #include "datasets/files/atomic_file.h"

@@ -1,11 +1,9 @@
 // datasets: where a person of a file faces and steps.
-#include "datasets/inspection/facing_and_steps.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/number_text.h"
+#include "datasets/inspection/push_and_motion.h"
 #include "datasets/loading/motion_preparation.h"
 
 namespace pushid {

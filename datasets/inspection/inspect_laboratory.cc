@@ -4,8 +4,8 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/inspection/inspection.h"
-#include "datasets/loading/ground_tracks.h"
-#include "datasets/loading/plate_tracks.h"
+#include "datasets/loading/ground_record.h"
+#include "datasets/loading/plate_record.h"
 #include "models/ipm.h"
 
 namespace pushid {

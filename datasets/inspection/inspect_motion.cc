@@ -5,8 +5,8 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
-#include "datasets/inspection/facing_and_steps.h"
 #include "datasets/inspection/inspection.h"
+#include "datasets/inspection/push_and_motion.h"
 
 namespace pushid {
 namespace {

@@ -2,7 +2,6 @@
 #include "datasets/inspection/inspection.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "datasets/files/input_file.h"
 #include "datasets/files/names.h"

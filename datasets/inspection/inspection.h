@@ -14,7 +14,7 @@
 #include "datasets/files/error.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/point_motion.h"
-#include "datasets/inspection/facing_and_steps.h"
+#include "datasets/inspection/push_and_motion.h"
 #include "datasets/loading/foot_steps.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/joint_choice.h"

@@ -1,12 +1,11 @@
 // datasets: skeletons and points read alike.
-#include "datasets/loading/file_motion.h"
-
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
+#include "datasets/loading/recording_from_tracks.h"
 #include "datasets/manifest/joint_choice.h"
 #include "models/enum_names.h"
 

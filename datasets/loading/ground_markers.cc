@@ -5,7 +5,7 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/ground_tracks.h"
+#include "datasets/loading/ground_record.h"
 #include "datasets/loading/motion_preparation.h"
 #include "models/decompositions.h"
 

@@ -7,9 +7,8 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/ground_tracks.h"
 #include "datasets/loading/motion_preparation.h"
-#include "datasets/sensors/timed_columns.h"
+#include "datasets/sensors/sensor_choice.h"
 #include "models/decompositions.h"
 
 namespace pushid {

@@ -6,9 +6,9 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
-#include "datasets/loading/file_motion.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/motion_preparation.h"
+#include "datasets/loading/recording_from_tracks.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/joint_choice.h"
 

@@ -1,8 +1,6 @@
 // datasets: from a manifest to recordings in SI units, checked.
 #include "datasets/loading/load_recordings.h"
 
-#include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "datasets/files/number_text.h"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/formats/units.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {

@@ -7,7 +7,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
 #include "datasets/loading/load_recordings.h"
-#include "datasets/loading/plate_tracks.h"
+#include "datasets/loading/plate_record.h"
 
 namespace pushid {
 namespace {

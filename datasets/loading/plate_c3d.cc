@@ -1,12 +1,11 @@
 // datasets: platforms of C3D files, and which file an entry means.
 #include <algorithm>
-#include <cmath>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/motion_formats.h"
-#include "datasets/loading/plate_tracks.h"
+#include "datasets/loading/plate_record.h"
 #include "datasets/sensors/force_platform.h"
 
 namespace pushid {

@@ -7,9 +7,8 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/loading/motion_preparation.h"
-#include "datasets/loading/plate_tracks.h"
 #include "datasets/sensors/force_platform.h"
-#include "datasets/sensors/timed_columns.h"
+#include "datasets/sensors/sensor_choice.h"
 #include "models/ipm.h"
 
 namespace pushid {

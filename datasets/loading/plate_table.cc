@@ -4,8 +4,8 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/plate_tracks.h"
-#include "datasets/sensors/timed_columns.h"
+#include "datasets/loading/plate_record.h"
+#include "datasets/sensors/sensor_choice.h"
 
 namespace pushid {
 namespace {

@@ -2,7 +2,6 @@
 #include "datasets/manifest/body_roles.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 
 #include "datasets/files/names.h"
 

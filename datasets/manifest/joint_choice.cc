@@ -7,7 +7,6 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/point_motion.h"
 #include "datasets/manifest/body_roles.h"
 
 namespace pushid {

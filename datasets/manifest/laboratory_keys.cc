@@ -2,8 +2,14 @@
 #include "datasets/manifest/laboratory_keys.h"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "datasets/files/json_fields.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/motion_formats.h"
 #include "datasets/formats/units.h"
+#include "datasets/manifest/manifest.h"
 
 namespace pushid {
 namespace {
@@ -122,6 +128,77 @@ std::vector<ManifestPlates> ReadPlatesKey(const JsonDocument& document, JsonFiel
     }
   }
   return plates;
+}
+
+bool ReadPlatesAlone(JsonFields* fields) {
+  const std::string motion = fields->OptionalText("motion", "");
+  if (motion.empty()) return false;
+  if (motion != "none") {
+    fields->Fail("motion", "is " + Quoted(motion) +
+                               "; it may be \"none\", for a person on force plates without "
+                               "markers; motion files stand under " +
+                               MotionKeys());
+    return false;
+  }
+  std::vector<std::string> refused = {"joints", "mapping",   "push_csv",   "pushes",
+                                      "frames", "end_frame", "first_frame"};
+  for (const MotionFormatRow& row : kMotionFormats) refused.emplace_back(row.name);
+  for (const std::string& key : refused) {
+    if (fields->Has(key.c_str())) {
+      fields->Fail(key,
+                   "is given together with \"motion\": \"none\", a person who stands on force "
+                   "plates and is seen by nothing else; leave one of them out");
+    }
+  }
+  return true;
+}
+
+void CheckPlatesAlone(const ManifestRecording& recording, JsonFields* fields) {
+  if (!recording.plates_alone) return;
+  const std::string alone = "\"motion\": \"none\" ";
+  if (recording.subjects.size() > 1) {
+    fields->Fail("subjects", "names " + std::to_string(recording.subjects.size()) + " people; " +
+                                 alone + "is for one person on force plates");
+  }
+  if (!fields->Require("force_plates", "{\"use\": \"measure\", \"file\": ...}, without which " +
+                                           alone + "leaves nothing that was measured")) {
+    return;
+  }
+  const bool measured = recording.plates.size() == 1 &&
+                        recording.plates[0].use == PlateUse::kMeasure &&
+                        !recording.plates[0].file.empty();
+  if (!measured) {
+    fields->Fail("force_plates", "needs \"use\": \"measure\" and \"file\", once: with " + alone +
+                                     "nothing else was measured");
+  }
+  if (!recording.ground.markers.empty()) {
+    fields->Fail("ground", "names markers, of which " + alone + "says there are none; give a csv");
+  }
+}
+
+StatedErrors ReadStatedErrors(const JsonDocument& document, JsonFields* fields,
+                              StatedErrors stated) {
+  constexpr const char* kKey = "stated_errors";
+  if (!fields->Has(kKey)) return stated;
+  if (!fields->At(kKey).is_object()) {
+    fields->Fail(kKey, "must be an object { } of standard deviations");
+    return stated;
+  }
+  JsonFields given(document, fields->At(kKey), fields->Pointer(kKey),
+                   fields->label() + ", stated_errors");
+  for (const StatedErrorRow& row : kStatedErrors) {
+    double& value = stated.*row.value;
+    value = given.OptionalNumber(row.key, "a standard deviation above 0", value);
+    if (!given.failed() && !(value > 0.0 && std::isfinite(value))) {
+      given.Fail(row.key, "must be a standard deviation above 0");
+    }
+    if (!given.failed() && row.share && value > 1.0) {
+      given.Fail(row.key, "is a share: 0.05 means 5 %");
+    }
+  }
+  given.OnlyAsked();
+  fields->Fail(given.error());
+  return stated;
 }
 
 }  // namespace pushid

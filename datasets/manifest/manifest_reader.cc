@@ -1,6 +1,5 @@
 // datasets: the manifest read and checked.
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 #include <utility>
@@ -11,8 +10,8 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
 #include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/laboratory_keys.h"
 #include "datasets/manifest/manifest.h"
-#include "datasets/manifest/plates_alone.h"
 #include "datasets/manifest/recording.h"
 
 namespace pushid {

@@ -11,7 +11,7 @@
 
 #include "datasets/formats/bvh.h"
 #include "datasets/manifest/body_roles.h"
-#include "datasets/manifest/stated_errors.h"
+#include "datasets/manifest/laboratory_keys.h"
 #include "models/enum_names.h"
 #include "models/ground.h"
 #include "models/push.h"  // PushKind

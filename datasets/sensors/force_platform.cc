@@ -2,7 +2,6 @@
 #include "datasets/sensors/force_platform.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,4 @@
 // datasets: reading columns with their times.
-#include "datasets/sensors/timed_columns.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +6,7 @@
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/sensors/sensor_choice.h"
 
 namespace pushid {
 

@@ -11,12 +11,14 @@
 // unit variance and 1 s memory in the cadence, and in all angles by 0.02 rad. 50 frames a second.
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
 #include <string>
 
 #include "datasets/files/error.h"
 #include "datasets/files/random.h"
+#include "models/enum_names.h"
 
 namespace pushid {
 
@@ -45,5 +47,44 @@ class SlowNoise {
 // Writes FOLDER/skeleton.json, FOLDER/train/ACTION/ACTION_i.txt and FOLDER/test/... of four
 // actions: walking, running, strolling and waving. Errors: what cannot be written.
 MaybeError WriteSyntheticClips(const std::string& folder, const SyntheticClipOptions& options);
+
+// Synthetic groups of three who stand and talk in turns, with the truth of who speaks:
+// for social states, their statistics and forecasts of groups without any push.
+//
+//   who speaks   a Markov chain from frame to frame: a turn ends with probability 1 / (turn_s fps),
+//                and then with pause_share nobody speaks, otherwise one of the other two does; a
+//                pause ends with 1 / (pause_s fps), and any of the three speaks
+//   states       speak; listen, where somebody else speaks; rest, where nobody does. One person's
+//                are a Markov chain too, which TurnTransitions knows
+//   motion       listeners look at who speaks, who speaks looks at one of them for a second on
+//                average, and in a pause everybody goes on looking; heads follow with 0.15 s, and
+//                shoulders go 0.7 of the way with 0.35 s. The speaker's arms rise and beat at about
+//                1.1 Hz, listeners nod; everybody sways, and has a size, place and liveliness of
+//                their own
+//
+// Nobody is pushed and no feet move.
+
+enum class TurnState { kSpeak, kListen, kRest };
+constexpr EnumNames<TurnState, 3> Names(TurnState) {
+  return {
+      {{"speak", TurnState::kSpeak}, {"listen", TurnState::kListen}, {"rest", TurnState::kRest}}};
+}
+
+struct SyntheticTurnsOptions {
+  int recordings = 12;
+  int frames = 300;
+  double fps = 60.0;
+  double turn_s = 2.0, pause_s = 1.0;  // means
+  double pause_share = 0.4;            // of turns that end in a pause
+  uint64_t seed = 1;
+};
+
+// Share of one person's steps from state to state; all of them sum to 1.
+Eigen::Matrix3d TurnTransitions(const SyntheticTurnsOptions& options);
+
+// Writes folder/manifest.json, folder/bvh/<id>_<n>.bvh and folder/states.csv, the states of people
+// (TurnState) and of the group (turn, pause); the manifest's key `synthetic` holds seed, names of
+// the states and TurnTransitions. Errors: what cannot be written.
+MaybeError WriteSyntheticTurns(const std::string& folder, const SyntheticTurnsOptions& options);
 
 }  // namespace pushid

@@ -1,5 +1,4 @@
 // datasets: three people who talk in turns.
-#include "datasets/synthetic/synthetic_turns.h"
 
 #include <Eigen/Geometry>
 #include <array>

@@ -52,14 +52,20 @@ void AddPushes(const PendulumRecording& recording, Animation* animation) {
 
 void AddRecorded(const PendulumRecording& recording, const std::vector<BodyMotion>& bodies,
                  Animation* animation) {
-  const size_t first = animation->people.size();
-  AddForecast(recording.subject_ids, bodies, animation);
   const FootprintsOfPeople prints = RecordedFootprints(recording);
-  for (size_t n = 0; n < bodies.size(); ++n) {
-    AnimatedPerson& person = animation->people[first + n];
+  for (size_t n = 0; n < recording.subject_ids.size(); ++n) {
+    AnimatedPerson person;
+    person.name = recording.subject_ids[n];
     person.recorded = true;
     person.facing = recording.facing;
+    if (n < bodies.size()) person.body = bodies[n];
     if (n < prints.size()) person.footprints = prints[n];
+    const double cart_height = recording.scene.people[n].body.cart_height;
+    for (const PendulumState<double>& state : recording.states[n]) {
+      person.cart.emplace_back(state.q[0], state.q[1], cart_height);
+    }
+    person.tip = recording.hip[n];
+    animation->people.push_back(std::move(person));
   }
 }
 

@@ -18,19 +18,21 @@ namespace {
 constexpr double kBrightest = 0.85;  // of the scale of colours, that is seen on paper
 
 constexpr char kScript[] =
-    R"html(const parents=[-1,0,1,2,3,4,3,6,7,8,3,10,11,12,0,14,15,16,0,18,19,20];
-let frame=0,turn=-0.6,tilt=0.25,zoom=1,centre=[0,0,900],size=1500,origin=[0,0],span=[1,1];
-const names=[...new Set(data.people.map(p=>p.name))],pushed=new Set(data.pushes.map(p=>p.person));
+    R"html(let frame=0,turn=-0.6,tilt=0.25,zoom=1,names,pushed,bodies,centre,size,origin,span;
 const on=id=>!$(id)||$(id).checked,at=(f,j)=>[f[3*j],f[3*j+1],f[3*j+2]];
-const frameOf=p=>Math.min(frame,Math.max(p.body.length,p.tip.length)-1);
-const bodies=data.people.some(p=>p.body.length);
-const hip=(p,f)=>p.tip.length?p.tip[f]:at(p.body[f],0);
-(function extent(){let lo=[1e9,1e9],hi=[-1e9,-1e9];
+// Samples lie data.every frames apart; positions between them are interpolated.
+function now(list){const k=Math.min(frame/data.every,list.length-1),i=Math.floor(k),a=list[i];
+ return i===k?a:a.map((v,n)=>v+(k-i)*(list[i+1][n]-v));}
+const hip=p=>p.tip.length?now(p.tip):at(now(p.body),0);
+function open(){let lo=[1e9,1e9],hi=[-1e9,-1e9];
+ if(!data.summed)for(const p of data.people)for(const s of [p.body,p.cart,p.tip])for(let t=1;t<s.length;t++)s[t]=s[t].map((v,i)=>v+s[t-1][i]);
+ data.summed=true;names=[...new Set(data.people.map(p=>p.name))];pushed=new Set(data.pushes.map(p=>p.person));
+ bodies=data.people.some(p=>p.body.length);centre=[0,0,900];size=1500;origin=[0,0];span=[1,1];
  for(const p of data.people){const s=p.body.length?p.body:p.tip;for(const f of s)for(let i=0;i<f.length;i+=3)
   for(let k=0;k<2;k++){lo[k]=Math.min(lo[k],f[i+k]);hi[k]=Math.max(hi[k],f[i+k]);}}
  if(lo[0]>hi[0])return;
  centre=[(lo[0]+hi[0])/2,(lo[1]+hi[1])/2,900];size=Math.max(1600,Math.hypot(hi[0]-lo[0],hi[1]-lo[1])/1.7+500);
- span=[hi[0]-lo[0]+300,hi[1]-lo[1]+300];const first=data.people.find(p=>pushed.has(p.name))||data.people[0];origin=hip(first,0);})();
+ span=[hi[0]-lo[0]+300,hi[1]-lo[1]+300];origin=hip(data.people.find(p=>pushed.has(p.name))||data.people[0]);}
 function project(x,y,z){x-=centre[0];y-=centre[1];z-=centre[2];
  const c=Math.cos(turn),s=Math.sin(turn),a=c*x-s*y,b=s*x+c*y,e=Math.cos(tilt),g=Math.sin(tilt);
  const depth=e*b-g*z+4*size,k=zoom*4*size/Math.max(depth,size*0.2)*Math.min(view.width,view.height*1.6)/(2.3*size);
@@ -47,7 +49,8 @@ function floor(){const grid=style('--grid'),step=500,n=Math.ceil(size/step)+1;
  const d=devicePixelRatio||1,front=Math.min(origin[1],centre[1]-span[1]/2)-100;
  for(let i=-n;i<=n;i++){const m=Math.round((cx-origin[0])/step)+i;if(m%2)continue;
   const p=project(origin[0]+m*step,front,0);words(String(m/2).replace('-','\u2212')+' m',p[0],p[1]+14*d,style('--ink'));}}
-function body(f,colour){for(let j=1;j<22;j++)line(at(f,parents[j]),at(f,j),colour,28);dot(at(f,5),95,colour);}
+function body(p,colour){const f=now(p.body);p.parents.forEach((a,j)=>{if(a>=0)line(at(f,a),at(f,j),colour,28);});
+ if(p.head>=0)dot(at(f,p.head),95,colour);}
 // A foot on the ground, which fades when it leaves; with the time at which it landed.
 function sole(p,[x,y,from,to]){if(frame<from)return;const c=Math.cos(p.facing),s=Math.sin(p.facing);pen.beginPath();
  for(let i=0;i<24;i++){const a=i*Math.PI/12,u=data.sole[0]+data.sole[1]*Math.cos(a),v=45*Math.sin(a),q=project(x+c*u-s*v,y+s*u+c*v,0);pen.lineTo(q[0],q[1]);}
@@ -72,7 +75,7 @@ function inset(){if(names.length<2||!on('above'))return;const d=devicePixelRatio
  pen.globalAlpha=0.85;pen.fillStyle=style('--paper');pen.fillRect(x0,y0,w,h);pen.globalAlpha=1;pen.setLineDash([]);pen.lineWidth=d;pen.strokeStyle=style('--grid');pen.strokeRect(x0,y0,w,h);
  const k=Math.min((w-20*d)/span[0],(h-34*d)/span[1]),place=q=>[x0+w/2+k*(q[0]-centre[0]),y0+h/2+8*d-k*(q[1]-centre[1])];
  words('from above',x0+42*d,y0+16*d,style('--ink'));
- for(const p of data.people){if(!shown(p))continue;const q=place(hip(p,frameOf(p)));pen.fillStyle=colourOf(p);pen.beginPath();pen.arc(q[0],q[1],4*d,0,7);pen.fill();
+ for(const p of data.people){if(!shown(p))continue;const q=place(hip(p));pen.fillStyle=colourOf(p);pen.beginPath();pen.arc(q[0],q[1],4*d,0,7);pen.fill();
   if(pushed.has(p.name))ring(q,7*d,style('--push'));}}
 // The forces on one person along the push, and where in its story we are.
 const looks=['#d55e00','#9333ea','#009e73'];
@@ -90,13 +93,13 @@ function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.h
  pen.lineCap='round';pen.clearRect(0,0,view.width,view.height);floor();
  const hips=new Map(),labels=[];
  if(on('footprints'))for(const p of data.people)if(shown(p))for(const print of p.footprints)sole(p,print);
- for(const p of data.people){const f=frameOf(p),colour=colourOf(p);
+ for(const p of data.people){const colour=colourOf(p);
   if(!shown(p))continue;
-  hips.set(p.name,hip(p,f));
-  if(p.body.length){pen.globalAlpha=p.recorded?0.55:1;body(p.body[f],colour);pen.globalAlpha=1;}
-  const rod=data.whats.length>1||names.length>1?colour:'#d1495b';
-  if(p.tip.length&&on('pendulums')){line(p.cart[f],p.tip[f],rod,12,[8,6]);dot(p.cart[f],35,rod);dot(p.tip[f],45,rod);}
-  if(p.force.length&&on('forces')){const t=p.tip[f],F=p.force[f];if(Math.hypot(F[0],F[1])>=5){
+  hips.set(p.name,hip(p));
+  if(p.body.length){pen.globalAlpha=p.recorded?0.55:1;body(p,colour);pen.globalAlpha=1;}
+  const rod=p.recorded||data.whats.length>1||names.length>1?colour:'#d1495b';
+  if(p.tip.length&&on('pendulums')){const c=now(p.cart),t=now(p.tip);line(c,t,rod,12,[8,6]);dot(c,35,rod);dot(t,45,rod);}
+  if(p.force.length&&on('forces')){const t=now(p.tip),F=now(p.force);if(Math.hypot(F[0],F[1])>=5){
    const end=[t[0]+F[0],t[1]+F[1],t[2]];line(t,end,'#e0a100',22);dot(end,40,'#e0a100');}}}
  for(const [name,h] of hips){const p=project(...h);
   if(pushed.has(name))ring(p,Math.max(8*d,90*p[2]),style('--push'));
@@ -113,13 +116,27 @@ std::string Box(const std::string& id, const std::string& text, const std::strin
          EscapeXml(text) + "</label>\n";
 }
 
-// Check boxes of what the animation contains.
-std::string Choices(const Animation& animation, const std::vector<std::string>& whats) {
-  const auto any = [&animation](auto has) {
-    return std::any_of(animation.people.begin(), animation.people.end(), has);
-  };
+std::set<std::string> NamesOf(const Animation& animation) {
   std::set<std::string> names;
   for (const AnimatedPerson& person : animation.people) names.insert(person.name);
+  return names;
+}
+
+// Check boxes of what the animations contain.
+std::string Choices(const std::vector<Animation>& animations) {
+  const auto in_one = [&animations](auto has) {
+    return std::any_of(animations.begin(), animations.end(), has);
+  };
+  const auto any = [&in_one](auto has) {
+    return in_one([&has](const Animation& animation) {
+      return std::any_of(animation.people.begin(), animation.people.end(), has);
+    });
+  };
+  std::vector<std::string> whats;
+  for (const Animation& animation : animations) {
+    const std::vector<std::string> these = WhatsOf(animation);
+    if (these.size() > whats.size()) whats = these;
+  }
   std::string html;
   if (any([](const AnimatedPerson& p) { return p.recorded; })) {
     html += Box("recorded", "recorded", "var(--recorded)");
@@ -139,8 +156,10 @@ std::string Choices(const Animation& animation, const std::vector<std::string>& 
     html += Box("footprints", "footprints");
   }
   html += Box("names", "names");
-  if (names.size() > 1) html += Box("above", "from above");
-  if (!animation.pushes.empty()) {
+  if (in_one([](const Animation& a) { return NamesOf(a).size() > 1; })) {
+    html += Box("above", "from above");
+  }
+  if (in_one([](const Animation& a) { return !a.pushes.empty(); })) {
     html += std::string("<span><span class=\"chip\" style=\"background:") + kAnimatedPushColour +
             "\"></span> pushed, and the push</span>\n";
   }
@@ -161,10 +180,22 @@ std::string StoryHtml(const Animation& animation) {
 
 int Whole(double value) { return static_cast<int>(std::lround(value)); }
 
-nlohmann::json Millimetres(const std::vector<Vector3<double>>& points) {
+// Every so many frames the places of all points, mm, each less that of the sample before: small
+// numbers.
+template <typename Points>
+nlohmann::json Samples(const std::vector<Points>& frames, int every) {
   nlohmann::json json = nlohmann::json::array();
-  for (const auto& p : points) {
-    json.push_back({Whole(1000 * p.x()), Whole(1000 * p.y()), Whole(1000 * p.z())});
+  std::vector<int> last;
+  for (size_t t = 0; t < frames.size(); t += static_cast<size_t>(every)) {
+    const Points& points = frames[t];
+    last.resize(static_cast<size_t>(points.size()), 0);
+    std::vector<int> sample(last.size());
+    for (size_t i = 0; i < last.size(); ++i) {
+      const int now = Whole(1000 * points.data()[i]);
+      sample[i] = now - last[i];
+      last[i] = now;
+    }
+    json.push_back(std::move(sample));
   }
   return json;
 }
@@ -173,8 +204,7 @@ nlohmann::json Millimetres(const std::vector<Vector3<double>>& points) {
 // neighbours look alike and no two are the same.
 std::vector<std::string> ColoursOf(const Animation& animation,
                                    const std::vector<std::string>& whats) {
-  std::set<std::string> names;
-  for (const AnimatedPerson& person : animation.people) names.insert(person.name);
+  const std::set<std::string> names = NamesOf(animation);
   std::vector<std::string> colours(std::begin(kAnimationColours), std::end(kAnimationColours));
   if (whats.size() > 1 || names.size() <= colours.size()) return colours;
   colours.clear();
@@ -185,14 +215,13 @@ std::vector<std::string> ColoursOf(const Animation& animation,
   return colours;
 }
 
-nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::string>& whats) {
-  nlohmann::json body = nlohmann::json::array(), force = nlohmann::json::array();
-  for (const Pose& pose : person.body) {
-    nlohmann::json numbers = nlohmann::json::array();
-    for (Eigen::Index i = 0; i < pose.size(); ++i) numbers.push_back(Whole(1000 * pose.data()[i]));
-    body.push_back(std::move(numbers));
+nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::string>& whats,
+                          int every) {
+  nlohmann::json force = nlohmann::json::array();
+  for (size_t t = 0; t < person.force.size(); t += static_cast<size_t>(every)) {
+    force.push_back({Whole(person.force[t][0]), Whole(person.force[t][1])});
   }
-  for (const auto& f : person.force) force.push_back({Whole(f[0]), Whole(f[1])});
+  const bool posed = !person.body.empty();
   nlohmann::json prints = nlohmann::json::array();
   for (const Footprint& p : person.footprints) {
     prints.push_back({Whole(1000 * p.place[0]), Whole(1000 * p.place[1]), p.landing, p.lift_off});
@@ -200,29 +229,31 @@ nlohmann::json PersonJson(const AnimatedPerson& person, const std::vector<std::s
   return {{"name", person.name},
           {"recorded", person.recorded},
           {"what", std::find(whats.begin(), whats.end(), person.what) - whats.begin()},
-          {"body", std::move(body)},
+          {"body", posed ? Samples(person.body, every) : Samples(person.joints, every)},
+          {"parents", posed ? nlohmann::json(kBodyParents) : nlohmann::json(person.parents)},
+          {"head", posed ? kBodyHead : -1},
           {"footprints", std::move(prints)},
           {"facing", person.facing},
-          {"cart", Millimetres(person.cart)},
-          {"tip", Millimetres(person.tip)},
+          {"cart", Samples(person.cart, every)},
+          {"tip", Samples(person.tip, every)},
           {"force", std::move(force)}};
 }
 
-}  // namespace
-
-std::string AnimationHtml(const Animation& animation) {
+nlohmann::json AnimationJson(const Animation& animation, double sample_seconds) {
   const std::vector<std::string> whats = WhatsOf(animation);
+  const int every = std::max(1, Whole(sample_seconds / animation.dt));
   nlohmann::json data = {
       {"title", animation.title},
       {"dt", animation.dt},
-      {"frames", animation.num_frames()},
+      {"every", every},
+      {"frames", (animation.num_frames() - 1) / every * every + 1},
       {"whats", whats},
       {"sole", {500 * (kSoleBefore - kSoleBehind), 500 * (kSoleBefore + kSoleBehind)}},
       {"colours", ColoursOf(animation, whats)},
       {"people", nlohmann::json::array()},
       {"pushes", nlohmann::json::array()}};
   for (const AnimatedPerson& person : animation.people) {
-    data["people"].push_back(PersonJson(person, whats));
+    data["people"].push_back(PersonJson(person, whats, every));
   }
   for (const AnimatedPush& push : animation.pushes) {
     nlohmann::json force = nlohmann::json::array();
@@ -241,11 +272,21 @@ std::string AnimationHtml(const Animation& animation) {
                      {"moments", std::move(moments)},
                      {"forces", std::move(forces)}};
   }
+  return data;
+}
+
+}  // namespace
+
+std::string AnimationHtml(const std::vector<Animation>& animations, double sample_seconds) {
+  nlohmann::json data = nlohmann::json::array();
+  for (const Animation& animation : animations) {
+    data.push_back(AnimationJson(animation, sample_seconds));
+  }
+  const Animation& first = animations.front();
   const std::string push = std::string("--push:") + kAnimatedPushColour + ";";
   return ToHtml({"People in motion", push + "--grid:#ddd;--recorded:#8a8a8a",
-                 push + "--grid:#3a3f46;--recorded:#a0a0a0",
-                 Choices(animation, whats) + StoryHtml(animation), std::move(data), kScript,
-                 animation.figures});
+                 push + "--grid:#3a3f46;--recorded:#a0a0a0", Choices(animations) + StoryHtml(first),
+                 std::move(data), kScript, first.figures});
 }
 
 }  // namespace pushid

@@ -15,8 +15,12 @@ namespace pushid {
 // What a person does according to one source, with pendulum and net force where there are any.
 struct AnimatedPerson {
   std::string name;
-  bool recorded = false;              // else predicted
-  BodyMotion body;                    // empty: pendulum only
+  bool recorded = false;  // else predicted
+  BodyMotion body;        // empty: none
+  // Where it is none that has all joints of a body: what the file's skeleton has, frame by frame,
+  // with the parents (-1: none).
+  std::vector<Eigen::Matrix3Xd> joints;
+  std::vector<int> parents;
   std::vector<Vector3<double>> cart;  // empty: none
   std::vector<Vector3<double>> tip;
   std::vector<Vector4<double>> force;  // net, generalized: N and N m; empty: none
@@ -59,18 +63,21 @@ void AddPrediction(const PendulumRecording& recording, const Prediction& predict
                    const std::vector<BodyMotion>& bodies, Animation* animation,
                    const std::string& what = "");
 void AddPushes(const PendulumRecording& recording, Animation* animation);
-// Bodies alone: recorded, or forecast without a pendulum.
+// Pendulums of all people, with bodies where given.
 void AddRecorded(const PendulumRecording& recording, const std::vector<BodyMotion>& bodies,
                  Animation* animation);
+// Bodies without a pendulum.
 void AddForecast(const std::vector<std::string>& names, const std::vector<BodyMotion>& bodies,
                  Animation* animation);
 
-// One self-contained page: no network, no library. Play, time slider, orbit by mouse or touch,
-// zoom by wheel, and what is shown by check boxes. Feet that step leave their prints, with the
-// times of landings, which fade when they leave. The ground has marks in metres from where the
-// pushed person starts; a group is seen from above as well; a story stands beside with its forces,
-// and its moments lead to their frames.
-std::string AnimationHtml(const Animation& animation);
+// One self-contained page: no network, no library; of several animations one is chosen by its
+// title. sample_seconds: between positions that are written and those between them interpolated,
+// for small files; 0: every frame. A story and figures are the first animation's. Play, time
+// slider, orbit by mouse or touch, zoom by wheel, and what is shown by check boxes. Feet that step
+// leave their prints, with the times of landings, which fade when they leave. The ground has marks
+// in metres from where the pushed person starts; a group is seen from above as well; a story stands
+// beside with its forces, and its moments lead to their frames.
+std::string AnimationHtml(const std::vector<Animation>& animations, double sample_seconds = 0.0);
 
 // Colours that the colour-blind tell apart, on light and on dark paper: of people, or of what-ifs
 // where there are some. A push is orange, so none of them is.

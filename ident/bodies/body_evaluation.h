@@ -14,18 +14,117 @@
 // of everybody, though constant_velocity knows those of the push.
 #pragma once
 
+#include <array>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "ident/bodies/body_metrics.h"
-#include "ident/model/fitted_model.h"
+#include "ident/bodies/body_recording.h"
+#include "ident/figures/text_table.h"
 #include "ident/model/identified_model.h"
+#include "ident/prediction/evaluation.h"
+#include "ident/validation/group_metrics.h"
 #include "models/restoration/postprocess.h"
 #include "models/restoration/restoration.h"
 
 namespace pushid {
+
+// How far predicted bodies are from recorded ones.
+//
+// For one recording, means over the frames that count, people and all 22 joints unless said
+// otherwise. Those are frames 1 .. T-1, and of a predictor that was shown more than frame 0 only
+// the frames that it was not shown, first_frame .. T-1; scores of all frames are called so.
+//
+//   MPJPE      |joint - recorded joint|, m
+//   hipADE     the same of the hip alone; hipFDE: at the last frame
+//   MBLE       | |bone| - |recorded bone| |, over 21 bones, m
+//   FSE        of ankles in contact (below H = 2.5 cm above their own height at frame 0): the
+//              horizontal way since the frame before times (2 - 2^(h/H)), h above the height at
+//              frame 0 and at least 0; cm per frame. Mean over the contacts of a person, then over
+//              people.
+//   relative   MPJPE of joint - hip against recorded joint - hip (the hip counts as a joint, zero)
+//   bound      MPJPE of the recorded shape carried by the predicted hip: what is left when the
+//              shape is right
+// Means over recordings have standard errors over recordings, as those of hipADE.
+
+// A new metric is a value and a row here, and its formula in ScorePerson; means, files and tables
+// take it from there.
+enum BodyMetric {
+  kMpjpe,
+  kHipAde,
+  kHipFde,
+  kRelativeMpjpe,
+  kBoundMpjpe,
+  kMble,
+  kFse,
+  kNumBodyMetrics
+};
+using BodyMetrics = std::array<double, kNumBodyMetrics>;
+
+struct BodyMetricRow : Metric {
+  bool with_error;  // files and tables have its standard error
+};
+inline constexpr BodyMetricRow kBodyMetrics[kNumBodyMetrics] = {
+    {{"MPJPE", "m"}, true},          {{"hipADE", "m"}, true},       {{"hipFDE", "m"}, true},
+    {{"relative_MPJPE", "m"}, true}, {{"bound_MPJPE", "m"}, false}, {{"MBLE", "m"}, false},
+    {{"FSE", "cm"}, false},
+};
+
+// "MPJPE 0.1 m, hipADE 0.1 m, ..."
+std::string MetricsText(const BodyMetrics& metrics, int digits);
+
+// Errors a while after the last shown frame (Tanke et al., ICCV 2023, Tables 1 and 2), means over
+// people, m: root is |hip - recorded hip|, pose the mean joint error with hips aligned.
+inline constexpr std::array<int, 3> kErrorSeconds = {1, 2, 3};
+struct TimedError {
+  double root = 0.0, pose = 0.0;
+};
+
+struct BodyScore {
+  std::string id;
+  int frames = 0;
+  BodyMetrics value{};
+  std::string failure;                     // why there is no score; such a recording is in no mean
+  std::vector<BodyMotion> predicted = {};  // of more than one person; groups are judged together
+  int first_frame = 1;                     // that counts
+  // At kErrorSeconds, where the recording lasts so long.
+  std::array<std::optional<TimedError>, kErrorSeconds.size()> at = {};
+};
+
+// predicted: one motion per person, with as many frames as the recording, which are more than
+// first_frame. first_frame: the first that counts, at least 1: frames before it were shown.
+BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMotion>& predicted,
+                      int first_frame = 1);
+
+// FSE of one motion, cm per frame, of ways that end at first_frame or later; negative when no ankle
+// ever touches the floor.
+double FootSkate(const BodyMotion& motion, int first_frame = 1);
+
+struct BodyMean {
+  int recordings = 0;
+  BodyMetrics value{}, error{};  // mean and its standard error
+};
+
+struct TimedMean {
+  int recordings = 0;  // that last so long
+  TimedError mean;
+};
+
+struct BodySummary {
+  std::vector<BodyScore> recordings;
+  BodyMean mean, frame_weighted;
+  std::array<TimedMean, kErrorSeconds.size()> at;
+  ByLabel<BodyMean> by;
+  WithoutLabel without_label;          // in no group of `by`
+  std::optional<GroupMetrics> groups;  // of all recordings of more than one person, if any
+};
+
+// scores in the order of recordings.
+BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
+                            std::vector<BodyScore> scores,
+                            const LabelKeys& group_by = UsualGroups());
 
 // Restored and post-processed.
 std::vector<BodyMotion> RestoreBodies(const Restoration& restoration,

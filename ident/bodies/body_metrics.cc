@@ -1,8 +1,8 @@
 // ident: scores of bodies and their means.
-#include "ident/bodies/body_metrics.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "ident/bodies/body_evaluation.h"
 
 namespace pushid {
 namespace {

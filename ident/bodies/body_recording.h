@@ -12,7 +12,6 @@
 #include "ident/validation/group_metrics.h"
 #include "models/restoration/body.h"
 #include "models/restoration/restoration.h"
-#include "models/rollout.h"
 
 namespace pushid {
 

@@ -1,10 +1,7 @@
 // ident: glTF files written.
-#include "ident/bodies/gltf_file.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -12,6 +9,7 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
+#include "ident/bodies/body_files.h"
 #include "ident/bodies/gltf_shapes.h"
 
 namespace pushid {

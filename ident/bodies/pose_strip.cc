@@ -55,11 +55,16 @@ class Panel {
       svg_->Circle(X(head), Y(head), 0.085 * scale_,
                    person.recorded ? "fill:#9a9a9a;opacity:0.6" : "fill:" + ColourOfWhat(what));
     }
-    if (t < static_cast<int>(person.cart.size())) {
+    const bool hidden = person.recorded && !person.body.empty();  // the body says it all
+    if (t < static_cast<int>(person.cart.size()) && !hidden) {
       const std::string own = several ? "stroke:" + ColourOfWhat(what) + ";stroke-width:1.5" : "";
-      Bone(person.cart[t], person.tip[t], several ? own : kPendulumLook);
+      Bone(person.cart[t], person.tip[t],
+           person.recorded ? kRecordedLook
+           : several       ? own
+                           : kPendulumLook);
+      const std::string colour = several ? ColourOfWhat(what) : "#d1495b";
       svg_->Circle(X(person.tip[t]), Y(person.tip[t]), 3,
-                   "fill:" + (several ? ColourOfWhat(what) : std::string("#d1495b")));
+                   "fill:" + (person.recorded ? "#9a9a9a" : colour));
     }
     if (t >= static_cast<int>(person.force.size())) return;
     const Eigen::Vector3d force(person.force[t][0], person.force[t][1], 0.0);
@@ -183,7 +188,8 @@ std::vector<LegendEntry> LegendOf(const Animation& animation) {
                                          : whats[k],
                       "stroke-width:2.5;stroke:" + ColourOfWhat(static_cast<int>(k))});
   }
-  if (whats.size() == 1 && any([](const AnimatedPerson& p) { return !p.tip.empty(); })) {
+  if (whats.size() == 1 &&
+      any([](const AnimatedPerson& p) { return !p.recorded && !p.tip.empty(); })) {
     legend.push_back({"pendulum", kPendulumLook});
   }
   if (any([](const AnimatedPerson& p) { return !p.force.empty(); })) {

@@ -4,15 +4,12 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "ident/bodies/restoration_kinds.h"
 #include "ident/bodies/tensor_folder.h"
 #include "ident/parameters/option_names.h"
+#include "models/restoration/body_tangent.h"
 #include "models/restoration/cvae_restoration.h"
-#include "models/restoration/cvae_tangent.h"
 #include "models/restoration/window_restoration.h"
-#include "models/restoration/window_tangent.h"
 
 namespace pushid {
 namespace {

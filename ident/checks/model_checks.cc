@@ -5,14 +5,11 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/fit/cross_fit.h"
-#include "ident/observed/recording_effect.h"
+#include "ident/fit/fit.h"
+#include "ident/observed/recording_filter.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/push/push_check.h"
-#include "ident/report/advice.h"
-#include "ident/report/confidence_text.h"
-#include "ident/report/design_text.h"
-#include "ident/report/forecast_text.h"
+#include "ident/report/report_text.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/refit_checks.h"
 

@@ -8,9 +8,8 @@
 #include "datasets/files/error.h"
 #include "datasets/inspection/findings.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "datasets/loading/warning.h"
 #include "ident/parameters/fit_options.h"
-#include "ident/solver/solution.h"
+#include "ident/solver/solver.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
@@ -88,7 +87,7 @@ void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions
 // them: an error that names them. To be asked before a solve.
 MaybeError CheckEffects(const FitProblem& problem);
 
-// Everything but the advice, which also looks at profiles and bootstrap (advice.h).
+// Everything but the advice, which also looks at profiles and bootstrap (report/report_text.h).
 Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
                      const Uncertainty& uncertainty);
 

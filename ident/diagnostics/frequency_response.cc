@@ -1,12 +1,10 @@
 // ident: measured frequency responses, person by person.
 #include "ident/diagnostics/frequency_response.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <tuple>
 
-#include "datasets/files/number_text.h"
 #include "ident/diagnostics/spectra.h"
 #include "ident/problem/own_axes.h"
 

@@ -1,7 +1,7 @@
 // ident: how people answer oscillations of the ground or of a push, frequency by frequency,
 // measured and by the model.
 //
-// Inputs and outputs are those of loop_signals.h.
+// Inputs and outputs are those of spectra.h.
 // H = S_yu / S_uu (spectra.h) of each person, over all recordings of that person; then the mean of
 // log |H| and of the phase over people, with its standard error: from people to people, or of one
 // person by the coherence. The model's is in closed form (problem/linear_loop.h), averaged over the
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/diagnostics/loop_signals.h"
+#include "ident/diagnostics/spectra.h"
 #include "ident/figures/text_table.h"
 
 namespace pushid {

@@ -1,9 +1,8 @@
 // ident: series of what moves people and of how they answer.
-#include "ident/diagnostics/loop_signals.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "ident/diagnostics/spectra.h"
 #include "models/net_force.h"
 
 namespace pushid {

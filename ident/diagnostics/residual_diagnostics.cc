@@ -6,11 +6,7 @@
 
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/jacobian_blocks.h"
 #include "ident/problem/statistics.h"
-#include "ident/uncertainty/clusters.h"
-#include "ident/uncertainty/covariance.h"
-#include "models/decompositions.h"
 
 namespace pushid {
 namespace {

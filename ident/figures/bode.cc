@@ -1,9 +1,8 @@
 // ident: drawing Bode plots.
-#include "ident/figures/bode.h"
-
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "ident/figures/chart.h"
 
 namespace pushid {
 namespace {

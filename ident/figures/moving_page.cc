@@ -25,7 +25,8 @@ output{font-variant-numeric:tabular-nums;min-width:11em}label{white-space:nowrap
 <header><h1 id="title"></h1>
 )html";
 
-constexpr char kFooter[] = R"html(; drag to turn, wheel to zoom"></canvas>
+constexpr char kFooter[] =
+    R"html(; drag to turn, wheel (within a page: with Ctrl) to zoom"></canvas>
 <footer><button id="play">Play</button>
 <input type="range" id="time" min="0" value="0" step="1" aria-label="time">
 <output id="clock"></output>
@@ -34,8 +35,8 @@ constexpr char kFooter[] = R"html(; drag to turn, wheel to zoom"></canvas>
 )html";
 
 constexpr char kScriptBefore[] = R"html(;
-const $=id=>document.getElementById(id),view=$('view'),pen=view.getContext('2d');
-$('title').textContent=data.title;$('time').max=data.frames-1;
+let data=all[0];
+const $=id=>document.getElementById(id),view=$('view'),pen=view.getContext('2d'),framed=parent!==window;
 function style(name){return getComputedStyle(document.documentElement).getPropertyValue(name);}
 )html";
 
@@ -48,9 +49,15 @@ for(const box of document.querySelectorAll('input[type=checkbox]'))box.onchange=
 view.onpointerdown=e=>{view.setPointerCapture(e.pointerId);view.onpointermove=m=>{turn+=m.movementX*0.008;
  tilt=Math.min(1.5,Math.max(-0.1,tilt+m.movementY*0.006));draw();};};
 view.onpointerup=view.onpointercancel=()=>{view.onpointermove=null;};
-view.onwheel=e=>{e.preventDefault();zoom=Math.min(8,Math.max(0.3,zoom*Math.exp(-e.deltaY*0.001)));draw();};
+if(framed)view.style.touchAction='pan-y'; // what is around it scrolls
+view.onwheel=e=>{if(framed&&!e.ctrlKey)return;e.preventDefault();zoom=Math.min(8,Math.max(0.3,zoom*Math.exp(-e.deltaY*0.001)));draw();};
 onkeydown=e=>{if(e.key===' '&&e.target.tagName!=='BUTTON'){e.preventDefault();play(!playing);}
  const step={ArrowLeft:-1,ArrowRight:1}[e.key];if(step&&e.target.id!=='time'){play(false);frame=Math.min(data.frames-1,Math.max(0,frame+step));draw();}};
+function choose(which){data=all[which];$('title').textContent=data.title;$('time').max=data.frames-1;frame=0;open();}
+if(all.length>1){const list=document.createElement('select');list.id='recording';list.setAttribute('aria-label','recording');
+ all.forEach((one,i)=>list.add(new Option(one.title,i)));list.onchange=()=>{play(false);choose(list.value);draw();};
+ $('title').before(list);$('title').hidden=true;}
+choose(0);
 const wanted=new URLSearchParams(location.search).get('frame')||location.hash.slice(1);
 if(wanted)frame=Math.min(data.frames-1,Math.max(0,+wanted||0));
 onresize=draw;draw();
@@ -77,12 +84,11 @@ std::string FiguresHtml(const std::vector<std::string>& figures) {
 }  // namespace
 
 std::string ToHtml(const MovingPage& page) {
-  const std::string title = page.data.at("title");
-  return kHead + EscapeXml(title) + "</title>\n<style>\n:root{--paper:#fff;--ink:#222;" +
-         page.light + "}\n@media(prefers-color-scheme:dark){:root{--paper:#15181c;--ink:#e8e8e8;" +
-         page.dark + "}}\n" + kMovingPageStyle + page.choices +
-         "</header>\n<canvas id=\"view\" aria-label=\"" + page.described + kFooter +
-         FiguresHtml(page.figures) + "<script>\nconst data=" +
+  return kHead + EscapeXml(page.data.at(0).at("title").get<std::string>()) +
+         "</title>\n<style>\n:root{--paper:#fff;--ink:#222;" + page.light +
+         "}\n@media(prefers-color-scheme:dark){:root{--paper:#15181c;--ink:#e8e8e8;" + page.dark +
+         "}}\n" + kMovingPageStyle + page.choices + "</header>\n<canvas id=\"view\" aria-label=\"" +
+         page.described + kFooter + FiguresHtml(page.figures) + "<script>\nconst all=" +
          ForScript(page.data.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)) +
          kScriptBefore + page.script + kScriptAfter;
 }

@@ -13,10 +13,11 @@ struct MovingPage {
   std::string described;    // what the canvas shows, for those who cannot see it
   std::string light, dark;  // CSS variables of the caller's colours: "--recorded:#777"
   std::string choices;      // check boxes; each change draws anew
-  // With `title`, `dt` (s) and `frames`.
+  // An array of what can be chosen, each with `title`, `dt` (s) and `frames`.
   nlohmann::json data;
-  // Sees `data`, `view`, `pen`, `$` (element by id) and `style` (value of a CSS variable); declares
-  // `frame`, `turn`, `tilt` and `zoom` by let, and draw(), which draws `frame` and sets the clock.
+  // Sees `data` (the one that is chosen), `view`, `pen`, `$` (element by id) and `style` (value of
+  // a CSS variable); declares `frame`, `turn`, `tilt` and `zoom` by let, open(), which prepares for
+  // `data`, and draw(), which draws `frame` and sets the clock.
   std::string script;
   std::vector<std::string> figures = {};  // SVG without style sheets, below the motion
 };

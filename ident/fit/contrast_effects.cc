@@ -1,10 +1,9 @@
 // ident: the spread between people that a contrast is measured by.
-#include "ident/fit/contrast_effects.h"
-
 #include <map>
 
+#include "ident/fit/covariates.h"
 #include "ident/fit/weighted_solve.h"
-#include "ident/problem/pooling_spread.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/clusters.h"
 
 namespace pushid {

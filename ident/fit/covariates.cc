@@ -8,7 +8,7 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/parameters/covariate_choice.h"
+#include "ident/parameters/option_names.h"
 #include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {

@@ -7,12 +7,12 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/loading/warning.h"
+#include "ident/model/fitted_model.h"
 #include "ident/parameters/fit_options.h"
 
 namespace pushid {
@@ -34,5 +34,14 @@ MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOp
 
 // The contrast of a table; none: it has no slope of one.
 std::optional<Covariate> ContrastOf(const ParameterTable& table);
+
+// Differences in standard deviations between people.
+
+// Where the fit does not let people differ, a second one does: each parameter that is compared
+// deviates by person, and its spread is estimated (problem/pooling_spread.cc), while the contrast
+// takes away what the label explains. Differences, intervals and p values remain those of the fit
+// itself. An effect stays untold where no spread is found, of what two people share, where fewer
+// than kFewestPeople people were recorded or nobody more than once, and where that fit fails.
+void AddContrastEffects(const std::vector<PendulumRecording>& recordings, FitResult* result);
 
 }  // namespace pushid

@@ -1,11 +1,10 @@
 // ident: refits without folds.
-#include "ident/fit/cross_fit.h"
-
 #include <algorithm>
 #include <utility>
 
+#include "ident/fit/fit.h"
 #include "ident/model/push_range.h"
-#include "ident/observed/recording_effect.h"
+#include "ident/observed/recording_filter.h"
 #include "ident/problem/parallel.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/bootstrap.h"

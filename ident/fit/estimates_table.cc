@@ -2,7 +2,6 @@
 #include "ident/fit/estimates_table.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "models/self_terms.h"

@@ -4,14 +4,13 @@
 #include <limits>
 #include <optional>
 
-#include "ident/fit/contrast_effects.h"
-#include "ident/fit/cross_fit.h"
+#include "ident/fit/covariates.h"
 #include "ident/fit/estimates_table.h"
 #include "ident/fit/step_probability.h"
 #include "ident/fit/weighted_solve.h"
 #include "ident/model/push_range.h"
-#include "ident/observed/recording_effect.h"
-#include "ident/solver/likelihood_solve.h"
+#include "ident/observed/recording_filter.h"
+#include "ident/solver/solver.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "residuals/takeover.h"
 

@@ -1,15 +1,17 @@
 // ident: a whole fit: prepared, solved, judged.
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
+#include "ident/observed/learn_forecasts.h"
 #include "ident/parameters/fit_options.h"
-#include "ident/solver/solution.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/solver/solver.h"
 
 namespace pushid {
 
@@ -32,5 +34,24 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
 // of its own. Errors: those of PrepareFit; no usable optimum.
 Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
                                    FitOptions options, bool forecasts = false);
+
+// A fitted model again, without a fold of its recordings, and what its forecasts then teach
+// (observed/learn_forecasts.h).
+
+// Solved again from the optimum, without one fold after the other: people where some were recorded
+// more than once and no two share a recording, otherwise (and of fewer than three people)
+// recordings, dealt out to four folds. Weights of residuals and spreads of pooled units are those
+// of the whole fit. None of fewer than three recordings, and of fits that are too large to repeat:
+// large networks, bodies. Folds without a usable optimum are left out.
+std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optimum,
+                                const IdentifiedModel& model, int num_threads);
+
+// What forecasts from first frames are put together by, learned on recordings left out in turn. Of
+// a model with a recording effect; none where no recording stays in its domain. recordings: the
+// problem's, in the axes of their files.
+std::optional<ForecastStack> CrossFitForecasts(const FitProblem& problem, const FitPoint& optimum,
+                                               const IdentifiedModel& model,
+                                               const std::vector<PendulumRecording>& recordings,
+                                               int num_threads);
 
 }  // namespace pushid

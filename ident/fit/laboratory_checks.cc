@@ -1,9 +1,8 @@
 // ident: what a delay, moving ground, platforms and other bodies ask of recordings.
-#include "ident/fit/laboratory_checks.h"
-
 #include <algorithm>
 
 #include "datasets/files/number_text.h"
+#include "ident/fit/fit_setup.h"
 #include "ident/parameters/option_names.h"
 #include "models/learned_terms.h"
 

@@ -1,6 +1,5 @@
 // ident: options made fit for recordings.
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "datasets/files/number_text.h"
@@ -8,11 +7,10 @@
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/covariates.h"
 #include "ident/fit/fit.h"
-#include "ident/fit/laboratory_checks.h"
+#include "ident/fit/fit_setup.h"
 #include "ident/parameters/presets.h"
 #include "ident/parameters/pushed_feet.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/statistics.h"
 #include "ident/solver/network_training.h"
 #include "residuals/cost_functions/body_residual.h"
 

@@ -8,10 +8,10 @@
 
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/problem/behaviour.h"
-#include "ident/problem/pooling_spread.h"
-#include "ident/solver/likelihood_solve.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/solver/network_training.h"
-#include "ident/uncertainty/data_weight.h"
+#include "ident/solver/solver.h"
+#include "ident/uncertainty/clusters.h"
 
 namespace pushid {
 namespace {

@@ -1,10 +1,10 @@
 // ident: a solve whose data weigh as much as they know, and in which the demand to settle is
 // tested.
 //
-// 1. The fit is solved without the demand. Sigmas and effective frames (uncertainty/data_weight.h)
-//    and the spread of pooled units (problem/pooling_spread.h) are estimated at its optimum and the
-//    fit solved on from there, until none changes by more than 1 %: the demand must not make the
-//    data look worse than they are.
+// 1. The fit is solved without the demand. Sigmas and effective frames (uncertainty/clusters.h)
+//    and the spread of pooled units (problem/pooling_spread.cc) are estimated at its optimum and
+//    the fit solved on from there, until none changes by more than 1 %: the demand must not make
+//    the data look worse than they are.
 // 2. Who settles in time as fitted is not moved by the demand at all. Otherwise the fit is solved
 //    on with the demand, by the same weights. Twice what the rest of the cost rises by is a
 //    likelihood ratio (composite, adjusted; priors included) of as many constraints as units have
@@ -39,7 +39,7 @@ struct WeightedSolution {
 // problem: on return as it was weighed last, without a demand that was dropped.
 WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progress = nullptr);
 
-// By rollouts as above, or by a likelihood of single steps (solver/likelihood_solve.h), as the
+// By rollouts as above, or by a likelihood of single steps (solver/solver.h), as the
 // problem's options say.
 WeightedSolution SolveAsAsked(FitProblem* problem, const SolveProgress& progress = nullptr);
 

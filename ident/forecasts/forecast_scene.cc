@@ -20,10 +20,11 @@ constexpr char kChoices[] =
 <label><input type="checkbox" id="futures" checked> sampled futures (faint)</label>
 <label><input type="checkbox" id="trails" checked> paths of hands and feet</label>)html";
 
-constexpr char kScript[] = R"html(let frame=data.observed-1,turn=0.7,tilt=0.15,zoom=1;
+constexpr char kScript[] = R"html(let frame,turn=0.7,tilt=0.15,zoom=1;
 const lo=[1e9,1e9,1e9],hi=[-1e9,-1e9,-1e9];
 for(const f of data.observed_motion.concat(data.forecast))for(let i=0;i<f.length;i++){lo[i%3]=Math.min(lo[i%3],f[i]);hi[i%3]=Math.max(hi[i%3],f[i]);}
 const up=data.up,a=(up+1)%3,b=(up+2)%3,centre=lo.map((l,i)=>(l+hi[i])/2),size=Math.max(...hi.map((h,i)=>h-lo[i]))*1.25;
+function open(){frame=data.observed-1;}
 function project(p){const x=p[a]-centre[a],y=p[b]-centre[b],z=p[up]-centre[up],c=Math.cos(turn),s=Math.sin(turn);
  const k=zoom*Math.min(view.width,view.height)/size,d=s*x+c*y;
  return [view.width/2+k*(c*x-s*y),view.height/2-k*(Math.cos(tilt)*z+Math.sin(tilt)*d)];}
@@ -88,9 +89,10 @@ std::string ForecastPageHtml(const ForecastScene& scene) {
   for (const SampledFuture& future : scene.futures) {
     data["futures"].push_back(Frames(future.motion));
   }
-  return ToHtml(
-      {"A forecast over the recorded motion", "--recorded:#777;--forecast:#1f6fc0;--future:#5fa3e0",
-       "--recorded:#aaa;--forecast:#6db3ff;--future:#3f7fc0", kChoices, std::move(data), kScript});
+  return ToHtml({"A forecast over the recorded motion",
+                 "--recorded:#777;--forecast:#1f6fc0;--future:#5fa3e0",
+                 "--recorded:#aaa;--forecast:#6db3ff;--future:#3f7fc0", kChoices,
+                 nlohmann::json::array({std::move(data)}), kScript});
 }
 
 namespace {

@@ -1,11 +1,10 @@
 // ident: annotated states, and those found in other motion.
-#include "ident/forecasts/social_cues.h"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <set>
 
+#include "ident/forecasts/social_report.h"
 #include "models/restoration/state_classifier.h"
 
 namespace pushid {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "datasets/files/number_text.h"
@@ -11,9 +12,9 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/generators/push_particles.h"
 #include "ident/parameters/option_names.h"
-#include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/propagation.h"
 #include "ident/problem/behaviour_text.h"
+#include "ident/uncertainty/clusters.h"
 #include "models/skeleton_mapping.h"
 
 namespace pushid {
@@ -201,6 +202,26 @@ Result<std::vector<BodyMotion>> GeneratedBodies(const FormationRun& run,
   }
   const GroupHips hips = PendulumHips(held, run.prediction);
   return GenerateBodies(loaded.settings, *loaded.generator, held, hips, run.num_frames());
+}
+
+FormationPeople DistinctPeople(const std::vector<BodyRecording>& recordings) {
+  FormationPeople people;
+  std::set<std::string> seen;
+  for (const BodyRecording& recording : recordings) {
+    for (int n = 0; n < recording.num_people(); ++n) {
+      if (!seen.insert(PersonKey(recording.pendulum, n)).second) continue;
+      people.poses.push_back(recording.bodies[n].front());
+      people.masses.push_back(recording.pendulum.scene.people[n].body.mass);
+    }
+  }
+  return people;
+}
+
+std::vector<Pose> PlacePeople(const FormationPeople& people, Scene* scene) {
+  for (int n = 0; n < scene->num_people(); ++n) {
+    scene->people[n].body.mass = people.masses[n % people.count()];
+  }
+  return TakePoses(people.poses, scene);
 }
 
 }  // namespace pushid

@@ -7,13 +7,14 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/generators/generator_files.h"
-#include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/behaviour_text.h"
 #include "models/enum_names.h"
+#include "models/restoration/body.h"
 #include "models/restoration/postprocess.h"
 #include "models/rollout.h"
+#include "models/scene.h"
 
 namespace pushid {
 
@@ -99,5 +100,23 @@ MaybeError PrepareForFormation(const Scene& scene, const std::string& flag,
 Result<std::vector<BodyMotion>> GeneratedBodies(const FormationRun& run,
                                                 const std::vector<Pose>& first_poses,
                                                 const LoadedGenerator& loaded);
+
+// Recorded people as the people of a formation: their masses, and the postures in which
+// their recordings begin (rod length, cart height, lean, and the skeleton of a body).
+
+struct FormationPeople {
+  std::vector<Pose> poses;     // at frame 0 of each person's first recording
+  std::vector<double> masses;  // kg
+
+  int count() const { return static_cast<int>(poses.size()); }
+};
+
+// Everybody once (PersonKey), in the order of the recordings.
+FormationPeople DistinctPeople(const std::vector<BodyRecording>& recordings);
+
+// Puts them in the places of the scene's people, facing +x, from the first again where there are
+// fewer. Before pushes are added: those depend on the bodies. Returns the first pose of each
+// person.
+std::vector<Pose> PlacePeople(const FormationPeople& people, Scene* scene);
 
 }  // namespace pushid

@@ -1,6 +1,4 @@
 // ident: waves of trajectories.
-#include "ident/formations/measured_wave.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -10,6 +8,7 @@
 #include "datasets/formats/motion_formats.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/figures/text_table.h"
+#include "ident/formations/wave_speed.h"
 #include "ident/prediction/propagation.h"
 #include "ident/problem/statistics.h"
 

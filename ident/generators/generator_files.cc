@@ -3,7 +3,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "datasets/files/number_text.h"
 #include "datasets/manifest/recording.h"
 #include "ident/bodies/tensor_folder.h"
 

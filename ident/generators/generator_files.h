@@ -4,21 +4,149 @@
 // particles; then its own.
 #pragma once
 
+#include <functional>
+#include <iterator>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/files/json_file.h"
-#include "ident/generators/generator_kinds.h"
+#include "ident/parameters/option_names.h"
 #include "models/generators/diffusion_generator.h"
+#include "models/generators/generator_trainers.h"
 #include "models/generators/particle_generator.h"
 #include "models/generators/simlpe_network.h"
 #include "models/push.h"
 #include "models/restoration/restoration.h"
+#include "models/restoration/trainer.h"
 
 namespace pushid {
+
+// The kinds of generators, one row each.
+//
+// A new kind is a value and two rows here, and files of its own: the generator and its trainer
+// (models/generators/), a class derived from KindNetworks, the two functions that the rows name
+// (the trainer's in ident/training/), and its flags (apps/flags/kind_flags.h). Both programs then
+// accept it as --kind.
+//
+// The tables are two, because nothing but pushid-train-generator needs LibTorch, and a program
+// links everything in the tables it reads.
+
+struct GeneratorSettings;         // ident/generators/generator_files.h
+struct GeneratorSamples;          // ident/training/generator_training.h
+struct GeneratorTrainingOptions;  // ident/training/generator_training.h
+
+enum class GeneratorKind { kParticles, kDiffusion, kSimlpe };
+
+// What may differ from the training; unset: as trained.
+struct GeneratorChanges {
+  std::optional<double> ridge_share, simlpe_share;
+  ParticleGeneratorOptions particles = {};
+  DiffusionGeneratorOptions diffusion = {};
+  uint64_t seed = 1;  // of the samples that a forecast by diffusion averages
+};
+
+// Options of every seed's training, by kind.
+struct KindTrainingOptions {
+  ParticleTrainingOptions particles;
+  DiffusionTrainingOptions diffusion;
+  SimlpeTrainingOptions simlpe;
+};
+
+// The networks of a generator, by its kind.
+class KindNetworks {
+ public:
+  virtual ~KindNetworks() = default;
+  virtual GeneratorKind kind() const = 0;
+  // Beside the settings of all kinds.
+  virtual nlohmann::ordered_json Settings() const = 0;
+  virtual TensorList Tensors() const = 0;
+  // Errors: changes that these networks do not allow.
+  virtual MaybeError Check(const GeneratorChanges&) const { return std::nullopt; }
+  virtual std::unique_ptr<MotionGenerator> Make(const GeneratorSettings& settings,
+                                                const GeneratorChanges& changes) const = 0;
+};
+using SharedNetworks = std::shared_ptr<const KindNetworks>;
+
+// settings: as Settings() says; of_all: what every kind has. Throws nlohmann's exceptions, and
+// Demand's where something does not fit.
+using GeneratorReader = SharedNetworks(const nlohmann::ordered_json& settings,
+                                       const GeneratorSettings& of_all, TensorReader* reader);
+GeneratorReader ReadParticles, ReadDiffusion, ReadSimlpe;
+
+struct GeneratorKindRow {
+  const char* name;
+  GeneratorKind value;
+  const char* what;  // for the list of kinds on the command line
+  // People of a call see each other: whole groups that are pushed, which physics may blend with.
+  // Otherwise it forecasts people one by one, and motion capture too.
+  bool groups;
+  bool futures;       // more than one can be sampled
+  bool any_observed;  // trained for any number of frames shown, so that others may be shown in use
+  int observed;       // frames of a push that it is shown, if no flag says otherwise
+  int seeds;          // networks that are averaged, likewise
+  GeneratorReader* read;
+};
+
+inline constexpr GeneratorKindRow kGeneratorKinds[] = {
+    {"particles", GeneratorKind::kParticles, "displacements with learned drift and noise", false,
+     true, false, 20, 3, ReadParticles},
+    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, true, true,
+     1, 1, ReadDiffusion},
+    {"simlpe", GeneratorKind::kSimlpe, "siMLPe, a perceptron to compare with", false, false, false,
+     12, 1, ReadSimlpe},
+};
+
+constexpr const auto& Names(GeneratorKind) { return kGeneratorKinds; }
+static_assert(RowsAreInOrder(kGeneratorKinds), "RowOf finds a row by its value");
+
+// run: takes the trainer of every seed, in turn, to its end, with checkpoints of this key.
+using SeedRunner = std::function<MaybeError(Trainer* trainer, const std::string& key)>;
+// Errors: nothing to learn from; those of run.
+using GeneratorTrainer = Result<SharedNetworks>(const GeneratorSamples& samples,
+                                                const GeneratorTrainingOptions& options,
+                                                const SeedRunner& run);
+GeneratorTrainer TrainParticles, TrainDiffusion, TrainSimlpe;
+inline constexpr GeneratorTrainer* kGeneratorTrainers[] = {TrainParticles, TrainDiffusion,
+                                                           TrainSimlpe};
+
+static_assert(std::size(kGeneratorTrainers) == std::size(kGeneratorKinds), "a kind has no trainer");
+
+// Of those that forecast whole groups, for messages.
+inline std::string KindsOfGroups() {
+  return AnyName<GeneratorKind>([](const GeneratorKindRow& row) { return row.groups; });
+}
+
+// For readers of settings.
+inline void Demand(bool holds, const std::string& what) {
+  if (!holds) throw std::runtime_error(what);
+}
+template <typename Json, typename Value>
+void ParseSetting(const Json& json, const char* key, Value* value) {
+  const MaybeError error = ParseName(key, json.at(key).template get<std::string>(), value);
+  if (error) throw std::runtime_error(error->message);
+}
+// How many networks a file has.
+int ReadMembers(const nlohmann::ordered_json& json);
+// What their tensors are called.
+inline constexpr char kMember[] = "member";
+inline std::string MemberName(size_t member, const std::string& name = kMember) {
+  return name + std::to_string(member);
+}
+template <typename Network>
+void AddMembers(const std::string& name, const std::vector<Network>& members, TensorList* tensors) {
+  for (size_t m = 0; m < members.size(); ++m) AddTensors(MemberName(m, name), members[m], tensors);
+}
+template <typename Network>
+TensorList TensorsOf(const std::vector<Network>& members) {
+  TensorList tensors;
+  AddMembers(kMember, members, &tensors);
+  return tensors;
+}
 
 // What a generator forecasts: motion-capture clips, or recordings of pushes.
 enum class GeneratorData { kCmu, kPushes };

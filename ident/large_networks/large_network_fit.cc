@@ -4,12 +4,10 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
 
-#include "ident/large_networks/network_adam.h"
 #include "ident/large_networks/network_judge.h"
 #include "ident/parameters/learned_terms_io.h"
 

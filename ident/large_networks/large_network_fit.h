@@ -12,7 +12,7 @@
 // Early stopping: after every iteration the held-out recordings are judged, by those that fail
 // first, then by cost; the best point of all is kept. L-BFGS takes no step under which a training
 // recording leaves the domain. Parameters have no bounds here: keep them fixed, or hold them by
-// priors on the fitted scale. Adam (network_adam.h): the cost of a pass is summed while
+// priors on the fitted scale. Adam (network_judge.h): the cost of a pass is summed while
 // the weights move.
 #pragma once
 

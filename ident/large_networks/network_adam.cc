@@ -1,6 +1,4 @@
 // ident: passes of Adam.
-#include "ident/large_networks/network_adam.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "datasets/files/random.h"
+#include "ident/large_networks/network_judge.h"
 
 namespace pushid {
 namespace {

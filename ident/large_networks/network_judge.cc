@@ -2,7 +2,6 @@
 #include "ident/large_networks/network_judge.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace pushid {
 

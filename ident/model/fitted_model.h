@@ -13,7 +13,7 @@
 #include "ident/parameters/pushed_feet.h"
 #include "ident/problem/behaviour.h"
 #include "ident/problem/work.h"
-#include "ident/solver/solution.h"
+#include "ident/solver/solver.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/contrast.h"
 #include "ident/uncertainty/model_verdict.h"
@@ -92,7 +92,7 @@ struct FittedModel {
   FitResult fit;
   std::vector<Profile> profiles;       // empty unless asked for (checks/model_checks.h)
   std::optional<Bootstrap> bootstrap;  // absent unless asked for
-  std::vector<Advice> advice;          // report/advice.h
+  std::vector<Advice> advice;          // report/advice.cc
   Provenance provenance;
   // Absent unless asked for: refits with other pushes (push_check.h), and of fewer frames
   // (refit_checks.h).

@@ -74,7 +74,7 @@ struct EffectOfRecording {
 };
 
 // How recordings differ from what the same push does to the mean person
-// (observed/recording_effect.h).
+// (observed/recording_filter.h).
 struct RecordingEffect {
   double spread = 0.0;                             // w
   double spread_error = 0.0;                       // leaving out one cluster after the other

@@ -9,7 +9,6 @@
 #include "ident/model/model_json.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/parameters/learned_terms_io.h"
-#include "ident/parameters/network_json.h"
 
 namespace pushid {
 

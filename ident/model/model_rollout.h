@@ -15,7 +15,7 @@ using HipPaths = std::vector<HipPath>;
 
 // One set for each person of the recording, moved by what is known of them where the model has
 // covariates: those of a mean person where it is not. effect: log factor on the tail
-// (recording_effect.h).
+// (observed/recording_filter.h).
 std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
                                                     const PendulumRecording& recording,
                                                     double effect = 0.0);

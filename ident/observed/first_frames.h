@@ -3,8 +3,8 @@
 //   physics    the rollout by what the push and the recording's effect say, and on it what is left
 //              of its error (recording_filter.h)
 //   input      the pendulum from the state that a filter with an unknown force finds
-//              (scene_filter.h), the force dying out; push and tail act as known
-//   kinematic  a quadratic through what was seen last, fading (kinematics.h)
+//              (recording_filter.h), the force dying out; push and tail act as known
+//   kinematic  a quadratic through what was seen last, fading (GoesOnAccelerating)
 //   velocity   the last velocity
 #pragma once
 
@@ -12,11 +12,27 @@
 #include <optional>
 #include <vector>
 
-#include "ident/observed/kinematics.h"
+#include "ident/model/model_rollout.h"
 #include "ident/observed/recording_filter.h"
-#include "ident/observed/scene_filter.h"
 
 namespace pushid {
+
+// Hips that go on as they were seen to go, without any model.
+
+// What was seen of one hip, frame 0 at least; unseen frames are ignored.
+struct SeenPath {
+  HipPath hip;
+  std::vector<bool> seen;
+};
+int LastSeen(const SeenPath& path);
+
+// From the last frame on: where it was seen last, and on with the mean velocity of so many seconds
+// before (one frame at least). One frame alone stays where it is.
+HipPath GoesOn(const SeenPath& path, double seconds, double dt, int frames_ahead);
+
+// A quadratic through the last 0.23 s, whose acceleration fades with 0.25 s and whose velocity with
+// 1 s.
+HipPath GoesOnAccelerating(const SeenPath& path, double dt, int frames_ahead);
 
 // Everybody at one frame.
 struct SeenFrame {

@@ -1,8 +1,7 @@
 // ident: a grid of tails and force times, judged by forecasts; noise by single steps.
-#include "ident/observed/input_choice.h"
-
 #include <algorithm>
 
+#include "ident/observed/learn_forecasts.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {

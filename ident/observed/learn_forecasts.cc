@@ -2,12 +2,11 @@
 #include "ident/observed/learn_forecasts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
 
-#include "ident/observed/input_choice.h"
+#include "ident/observed/forecast_stack.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {

@@ -57,4 +57,9 @@ std::array<Eigen::Vector3d, kNumForecasters> LearnLogits(const std::vector<Forec
 std::array<ErrorScale, 3> LearnErrorScales(const std::vector<ForecastTrial>& trials,
                                            const std::vector<HipPaths>& centre);
 
+// The numbers of the filter of unknown forces that forecast best: of each fold by how the other
+// folds are forecast, each by the model fitted without it; last, by all of them.
+std::vector<ForecastStack> ChooseInputs(const std::vector<PendulumRecording>& recordings,
+                                        const std::vector<FoldModel>& folds, int num_threads);
+
 }  // namespace pushid

@@ -1,5 +1,4 @@
 // ident: spread and error scale by expectation maximization.
-#include "ident/observed/recording_effect.h"
 
 #include <algorithm>
 #include <cmath>

@@ -20,7 +20,7 @@ namespace pushid {
 
 // How much a recording counts.
 enum class RecordingWeight {
-  kEffective,  // as many frames as are independent (uncertainty/data_weight.h)
+  kEffective,  // as many frames as are independent (uncertainty/clusters.h)
   kFrame,      // every frame counts as one: lasting errors count many times
   kRecording   // every recording counts as one frame
 };
@@ -110,7 +110,7 @@ struct FitOptions {
   std::string pool = "none";
   std::string pool_by = kSubjectUnit;  // the unit they may differ by
   // Standard deviation of a unit's deviation from the shared value, on the fitted scale (0.2 on
-  // a log scale is about 20 %); none: estimated from the units (problem/pooling_spread.h).
+  // a log scale is about 20 %); none: estimated from the units (problem/pooling_spread.cc).
   // PoolParameters gives it to the pooled parameters.
   std::optional<double> pooling_sigma;
   // Where deviations start, by unit, one for each pooled parameter in the table's order, on the
@@ -150,9 +150,6 @@ struct FitOptions {
   double start_spread = 5.0;  // random starts multiply every free gain by up to this, either way
   uint64_t seed = 1;
   int num_threads = 1;
-
-  // How the recordings' rollouts are differentiated; autodiff to check the sensitivities.
-  JacobianMethod jacobian = JacobianMethod::kSensitivities;
 
   // Ceres; the defaults reach the optimum to a thousandth of a standard error.
   int max_iterations = 200;

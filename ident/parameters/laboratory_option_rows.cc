@@ -1,8 +1,8 @@
 // ident: rows of the options that a laboratory's model has.
 #include <nlohmann/json.hpp>
 
-#include "ident/parameters/laboratory_presets.h"
 #include "ident/parameters/option_row_makers.h"
+#include "ident/parameters/presets.h"
 
 namespace pushid {
 

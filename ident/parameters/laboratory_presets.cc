@@ -1,5 +1,6 @@
 // ident: starts and priors of what a laboratory's model frees.
-#include "ident/parameters/laboratory_presets.h"
+#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/presets.h"
 
 namespace pushid {
 
@@ -39,6 +40,65 @@ void TiePassive(FitOptions* o) {
   if (o->model.delay == Delay::kNone || damping.named) return;
   damping.tied_to = kPassiveStiffness;
   damping.free = damping.pooled = false;
+}
+
+namespace {
+
+constexpr double kCartGainPerFrame = 4.0, kAngleGainPerFrame = 200.0;  // Kd
+
+}  // namespace
+
+FitOptions LdpPreset() {
+  FitOptions o;
+  o.preset = "ldp";
+  o.table = BaseTable();
+  o.table[kKpX].nominal = o.table[kKpY].nominal = 30;
+  o.table[kKdTheta].nominal = o.table[kKdPhi].nominal = kAngleGainPerFrame / kLdpRate;
+  for (Parameter id : {kMu, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = true;
+  o.model.posture = Posture::kUpright;
+  o.model.gain_scaling = GainScaling::kNone;
+  o.model.push = PushUse::kAsRecorded;
+  o.model.push_tail = PushTail::kNone;
+  return o;
+}
+
+FitOptions LdpGroupsPreset() {
+  constexpr int kHidden = 4;
+  FitOptions o = LdpPreset();
+  o.preset = "ldp_groups";
+  o.model.interaction.potential = o.model.interaction.lean = o.model.interaction.learned = true;
+  o.model.interaction.learned_in_range = true;
+  o.model.learned = InitialNetwork({}, o.seed, {}, PairShape{{kHidden}, true});
+  return o;
+}
+
+FitOptions LdpPublishedPreset() {
+  FitOptions o = LdpPreset();
+  o.preset = kLdpPublished;
+  for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = false;
+  o.table[kKdX].nominal = o.table[kKdY].nominal = kCartGainPerFrame / kLdpRate;
+  o.model.cart_derivative = CartDerivative::kBackward;
+  o.model.push = PushUse::kAdded;
+  o.model.learned =
+      InitialNetwork({NetworkKind::kLdp, 256, 32}, o.seed, {RodKind::kLdp, {256, 128, 256}});
+  o.sigmas = kLdpSigmas;
+  o.sigma_source = SigmaSource::kFixed;
+  o.recording_weight = RecordingWeight::kFrame;
+  o.start = FitStart::kNominal;
+  o.network_training = NetworkTraining::kTogether;
+  o.network_optimizer = NetworkOptimizer::kAdam;  // L-BFGS ends at the first hard switch
+  o.network_prior = 0.0;
+  return o;
+}
+
+FitOptions LdpPublishedGroupsPreset() {
+  FitOptions o = LdpPublishedPreset();
+  o.preset = kLdpPublishedGroups;
+  o.model.interaction.ldp_published = true;
+  o.model.interaction.learned = o.model.interaction.learned_in_range = true;
+  const LearnedTerms& alone = *o.model.learned;
+  o.model.learned = InitialNetwork(alone.shape, o.seed, alone.rod, PairShape{{512, 512}, true});
+  return o;
 }
 
 }  // namespace pushid

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "datasets/files/error.h"
 #include "datasets/files/names.h"
@@ -17,5 +18,17 @@ MaybeError ParseName(const std::string& flag, const std::string& text, Interacti
 // Process noise: diagonal or full, and what it grows with: "diagonal,speed,push".
 std::string NameOf(const ProcessNoiseTerms& terms);
 MaybeError ParseName(const std::string& flag, const std::string& text, ProcessNoiseTerms* terms);
+
+// The words of --covariate.
+
+// The covariates of one parameter.
+struct CovariatesOfParameter {
+  std::string parameter;
+  std::vector<std::string> keys;
+};
+
+// "Kp_theta ~ age + height; Kd_theta ~ age". Errors: a part without '~' or without a name on
+// either side, the same covariate of a parameter twice.
+Result<std::vector<CovariatesOfParameter>> ParseCovariates(const std::string& text);
 
 }  // namespace pushid

@@ -225,10 +225,6 @@ std::vector<Row> SolverRows() {
           {1.0, 1000.0, false, "must lie between 1 and 1000"},
           "random starts multiply or divide every gain by up to this"),
       SeedRow(),
-      MayBeAbsent(NameRow<JacobianMethod>(
-          "jacobian", "/jacobian", [](O & o) -> auto& { return o.jacobian; },
-          "derivatives of the rollouts: sensitivities, or autodiff (Ceres' Jets through the whole "
-          "rollout: slow, for verification)")),
       CountRow(
           "num_threads", "", [](O & o) -> auto& { return o.num_threads; }, "threads"),
       CountRow(

@@ -39,7 +39,7 @@ struct ParameterSpec {
   std::optional<Prior> prior;
   // Whose value it has; none where a flag names the parameter itself.
   std::optional<Parameter> tied_to;
-  // Of a slope: which parameter it moves, and by what (residuals/covariate.h).
+  // Of a slope: which parameter it moves, and by what (residuals/parameter_map.h).
   struct SlopeOf {
     Parameter target;
     Covariate covariate;

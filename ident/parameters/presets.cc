@@ -6,8 +6,6 @@
 #include <iterator>
 
 #include "datasets/manifest/recording.h"
-#include "ident/parameters/laboratory_presets.h"
-#include "ident/parameters/ldp_presets.h"
 #include "models/learned_terms.h"
 #include "models/parameters.h"
 #include "models/self_terms.h"

@@ -1,7 +1,7 @@
 // ident: rows of the options that edit the table of parameters.
 #include <nlohmann/json.hpp>
 
-#include "ident/parameters/covariate_choice.h"
+#include "ident/parameters/option_names.h"
 #include "ident/parameters/option_row_makers.h"
 
 namespace pushid {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ident/bodies/restoration_kinds.h"
+#include "ident/bodies/restoration_files.h"
 #include "ident/parameters/option_names.h"
 #include "models/peers/mrt_network.h"
 #include "models/restoration/cvae_features.h"

@@ -1,9 +1,8 @@
 // ident: static, constant velocity and kinematic predictions.
-#include "ident/prediction/baselines.h"
-
 #include <algorithm>
 
-#include "ident/observed/kinematics.h"
+#include "ident/observed/first_frames.h"
+#include "ident/prediction/evaluation.h"
 
 namespace pushid {
 namespace {

@@ -1,10 +1,9 @@
 // ident: pushes of a scene, scaled and repeated.
-#include "ident/prediction/changed_pushes.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/prediction/prediction.h"
 
 namespace pushid {
 namespace {

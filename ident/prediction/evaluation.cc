@@ -1,4 +1,4 @@
-// ident: scores of recordings; score_summary.cc has their means.
+// ident: scores of recordings; score_groups.cc has their means.
 #include "ident/prediction/evaluation.h"
 
 #include <algorithm>

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
-#include "ident/model/push_range.h"
 
 namespace pushid {
 namespace {

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "ident/figures/text_table.h"
+#include "ident/prediction/evaluation.h"
 #include "ident/prediction/predictive_bands.h"
-#include "ident/prediction/score_groups.h"
 
 namespace pushid {
 
@@ -70,7 +70,7 @@ inline constexpr FuturesMetric kFuturesMetrics[] = {
     {{"deviance", "1"}, [](const FuturesScore& s) { return s.deviance; }},
 };
 
-// Means over recordings with standard errors over their clusters (score_groups.h). Values and means
+// Means over recordings with standard errors over their clusters (evaluation.h). Values and means
 // in the order of kFuturesMetrics.
 struct FuturesSummary {
   std::string name;  // of the model, where there are several

@@ -1,7 +1,6 @@
 // ident: rollouts corrected by the frames that were seen.
 #include "ident/prediction/online_predictor.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"

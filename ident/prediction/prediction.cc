@@ -2,12 +2,10 @@
 #include "ident/prediction/prediction.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "datasets/files/atomic_file.h"
-#include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/step_probability.h"
 #include "ident/model/push_range.h"
 #include "ident/prediction/laboratory_frame.h"

@@ -4,11 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
 #include "ident/model/model_rollout.h"
-#include "ident/observed/recording_effect.h"
+#include "ident/observed/recording_filter.h"
 #include "models/rollout.h"
 
 namespace pushid {
@@ -50,7 +51,7 @@ struct Prediction {
 };
 
 // From frame 0 and the push alone. num_frames: 0 means as many as the recording has. effect: the
-// recording's own (observed/recording_effect.h).
+// recording's own (observed/recording_filter.h).
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
                    int num_frames = 0, double effect = 0.0);
 
@@ -74,5 +75,54 @@ Prediction MedianPrediction(const PendulumRecording& recording,
 // Sentences for GroupedWarnings.
 Warnings InputWarnings(const IdentifiedModel& model,
                        const std::vector<PendulumRecording>& recordings);
+
+// What if a recording's people were pushed harder, or again?
+//
+//   ChangedPushes changed;
+//   changed.scale = 1.37;      // every force and torque times so much
+//   changed.again = {40, 80};  // the push comes three times
+//   if (MaybeError error = CheckChangedPushes(changed, recording, frames)) ...
+//   Predict(model, WithPushes(recording, changed), frames);
+//
+// A push that comes again is the recorded one, on the same person at the same height, and starts at
+// that frame; of several pushes, all come again at their distances. The recorded motion is no
+// reference for what follows.
+
+struct ChangedPushes {
+  double scale = 1.0;
+  std::vector<int> again;  // frames, ascending
+
+  bool Any() const { return scale != 1.0 || !again.empty(); }
+};
+
+// The options are named --push_scale and --push_again. frames: how many are predicted. Errors: a
+// scale that is not positive; nothing to change; a push that begins before the one before it has
+// ended (a net force says nothing of two at once), or after the prediction.
+MaybeError CheckChangedPushes(const ChangedPushes& changed, const PendulumRecording& recording,
+                              int frames);
+
+// Everything but the pushes stays, the recorded motion too.
+PendulumRecording WithPushes(PendulumRecording recording, const ChangedPushes& changed);
+
+// "1.37 times the recorded push, at frames 0, 40 and 80".
+std::string ChangedPushesText(const ChangedPushes& changed, const PendulumRecording& recording);
+
+// What a model says of pushes that nobody gave: who steps, and where the hip ends.
+//
+// For the person of the settling simulations (80 kg, rod 0.95 m, upright), pushed at the hip by
+// half-sines, as a measured (external) push would.
+
+struct PushResponse {
+  std::vector<double> impulse_per_mass;  // m/s
+  std::vector<double> duration_s;        // of pushes forwards
+  std::vector<double> direction_deg;     // from forwards to the left; of 0.7 s
+  // P(step), 1 where the person falls; [impulse][duration or direction].
+  std::vector<std::vector<double>> step_by_duration, step_by_direction;
+  // m along the push, 6 s after it; NaN where the person falls.
+  std::vector<std::vector<double>> end_by_direction;
+};
+
+// Of a model with a step_probability.
+PushResponse ComputePushResponse(const IdentifiedModel& model);
 
 }  // namespace pushid

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "ident/model/push_range.h"
 #include "ident/prediction/force_story.h"
 
 namespace pushid {

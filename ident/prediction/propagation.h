@@ -22,9 +22,7 @@
 #pragma once
 
 #include <array>
-#include <map>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "ident/prediction/prediction.h"

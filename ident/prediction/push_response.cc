@@ -1,10 +1,9 @@
 // ident: rollouts of one person under pushes of all sizes, durations and directions.
-#include "ident/prediction/push_response.h"
-
 #include <cmath>
 #include <limits>
 
 #include "ident/fit/step_probability.h"
+#include "ident/prediction/prediction.h"
 #include "ident/problem/behaviour.h"
 #include "ident/problem/own_axes.h"
 #include "models/crowd.h"

@@ -4,7 +4,7 @@
 // frame, of how far the pushed person's hip has gone along the push, over the speed that the push
 // gives (so that recordings of one stratum may be pushed differently hard). Beside each, the middle
 // 90 % of the same percentile in data that the model makes: each recording with an effect and
-// errors drawn (observed/recording_effect.h), from frame 0 and the push alone.
+// errors drawn (observed/recording_filter.h), from frame 0 and the push alone.
 //
 // Probability integral transform: the share of the model's distribution that lies below what was
 // recorded, uniform where the model is right. Frames a quarter of a second apart, 0.25 s to 1 s;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
-#include <vector>
 
 #include "datasets/files/number_text.h"
 #include "models/learned_terms.h"

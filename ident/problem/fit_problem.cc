@@ -7,7 +7,6 @@
 
 #include "datasets/inspection/findings.h"
 #include "ident/problem/own_axes.h"
-#include "ident/problem/residual_families.h"
 #include "residuals/cost_functions/lane_group.h"
 
 namespace pushid {

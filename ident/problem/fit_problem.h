@@ -4,6 +4,7 @@
 
 #include <ceres/problem.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,12 +14,53 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/behaviour.h"
-#include "ident/problem/fit_point.h"
 #include "ident/problem/parallel_evaluation.h"
+#include "models/rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 #include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
+
+// A point in the space of the fit.
+struct FitPoint {
+  std::vector<double> shared;  // fitted scale
+  std::map<std::string, std::vector<double>>
+      unit;  // deviations by PoolBy's units, fitted scale; empty if not pooled
+  std::map<int, std::vector<double>> velocity;  // by recording, where the initial velocity is free
+  std::vector<double> weights;                  // of what is learned; empty without
+
+  // All entries in one row: shared, units in order of name, velocities in order of recording,
+  // weights.
+  std::vector<double> Flat() const;
+  void SetFlat(const std::vector<double>& flat);
+};
+
+inline std::vector<double> FitPoint::Flat() const {
+  std::vector<double> flat = shared;
+  for (const auto& [name, values] : unit) flat.insert(flat.end(), values.begin(), values.end());
+  for (const auto& [index, values] : velocity)
+    flat.insert(flat.end(), values.begin(), values.end());
+  flat.insert(flat.end(), weights.begin(), weights.end());
+  return flat;
+}
+
+inline void FitPoint::SetFlat(const std::vector<double>& flat) {
+  auto next = flat.begin();
+  auto take = [&next](std::vector<double>* values) {
+    std::copy_n(next, values->size(), values->begin());
+    next += static_cast<std::ptrdiff_t>(values->size());
+  };
+  take(&shared);
+  for (auto& [name, values] : unit) take(&values);
+  for (auto& [index, values] : velocity) take(&values);
+  take(&weights);
+}
+
+// A rollout that left the model's domain, by recording.
+struct FailedRollout {
+  int recording;
+  RolloutStatus status;
+};
 
 // The frame at which the first push begins, or the ground leaves its place; 0 where nothing
 // happens.
@@ -185,5 +227,65 @@ class FitProblem {
   ParameterMap map_;
   double fall_of_noise_ = kFisherShift;
 };
+
+// How far units differ, estimated from the units.
+//
+// A pooled parameter of unit u is shared + d_u with d_u ~ N(0, s^2). s maximizes the marginal
+// likelihood of the data, in which the deviations and the shared values are integrated out
+// (empirical Bayes; restricted maximum likelihood, as the shared values are integrated out too).
+// By the EM algorithm (Dempster, Laird and Rubin 1977; Laird and Ware 1982):
+//   s^2 <- mean over the n units of (E[d_u]^2 + Var[d_u])
+// with mean and variance under the data, the other priors and the last s. Its fixed point is
+//   s^2 = sum of E[d_u]^2 / sum of (1 - Var[d_u] / s^2)
+// and that is what is iterated (MacKay 1992): near no spread EM takes hundreds of steps.
+//
+// The posterior is taken as normal: cost and J'J at the point (Laplace). With two units, s is known
+// to a factor of about two either way; it says how much a unit may differ, no more.
+
+class FitProblem;
+struct CostWeights;
+
+// Bounds of s, in ParameterSpec::pooling_sigma's units: 1 % and a factor of twenty.
+inline constexpr double kLeastPoolingSigma = 0.01, kLargestPoolingSigma = 3.0;
+
+// Sets the weights' pooling_sigma of every pooled parameter to the s that the units tell of at a
+// point (best the optimum of the cost as the problem weighs it). Returns the largest relative
+// change: solve and update until it is small.
+double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, CostWeights* weights);
+
+// What a fit minimizes, family by family: each row says when a family is part of the cost
+// and adds its residual blocks (residuals/cost_functions/) to the Ceres problem.
+//
+// A new family is a row of the table in residual_families.cc with the two functions that it names,
+// its cost function in a file of its own, and an option for its weight
+// (ident/parameters/option_table.cc). Solver, covariance, profiles and bootstrap take it from here.
+
+// Where a family adds blocks.
+struct FamilyPlace {
+  const FitProblem& problem;
+  const FitStage& stage;
+  FitPoint* point;
+  FitProblem::Built* built;
+  int recording = -1;     // of a family of recordings
+  std::string unit = {};  // of a family of units; empty: the shared parameters
+  // The rollout of the recording, as long as it stays within the domain; null: not even one frame.
+  std::shared_ptr<const RolloutProblem> rollout = {};
+};
+
+struct ResidualFamily {
+  enum Per {
+    kRecording,  // added for each recording that counts
+    kPoint,      // once
+    kUnit        // for each unit whose settling is simulated (FitProblem::SettlingUnits)
+  };
+  const char* name;
+  Per per;
+  int cluster;  // of its rows, one of FitProblem's; of recordings: their index
+  bool (*on)(const FitOptions& options, const FitStage& stage);
+  void (*add)(const ResidualFamily& family, const FamilyPlace& place);
+};
+
+// All of them, in the order of their blocks.
+const std::vector<ResidualFamily>& ResidualFamilies();
 
 }  // namespace pushid

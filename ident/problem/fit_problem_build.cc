@@ -2,7 +2,6 @@
 #include <ceres/problem.h>
 
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/residual_families.h"
 
 namespace pushid {
 

@@ -1,5 +1,4 @@
 // ident: fixed-point steps on the normal approximation of the posterior.
-#include "ident/problem/pooling_spread.h"
 
 #include <Eigen/Core>
 #include <algorithm>

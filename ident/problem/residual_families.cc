@@ -1,9 +1,8 @@
 // ident: the table of residual families and how each adds its blocks.
-#include "ident/problem/residual_families.h"
-
 #include <algorithm>
 #include <cmath>
 
+#include "ident/problem/fit_problem.h"
 #include "residuals/cost_functions/body_residual.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/equation_error_residual.h"
@@ -28,9 +27,8 @@ bool AllFrames(const Stage& stage) { return !stage.equation_error && stage.horiz
 
 void AddTrajectory(const Family&, const Place& at) {
   if (at.rollout == nullptr) return;
-  at.built->AddRollout(
-      std::make_unique<CondensedRollout>(at.rollout, at.problem.options().jacobian),
-      at.problem.RecordingBlocks(at.point, at.recording), at.recording);
+  at.built->AddRollout(std::make_unique<CondensedRollout>(at.rollout),
+                       at.problem.RecordingBlocks(at.point, at.recording), at.recording);
 }
 
 // Bodies join once the path is there: their joints follow the path before and after a frame. A fit
@@ -49,8 +47,7 @@ void AddLikelihood(const Family&, const Place& at) {
   const int i = at.recording;
   const std::vector<double*> blocks = problem.RecordingBlocks(at.point, i);
   auto residual = std::make_unique<LikelihoodResidual>(
-      problem.LikelihoodOf(i, problem.Weight(i, 0)), blocks.data(),
-      problem.options().jacobian == JacobianMethod::kAutodiff, problem.fall_of_noise());
+      problem.LikelihoodOf(i, problem.Weight(i, 0)), blocks.data(), false, problem.fall_of_noise());
   if (!residual->status().ok) {
     at.built->shortened.push_back({i, residual->status()});
     return;

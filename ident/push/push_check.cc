@@ -11,7 +11,6 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/push/push_estimation.h"
 #include "ident/solver/solver.h"
-#include "models/stance.h"
 
 namespace pushid {
 namespace {

@@ -1,16 +1,13 @@
 // ident: rules from findings to the next command.
-#include "ident/report/advice.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
 #include "ident/fit/interval_agreement.h"
-#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/report/fit_command.h"
-#include "ident/report/loop_text.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {

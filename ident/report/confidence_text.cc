@@ -1,5 +1,4 @@
 // ident: how sure, for a terminal.
-#include "ident/report/confidence_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +11,7 @@
 #include "ident/parameters/option_names.h"
 #include "ident/problem/statistics.h"
 #include "ident/report/fit_command.h"
-#include "ident/report/value_text.h"
-#include "ident/report/verdict_text.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {

@@ -1,9 +1,7 @@
 // ident: a contrast in words.
-#include "ident/report/contrast_text.h"
-
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/report/value_text.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {

@@ -1,12 +1,11 @@
 // ident: the table of a design, and its heading.
-#include "ident/report/design_text.h"
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "datasets/files/number_text.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {

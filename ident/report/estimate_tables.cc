@@ -5,17 +5,16 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/parameters/ldp_presets.h"
 #include "ident/parameters/option_names.h"
-#include "ident/report/report_tables.h"
-#include "ident/report/value_text.h"
+#include "ident/parameters/presets.h"
+#include "ident/report/report_text.h"
 #include "ident/uncertainty/clusters.h"
 #include "models/self_terms.h"
 
 namespace pushid {
 namespace {
 
-// What stands where errors about these people are told apart (scatter.h).
+// What stands where errors about these people are told apart (uncertainty/covariance.h).
 const std::vector<std::string> kTheseColumns = {"these people", "their 95 %"};
 
 // Its errors hold what is taken as known as well (model_verdict.h).

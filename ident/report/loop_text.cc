@@ -1,13 +1,11 @@
 // ident: margins in words.
-#include "ident/report/loop_text.h"
-
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/linear_loop.h"
 #include "ident/problem/statistics.h"
+#include "ident/report/report_text.h"
 #include "ident/uncertainty/assumptions.h"
 
 namespace pushid {

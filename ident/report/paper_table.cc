@@ -1,11 +1,9 @@
 // ident: the identified parameters as a table for papers.
-#include <algorithm>
 #include <cctype>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/report/report_tables.h"
-#include "ident/report/value_text.h"
+#include "ident/report/report_text.h"
 #include "models/parameters.h"
 
 namespace pushid {

@@ -1,12 +1,11 @@
 // ident: refits beside the fit.
-#include "ident/report/refits_text.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "datasets/files/number_text.h"
 #include "ident/push/push_check.h"
+#include "ident/report/report_text.h"
 #include "ident/uncertainty/refit_checks.h"
 
 namespace pushid {

@@ -1,14 +1,12 @@
 // ident: tables and sentences of a result.
-#include "ident/report/report_tables.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/problem/behaviour_text.h"
-#include "ident/problem/pooling_spread.h"
-#include "ident/report/value_text.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 

@@ -3,8 +3,15 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
+#include "datasets/files/error.h"
+#include "ident/figures/text_table.h"
 #include "ident/model/fitted_model.h"
+#include "ident/model/identified_model.h"
+#include "ident/observed/recording_filter.h"
+#include "ident/uncertainty/refit_checks.h"
+#include "ident/validation/study_plan.h"
 
 namespace pushid {
 
@@ -34,5 +41,200 @@ Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path
 
 // truth | identified | 95 % interval | whether it covers the truth, for every fitted parameter.
 std::string TruthTable(const FitResult& result, const std::map<std::string, double>& truth);
+
+// What to try next, in plain words: a pure function of a fitted model.
+
+// Most pressing first. Commands repeat the settings of the fit (fit_command.h).
+std::vector<Advice> Advise(const FittedModel& model);
+
+// The difference between two values of a label, as a table and in words. Pure functions of
+// the result.
+
+// Only a header without a contrast.
+TextTable ContrastTable(const Contrast& contrast);
+
+// Who is compared with whom, whether effects are told in standard deviations, and what Holm's
+// correction says: a line each.
+std::string ContrastText(const FitResult& result);
+
+// How well hips are forecast that were seen to begin, in words and tables.
+
+std::string ForecastSentence(const ForecastStack& forecasts);
+// A row for each time that was seen.
+TextTable ForecastTable(const ForecastStack& forecasts);
+std::string ForecastText(const ForecastStack& forecasts);
+
+// The identified loop in the numbers that a control engineer quotes.
+
+// A row for each plane, one for both where they are alike: stiffness over m g l, damping ratio and
+// frequency of the slowest oscillation, phase margin, delay margin, factors between which the gains
+// may change (problem/linear_loop.h), of the person that gains are quoted for. Only a header where
+// feet slide, or a model has no closed form.
+TextTable LoopTable(const FitResult& result);
+
+// The same in sentences; empty where the table is.
+std::string LoopText(const FitResult& result);
+
+// What the residuals say of a delay that the model leaves out, which is taken for less damping;
+// empty: nothing.
+std::string LagText(const FitResult& result);
+
+// How values and intervals are said, in tables and sentences alike.
+
+// The end of a 95 % interval as it is shown: one that tells nothing (of a positive value a factor
+// of more than 100 away, or with an interval over four orders of magnitude) is infinite.
+double ShownEnd(double value, double end, double other_end);
+// "[20, 42]", "[20, open]"; "undetermined" where both ends are open.
+std::string IntervalText(double value, double lower, double upper);
+
+// The gains in words: "ankle stiffness 1.6 times m g l (1 just holds a pendulum upright)".
+std::string GainsText(const FitResult& result);
+
+// The verdict on a model in words (uncertainty/model_verdict.h).
+
+// "The model fits: ..." or "The model does not fit: ..." with what does not and what to try; or
+// why nothing was checked.
+std::string ModelVerdictText(const ModelVerdict& verdict);
+
+// What was taken as known, with what is stated of it, what the recordings want, and the test.
+TextTable AssumptionTable(const FitResult& result);
+
+// Which further push would tell most, as a table and in words.
+
+// The best `count` candidates for a parameter, or for all together ("all"), best first, and after a
+// gap the least useful one. Errors: no such parameter.
+Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
+                              int count);
+
+// With a heading and the present error below it; then what a force sensor and more people would
+// tell. Errors: no such parameter.
+Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter);
+
+// What a force sensor and more people would tell, as tables and in words.
+
+// Of one parameter, or of "all"; only a header where there is nothing to tell.
+TextTable SensorTable(const StudyPlan& plan, const std::string& parameter);
+TextTable StudySizesTable(const StudyPlan& plan, const std::string& parameter);
+
+// Why there is none of them; empty where there is.
+std::string NoSensorText(const StudyPlan& plan);
+std::string NoSizesText(const StudyPlan& plan);
+
+// Both with headings, or why there is none.
+std::string StudiesText(const StudyPlan& plan, const std::string& parameter);
+
+// What the table of sizes does not say: what the spread between people is and how well it is known.
+std::string StudySizesNote(const StudyPlan& plan);
+
+// What other pushes and shorter horizons make of the estimates, as tables and in words.
+
+// Parameter, value, standard error, push error and total error (push/push_check.h).
+TextTable PushErrorTable(const RefitTable& check);
+
+// A row for each refit: by how much it moves every parameter.
+TextTable MovesTable(const RefitTable& check);
+
+// Parameter by horizon, value +- standard error; and a sentence for each drift.
+TextTable HorizonTable(const RefitTable& check);
+std::string DriftText(const RefitTable& check);
+
+// Parameter, value, and what it is under each other prior.
+TextTable PriorTable(const RefitTable& check);
+
+// For a terminal, with headings.
+std::string PushCheckText(const RefitTable& check);
+std::string HorizonCheckText(const RefitTable& check);
+// Which claim belongs to which horizon; empty where single steps were not fitted.
+std::string HorizonClaims(const RefitTable& check);
+std::string PriorCheckText(const RefitTable& check);
+
+// Profiles, bootstrap and diagnostics in words and tables for a terminal.
+
+// Clustered, profile and bootstrap intervals side by side (only a header when neither was asked
+// for), and whether they agree.
+TextTable AgreementTable(const FittedModel& model);
+std::string AgreementNote(const FittedModel& model);
+
+// "resampling 4 people: 199 of 199 replicas, seed 1", and what to think of so few.
+std::string ResamplingText(const Bootstrap& bootstrap);
+
+// What was noted before the solve, the recordings that fit worst or move most, whether residuals
+// are white, and what to try next.
+std::string DiagnosticsText(const FittedModel& model);
+
+// What the starts of a multi-start agree on.
+
+// Starts whose cost is within this of the best one share its basin, or one as good.
+inline constexpr double kSameCost = 0.01;  // relative
+
+// How many starts ended as well as the best one, and over which range their parameters spread
+// beside the best one's standard errors; empty for a single start.
+std::string AcrossStartsText(const FitResult& result);
+
+// The same in parts: a sentence, and a table (only a header when none is as good).
+std::string AcrossStartsNote(const FitResult& result);
+TextTable AcrossStartsTable(const FitResult& result);
+
+// How recordings differ from what the same push does to the mean person, in words and
+// tables.
+
+// "b ~ N(0, w^2) on the log of tail_gain: w 0.43 +- 0.08 (4 clusters) ..."
+std::string PopulationSentence(const RecordingEffect& effect);
+
+// Means of the effects of each person and each condition.
+TextTable EffectGroupsTable(const RecordingEffect& effect);
+// One row a recording, by person, condition and effect: as shrunk, and alone.
+TextTable EffectsTable(const RecordingEffect& effect);
+// The rows' order.
+std::vector<EffectOfRecording> SortedEffects(const RecordingEffect& effect);
+
+// All of it.
+std::string PopulationText(const RecordingEffect& effect);
+
+// What a result says, as tables and sentences: the terminal's report and the page show the
+// same ones. Pure functions of the result; empty where there is nothing to say.
+
+// "97/3/0", and what priors and settling together moved the value by, in its standard errors.
+std::string SharesText(const Shares& shares);
+std::string PullText(const Estimate& estimate);
+
+TextTable EstimateTable(const FitResult& result);
+// For papers: symbol (TeX), parameter, unit, estimate, 95 % interval and verdict of what was
+// fitted; as LaTeX with booktabs, and as Markdown.
+TextTable PaperTable(const FitResult& result);
+std::string LatexOf(const TextTable& table);
+std::string MarkdownOf(const TextTable& table);
+// Which of the free parameters the data identify: "All 7 free parameters are identified by the
+// data.", or how many, and which are not and why.
+std::string IdentifiedText(const FitResult& result);
+// What the columns of shares and pulls mean.
+std::string SharesNote();
+
+// Whom errors and status are about: these people, or people like them.
+std::string TargetText(const FitResult& result);
+// How errors were estimated, and whom they are about.
+std::string HowSure(const FitResult& result);
+
+// What the feet of the model do, and why.
+std::string FeetOfFit(const FitResult& result);
+
+// c_x, c_y and gains per mass, and the convention that separates mu from Kp.
+TextTable DerivedTable(const FitResult& result);
+std::string ConventionText(const FitResult& result);
+
+// Values of each unit that parameters are pooled by; only a header where nothing is pooled.
+TextTable PooledTable(const FitResult& result);
+// The shared values and how far units differ from them; only a header where nothing is pooled.
+TextTable SpreadTable(const FitResult& result);
+
+// Pairs of parameters that the data separate poorly.
+std::string CorrelationText(const FitResult& result);
+
+// What people do after a push, in words, and settling simulation by settling simulation.
+std::string BehaviourText(const FitResult& result);
+// Where lines that are pushed forwards at their first person end up; only a header where no person
+// touches.
+TextTable LinesTable(const FitResult& result);
+TextTable BehaviourTable(const FitResult& result);
 
 }  // namespace pushid

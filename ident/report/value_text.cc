@@ -1,11 +1,10 @@
 // ident: values and intervals in words.
-#include "ident/report/value_text.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/behaviour_text.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {

@@ -1,10 +1,9 @@
 // ident: sentences and tables of a verdict.
-#include "ident/report/verdict_text.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {

@@ -1,13 +1,12 @@
 // ident: rounds of building and solving by a likelihood.
-#include "ident/solver/likelihood_solve.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "ident/parameters/presets.h"
-#include "ident/problem/pooling_spread.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/solver/solver.h"
 #include "models/parameters.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 

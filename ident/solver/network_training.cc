@@ -1,7 +1,6 @@
 // ident: the cost of what was held out, iteration by iteration, and the way to large networks.
 #include "ident/solver/network_training.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

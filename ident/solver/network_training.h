@@ -8,7 +8,7 @@
 #include <ceres/iteration_callback.h>
 
 #include "ident/problem/fit_problem.h"
-#include "ident/solver/solution.h"
+#include "ident/solver/solver.h"
 
 namespace pushid {
 

@@ -1,7 +1,6 @@
 // ident: from a point near the optimum to the optimum.
 #include <algorithm>
 
-#include "ident/solver/likelihood_solve.h"
 #include "ident/solver/solver.h"
 
 namespace pushid {

@@ -10,7 +10,6 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "ident/solver/likelihood_solve.h"
 #include "ident/solver/network_training.h"
 
 namespace pushid {

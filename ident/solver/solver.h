@@ -3,13 +3,72 @@
 
 #include <ceres/solver.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "ident/problem/fit_problem.h"
-#include "ident/solver/solution.h"
 
 namespace pushid {
+
+// What a solve went through, start by start, where it ended, and how well a likelihood
+// explains the recordings there.
+
+// One iteration of the solver.
+struct TracePoint {
+  int horizon = 0;  // frames; 0: all
+  int iteration = 0;
+  double cost = 0.0;
+  double gradient = 0.0;  // largest component
+};
+
+struct SolveStage {
+  int horizon = 0;  // frames; 0: all
+  int iterations = 0;
+  double initial_cost = 0.0, final_cost = 0.0;
+  bool converged = false;
+  std::vector<TracePoint> trace;
+};
+
+// One start of a multi-start.
+struct SolveStart {
+  std::string kind;  // nominal, equation_error or random
+  bool usable = false;
+  bool converged = false;
+  double cost = 0.0;
+  int iterations = 0;
+  FitPoint from, to;
+  std::vector<SolveStage> stages;
+  std::vector<FailedRollout> failed;  // recordings that could not be rolled out to their end
+  std::vector<std::string> notes;     // parameters whose start was moved off a bound
+  std::string message;
+};
+
+struct Solution {
+  std::vector<SolveStart> starts;  // in order of trial
+  int best = -1;                   // index into starts; -1: no start was usable
+  double seconds = 0.0;
+
+  const SolveStart& Best() const { return starts[best]; }
+};
+
+// phase: "start 2/8, horizon 32"; called after every accepted iteration.
+using SolveProgress = std::function<void(const std::string& phase, int iteration, double cost)>;
+
+// How well a fit by a likelihood explains the recordings, to compare with other models by the same
+// likelihood of the same recordings.
+struct LikelihoodScore {
+  double deviance = 0.0;  // -2 log likelihood
+  int measured = 0;       // numbers
+  int parameters = 0;     // free ones, units' deviations not counted
+
+  double Aic() const { return deviance + 2.0 * parameters; }
+  double Bic() const {
+    return deviance + std::log(static_cast<double>(std::max(1, measured))) * parameters;
+  }
+};
 
 // Of the cost, where a network is fitted: what more would bring cannot be seen.
 inline constexpr double kNetworkTolerance = 1e-6;
@@ -49,5 +108,47 @@ FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed);
 
 // All starts; the best usable one by cost, with fewer failed recordings winning first.
 Solution Solve(const FitProblem& problem, const SolveProgress& progress = nullptr);
+
+// A solve that maximizes a likelihood of single steps (residuals/fit_choices.h).
+//
+// The noise starts at the spread of the transitions that the other parameters' start leaves, and
+// equation error starts these. A few steps of Fisher scoring
+// (residuals/cost_functions/likelihood_residual.h), the problem built anew after every third, come
+// near the optimum; BFGS finds it, in turns with the spread of pooled units.
+
+struct LikelihoodSolution {
+  Solution solution;
+  bool stays = false;  // the best one's likelihood, from round to round
+};
+
+// The best of the starts, each on its own. problem: on return with the best one's start of the
+// noise and its units' spread.
+LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress = nullptr);
+
+// The process noise, and the errors of measurement, under which a fit of whole rollouts explains
+// single steps best (innovation likelihood), everything else held at `point`: the fixed values of
+// the problem's table on return. What the user has set stays. Nothing changes where the model has
+// no noise, or a likelihood of steps has found it already. Returns a warning where it cannot be
+// estimated.
+std::string EstimateNoise(const FitPoint& point, FitProblem* problem);
+
+// At a point of a problem.
+LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point);
+
+// BFGS on the exact cost of a likelihood, in coordinates that the Fisher information makes
+// round.
+//
+// Fisher scoring by Gauss-Newton comes near an optimum in a few steps, and then creeps: where a
+// model is wrong, as every model of people is, the curvature of its likelihood is not its Fisher
+// information (each step took half of what was left on the 32 recordings of single people). BFGS
+// learns the difference: x = origin + R z with R R' the inverse information at the origin, so that
+// its first step is the scoring's own. Numbers on a bound that the gradient pushes outwards are
+// held there.
+//
+// From *point, whose value is overwritten; where nothing can be evaluated it stays, the cost is
+// infinite, and message says why. held: columns of FitPoint::Flat that stay where they are, as
+// those do that nothing depends on.
+SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, FitPoint* point,
+                       std::string* message);
 
 }  // namespace pushid

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "ident/problem/jacobian_blocks.h"
-#include "ident/solver/likelihood_solve.h"
+#include "ident/solver/solver.h"
 #include "models/decompositions.h"
 
 namespace pushid {

@@ -3,7 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "ident/bodies/restoration_kinds.h"
+#include "ident/bodies/restoration_files.h"
 #include "ident/peers/peer_files.h"
 #include "ident/training/restoration_training.h"
 #include "models/peers/mrt_trainer.h"

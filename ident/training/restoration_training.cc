@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/input_file.h"
-#include "ident/bodies/restoration_kinds.h"
+#include "ident/bodies/restoration_files.h"
 #include "ident/fit/fit.h"
 #include "ident/prediction/prediction.h"
 #include "ident/validation/crossvalidation.h"

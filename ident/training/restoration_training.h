@@ -17,7 +17,6 @@
 
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
 #include "ident/training/training_run.h"
 #include "models/peers/mrt_network.h"
@@ -99,7 +98,7 @@ struct TrainedRestoration : TrainingCourse {
   std::vector<NetworkSize> sizes;
 };
 
-// What a kind's own function returns (ident/bodies/restoration_kinds.h).
+// What a kind's own function returns (ident/bodies/restoration_files.h).
 struct RestorationTraining {
   std::shared_ptr<Trainer> trainer;
   std::function<void(RestorationFile* file)> finish;  // settings and tensors of the trained

@@ -10,7 +10,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
-#include "ident/figures/svg.h"
+#include "ident/figures/chart.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {
@@ -99,73 +99,53 @@ void RemoveCheckpoint(const std::string& file) {
 
 namespace {
 
-constexpr double kWidth = 640, kPanel = 220, kLeft = 60, kRight = 580, kTop = 44, kBottom = 34;
-constexpr char kTraining[] = "stroke:#2a788e;stroke-width:2";
-constexpr char kHeldOut[] = "stroke:#d1495b;stroke-width:2";
+constexpr double kCurveWidth = 700;  // pixels
+constexpr char kTraining[] = "stroke:#2a788e", kHeldOut[] = "stroke:#d1495b";
 
-// One stage in a panel of its own: their losses mean different things. Stages have names where the
-// training loss and the held-out one (m) have different units: then the latter has an axis of its
-// own on the right.
-void DrawStage(const std::vector<TrainingPoint>& points, double top, SvgPicture* svg) {
-  const bool two_axes = !points.front().stage.empty();
-  double most = 0.0, most_held = 0.0;
-  for (const TrainingPoint& p : points) {
-    most = std::max(most, p.training_loss);
-    most_held = std::max(most_held, p.validation_loss);
+ChartLine LossLine(const std::vector<TrainingPoint>& stage, double TrainingPoint::*loss,
+                   const char* look) {
+  ChartLine line;
+  line.look = std::string("fill:none;stroke-width:2;") + look;
+  for (const TrainingPoint& p : stage) line.points.emplace_back(p.epoch, p.*loss);
+  return line;
+}
+
+// Stages have names where the training loss and the held-out one (m) have different units, and a
+// panel each.
+void AddPanels(const std::vector<TrainingPoint>& stage, std::vector<Chart>* panels) {
+  const ChartLine training = LossLine(stage, &TrainingPoint::training_loss, kTraining);
+  const auto best = std::min_element(stage.begin(), stage.end(), [](const auto& a, const auto& b) {
+    return a.validation_loss < b.validation_loss;
+  });
+  Chart chart;
+  chart.title = stage.front().stage;
+  chart.x_label = "epoch";
+  chart.y_from = 0.0;
+  if (!chart.title.empty()) {
+    panels->push_back(chart);
+    panels->back().lines = {training};
+    chart.y_label = "m";
+  } else {
+    chart.lines = {training};
   }
-  if (!two_axes) most = most_held = std::max(most, most_held);
-  const auto axis = [top](double highest) {
-    return SvgScale(0.0, highest > 0.0 ? 1.05 * highest : 1.0, top + kPanel - kBottom, top + kTop);
-  };
-  const SvgScale x(points.front().epoch, points.back().epoch, kLeft, kRight);
-  const SvgScale y = axis(most), y_held = axis(most_held);
-  for (double tick : y.Ticks(4)) {
-    svg->Line(kLeft, y(tick), kRight, y(tick), "grid");
-    svg->Text(kLeft - 6, y(tick) + 4, Rounded(tick, 2), "axis end small");
-  }
-  if (two_axes) {
-    for (double tick : y_held.Ticks(4)) {
-      svg->Text(kRight + 6, y_held(tick) + 4, Rounded(tick, 2) + " m",
-                "fill:#d1495b;font-size:10px");
-    }
-  }
-  for (double tick : x.Ticks(8)) {
-    if (tick != std::floor(tick)) continue;
-    svg->Text(x(tick), top + kPanel - kBottom + 16, Rounded(tick, 4), "axis middle small");
-  }
-  std::vector<std::pair<double, double>> training, held;
-  for (const TrainingPoint& p : points) {
-    training.push_back({x(p.epoch), y(p.training_loss)});
-    held.push_back({x(p.epoch), y_held(p.validation_loss)});
-  }
-  svg->Polyline(training, kTraining);
-  svg->Polyline(held, kHeldOut);
-  const auto best = std::min_element(
-      points.begin(), points.end(),
-      [](const auto& a, const auto& b) { return a.validation_loss < b.validation_loss; });
-  svg->Circle(x(best->epoch), y_held(best->validation_loss), 4, "fill:#d1495b");
-  svg->Text(kLeft, top + 34, points.front().stage, "ink bold small");
-  svg->Text(kRight, top + 34,
-            "best " + Rounded(best->validation_loss, 3) + " at " + std::to_string(best->epoch),
-            "ink end small");
+  chart.x_label +=
+      ", best " + Rounded(best->validation_loss, 3) + " at " + std::to_string(best->epoch);
+  chart.lines.push_back(LossLine(stage, &TrainingPoint::validation_loss, kHeldOut));
+  chart.marks = {static_cast<double>(best->epoch)};
+  panels->push_back(chart);
 }
 
 }  // namespace
 
 std::string TrainingCurveSvg(const std::vector<TrainingPoint>& curve, const std::string& title) {
-  std::vector<std::vector<TrainingPoint>> stages;
-  for (const TrainingPoint& p : curve) {
-    if (stages.empty() || stages.back().front().stage != p.stage) stages.emplace_back();
-    stages.back().push_back(p);
+  Figure figure{{{"training", kTraining}, {"held-out recordings", kHeldOut}}, {}, title};
+  for (size_t from = 0, to = 0; from < curve.size(); from = to) {
+    while (to < curve.size() && curve[to].stage == curve[from].stage) ++to;
+    AddPanels({curve.begin() + static_cast<std::ptrdiff_t>(from),
+               curve.begin() + static_cast<std::ptrdiff_t>(to)},
+              &figure.panels);
   }
-  SvgPicture svg(kWidth, 24 + kPanel * static_cast<double>(stages.size()), title);
-  svg.Text(10, 18, title, "ink bold");
-  svg.Text(kRight - 130, 18, "training", "fill:#2a788e;text-anchor:end");
-  svg.Text(kRight, 18, "held-out recordings", "fill:#d1495b;text-anchor:end");
-  for (size_t i = 0; i < stages.size(); ++i) {
-    DrawStage(stages[i], 10 + kPanel * static_cast<double>(i), &svg);
-  }
-  return svg.ToString();
+  return DrawFigure(figure, kCurveWidth, title).ToString();
 }
 
 }  // namespace pushid

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/jacobian_blocks.h"
 
 namespace pushid {
 
@@ -32,12 +33,13 @@ struct Assumption {
   bool of_rates = false;
 };
 
-// Stated of what was measured: the largest of the recordings' (datasets/manifest/stated_errors.h).
-// Pushes by inverse dynamics have neither a clock, a height nor a zero of their own, and follow the
-// masses. Of a held gain, a factor of two; of a term left out, nothing. Who stands reacts late,
-// by some 0.1 s: a torque Kp e(t - tau) is Kp e - tau Kp e' at first order, so that the damping
-// that is fitted is Kd - tau Kp. What is beyond the first order tells whether they do: the problem
-// with a delay of 0.12 s, and Kd greater by it, against the problem as it is.
+// Stated of what was measured: the largest of the recordings'
+// (datasets/manifest/laboratory_keys.h). Pushes by inverse dynamics have neither a clock, a height
+// nor a zero of their own, and follow the masses. Of a held gain, a factor of two; of a term left
+// out, nothing. Who stands reacts late, by some 0.1 s: a torque Kp e(t - tau) is Kp e - tau Kp e'
+// at first order, so that the damping that is fitted is Kd - tau Kp. What is beyond the first order
+// tells whether they do: the problem with a delay of 0.12 s, and Kd greater by it, against the
+// problem as it is.
 inline constexpr char kReactionDelayName[] = "reaction delay";
 
 // The largest of the recordings.
@@ -48,5 +50,27 @@ inline constexpr double kScaleStep = 1e-4;
 
 // Those of a problem that can have an effect.
 std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint& point);
+
+// Residuals and Jacobian of a fit by its estimates and by what it takes as known
+// (assumptions.h), in parts of each recording. Those of jacobian_blocks.h know neither parts nor
+// anything but estimates.
+
+// Columns: the estimates in the order of FitPoint::Flat, then the assumptions. Rows: of each person
+// of a recording in each part, condensed (residuals/normal_equations.h), with the weight of the
+// robust loss, so that J'r is the gradient of the cost; then priors, demands and pooling; then what
+// is stated of each assumption.
+struct RowsByHorizon {
+  JacobianBlocks rows;
+  // The first horizon that holds the row's frames; as many as there are horizons: none of them; -1
+  // of rows that are no data.
+  std::vector<int> part_of_row;
+  int num_estimates = 0;  // 0: some rollout fails
+};
+
+// By forward differences: of rollouts without derivatives, one for each column and each recording
+// that it moves. horizons: frames from the first push on, ascending.
+RowsByHorizon EvaluateByHorizon(const FitProblem& problem, const FitPoint& point,
+                                const std::vector<Assumption>& assumptions,
+                                const std::vector<int>& horizons);
 
 }  // namespace pushid

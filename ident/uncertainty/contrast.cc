@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/pooling_spread.h"
 #include "ident/problem/statistics.h"
 
 namespace pushid {

@@ -6,14 +6,14 @@
 // compared with themselves: their scores go into one cluster, and what they have in common drops
 // out. Of these are
 //   difference   natural(s + b/2) - natural(s - b/2), its interval by the delta method, from the
-//                same parts of the covariance as every other interval (scatter.h)
+//                same parts of the covariance as every other interval (covariance.h)
 //   p            of b = 0: the level at which the interval of b ends at 0
 //   Holm's p     the same, corrected for all parameters of the contrast (Holm 1979): with the m
 //                p values in ascending order, the largest of (m - k + 1) p_k up to each, at most 1.
 //                The chance of any false positive among them is then at most the level.
 //   effect       b over the standard deviation between people, both on the fitted scale; of fits
 //                in which people differ (--pool=... --pool_by=subject) that of the fit, of others
-//                that of a second one (fit/contrast_effects.h)
+//                that of a second one (fit/contrast_effects.cc)
 #pragma once
 
 #include <optional>
@@ -47,7 +47,7 @@ struct Contrast {
 // Holm's, in the order of `p`. Those that are NaN count as 1.
 std::vector<double> HolmCorrected(const std::vector<double>& p);
 
-// The level at which an interval of half-width sqrt(sum of t_k^2 V_k) ends at 0 (scatter.h); 1
+// The level at which an interval of half-width sqrt(sum of t_k^2 V_k) ends at 0 (covariance.h); 1
 // where nothing is known of the error.
 double ProbabilityOfZero(const Scatter& scatter, const Eigen::VectorXd& coefficients, double value);
 

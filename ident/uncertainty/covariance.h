@@ -9,7 +9,7 @@
 //              scatter is a second part, by their own prior's spread: H^-1 J_p'J_p H^-1. So is what
 //              a prior's centre scatters: where data say little the error is the prior's width,
 //              where they say all it is the sandwich, and where the data's scores scatter as their
-//              weight says it is the posterior's, H^-1. How parts go together: scatter.h.
+//              weight says it is the posterior's, H^-1. How parts go together: below.
 // What leaving a recording out would move: H^-1 s_g G / (G - 1), one step with the mean Hessian of
 // the rest. Against refits of the 32 single-person recordings it is off by 15 % (root mean square
 // over all moves); by H less the recording's own J_g'J_g by 39 %, less its second derivatives too
@@ -18,12 +18,59 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
+#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/clusters.h"
-#include "ident/uncertainty/scatter.h"
 
 namespace pushid {
+
+// What an estimate scatters by, in independent parts, and intervals of their sum.
+//
+// The recordings' part is estimated from G clusters: it has at most G - 1 degrees of freedom,
+// whatever lies beside it. The parts of priors and demands are known. With V_k the variance of a
+// coefficient by part k, f_k its degrees of freedom and t_k the 95 % quantile of Student's t of
+// f_k,
+//   half-width = sqrt(sum of t_k^2 V_k),
+// which covers at least 95 % whatever the true V_k are (Banerjee 1961, Sankhya 23), and is
+// Student's interval where one part is all. Rejected: one t of Welch and Satterthwaite's degrees of
+// freedom. They are computed from estimated variances, so that where the scores of two people
+// happen to agree, the known part seems to be all of the variance and its many degrees of freedom
+// count.
+//
+// Two targets. "People like them": people are drawn, and a person is a cluster. "These people": the
+// people are given, their recordings are drawn, and a recording is a cluster.
+
+// On the fitted scale. quantile: half-width over standard error. freedom: of the part that is known
+// worst, of those that matter.
+struct ScatterOf {
+  double standard_error = 0.0, quantile = 0.0, freedom = 1.0;
+
+  double HalfWidth() const { return quantile * standard_error; }
+};
+
+struct Scatter {
+  struct Part {
+    Eigen::MatrixXd covariance;
+    Eigen::VectorXd freedom;  // of each column; infinite: known
+  };
+  std::vector<Part> parts;
+
+  bool empty() const { return parts.empty(); }
+  // One freedom for all columns.
+  void Add(const Eigen::MatrixXd& covariance, double freedom);
+  Eigen::MatrixXd Covariance() const;
+  // Of a sum of columns: each part by the least freedom of the columns in it.
+  ScatterOf Of(const Eigen::VectorXd& coefficients) const;
+  ScatterOf OfColumn(Eigen::Index column) const;
+};
+
+// A number's error and 95 % interval, natural unit.
+struct Interval {
+  double standard_error = 0.0;  // a profile has none: half its width over Student's t
+  double lower = 0.0, upper = 0.0;
+};
 
 inline constexpr double kNullSingularValue = 1e-7;  // relative to the largest one
 
@@ -72,5 +119,22 @@ struct ScoredFit {
   Eigen::VectorXd unit;
 };
 ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point);
+
+// The fitted numbers one by one, in the order of FitPoint::Flat.
+
+// What is known of each fitted number besides its estimate.
+struct FittedColumn {
+  std::string name, unit;
+  Transform transform = Transform::kIdentity;
+  double scale = 1.0;   // typical size, natural unit
+  double fitted = 0.0;  // value on the fitted scale
+  double natural = 0.0;
+  bool at_bound = false;
+};
+
+std::vector<FittedColumn> FittedColumns(const FitProblem& problem, const FitPoint& point);
+
+// To physical units; a parameter on its bound does not move.
+Eigen::VectorXd Units(const std::vector<FittedColumn>& columns);
 
 }  // namespace pushid

@@ -1,11 +1,10 @@
 // ident: robust scales of residuals, and the composite likelihood's adjustment.
-#include "ident/uncertainty/data_weight.h"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/cost_functions/plate_residual.h"
 

@@ -1,6 +1,4 @@
 // ident: null directions in words.
-#include "ident/uncertainty/directions.h"
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/uncertainty/uncertainty.h"
 #include "models/decompositions.h"
 
 namespace pushid {

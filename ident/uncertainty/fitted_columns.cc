@@ -1,8 +1,6 @@
 // ident: names, units and scales of the fitted numbers, and sums of them with their errors.
-#include "ident/uncertainty/fitted_columns.h"
 
-#include <algorithm>
-
+#include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "models/self_terms.h"
 

@@ -6,10 +6,9 @@
 #include <set>
 
 #include "datasets/inspection/findings.h"
+#include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
-#include "ident/uncertainty/fitted_columns.h"
-#include "ident/uncertainty/rows_by_horizon.h"
 #include "models/decompositions.h"
 
 namespace pushid {

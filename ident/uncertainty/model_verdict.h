@@ -13,7 +13,7 @@
 //            average whatever the noise, clustered likewise (Hausman 1978; Newey 1985)
 //   pushes   most of them agree with the motion they made, in direction, size and time
 //            (datasets/inspection/findings.h)
-//   motion   feet end, and hips turn, where and when the model has it (motion_check.h); and it
+//   motion   feet end, and hips turn, where and when the model has it (below); and it
 //            explains most of their way
 //   total    errors of a fit in which everything with a sigma is free, with that prior: CR2 as
 //            uncertainty.h has it. What that fit would move an estimate by counts as an error of
@@ -29,10 +29,35 @@
 #include <string>
 #include <vector>
 
-#include "ident/uncertainty/motion_check.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
+
+// Does the fitted motion look like the recorded one? Where the feet ended, when the hip
+// turned back, and how often: what a sum of squares over frames hardly sees.
+
+// Of pushed people, recorded less predicted, along the push. The mean of a cluster's recordings is
+// one number; t has as many degrees of freedom as there are clusters, less one.
+struct MotionTest {
+  std::string quantity, unit;
+  double difference = 0.0, error = 0.0, t = 0.0, p = 1.0;
+};
+
+struct MotionComparison {
+  std::vector<MotionTest> tests;
+  // Share of the hip's squared way from its first place, without the markers' white noise, which is
+  // told by how errors change from frame to frame; median recording; NaN: nobody saw the motion.
+  double explained = 1.0;
+};
+
+// Empty where a rollout fails.
+MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
+                               const Clusters& clusters);
+
+// Frames at which a path turns: extremes from which it goes back by at least `drop`.
+std::vector<int> TurnsOf(const std::vector<double>& path, double drop);
 
 inline constexpr double kVerdictLevel = 0.05 / 3.0;  // of each family
 inline constexpr double kLeastExplained = 0.5;       // of the hips' way

@@ -1,6 +1,4 @@
 // ident: recorded against fitted motion, by the residuals: predicted = recorded + sigma r.
-#include "ident/uncertainty/motion_check.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 
 #include "ident/problem/statistics.h"
 #include "ident/uncertainty/assumptions.h"
+#include "ident/uncertainty/model_verdict.h"
 #include "residuals/frame_residual.h"
 
 namespace pushid {

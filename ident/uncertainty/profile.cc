@@ -6,7 +6,6 @@
 
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/covariance.h"
-#include "ident/uncertainty/profile_search.h"
 #include "residuals/cost_functions/prior_residual.h"
 
 namespace pushid {

@@ -1,5 +1,4 @@
 // ident: walking along a profile with adaptive steps.
-#include "ident/uncertainty/profile_search.h"
 
 #include <algorithm>
 #include <cmath>

@@ -6,8 +6,6 @@
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/solver/likelihood_solve.h"
-#include "ident/solver/solution.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/uncertainty.h"
 

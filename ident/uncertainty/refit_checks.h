@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/fit_point.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {
@@ -53,7 +53,7 @@ std::vector<double> SharedValues(const FitProblem& problem, const FitPoint& poin
 // that it is larger than twice the larger of the two errors is called a drift.
 //
 // Before them stands what single steps want: the innovation likelihood of all recordings
-// (solver/likelihood_solve.h), with the noise of process and measurement fitted beside the same
+// (solver/solver.h), with the noise of process and measurement fitted beside the same
 // parameters. It answers how people react from one frame to the next, the whole fit where a push
 // takes them; where both want different values, neither may be quoted for the other. Models with a
 // memory have no such row.

@@ -1,11 +1,10 @@
 // ident: differences of raw residuals, weighed as the cost weighs them, and condensed.
-#include "ident/uncertainty/rows_by_horizon.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "ident/problem/parallel.h"
-#include "ident/uncertainty/fitted_columns.h"
+#include "ident/uncertainty/assumptions.h"
+#include "ident/uncertainty/covariance.h"
 #include "residuals/cost_functions/plate_residual.h"
 #include "residuals/frame_residual.h"
 #include "residuals/normal_equations.h"

@@ -1,11 +1,10 @@
 // ident: sums of independent parts of an estimate's scatter.
-#include "ident/uncertainty/scatter.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "ident/problem/statistics.h"
+#include "ident/uncertainty/covariance.h"
 
 namespace pushid {
 namespace {

@@ -8,8 +8,7 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/clusters.h"
-#include "ident/uncertainty/directions.h"
-#include "ident/uncertainty/fitted_columns.h"
+#include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
 #include "models/self_terms.h"
 

@@ -2,7 +2,7 @@
 // number, null directions, correlations.
 //
 // Covariances as covariance.h defines them, with Student's t of Satterthwaite's degrees of freedom,
-// parameter by parameter (scatter.h). Naive errors are up to 20 times too small here. A null
+// parameter by parameter (covariance.h). Naive errors are up to 20 times too small here. A null
 // direction of the scaled Jacobian has no finite error: every parameter it touches is
 // unidentifiable, but combinations orthogonal to it are reported.
 //
@@ -12,7 +12,7 @@
 // binds holds a fit on its edge, where its gradient says little: what it moved is the difference to
 // the optimum without it, and its information grows with its weight and says nothing of errors:
 // standard errors are those of the optimum without it. All assume that the data weigh as much as
-// they know (data_weight.h).
+// they know (clusters.h).
 #pragma once
 
 #include <Eigen/Core>
@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "ident/parameters/fit_options.h"
-#include "ident/problem/fit_point.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/problem/statistics.h"
-#include "ident/uncertainty/scatter.h"
+#include "ident/uncertainty/covariance.h"
 #include "models/enum_names.h"
 #include "models/options.h"
 #include "models/parameters.h"
@@ -138,7 +138,7 @@ struct Uncertainty {
   Eigen::MatrixXd moves;
   std::vector<int> left_out;
   std::vector<NullDirection> null_directions;
-  // Sentences of directions in which priors and demands decide (directions.h).
+  // Sentences of directions in which priors and demands decide (DirectionTable).
   std::vector<std::string> held_directions;
   SettlingDemand settling;
 };
@@ -146,7 +146,7 @@ struct Uncertainty {
 // Fitted scale, in the order of FitPoint::Flat.
 Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point);
 
-// lambda of data_weight.h; 0 where it cannot be told.
+// lambda of clusters.h; 0 where it cannot be told.
 double CompositeInflation(const FitProblem& problem, const FitPoint& point);
 
 // free: the optimum without the demand to settle, where that binds; null: one Newton step away,
@@ -177,5 +177,30 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
 // What every result reports beside its parameters: c = mu + Kp, and gains per mass of the reference
 // person.
 std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model);
+
+// Which parameters the data cannot tell apart, which sums of them they can, and which
+// combinations priors decide.
+
+inline constexpr double kTouched = 1e-4;  // share of a null direction that counts
+
+// null_space: columns over all fitted numbers, in units of each one's scale. `uncertainty` needs
+// its covariance and quantile only.
+std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const FitPoint& point,
+                                             const Eigen::MatrixXd& null_space,
+                                             const Uncertainty& uncertainty);
+
+// Directions that the data hardly know: where priors and demands decide.
+//
+// H = H_data + H_put_in over the shared parameters (deviations of units integrated out). The
+// eigenvalues of H^-1/2 H_data H^-1/2 are the data's shares, direction by direction; along one
+// whose share is below 50 % the estimate is what was put in. Where two parameters make most of it,
+// the data still know a combination of the two.
+
+inline constexpr double kHeldShare = 0.5;  // of the data; with less, what was put in decides
+
+// One sentence for each. at_bound: columns that do not move.
+std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoint& point,
+                                        const Covariance& covariance,
+                                        const std::vector<bool>& at_bound);
 
 }  // namespace pushid

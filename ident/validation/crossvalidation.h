@@ -1,7 +1,7 @@
 // ident: how well a configuration predicts recordings it has not seen.
 //
 // The standard error of a mean is over pushed people, or over recordings where nobody was pushed
-// twice (score_groups.h), each recording's score averaged over the repeats: not over frames and
+// twice (evaluation.h), each recording's score averaged over the repeats: not over frames and
 // not over folds.
 #pragma once
 

@@ -3,10 +3,8 @@
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/uncertainty/uncertainty.h"
 #include "ident/validation/score_cells.h"
 #include "ident/validation/scores_report.h"
-#include "ident/validation/steps_report.h"
 
 namespace pushid {
 namespace {

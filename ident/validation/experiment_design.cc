@@ -1,5 +1,4 @@
 // ident: candidate pushes and their information.
-#include "ident/validation/experiment_design.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -8,9 +8,7 @@
 #include <numeric>
 #include <set>
 
-#include "datasets/files/number_text.h"
 #include "ident/parameters/json_archive.h"
-#include "models/restoration/cvae_features.h"
 #include "models/restoration/group_motion.h"
 
 namespace pushid {

@@ -1,10 +1,9 @@
 // ident: states of groups.
-#include "ident/validation/group_states.h"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "ident/validation/group_metrics.h"
 #include "models/restoration/cvae_features.h"
 
 namespace pushid {

@@ -40,7 +40,7 @@ std::string HeldOutFuturesText(const std::vector<PendulumRecording>& recordings,
 nlohmann::ordered_json ToJson(const FuturesSummary& summary);
 
 // Share of frames whose measured hip lies within a band, of the pushed person, by axis x and y;
-// means over recordings with standard errors over their clusters (score_groups.h).
+// means over recordings with standard errors over their clusters (prediction/evaluation.h).
 struct BandCoverage {
   bool model_error = false;
   int recordings = 0;

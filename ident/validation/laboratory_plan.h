@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/fit_point.h"
+#include "ident/problem/fit_problem.h"
 
 namespace pushid {
 

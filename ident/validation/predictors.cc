@@ -1,7 +1,6 @@
 // ident: the model, the baselines and the ridge baseline.
 #include <Eigen/Core>
 #include <algorithm>
-#include <cmath>
 
 #include "ident/fit/fit.h"
 #include "ident/observed/recording_filter.h"

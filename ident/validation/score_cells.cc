@@ -2,7 +2,6 @@
 #include "ident/validation/score_cells.h"
 
 #include "datasets/files/number_text.h"
-#include "ident/uncertainty/clusters.h"
 
 namespace pushid {
 

@@ -1,6 +1,4 @@
 // ident: the steps that people took in recordings, in words and as JSON.
-#include "ident/validation/steps_report.h"
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -8,6 +6,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/problem/statistics.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {

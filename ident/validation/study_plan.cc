@@ -14,7 +14,6 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
-#include "ident/uncertainty/uncertainty.h"
 #include "models/decompositions.h"
 
 namespace pushid {

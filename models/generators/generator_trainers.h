@@ -1,7 +1,6 @@
 // models: training of generators, one trainer for each kind (*_trainer_torch.cc).
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "models/generators/diffusion_network.h"

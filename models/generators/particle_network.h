@@ -25,9 +25,6 @@
 // is what it has to be, and without it the error at 80 ms doubles.
 #pragma once
 
-#include <optional>
-#include <string_view>
-
 #include "models/enum_names.h"
 #include "models/generators/motion_generator.h"
 #include "models/restoration/dense_network.h"

@@ -1,7 +1,6 @@
 // models: siMLPe, forward.
 #include "models/generators/simlpe_network.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace pushid {

@@ -1,9 +1,8 @@
 // models: the foot-skate error of the lower body's frames.
-#include "models/restoration/cvae_skate_torch.h"
-
 #include <algorithm>
 
 #include "models/restoration/body.h"
+#include "models/restoration/cvae_stages_torch.h"
 
 namespace pushid {
 namespace {

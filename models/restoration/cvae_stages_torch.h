@@ -3,15 +3,21 @@
 #pragma once
 
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "models/restoration/cvae_restoration.h"
-#include "models/restoration/cvae_skate_torch.h"
 #include "models/restoration/cvae_trainer.h"
 #include "models/restoration/support_torch.h"
 
 namespace pushid {
+
+// The foot-skate error on LibTorch's tensors. For *_torch.cc files alone.
+
+// As CvaeSkateFrames, but a row per sample.
+struct SkateTensors {
+  torch::Tensor output, before, first, pendulum, first_pendulum;
+};
+torch::Tensor FootSkateOf(const CvaeLayout& layout, const SkateTensors& frames);
 
 // The modules of LDP's chain in LibTorch, for cvae_trainer_torch.cc and its likes alone.
 

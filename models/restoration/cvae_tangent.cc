@@ -1,7 +1,7 @@
 // models: LDP's chain with derivatives, in double precision.
-#include "models/restoration/cvae_tangent.h"
-
 #include <cmath>
+
+#include "models/restoration/body_tangent.h"
 
 namespace pushid {
 namespace {

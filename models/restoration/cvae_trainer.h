@@ -10,7 +10,7 @@
 //   sampler:     squared difference of its Gaussian to the encoder's, mean over the latent
 //   variable:
 //                of the mean, and of the log-variance (own) or of sigma (published, Eq. 7); for the
-//                lower body also the foot-skate error of the output (cvae_skate.h)
+//                lower body also the foot-skate error of the output (below)
 // Training `published`: Adam, its rate from 1e-4 down to 1e-7 in a straight line, and the sampler's
 // output is decoded from a drawn z. `own` (default): AdamW with one cycle up to 1e-3, and z is the
 // sampler's mean. Published is no weight of the foot skate: it is chosen here.
@@ -19,11 +19,12 @@
 // of every stage's last part the best round is kept.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
+#include "models/restoration/cvae_features.h"
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/trainer.h"
 
@@ -69,5 +70,28 @@ class CvaeTrainer : public Trainer {
  private:
   struct Torch;
 };
+
+// The foot-skate error (FSE) that the lower sampler is trained against, without LibTorch in
+// front, so that it can be tested by hand.
+//
+//   FSE = mean over ankles with h < H of  100 |way| (2 - 2^(max(0, h) / H)),  cm a frame
+//
+// way: of the ankle, horizontal, from the frame that the network started from to its output, m;
+// h: the output's ankle above its own height at frame 0 of the person; H = 0.025 m. The same as
+// FootSkate of ident/bodies/body_metrics.cc. h counts in the weight and its gradient; which ankles
+// count has no gradient. 0 where no ankle is low.
+//
+// In `ldp` coordinates positions contain the hip's way. In `tip` coordinates they do not: the hip
+// is put at the end of the rod, so the way and the rise of that end are added (PendulumFrames).
+
+// Not scaled, as FramesOf and PendulumFrames give them; a column per sample.
+struct CvaeSkateFrames {
+  Eigen::MatrixXd output, before, first;     // of the lower body: output, started from, frame 0
+  Eigen::MatrixXd pendulum, first_pendulum;  // of the output's frame and of frame 0
+};
+
+// by_output: the gradient, of the shape of `output`.
+double CvaeFootSkate(const CvaeLayout& layout, const CvaeSkateFrames& frames,
+                     Eigen::MatrixXd* by_output);
 
 }  // namespace pushid

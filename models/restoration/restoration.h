@@ -24,7 +24,7 @@ namespace pushid {
 
 // The kinds of restoration, one row each, and what they may be told of the motion.
 //
-// A new kind is a value and a row here, and a row in ident/bodies/restoration_kinds.h, which names
+// A new kind is a value and a row here, and a row in ident/bodies/restoration_files.h, which names
 // the functions that make it from a file and train it.
 
 enum class RestorationKind { kRigid, kWindow, kCvae, kMrt };

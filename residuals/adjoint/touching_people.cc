@@ -1,9 +1,8 @@
 // residuals: people who touch, forwards and backwards.
-#include "residuals/adjoint/touching_people.h"
-
 #include <algorithm>
 
 #include "models/learned_terms.h"
+#include "residuals/adjoint/adjoint_batch.h"
 #include "residuals/sensitivities/learned_pair_jacobian.h"
 
 namespace pushid {

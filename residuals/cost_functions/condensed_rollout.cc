@@ -1,18 +1,12 @@
-// residuals: the rows of a rollout, by sensitivities or by the oracle.
+// residuals: the rows of a rollout.
 #include "residuals/cost_functions/condensed_rollout.h"
 
 #include <cmath>
 
-#include "residuals/cost_functions/rollout_by_jets.h"
-
 namespace pushid {
 
-CondensedRollout::CondensedRollout(std::shared_ptr<const RolloutProblem> problem,
-                                   JacobianMethod method)
-    : CondensedRows(problem), method_(method) {
-  if (method != JacobianMethod::kAutodiff) return;
-  oracle_ = RolloutByJets(std::move(problem));
-}
+CondensedRollout::CondensedRollout(std::shared_ptr<const RolloutProblem> problem)
+    : CondensedRows(std::move(problem)) {}
 
 RolloutSums CondensedRollout::Alone(double const* const* blocks, LaneSums sums) const {
   if (alone_ == nullptr) alone_ = std::make_unique<LaneGroup>(std::vector{&problem()});
@@ -53,53 +47,17 @@ bool CondensedRollout::TellPeople(const RolloutSums& sums, bool robust,
 
 RolloutStatus CondensedRollout::Visit(double const* const* blocks, Derivatives derivatives,
                                       const RowsVisitor& visit) const {
-  const auto told = [&](int frame, int person, const double* residuals, FrameRows* by_column) {
-    visit({person, problem().weight * problem().recording->Weight(person, frame), kFrameResiduals,
-           residuals, by_column->data()});
-  };
-  const auto told_of_plates = [&](int frame, int person, const double* residuals,
-                                  double* by_column) {
-    const double seen = problem().recording->plates[person][frame].weight;
-    visit({person, problem().weight * seen, kPlateResiduals, residuals, by_column});
-  };
-  if (oracle_ == nullptr) {
-    return VisitFrames(
-        problem(), blocks, derivatives,
-        [&told](int frame, int person, const FrameVector<double>& r, FrameRows* by_column) {
-          told(frame, person, r.data(), by_column);
-        },
-        [&told_of_plates](int frame, int person, const PlateVector<double>& r,
-                          PlateRows* by_column) {
-          told_of_plates(frame, person, r.data(), by_column->data());
-        });
-  }
-  const int rows = oracle_->num_residuals(), people = num_people();
-  std::vector<double> residuals(rows);
-  std::vector<RowMajorMatrix> by_block;
-  std::vector<double*> jacobians;
-  for (int size : parameter_block_sizes()) by_block.emplace_back(rows, size);
-  for (RowMajorMatrix& block : by_block) jacobians.push_back(block.data());
-  const bool with_rows = derivatives != Derivatives::kNone;
-  if (!oracle_->Evaluate(blocks, residuals.data(), with_rows ? jacobians.data() : nullptr)) {
-    return {false, 0, 0, "rollout"};
-  }
-  const int padded = NormalEquations::PaddedSize(problem().layout.num_acting());
-  FrameRows by_column(kFrameResiduals, with_rows ? padded : 0);
-  const int motion = problem().num_motion_rows();
-  for (int row = 0; row < motion; row += kFrameResiduals) {
-    if (with_rows) columns().Gather(by_block, row, by_column);
-    const int at = row / kFrameResiduals;
-    told(1 + at / people, at % people, residuals.data() + row, &by_column);
-  }
-  const std::vector<int> on_plates = problem().PeopleOnPlates();
-  const int plated = static_cast<int>(on_plates.size());
-  PlateRows of_plate(kPlateResiduals, with_rows ? padded : 0);
-  for (int row = motion; row < rows; row += kPlateResiduals) {
-    if (with_rows) columns().Gather(by_block, row, of_plate);
-    const int at = (row - motion) / kPlateResiduals;
-    told_of_plates(at / plated, on_plates[at % plated], residuals.data() + row, of_plate.data());
-  }
-  return {};
+  return VisitFrames(
+      problem(), blocks, derivatives,
+      [&](int frame, int person, const FrameVector<double>& residuals, FrameRows* by_column) {
+        visit({person, problem().weight * problem().recording->Weight(person, frame),
+               kFrameResiduals, residuals.data(), by_column->data()});
+      },
+      [&](int frame, int person, const PlateVector<double>& residuals, PlateRows* by_column) {
+        const double seen = problem().recording->plates[person][frame].weight;
+        visit({person, problem().weight * seen, kPlateResiduals, residuals.data(),
+               by_column->data()});
+      });
 }
 
 namespace {

@@ -16,7 +16,6 @@
 
 #include "residuals/cost_functions/lane_group.h"
 #include "residuals/cost_functions/rollout_problem.h"
-#include "residuals/fit_choices.h"
 
 namespace pushid {
 
@@ -75,18 +74,15 @@ class CondensedRows : public ceres::CostFunction {
 // recording.
 class CondensedRollout : public CondensedRows {
  public:
-  CondensedRollout(std::shared_ptr<const RolloutProblem> problem, JacobianMethod method);
+  explicit CondensedRollout(std::shared_ptr<const RolloutProblem> problem);
 
   int num_rows() const override { return problem().num_residuals(); }
-  JacobianMethod method() const { return method_; }
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
   bool EvaluatePeople(double const* const* blocks, bool robust,
                       std::vector<PersonRows>* people) const override;
 
   // The problem, where it has lanes and they are to be used; null otherwise.
-  const RolloutProblem* in_lanes() const {
-    return oracle_ == nullptr && HasLanes(problem()) ? &problem() : nullptr;
-  }
+  const RolloutProblem* in_lanes() const { return HasLanes(problem()) ? &problem() : nullptr; }
   // What Evaluate and EvaluatePeople say, of sums that are there.
   bool Tell(const RolloutSums& sums, double* residuals, double** jacobians) const;
   bool TellPeople(const RolloutSums& sums, bool robust, std::vector<PersonRows>* people) const;
@@ -96,8 +92,6 @@ class CondensedRollout : public CondensedRows {
                       const RowsVisitor& visit) const override;
 
  private:
-  JacobianMethod method_;
-  std::unique_ptr<ceres::CostFunction> oracle_;  // all rows by Jets; null with sensitivities
   // Of a recording that has lanes; laid out where it is first asked for. Ceres evaluates a block
   // from one thread at a time.
   RolloutSums Alone(double const* const* blocks, LaneSums sums) const;

@@ -4,7 +4,6 @@
 // bit; other widths of vectors round otherwise (to 1e-12 of a sum).
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "residuals/cost_functions/rollout_problem.h"

@@ -9,7 +9,7 @@
 
 #include "datasets/files/random.h"
 #include "residuals/cost_functions/rollout_problem.h"
-#include "residuals/sensitivities/step_jacobian.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 namespace {

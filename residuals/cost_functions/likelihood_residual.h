@@ -17,14 +17,13 @@
 // Jacobian of transitions by Jets over the parameters. A filter's covariance needs the derivatives
 // of the step's own derivatives: by Jets over dual numbers these are exact and cost 55 filters for
 // twelve parameters; by differences of whole filters they cost 12 and are good to 3e-4. The fit
-// takes differences (or Jets, with --jacobian=autodiff), the tests hold one against the other.
+// takes differences; the tests hold them against Jets.
 #pragma once
 
 #include <ceres/cost_function.h>
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"

@@ -11,7 +11,7 @@
 #include "models/ground_reaction.h"
 #include "models/net_force.h"
 #include "residuals/frame_residual.h"
-#include "residuals/sensitivities/body_sensitivities.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 

@@ -138,18 +138,6 @@ void ActingColumns::Scatter(const Eigen::Ref<const RowMajorMatrix>& by_acting, i
   }
 }
 
-void ActingColumns::Gather(const std::vector<RowMajorMatrix>& by_block, int first_row,
-                           Eigen::Ref<RowMajorMatrix> by_acting) const {
-  by_acting.setZero();
-  auto column = of_column_.begin();
-  for (const RowMajorMatrix& block : by_block) {
-    for (Eigen::Index i = 0; i < block.cols(); ++i, ++column) {
-      if (column->first != column->second) continue;  // a sum of what other columns hold alone
-      by_acting.col(column->first) = block.col(i).segment(first_row, by_acting.rows());
-    }
-  }
-}
-
 Derivatives WantedDerivatives(const RolloutProblem& problem, double** jacobians) {
   if (jacobians == nullptr) return Derivatives::kNone;
   const bool weights = jacobians[problem.layout.num_blocks() - 1] != nullptr;

@@ -96,9 +96,6 @@ class ActingColumns {
   // by_acting: at least the acting columns of the blocks that are asked for.
   void Scatter(const Eigen::Ref<const RowMajorMatrix>& by_acting, int first_row, int total_rows,
                double** jacobians) const;
-  // Back again: rows of the blocks' derivatives by acting column.
-  void Gather(const std::vector<RowMajorMatrix>& by_block, int first_row,
-              Eigen::Ref<RowMajorMatrix> by_acting) const;
 
  private:
   std::vector<int> block_sizes_;

@@ -1,8 +1,6 @@
 // residuals: packed self-force networks, forwards.
 #include "residuals/packed/packed_network.h"
 
-#include <algorithm>
-
 namespace pushid {
 namespace {
 

@@ -1,8 +1,6 @@
 // residuals: the chain rule through a reaction delay.
 #include "residuals/sensitivities/delay_sensitivities.h"
 
-#include <algorithm>
-
 #include "models/reaction_delay.h"
 
 namespace pushid {

@@ -11,13 +11,12 @@
 // so, and not once a pair and output.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "models/learned_terms.h"
 #include "models/scene_forces.h"
 #include "residuals/packed/packed_layers.h"
-#include "residuals/sensitivities/pair_jacobian.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 

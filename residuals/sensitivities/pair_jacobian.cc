@@ -1,7 +1,7 @@
 // residuals: derivatives of the interaction terms.
-#include "residuals/sensitivities/pair_jacobian.h"
-
 #include <ceres/jet.h>
+
+#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 namespace {

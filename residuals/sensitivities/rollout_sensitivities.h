@@ -15,7 +15,7 @@
 
 #include "models/rollout.h"
 #include "residuals/parameter_map.h"
-#include "residuals/sensitivities/pair_jacobian.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 #include "residuals/sensitivities/stance_sensitivities.h"
 
 namespace pushid {

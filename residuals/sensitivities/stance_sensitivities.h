@@ -42,7 +42,7 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               PerceivedJacobian* by_perceived = nullptr);
 
 // The same where feet hold, whatever happens; jacobian: of what the ankles and the ground do,
-// without what the height of the centre of mass changes of M a + C + G (body_sensitivities.h).
+// without what the height of the centre of mass changes of M a + C + G (net_force_jacobian.h).
 void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
                                 const SelfForce& self, const ParameterSet<double>& p, int person,
                                 int frame, const PendulumState<double>& state,

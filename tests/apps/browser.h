@@ -28,12 +28,12 @@ inline std::string Browser() {
 // element of its own at the end.
 inline std::string Probed(std::string page, const std::string& script) {
   return page.replace(page.find("</body>"), 7,
-                      "<script>(function () { const said = [];\n" + script + R"js(
+                      "<script>addEventListener('load', () => { const said = [];\n" + script + R"js(
   const note = document.createElement('pre');
   note.id = 'probe';
   note.textContent = said.join('; ');
   document.body.append(note);
-})();
+});
 </script></body>)js");
 }
 

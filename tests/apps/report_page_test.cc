@@ -15,19 +15,22 @@ namespace pushid {
 namespace {
 
 // Drives the page as a person would and writes down what happened, as text of a new element.
-constexpr char kProbe[] = R"js(  const find = id => document.getElementById(id);
-  const before = find('fig-stage').innerHTML;
-  find('fig-time').value = 10;
-  find('fig-time').dispatchEvent(new Event('input'));
-  said.push('slider ' + (find('fig-stage').innerHTML !== before ? 'moves' : 'is dead'));
-  said.push('clock ' + find('fig-clock').textContent);
-  find('fig-recording').value = 1;
-  find('fig-recording').dispatchEvent(new Event('change'));
-  said.push('slider back at ' + find('fig-time').value);
-  said.push('skeleton lines ' + (find('fig-stage').querySelectorAll('line.b').length > 0));
-  said.push('pendulums ' + find('fig-stage').querySelectorAll('circle.p').length);
-  find('fig-play').click();
-  said.push('button says ' + find('fig-play').textContent);
+constexpr char kProbe[] = R"js(
+  const figure = document.querySelector('iframe.moving').contentDocument;
+  const find = id => figure.getElementById(id), shows = () => find('view').toDataURL();
+  const differs = change => { const before = shows(); change(); return shows() !== before; };
+  const tell = (id, event) => find(id).dispatchEvent(new Event(event));
+  said.push('slider ' + (differs(() => { find('time').value = 20; tell('time', 'input'); }) ? 'moves' : 'is dead'));
+  said.push('clock ' + find('clock').textContent);
+  find('recording').value = 1;
+  tell('recording', 'change');
+  said.push('slider back at ' + find('time').value);
+  for (const id of ['recorded', 'predicted', 'pendulums', 'forces', 'footprints']) {
+    said.push(id + ' ' + (find(id) && differs(() => find(id).click()) ? 'drawn' : 'missing'));
+    if (find(id)) find(id).click();
+  }
+  find('play').click();
+  said.push('button says ' + find('play').textContent);
   const broken = [...document.querySelectorAll('nav a')].filter(
       a => !document.querySelector(a.getAttribute('href')));
   said.push('broken links ' + broken.length);
@@ -55,11 +58,11 @@ TEST_F(ReportPage, WorksInABrowser) {
   }
   const size_t probe = seen.out.find("<pre id=\"probe\">");
   ASSERT_NE(probe, std::string::npos) << "the page's script stopped early";
-  const std::string said = seen.out.substr(probe, 300);
-  for (const char* expected :
-       {"slider moves", "clock 0.33 s", "slider back at 0", "skeleton lines true", "pendulums 2",
-        "button says pause", "broken links 0", "wide false"}) {
-    EXPECT_TRUE(Contains(said, expected));
+  const std::string said = seen.out.substr(probe, 500);
+  for (const char* expected : {"slider moves", "clock 0.33 s", "slider back at 0", "recorded drawn",
+                               "predicted drawn", "pendulums drawn", "footprints drawn",
+                               "button says Pause", "broken links 0", "wide false"}) {
+    EXPECT_TRUE(Contains(said, expected)) << said;
   }
 }
 

@@ -110,8 +110,7 @@ void GroupJacobian(benchmark::State& state, const FitOptions& options) {
   for (const PendulumRecording& recording : Groups().recordings) {
     const auto problem =
         MakeRolloutProblem(recording, options.model, fit.map(), options.sigmas, 1.0, 0);
-    residuals.push_back(
-        std::make_unique<CondensedRollout>(problem, JacobianMethod::kSensitivities));
+    residuals.push_back(std::make_unique<CondensedRollout>(problem));
     const int rows = residuals.back()->num_residuals();
     columns = problem->layout.num_columns();
     blocks.push_back({point.shared.data()});

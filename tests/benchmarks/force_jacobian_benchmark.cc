@@ -9,7 +9,7 @@
 #include "models/interaction.h"
 #include "models/push.h"
 #include "models/self_force.h"
-#include "residuals/sensitivities/pair_jacobian.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 namespace {

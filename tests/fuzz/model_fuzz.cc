@@ -1,7 +1,7 @@
 // Models and interaction networks in JSON: what is read can be reported, written and read again.
 #include "datasets/files/json_file.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/network_json.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "ident/report/report_text.h"
 #include "tests/fuzz/memory_file.h"
 

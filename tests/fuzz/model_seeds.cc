@@ -8,7 +8,6 @@
 #include "datasets/files/json_file.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/learned_terms_io.h"
-#include "ident/parameters/network_json.h"
 #include "ident/parameters/presets.h"
 
 namespace pushid {

@@ -1,5 +1,5 @@
 // TOML: plans of pushid-batch. What is read has all that a batch needs.
-#include "apps/batch/batch_plan.h"
+#include "apps/batch/batch.h"
 #include "tests/fuzz/memory_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -6,7 +6,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/state_csv.h"
-#include "datasets/synthetic/synthetic_turns.h"
+#include "datasets/synthetic/synthetic_clips.h"
 #include "ident/bodies/body_recording.h"
 #include "tests/test_support.h"
 

@@ -1,9 +1,8 @@
 // Parameters that follow what is known of people: by hand, by column, and in whole rollouts.
-#include "residuals/covariate.h"
-
 #include <ceres/jet.h>
 
 #include "residuals/cost_functions/likelihood_residual.h"
+#include "residuals/parameter_map.h"
 #include "tests/residuals/residual_samples.h"
 #include "tests/residuals/rollout_residual.h"
 

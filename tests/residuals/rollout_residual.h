@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "residuals/cost_functions/rollout_by_jets.h"
+#include "tests/residuals/rollout_by_jets.h"
 
 namespace pushid {
 

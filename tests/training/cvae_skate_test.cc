@@ -1,12 +1,11 @@
 // The foot-skate error that the lower sampler is trained against: by hand in both coordinates, as
 // the metric has it, and its gradient in three regimes.
-#include "models/restoration/cvae_skate.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "ident/bodies/body_metrics.h"
+#include "ident/bodies/body_evaluation.h"
+#include "models/restoration/cvae_trainer.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -5,10 +5,8 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
-#include "ident/fit/interval_agreement.h"
-#include "ident/report/confidence_text.h"
 #include "ident/report/page/sections.h"
-#include "ident/report/report_tables.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {

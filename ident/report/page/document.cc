@@ -137,7 +137,7 @@ std::string Element(const std::string& name, const std::string& text) {
   return "<" + name + ">" + EscapeXml(text) + "</" + name + ">\n";
 }
 
-std::string Fold(const std::string& title, const std::string& html) {
+std::string Folded(const std::string& title, const std::string& html) {
   return "<details><summary>" + EscapeXml(title) + "</summary>\n" + html + "</details>\n";
 }
 
@@ -158,7 +158,7 @@ std::string TableHtml(const ReportTable& table) {
     html += "</tr>\n";
   }
   html += "</table></div>\n";
-  return table.caption.empty() ? html : Fold(table.caption, html);
+  return table.caption.empty() ? html : Folded(table.caption, html);
 }
 
 // Entries and panels wrap where the window is narrow.
@@ -208,7 +208,7 @@ std::string SectionHtml(const ReportSection& section) {
   for (const ReportFold& fold : section.folds) {
     std::string figures;
     for (const ReportFigure& figure : fold.figures) figures += FigureHtml(figure);
-    html += Fold(fold.title, figures + fold.widget);
+    html += Folded(fold.title, figures + fold.widget);
   }
   return html + "</section>\n";
 }
@@ -217,12 +217,11 @@ std::string SectionHtml(const ReportSection& section) {
 
 // The links stand behind the first section, whose pictures lead.
 std::string ToPage(const Report& report) {
-  std::string nav, lead, body, script;
+  std::string nav, lead, body;
   for (const ReportSection& section : report.sections) {
     if (IsEmpty(section)) continue;
     nav += "<li><a href=\"#" + section.id + "\">" + EscapeXml(section.title) + "</a></li>\n";
     (lead.empty() ? lead : body) += SectionHtml(section);
-    if (!section.widget.empty()) script = kPageScript;
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -231,7 +230,7 @@ std::string ToPage(const Report& report) {
          "</style>\n</head>\n<body>\n<header>" + Element("h1", report.title) +
          Element("p", report.subtitle) + "</header>\n<main>\n" + lead +
          "<nav aria-label=\"sections\"><ul>\n" + nav + "</ul></nav>\n" + body + "</main>\n" +
-         (script.empty() ? "" : "<script>" + script + "</script>\n") + "</body>\n</html>\n";
+         "<script>" + kPageScript + "</script>\n</body>\n</html>\n";
 }
 
 MaybeError CheckPageName(const std::string& flag, const std::string& path) {

@@ -2,11 +2,10 @@
 #include <cmath>
 #include <optional>
 
-#include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
 #include "ident/observed/first_frames.h"
-#include "ident/report/forecast_text.h"
 #include "ident/report/page/sections.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {

@@ -175,14 +175,8 @@ Figure PathFigure(const RecordingView& view) {
 
 // The recorded bodies and the predicted pendulums at a few moments, from the side.
 std::string StripOf(const RecordingView& view) {
-  const PendulumRecording& recording = view.run.recording;
-  Animation animation;
+  Animation animation = AnimationOf(view);
   animation.title = "from the side";
-  animation.dt = recording.scene.dt;
-  const auto bodies = MakeBodyRecording(*view.recording, SkeletonMapping::kExact);
-  if (bodies.ok()) AddRecorded(recording, bodies.value().bodies, &animation);
-  AddPrediction(recording, view.run.prediction, {}, &animation);
-  AddPushes(recording, &animation);
   return "<div class=\"scroll\" tabindex=\"0\">" + PoseStrip(animation, kPosesOfStrip).ToInline() +
          "</div>\n";
 }

@@ -4,12 +4,10 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/figures/chart.h"
-#include "ident/prediction/baselines.h"
 #include "ident/prediction/evaluation.h"
-#include "ident/prediction/push_response.h"
+#include "ident/prediction/prediction.h"
 #include "ident/report/page/sections.h"
 #include "ident/validation/scores_report.h"
-#include "ident/validation/steps_report.h"
 
 namespace pushid {
 namespace {

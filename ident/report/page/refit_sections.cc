@@ -8,12 +8,9 @@
 #include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/report/confidence_text.h"
-#include "ident/report/design_text.h"
 #include "ident/report/page/sections.h"
-#include "ident/report/refits_text.h"
 #include "ident/report/report_text.h"
-#include "ident/validation/experiment_design.h"
+#include "ident/validation/study_plan.h"
 
 namespace pushid {
 namespace {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ident/bodies/animation.h"
 #include "ident/prediction/standing_checks.h"
 #include "ident/prediction/visual_check.h"
 #include "ident/report/page/build_report.h"
@@ -86,6 +87,9 @@ inline constexpr char kToldLook[] = "fill:none;stroke-width:3;stroke:#d55e00";
 
 // The parameters' values with all intervals that are known.
 ReportFigure IntervalFigure(const ReportSource& source);
+
+// What was measured, with skeletons where they were recorded, and what is predicted.
+Animation AnimationOf(const RecordingView& view);
 
 // Hips of the recordings that are predicted best, in the middle and worst; none without recordings.
 std::optional<ReportFigure> TypicalFigure(const ReportSource& source);

@@ -2,10 +2,9 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
-#include "ident/figures/bode.h"
 #include "ident/figures/chart.h"
-#include "ident/report/loop_text.h"
 #include "ident/report/page/sections.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {

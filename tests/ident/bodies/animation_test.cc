@@ -21,6 +21,9 @@ Animation AnimatedPair() {
   animation.title = "a </script> & \"b\"";
   PendulumRecording recording;
   recording.subject_ids = {"x"};
+  recording.scene.people.resize(1);
+  recording.states = {std::vector<PendulumState<double>>(5)};
+  recording.hip = {std::vector<Vector3<double>>(5, {0.0, 0.0, 1.0})};
   AddRecorded(recording, {BodyMotion(5, StandingPose())}, &animation);
   AnimatedPerson predicted;
   predicted.name = "x";
@@ -33,18 +36,46 @@ Animation AnimatedPair() {
 }
 
 TEST(AnimationTest, ThePageStandsAloneAndItsDataParse) {
-  const std::string html = AnimationHtml(AnimatedPair());
+  const std::string html = AnimationHtml({AnimatedPair()});
   EXPECT_EQ(html.find("http"), std::string::npos);
-  const size_t begin = html.find("const data=") + 11, end = html.find(";\nconst $=");
+  const size_t begin = html.find("const all=") + 10, end = html.find(";\nlet data=");
   ASSERT_NE(end, std::string::npos);
   EXPECT_EQ(html.substr(begin, end - begin).find("</"), std::string::npos);
-  const auto data = nlohmann::json::parse(html.substr(begin, end - begin));
+  const auto data = nlohmann::json::parse(html.substr(begin, end - begin))[0];
   EXPECT_EQ(data["frames"], 5);
   EXPECT_EQ(data["people"][0]["recorded"], true);
   EXPECT_EQ(data["people"][0]["body"][4].size(), 66u);
   EXPECT_EQ(data["people"][1]["force"][0][0], 120);
-  EXPECT_EQ(data["people"][1]["tip"][2][2], 1000);
+  EXPECT_EQ(data["people"][1]["tip"][0][2], 1000);
+  EXPECT_EQ(data["people"][1]["tip"][2][2], 0) << "less the sample before";
   EXPECT_EQ(data["title"], "a </script> & \"b\"");
+}
+
+// Frames 0 and 3 of 5, which the others lie between; the second animation is the reader's choice.
+TEST(AnimationTest, FewerSamplesAndSeveralRecordings) {
+  Animation first = AnimatedPair(), second = AnimatedPair();
+  first.dt = second.dt = 0.1;
+  second.title = "second";
+  for (int t = 0; t < 5; ++t) first.people[1].tip[t].x() = 0.1 * t;
+  const std::string html = AnimationHtml({first, second}, 0.3);
+  const size_t begin = html.find("const all=") + 10;
+  const auto all = nlohmann::json::parse(html.substr(begin, html.find(";\nlet data=") - begin));
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[1]["title"], "second");
+  EXPECT_EQ(all[0]["every"], 3);
+  EXPECT_EQ(all[0]["frames"], 4);
+  EXPECT_EQ(all[0]["people"][1]["tip"], nlohmann::json({{0, 0, 1000}, {300, 0, 0}}));
+}
+
+// A file's own skeleton where it is no whole body: its bones, and no head to draw.
+TEST(AnimationTest, AnotherSkeletonKeepsItsBones) {
+  Animation animation = AnimatedPair();
+  animation.people[0].body.clear();
+  animation.people[0].parents = {-1, 0};
+  animation.people[0].joints.assign(5, Eigen::Matrix3Xd::Ones(3, 2));
+  EXPECT_TRUE(Contains(AnimationHtml({animation}), "\"parents\":[-1,0]"));
+  EXPECT_TRUE(Contains(AnimationHtml({animation}), "\"head\":-1"));
+  EXPECT_TRUE(Contains(AnimationHtml({animation}), "\"body\":[[1000,1000,1000,1000,1000,1000]"));
 }
 
 Animation Moving(const std::vector<double>& x) {
@@ -87,7 +118,7 @@ TEST(AnimationTest, ALongRowHasAColourForEverybody) {
     person.name = "p" + std::to_string(n);
     animation.people.push_back(person);
   }
-  const std::string html = AnimationHtml(animation);
+  const std::string html = AnimationHtml({animation});
   EXPECT_TRUE(Contains(html, ColourOf(0.0)));
   EXPECT_FALSE(Contains(html, std::string("\"") + kAnimationColours[2] + "\""));
 }
@@ -95,8 +126,8 @@ TEST(AnimationTest, ALongRowHasAColourForEverybody) {
 TEST(AnimationTest, NothingRecordedNothingCalledSo) {
   const Animation animation = Moving({0, 1});
   EXPECT_EQ(PoseStrip(animation, 2).ToString().find("recorded"), std::string::npos);
-  EXPECT_EQ(AnimationHtml(animation).find("> recorded<"), std::string::npos);
-  EXPECT_TRUE(Contains(AnimationHtml(AnimatedPair()), "> recorded<"));
+  EXPECT_EQ(AnimationHtml({animation}).find("> recorded<"), std::string::npos);
+  EXPECT_TRUE(Contains(AnimationHtml({AnimatedPair()}), "> recorded<"));
 }
 
 TEST(AnimationTest, APushIsDrawnWithItsSizeAndItsPersonMarkedThroughout) {
@@ -108,7 +139,7 @@ TEST(AnimationTest, APushIsDrawnWithItsSizeAndItsPersonMarkedThroughout) {
   EXPECT_EQ(rings, 4u);
   EXPECT_TRUE(Contains(svg, ">120 N<"));
   EXPECT_EQ(svg.find(" N<"), svg.rfind(" N<")) << "while it acts, and no longer";
-  EXPECT_TRUE(Contains(AnimationHtml(animation), "\"force\":[[120,0]]"));
+  EXPECT_TRUE(Contains(AnimationHtml({animation}), "\"force\":[[120,0]]"));
 }
 
 size_t Bars(const Animation& animation, int poses) {
@@ -124,12 +155,12 @@ size_t Bars(const Animation& animation, int poses) {
 TEST(AnimationTest, FeetAreDrawnWhileTheyStand) {
   Animation animation = Moving({0, 0, 0, 0, 0});
   EXPECT_EQ(Bars(animation, 3), 0u);
-  EXPECT_FALSE(Contains(AnimationHtml(animation), "id=\"footprints\""));
+  EXPECT_FALSE(Contains(AnimationHtml({animation}), "id=\"footprints\""));
   animation.people[0].footprints = {{Foot::kLeft, 0, 1, {0, 0.1}},
                                     {Foot::kRight, 0, 5, {0, -0.1}},
                                     {Foot::kLeft, 3, 5, {0.4, 0.1}}};
   EXPECT_EQ(Bars(animation, 3), 5u);
-  const std::string html = AnimationHtml(animation);
+  const std::string html = AnimationHtml({animation});
   EXPECT_TRUE(Contains(html, "id=\"footprints\""));
   EXPECT_TRUE(Contains(html, "[400,100,3,5]"));
 }
@@ -139,7 +170,7 @@ TEST(AnimationTest, WhatIfsHaveEntriesOfTheirOwn) {
   animation.people.push_back(animation.people[0]);
   animation.people[1].what = "mu=10";
   EXPECT_EQ(WhatsOf(animation), std::vector<std::string>({"", "mu=10"}));
-  for (const std::string& file : {PoseStrip(animation, 2).ToString(), AnimationHtml(animation)}) {
+  for (const std::string& file : {PoseStrip(animation, 2).ToString(), AnimationHtml({animation})}) {
     EXPECT_TRUE(Contains(file, kAsFitted));
     EXPECT_TRUE(Contains(file, "mu=10"));
     EXPECT_TRUE(Contains(file, kAnimationColours[1]));

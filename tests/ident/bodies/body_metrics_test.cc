@@ -1,5 +1,4 @@
 // Metrics of bodies against cases made by hand; means; baselines.
-#include "ident/bodies/body_metrics.h"
 
 #include <gtest/gtest.h>
 

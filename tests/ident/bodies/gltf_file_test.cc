@@ -1,5 +1,4 @@
 // glTF files, read back by hand and by an independent program.
-#include "ident/bodies/gltf_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,7 @@
 // Bode plots: phases in sequence, and what is drawn.
-#include "ident/figures/bode.h"
-
 #include <gtest/gtest.h>
 
+#include "ident/figures/chart.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -10,7 +10,7 @@
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"
-#include "ident/report/contrast_text.h"
+#include "ident/report/report_text.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

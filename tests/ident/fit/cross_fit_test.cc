@@ -1,5 +1,4 @@
 // Fits without folds: what is held out teaches them nothing.
-#include "ident/fit/cross_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +6,7 @@
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
-#include "ident/observed/recording_effect.h"
+#include "ident/observed/recording_filter.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 

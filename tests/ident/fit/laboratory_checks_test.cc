@@ -1,8 +1,7 @@
 // What of a laboratory does not go together is refused, with what to leave out.
-#include "ident/fit/laboratory_checks.h"
-
 #include <gtest/gtest.h>
 
+#include "ident/fit/fit_setup.h"
 #include "models/learned_terms.h"
 #include "tests/ident/laboratory_samples.h"
 #include "tests/test_support.h"

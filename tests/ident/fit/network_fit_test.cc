@@ -8,7 +8,7 @@
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
-#include "ident/observed/recording_effect.h"
+#include "ident/observed/recording_filter.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/network_training.h"
 #include "tests/ident/network_samples.h"

@@ -1,12 +1,11 @@
 // Waves of trajectories whose speed is known.
-#include "ident/formations/measured_wave.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/random.h"
+#include "ident/formations/wave_speed.h"
 #include "tests/test_support.h"
 
 namespace pushid {

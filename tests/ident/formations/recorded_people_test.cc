@@ -1,5 +1,4 @@
 // Recorded people in a formation, on two recordings worked by hand.
-#include "ident/formations/recorded_people.h"
 
 #include <gtest/gtest.h>
 

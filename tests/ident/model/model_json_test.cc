@@ -11,7 +11,6 @@
 #include "datasets/files/json_file.h"
 #include "ident/fit/fit.h"
 #include "ident/report/report_text.h"
-#include "ident/report/verdict_text.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

@@ -1,6 +1,4 @@
 // Spread and error scale of planted effects; where there are none; the file.
-#include "ident/observed/recording_effect.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -8,6 +6,7 @@
 #include <stdexcept>
 
 #include "ident/model/model_fields.h"
+#include "ident/observed/recording_filter.h"
 #include "tests/ident/effect_samples.h"
 
 namespace pushid {

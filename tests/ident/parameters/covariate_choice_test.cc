@@ -1,7 +1,7 @@
 // The words of --covariate.
-#include "ident/parameters/covariate_choice.h"
-
 #include <gtest/gtest.h>
+
+#include "ident/parameters/option_names.h"
 
 namespace pushid {
 namespace {

@@ -1,11 +1,10 @@
 // Interaction networks as files: round trip, and what is wrong with a wrong one.
-#include "ident/parameters/network_json.h"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "ident/parameters/learned_terms_io.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -1,5 +1,4 @@
 // Pushes that are scaled and repeated, on a push worked by hand.
-#include "ident/prediction/changed_pushes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,10 @@
 // What a model says of pushes of all sizes, durations and directions.
-#include "ident/prediction/push_response.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "ident/prediction/prediction.h"
 #include "models/self_terms.h"
 #include "tests/ident/formation_samples.h"
 

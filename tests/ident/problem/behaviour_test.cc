@@ -12,7 +12,7 @@
 #include "ident/fit/fit.h"
 #include "ident/model/fitted_model.h"
 #include "ident/parameters/presets.h"
-#include "ident/report/report_tables.h"
+#include "ident/report/report_text.h"
 #include "models/decompositions.h"
 #include "models/modal_stability.h"
 #include "tests/ident/fit_samples.h"

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "ident/problem/residual_families.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

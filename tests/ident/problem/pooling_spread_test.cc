@@ -1,12 +1,11 @@
 // How far units differ, from units that are known to differ by so much.
-#include "ident/problem/pooling_spread.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
 
 #include "ident/fit/fit.h"
 #include "ident/fit/weighted_solve.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
 #include "models/decompositions.h"
 #include "tests/ident/fit_samples.h"

@@ -1,8 +1,7 @@
 // The table of a design: best first, with its units, and the least useful one last.
-#include "ident/report/design_text.h"
-
 #include <gtest/gtest.h>
 
+#include "ident/report/report_text.h"
 #include "tests/test_support.h"
 
 namespace pushid {

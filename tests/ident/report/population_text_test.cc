@@ -1,7 +1,7 @@
 // What is said of the effects of recordings.
 #include <gtest/gtest.h>
 
-#include "ident/report/confidence_text.h"
+#include "ident/report/report_text.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "ident/fit/fit.h"
-#include "ident/report/confidence_text.h"
 #include "ident/report/report_text.h"
 #include "tests/ident/fit_samples.h"
 

@@ -1,10 +1,9 @@
 // Intervals and gains as they are said.
-#include "ident/report/value_text.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "ident/report/report_text.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -1,7 +1,6 @@
 // What the data weigh comes from the data.
-#include "ident/uncertainty/data_weight.h"
-
 #include "ident/fit/weighted_solve.h"
+#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "tests/ident/fit_samples.h"
 

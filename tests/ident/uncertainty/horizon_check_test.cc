@@ -6,7 +6,7 @@
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
-#include "ident/report/refits_text.h"
+#include "ident/report/report_text.h"
 #include "ident/uncertainty/refit_checks.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "ident/fit/fit.h"
-#include "ident/uncertainty/rows_by_horizon.h"
+#include "ident/uncertainty/assumptions.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

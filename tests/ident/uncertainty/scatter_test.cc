@@ -1,6 +1,4 @@
 // Intervals of variances that are the sum of parts, each known by its own degrees of freedom.
-#include "ident/uncertainty/scatter.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 
 #include "datasets/files/random.h"
 #include "ident/problem/statistics.h"
+#include "ident/uncertainty/covariance.h"
 
 namespace pushid {
 namespace {

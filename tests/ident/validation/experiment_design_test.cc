@@ -1,5 +1,4 @@
 // Which push to record next, checked by recording it.
-#include "ident/validation/experiment_design.h"
 
 #include <gtest/gtest.h>
 

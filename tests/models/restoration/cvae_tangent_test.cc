@@ -1,9 +1,8 @@
 // The chain's joints with derivatives: positions are the restoration's, derivatives those of finite
 // differences, at rest, as pushed and far off, in every layout with a pendulum.
-#include "models/restoration/cvae_tangent.h"
-
 #include <gtest/gtest.h>
 
+#include "models/restoration/body_tangent.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -1,9 +1,8 @@
 // The window's joints with derivatives: positions are the restoration's, derivatives those of
 // finite differences, wherever a person stands and faces.
-#include "models/restoration/window_tangent.h"
-
 #include <gtest/gtest.h>
 
+#include "models/restoration/body_tangent.h"
 #include "tests/models/body_samples.h"
 
 namespace pushid {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "models/learned_terms.h"
-#include "models/restoration/window_tangent.h"
+#include "models/restoration/body_tangent.h"
 #include "tests/models/body_samples.h"
 #include "tests/residuals/residual_samples.h"
 

@@ -73,23 +73,17 @@ TEST(CondensedRollout, HasTheEquationsOfAllRows) {
     const std::vector<bool> all(s.blocks.size(), true);
     const CostEvaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, all);
     ASSERT_TRUE(rows.ok);
-    for (const auto& [name, method] : Names(JacobianMethod())) {
-      SCOPED_TRACE(name);
-      const CondensedRollout cost(s.problem, method);
-      const CostEvaluation condensed = EvaluateCost(cost, s.blocks, all);
-      ASSERT_TRUE(condensed.ok);
-      EXPECT_EQ(condensed.residuals.size(), s.problem->layout.num_acting() + 1);
-      ExpectSameEquations(AllBlocks(rows), rows.residuals, AllBlocks(condensed),
-                          condensed.residuals);
-    }
+    const CostEvaluation condensed = EvaluateCost(CondensedRollout(s.problem), s.blocks, all);
+    ASSERT_TRUE(condensed.ok);
+    EXPECT_EQ(condensed.residuals.size(), s.problem->layout.num_acting() + 1);
+    ExpectSameEquations(AllBlocks(rows), rows.residuals, AllBlocks(condensed), condensed.residuals);
   }
 }
 
 TEST(CondensedRollout, KeepsTheCostWithoutDerivatives) {
   const CondensedSample s(0.5);
   const CostEvaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, {});
-  const CostEvaluation condensed =
-      EvaluateCost(CondensedRollout(s.problem, JacobianMethod::kSensitivities), s.blocks, {});
+  const CostEvaluation condensed = EvaluateCost(CondensedRollout(s.problem), s.blocks, {});
   ASSERT_TRUE(rows.ok && condensed.ok);
   EXPECT_NEAR(condensed.residuals.norm(), rows.residuals.norm(), 1e-13 * rows.residuals.norm());
 }
@@ -102,7 +96,7 @@ TEST(CondensedRollout, PeopleKeepTheirOwnEquations) {
   const Eigen::MatrixXd jacobian = AllBlocks(rows);
   std::vector<const double*> blocks;
   for (const auto& block : s.blocks) blocks.push_back(block.data());
-  const CondensedRollout cost(s.problem, JacobianMethod::kSensitivities);
+  const CondensedRollout cost(s.problem);
   std::vector<CondensedRollout::PersonRows> people;
   ASSERT_TRUE(cost.EvaluatePeople(blocks.data(), true, &people));
   ASSERT_EQ(people.size(), 2u);

@@ -1,9 +1,8 @@
 // Derivatives of what two people do to each other against Jets, called directly, in three regimes:
 // where contact has just begun, in ordinary motion, and far from rest.
-#include "residuals/sensitivities/pair_jacobian.h"
-
 #include <ceres/jet.h>
 
+#include "residuals/sensitivities/net_force_jacobian.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {

@@ -1,8 +1,8 @@
 // What the report says of people who stand.
 #include <gtest/gtest.h>
 
-#include "ident/report/loop_text.h"
 #include "ident/report/page/sections.h"
+#include "ident/report/report_text.h"
 #include "tests/ident/laboratory_samples.h"
 #include "tests/test_support.h"
 

@@ -1,4 +1,4 @@
-// residuals: all rows of a rollout by Jets through it: the oracle of the sensitivities.
+// All rows of a rollout by Jets through it: the oracle of the sensitivities.
 #pragma once
 
 #include <ceres/cost_function.h>

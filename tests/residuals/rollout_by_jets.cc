@@ -1,5 +1,5 @@
-// residuals: the oracle of the sensitivities.
-#include "residuals/cost_functions/rollout_by_jets.h"
+// The oracle of the sensitivities.
+#include "tests/residuals/rollout_by_jets.h"
 
 #include <ceres/dynamic_autodiff_cost_function.h>
 

@@ -1,0 +1,261 @@
+// apps: the plan of pushid-batch, a TOML file:
+//
+//   [data]
+//   recordings = "M/manifest.json"   # relative to the plan
+//   setting = "single"               # as --setting; default all
+//   ids = ["a", "b"]                 # only these; default all of the setting
+//   leave_out = ["c"]                # not these of them
+//
+//   [jobs]
+//   group_by = "subject"             # recording, subject, a label (setting, ...) or none (default)
+//   folds = 0                        # k: each group in k folds, held-out recordings scored
+//   bootstrap = 0                    # replicas of each group, besides the recordings as they are
+//   seed = 1
+//   time_limit_s = 0.0               # of one job; 0: none
+//   memory_limit_mb = 0              # of one job; 0: none
+//
+//   [[variant]]                      # one or more
+//   name = "physics"
+//   flags = ["--self_force=none"]    # any flag of pushid-fit; files relative to the plan
+//   restoration = ["--kind=window"]  # flags of pushid-train-restoration; absent: none is trained
+//
+//   [output]
+//   dir = "out"                      # relative to the plan
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "datasets/manifest/manifest.h"
+#include "ident/figures/text_table.h"
+#include "ident/uncertainty/uncertainty.h"
+
+namespace pushid {
+
+struct BatchVariant {
+  std::string name;
+  std::vector<std::string> flags;  // of pushid-fit, with paths as the programs can open them
+  // Of pushid-train-restoration; where there are none, no bodies are restored.
+  std::optional<std::vector<std::string>> restoration;
+  int line = 0, restoration_line = 0;  // of the plan
+};
+
+struct BatchPlan {
+  std::string path;      // of the plan
+  std::string manifest;  // as the programs can open it
+  std::string setting = "all";
+  std::vector<std::string> ids, leave_out;
+  std::string group_by = "none";
+  int folds = 0, bootstrap = 0;
+  uint64_t seed = 1;
+  double time_limit_s = 0.0;
+  int memory_limit_mb = 0;
+  std::vector<BatchVariant> variants;
+  std::string dir;
+  std::map<std::string, int> lines;  // of the keys of [data] and [jobs]
+
+  // An error about what the plan says under `key`, where more than the plan shows that it is wrong.
+  Error ErrorAt(const std::string& key, const Error& error) const;
+};
+
+// The file that a variant's flag reads ("--self_from=model.json"), or nothing.
+std::string FileOfFlag(const std::string& flag);
+
+// Errors: file:line, what is wrong: TOML syntax, unknown or missing keys, wrong types, values out
+// of range, two variants of one name, flags that the batch sets itself.
+Result<BatchPlan> ReadPlan(const std::string& path);
+
+// From a plan to jobs. A job's id is the hash of all that decides its result - the contents
+// of its recordings and of the files its flags name, its flags, its replica and the version of the
+// programs - so the same job keeps its id in another order, folder or plan, and a changed file
+// makes new jobs of those it touches.
+
+struct BatchJob {
+  std::string id;       // 32 hexadecimal digits
+  std::string variant;  // by name
+  std::string group;    // "X05", "row_1", "all"; of a fold "X05 fold 2 of 4"
+  std::string folded;   // the group that the fold is of: "X05"
+  int replica = 0;      // 0: the recordings as they are
+  std::vector<std::string> recordings, held_out;  // ids
+  std::vector<std::string> fit_flags;             // of pushid-fit, without outputs and recordings
+  // Of pushid-train-restoration, likewise; without them nothing is restored.
+  std::optional<std::vector<std::string>> restoration_flags;
+};
+
+// In a fixed order: variants as in the plan, groups as in the manifest, folds, replicas. Errors: of
+// the manifest, a group with fewer recordings than folds, files that cannot be read.
+Result<std::vector<BatchJob>> ExpandPlan(const BatchPlan& plan, const Manifest& manifest);
+
+// What to run, one after the other: pushid-fit and, of a fold, pushid-evaluate on what was held
+// out. folder: of the job; bin: where the programs are.
+std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const BatchPlan& plan,
+                                                  const std::string& folder,
+                                                  const std::string& bin);
+
+// The part i of n (from 1) of the jobs, every n-th one. Jobs of the same id, of variants with the
+// same flags, are in one part.
+std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n);
+
+// What a job left in its folder: status.json, model.json and, of a fold, scores.json.
+
+// status.json says how a job ended; it is written last and whole.
+//
+//   {"id": "...", "variant": "physics", "group": "X05", "replica": 0, "status": "failed",
+//    "reason": "...", "commands": [["pushid-fit", ...], ...], "run": {"seconds": 1.5}}
+enum class JobState {
+  kDone,    // all its files can be read
+  kFailed,  // it ended otherwise, or they cannot
+  kOpen,    // it never ended
+};
+constexpr EnumNames<JobState, 3> Names(JobState) {
+  return {{{"done", JobState::kDone}, {"failed", JobState::kFailed}, {"open", JobState::kOpen}}};
+}
+
+struct JobStatus {
+  JobState state = JobState::kOpen;
+  std::string reason;  // of a failure
+  double seconds = 0.0;
+};
+
+MaybeError WriteJobStatus(const std::string& folder, const BatchJob& job, const JobStatus& status,
+                          const std::vector<std::vector<std::string>>& commands);
+
+// kOpen where the folder has no status.json.
+Result<JobStatus> ReadJobStatus(const std::string& folder);
+
+struct HeldOutScore {
+  Metric metric;
+  double value = 0.0;  // mean over what was held out
+};
+
+struct JobResult {
+  const BatchJob* job = nullptr;
+  JobStatus status;
+  std::map<std::string, double> parameters, errors;  // free ones, with standard errors
+  std::map<std::string, EstimateStatus> statuses;
+  std::map<std::string, double> data_shares;  // of their variance
+  double cost = 0.0, solve_s = 0.0;
+  bool settles = false;
+  std::vector<std::string> warnings;
+  // Of the restored bodies, or of the hips where nothing is restored; empty where nothing was held
+  // out.
+  std::vector<HeldOutScore> held_out;
+
+  // Null where there is no such score.
+  const double* HeldOut(const Metric& metric) const;
+
+  bool done() const { return status.state == JobState::kDone; }
+};
+
+std::string JobFolder(const BatchPlan& plan, const BatchJob& job);
+
+// Never an error: damage costs the one job, which the next run does again.
+JobResult ReadResult(const BatchPlan& plan, const BatchJob& job);
+
+// All that some job was scored by.
+std::vector<Metric> HeldOutMetrics(const std::vector<JobResult>& rows);
+
+// Running a batch's jobs, several at a time, each in a folder and in processes of its own.
+//
+// A job has ended when jobs/<id>/status.json stands; it is written last and whole. Everything else
+// in a job's folder may be half-written by a kill and is made again. Who works on a job holds the
+// lock of its folder, so that batches may run in one output folder at the same time.
+
+struct BatchRunOptions {
+  int jobs = 1;             // at a time
+  bool resume = true;       // skip those that are done; failed ones are tried again
+  bool keep_going = true;   // after a failure
+  double time_limit_s = 0;  // of one job; 0: none
+  int memory_limit_mb = 0;
+  std::string bin;  // where the programs are
+};
+
+struct BatchProgress {
+  int done = 0, failed = 0, left = 0;
+  double seconds_left = 0.0;  // by what the jobs so far took
+};
+
+struct BatchOutcome {
+  int skipped = 0, done = 0, failed = 0;
+  int elsewhere = 0;         // left to another process that was at work on them
+  bool interrupted = false;  // Ctrl-C or a polite kill: started jobs were ended, and will be redone
+  bool stopped = false;      // by the first failure
+  std::vector<std::string> unrecorded;  // why jobs failed whose folders could not take a status
+};
+
+// Errors: nothing can be written below the output folder; nothing is lost by trying again. What
+// hits one job's folder costs that job.
+Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
+                              const BatchRunOptions& options,
+                              const std::function<void(const BatchProgress&)>& progress);
+
+// The table of a batch: one row a job, with what it found or why it failed.
+
+// A column of the table. A new one is a row in JobColumns: summary.csv, summary.json, the page and
+// the terminal take name, place and cell from there.
+struct JobCell {
+  std::string exact{};  // in summary.csv
+  std::string shown{};  // to people: rounded or shortened
+  // Of a number to be summarized over groups (JobColumn::over_groups).
+  std::optional<double> number{};
+  nlohmann::ordered_json json{};  // null: not in summary.json
+};
+
+struct JobColumn {
+  std::string name;   // in summary.csv
+  std::string place;  // in a job of summary.json: "/run/seconds"
+  std::string title;  // on the page; empty: only in the files
+  bool words;         // to the left
+  bool over_groups;   // the variants' table has its mean and spread over groups
+  std::function<JobCell(const JobResult&)> cell;
+};
+
+// In the order of summary.csv.
+std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows);
+
+std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs);
+
+// summary.csv, summary.json and summary.html in the plan's folder.
+MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows);
+
+// By variant: jobs done and failed, mean and spread over groups of each parameter; the bootstrap of
+// each group where those are few; failures.
+std::string SummaryText(const std::vector<JobResult>& rows);
+
+// What a batch's jobs found, in tables for people; numbers rounded.
+
+inline constexpr size_t kMostRowsOnPage = 2000;
+
+// Counts of each variant, and how its estimates (replica 0) differ between groups.
+TextTable VariantTable(const std::vector<JobResult>& rows);
+
+// Errors of what was held out, a row a group and variant: means over those folds alone that all
+// variants have, so that none is judged by easier ones, and the difference to the first variant
+// with its standard error over folds. Says which folds are missing.
+TextTable HeldOutTable(const std::vector<JobResult>& rows);
+
+// A parameter of one group over the bootstrap replicas of that group.
+struct BootstrapSpread {
+  const BatchJob* job;  // replica 0
+  std::string parameter;
+  double estimate;
+  int replicas;
+  double standard_error, lower95, upper95;
+};
+// Groups of at least two replicas.
+std::vector<BootstrapSpread> SpreadOverReplicas(const std::vector<JobResult>& rows);
+TextTable BootstrapTable(const std::vector<JobResult>& rows);
+
+// Each warning once, with how many jobs it is of.
+TextTable WarningTable(const std::vector<JobResult>& rows);
+
+TextTable FailureTable(const std::vector<JobResult>& rows);
+TextTable JobTable(const std::vector<JobResult>& rows);
+
+}  // namespace pushid
