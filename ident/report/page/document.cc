@@ -1,6 +1,7 @@
 // ident: reports as text and as CSV.
 #include "ident/report/page/document.h"
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 
@@ -181,6 +182,11 @@ bool IsEmpty(const ReportSection& s) {
          s.figures.empty() && s.folds.empty() && s.widget.empty();
 }
 
+bool HasWidget(const ReportSection& s) {
+  return !s.widget.empty() || std::any_of(s.folds.begin(), s.folds.end(),
+                                          [](const auto& fold) { return !fold.widget.empty(); });
+}
+
 // Lines that belong together stay one paragraph.
 std::string Paragraph(std::string text, const char* opening = "<p>") {
   while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
@@ -218,10 +224,12 @@ std::string SectionHtml(const ReportSection& section) {
 // The links stand behind the first section, whose pictures lead.
 std::string ToPage(const Report& report) {
   std::string nav, lead, body;
+  bool scripted = false;
   for (const ReportSection& section : report.sections) {
     if (IsEmpty(section)) continue;
     nav += "<li><a href=\"#" + section.id + "\">" + EscapeXml(section.title) + "</a></li>\n";
     (lead.empty() ? lead : body) += SectionHtml(section);
+    scripted = scripted || HasWidget(section);
   }
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
          "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -230,7 +238,8 @@ std::string ToPage(const Report& report) {
          "</style>\n</head>\n<body>\n<header>" + Element("h1", report.title) +
          Element("p", report.subtitle) + "</header>\n<main>\n" + lead +
          "<nav aria-label=\"sections\"><ul>\n" + nav + "</ul></nav>\n" + body + "</main>\n" +
-         "<script>" + kPageScript + "</script>\n</body>\n</html>\n";
+         (scripted ? std::string("<script>") + kPageScript + "</script>\n" : "") +
+         "</body>\n</html>\n";
 }
 
 MaybeError CheckPageName(const std::string& flag, const std::string& path) {
