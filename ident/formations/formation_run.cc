@@ -46,6 +46,7 @@ Outcome Judge(const FormationRun& run, int person, int onset_frame) {
   }
   if (onset_frame < 0) return Outcome::kUnmoved;
   const Scene& scene = run.recording.scene;
+  // From a person's own onset: what a wave takes to reach them (kWaitSecondsInRows) is not in it.
   const int judged = std::max(scene.LastPushEnd(), onset_frame) +
                      static_cast<int>(std::lround(kWaitSeconds / scene.dt));
   if (judged >= run.num_frames()) return Outcome::kNotJudged;
@@ -71,8 +72,8 @@ PersonSummary Summarize(const FormationRun& run, int person) {
 }  // namespace
 
 std::string OutcomeLegend() {
-  return "outcome: judged " + WaitText({}) +
-         " after the last push, or after the onset where that is later; " + kSettledText +
+  return "outcome: judged " + Rounded(kWaitSeconds, 4) +
+         " s after the last push, or after the onset where that is later; " + kSettledText +
          ": slower than " + Rounded(kSettledSpeed, 4) + " m/s\nand within " +
          Rounded(kSettledLean, 4) + " rad of the rest posture then; " + kSlowToSettleText +
          ": not yet. " + kFellText +

@@ -127,8 +127,8 @@ def fit(folder, *flags):
 def fitted(arguments):
     """(truth, free parameters, report) of a study's fit; kept under the programs' hash."""
     study, flags = arguments
-    with open(os.path.join(studies.BIN, "pushid-fit"), "rb") as file:
-        key = studies.hashlib.sha256(file.read() + (repr(study) + repr(flags)).encode()).hexdigest()[:16]
+    program = studies.program_bytes(os.path.join(studies.BIN, "pushid-fit"))
+    key = studies.hashlib.sha256(program + (repr(study) + repr(flags)).encode()).hexdigest()[:16]
     kept = os.path.join(studies.KEPT, f"balance-{key}.json")
     if not os.path.exists(kept):
         os.makedirs(studies.KEPT, exist_ok=True)

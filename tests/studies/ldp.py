@@ -105,8 +105,8 @@ class Trained:
         _, train, held = fold
         self.train, self.held = written(train), written(held)
         self.fitted = studies.run("pushid-fit", f"--recordings={self.train}", *fit, out="model_out")
-        with open(os.path.join(studies.BIN, "pushid-train-restoration"), "rb") as file:
-            key = hashlib.sha256(file.read() + "\0".join([self.fitted.path, *bodies]).encode()).hexdigest()[:16]
+        program = studies.program_bytes(os.path.join(studies.BIN, "pushid-train-restoration"))
+        key = hashlib.sha256(program + "\0".join([self.fitted.path, *bodies]).encode()).hexdigest()[:16]
         self.restoration = os.path.join(studies.KEPT, f"ldp-bodies-{key}")
         self.bodies = studies.run("pushid-train-restoration", f"--recordings={self.train}",
                                   f"--model={self.fitted.path}", f"--out={self.restoration}", *bodies, out=None)
