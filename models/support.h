@@ -43,6 +43,7 @@ template <typename T>
 struct HipOverFeet {
   Horizontal<T> place, velocity, cart;  // cart: its velocity
 
+  HipOverFeet() = default;
   HipOverFeet(const SelfForce& self, const Angles<T>& angles, const Vector4<T>& qd) {
     const double l = self.body.rod_length;
     const auto& [s_th, c_th, s_ph, c_ph] = angles;

@@ -2,6 +2,7 @@
 #include "ident/fit/fit_setup.h"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 
 #include "datasets/files/names.h"
@@ -150,16 +151,24 @@ bool GoesTogether(const FitOptions& o, const std::vector<PendulumRecording>& rec
           }));
 }
 
+// Nothing for presets that do not ask the feet.
+std::optional<Stance> ToldByFeet(const std::vector<PendulumRecording>& recordings,
+                                 const std::string& preset) {
+  const std::optional<Stance> of_movers = StanceOfMovers(preset);
+  if (!of_movers) return std::nullopt;
+  return StanceOf(FeetOf(recordings), *of_movers);
+}
+
 // Over the preset, with the stance that the feet tell where nothing says another.
 Result<FitOptions> OverPresetOf(const std::vector<PendulumRecording>& recordings,
                                 const std::string& preset, const GivenOptions& given,
                                 const GivenOptions& must_act) {
   const std::string* asked = Find(given, "stance");
-  const Stance told = StanceOf(FeetOf(recordings));
-  const bool open = (asked == nullptr || *asked == kAutoStance) && TakesStanceFromFeet(preset);
-  if (open && told != Stance::kSlide) {
+  const std::optional<Stance> told = ToldByFeet(recordings, preset);
+  const bool open = asked == nullptr || *asked == kAutoStance;
+  if (open && told && *told != Stance::kSlide) {
     Result<FitOptions> made =
-        OverPreset(preset, Merged(given, {{"stance", NameOf(told)}}), must_act);
+        OverPreset(preset, Merged(given, {{"stance", NameOf(*told)}}), must_act);
     if (made.ok() && GoesTogether(made.value(), recordings)) return made;
   }
   return OverPreset(preset, given, must_act);
@@ -216,9 +225,8 @@ Result<FitSetup> FitSetup::Make(GivenOptions given, GivenOptions must_act) {
 
 Result<FitOptions> FitSetup::For(const std::vector<PendulumRecording>& recordings) const {
   const std::string preset = PresetFor(PresetIn(given_), recordings);
-  const bool same_feet =
-      !TakesStanceFromFeet(preset) || StanceOf(FeetOf(recordings)) == roughly_.model.stance;
-  if (preset == roughly_.preset && same_feet) return roughly_;
+  const std::optional<Stance> told = ToldByFeet(recordings, preset);
+  if (preset == roughly_.preset && (!told || *told == roughly_.model.stance)) return roughly_;
   return MakeFitOptions(given_, &recordings, must_act_);
 }
 

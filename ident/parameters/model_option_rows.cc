@@ -45,9 +45,9 @@ Row StanceRow() {
       "stance", "/stance", [](FitOptions & o) -> auto& { return o.model.stance; },
       "behaviour of the feet: slide (the cart moves under any force), steps (they hold until the "
       "capture point leaves their support, then one of them steps), fixed (they hold), or auto "
-      "(fixed where no pushed person's feet moved, steps where fewer than three in four did, else "
-      "slide; "
-      "ldp presets: slide)");
+      "(fixed where no pushed person's feet moved; steps where some did, and of people who touch "
+      "also where all did; slide where three in four people alone did, none left the ground or "
+      "feet were not recorded; ldp presets: slide)");
   row.choices.insert(row.choices.begin(), kAutoStance);
   row.text = [](const FitOptions&) { return std::string(kAutoStance); };
   row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {

@@ -66,17 +66,30 @@ FitOptions GroupPreset() {
   return o;
 }
 
+// Where people stand and how they are pushed differ between settings, not their bodies: with gains
+// of their own settings do not settle, and are predicted worse.
+constexpr char kPooledWhereFeetStep[] =
+    "contact_stiffness,contact_distance,contact_kappa,contact_damping,tail_gain,tail_time,"
+    "tail_exponent";
+
 struct NamedPreset {
   const char* name;
   FitOptions (*make)();
-  bool stance_from_feet;
+  std::optional<Stance> of_movers = std::nullopt;
+  const char* pooled_where_feet_step = nullptr;  // null: what the preset pools
 };
-constexpr NamedPreset kPresets[] = {{"tail", TailPreset, true},
-                                    {"ldp", LdpPreset, false},
-                                    {"ldp_groups", LdpGroupsPreset, false},
-                                    {kLdpPublished, LdpPublishedPreset, false},
-                                    {kLdpPublishedGroups, LdpPublishedGroupsPreset, false},
-                                    {"group", GroupPreset, true}};
+constexpr NamedPreset kPresets[] = {{"tail", TailPreset, Stance::kSlide},
+                                    {"ldp", LdpPreset},
+                                    {"ldp_groups", LdpGroupsPreset},
+                                    {kLdpPublished, LdpPublishedPreset},
+                                    {kLdpPublishedGroups, LdpPublishedGroupsPreset},
+                                    {"group", GroupPreset, Stance::kSteps, kPooledWhereFeetStep}};
+
+const NamedPreset* FindPreset(const std::string& name) {
+  const auto known = std::find_if(std::begin(kPresets), std::end(kPresets),
+                                  [&](const NamedPreset& preset) { return name == preset.name; });
+  return known == std::end(kPresets) ? nullptr : known;
+}
 
 void FreeSelfForce(SelfForceKind kind, ParameterTable* table) {
   for (int id = RowOf(kind).first; id <= RowOf(kind).last; ++id) {
@@ -135,12 +148,10 @@ void SetStance(Stance stance, FitOptions* options) {
   options->model.push = PushUse::kAsRecorded;
   options->start = FitStart::kNominal;
   options->model.directions = Directions::kAxes;  // the feet's support has a front
-  // Where people stand and how they are pushed differ between settings, not their bodies: with
-  // gains of their own settings do not settle, and are predicted worse.
-  if (options->preset == "group") {
-    options->pool =
-        "contact_stiffness,contact_distance,contact_kappa,contact_damping,tail_gain,tail_time,"
-        "tail_exponent";
+  options->mode_weight = 0.0;                   // that is about linear self forces
+  const NamedPreset* preset = FindPreset(options->preset);
+  if (preset != nullptr && preset->pooled_where_feet_step != nullptr) {
+    options->pool = preset->pooled_where_feet_step;
   }
   // Who stands gives way about the ankles, not at them: people push at the hip, or above.
   table[kContactHeight].nominal = 0.95;
@@ -190,10 +201,9 @@ std::vector<std::string> PresetNames() {
   return names;
 }
 
-bool TakesStanceFromFeet(const std::string& preset) {
-  return std::any_of(std::begin(kPresets), std::end(kPresets), [&](const NamedPreset& known) {
-    return preset == known.name && known.stance_from_feet;
-  });
+std::optional<Stance> StanceOfMovers(const std::string& preset) {
+  const NamedPreset* known = FindPreset(preset);
+  return known == nullptr ? std::nullopt : known->of_movers;
 }
 
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings) {
@@ -209,9 +219,9 @@ Result<FitOptions> StartPreset(const std::string& name) {
   if (name == kAutoPreset) {
     return Error{"the preset auto looks at recordings: ask PresetFor what it stands for"};
   }
+  if (const NamedPreset* preset = FindPreset(name)) return preset->make();
   std::string known = kAutoPreset;
   for (const NamedPreset& preset : kPresets) {
-    if (name == preset.name) return preset.make();
     known += (&preset == std::end(kPresets) - 1 ? " or " : ", ") + std::string(preset.name);
   }
   return Error{"--preset is '" + name + "'; it must be " + known};

@@ -3,9 +3,9 @@
 //   tail:  one person: push tail, posture-relative recovery, one cross term; eight free
 //          parameters, the tail's base partially pooled by condition
 //   ldp:   one person: plain PD balance and one friction from upright; five free parameters
-//   group: people who touch: tail with all linear self forces and contact, every parameter
-//          partially pooled by setting (condition), contact and tail alone where feet step;
-//          eighteen shared parameters
+//   group: people who touch: tail with contact. Where feet step contact and tail are partially
+//          pooled by setting (condition), sixteen shared parameters; where they slide there are all
+//          linear self forces, and every parameter but mu is, eighteen shared ones
 //   ldp_groups: people who touch, as LDP composes them: that with a potential, torques against
 //          leaning on each other and a learned interaction
 //   ldp_published: LDP as published (Yue et al., CVPR 2024), networks and all: PD and friction at
@@ -20,6 +20,7 @@
 //   options.table[kMuY].free = true;      // held otherwise
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,10 +58,12 @@ MaybeError PoolParameters(FitOptions* options);
 // from the nominal values, for equation error does not know the feet. Where they hold whatever
 // happens, pushes have no tail, people are not held to settle, and both gains of both directions
 // are free.
-// Unless told which, a preset takes the stance from what the feet did (pushed_feet.h); those that
-// stand for something published, slide.
+// Unless told which, a preset takes the stance from what the feet did (pushed_feet.h), and has one
+// for people who nearly all move: of people alone feet slide, of people who touch they step, each
+// the one that predicts them better (models/README.md). Presets that stand for something published
+// have none (nullopt) and slide.
 inline constexpr char kAutoStance[] = "auto";
-bool TakesStanceFromFeet(const std::string& preset);
+std::optional<Stance> StanceOfMovers(const std::string& preset);
 void SetStance(Stance stance, FitOptions* options);
 
 // Whether people's joints are needed besides hip and ankles: for masses by segments, and bodies.

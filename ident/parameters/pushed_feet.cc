@@ -52,11 +52,11 @@ PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings) {
   return feet;
 }
 
-Stance StanceOf(const PushedFeet& feet) {
-  if (feet.seen == 0 || feet.moved >= kEverybody * feet.seen) return Stance::kSlide;
-  if (feet.moved == 0) return Stance::kFixed;
+Stance StanceOf(const PushedFeet& feet, Stance of_movers) {
+  if (feet.seen > 0 && feet.moved == 0) return Stance::kFixed;
   // Feet that move and never leave the ground slide, if little.
-  return feet.stepped > 0 ? Stance::kSteps : Stance::kSlide;
+  if (feet.stepped == 0) return Stance::kSlide;
+  return feet.moved >= kEverybody * feet.seen ? of_movers : Stance::kSteps;
 }
 
 std::string FeetText(const PushedFeet& feet, Stance stance) {

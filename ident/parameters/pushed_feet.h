@@ -1,7 +1,7 @@
 // ident: what the feet of pushed people did, and which stance a fit takes from that.
 //
 //   PushedFeet feet = FeetOf(recordings);
-//   StanceOf(feet)            // kFixed: nobody's feet moved
+//   StanceOf(feet, Stance::kSlide)  // kFixed: nobody's feet moved
 //   FeetText(feet, stance)    // "feet hold (--stance=fixed; they moved in 0 of 24 pushes)"
 #pragma once
 
@@ -25,9 +25,9 @@ inline constexpr double kLeastSteppingRate = 29.0;
 
 PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings);
 
-// Nobody moved: fixed. Three in four moved, none left the ground, or nobody's feet were recorded:
-// slide. Else: steps.
-Stance StanceOf(const PushedFeet& feet);
+// Nobody moved: fixed. None left the ground, or nobody's feet were recorded: slide. Three in four
+// moved: of_movers. Else: steps.
+Stance StanceOf(const PushedFeet& feet, Stance of_movers);
 
 // What the feet of a model do and what those of the recordings did; empty: none were recorded.
 std::string FeetText(const PushedFeet& feet, Stance stance);

@@ -16,8 +16,9 @@ namespace pushid {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Pooled fits of many subjects: two Jacobians for each column would take longer than the fit.
-constexpr Eigen::Index kMostColumnsWithCurvature = 60;
+// Beyond that two gradients for each column take longer than the fit; of groups whose feet step (44
+// columns) they left no minimum, and J'J was taken all the same.
+constexpr Eigen::Index kMostColumnsWithCurvature = 40;
 constexpr double kNullEigenvalue = kNullSingularValue * kNullSingularValue;
 
 // Directions that the recordings say nothing about, whatever priors and settling simulations say: a
@@ -238,7 +239,8 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
 
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
                                const FitPoint* free) {
-  const Evaluated e = Evaluate(problem, point, true);
+  // Where a demand moved the fit its errors are those at `free`, second derivatives and all.
+  const Evaluated e = Evaluate(problem, point, free == nullptr);
   const auto& [score, columns, unit, clusters, clustering] = e;
   const int size = static_cast<int>(columns.size());
   const Covariance c = ComputeCovariance(score, unit, clustering);
@@ -252,10 +254,10 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   u.clustered = !spread.scatter.empty();
   u.num_people = clusters.people;
   u.about_people_like_them = u.clustered && clusters.draws_people;
-  u.moves = c.moves;
-  u.left_out = c.recordings;
+  u.moves = spread.moves;
+  u.left_out = spread.recordings;
   u.condition_number = c.directions.Condition();
-  u.full_hessian = c.full_hessian;
+  u.full_hessian = spread.full_hessian;
   u.sigma = c.sigma;
   u.freedom = u.clustered ? u.num_clusters - 1 : spread.naive_freedom;
   u.scatter = spread.scatter;

@@ -8,8 +8,9 @@ namespace {
 
 using Ids = StanceParameters<double>;
 
-// Inputs of the jets: the feet, what ankles and steps perceive (two angles, qd each), then the
-// parameters. Where nothing is late both perceive the same, and share their inputs.
+// Inputs of the jets: the feet, the hip as ankles and steps perceive it (its place, its velocity and
+// the cart's), then the parameters. Where nothing is late both perceive the same, and share their
+// inputs.
 constexpr int kPerceived = 6, kAnkleAt = kFeetStates;
 
 template <bool kLate>
@@ -18,18 +19,43 @@ struct StanceInputs {
   static constexpr int kParametersAt = kFootAt + kPerceived;
   static constexpr int kCount = kParametersAt + Ids::kCount;
   using Jet = ceres::Jet<double, kCount>;
+};
 
-  static PendulumState<Jet> Felt(const PendulumState<double>& state, int first) {
-    PendulumState<Jet> jets;
-    for (int i = 0; i < 2; ++i) jets.q[2 + i] = Jet(state.q[2 + i], first + i);
-    for (int i = 0; i < 4; ++i) jets.qd[i] = Jet(state.qd[i], first + 2 + i);
-    return jets;
+// The hip over the feet, and its derivatives by [two angles, qd].
+struct PerceivedHip {
+  using Jet = ceres::Jet<double, kPerceived>;
+  double value[kPerceived];
+  Eigen::Matrix<double, kPerceived, kPerceived, Eigen::RowMajor> by_state;
+
+  PerceivedHip(const SelfForce& self, const PendulumState<double>& state) {
+    Vector4<Jet> q = Vector4<Jet>::Zero(), qd;
+    for (int i = 0; i < 2; ++i) q[2 + i] = Jet(state.q[2 + i], i);
+    for (int i = 0; i < 4; ++i) qd[i] = Jet(state.qd[i], 2 + i);
+    const HipOverFeet<Jet> hip(self, Angles<Jet>(q), qd);
+    for (int i = 0; i < kPerceived; ++i) {
+      const Jet& jet = (i < 2 ? hip.place : i < 4 ? hip.velocity : hip.cart)[i % 2];
+      value[i] = jet.a;
+      by_state.row(i) = jet.v.transpose();
+    }
+  }
+
+  // As inputs of jets from `first` on.
+  template <typename T>
+  HipOverFeet<T> Inputs(int first) const {
+    HipOverFeet<T> hip;
+    for (int i = 0; i < 2; ++i) {
+      hip.place[i] = T(value[i], first + i);
+      hip.velocity[i] = T(value[2 + i], first + 2 + i);
+      hip.cart[i] = T(value[4 + i], first + 4 + i);
+    }
+    return hip;
   }
 };
 
 template <bool kLate>
 auto JetsOfStance(const SelfForce& self, const ParameterSet<double>& p,
-                  const FeetState<double>& feet, const Perceived<double>& perceived) {
+                  const FeetState<double>& feet, const PerceivedHip& ankle,
+                  const PerceivedHip& step) {
   using Inputs = StanceInputs<kLate>;
   using Jet = typename Inputs::Jet;
   FeetState<Jet> jets;
@@ -38,26 +64,26 @@ auto JetsOfStance(const SelfForce& self, const ParameterSet<double>& p,
   jets.swing_time = Jet(feet.swing_time, 3);
   jets.swings = feet.swings;
   jets.landed = feet.landed;
-  Perceived<Jet> felt;
-  felt.ankle = Inputs::Felt(perceived.ankle, kAnkleAt);
-  felt.step = Inputs::Felt(perceived.step, Inputs::kFootAt);
   int input = Inputs::kParametersAt;
   // In the order of kIds, which is that of the members.
   const StanceParameters<Jet> parameters([&](Parameter id) { return Jet(p[id], input++); });
-  return StanceAt(self, parameters, jets, felt);
+  return StanceStep<Jet>(self, parameters, jets, ankle.Inputs<Jet>(kAnkleAt),
+                         step.Inputs<Jet>(Inputs::kFootAt).Capture(self))
+      .Run();
 }
 
 // One output's derivatives, times `factor`, into row `row` of each.
 template <bool kLate, typename ByState, typename ByFeet, typename ByParameter>
 void SetRow(const typename StanceInputs<kLate>::Jet& output, double factor, int row,
-            ByState* by_ankle, ByState* by_foot, ByFeet* by_feet, ByParameter* by_parameter) {
+            const PerceivedHip& ankle, const PerceivedHip& step, ByState* by_ankle,
+            ByState* by_foot, ByFeet* by_feet, ByParameter* by_parameter) {
   using Inputs = StanceInputs<kLate>;
-  const auto set = [&](ByState* by, int first) {
-    by->row(row).template segment<2>(2) = factor * output.v.template segment<2>(first).transpose();
-    by->row(row).template tail<4>() = factor * output.v.template segment<4>(first + 2).transpose();
+  const auto set = [&](const PerceivedHip& hip, ByState* by, int first) {
+    by->row(row).template tail<kPerceived>().noalias() =
+        (factor * output.v.template segment<kPerceived>(first).transpose()) * hip.by_state;
   };
-  set(by_ankle, kAnkleAt);
-  if (kLate) set(by_foot, Inputs::kFootAt);
+  set(ankle, by_ankle, kAnkleAt);
+  if (kLate) set(step, by_foot, Inputs::kFootAt);
   by_feet->row(row) = factor * output.v.template head<kFeetStates>().transpose();
   for (int i = 0; i < Ids::kCount; ++i) {
     (*by_parameter)(row, Ids::kIds[i]) = factor * output.v[Inputs::kParametersAt + i];
@@ -70,19 +96,21 @@ void StanceRows(const SelfForce& self, const ParameterSet<double>& p,
                 const PendulumState<double>& state, const Perceived<double>& perceived, bool acts,
                 Eigen::Matrix<double, 4, 8>* by_ankle, Eigen::Matrix<double, 4, 8>* by_foot,
                 SelfForce::Jacobian* jacobian, StanceJacobian* stance) {
-  const auto jets = JetsOfStance<kLate>(self, p, state.feet, perceived);
+  const PerceivedHip ankle(self, perceived.ankle);
+  const PerceivedHip step = kLate ? PerceivedHip(self, perceived.step) : ankle;
+  const auto jets = JetsOfStance<kLate>(self, p, state.feet, ankle, step);
   auto* next_by_ankle = kLate ? &stance->next_by_ankle : &stance->next_by_state;
   const typename StanceInputs<kLate>::Jet* next[] = {&jets.next.apart[0], &jets.next.apart[1],
                                                      &jets.next.clock, &jets.next.swing_time};
   for (int i = 0; i < kFeetStates; ++i) {
-    SetRow<kLate>(*next[i], 1.0, i, next_by_ankle, &stance->next_by_foot, &stance->next_by_feet,
-                  &stance->next_by_parameter);
+    SetRow<kLate>(*next[i], 1.0, i, ankle, step, next_by_ankle, &stance->next_by_foot,
+                  &stance->next_by_feet, &stance->next_by_parameter);
   }
   if (!acts) return;
   const double ground = kHeldFast * self.body.mass;
   for (int i = 0; i < 4; ++i) {
-    SetRow<kLate>(i < 2 ? jets.velocity[i] : jets.torque[i - 2], i < 2 ? ground : 1.0, i, by_ankle,
-                  by_foot, &stance->by_feet, &jacobian->by_parameter);
+    SetRow<kLate>(i < 2 ? jets.velocity[i] : jets.torque[i - 2], i < 2 ? ground : 1.0, i, ankle,
+                  step, by_ankle, by_foot, &stance->by_feet, &jacobian->by_parameter);
   }
   for (int i = 0; i < 2; ++i) jacobian->by_state(i, 4 + i) -= ground;
 }

@@ -7,7 +7,8 @@ Times are those of one core.
 import studies
 from studies import number, with_error
 
-GAINS = [("mu", "mu, N s/m"), ("Kp_theta", "Kp_theta, N m/rad"), ("a_x", "a_x, m/s^2/rad")]
+GAINS = [("Kp_theta", "Kp_theta, N m/rad"), ("support_front", "support_front, m"), ("step_gain", "step_gain"),
+         ("step_swing", "step_swing, s")]
 # What is fitted, and --setting.
 FITS = [("single people", "single"), ("groups", "groups"), ("all", "all")]
 
@@ -15,7 +16,7 @@ FITS = [("single people", "single"), ("groups", "groups"), ("all", "all")]
 def people():
     rows = []
     for title, setting in FITS:
-        model = studies.fit(setting).json
+        model = studies.fit(setting, "--stance=steps").json
         found = {p["name"]: p for p in model["parameters"]}
         cells = []
         for name, _ in GAINS:

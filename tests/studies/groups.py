@@ -1,9 +1,9 @@
 """People who touch: what the 49 recordings of groups identify, and how candidates of contact predict.
 
 values      contact by setting (ident/README.md); one fit, half a minute
-settling    where people end up two seconds after a push (ident/README.md); the same fit
-candidates  errors on held-out recordings beside settling (ident/validation/README.md); 10 minutes
-schemes     strong pushes, and whole settings, held out (ident/validation/README.md); 2 minutes
+settling    where people end up three seconds after a push (ident/README.md); the same fit
+candidates  errors on held-out recordings beside settling (ident/validation/README.md); 15 minutes
+schemes     strong pushes, and whole settings, held out (ident/validation/README.md); 3 minutes
 travel      how the push travels (ident/prediction/README.md); with what the others ran, seconds
 
 Times are those of one core.
@@ -17,11 +17,11 @@ CONTACT = [("contact_distance", "contact distance, m"), ("contact_stiffness", "c
 CANDIDATES = [
     ("no contact", "--interaction=none"),
     ("the interaction of LDP, fitted", "--interaction=ldp --pool=none"),
-    ("contact alone", "--self_force=none --pool=none"),
     ("nothing pooled", "--pool=none"),
-    ("nothing pooled, free to move on", "--pool=none --settling_weight=0 --mode_weight=0"),
+    ("free to move on", "--settling_weight=0"),
     ("distance and stiffness pooled", "--pool=contact_distance,contact_stiffness"),
-    ("mu by setting as well", "--pool=all"),
+    ("ankles and steps by setting as well", "--pool=all"),
+    ("feet that slide", "--stance=slide"),
 ]
 PRESET = "--preset=group"
 

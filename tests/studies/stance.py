@@ -1,7 +1,7 @@
 """Feet that hold and step (--stance=steps) against feet that slide.
 
 single    errors on held-out recordings of single people, every scheme (models/README.md); 8 minutes
-groups    the same of groups, 5 folds, with who moves for nothing (models/README.md); 15 minutes
+groups    the same of groups, with who moves for nothing (models/README.md); 10 minutes
 sways     75 kg pushed for 0.7 s: who steps, when, where the person ends, P(step) (models/README.md); seconds
 values    what the fit of single people says of the feet (models/README.md); seconds
 steps     who steps: AUC, Brier score, calibration, lift-off and first place, held out (ident/prediction/README.md);
@@ -18,19 +18,21 @@ from studies import number, with_error
 STANCE = "--stance=steps"
 SCHEMES = [("5 x 4 folds", "stratified", ("--repeats=5",)), ("a person left out", "subject", ()),
            ("strong pushes left out", "strong", ())]
+GROUP_SCHEMES = [("5 folds", "stratified", ("--folds=5", "--repeats=1")), ("a setting left out", "setting", ()),
+                 ("strong pushes left out", "strong", ())]
 VELOCITIES = [0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8]  # m/s: impulse over mass
 
 
 def compared(setting, scheme, *arguments):
     """Cross-validations by name, and their paired differences from the first."""
     out = studies.on_recordings("pushid-crossvalidate", setting, f"--scheme={scheme}", "--yardsticks=false",
-                                *arguments, f"--compare=steps: {STANCE}").json
+                                "--stance=slide", *arguments, f"--compare=steps: {STANCE}").json
     scores = {p["name"]: p for p in out["predictors"][1:]}
     return {"slide": out["predictors"][0], **scores}, {d["to"]: d for d in out["paired_differences"]}
 
 
 def groups_compared():
-    return compared("groups", "stratified", "--folds=5", "--repeats=1")
+    return compared("groups", GROUP_SCHEMES[0][1], *GROUP_SCHEMES[0][2])
 
 
 def error_cells(p):
@@ -58,17 +60,18 @@ def single():
 
 
 def groups():
-    scores, differences = groups_compared()
     rows = []
-    for name, p in scores.items():
-        moves = p["propagation"]
-        onset = moves["onset_error_frames"]
-        rows.append([f"`{name}`", *error_cells(p), difference_cell(name, differences),
-                     f"{moves['false_movers']:.3g} of {moves['bystanders']:.0f}",
-                     f"{moves['missed_movers']:.3g} of {moves['movers']:.0f}",
-                     with_error(onset["value"], onset["standard_error"])])
-    return studies.table(["49 recordings of groups, 5 folds", "hipADE, m", "hipFDE, m", "settle",
-                          "hipADE - `slide`, m", "false movers", "missed movers", "onset error, frames"], rows)
+    for title, scheme, arguments in GROUP_SCHEMES:
+        scores, differences = compared("groups", scheme, *arguments)
+        for name, p in scores.items():
+            moves = p["propagation"]
+            onset = moves["onset_error_frames"]
+            rows.append([title, f"`{name}`", *error_cells(p), difference_cell(name, differences),
+                         f"{moves['false_movers']:.3g} of {moves['bystanders']:.0f}",
+                         f"{moves['missed_movers']:.3g} of {moves['movers']:.0f}",
+                         with_error(onset["value"], onset["standard_error"])])
+    return studies.table(["49 recordings of groups", "feet", "hipADE, m", "hipFDE, m", "settle", "hipADE - `slide`, m",
+                          "false movers", "missed movers", "onset error, frames"], rows)
 
 
 def sways():

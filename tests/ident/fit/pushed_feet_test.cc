@@ -32,7 +32,7 @@ TEST(FitSetup, FeetTellTheStance) {
   };
   EXPECT_EQ(stance(0, {}), Stance::kFixed);
   EXPECT_EQ(stance(3, {}), Stance::kSteps);
-  EXPECT_EQ(StanceOf(FeetOf(WhereMoved(3, false))), Stance::kSlide) << "who slides a little";
+  EXPECT_EQ(StanceOf(FeetOf(WhereMoved(3, false)), Stance::kSteps), Stance::kSlide) << "who slides a little";
   EXPECT_EQ(stance(5, {}), Stance::kSlide);
   EXPECT_EQ(stance(6, {}), Stance::kSlide);
   EXPECT_EQ(stance(0, {{"stance", "auto"}}), Stance::kFixed);
