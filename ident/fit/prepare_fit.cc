@@ -53,8 +53,9 @@ void UnpoolOneUnit(const std::vector<PendulumRecording>& recordings, FitOptions*
   }
   if (units.size() > 1) return;
   for (ParameterSpec& spec : options->table.specs) spec.pooled = false;
-  const Result<FitOptions> preset = StartPreset(options->preset);
+  Result<FitOptions> preset = StartPreset(options->preset);
   if (!preset.ok()) return;
+  SetStance(options->model.stance, &preset.value());  // which pools by itself
   const bool asked =
       preset.value().pool != options->pool || preset.value().pool_by != options->pool_by;
   if (!asked) return;

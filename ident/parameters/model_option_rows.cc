@@ -46,8 +46,8 @@ Row StanceRow() {
       "behaviour of the feet: slide (the cart moves under any force), steps (they hold until the "
       "capture point leaves their support, then one of them steps), fixed (they hold), or auto "
       "(fixed where no pushed person's feet moved; steps where some did, and of people who touch "
-      "also where all did; slide where three in four people alone did, none left the ground or "
-      "feet were not recorded; ldp presets: slide)");
+      "also where all did; slide where three in four people alone did, fewer than half of them "
+      "lifted a foot or feet were not recorded; ldp presets: slide)");
   row.choices.insert(row.choices.begin(), kAutoStance);
   row.text = [](const FitOptions&) { return std::string(kAutoStance); };
   row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {

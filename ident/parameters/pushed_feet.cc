@@ -54,8 +54,9 @@ PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings) {
 
 Stance StanceOf(const PushedFeet& feet, Stance of_movers) {
   if (feet.seen > 0 && feet.moved == 0) return Stance::kFixed;
-  // Feet that move and never leave the ground slide, if little.
-  if (feet.stepped == 0) return Stance::kSlide;
+  // Feet that move and do not leave the ground slide, if little. Of people who slide noise shows
+  // some as lifted: of 48 synthetic pushes 8, where all of 78 recorded ones step.
+  if (2 * feet.stepped < feet.moved || feet.stepped == 0) return Stance::kSlide;
   return feet.moved >= kEverybody * feet.seen ? of_movers : Stance::kSteps;
 }
 

@@ -25,8 +25,8 @@ inline constexpr double kLeastSteppingRate = 29.0;
 
 PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings);
 
-// Nobody moved: fixed. None left the ground, or nobody's feet were recorded: slide. Three in four
-// moved: of_movers. Else: steps.
+// Nobody moved: fixed. Fewer than half of who moved lifted a foot, or nobody's feet were recorded:
+// slide. Three in four moved: of_movers. Else: steps.
 Stance StanceOf(const PushedFeet& feet, Stance of_movers);
 
 // What the feet of a model do and what those of the recordings did; empty: none were recorded.

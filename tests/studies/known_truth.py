@@ -1,12 +1,14 @@
 """Do default fits recover truths that nobody put beside the priors?
 
 truths  ident/README.md; 10 minutes on two cores
+groups  ident/README.md; rows of people whose feet step, minutes on two cores
 
 Synthetic studies of their own truths; tests/studies/known_truth_study.cc says what varies.
 """
 import studies
 
 STUDY = ["--studies=200", "--num_threads=2"]
+GROUPS = ["--groups", "--studies=20", "--num_threads=2"]
 
 
 def rows_of(arguments):
@@ -17,7 +19,15 @@ def rows_of(arguments):
 
 
 def truths():
-    spread, told = rows_of(STUDY)
+    return table_of(STUDY)
+
+
+def groups():
+    return table_of(GROUPS)
+
+
+def table_of(arguments):
+    spread, told = rows_of(arguments)
     header = ["how many, and % of the intervals that hold the truth", "identified", "weak", "prior-held",
               "unidentifiable", "at bound"]
     rows = [[f"`{row[0]}`" if row[0] != "all" else "**all**", *row[1:]] for row in spread]
@@ -25,4 +35,4 @@ def truths():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"truths": truths})
+    studies.main(__file__, {"truths": truths, "groups": groups})

@@ -12,16 +12,17 @@
 namespace pushid {
 namespace {
 
-// Six pushed people, of whom so many moved their feet, the first by a step.
-std::vector<PendulumRecording> WhereMoved(int moved, bool by_steps = true) {
+// Six pushed people, of whom so many moved their feet, and so many of these lifted one.
+std::vector<PendulumRecording> WhereMoved(int moved, int stepped) {
   std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
   for (size_t i = 0; i < recordings.size(); ++i) {
     recordings[i].steps.assign(1, PersonSteps());
     if (static_cast<int>(i) < moved) recordings[i].steps[0].travel = 0.3;
   }
-  if (moved > 0 && by_steps) recordings[0].steps[0].steps.resize(1);
+  for (int i = 0; i < stepped; ++i) recordings[i].steps[0].steps.resize(1);
   return recordings;
 }
+std::vector<PendulumRecording> WhereMoved(int moved) { return WhereMoved(moved, moved); }
 
 TEST(FitSetup, FeetTellTheStance) {
   const auto stance = [](int moved, const GivenOptions& given) {
@@ -32,7 +33,16 @@ TEST(FitSetup, FeetTellTheStance) {
   };
   EXPECT_EQ(stance(0, {}), Stance::kFixed);
   EXPECT_EQ(stance(3, {}), Stance::kSteps);
-  EXPECT_EQ(StanceOf(FeetOf(WhereMoved(3, false)), Stance::kSteps), Stance::kSlide) << "who slides a little";
+  const auto told = [](int moved, int stepped) {
+    return StanceOf(FeetOf(WhereMoved(moved, stepped)), Stance::kSteps);
+  };
+  EXPECT_EQ(told(3, 0), Stance::kSlide) << "who slides a little";
+  EXPECT_EQ(told(6, 2), Stance::kSlide) << "noise lifts some";
+  EXPECT_EQ(told(6, 3), Stance::kSteps);
+  EXPECT_EQ(stance(6, {{"preset", "group"}}), Stance::kSteps) << "who touch";
+  EXPECT_EQ(stance(6, {{"preset", "group"}, {"self_force", "none"}}), Stance::kSteps);
+  EXPECT_EQ(stance(6, {{"preset", "group"}, {"free", "mu"}}), Stance::kSlide);
+  EXPECT_EQ(stance(6, {{"preset", "ldp_groups"}}), Stance::kSlide);
   EXPECT_EQ(stance(5, {}), Stance::kSlide);
   EXPECT_EQ(stance(6, {}), Stance::kSlide);
   EXPECT_EQ(stance(0, {{"stance", "auto"}}), Stance::kFixed);
