@@ -2,8 +2,8 @@
 # headers, which a batch reads and instantiates once. So within a subfolder no two sources may give one name to different
 # things, not even in anonymous namespaces.
 #   pushid_batches(TARGET [COMMON])
-# With COMMON the sources of all subfolders are batched together. SKIP_UNITY_BUILD_INCLUSION leaves a source alone.
-set(PUSHID_BATCH_SIZE 12 CACHE STRING "Sources compiled together at most; 1 compiles each alone")
+# With COMMON the sources of all subfolders are batched together, and no two of all may do so. SKIP_UNITY_BUILD_INCLUSION leaves a source alone.
+set(PUSHID_BATCH_SIZE 18 CACHE STRING "Sources compiled together at most; 1 compiles each alone")
 function(pushid_batches target)
   get_target_property(sources ${target} SOURCES)
   set(folders)

@@ -103,9 +103,10 @@ TEST_F(FrontTest, PagesOfTheManual) {
 
 // What bash itself makes of the script.
 TEST_F(FrontTest, BashCompletes) {
-  const auto completed = [this](const std::string& words, int at) {
-    const std::string script = "source <(\"" + std::string(PUSHID_BIN_DIR) +
-                               "/pushid\" completion bash)\nCOMP_WORDS=(" + words +
+  const std::string functions =
+      WriteText("functions", RunApp("pushid", {"completion", "bash"}).out);
+  const auto completed = [&](const std::string& words, int at) {
+    const std::string script = "source " + functions + "\nCOMP_WORDS=(" + words +
                                ")\nCOMP_CWORD=" + std::to_string(at) +
                                "\ncompopt() { [[ \"$1 $#\" == \"-o 2\" ]] || echo compopt $*; "
                                "}\n_pushid\necho \"${COMPREPLY[@]}\"\n";

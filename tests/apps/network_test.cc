@@ -99,7 +99,7 @@ TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {
            {{"--rod=mlp:256-128-256", "--ensemble=2"}, "--ensemble is for small networks"},
            {{"--self_force=mlp:2", "--early_stopping=0.25", "--profile=mu"},
             "--profile and --bootstrap need the minimum of the cost"},
-           {{"--self_from=" + FitModel("gru.json", {"--self_force=gru:2"})},
+           {{"--self_from=" + FitModel("gru.json", {"--self_force=gru:2", "--max_iterations=1"})},
             "has learned gru:2, which --self_from cannot take over"}}) {
     std::vector<std::string> all = {Recordings(), "--model_out=" + Path("m.json")};
     all.insert(all.end(), flags.begin(), flags.end());

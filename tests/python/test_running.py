@@ -81,11 +81,11 @@ def test_many_fits_leave_nothing_behind():
         with open("/proc/self/statm", encoding="ascii") as file:
             return int(file.read().split()[1])
     few = pushid.simulate(people=2, recordings_per_person=1, frames=30, fps=30.0)[0]
-    for _ in range(50):
+    for _ in range(25):
         pushid.fit(few).predict(few[0])
     gc.collect()
     before = pages()
-    for _ in range(250):
+    for _ in range(100):
         pushid.fit(few).predict(few[0])
     gc.collect()
-    assert pages() - before < 250  # 4 kB a fit
+    assert pages() - before < 100  # 4 kB a fit

@@ -14,11 +14,11 @@
 namespace pushid {
 namespace {
 
-constexpr double kMass = 70.0, kDt = 1.0 / 60.0, kStart = 0.5;  // kg, s, s
+constexpr double kBodyMass = 70.0, kDt = 1.0 / 60.0, kStart = 0.5;  // kg, s, s
 
 // Someone of 70 kg who is pushed 0.5 s after frame 0 by a half-sine of 0.2 s and `impulse` N s
 // along +x. Who stands is held by a spring and a damper; who steps has a drag at the feet alone.
-struct Pushed {
+struct PushedPerson {
   double impulse = 20.0;
   bool stands = false;
   double noise = 0.001;  // m
@@ -30,19 +30,19 @@ struct Pushed {
   PushKind kind = PushKind::kExternal;
 };
 
-double ForceAt(const Pushed& how, double t) {
+double ForceAt(const PushedPerson& how, double t) {
   const double phase = (t - kStart) / 0.2;
   return phase > 0.0 && phase < 1.0 ? how.impulse * M_PI / 0.4 * std::sin(M_PI * phase) : 0.0;
 }
 
-PendulumRecording Make(const Pushed& how, uint64_t seed = 1) {
+PendulumRecording Make(const PushedPerson& how, uint64_t seed = 1) {
   Random random(seed);
   PendulumRecording r;
   r.id = "a";
   r.subject_ids = {"anna"};
   r.scene.dt = kDt;
   r.scene.people.resize(1);
-  r.scene.people[0].body = {kMass, 0.9, 0.1};
+  r.scene.people[0].body = {kBodyMass, 0.9, 0.1};
   r.hip.resize(1);
   r.states.resize(1);
   r.weight.resize(1);
@@ -61,7 +61,7 @@ PendulumRecording Make(const Pushed& how, uint64_t seed = 1) {
     const int steps = 20;
     for (int k = 0; k < steps; ++k) {
       const double held = how.stands ? 8.0 * x + 1.5 * v : 0.5 * v;
-      v += kDt / steps * (ForceAt(how, (t + (k + 0.5) / steps) * kDt) / kMass - held);
+      v += kDt / steps * (ForceAt(how, (t + (k + 0.5) / steps) * kDt) / kBodyMass - held);
       x += kDt / steps * v;
     }
   }
@@ -79,7 +79,7 @@ std::vector<FindingKind> KindsOf(const PendulumRecording& recording) {
 using Kinds = std::vector<FindingKind>;
 
 TEST(PushAndMotion, AWorkedCase) {
-  Pushed how;
+  PushedPerson how;
   how.noise = 0.0;
   const std::optional<PushAndMotion> found = ComparePush(Make(how), 0);
   ASSERT_TRUE(found);
@@ -94,7 +94,7 @@ TEST(Findings, NothingIsWrongWithARightPush) {
   int told = 0;
   for (uint64_t seed = 1; seed <= 40; ++seed) {
     for (bool stands : {false, true}) {
-      Pushed how;
+      PushedPerson how;
       how.stands = stands;
       how.noise = 0.001 * static_cast<double>(1 + seed % 8);
       told += KindsOf(Make(how, seed)).empty() ? 0 : 1;
@@ -106,30 +106,32 @@ TEST(Findings, NothingIsWrongWithARightPush) {
 // Each fault, for people who step and for those who stand.
 TEST(Findings, FaultsOfAPushAreTold) {
   for (bool stands : {false, true}) {
-    Pushed how;
+    PushedPerson how;
     how.stands = stands;
-    const auto kinds = [&how](const std::function<void(Pushed*)>& fault) {
-      Pushed wrong = how;
+    const auto kinds = [&how](const std::function<void(PushedPerson*)>& fault) {
+      PushedPerson wrong = how;
       fault(&wrong);
       return KindsOf(Make(wrong));
     };
-    EXPECT_EQ(kinds([](Pushed*) {}), Kinds{}) << stands;
-    EXPECT_EQ(kinds([](Pushed* p) { p->scale = -1.0; }), Kinds{FindingKind::kAgainst}) << stands;
-    EXPECT_EQ(kinds([](Pushed* p) { p->turned = M_PI / 2; }), Kinds{FindingKind::kAside}) << stands;
-    EXPECT_EQ(kinds([](Pushed* p) { p->scale = 1e-3; }), Kinds{FindingKind::kGain}) << stands;
-    EXPECT_EQ(kinds([](Pushed* p) { p->scale = 1.0 / 9.81; }), Kinds{FindingKind::kGain});
-    EXPECT_EQ(kinds([](Pushed* p) { p->scale = 1000.0; }),
+    EXPECT_EQ(kinds([](PushedPerson*) {}), Kinds{}) << stands;
+    EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = -1.0; }), Kinds{FindingKind::kAgainst})
+        << stands;
+    EXPECT_EQ(kinds([](PushedPerson* p) { p->turned = M_PI / 2; }), Kinds{FindingKind::kAside})
+        << stands;
+    EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1e-3; }), Kinds{FindingKind::kGain}) << stands;
+    EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1.0 / 9.81; }), Kinds{FindingKind::kGain});
+    EXPECT_EQ(kinds([](PushedPerson* p) { p->scale = 1000.0; }),
               (Kinds{FindingKind::kGain, FindingKind::kStrong}));
-    EXPECT_EQ(kinds([](Pushed* p) { p->late = 0.3; }), Kinds{FindingKind::kLate}) << stands;
-    EXPECT_EQ(kinds([](Pushed* p) { p->rest = 6.0; }), Kinds{FindingKind::kZero}) << stands;
+    EXPECT_EQ(kinds([](PushedPerson* p) { p->late = 0.3; }), Kinds{FindingKind::kLate}) << stands;
+    EXPECT_EQ(kinds([](PushedPerson* p) { p->rest = 6.0; }), Kinds{FindingKind::kZero}) << stands;
   }
-  Pushed early;
+  PushedPerson early;
   early.late = -0.3;
   EXPECT_EQ(KindsOf(Make(early)), Kinds{FindingKind::kEarly});
 }
 
 TEST(Findings, ValuesAreWhatIsWrong) {
-  Pushed how;
+  PushedPerson how;
   how.scale = 1e-3;
   EXPECT_NEAR(FindingsOf(Make(how))[0].value, 930.0, 50.0);
   how.scale = 1.0;
@@ -168,7 +170,7 @@ TEST(Findings, ACartThatIsPushedIsLookedAtItself) {
 }
 
 TEST(Findings, OnGroundThatMovesNoPushIsJudged) {
-  Pushed how;
+  PushedPerson how;
   how.scale = -1.0;
   PendulumRecording recording = Make(how);
   EXPECT_EQ(KindsOf(recording), Kinds{FindingKind::kAgainst});
@@ -178,7 +180,7 @@ TEST(Findings, OnGroundThatMovesNoPushIsJudged) {
 
 // A net push is the beginning of one, and what it reads while it lasts is the motion's.
 TEST(Findings, NetPushes) {
-  Pushed how;
+  PushedPerson how;
   how.kind = PushKind::kNet;
   EXPECT_EQ(KindsOf(Make(how)), Kinds{});
   how.scale = 0.05;
@@ -186,7 +188,7 @@ TEST(Findings, NetPushes) {
 }
 
 TEST(Findings, WhatIsNotSeenIsNotJudged) {
-  Pushed how;
+  PushedPerson how;
   how.scale = -1.0;
   PendulumRecording recording = Make(how);
   recording.weight[0].assign(recording.num_frames(), 1.0);
@@ -209,7 +211,7 @@ TEST(Findings, Bodies) {
     body.mass = kg;
     EXPECT_EQ(KindsOf(recording), Kinds{}) << kg;
   }
-  body.mass = kMass;
+  body.mass = kBodyMass;
   body.rod_length = 9.0;
   EXPECT_EQ(KindsOf(recording), Kinds{FindingKind::kRod});
   body.rod_length = 0.9;

@@ -11,7 +11,7 @@ namespace {
 
 using ManifestTest = TempDirTest;
 
-constexpr char kGood[] = R"({
+constexpr char kGoodManifest[] = R"({
  "name": "a name the program does not know",
  "units": {"bvh_length": "cm", "force": "N"},
  "recordings": [
@@ -53,7 +53,7 @@ constexpr char kGood[] = R"({
 
 // Of the manifest for all, of a recording on top of it.
 TEST_F(ManifestTest, StatedErrors) {
-  auto json = nlohmann::ordered_json::parse(kGood);
+  auto json = nlohmann::ordered_json::parse(kGoodManifest);
   json["stated_errors"] = {{"mass", 0.01}, {"push_zero_N", 0.5}};
   json["recordings"][0]["stated_errors"] = {{"mass", 0.02}};
   const auto read = [&] { return ReadManifest(WriteText("stated.json", json.dump(1))); };
@@ -74,7 +74,7 @@ TEST_F(ManifestTest, StatedErrors) {
 }
 
 TEST_F(ManifestTest, ReadsEverything) {
-  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGood));
+  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGoodManifest));
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   EXPECT_EQ(read.value().length_unit, LengthUnit::kCentimetre);
   ASSERT_EQ(read.value().recordings.size(), 2u);
@@ -121,10 +121,10 @@ TEST_F(ManifestTest, ReadsEverything) {
 }
 
 TEST_F(ManifestTest, RewritingLosesNothing) {
-  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGood));
+  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGoodManifest));
   ASSERT_TRUE(read.ok());
   ASSERT_FALSE(WriteManifest(Path("again.json"), read.value()));
-  auto expected = nlohmann::json::parse(kGood);
+  auto expected = nlohmann::json::parse(kGoodManifest);
   expected["recordings"][1]["push_kind"] = "external";  // said, not left to the default
   // But for the old name of a key.
   expected["recordings"][1]["condition"] = "p";
@@ -133,7 +133,7 @@ TEST_F(ManifestTest, RewritingLosesNothing) {
 }
 
 TEST_F(ManifestTest, ChangesAreWritten) {
-  Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGood));
+  Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGoodManifest));
   ASSERT_TRUE(read.ok());
   Manifest& manifest = read.value();
   manifest.length_unit = LengthUnit::kMillimetre;
@@ -264,7 +264,7 @@ TEST_F(ManifestTest, EveryDamageIsNamedWithItsLine) {
   };
   for (const auto& damage : damages) {
     SCOPED_TRACE(std::string(damage.from) + " -> " + damage.to);
-    std::string text = kGood;
+    std::string text = kGoodManifest;
     const std::size_t at = text.find(damage.from);
     ASSERT_NE(at, std::string::npos);
     text.replace(at, std::string(damage.from).size(), damage.to);
@@ -321,7 +321,7 @@ TEST_F(ManifestTest, AllMissingKeysInOneError) {
 }
 
 TEST_F(ManifestTest, TheRateMayBeLeftOut) {
-  std::string text = kGood;
+  std::string text = kGoodManifest;
   text.replace(text.find("\"fps\": 60,"), 10, "");
   const Result<Manifest> read = ReadManifest(WriteText("manifest.json", text));
   ASSERT_TRUE(read.ok()) << read.error().ToString();
@@ -333,7 +333,7 @@ TEST_F(ManifestTest, TheRateMayBeLeftOut) {
 
 // Reading must not take time that grows with the square of the list.
 TEST_F(ManifestTest, ManyRecordings) {
-  nlohmann::json recording = nlohmann::json::parse(kGood)["recordings"][0];
+  nlohmann::json recording = nlohmann::json::parse(kGoodManifest)["recordings"][0];
   nlohmann::json manifest;
   for (int i = 0; i < 5000; ++i) {
     recording["id"] = std::to_string(i);

@@ -30,7 +30,7 @@ FitResult FitEdited(const SyntheticOptions& study, const TableEdits& edits) {
   return result;
 }
 
-SyntheticOptions NoisyStudy() {
+SyntheticOptions StudyWithNoise() {
   SyntheticOptions study = SmallStudy();
   study.joint_noise_m = 0.002;
   return study;
@@ -52,7 +52,7 @@ void ExpectOthersFinite(const FitResult& result, const NameSet& null) {
 
 // With one friction for both axes, mu, Kp_x and Kp_y make one null direction of three.
 TEST(Identifiability, FrictionAndCartGainsTogether) {
-  SyntheticOptions study = NoisyStudy();
+  SyntheticOptions study = StudyWithNoise();
   study.model.friction = FrictionKind::kIsotropic;
   const FitResult result = FitEdited(study, {"", "Kp_x,Kp_y", "", "", ""});
   const NameSet three = {"mu", "Kp_x", "Kp_y"};
@@ -78,7 +78,7 @@ TEST(Identifiability, FrictionAndCartGainsTogether) {
 
 // One friction per axis: only what acts on x is confounded with mu.
 TEST(Identifiability, OneFrictionPerAxis) {
-  SyntheticOptions study = NoisyStudy();
+  SyntheticOptions study = StudyWithNoise();
   study.model.friction = FrictionKind::kAnisotropic;
   study.parameters[kMuY] = 100.0;
   const FitResult result = FitEdited(study, {"", "Kp_x,Kp_y", "", "", ""});
@@ -89,7 +89,7 @@ TEST(Identifiability, OneFrictionPerAxis) {
 
 // A prior chooses a value; it does not make the data know it.
 TEST(Identifiability, APriorIdentifiesNothing) {
-  SyntheticOptions study = NoisyStudy();
+  SyntheticOptions study = StudyWithNoise();
   study.model.friction = FrictionKind::kIsotropic;
   const FitResult result = FitEdited(study, {"", "Kp_x,Kp_y", "mu:100:10", "", ""});
   EXPECT_EQ(Unidentifiable(result), (NameSet{"mu", "Kp_x", "Kp_y"}));
@@ -99,7 +99,7 @@ TEST(Identifiability, APriorIdentifiesNothing) {
 }
 
 TEST(Identifiability, NoEffectIsNamed) {
-  SyntheticOptions study = NoisyStudy();
+  SyntheticOptions study = StudyWithNoise();
   study.push_kind = PushKind::kExternal;
   study.strengths = {{"weak", 0.5}, {"strong", 1.0}};
   const FitResult result = FitEdited(study, {});
@@ -122,7 +122,7 @@ TEST(Identifiability, NoEffectIsNamed) {
 }
 
 TEST(Identifiability, NothingToReportForThePreset) {
-  const FitResult result = FitEdited(NoisyStudy(), {});
+  const FitResult result = FitEdited(StudyWithNoise(), {});
   EXPECT_TRUE(result.uncertainty.null_directions.empty());
   EXPECT_TRUE(Unidentifiable(result).empty());
   EXPECT_TRUE(std::isfinite(result.uncertainty.condition_number));

@@ -9,18 +9,18 @@
 namespace pushid {
 namespace {
 
-constexpr double kStep = 0.02;
+constexpr double kPeriod = 0.02;
 constexpr int kFrames = 100;
 
 // One person who stands on ground that moves (tilt: rad, beside a shift), over platforms.
 PendulumRecording OnPlatform(double tilt) {
-  Scene scene = StandingScene(kStep);
+  Scene scene = StandingScene(kPeriod);
   std::vector<GroundPose> poses;
   for (int t = 0; t < kFrames; ++t) {
     const double moved = 0.5 - 0.5 * std::cos(M_PI * t / kFrames);
     poses.emplace_back(0.02 * moved, 0.0, tilt * moved, 0.0);
   }
-  scene.ground = GroundThrough(poses, kStep);
+  scene.ground = GroundThrough(poses, kPeriod);
   return RecordingOf(scene, StandingOptions(), StandingGains(1500.0, 350.0), kFrames, "anna", true);
 }
 

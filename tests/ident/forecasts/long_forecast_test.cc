@@ -9,19 +9,19 @@
 namespace pushid {
 namespace {
 
-constexpr double kDt = 1.0 / 60.0;
+constexpr double kForecastDt = 1.0 / 60.0;
 
 // Goes forwards at 0.6 m/s for a second, then stands.
 BodyMotion Stopping(int frames) {
   BodyMotion motion;
   for (int t = 0; t < frames; ++t) {
-    motion.push_back(Placed(StandingPose(), 0.0, {0.6 * kDt * std::min(t, 60), 0, 0}));
+    motion.push_back(Placed(StandingPose(), 0.0, {0.6 * kForecastDt * std::min(t, 60), 0, 0}));
   }
   return motion;
 }
 
 TEST(LongForecastTest, SecondsByHand) {
-  const GroupMotion group{{Stopping(185), Stopping(185)}, kDt, 0};
+  const GroupMotion group{{Stopping(185), Stopping(185)}, kForecastDt, 0};
   const auto seconds = BySecond({group}, {group});
   ASSERT_EQ(seconds.size(), 3u) << "whole seconds alone";
   EXPECT_NEAR(seconds[0].hip_speed, 0.6, 1e-9);
@@ -35,7 +35,7 @@ TEST(LongForecastTest, SecondsByHand) {
 
 TEST(LongForecastTest, NothingMakesNoSeconds) {
   EXPECT_TRUE(BySecond({}, {}).empty());
-  const GroupMotion brief{{Stopping(20)}, kDt, 0};
+  const GroupMotion brief{{Stopping(20)}, kForecastDt, 0};
   EXPECT_TRUE(BySecond({brief}, {brief}).empty());
 }
 

@@ -9,7 +9,7 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 6;
+constexpr int kPathFrames = 6;
 constexpr float kLogNoise = -1.0f, kDrift = 0.4f;
 
 ParticleStructure NoSkip() {
@@ -35,16 +35,16 @@ TEST(PathToPose, OfIndependentStepsIsStraight) {
   const ParticleGenerator generator = Steady();
   const ObservedMotion seen = {SwayingMotion(25, 0.3f)};
   const Eigen::VectorXf last = seen.frames.rightCols(1);
-  const float by_drift = kDrift * 0.01f * kFrames;
+  const float by_drift = kDrift * 0.01f * kPathFrames;
   const Eigen::VectorXf target = (last.array() + by_drift + 0.03f).matrix();
-  const auto path = PathToPose(generator, seen, kFrames, target);
+  const auto path = PathToPose(generator, seen, kPathFrames, target);
   ASSERT_TRUE(path.ok()) << path.error().message;
   const MinimizedPath& found = path.value();
   // The end is held as by a spring of 5 mm; noise moves it by this much.
-  const double reach = kFrames * std::pow(0.01 * std::exp(kLogNoise), 2);
+  const double reach = kPathFrames * std::pow(0.01 * std::exp(kLogNoise), 2);
   const double moved = 0.03 * reach / (reach + 0.005 * 0.005);
-  for (int t = 0; t < kFrames; ++t) {
-    const double share = (t + 1.0) / kFrames;
+  for (int t = 0; t < kPathFrames; ++t) {
+    const double share = (t + 1.0) / kPathFrames;
     for (int i = 0; i < last.size(); ++i) {
       ASSERT_NEAR(found.motion(i, t) - last[i], share * (by_drift + moved), 2e-5) << t << " " << i;
     }
@@ -61,16 +61,16 @@ TEST(PathToPose, IsAnOptimum) {
   options.ridge_share = options.simlpe_share = 0.0;
   const ParticleGenerator generator(FourParticles(), {network}, {}, options);
   const ObservedMotion seen = {SwayingMotion(25, 0.3f)};
-  const Eigen::VectorXf target = SwayingMotion(40, 0.35f).col(25 + kFrames);
-  const auto path = PathToPose(generator, seen, kFrames, target);
+  const Eigen::VectorXf target = SwayingMotion(40, 0.35f).col(25 + kPathFrames);
+  const auto path = PathToPose(generator, seen, kPathFrames, target);
   ASSERT_TRUE(path.ok()) << path.error().message;
-  const Trajectories forecast = generator.Forecast({seen}, kFrames).front();
+  const Trajectories forecast = generator.Forecast({seen}, kPathFrames).front();
   const double before = MeanDistance(forecast.rightCols(1), target, FourParticles())(0);
   EXPECT_LT(path.value().distance, 0.3 * before);
   Random random(5);
   int nearer_and_likelier = 0;
   const auto sampled =
-      generator.Sample({seen}, kFrames, 200, [&random] { return random.Normal(); });
+      generator.Sample({seen}, kPathFrames, 200, [&random] { return random.Normal(); });
   for (const SampledFuture& other : sampled.front()) {
     const double away = MeanDistance(other.motion.rightCols(1), target, FourParticles())(0);
     nearer_and_likelier +=
@@ -95,7 +95,7 @@ TEST(PathToPose, NeedsTransitions) {
     ParticleLayout layout_ = FourParticles();
   };
   const auto path =
-      PathToPose(Statue(), {SwayingMotion(25, 0.0f)}, kFrames, Eigen::VectorXf::Zero(12));
+      PathToPose(Statue(), {SwayingMotion(25, 0.0f)}, kPathFrames, Eigen::VectorXf::Zero(12));
   ASSERT_FALSE(path.ok());
   EXPECT_NE(path.error().message.find("no transition probabilities"), std::string::npos);
 }

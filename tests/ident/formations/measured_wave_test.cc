@@ -11,20 +11,20 @@
 namespace pushid {
 namespace {
 
-constexpr double kRate = 50.0, kSpacing = 0.5, kSpeed = 1.25;
+constexpr double kWaveRate = 50.0, kSpacing = 0.5, kSpeed = 1.25;
 
 // People in a line, the last of them first to move: each goes 0.3 m at 1 m/s from its onset on.
-PointMotion Line(int people, double noise) {
+PointMotion WaveLine(int people, double noise) {
   Random random(7);
   PointMotion motion;
-  motion.rate_hz = kRate;
+  motion.rate_hz = kWaveRate;
   motion.unit = LengthUnit::kMetre;
   for (int n = 0; n < people; ++n) {
     motion.names.push_back("p" + std::to_string(n));
     motion.positions.emplace_back();
     const double onset = 0.2 + n * kSpacing / kSpeed;
     for (int frame = 0; frame < 200; ++frame) {
-      const double moved = std::clamp(frame / kRate - onset, 0.0, 0.3);
+      const double moved = std::clamp(frame / kWaveRate - onset, 0.0, 0.3);
       motion.positions.back().push_back(
           {n * kSpacing + moved + noise * random.Normal(), noise * random.Normal(), 1.0});
     }
@@ -34,7 +34,7 @@ PointMotion Line(int people, double noise) {
 }
 
 TEST(MeasuredWave, FindsTheSpeedOfALine) {
-  const MeasuredWave wave = MeasureWave("line", Line(6, 0.0));
+  const MeasuredWave wave = MeasureWave("line", WaveLine(6, 0.0));
   ASSERT_EQ(wave.people.size(), 6u);
   EXPECT_EQ(wave.people[0].name, "p0");
   EXPECT_NEAR(wave.people[5].distance, 5 * kSpacing, 1e-9);
@@ -45,14 +45,14 @@ TEST(MeasuredWave, FindsTheSpeedOfALine) {
 }
 
 TEST(MeasuredWave, HoldsTheSpeedWithinItsInterval) {
-  const MeasuredWave wave = MeasureWave("line", Line(6, 0.002));
+  const MeasuredWave wave = MeasureWave("line", WaveLine(6, 0.002));
   ASSERT_TRUE(wave.slowness);
   EXPECT_LE(std::abs(*wave.slowness - 1.0 / kSpeed), wave.quantile * wave.error);
 }
 
 // People who are not seen in the first frames, or not at all.
 TEST(MeasuredWave, PeopleMayBeMissing) {
-  PointMotion motion = Line(6, 0.0);
+  PointMotion motion = WaveLine(6, 0.0);
   const Eigen::Vector3d none = Eigen::Vector3d::Constant(std::nan(""));
   for (int frame = 0; frame < 5; ++frame) motion.positions[2][frame] = none;
   motion.positions[4].assign(200, none);
@@ -62,15 +62,16 @@ TEST(MeasuredWave, PeopleMayBeMissing) {
 }
 
 TEST(MeasuredWave, TwoWhoMoveHaveNoSpeed) {
-  EXPECT_FALSE(MeasureWave("pair", Line(2, 0.0)).slowness);
-  EXPECT_TRUE(Contains(WaveText(MeasureWave("pair", Line(2, 0.0))), "fewer than three"));
-  PointMotion still = Line(3, 0.0);
+  EXPECT_FALSE(MeasureWave("pair", WaveLine(2, 0.0)).slowness);
+  EXPECT_TRUE(Contains(WaveText(MeasureWave("pair", WaveLine(2, 0.0))), "fewer than three"));
+  PointMotion still = WaveLine(3, 0.0);
   for (auto& track : still.positions) track.assign(200, track[0]);
   EXPECT_TRUE(Contains(WaveText(MeasureWave("still", still)), "nobody moves"));
 }
 
 TEST(MeasuredWave, SeveralHaveTheIntervalOfTheirScatter) {
-  const MeasuredWave a = MeasureWave("a", Line(6, 0.0)), b = MeasureWave("b", Line(5, 0.003));
+  const MeasuredWave a = MeasureWave("a", WaveLine(6, 0.0)),
+                     b = MeasureWave("b", WaveLine(5, 0.003));
   EXPECT_EQ(WavesText({a}), "");
   EXPECT_TRUE(Contains(WavesText({a, b}), "speed of the onset, 2 recordings: "));
 }

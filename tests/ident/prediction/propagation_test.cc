@@ -17,7 +17,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kDt = 1.0 / 60.0;
+constexpr double kFrameTime = 1.0 / 60.0;
 
 // A hip that stands until `onset`, is 3 cm further then and goes on at 3 cm a frame; -1: it stands.
 std::vector<Vector3<double>> HipFrom(double x, int onset, int frames) {
@@ -37,7 +37,7 @@ PendulumRecording Row(const std::vector<double>& x, const std::vector<int>& onse
   PendulumRecording recording;
   recording.id = "row";
   recording.labels.Set(kSettingLabel, "row");
-  recording.scene.dt = kDt;
+  recording.scene.dt = kFrameTime;
   for (double position : x) {
     ScenePerson person;
     person.body = {80.0, 0.95, 0.0};
@@ -138,7 +138,7 @@ TEST(Propagation, SpeedOfAPlantedWave) {
   std::vector<double> times;
   for (double s : x) times.push_back(0.1 + s / 2.5);
   EXPECT_NEAR(*Slowness(x, times), 0.4, 1e-12);
-  for (double time : times) onsets.push_back(static_cast<int>(std::lround(time / kDt)));
+  for (double time : times) onsets.push_back(static_cast<int>(std::lround(time / kFrameTime)));
   const PendulumRecording row = Row(x, onsets, 90);
   const PropagationScore score = ScorePropagation(row, StaticBaseline(row));
   const PropagationSummary summary = SummarizePropagation({&score});
@@ -179,7 +179,7 @@ TEST(Propagation, MomentumPassedOn) {
   const PropagationScore score = ScorePropagation(row, Hips(x, {4, 10, -1}, 60));
   EXPECT_NEAR(Value(score, kMomentumMeasured), 1.0, 1e-9);
   EXPECT_NEAR(Value(score, kMomentumPredicted), 0.5, 1e-9);  // (1 + 0) / (1 + 1)
-  EXPECT_NEAR(score.people[0].peak_momentum_measured, 80.0 * 0.03 / kDt, 1e-9);
+  EXPECT_NEAR(score.people[0].peak_momentum_measured, 80.0 * 0.03 / kFrameTime, 1e-9);
 }
 
 // 1 of 2 and 2 of 2: 3/4 of four people; residuals -1/2 and 1/2.

@@ -13,9 +13,9 @@ namespace pushid {
 namespace {
 
 // r = a x - b, counting how often it is asked.
-class Line : public ceres::SizedCostFunction<1, 1, 1> {
+class CountedLine : public ceres::SizedCostFunction<1, 1, 1> {
  public:
-  explicit Line(std::atomic<int>* asked) : asked_(asked) {}
+  explicit CountedLine(std::atomic<int>* asked) : asked_(asked) {}
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     ++*asked_;
     const double a = blocks[0][0], x = blocks[1][0];
@@ -39,8 +39,9 @@ class AheadOfCeres : public ::testing::Test {
     problem_ = std::make_unique<ceres::Problem>(options);
     evaluation_.set_problem(problem_.get());
     const std::vector<double*> blocks = {&a_, &x_};
-    problem_->AddResidualBlock(evaluation_.Wrap(std::make_unique<Line>(&asked_), blocks).release(),
-                               nullptr, blocks);
+    problem_->AddResidualBlock(
+        evaluation_.Wrap(std::make_unique<CountedLine>(&asked_), blocks).release(), nullptr,
+        blocks);
   }
   double a_ = 2.0, x_ = 1.0;
   std::atomic<int> asked_{0};

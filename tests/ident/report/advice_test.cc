@@ -11,7 +11,7 @@
 namespace pushid {
 namespace {
 
-SyntheticOptions Study(uint64_t seed) {
+SyntheticOptions AdvisedStudy(uint64_t seed) {
   SyntheticOptions study;
   study.subjects = 6;
   study.recordings_per_subject = 3;
@@ -23,7 +23,8 @@ SyntheticOptions Study(uint64_t seed) {
   return study;
 }
 
-FittedModel FitOf(const SyntheticOptions& study, FitOptions options = MakePreset("tail").value()) {
+FittedModel AdvisedFit(const SyntheticOptions& study,
+                       FitOptions options = MakePreset("tail").value()) {
   const auto recordings = MakePendulums(study);
   EXPECT_FALSE(PrepareFit(recordings, &options));
   FittedModel model;
@@ -45,7 +46,7 @@ bool ProposesTerms(const FittedModel& model) {
 TEST(Advice, ProposesNoTermThatIsZero) {
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
-    const FittedModel model = FitOf(Study(seed));
+    const FittedModel model = AdvisedFit(AdvisedStudy(seed));
     EXPECT_FALSE(model.fit.verdict.assumptions.empty());
     EXPECT_FALSE(ProposesTerms(model));
   }
@@ -53,10 +54,10 @@ TEST(Advice, ProposesNoTermThatIsZero) {
 
 // A term that is there, and left out of the fit, is found by its score.
 TEST(Advice, ScoresFindAMissingTerm) {
-  SyntheticOptions study = Study(3);
+  SyntheticOptions study = AdvisedStudy(3);
   study.subject_spread = 0.02;
   study.parameters[kTx] = 1.5;
-  const FittedModel model = FitOf(study, HoldDamping(MakePreset("tail").value()));
+  const FittedModel model = AdvisedFit(study, HoldDamping(MakePreset("tail").value()));
   const auto& tests = model.fit.verdict.assumptions;
   const auto least = std::find_if(tests.begin(), tests.end(),
                                   [](const AssumptionTest& t) { return t.name == "t_x"; });
@@ -66,12 +67,12 @@ TEST(Advice, ScoresFindAMissingTerm) {
 
 // Where priors decide, the advice is to look at them, and no term.
 TEST(Advice, LooksAtSharesBeforeTerms) {
-  SyntheticOptions study = Study(5);
+  SyntheticOptions study = AdvisedStudy(5);
   study.subjects = 4;
   study.recordings_per_subject = 1;
   study.frames = 8;
   study.joint_noise_m = 0.02;
-  FittedModel model = FitOf(study);
+  FittedModel model = AdvisedFit(study);
   const auto held =
       std::find_if(model.fit.estimates.begin(), model.fit.estimates.end(),
                    [](const Estimate& e) { return e.status == EstimateStatus::kPriorHeld; });

@@ -11,7 +11,7 @@ namespace pushid {
 namespace {
 
 // Rows r = y - m of clusters of given sizes; the least-squares m is their mean.
-JacobianBlocks MeanOf(const std::vector<std::vector<double>>& clusters) {
+JacobianBlocks MeanProblem(const std::vector<std::vector<double>>& clusters) {
   JacobianBlocks score;
   double sum = 0.0;
   int rows = 0;
@@ -40,7 +40,7 @@ Covariance Of(const JacobianBlocks& score) {
 // Clusters of one size: the textbook's variance of a mean of cluster means, with G - 1 degrees of
 // freedom.
 TEST(Clusters, BalancedMeanIsTheTextbooks) {
-  const Covariance c = Of(MeanOf({{1.0, 1.2}, {2.0, 2.4}, {0.5, 0.1}, {1.5, 1.1}}));
+  const Covariance c = Of(MeanProblem({{1.0, 1.2}, {2.0, 2.4}, {0.5, 0.1}, {1.5, 1.1}}));
   const Eigen::Vector4d means(1.1, 2.2, 0.3, 1.3);
   const double expected = (means.array() - means.mean()).square().sum() / (4.0 * 3.0);
   EXPECT_NEAR(c.scatter.Covariance()(0, 0), expected, 1e-12);
@@ -51,12 +51,12 @@ TEST(Clusters, BalancedMeanIsTheTextbooks) {
 TEST(Clusters, AnUnevenClusterCostsFreedom) {
   std::vector<std::vector<double>> clusters(4, {1.0});
   clusters[0].assign(20, 1.3);
-  EXPECT_LT(Of(MeanOf(clusters)).scatter.parts[0].freedom[0], 1.6);
+  EXPECT_LT(Of(MeanProblem(clusters)).scatter.parts[0].freedom[0], 1.6);
 }
 
 // Two clusters and a prior that settles most: what the two say still has one degree of freedom.
 TEST(Clusters, HaveOneFreedomLessThanTheirNumberBesideAPrior) {
-  JacobianBlocks score = MeanOf({{1.0, 1.1, 0.9}, {2.0}});
+  JacobianBlocks score = MeanProblem({{1.0, 1.1, 0.9}, {2.0}});
   const Eigen::Index rows = score.residuals.size();
   score.jacobian.conservativeResize(rows + 1, Eigen::NoChange);
   score.residuals.conservativeResize(rows + 1);

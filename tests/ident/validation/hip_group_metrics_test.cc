@@ -12,7 +12,7 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 60;
+constexpr int kHipFrames = 60;
 
 // Two stiff people, one 0.6 m before the other; each goes forwards by 1.5 cm a frame from a frame
 // on.
@@ -20,7 +20,7 @@ std::vector<BodyMotion> Stiff(int begin, int begin_in_front) {
   std::vector<BodyMotion> people;
   for (const auto& [x, from] : {std::pair(0.0, begin), std::pair(0.6, begin_in_front)}) {
     BodyMotion motion;
-    for (int t = 0; t < kFrames; ++t) {
+    for (int t = 0; t < kHipFrames; ++t) {
       const double way = 0.015 * std::max(0, t - from);
       motion.push_back(Placed(StandingPose(), 0.0, {x + way, 0, 0}));
     }

@@ -31,16 +31,16 @@ SyntheticOptions Study(int people, int pushes, uint64_t seed) {
   return study;
 }
 
-struct Solved {
+struct SolvedStudy {
   std::vector<PendulumRecording> recordings;
   FitOptions options;
   std::unique_ptr<FitProblem> problem;
   FitPoint point;
 };
 
-std::unique_ptr<Solved> SolveSet(const SyntheticOptions& study,
-                                 std::vector<PendulumRecording> recordings) {
-  auto solved = std::make_unique<Solved>();
+std::unique_ptr<SolvedStudy> SolveSet(const SyntheticOptions& study,
+                                      std::vector<PendulumRecording> recordings) {
+  auto solved = std::make_unique<SolvedStudy>();
   solved->recordings = std::move(recordings);
   solved->options = HoldDamping(UnbiasedFit(study));
   EXPECT_FALSE(PrepareFit(solved->recordings, &solved->options));
@@ -49,13 +49,13 @@ std::unique_ptr<Solved> SolveSet(const SyntheticOptions& study,
   return solved;
 }
 
-std::vector<int> AllOf(const Solved& solved) {
+std::vector<int> AllOf(const SolvedStudy& solved) {
   std::vector<int> all(solved.point.shared.size());
   std::iota(all.begin(), all.end(), 0);
   return all;
 }
 
-StudyPlan PlanOf(const Solved& solved) {
+StudyPlan PlanOf(const SolvedStudy& solved) {
   return PlanStudies(*solved.problem, solved.point, ErrorPartsAt(*solved.problem, solved.point),
                      AllOf(solved));
 }
@@ -178,7 +178,8 @@ TEST(StudyPlanTest, PredictsWhatASensorBrings) {
     const auto now = SolveSet(study, MakePendulums(study));
     const auto then = SolveSet(study, Measured(study));
     EXPECT_EQ(then->point.shared.size() + 4, now->point.shared.size()) << "no tail";
-    const auto add = [](const Solved& solved, std::map<std::string, std::vector<double>>* all) {
+    const auto add = [](const SolvedStudy& solved,
+                        std::map<std::string, std::vector<double>>* all) {
       const ParameterSet<double> values = solved.problem->Parameters(solved.point, "");
       for (const FittedParameter& f : solved.problem->map().fitted) {
         (*all)[solved.options.table[f.parameter].name].push_back(values[f.parameter]);

@@ -9,7 +9,7 @@
 namespace pushid {
 namespace {
 
-constexpr int kFrames = 60;
+constexpr int kGroupFrames = 60;
 
 // People 0.6 m apart who go off one after the other, pushed from behind.
 Recording Walkers(int people) {
@@ -23,7 +23,7 @@ Recording Walkers(int people) {
     person.joint_names = DefaultJointNames();
     person.joint_parents.assign(kBodyParents.begin(), kBodyParents.end());
     for (int role = 0; role < kBodyJoints; ++role) person.roles.joints[role] = {role};
-    for (int t = 0; t < kFrames; ++t) {
+    for (int t = 0; t < kGroupFrames; ++t) {
       const double way = 0.015 * std::max(0, t - 4 - 8 * n);
       const Pose pose = Placed(StandingPose(), 0.0, {0.6 * n + way, 0.0, 0.0});
       person.joints.emplace_back();

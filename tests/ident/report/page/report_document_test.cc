@@ -11,7 +11,7 @@
 namespace pushid {
 namespace {
 
-Report Sample() {
+Report SampleReport() {
   TextTable table({"name", "value"}, {true, false});
   table.Add({"a<b", "1"});
   TextTable numbers({"time_s", "what"}, {true, true});
@@ -31,7 +31,7 @@ Report Sample() {
 }
 
 TEST(ReportDocument, PageEscapesAndLeavesOutEmptySections) {
-  const std::string page = ToPage(Sample());
+  const std::string page = ToPage(SampleReport());
   for (const char* part :
        {"<h1>Title &lt;&amp;&gt;</h1>", "<h2>Full &amp; &lt;whole&gt;</h2>", "<p>one<br>two</p>",
         "<pre>pushid-fit --x=&#39;1&lt;2&#39;</pre>", "<td>a&lt;b</td><td class=\"number\">1</td>",
@@ -43,7 +43,7 @@ TEST(ReportDocument, PageEscapesAndLeavesOutEmptySections) {
 }
 
 TEST(ReportDocument, TextHasTheSameContent) {
-  const std::string text = ToText(Sample());
+  const std::string text = ToText(SampleReport());
   for (const char* part :
        {"Full & <whole>\n==============\none\ntwo\n", "advice: try\n", "a<b       1\n",
         "see\ntime_s  what\n0.5     say \"x\", y\n", "fold <1>\n"}) {
@@ -63,7 +63,7 @@ TEST(ReportDocument, APageIsNoPdf) {
 
 TEST(ReportDocument, FilesStayInTheirFolderAndQuote) {
   std::map<std::string, std::string> files;
-  for (const auto& [name, text] : FigureFiles(Sample(), 85.0, 8.0)) files[name] = text;
+  for (const auto& [name, text] : FigureFiles(SampleReport(), 85.0, 8.0)) files[name] = text;
   EXPECT_EQ(files["a____b.csv"], "time_s,what\n0.5,\"say \"\"x\"\", y\"\n");
   EXPECT_TRUE(Contains(files["a____b.svg"], "<desc>see</desc>"));
   EXPECT_EQ(files["table_full_1.csv"], "name,value\na<b,1\n");
@@ -72,7 +72,7 @@ TEST(ReportDocument, FilesStayInTheirFolderAndQuote) {
 }
 
 TEST(ReportDocument, TablesWithACaptionFold) {
-  const std::string page = ToPage(Sample());
+  const std::string page = ToPage(SampleReport());
   EXPECT_LT(page.find("<summary>caption</summary>"), page.find("<table>"));
   EXPECT_LT(page.find("<figure>"), page.find("<p>one"));
 }

@@ -20,9 +20,10 @@ class RestorationAppTest : public AppTest {
     AppTest::SetUp();
     model_ = "--model=" + FitModel();
   }
-  AppRun Train(const std::string& out, std::vector<std::string> more = {}, double seconds = 120) {
+  AppRun Train(const std::string& out, std::vector<std::string> more = {},
+               const std::string& until = "") {
     more.insert(more.end(), {Recordings(), model_, "--out=" + Path(out), "--quiet"});
-    return RunApp("pushid-train-restoration", more, seconds);
+    return RunApp("pushid-train-restoration", more, 120, until);
   }
   std::string Trained() {
     const AppRun run = Train("r", {"--effort=0.3"});
@@ -114,11 +115,9 @@ TEST_F(RestorationAppTest, RepeatsItselfAndGoesOnAfterAKill) {
   ASSERT_EQ(Train("b", {"--seed=5"}).exit_code, 0);
   EXPECT_EQ(ReadText(Path("a/weights.npy")), ReadText(Path("b/weights.npy")));
   EXPECT_EQ(ReadText(Path("a/restoration.json")), ReadText(Path("b/restoration.json")));
-  // Killed again and again until a checkpoint is there, then finished.
-  for (double seconds = 0.3; !std::filesystem::exists(Path("c/checkpoint.bin")); seconds += 0.15) {
-    ASSERT_LT(seconds, 60.0);
-    if (!Train("c", {"--seed=5", "--checkpoint_seconds=0"}, seconds).timed_out) break;
-  }
+  // Killed as soon as a checkpoint is there, then finished.
+  const std::string checkpoint = Path("c/checkpoint.bin");
+  ASSERT_TRUE(Train("c", {"--seed=5", "--checkpoint_seconds=0"}, checkpoint).timed_out);
   const AppRun resumed = Train("c", {"--seed=5"});
   ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_EQ(ReadText(Path("a/weights.npy")), ReadText(Path("c/weights.npy")));
