@@ -97,6 +97,8 @@ TEST_F(BatchRestorationTest, WrongFlagsAreToldBeforeAnyJob) {
 TEST_F(BatchRestorationTest, AProgramThatIsNotBuiltIsNamed) {
   const fs::path bin = Path("bin");
   fs::create_directory(bin);
+  fs::create_directory_symlink(fs::path(PUSHID_BIN_DIR) / "../ident",
+                               Path("ident"));  // the library
   for (const char* program : {"pushid-batch", "pushid-fit"}) {
     fs::copy(fs::path(PUSHID_BIN_DIR) / program, bin / program);
   }
