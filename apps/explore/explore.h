@@ -17,6 +17,7 @@ struct ExploredPush {
   // Of ModelOptions.
   double posture = 0, gain_scaling = 0, friction = 0, cart_derivative = 0, stance = 0, delay = 0;
   double body = 0;
+  double others = 0;  // whether the model is of people who touch (models/stance.h)
 };
 
 // Each choice of ModelOptions beside its number in the push: visit(choice, number).
@@ -29,6 +30,7 @@ void ForEachChoice(Options& options, Push& push, const Visit& visit) {
   visit(options.stance, push.stance);
   visit(options.delay, push.delay);
   visit(options.body, push.body);
+  visit(options.interaction.spring, push.others);
 }
 
 inline constexpr int kMostDraws = 60;

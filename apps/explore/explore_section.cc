@@ -101,6 +101,7 @@ ExploredPush PushOf(const FittedModel& model) {
                   : push.mass / static_cast<double>(model.fit.subjects.size());
   ForEachChoice(options, push,
                 [](auto choice, double& number) { number = static_cast<double>(choice); });
+  push.others = options.interaction.Any() ? 1.0 : 0.0;
   return push;
 }
 

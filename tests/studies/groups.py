@@ -53,7 +53,7 @@ def settling():
         if d["impulse_Ns"] != 80.0 or (d["people"] == 1 and d["mass_kg"] != 100.0):
             continue
         who = "one person of 100 kg" if d["people"] == 1 else f"a line of {d['people']}"
-        rows.append([d["setting"] or "shared", who, number(d["speed_m_s"], 2), number(d["pushed_advance_m"], 2),
+        rows.append([d["setting"] or "shared", who, f"{d['speed_m_s']:.3f}", number(d["pushed_advance_m"], 2),
                      None if d["people"] == 1 else number(d["advance_m"], 2), "yes" if d["settled"] else "no"])
     return studies.table(["parameters of", "after a push of 80 N s", "fastest person, m/s",
                           "pushed person ahead of the start, m", "the line on average, m", "settles"], rows)

@@ -62,7 +62,8 @@ FitOptions Preset() {
 
 double DrawOne(const ParameterSpec& spec, Random* random) {
   if (!FLAGS_groups) return spec.nominal * LogUniform(random, 0.5, 2.0);
-  return spec.nominal * std::exp(random->Normal() * std::min(0.5, spec.prior->sigma / spec.nominal));
+  return spec.nominal *
+         std::exp(random->Normal() * std::min(0.5, spec.prior->sigma / spec.nominal));
 }
 
 SyntheticOptions Draw(uint64_t seed) {
