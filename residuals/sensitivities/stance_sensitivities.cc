@@ -8,9 +8,9 @@ namespace {
 
 using Ids = StanceParameters<double>;
 
-// Inputs of the jets: the feet, the hip as ankles and steps perceive it (its place, its velocity and
-// the cart's), then the parameters. Where nothing is late both perceive the same, and share their
-// inputs.
+// Inputs of the jets: the feet, the hip as ankles and steps perceive it (its place, its velocity
+// and the cart's), then the parameters. Where nothing is late both perceive the same, and share
+// their inputs.
 constexpr int kPerceived = 6, kAnkleAt = kFeetStates;
 
 template <bool kLate>

@@ -1,5 +1,5 @@
-// With an installed pushid: synthetic recordings, noise-free, are fitted by its own laws, and by a force law that it
-// does not have. The truth must come back.
+// With an installed pushid: synthetic recordings, noise-free, are fitted by its own laws, and by a
+// force law that it does not have. The truth must come back.
 #include <cmath>
 #include <cstdio>
 
