@@ -65,7 +65,7 @@ def score_cells(p):
              with_error(mean["hipFDE_m"], mean["hipFDE_standard_error_m"])]
     if "fits" not in p:
         return cells + [None, None]
-    return cells + [f"{p['fits_that_settle']} of {p['fits']}", number(p["slowest_to_settle_m_s"], 2)]
+    return cells + [f"{p['fits_that_settle']} of {p['fits']}", f"{p['slowest_to_settle_m_s']:.3f}"]
 
 
 def candidates():
