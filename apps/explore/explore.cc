@@ -30,6 +30,7 @@ ModelOptions Options(const ExploredPush& in) {
   ForEachChoice(options, in, [](auto& choice, double number) {
     choice = static_cast<std::remove_reference_t<decltype(choice)>>(number);
   });
+  options.interaction.spring = in.others != 0.0;  // of any kind: nobody is there
   return options;
 }
 

@@ -30,7 +30,6 @@ void ForEachChoice(Options& options, Push& push, const Visit& visit) {
   visit(options.stance, push.stance);
   visit(options.delay, push.delay);
   visit(options.body, push.body);
-  visit(options.interaction.spring, push.others);
 }
 
 inline constexpr int kMostDraws = 60;

@@ -148,7 +148,7 @@ void SetStance(Stance stance, FitOptions* options) {
   options->model.push = PushUse::kAsRecorded;
   options->start = FitStart::kNominal;
   options->model.directions = Directions::kAxes;  // the feet's support has a front
-  options->mode_weight = 0.0;                     // that is about linear self forces
+  SetSelfForce(SelfForceKind::kNone, options);    // those act on feet that slide
   const NamedPreset* preset = FindPreset(options->preset);
   if (preset != nullptr && preset->pooled_where_feet_step != nullptr) {
     options->pool = preset->pooled_where_feet_step;

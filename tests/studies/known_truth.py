@@ -1,6 +1,6 @@
 """Do default fits recover truths that nobody put beside the priors?
 
-truths  ident/README.md; 10 minutes on two cores
+truths  ident/README.md; half a minute on two cores
 groups  ident/README.md; rows whose feet step, of people who are alike and who differ by 10 %; 7 minutes on two cores
 
 Synthetic studies of their own truths; tests/studies/known_truth_study.cc says what varies.

@@ -56,6 +56,13 @@ TEST(FitSetup, FeetTellTheStance) {
   EXPECT_EQ(stance(0, {{"rod", "linear"}}), Stance::kSlide);
 }
 
+TEST(FitSetup, FeetThatStepHaveNoLinearSelfForcesNorTheirDemand) {
+  const FitOptions o = MakeFitOptions({{"preset", "group"}, {"stance", "steps"}}).value();
+  EXPECT_EQ(o.self_force, SelfForceKind::kNone);
+  EXPECT_EQ(o.mode_weight, 0.0);
+  EXPECT_GT(MakeFitOptions({{"preset", "group"}}).value().mode_weight, 0.0);
+}
+
 TEST(FitSetup, HeldFeetFreeBothGainsOfBothDirections) {
   const FitOptions o = MakeFitOptions({{"preset", "tail"}, {"stance", "fixed"}}).value();
   for (const ParameterSpec& spec : o.table.specs) {
