@@ -11,6 +11,7 @@
 #include "apps/support/processes.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
+#include "ident/parameters/json_archive.h"
 
 namespace pushid {
 namespace {

@@ -11,6 +11,7 @@
 #include "ident/prediction/predictive_bands.h"
 #ifdef PUSHID_EXPLORE
 #include "explore_assets.inc"  // kExploreWasm in base64, kExploreScript
+#include "models/rollout.h"
 #else
 constexpr char kExploreWasm[] = "", kExploreScript[] = "";
 #endif

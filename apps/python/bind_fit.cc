@@ -9,6 +9,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/option_table.h"
 #include "ident/report/fit_command.h"

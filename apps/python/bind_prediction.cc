@@ -8,6 +8,7 @@
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/predictive_bands.h"
+#include "models/rollout.h"
 
 namespace pushid {
 

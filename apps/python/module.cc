@@ -6,6 +6,7 @@
 #include "datasets/inspection/findings.h"
 #include "datasets/loading/recording_from_tracks.h"
 #include "datasets/manifest/recording.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/push/push_from_sensor.h"
 
 namespace pushid {

@@ -257,18 +257,6 @@ MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& cont
   return Write(path, content, indent);
 }
 
-KeptJson::KeptJson() : KeptJson(nlohmann::ordered_json::object()) {}
-KeptJson::KeptJson(nlohmann::ordered_json json)
-    : json_(std::make_unique<nlohmann::ordered_json>(std::move(json))) {}
-KeptJson::KeptJson(const KeptJson& other) : KeptJson(*other) {}
-KeptJson::KeptJson(KeptJson&& other) noexcept = default;
-KeptJson& KeptJson::operator=(const KeptJson& other) {
-  json_ = std::make_unique<nlohmann::ordered_json>(*other);
-  return *this;
-}
-KeptJson& KeptJson::operator=(KeptJson&& other) noexcept = default;
-KeptJson::~KeptJson() = default;
-
 std::string MissingText(const std::vector<MissingKey>& missing) {
   constexpr std::size_t kMostObjects = 8;
   const std::vector<ObjectKeys> objects = ByObject(missing);

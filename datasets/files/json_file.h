@@ -1,9 +1,7 @@
 // datasets: JSON files in and out, with errors that name line and column.
 #pragma once
 
-#include <memory>
 #include <nlohmann/json.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -46,27 +44,5 @@ Result<nlohmann::json> ReadJson(const std::string& path);
 MaybeError WriteJson(const std::string& path, const nlohmann::json& content, int indent = 2);
 MaybeError WriteJson(const std::string& path, const nlohmann::ordered_json& content,
                      int indent = 2);
-
-// A JSON object that its holder keeps and passes on without reading it: a value like
-// nlohmann::ordered_json itself, {} at first, whose holder need not include all of
-// nlohmann/json.hpp. One that was moved from can only be assigned to.
-class KeptJson {
- public:
-  KeptJson();
-  KeptJson(nlohmann::ordered_json json);  // NOLINT: a JSON value is kept as it is
-  KeptJson(const KeptJson& other);
-  KeptJson(KeptJson&& other) noexcept;
-  KeptJson& operator=(const KeptJson& other);
-  KeptJson& operator=(KeptJson&& other) noexcept;
-  ~KeptJson();
-
-  const nlohmann::ordered_json& operator*() const { return *json_; }
-  nlohmann::ordered_json& operator*() { return *json_; }
-  const nlohmann::ordered_json* operator->() const { return json_.get(); }
-  nlohmann::ordered_json* operator->() { return json_.get(); }
-
- private:
-  std::unique_ptr<nlohmann::ordered_json> json_;
-};
 
 }  // namespace pushid

@@ -1,6 +1,7 @@
 // datasets: ground that moves and force platforms of a manifest's recordings, inspected.
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "datasets/files/number_text.h"
 #include "datasets/inspection/inspection.h"

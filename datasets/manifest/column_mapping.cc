@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "datasets/files/json_fields.h"
+#include "datasets/files/json_file.h"
 #include "datasets/formats/units.h"
 #include "datasets/manifest/body_roles.h"
 

@@ -13,12 +13,14 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/files/json_fields.h"
 #include "datasets/formats/point_motion.h"
 #include "datasets/formats/units.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {
+
+struct JsonDocument;
+class JsonFields;
 
 struct ColumnMapping {
   std::vector<PointColumns> columns;

@@ -11,11 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "datasets/files/json_fields.h"
 #include "models/enum_names.h"
 
 namespace pushid {
 
+struct JsonDocument;
+class JsonFields;
 struct ManifestRecording;
 
 // What a file of the ground holds.
@@ -72,9 +73,6 @@ void CheckPlatesAlone(const ManifestRecording& recording, JsonFields* fields);
 // How well a laboratory knows what a fit takes as known, as standard deviations.
 //
 //   "stated_errors": {"push_scale": 0.02, "push_lag_frames": 0.5, "mass": 0.01}
-
-struct JsonDocument;
-class JsonFields;
 
 // Of measured pushes (kind external): share of the force, frames between its clock and that of the
 // cameras, height (m), zero of the sensor (N). Shares of masses and of the frame rate; and how far

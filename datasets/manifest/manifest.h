@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/files/json_file.h"
+#include "datasets/files/kept_json.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/units.h"
 #include "datasets/manifest/laboratory_keys.h"

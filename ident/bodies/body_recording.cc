@@ -8,6 +8,7 @@
 #include "datasets/formats/bvh.h"
 #include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/predicted_steps.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/files/json_file.h"
+#include "datasets/files/kept_json.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
 #include "models/restoration/cvae_restoration.h"

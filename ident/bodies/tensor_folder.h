@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/files/json_file.h"
+#include "datasets/files/kept_json.h"
 #include "models/restoration/dense_network.h"
 
 namespace pushid {

@@ -9,10 +9,12 @@
 #include "datasets/inspection/findings.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
-#include "ident/solver/solver.h"
+#include "ident/solver/solution.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
+
+class FitProblem;
 
 // At the start of the solve.
 struct StartDiagnostics {

@@ -10,10 +10,12 @@
 #include "ident/model/identified_model.h"
 #include "ident/observed/learn_forecasts.h"
 #include "ident/parameters/fit_options.h"
-#include "ident/problem/fit_problem.h"
-#include "ident/solver/solver.h"
+#include "ident/problem/fit_point.h"
+#include "ident/solver/solution.h"
 
 namespace pushid {
+
+class FitProblem;
 
 // Makes options fit for these recordings: holds what can have no effect on any of them (the tail,
 // where every push is measured whole), pools nothing where all belong to one unit, and adds the

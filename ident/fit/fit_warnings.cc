@@ -4,6 +4,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/fit/estimates_table.h"
 #include "ident/problem/behaviour_text.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/clusters.h"
 
 namespace pushid {

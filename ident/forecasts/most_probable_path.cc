@@ -10,6 +10,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/model/model_rollout.h"
+#include "ident/solver/solver.h"
 #include "residuals/cost_functions/path_residual.h"
 
 namespace pushid {

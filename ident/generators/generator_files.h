@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/files/json_file.h"
+#include "datasets/files/kept_json.h"
 #include "ident/parameters/option_names.h"
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/generator_trainers.h"

@@ -1,6 +1,7 @@
 // ident: a large network's training inside a fit. Programs that link this library have it as
 // LargeNetworkTraining() (solver/network_training.h).
 #include "ident/large_networks/large_network_fit.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/solver/network_training.h"
 
 namespace pushid {

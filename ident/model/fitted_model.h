@@ -13,7 +13,7 @@
 #include "ident/parameters/pushed_feet.h"
 #include "ident/problem/behaviour.h"
 #include "ident/problem/work.h"
-#include "ident/solver/solver.h"
+#include "ident/solver/solution.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/contrast.h"
 #include "ident/uncertainty/model_verdict.h"

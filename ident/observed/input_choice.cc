@@ -3,6 +3,7 @@
 
 #include "ident/observed/learn_forecasts.h"
 #include "ident/problem/parallel.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

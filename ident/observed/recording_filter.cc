@@ -8,6 +8,7 @@
 
 #include "ident/model/push_range.h"
 #include "ident/problem/own_axes.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

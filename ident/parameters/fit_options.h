@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "ident/parameters/json_archive.h"
+#include "ident/parameters/option_names.h"
 #include "ident/parameters/parameter_table.h"
 #include "models/enum_names.h"
 #include "models/skeleton_mapping.h"

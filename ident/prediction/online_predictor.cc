@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

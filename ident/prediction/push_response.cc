@@ -7,6 +7,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/problem/own_axes.h"
 #include "models/crowd.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

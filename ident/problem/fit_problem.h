@@ -14,53 +14,13 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/behaviour.h"
+#include "ident/problem/fit_point.h"
 #include "ident/problem/parallel_evaluation.h"
 #include "models/rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 #include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
-
-// A point in the space of the fit.
-struct FitPoint {
-  std::vector<double> shared;  // fitted scale
-  std::map<std::string, std::vector<double>>
-      unit;  // deviations by PoolBy's units, fitted scale; empty if not pooled
-  std::map<int, std::vector<double>> velocity;  // by recording, where the initial velocity is free
-  std::vector<double> weights;                  // of what is learned; empty without
-
-  // All entries in one row: shared, units in order of name, velocities in order of recording,
-  // weights.
-  std::vector<double> Flat() const;
-  void SetFlat(const std::vector<double>& flat);
-};
-
-inline std::vector<double> FitPoint::Flat() const {
-  std::vector<double> flat = shared;
-  for (const auto& [name, values] : unit) flat.insert(flat.end(), values.begin(), values.end());
-  for (const auto& [index, values] : velocity)
-    flat.insert(flat.end(), values.begin(), values.end());
-  flat.insert(flat.end(), weights.begin(), weights.end());
-  return flat;
-}
-
-inline void FitPoint::SetFlat(const std::vector<double>& flat) {
-  auto next = flat.begin();
-  auto take = [&next](std::vector<double>* values) {
-    std::copy_n(next, values->size(), values->begin());
-    next += static_cast<std::ptrdiff_t>(values->size());
-  };
-  take(&shared);
-  for (auto& [name, values] : unit) take(&values);
-  for (auto& [index, values] : velocity) take(&values);
-  take(&weights);
-}
-
-// A rollout that left the model's domain, by recording.
-struct FailedRollout {
-  int recording;
-  RolloutStatus status;
-};
 
 // The frame at which the first push begins, or the ground leaves its place; 0 where nothing
 // happens.
@@ -79,6 +39,42 @@ struct CostWeights {
   double effective_weight = 0.0;
   double settling_weight = 0.0;
   std::vector<double> pooling_sigma;  // of every row of the table
+};
+
+// A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
+// to the frames before their failure; `shortened` names them.
+struct BuiltProblem {
+  std::unique_ptr<ParallelEvaluation> evaluation;
+  std::unique_ptr<ceres::Problem> problem;
+  // cluster: the recording that the block belongs to, or one of the clusters above; cost: what
+  // was added, which the problem may hold inside another (parallel_evaluation.h).
+  struct Block {
+    ceres::ResidualBlockId id;
+    int cluster;
+    const ceres::CostFunction* cost;
+  };
+  std::vector<Block> blocks;
+  std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
+  std::vector<FailedRollout> shortened;
+  // By recording: its cost less this is its negative log likelihood, up to a constant that no
+  // point changes (residuals/cost_functions/likelihood_residual.h): only so do costs of problems
+  // built at different points compare. Empty for rollouts.
+  std::map<int, double> offsets;
+  double OffsetOf(int recording) const {
+    const auto found = offsets.find(recording);
+    return found == offsets.end() ? 0.0 : found->second;
+  }
+  double Offset() const {
+    double sum = 0.0;
+    for (const auto& [recording, offset] : offsets) sum += offset;
+    return sum;
+  }
+  int rests_left_out = 0;  // settling simulations that could not be rolled out to their end here
+
+  void Add(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on, int cluster);
+  // The same for one that costs a rollout: once a point, and over threads where there are any.
+  void AddRollout(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
+                  int cluster);
 };
 
 class FitProblem {
@@ -167,43 +163,7 @@ class FitProblem {
   std::vector<double*> RecordingBlocks(FitPoint* point, int recording) const;
   LikelihoodProblem LikelihoodOf(int recording, double weight) const;
 
-  // A Ceres problem over *point (which must outlive it). Recordings that fail at the point are held
-  // to the frames before their failure; `shortened` names them.
-  struct Built {
-    std::unique_ptr<ParallelEvaluation> evaluation;
-    std::unique_ptr<ceres::Problem> problem;
-    // cluster: the recording that the block belongs to, or one of the clusters above; cost: what
-    // was added, which the problem may hold inside another (parallel_evaluation.h).
-    struct Block {
-      ceres::ResidualBlockId id;
-      int cluster;
-      const ceres::CostFunction* cost;
-    };
-    std::vector<Block> blocks;
-    std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
-    std::vector<FailedRollout> shortened;
-    // By recording: its cost less this is its negative log likelihood, up to a constant that no
-    // point changes (residuals/cost_functions/likelihood_residual.h): only so do costs of problems
-    // built at different points compare. Empty for rollouts.
-    std::map<int, double> offsets;
-    double OffsetOf(int recording) const {
-      const auto found = offsets.find(recording);
-      return found == offsets.end() ? 0.0 : found->second;
-    }
-    double Offset() const {
-      double sum = 0.0;
-      for (const auto& [recording, offset] : offsets) sum += offset;
-      return sum;
-    }
-    int rests_left_out = 0;  // settling simulations that could not be rolled out to their end here
-
-    void Add(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
-             int cluster);
-    // The same for one that costs a rollout: once a point, and over threads where there are any.
-    void AddRollout(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
-                    int cluster);
-  };
-
+  using Built = BuiltProblem;
   // hold_network: its weights are constant. num_threads: of the evaluations; the same bits for any.
   Built Build(FitPoint* point, int horizon, bool hold_network = false, int num_threads = 1) const {
     return BuildStage({horizon, false}, point, hold_network, num_threads);

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "ident/problem/fit_problem.h"
 #include "ident/problem/work.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"

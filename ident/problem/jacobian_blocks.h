@@ -4,9 +4,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ident/problem/fit_problem.h"
-
 namespace pushid {
+
+struct BuiltProblem;
 
 // Rows of a recording that is rolled out are those of CondensedRollout, person by person: every sum
 // of squares and products over a person, a recording or all of them is that of the rows they stand
@@ -29,12 +29,11 @@ struct JacobianBlocks {
 };
 
 // robust: with robust_jacobian.
-JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built, bool robust = false);
+JacobianBlocks EvaluateJacobianBlocks(const BuiltProblem& built, bool robust = false);
 
 // Central differences of the gradient J'r, one column at a time, `steps` to either side (0: a
 // column that does not move). From then on `built` serves gradients alone. Leaves the curvature
 // empty where some residual cannot be evaluated beside the point.
-void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps,
-                  JacobianBlocks* score);
+void AddCurvature(const BuiltProblem& built, const Eigen::VectorXd& steps, JacobianBlocks* score);
 
 }  // namespace pushid

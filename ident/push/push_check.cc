@@ -9,6 +9,7 @@
 
 #include "datasets/files/random.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/parallel.h"
 #include "ident/push/push_estimation.h"
 #include "ident/solver/solver.h"
 

@@ -18,7 +18,7 @@
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
-#include "ident/problem/fit_problem.h"
+#include "ident/problem/fit_point.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/fit_problem.h"
+#include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/clusters.h"
 
 namespace pushid {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/cost_functions/plate_residual.h"

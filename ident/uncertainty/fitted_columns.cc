@@ -1,5 +1,6 @@
 // ident: names, units and scales of the fitted numbers, and sums of them with their errors.
 
+#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "models/self_terms.h"

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "datasets/inspection/findings.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"

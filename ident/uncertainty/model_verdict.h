@@ -29,8 +29,6 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/fit_problem.h"
-#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {

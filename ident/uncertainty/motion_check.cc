@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 
+#include "ident/problem/fit_problem.h"
 #include "ident/problem/statistics.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/model_verdict.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/fit_problem.h"
+#include "ident/problem/fit_point.h"
 #include "ident/problem/parallel.h"
 
 namespace pushid {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ident/problem/fit_problem.h"
 #include "ident/problem/parallel.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/covariance.h"

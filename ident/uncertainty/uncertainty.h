@@ -21,7 +21,6 @@
 #include <vector>
 
 #include "ident/parameters/fit_options.h"
-#include "ident/problem/fit_problem.h"
 #include "ident/problem/statistics.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/enum_names.h"
@@ -30,8 +29,8 @@
 
 namespace pushid {
 
-struct Covariance;
 class FitProblem;
+struct FitPoint;
 
 enum class EstimateStatus {
   // The data's share is above 80 %, priors and settling together pull it by less than half a

@@ -11,6 +11,7 @@
 #include "ident/uncertainty/covariance.h"
 #include "ident/validation/study_plan.h"
 #include "models/decompositions.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

@@ -17,11 +17,10 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/fit_problem.h"
-
 namespace pushid {
 
 class FitProblem;
+struct FitPoint;
 struct ErrorParts;
 
 struct EquipmentRow {

@@ -44,7 +44,6 @@
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/model/fitted_model.h"
-#include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "ident/validation/laboratory_plan.h"
@@ -52,6 +51,7 @@
 namespace pushid {
 
 class FitProblem;
+struct FitPoint;
 struct ErrorParts;
 
 // One size of a study, and the standard errors it would leave.

@@ -1,7 +1,9 @@
 // The second example of the quickstart: data whose truth is not the fitted model. What is found of
 // it, what is not, and that the report says so.
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 
+#include "datasets/files/json_file.h"
 #include "tests/apps/app_fixture.h"
 
 namespace pushid {

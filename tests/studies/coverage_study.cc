@@ -15,6 +15,7 @@
 
 #include "ident/figures/text_table.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/parallel.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/profile.h"

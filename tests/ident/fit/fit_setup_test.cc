@@ -9,6 +9,7 @@
 #include "ident/fit/fit.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/parameters/option_table.h"
+#include "ident/problem/fit_problem.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

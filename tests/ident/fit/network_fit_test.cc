@@ -9,6 +9,7 @@
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
 #include "ident/observed/recording_filter.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/network_training.h"
 #include "tests/ident/network_samples.h"

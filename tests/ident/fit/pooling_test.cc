@@ -6,6 +6,7 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/solver.h"
+#include "models/rollout.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

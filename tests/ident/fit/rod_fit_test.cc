@@ -10,6 +10,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/behaviour.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/network_training.h"
 #include "tests/ident/network_samples.h"

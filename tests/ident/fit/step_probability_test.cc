@@ -8,6 +8,7 @@
 
 #include "datasets/files/random.h"
 #include "ident/model/model_fields.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ident/forecasts/forecast_spread.h"
+#include "ident/solver/solver.h"
 #include "models/generators/particle_generator.h"
 #include "tests/mocap_support.h"
 #include "tests/test_support.h"

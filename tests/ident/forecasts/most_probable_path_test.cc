@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/rollout.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

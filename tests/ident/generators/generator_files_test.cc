@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ident/solver/solver.h"
 #include "tests/models/generators/generator_samples.h"
 #include "tests/test_support.h"
 

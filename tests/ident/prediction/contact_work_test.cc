@@ -5,6 +5,7 @@
 
 #include "ident/prediction/force_story.h"
 #include "ident/prediction/propagation.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

@@ -7,6 +7,7 @@
 #include "ident/fit/step_probability.h"
 #include "ident/model/model_rollout.h"
 #include "ident/problem/own_axes.h"
+#include "models/rollout.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "models/rollout.h"
+
 namespace pushid {
 namespace {
 

@@ -7,6 +7,7 @@
 #include <atomic>
 
 #include "ident/fit/fit.h"
+#include "ident/problem/fit_problem.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {

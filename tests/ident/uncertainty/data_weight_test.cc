@@ -1,5 +1,6 @@
 // What the data weigh comes from the data.
 #include "ident/fit/weighted_solve.h"
+#include "ident/solver/solver.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "tests/ident/fit_samples.h"

@@ -6,6 +6,7 @@
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/refit_checks.h"
 #include "tests/ident/fit_samples.h"

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "ident/fit/fit.h"
+#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/assumptions.h"
 #include "tests/ident/fit_samples.h"
 

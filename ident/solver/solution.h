@@ -1,0 +1,69 @@
+// ident: what a solve went through, start by start, where it ended, and how well a likelihood
+// explains the recordings there.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ident/problem/fit_point.h"
+
+namespace pushid {
+
+// One iteration of the solver.
+struct TracePoint {
+  int horizon = 0;  // frames; 0: all
+  int iteration = 0;
+  double cost = 0.0;
+  double gradient = 0.0;  // largest component
+};
+
+struct SolveStage {
+  int horizon = 0;  // frames; 0: all
+  int iterations = 0;
+  double initial_cost = 0.0, final_cost = 0.0;
+  bool converged = false;
+  std::vector<TracePoint> trace;
+};
+
+// One start of a multi-start.
+struct SolveStart {
+  std::string kind;  // nominal, equation_error or random
+  bool usable = false;
+  bool converged = false;
+  double cost = 0.0;
+  int iterations = 0;
+  FitPoint from, to;
+  std::vector<SolveStage> stages;
+  std::vector<FailedRollout> failed;  // recordings that could not be rolled out to their end
+  std::vector<std::string> notes;     // parameters whose start was moved off a bound
+  std::string message;
+};
+
+struct Solution {
+  std::vector<SolveStart> starts;  // in order of trial
+  int best = -1;                   // index into starts; -1: no start was usable
+  double seconds = 0.0;
+
+  const SolveStart& Best() const { return starts[best]; }
+};
+
+// phase: "start 2/8, horizon 32"; called after every accepted iteration.
+using SolveProgress = std::function<void(const std::string& phase, int iteration, double cost)>;
+
+// How well a fit by a likelihood explains the recordings, to compare with other models by the same
+// likelihood of the same recordings.
+struct LikelihoodScore {
+  double deviance = 0.0;  // -2 log likelihood
+  int measured = 0;       // numbers
+  int parameters = 0;     // free ones, units' deviations not counted
+
+  double Aic() const { return deviance + 2.0 * parameters; }
+  double Bic() const {
+    return deviance + std::log(static_cast<double>(std::max(1, measured))) * parameters;
+  }
+};
+
+}  // namespace pushid
