@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "datasets/files/number_text.h"
+#include "ident/problem/fit_problem.h"
 #include "models/decompositions.h"
 
 namespace pushid {
@@ -14,9 +16,23 @@ std::string PersonKey(const PendulumRecording& recording, int person) {
   return recording.subject_ids[person] + " " + DoubleText(mass);
 }
 
+namespace {
+
+// Of fewer the scatter cannot be told, and recordings stand for them.
+constexpr size_t kFewestLineUps = 4;
+
+// The same for the same people in the same order.
+std::string LineUpKey(const PendulumRecording& recording) {
+  std::string key;
+  for (int n = 0; n < recording.num_people(); ++n) key += PersonKey(recording, n) + "\n";
+  return key;
+}
+
+}  // namespace
+
 Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by,
                       const std::vector<int>& counts) {
-  std::map<std::string, int> times, index;
+  std::map<std::string, int> times, index, line_ups;
   bool repeated = false, shared = false;
   const auto counted = [&counts](size_t i) { return counts.empty() || counts[i] > 0; };
   for (size_t i = 0; i < recordings.size(); ++i) {
@@ -44,6 +60,11 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
       of.push_back(found->second);
     }
     clusters.of.push_back(std::move(of));
+    const int next = static_cast<int>(line_ups.size());
+    clusters.line_up.push_back(line_ups.emplace(LineUpKey(r), next).first->second);
+  }
+  if (line_ups.size() < kFewestLineUps) {
+    std::iota(clusters.line_up.begin(), clusters.line_up.end(), 0);
   }
   return clusters;
 }
@@ -64,7 +85,14 @@ Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
     }
     rows.first.of_row.push_back(clusters.of[recording][score.person_of_row[row]]);
   }
-  rows.two_way = clusters.two_way;
+  if (clusters.two_way) {
+    for (size_t row = 0; row < score.cluster_of_row.size(); ++row) {
+      const int line_up =
+          rows.first.of_row[row] < 0 ? -1 : clusters.line_up[score.cluster_of_row[row]];
+      rows.line_ups.of_row.push_back(line_up);
+      rows.line_ups.count = std::max(rows.line_ups.count, line_up + 1);
+    }
+  }
   if (clusters.by == ClusterBy::kSubject) rows.recordings = ClusterByRecording(score);
   return rows;
 }

@@ -2,9 +2,10 @@
 //
 // A person's pushes are answered by the same body and habits: the independent unit is the person.
 // Where several people share a recording, errors go two ways: through the person into all of their
-// recordings, and through the event (one push, one line of people) into everybody in it. Neither
-// lies within the other, so rows are clustered both ways (Cameron, Gelbach and Miller 2011):
-//   V = V_people + V_recordings - V_people-in-recordings
+// recordings, and through the line-up (the same people in the same places), where the same pairs
+// touch, into everybody in it. Neither lies within the other, so rows are clustered both ways
+// (Cameron, Gelbach and Miller 2011):
+//   V = V_people + V_line-ups - V_people-in-line-ups
 // Rejected: one cluster for every set of people who share recordings. Of the published groups eight
 // of nine people then make one cluster, and nothing can be said at all.
 #pragma once
@@ -13,10 +14,14 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/fit_problem.h"
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/problem/jacobian_blocks.h"
 
 namespace pushid {
+
+class FitProblem;
+struct FitPoint;
 
 struct Clusters {
   ClusterBy by = ClusterBy::kRecording;  // kAuto decided
@@ -26,6 +31,8 @@ struct Clusters {
   std::vector<std::string> names;  // of the clusters: people or recordings
   // Cluster of every [recording][person].
   std::vector<std::vector<int>> of;
+  // Of every recording; the recordings themselves where line-ups are too few.
+  std::vector<int> line_up;
 
   int count() const { return static_cast<int>(names.size()); }
 };
@@ -72,7 +79,7 @@ struct Clustering {
   RowClusters first, recordings;
   int pooled_units = 0;         // whose deviations are draws
   bool priors_scatter = false;  // centres of priors are draws too, by their own width
-  bool two_way = false;
+  RowClusters line_ups = {};    // the second way; none: one way
 };
 
 // The rows of a problem's data by these clusters.

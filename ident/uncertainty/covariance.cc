@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "ident/problem/fit_problem.h"
 #include "models/decompositions.h"
 
 namespace pushid {
@@ -88,11 +89,11 @@ Scatter::Part DataScatter(const JacobianBlocks& score, const Clustering& cluster
                           const Eigen::MatrixXd& hessian) {
   const ClusteredCovariance one = Cr2(first, hessian, back);
   Eigen::MatrixXd inner = one.covariance;
-  if (clustering.two_way) {
-    const ClusteredCovariance two = Cr2(GatherScores(score, clustering.recordings, back), hessian,
+  if (clustering.line_ups.count > 0) {
+    const ClusteredCovariance two = Cr2(GatherScores(score, clustering.line_ups, back), hessian,
                                         Eigen::MatrixXd(0, back.cols()));
     const ClusterScores both =
-        GatherScores(score, Crossed(clustering.first, clustering.recordings), back);
+        GatherScores(score, Crossed(clustering.first, clustering.line_ups), back);
     const Eigen::MatrixXd moves = SolveSymmetric(hessian, both.scores);
     inner = WithoutNegative(one.covariance + two.covariance - moves * moves.transpose());
   }
@@ -120,7 +121,7 @@ Scatter ClusteredScatter(const JacobianBlocks& score, const Clustering& clusteri
 
 // The same with recordings as clusters.
 Clustering ByRecordingAlone(const Clustering& clustering) {
-  return {clustering.recordings, {}, clustering.pooled_units, clustering.priors_scatter, false};
+  return {clustering.recordings, {}, clustering.pooled_units, clustering.priors_scatter};
 }
 
 }  // namespace

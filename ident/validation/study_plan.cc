@@ -236,7 +236,7 @@ JacobianBlocks Clustered(JacobianBlocks score, const std::vector<int>& cluster_o
 
 // By the clusters that the rows name.
 Covariance ByClusters(const JacobianBlocks& score, const Eigen::VectorXd& unit) {
-  return ComputeCovariance(score, unit, {ClusterByRecording(score), {}, 0, false, false});
+  return ComputeCovariance(score, unit, {ClusterByRecording(score), {}, 0, false});
 }
 
 }  // namespace

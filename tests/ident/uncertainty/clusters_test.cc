@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
 #include "tests/ident/fit_samples.h"
@@ -65,8 +66,7 @@ TEST(Clusters, HaveOneFreedomLessThanTheirNumberBesideAPrior) {
   score.cluster_of_row.push_back(FitProblem::kPriorCluster);
   score.person_of_row.push_back(0);
   const RowClusters clusters = ClusterByRecording(score);
-  const Covariance c =
-      ComputeCovariance(score, Eigen::VectorXd::Ones(1), {clusters, {}, 0, true, false});
+  const Covariance c = ComputeCovariance(score, Eigen::VectorXd::Ones(1), {clusters, {}, 0, true});
   EXPECT_EQ(c.scatter.OfColumn(0).freedom, 1.0);
   EXPECT_NEAR(c.scatter.parts[1].covariance(0, 0), 1e-4, 1e-7);  // the prior's width
 }
@@ -158,6 +158,28 @@ TEST(Clusters, PeopleWhoShareRecordingsAreClusteredTwoWays) {
   const Clusters clusters = MakeClusters(recordings, ClusterBy::kAuto);
   EXPECT_TRUE(clusters.two_way);
   EXPECT_EQ(clusters.of[0].size(), 2u);
+  EXPECT_EQ(clusters.line_up, (std::vector<int>{0, 1, 2, 3, 4, 5}));  // of two line-ups alone
+  study.subjects = 4;
+  study.recordings_per_subject = 2;
+  EXPECT_EQ(MakeClusters(MakePendulums(study), ClusterBy::kAuto).line_up,
+            (std::vector<int>{0, 0, 1, 1, 2, 2, 3, 3}));
+}
+
+// A and B in two recordings, B and C in a third: two line-ups. The mean's variance is that of
+// people, and of line-ups, less that of people in line-ups.
+TEST(Clusters, LineUpsAreTheSecondWay) {
+  const JacobianBlocks score = MeanProblem({{1.0, 2.0}, {2.0, 1.5}, {0.5, 3.5}});
+  const RowClusters people{{0, 1, 0, 1, 1, 2}, 3}, line_ups{{0, 0, 0, 0, 1, 1}, 2};
+  const Eigen::VectorXd unit = Eigen::VectorXd::Ones(1);
+  const auto variance = [&](const Clustering& clustering) {
+    return ComputeCovariance(score, unit, clustering).scatter.Covariance()(0, 0);
+  };
+  const Eigen::VectorXd& r = score.residuals;
+  const double both =
+      std::pow(r[0] + r[2], 2) + std::pow(r[1] + r[3], 2) + r[4] * r[4] + r[5] * r[5];
+  const RowClusters recordings = ClusterByRecording(score);
+  EXPECT_NEAR(variance({people, recordings, 0, false, line_ups}),
+              variance({people, {}, 0}) + variance({line_ups, {}, 0}) - both / 36.0, 1e-12);
 }
 
 }  // namespace
