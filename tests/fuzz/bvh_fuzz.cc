@@ -6,7 +6,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace pushid;
   static MemoryFile file;
-  const CpuSecond limit;
+  const CpuLimit limit;
   const std::string& path = file.Fill(data, size);
   const Result<BvhMotion> raw = ReadBvh(path);
   const Result<BvhPositions> positions = ReadBvhPositions(path);

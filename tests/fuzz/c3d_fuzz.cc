@@ -6,7 +6,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace pushid;
   static MemoryFile file;
-  const CpuSecond limit;
+  const CpuLimit limit;
   const Result<C3dFile> read = ReadC3d(file.Fill(data, size), {size % 2 == 0});
   if (!read.ok()) return 0;
   const C3dFile& c3d = read.value();

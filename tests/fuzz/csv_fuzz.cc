@@ -8,7 +8,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace pushid;
   static MemoryFile file;
-  const CpuSecond limit;
+  const CpuLimit limit;
   const std::string& path = file.Fill(data, size);
   const auto push = ReadPushCsv(path);
   if (push.ok()) Demand(!push.value().empty());

@@ -5,7 +5,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace pushid;
   static MemoryFile file;
-  const CpuSecond limit;
+  const CpuLimit limit;
   const Result<BatchPlan> read = ReadPlan(file.Fill(data, size));
   if (!read.ok()) {
     Demand(!read.error().ToString().empty());

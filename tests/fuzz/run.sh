@@ -2,7 +2,7 @@
 # Builds the fuzz targets and runs each for some seconds from seeds of the project's own writers:
 #   bash tests/fuzz/run.sh [seconds per target, 30] [target ...]
 # as many at a time as there are cores, or PUSHID_FUZZ_JOBS of them.
-# A crash, a leak, an input that takes over a second of processor time or a gigabyte ends the run with exit code 1; the
+# A crash, a leak, an input that takes over three seconds of processor time or a gigabyte ends the run with exit code 1; the
 # input is kept in build/fuzz/findings. What was covered stays in build/fuzz/corpus for the next run.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
