@@ -153,10 +153,19 @@ RefitRow RefitWith(const FitProblem& problem, const FitPoint& estimate, const st
   RefitRow row{"priors", name, {}, {}, "", 0};
   FitOptions options = problem.options();
   for (ParameterSpec& spec : options.table.specs) {
-    if (spec.prior) spec.prior = Prior{factor * spec.prior->mean, factor * spec.prior->sigma};
+    if (!spec.prior) continue;
+    spec.prior = Prior{factor * spec.prior->mean, factor * spec.prior->sigma};
+    spec.nominal = std::clamp(spec.prior->mean, spec.lower, spec.upper);
   }
   const FitProblem other(problem.recordings(), options, problem.counts());
-  Take(other, Refit(other, estimate), &row);
+  // Where priors hold a number, the way from the estimate is long, and where feet step it is rough:
+  // the priors' own centres are a second start.
+  SolveStart refit = Refit(other, estimate);
+  SolveStart fresh = SolveFrom(other, other.NominalPoint(), "nominal", "", nullptr);
+  if (fresh.usable && fresh.failed.empty() && (!refit.usable || fresh.cost < refit.cost)) {
+    refit = std::move(fresh);
+  }
+  Take(other, refit, &row);
   return row;
 }
 
