@@ -14,6 +14,7 @@
 #include "ident/prediction/predicted_steps.h"
 #include "ident/problem/own_axes.h"
 #include "ident/uncertainty/bootstrap.h"
+#include "models/rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
@@ -42,11 +43,15 @@ bool StepsAreSpread(const IdentifiedModel& model) {
          model.step_probability->coefficients[1] > 0.0;
 }
 
+// Drawn supports are no narrower than half of the fitted one: people who step for sure do so by
+// that, and on a support of a millimetre they would never stand again.
+constexpr double kNarrowest = 0.5, kWidest = 4.0;
+
 // A person steps if the support is smaller than b + margin, which has the probability At(margin).
 void DrawSupport(const StepProbability& p, Random* random, ParameterSet<double>* own) {
   const double u = random->Unit();
   const double more = (std::log(u / (1.0 - u)) - p.coefficients[0]) / p.coefficients[1];
-  const double factor = std::clamp(1.0 + more / (*own)[kSupportFront], 0.01, 4.0);
+  const double factor = std::clamp(1.0 + more / (*own)[kSupportFront], kNarrowest, kWidest);
   for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) (*own)[id] *= factor;
 }
 
