@@ -23,7 +23,8 @@
 // abreast: the rear foot is brought up. At a = t_on the foot that did not land last (at first the
 // rear one; of feet side by side, that on the side of xi) leaves the ground, for t_s + (how far it
 // is behind) / 4.4 m/s. With xi' where the capture point will be at landing,
-//   place = the standing foot + kappa (xi'_x - h0_x - the standing foot), at most 1.2 l;
+//   place = the standing foot + kappa (xi'_x - h0_x - the standing foot), at most 1.2 l; backwards
+// kappa is 1, since c hardly reaches behind the foot and a shorter step catches nobody;
 // sideways it keeps its distance, and goes as far as xi' is off the middle of the two, at most 0.4
 // m. On landing the support is new, and a = t_on - 0.06 s if xi' is beyond that too. Legs have no
 // mass: a foot in the air moves the cart by half its own way, and the hip does not feel it.
@@ -219,7 +220,8 @@ class StanceStep {
     const T growth = exp(omega * (RealPart(left) > 0.0 ? left : T(0.0)));
     const Horizontal<T> landing = pressure_ + growth * (xi_ - pressure_);  // xi' above
     Horizontal<T> place;
-    place[0] = stands[0] + SmoothLimit<T>(p_.gain * (landing[0] - rest_[0] - stands[0]),
+    const T ahead = landing[0] - rest_[0] - stands[0];
+    place[0] = stands[0] + SmoothLimit<T>(RealPart(ahead) < 0.0 ? ahead : p_.gain * ahead,
                                           T(kReach * self_.body.rod_length));
     const double lane = feet.swings * self_.feet_apart[1];
     place[1] = stands[1] + lane +
