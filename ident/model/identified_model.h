@@ -48,6 +48,8 @@ struct ValueRange {
 struct PushRange {
   ValueRange external_s, net_s;  // durations of the rows, s
   ValueRange impulse_per_mass;   // m/s
+  // Angles between pushes and the model's x axis, degrees; empty in files that are older than it.
+  ValueRange direction;
 
   ValueRange& Durations(PushKind kind) { return kind == PushKind::kExternal ? external_s : net_s; }
   const ValueRange& Durations(PushKind kind) const {

@@ -146,6 +146,7 @@ void Fields(Archive& a, PushRange& p) {
   range("external_duration_s", p.external_s);
   range("net_duration_s", p.net_s);
   range("impulse_per_mass_m_s", p.impulse_per_mass);
+  range("direction_deg", p.direction);
 }
 
 template <class Archive>

@@ -1,9 +1,13 @@
 // ident: durations and impulses of pushes.
 #include "ident/model/push_range.h"
 
+#include <cmath>
+#include <optional>
+
 #include "datasets/files/number_text.h"
 #include "ident/model/identified_model.h"
 #include "ident/model/model_rollout.h"
+#include "ident/problem/own_axes.h"
 
 namespace pushid {
 namespace {
@@ -18,6 +22,14 @@ double ImpulsePerMass(const IdentifiedModel& model, const PendulumRecording& rec
   if (model.options.push_tail == PushTail::kNone) p[kTailGain] = p[kTailBase] = 0.0;
   const double mass = recording.scene.people[push.person].body.mass;
   return WholeImpulse(push, mass, p, recording.scene.dt) / mass;
+}
+
+// From the model's x axis, in degrees; to the left and to the right alike.
+double Direction(const IdentifiedModel& model, const PendulumRecording& recording,
+                 const ScenePush& push) {
+  const double angle =
+      std::atan2(push.mean[1], push.mean[0]) - OwnAxes(recording, model.options.directions);
+  return std::abs(std::remainder(angle, 2.0 * M_PI)) * 180.0 / M_PI;
 }
 
 // The pushes of some recordings that lie outside of a range.
@@ -42,6 +54,28 @@ struct Outside {
            Rounded(range.upper, 3) + " " + unit + ": an extrapolation";
   }
 };
+
+// What to say of pushes from where none was fitted.
+std::optional<std::string> TurnedAway(const IdentifiedModel& model,
+                                      const std::vector<PendulumRecording>& recordings) {
+  const ValueRange& fitted = model.push_range->direction;
+  if (fitted.empty()) return std::nullopt;
+  for (const PendulumRecording& recording : recordings) {
+    for (const ScenePush& push : recording.scene.pushes) {
+      if (push.force.empty() || push.mean.head<2>().isZero(0.0)) continue;
+      const double angle = Direction(model, recording, push);
+      if (angle <= fitted.upper + kBeyondFittedAngle &&
+          angle >= fitted.lower - kBeyondFittedAngle) {
+        continue;
+      }
+      return "the push of " + recording.id + " points " + Rounded(angle, 3) +
+             " degrees off forwards; the model was fitted to pushes within " +
+             Rounded(fitted.upper, 3) +
+             " degrees: what people do then is an assumption, not an estimate";
+    }
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -70,6 +104,7 @@ PushRange FittedPushRange(const IdentifiedModel& model,
       if (push.force.empty()) continue;
       range.Durations(push.kind).Add(Duration(recording, push));
       range.impulse_per_mass.Add(ImpulsePerMass(model, recording, push));
+      range.direction.Add(Direction(model, recording, push));
     }
   }
   return range;
@@ -109,6 +144,7 @@ std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
     warnings.push_back(impulse.Sentence("the push's impulse over mass", "m/s", all));
     if (impulse.has_tail) warnings.back() += "; its tail is cut to what was seen";
   }
+  if (const auto turned = TurnedAway(model, recordings)) warnings.push_back(*turned);
   return warnings;
 }
 

@@ -23,9 +23,10 @@ PushRange FittedPushRange(const IdentifiedModel& model,
 
 // Farther outside the range than this, a prediction is an extrapolation.
 inline constexpr double kBeyondFittedRange = 1.25;
+inline constexpr double kBeyondFittedAngle = 45.0;  // degrees
 
-// What to warn of: one sentence on the durations and one on the impulses that lie outside; none
-// where the model's file is older than the range.
+// What to warn of: one sentence on the durations, one on the impulses and one on the directions
+// that lie outside; none where the model's file is older than the range.
 std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
                                                const std::vector<PendulumRecording>& recordings);
 

@@ -85,6 +85,21 @@ TEST(PushRange, WarnsOfWhatLiesOutsideByMoreThanAQuarter) {
       ExtrapolationWarnings(no_tail, {PushedPerson("e", PushKind::kNet, 6, 200.0)}).empty());
 }
 
+// Where pushes from all sides are not alike, as for feet that step.
+TEST(PushRange, WarnsOfPushesFromWhereNoneCame) {
+  IdentifiedModel model = Model();
+  model.options.directions = Directions::kBody;
+  PendulumRecording push = PushedPerson("a", PushKind::kExternal, 20, 60.0);
+  model.push_range = FittedPushRange(model, {push});
+  EXPECT_TRUE(ExtrapolationWarnings(model, {push}).empty());
+  push.scene.pushes[0].mean.head<2>() = Eigen::Vector2d(-50.0, 1e-9);
+  const auto warnings = ExtrapolationWarnings(model, {push});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_TRUE(Contains(warnings[0], "a points 180 degrees off forwards")) << warnings[0];
+  model.options.directions = Directions::kIsotropic;
+  EXPECT_TRUE(ExtrapolationWarnings(model, {push}).empty());
+}
+
 TEST(PushRange, AUnitsOwnTailCounts) {
   IdentifiedModel model = Model();
   model.pool_by = kConditionLabel;
