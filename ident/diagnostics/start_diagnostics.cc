@@ -80,6 +80,12 @@ MaybeError CheckEffects(const FitProblem& problem) {
     list += (list.empty() ? "" : ",") + name;
   }
   if (list.empty()) return std::nullopt;
+  const bool alone = std::all_of(problem.recordings().begin(), problem.recordings().end(),
+                                 [](const PendulumRecording& r) { return r.num_people() == 1; });
+  if (alone && problem.options().model.interaction.Any()) {
+    return Error{"every recording has one person, and " + list +
+                 " act only between people who touch; use --preset=tail"};
+  }
   return Error{list + (list.find(',') == std::string::npos ? " has" : " have") +
                " no effect on any of these recordings and cannot be fitted; use --fix=" + list};
 }

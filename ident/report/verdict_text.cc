@@ -119,7 +119,7 @@ std::string ModelVerdictText(const ModelVerdict& v) {
     return "The model does not fit these recordings: " + FailureText(v) +
            ". Nothing is called identified.";
   }
-  return "The model check found nothing: " + std::to_string(v.NumTested()) +
+  return "The model check found no contradiction: " + std::to_string(v.NumTested()) +
          " quantities that are taken as known (p = " + Rounded(v.p_assumptions, 2) + "), " +
          std::to_string(v.parts.size()) +
          " scores of parts of the data (p = " + Rounded(v.p_parts, 2) + ") and " +
