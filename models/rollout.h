@@ -80,7 +80,18 @@ RolloutStatus RollOn(const Scene& scene, const ModelOptions& options, SceneForce
   return {};
 }
 
-// initial_velocity: one entry per person; parameters and network_weights as in SceneForces. path is
+// Frame 0 of a path. initial_velocity: one entry per person.
+template <typename T>
+void StartPath(const Scene& scene, const std::vector<Vector4<T>>& initial_velocity,
+               RolloutPath<T>* path) {
+  for (int n = 0; n < scene.num_people(); ++n) {
+    path->At(0, n).q = scene.people[n].start.q.template cast<T>();
+    path->At(0, n).qd = initial_velocity[n];
+    path->At(0, n).feet.apart = scene.people[n].start.feet.apart.template cast<T>();
+  }
+}
+
+// initial_velocity: as above; parameters and network_weights as in SceneForces. path is
 // overwritten; on failure, trace and noise: RollOn.
 template <typename T>
 RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
@@ -93,11 +104,7 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
   SceneForces<T> forces(scene, options, parameters, network_weights);
   *path = RolloutPath<T>(num_frames, people);
   if (trace != nullptr) *trace = FrameTable<NetForce<T>>(num_frames, people);
-  for (int n = 0; n < people; ++n) {
-    path->At(0, n).q = scene.people[n].start.q.template cast<T>();
-    path->At(0, n).qd = initial_velocity[n];
-    path->At(0, n).feet.apart = scene.people[n].start.feet.apart.template cast<T>();
-  }
+  StartPath(scene, initial_velocity, path);
   return RollOn<T>(scene, options, &forces, 0, path, trace, noise);
 }
 

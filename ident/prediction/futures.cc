@@ -43,16 +43,30 @@ bool StepsAreSpread(const IdentifiedModel& model) {
          model.step_probability->coefficients[1] > 0.0;
 }
 
-// Drawn supports are no narrower than half of the fitted one: people who step for sure do so by
-// that, and on a support of a millimetre they would never stand again.
-constexpr double kNarrowest = 0.5, kWidest = 4.0;
-
 // A person steps if the support is smaller than b + margin, which has the probability At(margin).
 void DrawSupport(const StepProbability& p, Random* random, ParameterSet<double>* own) {
   const double u = random->Unit();
   const double more = (std::log(u / (1.0 - u)) - p.coefficients[0]) / p.coefficients[1];
-  const double factor = std::clamp(1.0 + more / (*own)[kSupportFront], kNarrowest, kWidest);
+  const double factor = std::clamp(1.0 + more / (*own)[kSupportFront], 0.01, 4.0);
   for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) (*own)[id] *= factor;
+}
+
+// By the drawn parameters until a foot leaves the ground, then by the person's own: what is drawn
+// is whether there is a first step, and who went on with a support of millimetres would march.
+RolloutStatus RollDrawn(const Scene& scene, const ModelOptions& options,
+                        std::vector<ParameterSet<double>> now,
+                        const std::vector<ParameterSet<double>>& own,
+                        const FrameTable<Vector4<double>>* noise, RolloutPath<double>* path) {
+  SceneForces<double> forces(scene, options, now);
+  StartPath(scene, InitialVelocities(scene), path);
+  for (int t = 0; t + 1 < path->num_frames(); ++t) {
+    const RolloutStatus status = StepOn<double>(scene, options, &forces, t, path, nullptr, noise);
+    if (!status.ok) return status;
+    for (int n = 0; n < scene.num_people(); ++n) {
+      if (path->At(t + 1, n).feet.swings != 0) now[n] = own[n];
+    }
+  }
+  return {};
 }
 
 // "0: 0.05, 1: 0.62, 2: 0.33"
@@ -103,9 +117,9 @@ Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecordin
   Random random(seed);
   const bool noisy = model.options.process_noise.Any(), spread = StepsAreSpread(model);
   for (int draw = 0; draw < draws; ++draw) {
-    std::vector<ParameterSet<double>> own = parameters;
-    for (size_t n = 0; spread && n < own.size(); ++n) {
-      DrawSupport(*model.step_probability, &random, &own[n]);
+    std::vector<ParameterSet<double>> drawn = parameters;
+    for (size_t n = 0; spread && n < drawn.size(); ++n) {
+      DrawSupport(*model.step_probability, &random, &drawn[n]);
     }
     FrameTable<Vector4<double>> noise(frames, scene.num_people());
     for (int t = 0; noisy && t < frames; ++t) {
@@ -113,10 +127,11 @@ Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecordin
         for (double& w : noise.At(t, n)) w = random.Normal();
       }
     }
-    RolloutPath<double> path;
-    if (!RolloutInOwnAxes(recording, model.options, own, frames, &path, nullptr,
-                          noisy ? &noise : nullptr)
-             .ok) {
+    RolloutPath<double> path(frames, scene.num_people());
+    const auto roll = [&](const Scene& turned) {
+      return RollDrawn(turned, model.options, drawn, parameters, noisy ? &noise : nullptr, &path);
+    };
+    if (!RollInOwnAxes(recording, model.options, roll, frames, &path).ok) {
       ++futures.failed;
       continue;
     }

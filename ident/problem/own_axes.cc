@@ -59,6 +59,17 @@ std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
   return turned;
 }
 
+RolloutStatus RollInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
+                            const std::function<RolloutStatus(const Scene&)>& roll, int num_frames,
+                            RolloutPath<double>* path, FrameTable<NetForce<double>>* trace) {
+  const double angle = OwnAxes(recording, options.directions);
+  if (angle == 0.0) return roll(WithBodies(recording.scene, recording, options.body));
+  const RolloutStatus status =
+      roll(WithBodies(TurnedScene(recording, angle), recording, options.body));
+  TurnBack(angle, path, trace, status.ok ? num_frames : status.frame);
+  return status;
+}
+
 RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
                                const std::vector<ParameterSet<double>>& parameters, int num_frames,
                                RolloutPath<double>* path, FrameTable<NetForce<double>>* trace,
@@ -67,12 +78,7 @@ RolloutStatus RolloutInOwnAxes(const PendulumRecording& recording, const ModelOp
     return Rollout<double>(scene, options, parameters, InitialVelocities(scene), num_frames, path,
                            trace, nullptr, noise);
   };
-  const double angle = OwnAxes(recording, options.directions);
-  if (angle == 0.0) return roll(WithBodies(recording.scene, recording, options.body));
-  const RolloutStatus status =
-      roll(WithBodies(TurnedScene(recording, angle), recording, options.body));
-  TurnBack(angle, path, trace, status.ok ? num_frames : status.frame);
-  return status;
+  return RollInOwnAxes(recording, options, roll, num_frames, path, trace);
 }
 
 }  // namespace pushid

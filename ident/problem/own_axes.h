@@ -3,6 +3,7 @@
 // (BodyModel).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -22,6 +23,13 @@ Scene WithBodies(Scene scene, const PendulumRecording& recording, BodyModel body
 // The recordings as a model sees them; null where that is as the files have them.
 std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
     const std::vector<PendulumRecording>& recordings, const ModelOptions& options);
+
+// What `roll` does to the scene as a model sees it, seen in the axes of the file. num_frames: of
+// the path. trace may be null.
+RolloutStatus RollInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
+                            const std::function<RolloutStatus(const Scene&)>& roll, int num_frames,
+                            RolloutPath<double>* path,
+                            FrameTable<NetForce<double>>* trace = nullptr);
 
 // A rollout in a model's axes, seen in those of the file: what a fit that sees recordings in the
 // model's axes predicts. path and trace as those of Rollout.

@@ -85,6 +85,13 @@ TEST(Stance, AWeakPushSwaysAStrongOneSteps) {
   }
 }
 
+// Steps as short as those forwards would fall short backwards, one after the other for metres.
+TEST(Stance, BackwardsAsWell) {
+  EXPECT_NEAR(HipEnd(-0.1), 0.0, 0.02);
+  EXPECT_LT(HipEnd(-0.3), -0.2);
+  EXPECT_GT(HipEnd(-0.3), -0.8);
+}
+
 TEST(Stance, ToTheSideAsWell) {
   EXPECT_NEAR(HipEnd(0.1, 60.0, true), 0.0, 0.02);
   EXPECT_GT(HipEnd(0.6, 60.0, true), 0.1);
