@@ -117,9 +117,7 @@ void AddPanels(const std::vector<TrainingPoint>& stage, std::vector<Chart>* pane
   const auto best = std::min_element(stage.begin(), stage.end(), [](const auto& a, const auto& b) {
     return a.validation_loss < b.validation_loss;
   });
-  Chart chart;
-  chart.title = stage.front().stage;
-  chart.x_label = "epoch";
+  Chart chart{stage.front().stage, "epoch"};
   chart.y_from = 0.0;
   if (!chart.title.empty()) {
     panels->push_back(chart);

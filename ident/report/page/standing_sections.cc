@@ -50,9 +50,7 @@ std::string CaptionOf(const FrequencyResponse& response) {
 Figure SwayFigure(const std::vector<PersonSway>& people) {
   Figure figure;
   for (int i = 0; i < kNumSwayMeasures; ++i) {
-    Chart chart;
-    chart.title = kSwayMeasures[i].name;
-    chart.x_label = kSwayMeasures[i].unit;
+    Chart chart{kSwayMeasures[i].name, kSwayMeasures[i].unit};
     ChartLine measured{{}, kMeasuredLook, true};
     for (size_t n = 0; n < people.size(); ++n) {
       const double row = static_cast<double>(n);
