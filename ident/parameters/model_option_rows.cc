@@ -18,10 +18,10 @@ Row PresetRow() {
       "preset", OptionStage::kPreset,
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
       "tail, posture-relative recovery), group (tail with linear self forces and contact, pooled "
-      "by "
-      "setting), ldp (plain PD and friction from upright), ldp_groups (that with LDP's potential "
-      "and "
-      "torques between people, and a small network beside them), or ldp_published (LDP with all "
+      "by setting), ldp (plain PD and friction from upright), ldp_groups (that with LDP's "
+      "potential "
+      "and torques between people, and a small network beside them), or ldp_published (LDP with "
+      "all "
       "its networks, of one person or of groups)",
       nullptr);
   row.choices = PresetNames();
@@ -59,22 +59,6 @@ Row StanceRow() {
       return Error{error->message + ", or " + kAutoStance + now};
     }
     SetStance(stance, o);
-    return std::nullopt;
-  };
-  return MayBeAbsent(row);
-}
-
-Row LikelihoodRow() {
-  Row row = NameRow<Likelihood>(
-      "likelihood", "/likelihood", [](FitOptions & o) -> auto& { return o.likelihood; },
-      "what a fit maximizes: trajectory (whole rollouts), transition (each measured state given "
-      "the "
-      "one before), innovation (each measurement given all before it, with errors of measurement), "
-      "or transition_as_printed (Eq. 6 of Lyu et al., to compare)");
-  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
-    Likelihood likelihood;
-    if (MaybeError error = ParseName("--likelihood", text, &likelihood)) return error;
-    SetLikelihood(likelihood, o);
     return std::nullopt;
   };
   return MayBeAbsent(row);
@@ -122,8 +106,7 @@ Row RodRow() {
   Row row = WordsRow("rod", OptionStage::kModel,
                      "the rod's length: constant, or a state that a learned law changes, together "
                      "with the cart's height: linear, mlp:4 (hidden sizes); or LDP's, whose cart "
-                     "keeps its height, "
-                     "ldp:256-128-256",
+                     "keeps its height, ldp:256-128-256",
                      [](const std::string& text, FitOptions* o) -> MaybeError {
                        const Result<RodShape> rod = ParseRod("--rod", text);
                        if (!rod.ok()) return rod.error();
@@ -234,8 +217,16 @@ std::vector<Row> ModelOptionRows() {
       Decided(NameRow<PushTail>(
           "push_tail", "/push_tail", [](O & o) -> auto& { return o.model.push_tail; },
           "none or exponential")),
-      DelayRow(),
-      BodyRow(),
+      NameRowWith<Delay>(
+          SetDelay, "delay", "/delay", [](O & o) -> auto& { return o.model.delay; },
+          "reaction delay of active feedback: none, one (of all of it) or ankle_and_step (the "
+          "feet's own); reaction_delay and the passive shares of stiffness and damping are then "
+          "fitted"),
+      NameRowWith<BodyModel>(
+          SetBody, "body", "/body", [](O & o) -> auto& { return o.model.body; },
+          "where a body's mass is: ldp (nine tenths at the hip; of who stands, an average body's), "
+          "anthropometric (by the recorded segments, de Leva 1996), or table (cart_share, "
+          "com_height, gyration_radius and push_gain, of robots and rigs: fixed or fitted)"),
       NameRow<CartDerivative>(
           "cart_derivative", "/cart_derivative",
           [](O & o) -> auto& { return o.model.cart_derivative; },
@@ -247,7 +238,11 @@ std::vector<Row> ModelOptionRows() {
           "white-noise forces in addition to all others: none, diagonal, or full (correlated); "
           "with speed and push, comma-separated, it grows with the cart's speed and has a factor "
           "while a push acts")),
-      LikelihoodRow(),
+      NameRowWith<Likelihood>(
+          SetLikelihood, "likelihood", "/likelihood", [](O & o) -> auto& { return o.likelihood; },
+          "what a fit maximizes: trajectory (whole rollouts), transition (each measured state "
+          "given the one before), innovation (each measurement given all before it, with errors "
+          "of measurement), or transition_as_printed (Eq. 6 of Lyu et al., to compare)"),
       PresetPriorsRow(),
   };
 }
