@@ -13,9 +13,22 @@
 
 namespace pushid {
 
-// Where a row's value stands.
+// Where a row's value stands: among the options of the fit, those of the model, or the sigmas.
 template <typename T>
-using OptionField = T& (*)(FitOptions&);
+class OptionField {
+ public:
+  OptionField(T FitOptions::*of_fit) : of_fit_(of_fit) {}               // NOLINT: stands for it
+  OptionField(T ModelOptions::*of_model) : of_model_(of_model) {}       // NOLINT
+  OptionField(T ResidualSigmas::*of_sigmas) : of_sigmas_(of_sigmas) {}  // NOLINT
+  T& operator()(FitOptions& o) const {
+    return of_fit_ ? o.*of_fit_ : of_model_ ? o.model.*of_model_ : o.sigmas.*of_sigmas_;
+  }
+
+ private:
+  T FitOptions::*of_fit_ = nullptr;
+  T ModelOptions::*of_model_ = nullptr;
+  T ResidualSigmas::*of_sigmas_ = nullptr;
+};
 
 template <typename T>
 const T& OptionValue(OptionField<T> field, const FitOptions& options) {

@@ -180,8 +180,9 @@ std::string PreparationText(const std::map<std::string, std::string>& configurat
 
 namespace {
 
+using Place = nlohmann::ordered_json::json_pointer;
+
 constexpr double kFileRounding = 1e-6;  // of a parameter
-const nlohmann::ordered_json::json_pointer kFormation("/synthetic/formation");
 
 }  // namespace
 
@@ -194,7 +195,7 @@ Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path
         .at("truth")
         .get<std::map<std::string, double>>();
   } catch (const nlohmann::json::exception&) {
-    if (document.value().content.contains(kFormation)) {
+    if (document.value().content.contains(Place("/synthetic/formation"))) {
       return Error{
           "a formation of pushid-formation: its truth is the model it was rolled out "
           "with; compare with that model's own report",
