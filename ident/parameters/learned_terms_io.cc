@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "datasets/files/random.h"
 #include "ident/parameters/option_names.h"

@@ -2,7 +2,6 @@
 #include "ident/training/training_run.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
