@@ -136,12 +136,13 @@ TextTable VariantTable(const std::vector<JobResult>& rows) {
     }
     table.Add(counts);
     for (const auto& [what, values] : v.values) {
-      const MeanAndError mean = MeanOf(values);
+      double sum = 0.0, squares = 0.0;
+      for (double value : values) sum += value;
+      const double n = static_cast<double>(values.size()), mean = sum / n;
+      for (double value : values) squares += (value - mean) * (value - mean);
       const auto [low, high] = std::minmax_element(values.begin(), values.end());
-      table.Add({"", "", "", "", what, Rounded(mean.mean, 4),
-                 values.size() > 1
-                     ? Rounded(mean.error * std::sqrt(static_cast<double>(values.size())), 3)
-                     : "-",
+      table.Add({"", "", "", "", what, Rounded(mean, 4),
+                 values.size() > 1 ? Rounded(std::sqrt(squares / (n - 1.0)), 3) : "-",
                  Rounded(*low, 4), Rounded(*high, 4)});
     }
   }
