@@ -102,7 +102,7 @@ int Write(const ProbablePath& path, double dt, const nlohmann::ordered_json& jso
 }
 
 int Between(const Ends& ends, const IdentifiedModel& model) {
-  TextTable table({"end", "action", "of noise", "of divergence"}, {true, false, false, false});
+  TextTable table = TextTable::OfNumbers({"end", "action", "of noise", "of divergence"});
   nlohmann::ordered_json json;
   size_t best = 0;
   std::vector<ProbablePath> paths;

@@ -53,10 +53,7 @@ Result<MadePush> FromSensor(const PushFlags& flags, const Recording& recorded,
 }
 
 Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecording& recording) {
-  PushEstimationOptions options;
-  options.person = flags.person;
-  options.smoothing_frames = flags.smoothing;
-  options.initial_velocity = flags.initial_velocity;
+  const PushEstimationOptions options{flags.person, flags.smoothing, flags.initial_velocity};
   if (flags.smoothing > recording.num_frames()) {
     return Error{"--smoothing is longer than recording " + recording.id + ", which has " +
                  std::to_string(recording.num_frames()) + " frames"};

@@ -145,9 +145,7 @@ int WriteWhole(const FittedModel& model) {
   const Result<std::vector<Recording>> recordings = RecordingsOf(model.fit);
   if (!recordings.ok()) return Fail(recordings.error());
   ProgressLine line;
-  BuildReportOptions options;
-  options.num_threads = FLAGS_num_threads;
-  options.progress = line.OfJobs("recording");
+  const BuildReportOptions options{FLAGS_num_threads, line.OfJobs("recording")};
   Report report = BuildReport(model, recordings.value(), options);
   line.Finish();
   if (FLAGS_text) std::printf("%s", ToText(report).c_str());

@@ -195,6 +195,15 @@ Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>
                               const BatchRunOptions& options,
                               const std::function<void(const BatchProgress&)>& progress);
 
+// The value of a key in a list in the order of first appearance; a new key gets an empty one.
+template <typename Value>
+Value& ValueOf(const std::string& key, std::vector<std::pair<std::string, Value>>* list) {
+  for (auto& [known, value] : *list) {
+    if (known == key) return value;
+  }
+  return list->emplace_back(key, Value()).second;
+}
+
 // The table of a batch: one row a job, with what it found or why it failed.
 
 // A column of the table. A new one is a row in JobColumns: summary.csv, summary.json, the page and

@@ -184,10 +184,7 @@ class Expander {
             Error{"must be none, recording, subject or a label; recording " +
                   Quoted(manifest_.recordings[i].id) + " has no label " + Quoted(plan_.group_by)});
       }
-      auto at = std::find_if(groups.begin(), groups.end(),
-                             [&name](const auto& group) { return group.first == name; });
-      if (at == groups.end()) at = groups.insert(groups.end(), {name, {}});
-      at->second.push_back(i);
+      ValueOf(name, &groups).push_back(i);
     }
     for (const BatchVariant& variant : plan_.variants) {
       const Result<std::string> flags = FlagsHash(plan_, variant);

@@ -126,11 +126,8 @@ class Pool {
 
   // Its next command.
   MaybeError Start(Running* running) {
-    ChildSpec spec;
-    spec.command = running->commands[running->step];
-    spec.out = running->folder + "/stdout.txt";
-    spec.err = running->folder + "/stderr.txt";
-    spec.memory_limit_mb = options_.memory_limit_mb;
+    const ChildSpec spec{running->commands[running->step], running->folder + "/stdout.txt",
+                         running->folder + "/stderr.txt", options_.memory_limit_mb};
     const Result<pid_t> child = StartChild(spec);
     if (!child.ok()) return child.error();
     running->pid = child.value();

@@ -5,6 +5,7 @@
 
 #include "apps/batch/batch.h"
 #include "datasets/files/number_text.h"
+#include "ident/problem/statistics.h"
 #include "ident/uncertainty/bootstrap.h"
 
 namespace pushid {
@@ -19,16 +20,13 @@ std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<
   std::vector<std::pair<std::string, VariantSummary>> variants;
   const std::vector<JobColumn> columns = JobColumns(rows);
   for (const JobResult& row : rows) {
-    auto at = std::find_if(variants.begin(), variants.end(), [&row](const auto& variant) {
-      return variant.first == row.job->variant;
-    });
-    if (at == variants.end()) at = variants.insert(variants.end(), {row.job->variant, {}});
-    ++at->second.jobs[row.status.state];
+    VariantSummary& variant = ValueOf(row.job->variant, &variants);
+    ++variant.jobs[row.status.state];
     if (row.job->replica > 0) continue;
     for (const JobColumn& column : columns) {
       if (!column.over_groups) continue;
       const std::optional<double> number = column.cell(row).number;
-      if (number) at->second.values[column.title].push_back(*number);
+      if (number) variant.values[column.title].push_back(*number);
     }
   }
   return variants;
@@ -62,31 +60,21 @@ std::vector<std::pair<std::string, FoldScores>> ByGroup(const std::vector<JobRes
   std::vector<std::pair<std::string, FoldScores>> groups;
   for (const JobResult& row : rows) {
     if (row.job->held_out.empty() || row.job->replica > 0) continue;
-    auto at = std::find_if(groups.begin(), groups.end(),
-                           [&row](const auto& one) { return one.first == row.job->folded; });
-    if (at == groups.end()) at = groups.insert(groups.end(), {row.job->folded, {}});
-    AddOnce(row.job->variant, &at->second.variants);
-    AddOnce(row.job->group, &at->second.folds);
+    FoldScores& group = ValueOf(row.job->folded, &groups);
+    AddOnce(row.job->variant, &group.variants);
+    AddOnce(row.job->group, &group.folds);
     if (row.done() && !row.held_out.empty()) {
-      at->second.scores[{row.job->variant, row.job->group}] = &row;
+      group.scores[{row.job->variant, row.job->group}] = &row;
     }
   }
   return groups;
 }
 
-double Mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (double value : values) sum += value;
-  return values.empty() ? std::nan("") : sum / static_cast<double>(values.size());
-}
-
 // "0.0123 +- 0.0045" of paired values; the error over folds.
 std::string MeanWithError(const std::vector<double>& values) {
   if (values.size() < 2) return "-";
-  const double mean = Mean(values), n = static_cast<double>(values.size());
-  double squares = 0.0;
-  for (double value : values) squares += (value - mean) * (value - mean);
-  return Rounded(mean, 3) + " +- " + Rounded(std::sqrt(squares / (n - 1.0) / n), 2);
+  const MeanAndError mean = MeanOf(values);
+  return Rounded(mean.mean, 3) + " +- " + Rounded(mean.error, 2);
 }
 
 std::vector<std::string> HeldOutRow(const std::string& group, const std::string& variant,
@@ -108,7 +96,7 @@ std::vector<std::string> HeldOutRow(const std::string& group, const std::string&
       if (value != nullptr) values.push_back(*value);
       if (value != nullptr && first != nullptr) differences.push_back(*value - *first);
     }
-    cells.push_back(values.empty() ? "-" : Rounded(Mean(values), 3));
+    cells.push_back(values.empty() ? "-" : Rounded(MeanOf(values).mean, 3));
     cells.push_back(variant == of.variants[0] ? "-" : MeanWithError(differences));
   }
   cells.push_back(missing.empty() ? "-" : missing);
@@ -202,10 +190,7 @@ TextTable WarningTable(const std::vector<JobResult>& rows) {
   std::vector<std::pair<std::string, std::vector<const JobResult*>>> warnings;
   for (const JobResult& row : rows) {
     for (const std::string& warning : row.warnings) {
-      auto at = std::find_if(warnings.begin(), warnings.end(),
-                             [&warning](const auto& one) { return one.first == warning; });
-      if (at == warnings.end()) at = warnings.insert(warnings.end(), {warning, {}});
-      at->second.push_back(&row);
+      ValueOf(warning, &warnings).push_back(&row);
     }
   }
   TextTable table({"jobs", "the first", "warning"}, {false, true, true});

@@ -92,9 +92,7 @@ Result<std::vector<HipPaths>> Drawn(const Model& model, const IdentifiedModel& i
     if (!futures.ok()) return futures.error();
     return HipsOf(futures.value().paths);
   }
-  BandOptions options;
-  options.samples = samples;
-  options.seed = seed;
+  const BandOptions options{samples, seed};
   const FitResult& fit = model.fitted->fit;
   const auto sets = SampleParameters(fit, options);
   if (!sets.ok()) return sets.error();

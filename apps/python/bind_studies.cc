@@ -43,11 +43,7 @@ void ProfilesOf(Model* model, const std::vector<std::string>& names, int num_thr
 
 void BootstrapOf(Model* model, int replicas, uint64_t seed, int num_threads,
                  const std::string& file, const py::object& progress) {
-  BootstrapOptions options;
-  options.replicas = replicas;
-  options.seed = seed;
-  options.num_threads = num_threads;
-  options.file = file;
+  const BootstrapOptions options{replicas, seed, file, num_threads};
   const JobProgress told = JobsOf(progress);
   Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
     return AddBootstrap(recordings, options, told, fitted);
@@ -176,11 +172,8 @@ Scene SceneOf(const FormationAsked& asked) {
     Raise(Fault::kUsage, Error{"a formation has 1 to 1000 people, one of whom is pushed, and "
                                "spacing, mass, rod, durations and fps above 0"});
   }
-  Body body;
-  body.mass = asked.mass;
-  body.rod_length = asked.rod;
-  Scene scene = FormationScene(FormationPositions(how->second, asked.people, asked.spacing), body,
-                               1.0 / asked.fps);
+  Scene scene = FormationScene(FormationPositions(how->second, asked.people, asked.spacing),
+                               {asked.mass, asked.rod}, 1.0 / asked.fps);
   AddHipPush(asked.pushed,
              {asked.push, 0.0, asked.push_duration, asked.push_direction * M_PI / 180.0}, &scene);
   return scene;

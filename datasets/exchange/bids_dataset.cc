@@ -4,7 +4,6 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <system_error>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"

@@ -39,10 +39,7 @@ InspectedGround GroundOf(const ManifestRecording& entry, const Recording& record
 
 InspectedPlates PlatesOf(const ManifestRecording& entry, const ManifestPlates& plates,
                          const RecordedPerson& person) {
-  InspectedPlates found;
-  found.recording = entry.id;
-  found.person = person.subject_id;
-  found.use = NameOf(plates.use);
+  InspectedPlates found{entry.id, person.subject_id, NameOf(plates.use)};
   const Result<PlateTracks> tracks = ReadPlates(entry, plates, person);
   if (tracks.ok()) {
     found.platforms = tracks.value().platforms;

@@ -250,10 +250,8 @@ MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const st
     for (const std::string& own : recording.labels.Keys()) known.insert(own);
   }
   if (known.count(key) > 0) return std::nullopt;
-  std::string names;
-  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
   return Error{"--" + flag + " is '" + key + "', a label that no recording has; there are " +
-               names};
+               Listed({known.begin(), known.end()}, ",")};
 }
 
 }  // namespace pushid

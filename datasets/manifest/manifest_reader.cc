@@ -40,9 +40,8 @@ void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestReco
   for (const Json& item : fields->List("subjects")) {
     JsonFields subject(document, item, fields->Pointer("subjects/" + std::to_string(index)),
                        fields->label() + ", subject " + std::to_string(index));
-    ManifestSubject read;
-    read.id = subject.Text("id", "text that names the person");
-    read.mass_kg = subject.Number("mass_kg", "the person's mass in kg");
+    ManifestSubject read{subject.Text("id", "text that names the person"),
+                         subject.Number("mass_kg", "the person's mass in kg")};
     if (!subject.failed() && !(read.mass_kg > 0.0 && read.mass_kg <= kHeaviestPerson)) {
       subject.Fail("mass_kg", "is " + Rounded(read.mass_kg) +
                                   "; a mass in kg is above 0 and at most " +
@@ -102,9 +101,8 @@ void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecord
     const std::string index = std::to_string(recording->pushes.size());
     JsonFields push(document, item, fields->Pointer("pushes/" + index),
                     fields->label() + ", push " + index);
-    ManifestPush read;
-    read.person = push.Whole("person", "the index of a subject, from 0", 0, people - 1);
-    read.csv = push.Text("csv", "the name of a push CSV file");
+    ManifestPush read{push.Whole("person", "the index of a subject, from 0", 0, people - 1),
+                      push.Text("csv", "the name of a push CSV file")};
     if (!push.failed() && read.csv.empty()) push.Fail("csv", "is empty");
     read.start_frame =
         push.OptionalWhole("start_frame", "the frame the push starts at, from 0", 0, kAnyFrame, 0);

@@ -113,9 +113,7 @@ class Walker {
     const auto legs = part(1.0, q.legs, v.legs, slope.v.legs);
     const auto trunk = part(body_.c2, q.trunk, v.trunk, slope.v.trunk);
     const double ground = MiddleAcceleration(t);
-    LaboratorySample s;
-    s.legs = q.legs;
-    s.trunk = q.trunk;
+    LaboratorySample s{q.legs, q.trunk};
     s.push_N = push_.ForceAt(t);
     for (int foot : {0, 1}) {
       s.foot[foot] = Foot(foot, t);

@@ -228,11 +228,8 @@ MaybeError WriteSyntheticTurns(const std::string& folder, const SyntheticTurnsOp
     std::vector<std::string> files;
     std::vector<ManifestSubject> subjects;
     for (int n = 0; n < kTalkers; ++n) {
-      BvhMotion motion;
-      motion.skeleton = talkers[n].skeleton.Bvh(kTurnsUnit);
-      motion.length_unit = kTurnsUnit;
-      motion.frame_time_s = 1.0 / options.fps;
-      motion.values = values[n];
+      const BvhMotion motion{talkers[n].skeleton.Bvh(kTurnsUnit), kTurnsUnit, 1.0 / options.fps,
+                             values[n]};
       files.push_back("bvh/" + recording.id + "_" + std::to_string(n) + ".bvh");
       if (MaybeError failed = WriteBvh(folder + "/" + files.back(), motion, kTurnsUnit)) {
         return failed;

@@ -92,13 +92,8 @@ MaybeError CheckEffects(const FitProblem& problem) {
 
 StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start) {
   const Conditioning at_start = ComputeConditioning(problem, start.from);
-  StartDiagnostics d;
-  d.condition_number = at_start.condition_number;
-  d.null_directions = at_start.null_directions;
-  d.without_effect = WithoutEffect(problem, start.from);
-  d.notes = start.notes;
-  d.findings = FitFindings(FindingsOf(problem.recordings()));
-  return d;
+  return {at_start.condition_number, at_start.null_directions, WithoutEffect(problem, start.from),
+          start.notes, FitFindings(FindingsOf(problem.recordings()))};
 }
 
 }  // namespace pushid

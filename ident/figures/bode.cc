@@ -14,9 +14,7 @@ double Nearest(double phase, double to) { return to + std::remainder(phase - to,
 
 // Measured values with their errors over the model's curve.
 Chart PanelOf(const std::string& title, const BodePlot& plot, const std::vector<double>& curve) {
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "frequency, Hz";
+  Chart chart{title, "frequency, Hz"};
   chart.logarithmic_x = true;
   if (!curve.empty()) chart.lines.push_back({{}, kPredictedLook});
   for (size_t i = 0; i < curve.size(); ++i) {

@@ -60,30 +60,32 @@ struct ChartLabel {
 };
 
 struct Chart {
-  std::string title, x_label;
-  std::string y_label;  // at the right end of the title's line
-  std::vector<ChartBand> bands;
-  std::vector<ChartLine> lines;
-  std::vector<ChartLane> lanes;
-  std::vector<ChartBar> bars;
-  std::vector<ChartLabel> labels;
-  std::vector<double> levels;          // dashed, across
-  std::vector<double> marks;           // upright
-  std::optional<double> x_from, x_to;  // instead of the data's own range
-  std::optional<double> y_from, y_to;
+  std::string title = {}, x_label = {};
+  std::string y_label = {};  // at the right end of the title's line
+  std::vector<ChartBand> bands = {};
+  std::vector<ChartLine> lines = {};
+  std::vector<ChartLane> lanes = {};
+  std::vector<ChartBar> bars = {};
+  std::vector<ChartLabel> labels = {};
+  std::vector<double> levels = {};               // dashed, across
+  std::vector<double> marks = {};                // upright
+  std::optional<double> x_from = {}, x_to = {};  // instead of the data's own range
+  std::optional<double> y_from = {}, y_to = {};
   bool is_map = false;         // a metre is as long upwards as across; x_from to y_to are given
   bool logarithmic_x = false;  // x and y are given as log10
   bool logarithmic_y = false;
   bool bare_y = false;  // no numbers upwards: the rows are few and named
-  std::vector<std::string> y_categories,
-      y_notes;  // names at y = 0, 1, ... downwards; right of them
+  // Names at y = 0, 1, ... downwards; right of them.
+  std::vector<std::string> y_categories = {}, y_notes = {};
   // A table of signed numbers as colours, blue below zero and orange above; full_cell: the value of
   // the strongest one.
-  std::vector<std::string> x_categories;
-  std::vector<std::vector<double>> cells;  // [row][column]; NaN: "-"
+  std::vector<std::string> x_categories = {};
+  std::vector<std::vector<double>> cells = {};  // [row][column]; NaN: "-"
   double full_cell = 1.0;
-  double width = kPanelWidth,
-         height = kPanelHeight;  // wanted; rows of categories have their own height
+  // Wanted; rows of categories have their own height.
+  double width = kPanelWidth, height = kPanelHeight;
+
+  void Shrink() { width = kSmallWidth, height = kSmallHeight; }
 };
 
 // What the lines of a picture mean.

@@ -117,26 +117,14 @@ std::string_view SvgStyle() {
 }
 
 std::string EscapeXml(std::string_view text) {
+  constexpr std::string_view kSpecial = "&<>\"'";
+  constexpr const char* kEntities[] = {"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
   std::string escaped;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\'':
-        escaped += "&#39;";
-        break;
-      default:
-        escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    if (const size_t at = kSpecial.find(c); at != std::string_view::npos) {
+      escaped += kEntities[at];
+    } else {
+      escaped += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
     }
   }
   return escaped;
@@ -157,15 +145,13 @@ SvgPicture::SvgPicture(double width, double height, std::string_view title)
   Rect({0, 0, width, height}, "paper");
 }
 
-void SvgPicture::Open(std::string_view element) {
+void SvgPicture::Open(std::string_view element,
+                      std::initializer_list<std::pair<const char*, double>> numbers) {
   body_ += '<';
   body_ += element;
-}
-
-void SvgPicture::Number(std::string_view name, double value) {
-  body_ += ' ';
-  body_ += name;
-  body_ += "=\"" + SvgNumber(value) + '"';
+  for (const auto& [name, value] : numbers) {
+    body_ += std::string(" ") + name + "=\"" + SvgNumber(value) + '"';
+  }
 }
 
 void SvgPicture::Look(std::string_view look) {
@@ -174,31 +160,20 @@ void SvgPicture::Look(std::string_view look) {
 }
 
 void SvgPicture::Rect(const SvgBox& box, std::string_view look, std::string_view tooltip) {
-  Open("rect");
-  Number("x", box.x);
-  Number("y", box.y);
-  Number("width", box.width);
-  Number("height", box.height);
+  Open("rect", {{"x", box.x}, {"y", box.y}, {"width", box.width}, {"height", box.height}});
   Look(look);
   body_ += tooltip.empty() ? "/>\n" : "><title>" + EscapeXml(tooltip) + "</title></rect>\n";
 }
 
 void SvgPicture::Line(double x1, double y1, double x2, double y2, std::string_view look) {
-  Open("line");
-  Number("x1", x1);
-  Number("y1", y1);
-  Number("x2", x2);
-  Number("y2", y2);
+  Open("line", {{"x1", x1}, {"y1", y1}, {"x2", x2}, {"y2", y2}});
   Look(look);
   body_ += "/>\n";
 }
 
 void SvgPicture::Circle(double x, double y, double radius, std::string_view look,
                         std::string_view tooltip) {
-  Open("circle");
-  Number("cx", x);
-  Number("cy", y);
-  Number("r", radius);
+  Open("circle", {{"cx", x}, {"cy", y}, {"r", radius}});
   Look(look);
   body_ += tooltip.empty() ? "/>\n" : "><title>" + EscapeXml(tooltip) + "</title></circle>\n";
 }

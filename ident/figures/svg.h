@@ -9,6 +9,7 @@
 // reader's light or dark setting; colours of data are given in full. Texts are escaped.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -65,8 +66,8 @@ class SvgPicture {
  private:
   std::string Drawn(double width, double height, const char* unit, const std::string& head) const;
   void TextAt(const std::string& place, std::string_view text, std::string_view look);
-  void Open(std::string_view element);
-  void Number(std::string_view name, double value);
+  void Open(std::string_view element,
+            std::initializer_list<std::pair<const char*, double>> numbers = {});
   void Look(std::string_view look);
   void Path(std::string_view data, std::string_view look);
 

@@ -24,12 +24,6 @@ std::string Who(const PendulumRecording& recording, int person) {
          Quoted(recording.id);
 }
 
-std::string Listed(const std::set<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 class SlopeRows {
  public:
   SlopeRows(const Recordings& recordings, ParameterTable* table, bool priors)
@@ -120,7 +114,8 @@ class SlopeRows {
         }
       }
       return Error{"--covariate names " + Quoted(key) + ", a number that nobody has" +
-                   MeantText(key, {known.begin(), known.end()}) + "; there are " + Listed(known)};
+                   MeantText(key, {known.begin(), known.end()}) + "; there are " +
+                   Listed({known.begin(), known.end()}, ",")};
     }
     if (lacking) return lacking;
     if (std::min(distinct.size(), of_people.size()) < kLeastDistinctValues) {
@@ -172,12 +167,14 @@ class SlopeRows {
         }
       }
       return Error{"--contrast is " + Quoted(label) + ", a label that no recording or person has" +
-                   MeantText(label, {known.begin(), known.end()}) + "; there are " + Listed(known)};
+                   MeantText(label, {known.begin(), known.end()}) + "; there are " +
+                   Listed({known.begin(), known.end()}, ",")};
     }
     if (lacking) return *lacking;
     if (values.size() != 2) {
       return Error{"--contrast compares the two values of a label, and " + label + " has " +
-                   std::to_string(values.size()) + " (" + Listed(values) +
+                   std::to_string(values.size()) + " (" +
+                   Listed({values.begin(), values.end()}, ",") +
                    "); choose recordings of two (--setting, --leave_out), or another label"};
     }
     Covariate covariate;
@@ -240,13 +237,6 @@ MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOp
     for (const std::string& key : one.keys) {
       if (MaybeError error = rows.AddNumber(one.parameter, key)) return error;
     }
-  }
-  return std::nullopt;
-}
-
-std::optional<Covariate> ContrastOf(const ParameterTable& table) {
-  for (const ParameterSpec& spec : table.specs) {
-    if (spec.slope_of && spec.slope_of->covariate.is_contrast()) return spec.slope_of->covariate;
   }
   return std::nullopt;
 }

@@ -6,7 +6,6 @@
 // deviation of a number moves, or of the difference between the two values of a label.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "datasets/files/error.h"
@@ -31,9 +30,6 @@ inline constexpr int kLeastDistinctValues = 3;
 // label; more slopes than there is room for; a network that is trained by its gradient.
 MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOptions* options,
                          Warnings* told);
-
-// The contrast of a table; none: it has no slope of one.
-std::optional<Covariate> ContrastOf(const ParameterTable& table);
 
 // Differences in standard deviations between people.
 

@@ -75,6 +75,22 @@ bool StepsWith(double factor, int person, std::vector<ParameterSet<double>> para
   return end.landed != 0 || end.swings != 0;
 }
 
+// Of everybody, in order; none where the model's rollout of the recording leaves its domain.
+std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
+                                      const PendulumRecording& recording) {
+  if (!recording.StepsKnown()) return {};
+  RolloutPath<double> path;
+  const RolloutStatus status = RolloutInOwnAxes(
+      recording, model.options, PeoplesParameters(model, recording), recording.num_frames(), &path);
+  std::vector<StepOutcome> outcomes;
+  if (!status.ok) return outcomes;
+  const std::vector<double> margins = StepMargins(model, recording, path);
+  for (int n = 0; n < static_cast<int>(margins.size()); ++n) {
+    outcomes.push_back({margins[n], recording.Stepped(n), PersonKey(recording, n)});
+  }
+  return outcomes;
+}
+
 }  // namespace
 
 std::vector<double> StepMargins(const ModelOptions& options,
@@ -107,21 +123,6 @@ std::vector<double> StepMargins(const IdentifiedModel& model, const PendulumReco
                        return RolloutInOwnAxes(recording, model.options, p, path.num_frames(),
                                                other);
                      });
-}
-
-std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
-                                      const PendulumRecording& recording) {
-  if (!recording.StepsKnown()) return {};
-  RolloutPath<double> path;
-  const RolloutStatus status = RolloutInOwnAxes(
-      recording, model.options, PeoplesParameters(model, recording), recording.num_frames(), &path);
-  std::vector<StepOutcome> outcomes;
-  if (!status.ok) return outcomes;
-  const std::vector<double> margins = StepMargins(model, recording, path);
-  for (int n = 0; n < static_cast<int>(margins.size()); ++n) {
-    outcomes.push_back({margins[n], recording.Stepped(n), PersonKey(recording, n)});
-  }
-  return outcomes;
 }
 
 std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>& outcomes) {

@@ -51,10 +51,6 @@ std::vector<double> StepMargins(const ModelOptions& options,
 std::vector<double> StepMargins(const IdentifiedModel& model, const PendulumRecording& recording,
                                 const RolloutPath<double>& path);
 
-// Of everybody, in order; none where the model's rollout of the recording leaves its domain.
-std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
-                                      const PendulumRecording& recording);
-
 // Nothing where no steps are known; where all do the same, what the prior leaves of it.
 std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>& outcomes);
 // After the trajectories of a model.

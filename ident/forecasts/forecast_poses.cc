@@ -1,4 +1,5 @@
 // ident: forecasts as BVH and CSV.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -127,9 +128,8 @@ BvhMotion ToBvh(const Trajectories& motion, const ParticleLayout& layout, double
     joint.parent = parent >= 0 ? joint_of[parent] : has_fixed ? 0 : -1;
     joint.offset = local(0, particle).cast<double>();
     joint.channels = DefaultBvhChannels(true);
-    bool is_leaf = true;
-    for (int other : layout.parents) is_leaf = is_leaf && other != particle;
-    if (is_leaf) joint.end_sites.push_back(Eigen::Vector3d::Zero());
+    const auto hanging = std::count(layout.parents.begin(), layout.parents.end(), particle);
+    if (hanging == 0) joint.end_sites.push_back(Eigen::Vector3d::Zero());
     bvh.skeleton.joints.push_back(joint);
   }
   for (Eigen::Index t = 0; t < motion.cols(); ++t) {

@@ -59,9 +59,7 @@ nlohmann::json Frames(const Trajectories& motion) {
 std::vector<int> Ends(const ParticleLayout& layout) {
   std::vector<int> ends;
   for (int i = 0; i < layout.num_particles(); ++i) {
-    bool is_end = true;
-    for (int parent : layout.parents) is_end = is_end && parent != i;
-    if (is_end) ends.push_back(i);
+    if (std::count(layout.parents.begin(), layout.parents.end(), i) == 0) ends.push_back(i);
   }
   return ends;
 }

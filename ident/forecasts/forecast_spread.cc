@@ -151,14 +151,6 @@ namespace {
 
 constexpr Metric kMpjpeMm = {"MPJPE", "mm"};
 
-nlohmann::ordered_json HorizonsJson(const HorizonErrors& errors) {
-  nlohmann::ordered_json json;
-  for (size_t k = 0; k < kHorizonFrames.size(); ++k) {
-    json[std::to_string(HorizonMs(kHorizonFrames[k]))] = kMillimetres * errors[k];
-  }
-  return json;
-}
-
 }  // namespace
 
 ForecastErrors ErrorsOf(const std::vector<ForecastWindow>& windows,
@@ -193,7 +185,7 @@ std::vector<Trajectories> ZeroVelocity(const std::vector<ForecastWindow>& window
 nlohmann::ordered_json ToJson(const ForecastErrors& errors) {
   const auto of = [](const ActionErrors& action) {
     return nlohmann::ordered_json{{"windows", action.windows},
-                                  {kMpjpeMm.Key(), HorizonsJson(action.mpjpe)}};
+                                  {kMpjpeMm.Key(), ByHorizon(action.mpjpe, kMillimetres)}};
   };
   nlohmann::ordered_json json;
   json["mean"] = of(errors.mean);
@@ -204,9 +196,7 @@ nlohmann::ordered_json ToJson(const ForecastErrors& errors) {
 std::string ForecastErrorsText(const ForecastErrors& errors) {
   std::vector<std::string> head = {kMpjpeMm.Title(), "windows"};
   for (int frame : kHorizonFrames) head.push_back(std::to_string(HorizonMs(frame)) + " ms");
-  std::vector<bool> left(head.size(), false);
-  left[0] = true;
-  TextTable table(head, left);
+  TextTable table = TextTable::OfNumbers(head);
   const auto add = [&table](const std::string& name, const ActionErrors& action) {
     std::vector<std::string> row = {name, std::to_string(action.windows)};
     for (double error : action.mpjpe) row.push_back(Rounded(kMillimetres * error, 4));

@@ -234,8 +234,7 @@ constexpr double kFiguresWidth = 1000;
 // Changes of state per person and minute.
 Chart ChangesChart(const std::string& title, const Eigen::MatrixXd& counts,
                    const std::vector<std::string>& names) {
-  Chart chart;
-  chart.title = title;
+  Chart chart{title};
   chart.x_categories = chart.y_categories = names;
   chart.full_cell = 1e-9;
   for (Eigen::Index i = 0; i < counts.rows(); ++i) {
@@ -252,9 +251,7 @@ Chart ChangesChart(const std::string& title, const Eigen::MatrixXd& counts,
 // The row "recorded" in ink, the predictor in colour.
 Chart FrameChart(const std::string& title, const SocialReport& report, const SocialRow& predictor,
                  ByFrame SocialRow::*values) {
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "s";
+  Chart chart{title, "s"};
   chart.y_from = 0.0;
   for (const SocialRow* row : {&report.rows.front(), &predictor}) {
     ChartLine line;

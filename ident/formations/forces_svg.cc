@@ -64,8 +64,7 @@ ForceRange RangeOf(const FormationRun& run, const std::vector<ForcePart>& parts,
 // The net force thick and first, so that a part that is all of it shows on top.
 Chart ForceChart(const FormationRun& run, const std::vector<ForcePart>& parts, int person, int row,
                  const ForceRange& scale) {
-  Chart chart;
-  chart.x_label = "time, s";
+  Chart chart{"", "time, s"};
   const double air = 0.1 * std::max(kSmallestRange, scale.highest - scale.lowest);
   chart.y_from = scale.lowest - air;
   chart.y_to = scale.highest + air;
@@ -214,10 +213,7 @@ void FitMap(Chart* chart) {
 }  // namespace
 
 std::optional<Figure> FeetFigure(const FormationRun& run) {
-  Chart chart;
-  chart.title = "feet from above";
-  chart.x_label = "forward, m";
-  chart.y_label = "to the left, m";
+  Chart chart{"feet from above", "forward, m", "to the left, m"};
   bool recorded = false;
   for (const FeetTrack& track : TracksOf(run)) {
     recorded = recorded || !track.predicted;

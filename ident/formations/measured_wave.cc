@@ -1,7 +1,6 @@
 // ident: waves of trajectories.
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "datasets/exchange/crowd.h"
 #include "datasets/files/number_text.h"
@@ -58,10 +57,6 @@ double PeakSpeedOf(const Track& track, const Eigen::Vector2d& way, double rate) 
   return peak;
 }
 
-double MeanOfValues(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 void AddSlowness(MeasuredWave* wave) {
   std::vector<double> distance, onset;
   for (const PersonInWave& person : wave->people) {
@@ -71,7 +66,7 @@ void AddSlowness(MeasuredWave* wave) {
   }
   wave->slowness = Slowness(distance, onset);
   if (!wave->slowness) return;
-  const double s_mean = MeanOfValues(distance), t_mean = MeanOfValues(onset);
+  const double s_mean = MeanOf(distance).mean, t_mean = MeanOf(onset).mean;
   double squares = 0.0, left = 0.0;
   for (size_t i = 0; i < distance.size(); ++i) {
     const double s = distance[i] - s_mean;
@@ -174,8 +169,8 @@ std::string WaveText(const MeasuredWave& wave) {
   std::string text = wave.name + ": " + std::to_string(movers) + " of " +
                      std::to_string(wave.people.size()) + " people move by 2 cm or more, " +
                      wave.people[0].name + " first\n";
-  TextTable table({"person", "distance m", "onset s", "peak m/s", "displaced m"},
-                  {true, false, false, false, false});
+  TextTable table =
+      TextTable::OfNumbers({"person", "distance m", "onset s", "peak m/s", "displaced m"});
   for (const PersonInWave& person : wave.people) {
     table.Add({person.name, Rounded(person.distance, 3),
                person.onset_s ? Rounded(*person.onset_s, 3) : "-", Rounded(person.peak_speed, 2),
@@ -195,13 +190,10 @@ std::string WavesText(const std::vector<MeasuredWave>& waves) {
     if (wave.slowness) slowness.push_back(*wave.slowness);
   }
   if (slowness.size() < 2) return "";
-  const double n = static_cast<double>(slowness.size()), mean = MeanOfValues(slowness);
-  double squares = 0.0;
-  for (double value : slowness) squares += (value - mean) * (value - mean);
-  return "speed of the onset, " + std::to_string(slowness.size()) + " recordings: " +
-         SpeedOf(mean, StudentQuantile95(n - 1.0) * std::sqrt(squares / (n * (n - 1.0))),
-                 "their scatter") +
-         "\n";
+  const MeanAndError mean = MeanOf(slowness);
+  const double quantile = StudentQuantile95(static_cast<double>(slowness.size()) - 1.0);
+  return "speed of the onset, " + std::to_string(slowness.size()) +
+         " recordings: " + SpeedOf(mean.mean, quantile * mean.error, "their scatter") + "\n";
 }
 
 }  // namespace pushid

@@ -18,14 +18,6 @@ constexpr int kMostParticles = 1000;
 
 bool IsKind(const std::string& name) { return FromName<GeneratorKind>(name).has_value(); }
 
-std::string KindNames() {
-  std::string names;
-  for (const std::string& name : AllNames<GeneratorKind>()) {
-    names += (names.empty() ? "" : ", ") + name;
-  }
-  return names;
-}
-
 Json LayoutJson(const ParticleLayout& layout) {
   Json particles = Json::array();
   for (int i = 0; i < layout.num_particles(); ++i) {
@@ -137,8 +129,8 @@ std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
 
 Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes,
                                       const char* flag) {
-  const Result<TensorFolder> read =
-      ReadTensorFolder(GeneratorFolder(flag), folder, KindNames(), IsKind);
+  const Result<TensorFolder> read = ReadTensorFolder(
+      GeneratorFolder(flag), folder, Listed(AllNames<GeneratorKind>(), ","), IsKind);
   if (!read.ok()) return read.error();
   const std::string path = JsonFileOf(GeneratorFolder(flag), folder);
   TensorReader reader(read.value().tensors);

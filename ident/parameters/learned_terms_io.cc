@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "datasets/files/random.h"
 #include "ident/parameters/option_names.h"
@@ -31,24 +30,17 @@ int Size(const std::string& text) {
   return size <= kLargestSize ? size : 0;
 }
 
-std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::stringstream list(text);
-  for (std::string part; std::getline(list, part, separator);) parts.push_back(part);
-  return parts;
-}
-
 // "256-128-256"; empty where it is no list of sizes.
 std::vector<int> HiddenSizes(const std::string& text) {
   std::vector<int> hidden;
-  for (const std::string& size : Split(text, '-')) hidden.push_back(Size(size));
+  for (const std::string& size : SplitList(text, '-')) hidden.push_back(Size(size));
   const bool sound = !hidden.empty() && hidden.size() <= kMostLayers && text.back() != '-' &&
                      *std::min_element(hidden.begin(), hidden.end()) > 0;
   return sound ? hidden : std::vector<int>();
 }
 
 Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
-  const std::vector<std::string> parts = Split(text, ':');
+  const std::vector<std::string> parts = SplitList(text, ':');
   NetworkShape shape;
   shape.kind = parts.empty() ? NetworkKind::kNone
                              : FromName<NetworkKind>(parts[0]).value_or(NetworkKind::kNone);
@@ -83,7 +75,7 @@ std::vector<std::string> NetworkExamples() {
 
 Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text) {
   SelfForceChoice choice;
-  for (const std::string& part : Split(text, ',')) {
+  for (const std::string& part : SplitList(text, ',')) {
     if (const auto law = FromName<SelfForceKind>(part)) {
       if (*law == SelfForceKind::kNone || *law == choice.kind) continue;
       if (choice.kind != SelfForceKind::kNone) return Error{flag + " names more than one law"};
@@ -121,7 +113,7 @@ Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
 Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::string& text) {
   InteractionChoice choice;
   std::string others;
-  for (const std::string& part : Split(text, ',')) {
+  for (const std::string& part : SplitList(text, ',')) {
     const bool ldp = part.rfind(kLdpNetworkTerm, 0) == 0;
     if (!ldp && part.rfind(kNetworkTerm, 0) != 0) {
       others += (others.empty() ? "" : ",") + part;

@@ -18,10 +18,10 @@ Row PresetRow() {
       "preset", OptionStage::kPreset,
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
       "tail, posture-relative recovery), group (tail with linear self forces and contact, pooled "
-      "by "
-      "setting), ldp (plain PD and friction from upright), ldp_groups (that with LDP's potential "
-      "and "
-      "torques between people, and a small network beside them), or ldp_published (LDP with all "
+      "by setting), ldp (plain PD and friction from upright), ldp_groups (that with LDP's "
+      "potential "
+      "and torques between people, and a small network beside them), or ldp_published (LDP with "
+      "all "
       "its networks, of one person or of groups)",
       nullptr);
   row.choices = PresetNames();
@@ -42,7 +42,7 @@ void SetLearned(const LearnedTerms& network, FitOptions* o) {
 
 Row StanceRow() {
   Row row = NameRow<Stance>(
-      "stance", "/stance", [](FitOptions & o) -> auto& { return o.model.stance; },
+      "stance", "/stance", &ModelOptions::stance,
       "behaviour of the feet: slide (the cart moves under any force), steps (they hold until the "
       "capture point leaves their support, then one of them steps), fixed (they hold), or auto "
       "(fixed where no pushed person's feet moved; steps where some did, and of people who touch "
@@ -59,22 +59,6 @@ Row StanceRow() {
       return Error{error->message + ", or " + kAutoStance + now};
     }
     SetStance(stance, o);
-    return std::nullopt;
-  };
-  return MayBeAbsent(row);
-}
-
-Row LikelihoodRow() {
-  Row row = NameRow<Likelihood>(
-      "likelihood", "/likelihood", [](FitOptions & o) -> auto& { return o.likelihood; },
-      "what a fit maximizes: trajectory (whole rollouts), transition (each measured state given "
-      "the "
-      "one before), innovation (each measurement given all before it, with errors of measurement), "
-      "or transition_as_printed (Eq. 6 of Lyu et al., to compare)");
-  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
-    Likelihood likelihood;
-    if (MaybeError error = ParseName("--likelihood", text, &likelihood)) return error;
-    SetLikelihood(likelihood, o);
     return std::nullopt;
   };
   return MayBeAbsent(row);
@@ -122,8 +106,7 @@ Row RodRow() {
   Row row = WordsRow("rod", OptionStage::kModel,
                      "the rod's length: constant, or a state that a learned law changes, together "
                      "with the cart's height: linear, mlp:4 (hidden sizes); or LDP's, whose cart "
-                     "keeps its height, "
-                     "ldp:256-128-256",
+                     "keeps its height, ldp:256-128-256",
                      [](const std::string& text, FitOptions* o) -> MaybeError {
                        const Result<RodShape> rod = ParseRod("--rod", text);
                        if (!rod.ok()) return rod.error();
@@ -211,43 +194,48 @@ std::vector<Row> ModelOptionRows() {
       StanceRow(),
       SelfForceRow(),
       RodRow(),
-      NameRow<SkeletonMapping>(
-          "mapping", "/mapping", [](O & o) -> auto& { return o.mapping; },
-          "skeleton to pendulum: exact, or ldp for comparison"),
-      Decided(NameRow<Posture>(
-          "posture", "/posture", [](O & o) -> auto& { return o.model.posture; },
-          "balance error measured from: upright or initial")),
+      NameRow<SkeletonMapping>("mapping", "/mapping", &O::mapping,
+                               "skeleton to pendulum: exact, or ldp for comparison"),
+      Decided(NameRow<Posture>("posture", "/posture", &ModelOptions::posture,
+                               "balance error measured from: upright or initial")),
       MayBeAbsent(Decided(NameRow<Directions>(
-          "directions", "/directions", [](O & o) -> auto& { return o.model.directions; },
+          "directions", "/directions", &ModelOptions::directions,
           "isotropic (people answer alike in all directions; fitted along each push), body (along "
           "what people face, sideways parameters free where forward ones are) or axes (those of "
           "the file; sideways parameters as the preset has them)"))),
-      Decided(NameRow<GainScaling>(
-          "gain_scaling", "/gain_scaling", [](O & o) -> auto& { return o.model.gain_scaling; },
-          "gains of other bodies: none, mass, or body (mass and rod length)")),
-      Decided(NameRow<FrictionKind>(
-          "friction", "/friction", [](O & o) -> auto& { return o.model.friction; },
-          FrictionHelp().c_str())),
-      Decided(NameRow<PushUse>(
-          "push", "/push", [](O & o) -> auto& { return o.model.push; },
-          "as_recorded (honour push_kind) or added")),
-      Decided(NameRow<PushTail>(
-          "push_tail", "/push_tail", [](O & o) -> auto& { return o.model.push_tail; },
-          "none or exponential")),
-      DelayRow(),
-      BodyRow(),
-      NameRow<CartDerivative>(
-          "cart_derivative", "/cart_derivative",
-          [](O & o) -> auto& { return o.model.cart_derivative; },
-          "none or backward: lets Kd_x and Kd_y act"),
+      Decided(
+          NameRow<GainScaling>("gain_scaling", "/gain_scaling", &ModelOptions::gain_scaling,
+                               "gains of other bodies: none, mass, or body (mass and rod length)")),
+      Decided(NameRow<FrictionKind>("friction", "/friction", &ModelOptions::friction,
+                                    FrictionHelp().c_str())),
+      Decided(NameRow<PushUse>("push", "/push", &ModelOptions::push,
+                               "as_recorded (honour push_kind) or added")),
+      Decided(NameRow<PushTail>("push_tail", "/push_tail", &ModelOptions::push_tail,
+                                "none or exponential")),
+      NameRowWith<Delay>(
+          SetDelay, "delay", "/delay", &ModelOptions::delay,
+          "reaction delay of active feedback: none, one (of all of it) or ankle_and_step (the "
+          "feet's own); reaction_delay and the passive shares of stiffness and damping are then "
+          "fitted"),
+      NameRowWith<BodyModel>(
+          SetBody, "body", "/body", &ModelOptions::body,
+          "where a body's mass is: ldp (nine tenths at the hip; of who stands, an average body's), "
+          "anthropometric (by the recorded segments, de Leva 1996), or table (cart_share, "
+          "com_height, gyration_radius and push_gain, of robots and rigs: fixed or fitted)"),
+      NameRow<CartDerivative>("cart_derivative", "/cart_derivative", &ModelOptions::cart_derivative,
+                              "none or backward: lets Kd_x and Kd_y act"),
       InteractionRow(),
       InteractionNetworkRow(),
       MayBeAbsent(NameRow<ProcessNoiseTerms>(
-          "process_noise", "/process_noise", [](O & o) -> auto& { return o.model.process_noise; },
+          "process_noise", "/process_noise", &ModelOptions::process_noise,
           "white-noise forces in addition to all others: none, diagonal, or full (correlated); "
           "with speed and push, comma-separated, it grows with the cart's speed and has a factor "
           "while a push acts")),
-      LikelihoodRow(),
+      NameRowWith<Likelihood>(
+          SetLikelihood, "likelihood", "/likelihood", &O::likelihood,
+          "what a fit maximizes: trajectory (whole rollouts), transition (each measured state "
+          "given the one before), innovation (each measurement given all before it, with errors "
+          "of measurement), or transition_as_printed (Eq. 6 of Lyu et al., to compare)"),
       PresetPriorsRow(),
   };
 }
@@ -256,31 +244,26 @@ std::vector<FitOptionRow> NetworkOptionRows() {
   using O = FitOptions;
   return {
       MayBeAbsent(Decided(NameRow<NetworkTraining>(
-          "network_training", "/network_training",
-          [](O & o) -> auto& { return o.network_training; },
+          "network_training", "/network_training", &O::network_training,
           "large networks: after_physics (fitted without them first, and again with them held), or "
           "together with the free parameters"))),
       MayBeAbsent(Decided(NameRow<NetworkOptimizer>(
-          "network_optimizer", "/network_optimizer",
-          [](O & o) -> auto& { return o.network_optimizer; },
+          "network_optimizer", "/network_optimizer", &O::network_optimizer,
           "large networks: lbfgs (Ceres' L-BFGS on all recordings) or adam (on eight at a time)"))),
-      MayBeAbsent(CountRow(
-          "network_iterations", "/network_iterations",
-          [](O & o) -> auto& { return o.network_iterations; },
-          "large networks: iterations of L-BFGS or passes of Adam, at most")),
+      MayBeAbsent(CountRow("network_iterations", "/network_iterations", &O::network_iterations,
+                           "large networks: iterations of L-BFGS or passes of Adam, at most")),
+      MayBeAbsent(
+          NumberRow("network_rate", "/network_rate", &O::network_rate, kPositive,
+                    "large networks: Adam's learning rate, which falls to a hundredth of it")),
       MayBeAbsent(NumberRow(
-          "network_rate", "/network_rate", [](O & o) -> auto& { return o.network_rate; }, kPositive,
-          "large networks: Adam's learning rate, which falls to a hundredth of it")),
-      MayBeAbsent(NumberRow(
-          "network_prior", "/network_prior", [](O & o) -> auto& { return o.network_prior; },
-          kNotNegative,
+          "network_prior", "/network_prior", &O::network_prior, kNotNegative,
           "standard deviation of the prior that ties a network's weights to zero; 0: none")),
       MayBeAbsent(NumberRow(
-          "early_stopping", "/early_stopping", [](O & o) -> auto& { return o.early_stopping; },
+          "early_stopping", "/early_stopping", &O::early_stopping,
           {0.0, 0.5, false, "must lie between 0 and 0.5"},
           "share of the recordings held out for early stopping of a network's training; 0: none")),
       MayBeAbsent(CountRow(
-          "ensemble", "/ensemble", [](O & o) -> auto& { return o.ensemble; },
+          "ensemble", "/ensemble", &O::ensemble,
           "number of networks, trained from different seeds; the model predicts their median")),
   };
 }

@@ -134,9 +134,7 @@ RodShape RodFromJson(const Json& json) {
     throw std::runtime_error("rod: '" + kind + "' is not a kind (" +
                              Listed(AllNames<RodKind>(), ",") + ")");
   }
-  RodShape rod;
-  rod.kind = *known;
-  rod.hidden = json.at("hidden").get<std::vector<int>>();
+  const RodShape rod{*known, json.at("hidden").get<std::vector<int>>()};
   const bool layers_fit =
       rod.layered() ? !rod.hidden.empty() && rod.hidden.size() <= kMostLayers : rod.hidden.empty();
   if (!layers_fit) throw std::runtime_error("rod: no " + kind + " has so many layers");

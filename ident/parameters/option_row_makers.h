@@ -13,9 +13,22 @@
 
 namespace pushid {
 
-// Where a row's value stands.
+// Where a row's value stands: among the options of the fit, those of the model, or the sigmas.
 template <typename T>
-using OptionField = T& (*)(FitOptions&);
+class OptionField {
+ public:
+  OptionField(T FitOptions::*of_fit) : of_fit_(of_fit) {}               // NOLINT: stands for it
+  OptionField(T ModelOptions::*of_model) : of_model_(of_model) {}       // NOLINT
+  OptionField(T ResidualSigmas::*of_sigmas) : of_sigmas_(of_sigmas) {}  // NOLINT
+  T& operator()(FitOptions& o) const {
+    return of_fit_ ? o.*of_fit_ : of_model_ ? o.model.*of_model_ : o.sigmas.*of_sigmas_;
+  }
+
+ private:
+  T FitOptions::*of_fit_ = nullptr;
+  T ModelOptions::*of_model_ = nullptr;
+  T ResidualSigmas::*of_sigmas_ = nullptr;
+};
 
 template <typename T>
 const T& OptionValue(OptionField<T> field, const FitOptions& options) {
@@ -47,6 +60,9 @@ FitOptionRow BoolRow(const char* name, const char* help,
                      std::function<bool(const FitOptions&)> value,
                      std::function<void(bool, FitOptions*)> set);
 
+FitOptionRow Decided(FitOptionRow row);      // by the preset
+FitOptionRow MayBeAbsent(FitOptionRow row);  // in older files
+
 // An enum, or the interaction terms, by name.
 template <typename E>
 FitOptionRow NameRow(const char* name, const char* json, OptionField<E> field, const char* help) {
@@ -66,14 +82,22 @@ FitOptionRow NameRow(const char* name, const char* json, OptionField<E> field, c
   return row;
 }
 
-FitOptionRow Decided(FitOptionRow row);      // by the preset
-FitOptionRow MayBeAbsent(FitOptionRow row);  // in older files
+// An enum that other options depend on, which `set` sets with it; absent in older files.
+template <typename E>
+FitOptionRow NameRowWith(void (*set)(E, FitOptions*), const char* name, const char* json,
+                         OptionField<E> field, const char* help) {
+  FitOptionRow row = NameRow<E>(name, json, field, help);
+  row.apply = [=](const std::string& text, FitOptions* o) -> MaybeError {
+    E value{};
+    if (MaybeError error = ParseName("--" + std::string(name), text, &value)) return error;
+    set(value, o);
+    return std::nullopt;
+  };
+  return MayBeAbsent(row);
+}
 
 // What the model is: the rows with rules of their own.
 std::vector<FitOptionRow> ModelOptionRows();
-// Delay and bodies.
-FitOptionRow DelayRow();
-FitOptionRow BodyRow();
 // How networks are trained.
 std::vector<FitOptionRow> NetworkOptionRows();
 // Edits of the parameter table.

@@ -55,7 +55,7 @@ Row HorizonsRow() {
 
 Row LossRow() {
   Row row = NameRow<FrameLoss>(
-      "loss", "/sigmas/loss", [](FitOptions & o) -> auto& { return o.sigmas.loss; },
+      "loss", "/sigmas/loss", &ResidualSigmas::loss,
       "what is minimized: hip (positions of the hip, velocities, angles and rates, robust by "
       "frame), or ldp (LDP's Eq. 6: absolute errors of all states and velocities, but for the rate "
       "of phi, which is itself held small)");
@@ -149,61 +149,50 @@ std::vector<Row> WeightRows() {
   using O = FitOptions;
   return {
       LossRow(),
-      Rare(NumberRow(
-          "sigma_hip", "/sigmas/hip_m", [](O & o) -> auto& { return o.sigmas.hip; }, kPositive,
-          "standard deviation of the hip's position, m")),
-      Rare(NumberRow(
-          "sigma_velocity", "/sigmas/velocity_m_s",
-          [](O & o) -> auto& { return o.sigmas.velocity; }, kPositive,
-          "standard deviation of the cart's velocity, m/s")),
-      Rare(NumberRow(
-          "sigma_angle", "/sigmas/angle_rad", [](O & o) -> auto& { return o.sigmas.angle; },
-          kPositive, "standard deviation of the angles, rad")),
-      Rare(NumberRow(
-          "sigma_rate", "/sigmas/rate_rad_s", [](O & o) -> auto& { return o.sigmas.rate; },
-          kPositive, "standard deviation of the angular rates, rad/s")),
+      Rare(NumberRow("sigma_hip", "/sigmas/hip_m", &ResidualSigmas::hip, kPositive,
+                     "standard deviation of the hip's position, m")),
+      Rare(NumberRow("sigma_velocity", "/sigmas/velocity_m_s", &ResidualSigmas::velocity, kPositive,
+                     "standard deviation of the cart's velocity, m/s")),
+      Rare(NumberRow("sigma_angle", "/sigmas/angle_rad", &ResidualSigmas::angle, kPositive,
+                     "standard deviation of the angles, rad")),
+      Rare(NumberRow("sigma_rate", "/sigmas/rate_rad_s", &ResidualSigmas::rate, kPositive,
+                     "standard deviation of the angular rates, rad/s")),
       MayBeAbsent(NameRow<SigmaSource>(
-          "sigmas", "/sigmas/source", [](O & o) -> auto& { return o.sigma_source; },
+          "sigmas", "/sigmas/source", &O::sigma_source,
           "the residuals' standard deviations: estimate (from the residuals, starting at "
           "--sigma_*), or fixed (at --sigma_*)")),
       Rare(MayBeAbsent(NumberRow(
-          "marker_noise", "/sigmas/marker_noise_m", [](O & o) -> auto& { return o.marker_noise; },
-          kPositive,
+          "marker_noise", "/sigmas/marker_noise_m", &O::marker_noise, kPositive,
           "standard deviation of a marker's position, m: lower limit of estimated sigmas"))),
-      NumberRow(
-          "robust", "/sigmas/robust", [](O & o) -> auto& { return o.sigmas.robust; }, kNotNegative,
-          "pseudo-Huber scale of a frame in sigmas; 0: plain least squares"),
+      NumberRow("robust", "/sigmas/robust", &ResidualSigmas::robust, kNotNegative,
+                "pseudo-Huber scale of a frame in sigmas; 0: plain least squares"),
       NameRow<RecordingWeight>(
-          "recording_weight", "/recording_weight",
-          [](O & o) -> auto& { return o.recording_weight; },
+          "recording_weight", "/recording_weight", &O::recording_weight,
           "weight of a recording: effective (its number of independent frames), frame (every frame "
           "counts as one) or recording (every recording counts as one frame)"),
       Rare(MayBeAbsent(NumberRow(
-          "effective_weight", "/effective_weight",
-          [](O & o) -> auto& { return o.effective_weight; },
+          "effective_weight", "/effective_weight", &O::effective_weight,
           {0.0, 1e6, false, "must be a number from 0 to 1e6"},
           "--recording_weight=effective: independent frames per frame at the start of their "
           "estimation; 0: one frame per recording"))),
       MayBeAbsent(NameRow<ClusterBy>(
-          "cluster", "/cluster", [](O & o) -> auto& { return o.cluster; },
+          "cluster", "/cluster", &O::cluster,
           "unit with independent errors: subject, recording, or auto (subject where people were "
           "recorded more than once)")),
+      Decided(
+          NumberRow("settling_weight", "/settling_weight", &O::settling_weight, kNotNegative,
+                    "weight of the settling constraint (pushed people must settle in the settling "
+                    "simulations); 0: off")),
       Decided(NumberRow(
-          "settling_weight", "/settling_weight", [](O & o) -> auto& { return o.settling_weight; },
-          kNotNegative,
-          "weight of the settling constraint (pushed people must settle in the settling "
-          "simulations); 0: off")),
-      Decided(NumberRow(
-          "mode_weight", "/mode_weight", [](O & o) -> auto& { return o.mode_weight; }, kNotNegative,
+          "mode_weight", "/mode_weight", &O::mode_weight, kNotNegative,
           "weight of the hinge penalty that makes a person's free modes at rest decay (it ignores "
           "networks); 0: off; set with a linear self force")),
-      NumberRow(
-          "mode_margin", "/mode_margin_per_s", [](O & o) -> auto& { return o.mode_margin; },
-          kNumber, "slowest decay the hinge allows, 1/s"),
+      NumberRow("mode_margin", "/mode_margin_per_s", &O::mode_margin, kNumber,
+                "slowest decay the hinge allows, 1/s"),
       Decided(PoolByRow()),
       PoolingSigmaRow(),
       MayBeAbsent(NumberRow(
-          "body_weight", "/body_weight", [](O & o) -> auto& { return o.body_weight; }, kNotNegative,
+          "body_weight", "/body_weight", &O::body_weight, kNotNegative,
           "weight of the restored bodies of --body_restoration against the recorded ones; 0: "
           "pendulums alone")),
   };
@@ -214,34 +203,21 @@ std::vector<Row> SolverRows() {
   using O = FitOptions;
   return {
       HorizonsRow(),
-      Decided(NameRow<FitStart>(
-          "start", "/start", [](O & o) -> auto& { return o.start; },
-          "first start: equation_error, or nominal (where feet hold)")),
-      CountRow(
-          "starts", "/num_starts", [](O & o) -> auto& { return o.num_starts; },
-          "number of starts; the best one is used"),
-      NumberRow(
-          "start_spread", "/start_spread", [](O & o) -> auto& { return o.start_spread; },
-          {1.0, 1000.0, false, "must lie between 1 and 1000"},
-          "random starts multiply or divide every gain by up to this"),
+      Decided(NameRow<FitStart>("start", "/start", &O::start,
+                                "first start: equation_error, or nominal (where feet hold)")),
+      CountRow("starts", "/num_starts", &O::num_starts, "number of starts; the best one is used"),
+      NumberRow("start_spread", "/start_spread", &O::start_spread,
+                {1.0, 1000.0, false, "must lie between 1 and 1000"},
+                "random starts multiply or divide every gain by up to this"),
       SeedRow(),
-      CountRow(
-          "num_threads", "", [](O & o) -> auto& { return o.num_threads; }, "threads"),
-      CountRow(
-          "max_iterations", "/max_iterations", [](O & o) -> auto& { return o.max_iterations; },
-          "iterations of each stage"),
-      Decided(NumberRow(
-          "function_tolerance", "/function_tolerance",
-          [](O & o) -> auto& { return o.function_tolerance; }, kNotNegative,
-          "relative change of the cost that ends a stage")),
-      NumberRow(
-          "gradient_tolerance", "/gradient_tolerance",
-          [](O & o) -> auto& { return o.gradient_tolerance; }, kNotNegative,
-          "gradient that ends a stage"),
-      NumberRow(
-          "parameter_tolerance", "/parameter_tolerance",
-          [](O & o) -> auto& { return o.parameter_tolerance; }, kNotNegative,
-          "relative step that ends a stage"),
+      CountRow("num_threads", "", &O::num_threads, "threads"),
+      CountRow("max_iterations", "/max_iterations", &O::max_iterations, "iterations of each stage"),
+      Decided(NumberRow("function_tolerance", "/function_tolerance", &O::function_tolerance,
+                        kNotNegative, "relative change of the cost that ends a stage")),
+      NumberRow("gradient_tolerance", "/gradient_tolerance", &O::gradient_tolerance, kNotNegative,
+                "gradient that ends a stage"),
+      NumberRow("parameter_tolerance", "/parameter_tolerance", &O::parameter_tolerance,
+                kNotNegative, "relative step that ends a stage"),
   };
 }
 

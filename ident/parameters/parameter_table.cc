@@ -143,14 +143,10 @@ bool ParseNumber(const std::string& text, double* value) {
 }
 
 Error UnknownName(const std::string& name, const std::string& flag, const ParameterTable& table) {
-  std::string known;
   std::vector<std::string> names;
-  for (const ParameterSpec& spec : table.specs) {
-    known += (known.empty() ? "" : ", ") + spec.name;
-    names.push_back(spec.name);
-  }
+  for (const ParameterSpec& spec : table.specs) names.push_back(spec.name);
   return Error{flag + " names '" + name + "', which is not a parameter" + MeantText(name, names) +
-               "; there are " + known};
+               "; there are " + Listed(names, ",")};
 }
 
 // "name" or "name=value": has_value says which.

@@ -15,9 +15,7 @@ constexpr std::size_t kMostPoints = 1500;  // of a line: more than there are pix
 
 // Broken where values are missing.
 Chart SignalChart(const std::string& title, double rate_hz, const std::vector<double>& values) {
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "time, s";
+  Chart chart{title, "time, s"};
   chart.lines.push_back({{}, kMeasuredLook});
   for (std::size_t i = 0; i < values.size(); i += values.size() / kMostPoints + 1) {
     if (std::isfinite(values[i])) {
@@ -63,8 +61,7 @@ Chart SeenChart(const Inspection& found) {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return hidden(a) > hidden(b); });
   order.resize(std::min(order.size(), kMostBars));
-  Chart chart;
-  chart.title = "points seen (blue), by frame";
+  Chart chart{"points seen (blue), by frame"};
   for (std::size_t i : order) {
     const std::vector<bool>& seen = found.seen[i];
     for (std::size_t begin = 0, end = 0; begin < seen.size(); begin = end) {

@@ -180,12 +180,9 @@ std::string PreparationText(const std::map<std::string, std::string>& configurat
 
 namespace {
 
-constexpr double kFileRounding = 1e-6;  // of a parameter
+using Place = nlohmann::ordered_json::json_pointer;
 
-bool IsFormation(const nlohmann::ordered_json& manifest) {
-  return manifest.is_object() && manifest.contains("synthetic") &&
-         manifest["synthetic"].is_object() && manifest["synthetic"].contains("formation");
-}
+constexpr double kFileRounding = 1e-6;  // of a parameter
 
 }  // namespace
 
@@ -198,7 +195,7 @@ Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path
         .at("truth")
         .get<std::map<std::string, double>>();
   } catch (const nlohmann::json::exception&) {
-    if (IsFormation(document.value().content)) {
+    if (document.value().content.contains(Place("/synthetic/formation"))) {
       return Error{
           "a formation of pushid-formation: its truth is the model it was rolled out "
           "with; compare with that model's own report",

@@ -25,23 +25,18 @@ constexpr Remedy kRemedies[] = {
     {"frame rate", "check the frame rate"},
     {"drift of the cameras", "check whether positions drift, or people walk before the push"}};
 
-std::string RemedyOf(const std::string& name) {
+// Of a quantity of the laboratory; null where the model has it as a parameter.
+const Remedy* FindRemedy(const AssumptionTest& test) {
   const auto found = std::find_if(std::begin(kRemedies), std::end(kRemedies),
-                                  [&name](const Remedy& r) { return r.name == name; });
-  return found != std::end(kRemedies) ? found->text : "try --free=" + name;
-}
-
-// A quantity of the laboratory, and no parameter of the model.
-bool Measured(const AssumptionTest& test) {
-  return std::any_of(std::begin(kRemedies), std::end(kRemedies),
-                     [&test](const Remedy& r) { return r.name == test.name; });
+                                  [&test](const Remedy& r) { return r.name == test.name; });
+  return found == std::end(kRemedies) ? nullptr : found;
 }
 
 // "the lag of the pushes 0.6 +- 0.2 frames larger", "Kd_theta 40 % smaller".
 std::string WantedText(const AssumptionTest& test) {
   const bool share = test.unit.empty();
   // Of a held gain it is a logarithm, of the others a share.
-  const bool logarithm = share && !Measured(test);
+  const bool logarithm = share && FindRemedy(test) == nullptr;
   const double size = std::abs(logarithm ? std::expm1(test.wanted) : test.wanted);
   const double factor = share ? 100.0 : 1.0;
   const std::string how_much = share && size > kFar ? "more than a half"
@@ -66,7 +61,7 @@ std::vector<const AssumptionTest*> Suspects(const ModelVerdict& v) {
   std::vector<const AssumptionTest*> kinds[3];
   for (const AssumptionTest& test : v.assumptions) {
     if (test.p * tests >= kVerdictLevel) continue;
-    kinds[Measured(test) ? 0 : test.stated > 0.0 ? 1 : 2].push_back(&test);
+    kinds[FindRemedy(test) != nullptr ? 0 : test.stated > 0.0 ? 1 : 2].push_back(&test);
   }
   for (auto& kind : kinds) {
     if (kind.empty()) continue;
@@ -84,12 +79,13 @@ std::string FailureText(const ModelVerdict& v) {
   for (const std::string& finding : v.of_pushes) add(finding);
   const std::vector<const AssumptionTest*> wanted = Suspects(v);
   if (!wanted.empty()) {
+    const Remedy* const remedy = FindRemedy(*wanted.front());
     std::string all;
     for (const AssumptionTest* test : wanted)
       all += (all.empty() ? "" : ", or ") + WantedText(*test);
     add("of what is taken as known, the recordings want " + all +
         " (p = " + Rounded(v.p_assumptions, 2) + " after " + std::to_string(v.NumTested()) +
-        " tests); " + RemedyOf(wanted.front()->name));
+        " tests); " + (remedy != nullptr ? remedy->text : "try --free=" + wanted.front()->name));
   }
   const PartTest* part = Surest(v.parts);
   if (part != nullptr && v.p_parts < kVerdictLevel) {

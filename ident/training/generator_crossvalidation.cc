@@ -16,6 +16,8 @@
 namespace pushid {
 namespace {
 
+std::string BlendName(double blend) { return "generator_blend_" + Rounded(blend, 3); }
+
 constexpr int kShown = 20;  // frames, of generator_shown_20
 
 // What one fold scores its recordings by.
@@ -125,8 +127,6 @@ class FoldJudge {
 
 }  // namespace
 
-std::string BlendName(double blend) { return "generator_blend_" + Rounded(blend, 3); }
-
 Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,
                                                    const GeneratorTrainingOptions& options,
                                                    const GeneratorValidationOptions& validation,
@@ -203,8 +203,8 @@ Result<std::vector<ForecastCandidate>> CompareForecasts(
 }
 
 std::string CandidatesText(const std::vector<ForecastCandidate>& candidates) {
-  TextTable table({"held out", "MPJPE m", "+-", "hipADE m", "hipFDE m", "FSE cm"},
-                  {true, false, false, false, false, false});
+  TextTable table =
+      TextTable::OfNumbers({"held out", "MPJPE m", "+-", "hipADE m", "hipFDE m", "FSE cm"});
   for (const ForecastCandidate& candidate : candidates) {
     const BodyMean& mean = candidate.summary.mean;
     table.Add({candidate.name, Rounded(mean.value[kMpjpe], 3), Rounded(mean.error[kMpjpe], 2),

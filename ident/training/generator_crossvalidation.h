@@ -43,8 +43,6 @@ struct GeneratorValidation : ChainValidation {
   GroupSpread spread, noise_alone;
 };
 
-std::string BlendName(double blend);
-
 // Errors: folds that cannot be made, recordings that are too short, a fold whose pendulum finds no
 // optimum.
 Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecording>& recordings,

@@ -2,7 +2,6 @@
 #include "ident/training/training_run.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -117,9 +116,7 @@ void AddPanels(const std::vector<TrainingPoint>& stage, std::vector<Chart>* pane
   const auto best = std::min_element(stage.begin(), stage.end(), [](const auto& a, const auto& b) {
     return a.validation_loss < b.validation_loss;
   });
-  Chart chart;
-  chart.title = stage.front().stage;
-  chart.x_label = "epoch";
+  Chart chart{stage.front().stage, "epoch"};
   chart.y_from = 0.0;
   if (!chart.title.empty()) {
     panels->push_back(chart);

@@ -74,9 +74,7 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
   const std::vector<Term>& terms = spec.terms;
   const ParameterSet<double> values = problem.Parameters(point, "");
   const auto& fitted = problem.map().fitted;
-  Combination result;
-  result.name = spec.name;
-  result.unit = spec.unit;
+  Combination result{spec.name, spec.unit};
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(uncertainty.covariance.rows());
   for (const Term& term : terms) {
     result.value += term.coefficient * values[term.parameter];

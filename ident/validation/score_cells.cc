@@ -4,6 +4,7 @@
 #include "datasets/files/number_text.h"
 
 namespace pushid {
+namespace {
 
 // A single recording has no error.
 std::string ScoreText(double value, double error, const MeanScore& mean) {
@@ -11,7 +12,21 @@ std::string ScoreText(double value, double error, const MeanScore& mean) {
   return Rounded(value, 3) + (mean.recordings > 1 ? " +- " + Rounded(error, 2) : "");
 }
 
-// A cell for each metric.
+// None where a baseline failed in all of a group.
+MeanScore MeanOfGroup(const std::map<std::string, MeanScore>& groups, const std::string& name) {
+  const auto found = groups.find(name);
+  return found == groups.end() ? MeanScore() : found->second;
+}
+
+// Before the name of a group.
+std::string GroupTitle(const std::string& key, const ScoreSummary& summary) {
+  if (key == kMagnitudeLabel) return "strength ";
+  const bool one_of_several = key == kSubjectUnit && summary.propagation.recordings > 0;
+  return (one_of_several ? "pushed person" : key) + " ";
+}
+
+}  // namespace
+
 std::vector<std::string> MeanCells(const MeanScore& mean, const ShownMetrics& shown) {
   std::vector<std::string> cells;
   for (const HipMetric& metric : shown) {
@@ -20,7 +35,6 @@ std::vector<std::string> MeanCells(const MeanScore& mean, const ShownMetrics& sh
   return cells;
 }
 
-// The same without errors; "-" where there is no score.
 std::vector<std::string> PlainCells(const HipMetrics& metrics, const ShownMetrics& shown,
                                     bool known) {
   std::vector<std::string> cells;
@@ -42,7 +56,6 @@ std::vector<std::string> MetricNames(const ShownMetrics& shown) {
   return names;
 }
 
-// "a / b"
 std::string Together(const std::vector<std::string>& cells) {
   std::string text;
   for (const std::string& cell : cells) text += (text.empty() ? "" : " / ") + cell;
@@ -57,8 +70,6 @@ void Append(const std::vector<std::string>& cells, std::vector<std::string>* row
   row->insert(row->end(), cells.begin(), cells.end());
 }
 
-// Over what the errors of a summary's means are. A row of one person's recordings has no other
-// people to be clustered by.
 std::string ErrorsText(const ScoreSummary& summary) {
   if (summary.mean.clusters < 2) return "";
   const bool people = summary.mean.clustered_by == ClusterBy::kSubject;
@@ -67,14 +78,12 @@ std::string ErrorsText(const ScoreSummary& summary) {
          (people ? "; within one person, over recordings" : "") + "\n";
 }
 
-// Text stands to the left in the first column and in those from `text_from` on.
 TextTable TableOf(const std::vector<std::string>& header, size_t text_from) {
   std::vector<bool> left(header.size(), false);
   for (size_t i = 0; i < left.size(); ++i) left[i] = i == 0 || i >= text_from;
   return TextTable(header, left);
 }
 
-// "the first 12 frames were seen; 90 % bands hold 0.93 +- 0.03 (x) and 0.91 +- 0.05 (y) of ..."
 std::string ObservedText(const ScoreSummary& summary) {
   if (summary.observed == 0) return "";
   std::string text = "the first " + std::to_string(summary.observed) +
@@ -91,20 +100,6 @@ std::string ObservedText(const ScoreSummary& summary) {
   return text + " of these frames of the pushed person\n";
 }
 
-// None where a baseline failed in all of a group.
-MeanScore MeanOfGroup(const std::map<std::string, MeanScore>& groups, const std::string& name) {
-  const auto found = groups.find(name);
-  return found == groups.end() ? MeanScore() : found->second;
-}
-
-// Before the name of a group.
-std::string GroupTitle(const std::string& key, const ScoreSummary& summary) {
-  if (key == kMagnitudeLabel) return "strength ";
-  const bool one_of_several = key == kSubjectUnit && summary.propagation.recordings > 0;
-  return (one_of_several ? "pushed person" : key) + " ";
-}
-
-// A row for each group of a label that tells recordings apart, a column for each summary.
 void AddGroups(const std::vector<const ScoreSummary*>& summaries, const ShownMetrics& shown,
                TextTable* table) {
   for (const auto& [key, groups] : summaries[0]->by) {

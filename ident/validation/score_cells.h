@@ -10,9 +10,6 @@
 
 namespace pushid {
 
-// A single recording has no error.
-std::string ScoreText(double value, double error, const MeanScore& mean);
-
 // A cell for each metric.
 std::vector<std::string> MeanCells(const MeanScore& mean, const ShownMetrics& shown);
 
@@ -40,12 +37,6 @@ TextTable TableOf(const std::vector<std::string>& header, size_t text_from);
 
 // "the first 12 frames were seen; 90 % bands hold 0.93 +- 0.03 (x) and 0.91 +- 0.05 (y) of ..."
 std::string ObservedText(const ScoreSummary& summary);
-
-// None where a baseline failed in all of a group.
-MeanScore MeanOfGroup(const std::map<std::string, MeanScore>& groups, const std::string& name);
-
-// Before the name of a group.
-std::string GroupTitle(const std::string& key, const ScoreSummary& summary);
 
 // A row for each group of a label that tells recordings apart, a column for each summary.
 void AddGroups(const std::vector<const ScoreSummary*>& summaries, const ShownMetrics& shown,

@@ -185,9 +185,7 @@ std::string StepScoresText(const NamedStepScores& scores) {
 }
 
 Chart ReliabilityChart(const StepScore& score) {
-  Chart chart;
-  chart.title = "who steps: share over probability";
-  chart.x_label = "predicted probability of a step";
+  Chart chart{"who steps: share over probability", "predicted probability of a step"};
   chart.y_from = 0.0;
   chart.y_to = 1.0;
   ChartPoints shares;

@@ -181,10 +181,8 @@ void DiffusionBatches::AddBystanders(ObservedGroup* group) const {
 }
 
 ObservedGroup DiffusionBatches::Varied(const ObservedGroup& group) const {
-  GroupChange change;
-  change.mirrored = Uniform(0.0, 1.0) < 0.5;
-  change.turn = Uniform(-options_.turn, options_.turn);
-  change.size = 1.0 + Uniform(-options_.size, options_.size);
+  const GroupChange change{Uniform(0.0, 1.0) < 0.5, Uniform(-options_.turn, options_.turn),
+                           1.0 + Uniform(-options_.size, options_.size)};
   ObservedGroup varied = Changed(group, change);
   if (group.size() > 1 && Uniform(0.0, 1.0) < options_.bystanders) AddBystanders(&varied);
   return varied;

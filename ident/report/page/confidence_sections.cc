@@ -16,8 +16,7 @@ constexpr int kBars = 24;
 ReportFigure CorrelationFigure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   const size_t size = result.options.table.Free().size();  // without deviations and velocities
-  Chart map;
-  map.title = "correlation of the estimates";
+  Chart map{"correlation of the estimates"};
   map.width = kWidestMap;
   std::vector<std::string> header = {"parameter"};
   for (size_t i = 0; i < size; ++i) header.push_back(u.estimates[i].name);
@@ -55,11 +54,8 @@ bool IsAlias(const FittedModel& model, const Profile& p) {
 }
 
 Chart ProfileChart(const Profile& p) {
-  Chart chart;
-  chart.title = p.name;
-  chart.x_label = WithUnit(p.name, p.unit);
-  chart.width = kSmallWidth;
-  chart.height = kSmallHeight;
+  Chart chart{p.name, WithUnit(p.name, p.unit)};
+  chart.Shrink();
   ChartLine line{{}, kPredictedLook}, dots{{}, kDotLook, true};
   for (const ProfilePoint& point : p.points) {
     line.points.emplace_back(point.value, (point.cost - p.cost) / p.threshold);
@@ -75,12 +71,8 @@ Chart ProfileChart(const Profile& p) {
 
 Chart Histogram(const std::vector<double>& values, const std::string& name, const std::string& unit,
                 double estimate) {
-  Chart chart;
-  chart.title = name;
-  chart.x_label = WithUnit(name, unit);
-  chart.y_label = "replicas";
-  chart.width = kSmallWidth;
-  chart.height = kSmallHeight;
+  Chart chart{name, WithUnit(name, unit), "replicas"};
+  chart.Shrink();
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   const double width = (*high - *low) / kBars;
   std::vector<int> counts(kBars, 0);
@@ -193,8 +185,7 @@ constexpr char kAloneLook[] = "fill:none;stroke:#d55e00";
 
 // Beyond the widest effect at the edge.
 Chart EffectsChart(const std::vector<EffectOfRecording>& effects) {
-  Chart chart;
-  chart.x_label = "b: log of the tail's factor";
+  Chart chart{"", "b: log of the tail's factor"};
   chart.marks = {0.0};
   chart.x_from = -kWidestEffect;
   chart.x_to = kWidestEffect;

@@ -21,8 +21,7 @@ Chart ExplainedChart(const std::vector<const RecordingDiagnostics*>& recordings)
   double worst = 0.0;
   for (const RecordingDiagnostics* r : recordings) worst = std::min(worst, r->explained);
   worst = std::max(kWorstShown, worst);
-  Chart chart;
-  chart.x_label = "hip motion explained, %";
+  Chart chart{"", "hip motion explained, %"};
   chart.x_to = 100.0;
   for (size_t i = 0; i < recordings.size(); ++i) {
     const double value = recordings[i]->explained;
@@ -77,11 +76,8 @@ TextTable OutlierTable(const Diagnostics& d) {
 
 Chart Correlogram(const std::string& title, const std::vector<double>& values,
                   const std::vector<double>& errors, int first_lag, double band) {
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "lag, frames";
-  chart.width = kSmallWidth;
-  chart.height = kSmallHeight;
+  Chart chart{title, "lag, frames"};
+  chart.Shrink();
   ChartBand spread{{}, {}, kNarrowBandLook},
       white{{}, {}, "stroke:none;fill:#e69f00;fill-opacity:.2"};
   ChartLine line{{}, kPredictedLook, false};
@@ -134,8 +130,7 @@ ReportSection LeverageSection(const ReportSource& source) {
   ReportSection section;
   const Leverage& l = source.fit.diagnostics.leverage;
   if (l.recordings.empty()) return section;
-  Chart map;
-  map.title = "change without it, standard errors";
+  Chart map{"change without it, standard errors"};
   map.x_categories = l.parameters;
   map.full_cell = kStrongMove;
   map.width = kWidestMap;

@@ -18,9 +18,7 @@ constexpr const char* kForecasterLooks[kNumForecasters] = {
     "fill:none;stroke-width:1.4;stroke-dasharray:2 3;stroke:#888"};
 
 ReportFigure ErrorsFigure(const ForecastStack& forecasts) {
-  Chart chart;
-  chart.x_label = "time seen, s";
-  chart.y_label = "mean distance of the hip, m";
+  Chart chart{"", "time seen, s", "mean distance of the hip, m"};
   chart.y_from = 0.0;
   std::vector<LegendEntry> legend = {{"together", kStackLook}};
   for (int c = 0; c < kNumForecasters; ++c) {
@@ -77,10 +75,7 @@ std::optional<ReportFigure> ForceFigure(const IdentifiedModel& model, const Fore
     band.upper.emplace_back(t * dt, force + half);
     numbers.Add({t * dt, push, force, force - half, force + half});
   }
-  Chart chart;
-  chart.title = recording.id;
-  chart.x_label = "time, s";
-  chart.y_label = "N";
+  Chart chart{recording.id, "time, s", "N"};
   chart.bands = {band};
   chart.lines = {believed, known};
   return ReportFigure{

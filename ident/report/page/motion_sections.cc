@@ -66,9 +66,7 @@ void AddHip(const RecordingView& view, int person, int axis, double from, Chart*
 }
 
 Chart HipChart(const RecordingView& view, int person, int axis, const std::string& title) {
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "time, s";
+  Chart chart{title, "time, s"};
   chart.lanes = FeetLanes(view.run, person);
   AddHip(view, person, axis, view.run.recording.hip[person][0][axis], &chart);
   return chart;
@@ -76,9 +74,7 @@ Chart HipChart(const RecordingView& view, int person, int axis, const std::strin
 
 Chart AngleChart(const RecordingView& view, int person, int row, const std::string& title) {
   const FormationRun& run = view.run;
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "time, s";
+  Chart chart{title, "time, s"};
   const int frames =
       run.prediction.status.ok ? run.recording.num_frames() : run.prediction.status.frame;
   AddPerson(
@@ -166,8 +162,7 @@ Figure PathFigure(const RecordingView& view) {
          {HipChart(view, n, 0, who + "hip forward, m"), HipChart(view, n, 1, "hip to the left, m"),
           AngleChart(view, n, 2, "theta, rad"), AngleChart(view, n, 3, "phi, rad")}) {
       figure.panels.push_back(chart);
-      figure.panels.back().width = kSmallWidth;
-      figure.panels.back().height = kSmallHeight;
+      figure.panels.back().Shrink();
     }
   }
   return figure;
@@ -199,10 +194,7 @@ Chart TypicalChart(const RecordingView& view, const std::string& title) {
   const PendulumRecording& recording = view.run.recording;
   const Eigen::Vector2d along = PushDirection(recording);
   const int axis = std::abs(along[0]) >= std::abs(along[1]) ? 0 : 1;
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "time, s";
-  chart.y_label = axis == 0 ? "hip forward, m" : "hip to the left, m";
+  Chart chart{title, "time, s", axis == 0 ? "hip forward, m" : "hip to the left, m"};
   const double from = recording.hip[std::max(0, recording.pushed_person)][0][axis];
   for (int n = 0; n < recording.num_people(); ++n) AddHip(view, n, axis, from, &chart);
   return chart;

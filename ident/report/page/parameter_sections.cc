@@ -48,8 +48,7 @@ ReportFigure SharesFigure(const FitResult& result) {
   };
   if (drawn(&Shares::prior)) figure.legend.push_back({"prior", kPriorLook});
   if (drawn(&Shares::settling)) figure.legend.push_back({"settling", kSettlingLook});
-  Chart chart;
-  chart.x_label = "share of the variance, %";
+  Chart chart{"", "share of the variance, %"};
   chart.x_from = 0.0;
   chart.x_to = 100.0;
   TextTable numbers(
@@ -86,8 +85,7 @@ const Agreement* Find(const std::vector<Agreement>& rows, const std::string& nam
 }  // namespace
 
 Chart IntervalStrip(const IntervalRow& row) {
-  Chart chart;
-  chart.title = WithUnit(row.name, row.unit);
+  Chart chart{WithUnit(row.name, row.unit)};
   chart.bare_y = true;
   chart.height = kStripHeight + kIntervalHeight * static_cast<double>(row.intervals.size());
   chart.marks = {row.nominal};

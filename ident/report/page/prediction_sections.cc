@@ -15,8 +15,7 @@ namespace {
 // A panel with a row for each impulse over mass, and its columns in the numbers.
 Chart MapPanel(const std::string& title, const std::string& unit, const PushResponse& response,
                const std::vector<double>& columns, const std::vector<std::vector<double>>& values) {
-  Chart panel;
-  panel.title = title;
+  Chart panel{title};
   for (double column : columns) panel.x_categories.push_back(Rounded(column, 3) + unit);
   for (double impulse : response.impulse_per_mass) {
     panel.y_categories.push_back(Rounded(impulse, 2));
@@ -146,10 +145,8 @@ namespace {
 constexpr char kMiddleBandLook[] = "stroke:none;fill:#d55e00;fill-opacity:.18";
 
 Chart StratumChart(const CheckedStratum& stratum) {
-  Chart chart;
-  chart.title = stratum.name + " (n = " + std::to_string(stratum.recordings) + ")";
-  chart.x_label = "time, s";
-  chart.y_label = "hip/push speed, s";
+  Chart chart{stratum.name + " (n = " + std::to_string(stratum.recordings) + ")", "time, s",
+              "hip/push speed, s"};
   for (int q = 0; q < kNumCheckedShares; ++q) {
     const bool middle = q == kNumCheckedShares / 2;
     ChartBand band{{}, {}, middle ? kMiddleBandLook : kWideBandLook};
@@ -195,10 +192,7 @@ TextTable StrataTable(const VisualCheck& check) {
 }
 
 Chart HistogramChart(const std::string& title, const UniformityTest& test) {
-  Chart chart;
-  chart.title = title;
-  chart.x_label = "share of the model's distribution below";
-  chart.y_label = "share of frames";
+  Chart chart{title, "share of the model's distribution below", "share of frames"};
   const double bins = static_cast<double>(test.shares.size());
   double most = 0.0;
   for (size_t b = 0; b < test.shares.size(); ++b) {

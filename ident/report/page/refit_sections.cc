@@ -17,12 +17,9 @@ namespace {
 
 // One parameter over the logarithm of the horizon, with twice its standard error.
 Chart DriftChart(const RefitTable& check, size_t i, double all_frames) {
-  Chart chart;
-  chart.title = WithUnit(check.parameters[i], check.units[i]);
-  chart.x_label = "frames";
+  Chart chart{WithUnit(check.parameters[i], check.units[i]), "frames"};
   chart.logarithmic_x = true;
-  chart.width = kSmallWidth;
-  chart.height = kSmallHeight;
+  chart.Shrink();
   ChartLine line{{}, kPredictedLook, false};
   ChartBand band{{}, {}, kWideBandLook};
   const auto add = [&](double frames, double value, double error) {

@@ -15,15 +15,10 @@ BodePlot PlotOf(const FrequencyResponse& response) {
   BodePlot plot;
   plot.gain_unit = response.OutputUnit() + "/" + response.InputUnit();
   for (const FrequencyBin& bin : response.bins) {
-    BodePoint point;
-    point.hz = bin.hz;
-    point.gain = std::exp(bin.log_gain);
-    point.gain_lower = std::exp(bin.log_gain - bin.log_gain_error);
-    point.gain_upper = std::exp(bin.log_gain + bin.log_gain_error);
-    point.phase = kDegrees * bin.phase;
-    point.phase_error = kDegrees * bin.phase_error;
-    point.coherence = bin.coherence;
-    plot.measured.push_back(point);
+    const double lower = bin.log_gain - bin.log_gain_error;
+    const double upper = bin.log_gain + bin.log_gain_error;
+    plot.measured.push_back({bin.hz, std::exp(bin.log_gain), std::exp(lower), std::exp(upper),
+                             kDegrees * bin.phase, kDegrees * bin.phase_error, bin.coherence});
   }
   plot.hz = response.model.hz;
   for (double gain : response.model.log_gain) plot.gain.push_back(std::exp(gain));
@@ -50,9 +45,7 @@ std::string CaptionOf(const FrequencyResponse& response) {
 Figure SwayFigure(const std::vector<PersonSway>& people) {
   Figure figure;
   for (int i = 0; i < kNumSwayMeasures; ++i) {
-    Chart chart;
-    chart.title = kSwayMeasures[i].name;
-    chart.x_label = kSwayMeasures[i].unit;
+    Chart chart{kSwayMeasures[i].name, kSwayMeasures[i].unit};
     ChartLine measured{{}, kMeasuredLook, true};
     for (size_t n = 0; n < people.size(); ++n) {
       const double row = static_cast<double>(n);
