@@ -63,6 +63,16 @@ TextTable LinesTable(const FitResult& result) {
   return table;
 }
 
+namespace {
+
+// What is left of a motion that has died out is 0.
+std::string MotionText(double value) {
+  constexpr double kNothing = 1e-6;
+  return Rounded(std::abs(value) < kNothing ? 0.0 : value, 2);
+}
+
+}  // namespace
+
 TextTable BehaviourTable(const FitResult& result) {
   TextTable table({"settling simulation", WaitText(result.options.model) + " after the push", "m/s",
                    "rad from rest", "mean advance, m", "advance of pushed person, m"},
@@ -73,8 +83,8 @@ TextTable BehaviourTable(const FitResult& result) {
                d.fell      ? kFellText
                : d.settled ? kSettledText
                            : "still moving",
-               Rounded(d.speed, 2), Rounded(d.lean, 2), Rounded(d.advance, 2),
-               Rounded(d.pushed_advance, 2)});
+               MotionText(d.speed), MotionText(d.lean), MotionText(d.advance),
+               MotionText(d.pushed_advance)});
   }
   return table;
 }

@@ -42,7 +42,9 @@ std::string WantedText(const AssumptionTest& test) {
   const std::string how_much = share && size > kFar ? "more than a half"
                                                     : Rounded(factor * size, 2) + " +- " +
                                                           Rounded(factor * test.error, 2) +
-                                                          (share ? " %" : " " + test.unit);
+                                                          (share              ? " %"
+                                                           : test.unit == "1" ? ""
+                                                                              : " " + test.unit);
   return test.name + " " + how_much + (test.wanted > 0.0 ? " larger" : " smaller");
 }
 

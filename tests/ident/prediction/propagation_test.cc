@@ -100,7 +100,9 @@ TEST(Propagation, NobodyMoves) {
   }
   EXPECT_EQ(summary.figures[kFalseMovers].value, 0.0);
   EXPECT_FALSE(Speed(summary.figures[kSlownessMeasured]));
-  EXPECT_TRUE(JsonOf(summary)["onset_error_frames"].is_null());
+  ScoreSummary scores;
+  scores.propagation = summary;
+  EXPECT_TRUE(ToJson(scores, false)["propagation"]["onset_error_frames"].is_null());
   EXPECT_TRUE(Contains(PropagationText({{"model", &summary}}), "0 of 3"));
 }
 
