@@ -10,7 +10,6 @@
 #include "datasets/loading/mocap_folder.h"
 #include "ident/generators/generator_files.h"
 #include "ident/generators/push_particles.h"
-#include "ident/solver/solver.h"
 #include "ident/training/restoration_training.h"
 
 namespace pushid {

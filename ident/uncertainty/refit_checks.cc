@@ -148,6 +148,29 @@ RefitTable CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
 
 namespace {
 
+// Half the 95 % point of chi-squared: a demand to settle that costs more is contradicted, and a fit
+// drops it (fit/weighted_solve.h).
+constexpr double kContradicted = 0.5 * 3.84;
+
+// Where priors hold a number, the way from another estimate is long, and where feet step it is
+// rough: the priors' own centres are a second start.
+SolveStart RefitFromAfar(const FitProblem& problem, const FitPoint& estimate) {
+  SolveStart refit = Refit(problem, estimate);
+  if (problem.options().likelihood != Likelihood::kTrajectory || !estimate.weights.empty()) {
+    return refit;
+  }
+  const auto take = [&refit](const SolveStart& other, double worth) {
+    if (!other.usable || !other.failed.empty()) return;
+    if (!refit.usable || other.cost < refit.cost - worth) refit = other;
+  };
+  FitProblem without = problem;
+  without.set_settling_weight(0.0);
+  const SolveStart free = SolveFrom(without, without.NominalPoint(), "nominal", "", nullptr);
+  if (free.usable) take(Refit(problem, free.to), 0.0);
+  take(free, kContradicted);
+  return refit;
+}
+
 RefitRow RefitWith(const FitProblem& problem, const FitPoint& estimate, const std::string& name,
                    double factor) {
   RefitRow row{"priors", name, {}, {}, "", 0};
@@ -158,14 +181,7 @@ RefitRow RefitWith(const FitProblem& problem, const FitPoint& estimate, const st
     spec.nominal = std::clamp(spec.prior->mean, spec.lower, spec.upper);
   }
   const FitProblem other(problem.recordings(), options, problem.counts());
-  // Where priors hold a number, the way from the estimate is long, and where feet step it is rough:
-  // the priors' own centres are a second start.
-  SolveStart refit = Refit(other, estimate);
-  SolveStart fresh = SolveFrom(other, other.NominalPoint(), "nominal", "", nullptr);
-  if (fresh.usable && fresh.failed.empty() && (!refit.usable || fresh.cost < refit.cost)) {
-    refit = std::move(fresh);
-  }
-  Take(other, refit, &row);
+  Take(other, RefitFromAfar(other, estimate), &row);
   return row;
 }
 
