@@ -226,6 +226,10 @@ Result<Manifest> ReadManifest(const std::string& path) {
   JsonFields top(document, document.content, "", "manifest");
   Manifest manifest;
   manifest.path = path;
+  if (top.Has("format") && !top.Has("recordings")) {
+    return document.ErrorAt("/format", "this is a " + top.OptionalText("format", "file") +
+                                           ", no manifest of recordings");
+  }
   top.Require("recordings", "a list of recordings");
   const Json& recordings = top.List("recordings");
   if (!top.failed() && recordings.empty()) {

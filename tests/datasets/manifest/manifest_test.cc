@@ -283,6 +283,8 @@ TEST_F(ManifestTest, NothingInIt) {
   };
   EXPECT_TRUE(Contains(message(""), "manifest.json: the file is empty"));
   EXPECT_TRUE(Contains(message("{}"), "recordings is missing"));
+  EXPECT_TRUE(Contains(message(R"({"format": "pushid model"})"),
+                       "this is a pushid model, no manifest of recordings"));
   EXPECT_TRUE(Contains(message("{\"recordings\": []}"), "the manifest lists no recordings"));
   EXPECT_TRUE(Contains(message("[]"), "must be an object"));
   EXPECT_TRUE(Contains(message("{\"recordings\": {}}"), "recordings must be a list"));
