@@ -21,7 +21,7 @@ HORIZONS = ["80", "160", "320", "400", "1000"]
 IN_MS = [f"{h} ms" for h in HORIZONS]
 SAMPLES = 39
 APART_ACTIONS = ["soccer", "jumping", "running"]  # each is a fold
-APART_CLIPS = []  # likewise the places of clips, counted from the last
+APART_CLIPS = [1]  # likewise the places of clips, counted from the last
 APART_STEPS = os.environ.get("PUSHID_APART_STEPS", "200")
 SHORT = ["--seeds=3", f"--steps={APART_STEPS}", "--noise_steps=0"]
 ALONE = ["--ridge_share=0", "--simlpe_share=0"]
