@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <unsupported/Eigen/SpecialFunctions>
 
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/problem/behaviour.h"
@@ -22,7 +21,6 @@ constexpr int kFewIterations = 4;   // of a rough round: by weights that will ch
 constexpr int kMostChanges = 2;     // of which start is the best
 constexpr double kSameCost = 1e-6;  // relative: another start at the same optimum
 constexpr double kRough = 1e-3;     // function tolerance on the way
-constexpr double kContradicted = 0.05;
 // The demand joins in three steps, each solved to its own optimum: all of it at once outweighs
 // everything else where people are far from settled, and the solver creeps along its edge. A
 // thirtieth moves the optimum near the edge, and from there along it by steps of ordinary length.
@@ -143,9 +141,7 @@ void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
                    !std::isfinite(CostAt(*problem, held.to));
   if (!settling.unmet) {
     settling.rise = std::max(0.0, 2.0 * (CostAt(without, held.to) - best.cost));
-    const double units = static_cast<double>(without.SettlingUnits(best.to).size());
-    settling.contradicted =
-        Eigen::numext::igammac(0.5 * units, 0.5 * settling.rise) < kContradicted;
+    settling.contradicted = Contradicted(settling.rise, without.SettlingUnits(best.to).size());
   }
   if (!settling.holds()) {
     problem->set_settling_weight(0.0);

@@ -24,6 +24,8 @@ double ImpulsePerMass(const IdentifiedModel& model, const PendulumRecording& rec
   return WholeImpulse(push, mass, p, recording.scene.dt) / mass;
 }
 
+bool HasDirection(const ScenePush& push) { return !push.mean.head<2>().isZero(0.0); }
+
 // From the model's x axis, in degrees; to the left and to the right alike.
 double Direction(const IdentifiedModel& model, const PendulumRecording& recording,
                  const ScenePush& push) {
@@ -62,14 +64,14 @@ std::optional<std::string> TurnedAway(const IdentifiedModel& model,
   if (fitted.empty()) return std::nullopt;
   for (const PendulumRecording& recording : recordings) {
     for (const ScenePush& push : recording.scene.pushes) {
-      if (push.force.empty() || push.mean.head<2>().isZero(0.0)) continue;
+      if (push.force.empty() || !HasDirection(push)) continue;
       const double angle = Direction(model, recording, push);
       if (angle <= fitted.upper + kBeyondFittedAngle &&
           angle >= fitted.lower - kBeyondFittedAngle) {
         continue;
       }
       return "the push of " + recording.id + " points " + Rounded(angle, 3) +
-             " degrees off forwards; the model was fitted to pushes within " +
+             " degrees off forwards; the model was fitted to " + Rounded(fitted.lower, 3) + " to " +
              Rounded(fitted.upper, 3) +
              " degrees: what people do then is an assumption, not an estimate";
     }
@@ -104,7 +106,7 @@ PushRange FittedPushRange(const IdentifiedModel& model,
       if (push.force.empty()) continue;
       range.Durations(push.kind).Add(Duration(recording, push));
       range.impulse_per_mass.Add(ImpulsePerMass(model, recording, push));
-      range.direction.Add(Direction(model, recording, push));
+      if (HasDirection(push)) range.direction.Add(Direction(model, recording, push));
     }
   }
   return range;

@@ -68,7 +68,7 @@ constexpr EnumNames<NetworkOptimizer, 2> Names(NetworkOptimizer) {
 // Whose errors are independent of each other.
 enum class ClusterBy {
   kAuto,      // people where some were recorded more than once, otherwise recordings
-  kSubject,   // people; where several share a recording, people and recordings (two-way)
+  kSubject,   // people; where several share a recording, people and line-ups (two-way)
   kRecording  // recordings
 };
 constexpr EnumNames<ClusterBy, 3> Names(ClusterBy) {

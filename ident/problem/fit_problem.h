@@ -46,8 +46,8 @@ struct CostWeights {
 struct BuiltProblem {
   std::unique_ptr<ParallelEvaluation> evaluation;
   std::unique_ptr<ceres::Problem> problem;
-  // cluster: the recording that the block belongs to, or one of the clusters above; cost: what
-  // was added, which the problem may hold inside another (parallel_evaluation.h).
+  // cluster: the recording that the block belongs to, or FitProblem::kPriorCluster and the like;
+  // cost: what was added, which the problem may hold inside another (parallel_evaluation.h).
   struct Block {
     ceres::ResidualBlockId id;
     int cluster;

@@ -150,7 +150,8 @@ std::string HowSure(const FitResult& result) {
   }
   const bool people = u.clustered_by == ClusterBy::kSubject;
   return "standard errors: clustered by " +
-         std::string(people ? (u.two_way ? "person and by line-up" : "person") : "recording") +
+         std::string(people ? (u.two_way ? "person and by who stood together" : "person")
+                            : "recording") +
          " (" + std::to_string(u.num_clusters) + (people ? " people" : " recordings") +
          "; Student's t with " + Freedom(least, most) + ")" +
          (u.too_few_clusters ? "; correlations are those of independent frames" : "") + "\n" +

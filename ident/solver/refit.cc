@@ -1,5 +1,6 @@
 // ident: from a point near the optimum to the optimum.
 #include <algorithm>
+#include <unsupported/Eigen/SpecialFunctions>
 
 #include "ident/solver/solver.h"
 
@@ -17,6 +18,12 @@ constexpr double kWorthAnother = 50.0;
 constexpr int kMostFresh = 5;
 
 }  // namespace
+
+bool Contradicted(double rise, size_t units) {
+  constexpr double kImprobable = 0.05;
+  return Eigen::numext::igammac(0.5 * static_cast<double>(units), 0.5 * std::max(0.0, rise)) <
+         kImprobable;
+}
 
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network,
                  int num_threads) {

@@ -3,6 +3,7 @@
 
 #include <ceres/solver.h>
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -27,6 +28,11 @@ SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& op
 // constant.
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network = false,
                  int num_threads = 1);
+
+// Whether the recordings contradict a demand to settle: by how much it raises the cost of all else,
+// twice that, against the 95 % point of chi-squared with a degree of freedom for each of the units
+// that it is put to.
+bool Contradicted(double rise, size_t units);
 
 // Of all blocks that can be rolled out from a point; infinite where a settling simulation cannot.
 double CostAt(const FitProblem& problem, FitPoint point);

@@ -1,4 +1,4 @@
-// ident: people and recordings as clusters.
+// ident: people, recordings and line-ups as clusters.
 #include "ident/uncertainty/clusters.h"
 
 #include <algorithm>

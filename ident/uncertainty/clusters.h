@@ -2,7 +2,7 @@
 //
 // A person's pushes are answered by the same body and habits: the independent unit is the person.
 // Where several people share a recording, errors go two ways: through the person into all of their
-// recordings, and through the line-up (the same people in the same places), where the same pairs
+// recordings, and through the line-up (the same people in the same order), where the same pairs
 // touch, into everybody in it. Neither lies within the other, so rows are clustered both ways
 // (Cameron, Gelbach and Miller 2011):
 //   V = V_people + V_line-ups - V_people-in-line-ups

@@ -97,7 +97,11 @@ Scatter::Part DataScatter(const JacobianBlocks& score, const Clustering& cluster
     const Eigen::MatrixXd moves = SolveSymmetric(hessian, both.scores);
     inner = WithoutNegative(one.covariance + two.covariance - moves * moves.transpose());
   }
-  return {back * inner * back.transpose(), one.freedom};
+  Eigen::VectorXd freedom = one.freedom;
+  if (clustering.line_ups.count > 0) {  // as the fewer of the two have
+    freedom = freedom.cwiseMin(std::max(1.0, clustering.line_ups.count - 1.0));
+  }
+  return {back * inner * back.transpose(), freedom};
 }
 
 // Empty with fewer than two clusters. inverse_hessian: in the columns as they came.

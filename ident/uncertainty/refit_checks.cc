@@ -148,27 +148,23 @@ RefitTable CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
 
 namespace {
 
-// Half the 95 % point of chi-squared: a demand to settle that costs more is contradicted, and a fit
-// drops it (fit/weighted_solve.h).
-constexpr double kContradicted = 0.5 * 3.84;
-
 // Where priors hold a number, the way from another estimate is long, and where feet step it is
-// rough: the priors' own centres are a second start.
+// rough: the priors' own centres are a second start. A demand to settle that is contradicted there
+// is dropped, as by a fit.
 SolveStart RefitFromAfar(const FitProblem& problem, const FitPoint& estimate) {
   SolveStart refit = Refit(problem, estimate);
   if (problem.options().likelihood != Likelihood::kTrajectory || !estimate.weights.empty()) {
     return refit;
   }
-  const auto take = [&refit](const SolveStart& other, double worth) {
-    if (!other.usable || !other.failed.empty()) return;
-    if (!refit.usable || other.cost < refit.cost - worth) refit = other;
-  };
   FitProblem without = problem;
   without.set_settling_weight(0.0);
   const SolveStart free = SolveFrom(without, without.NominalPoint(), "nominal", "", nullptr);
-  if (free.usable) take(Refit(problem, free.to), 0.0);
-  take(free, kContradicted);
-  return refit;
+  if (!free.usable || !free.failed.empty()) return refit;
+  SolveStart held = Refit(problem, free.to);
+  if (held.usable && (!refit.usable || held.cost < refit.cost)) refit = std::move(held);
+  const bool drops = !refit.usable || Contradicted(2.0 * (CostAt(without, refit.to) - free.cost),
+                                                   without.SettlingUnits(free.to).size());
+  return drops ? free : refit;
 }
 
 RefitRow RefitWith(const FitProblem& problem, const FitPoint& estimate, const std::string& name,
@@ -176,7 +172,7 @@ RefitRow RefitWith(const FitProblem& problem, const FitPoint& estimate, const st
   RefitRow row{"priors", name, {}, {}, "", 0};
   FitOptions options = problem.options();
   for (ParameterSpec& spec : options.table.specs) {
-    if (!spec.prior) continue;
+    if (!spec.prior || !spec.free) continue;
     spec.prior = Prior{factor * spec.prior->mean, factor * spec.prior->sigma};
     spec.nominal = std::clamp(spec.prior->mean, spec.lower, spec.upper);
   }

@@ -77,8 +77,9 @@ std::vector<Drift> Drifts(const RefitTable& horizons);
 // A parameter that the recordings know keeps its value. Profiles and bootstrap cannot tell: they
 // carry the same priors.
 
-// Two rows, halved and doubled, refitted from the estimate at the same weights of the data; none
-// where no free parameter has a prior.
+// Two rows, halved and doubled, refitted from the estimate and from the priors' centres at the same
+// weights of the data, without the demand to settle where that is contradicted then; none where no
+// free parameter has a prior.
 RefitTable CheckPriors(const FitProblem& problem, const FitPoint& estimate,
                        const Uncertainty& uncertainty);
 

@@ -117,7 +117,7 @@ struct Uncertainty {
   int num_residuals = 0;  // of data
   int num_clusters = 0;
   ClusterBy clustered_by = ClusterBy::kRecording;
-  bool two_way = false;    // by people and by recordings
+  bool two_way = false;    // by people and by line-ups
   bool clustered = false;  // false with a single cluster: naive errors lead
   int num_people = 0;
   bool about_people_like_them = false;  // not of these people alone

@@ -40,7 +40,7 @@ void Fields(Archive& a, StepScore& s) {
   });
 }
 
-inline void Fields(JsonWriter& a, StepPrediction& s) {
+void Fields(JsonWriter& a, StepPrediction& s) {
   a("margin_m", s.margin);
   a("probability", s.probability);
   a("stepped", s.stepped);
@@ -88,7 +88,7 @@ void Fields(Archive& a, PropagationSummary& s) {
   }
 }
 
-inline void Fields(JsonWriter& a, PersonPropagation& p) {
+void Fields(JsonWriter& a, PersonPropagation& p) {
   a("rank", p.rank);
   a("distance_m", p.distance);
   a("onset_measured_frame", p.onset_measured);

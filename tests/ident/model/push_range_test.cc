@@ -96,8 +96,16 @@ TEST(PushRange, WarnsOfPushesFromWhereNoneCame) {
   const auto warnings = ExtrapolationWarnings(model, {push});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_TRUE(Contains(warnings[0], "a points 180 degrees off forwards")) << warnings[0];
+  IdentifiedModel of_backwards = model;
+  of_backwards.push_range = FittedPushRange(model, {push});
   model.options.directions = Directions::kIsotropic;
   EXPECT_TRUE(ExtrapolationWarnings(model, {push}).empty());
+  push.scene.pushes[0].mean.head<2>() = Eigen::Vector2d(50.0, 0.0);
+  const auto reverse = ExtrapolationWarnings(of_backwards, {push});
+  ASSERT_EQ(reverse.size(), 1u);
+  EXPECT_TRUE(
+      Contains(reverse[0], "a points 0 degrees off forwards; the model was fitted to 180 to"))
+      << reverse[0];
 }
 
 TEST(PushRange, AUnitsOwnTailCounts) {

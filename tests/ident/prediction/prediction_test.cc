@@ -74,7 +74,8 @@ TEST(Prediction, WhatIf) {
   EXPECT_EQ(model.by_unit["S01"][kContactDistance], 0.5);
 
   const ParameterSet<double> before = model.parameters;
-  for (const char* bad : {"nu=3", "mu", "mu=abc", "Kp_theta=-10", "mu=7,Kp_theta=1e9"}) {
+  for (const char* bad :
+       {"nu=3", "mu", "mu=abc", "Kp_theta=-10", "mu=7,Kp_theta=1e9", "support_front=0.1"}) {
     const MaybeError error = SetValues(bad, &model);
     ASSERT_TRUE(error) << bad;
     EXPECT_TRUE(Contains(error->ToString(), "--set")) << bad;

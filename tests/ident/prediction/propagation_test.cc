@@ -102,7 +102,7 @@ TEST(Propagation, NobodyMoves) {
   EXPECT_FALSE(Speed(summary.figures[kSlownessMeasured]));
   ScoreSummary scores;
   scores.propagation = summary;
-  EXPECT_TRUE(ToJson(scores, false)["propagation"]["onset_error_frames"].is_null());
+  EXPECT_TRUE(ToJson(scores, false).at("propagation").at("onset_error_frames").is_null());
   EXPECT_TRUE(Contains(PropagationText({{"model", &summary}}), "0 of 3"));
 }
 
