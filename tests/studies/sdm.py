@@ -6,8 +6,8 @@ table4   its Tables 4 and 5: how people see each other (mean, attention, not at 
 times    how long the trainings of these tables took
 
 Pushed groups are the published ones (PUSHID_RECORDINGS), fold 3 left out; those who talk are made by pushid-simulate
---turns, the last four left out, with the true states. PUSHID_SDM_STEPS is the number of training steps (default 150; the
-full length is 1500), PUSHID_SDM_EFFORT that of MRT (default 0.1). Forecasts are given 20 frames.
+--turns, the last four left out, with the true states. PUSHID_SDM_STEPS is the number of training steps (default 1500, the
+full length), PUSHID_SDM_EFFORT that of MRT (default 0.1). Forecasts are given 20 frames.
 """
 import os
 
@@ -15,7 +15,7 @@ import studies
 from diffusion import of_fold
 from studies import number
 
-STEPS = os.environ.get("PUSHID_SDM_STEPS", "150")
+STEPS = os.environ.get("PUSHID_SDM_STEPS", "1500")
 EFFORT = os.environ.get("PUSHID_SDM_EFFORT", "0.1")
 TURNS = os.path.join(studies.KEPT, "turns")
 LEFT_OUT = ",".join(f"turns_{i}" for i in range(13, 17))
@@ -127,7 +127,7 @@ def table4():
 def times():
     rows = [[data.title, name, f"{train(data, pooling).seconds:.0f}"] for data in DATA for name, pooling in POOLINGS]
     rows.append([Pushed.title, f"MRT, effort {EFFORT}", f"{mrt()[0].seconds:.0f}"])
-    return studies.table([f"training of {STEPS} steps", "", "s"], rows)
+    return studies.table([f"training of {STEPS} steps", "", "processor time, s"], rows)
 
 
 if __name__ == "__main__":

@@ -18,10 +18,10 @@ import hashlib
 import json
 import math
 import os
+import resource
 import subprocess
 import sys
 import tempfile
-import time
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 BIN = os.path.abspath(os.environ.get("PUSHID_BIN", os.path.join(SOURCE, "build/release/bin")))
@@ -32,7 +32,7 @@ END = "<!-- end -->"
 
 
 class Output:
-    """What a program printed, the file it wrote (`path`), which `json` parses, and how long that took."""
+    """What a program printed, the file it wrote (`path`), which `json` parses, and its processor time, s."""
 
     def __init__(self, text, path, seconds, failed):
         self.text, self.path, self.seconds, self.failed = text, path, seconds, failed
@@ -67,9 +67,10 @@ def run(program, *arguments, out="json_out", ending="json", keep=True, may_fail=
         command = [executable, *arguments] + ([f"--{out}={path}"] if out else [])
         print(f"{program} {' '.join(arguments)}", file=sys.stderr, flush=True)
         environment = dict(os.environ, OPENBLAS_NUM_THREADS="1")  # results repeat to the bit
-        begin = time.monotonic()
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run(command, stdout=subprocess.PIPE, text=True, env=environment)
-        seconds = time.monotonic() - begin
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         if done.returncode != 0 and not (may_fail and done.returncode == 2):
             sys.exit(f"{program} ended with exit code {done.returncode}")
         if not keep:
