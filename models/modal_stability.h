@@ -55,7 +55,9 @@ Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSe
   } else if (stance == Stance::kSteps) {
     FeetState<T> feet;
     for (int i = 0; i < 2; ++i) feet.apart[i] = T(self.standing.apart[i]);
-    force.template tail<2>() += StanceAt(self, StanceParameters<T>(value), feet, perceived).torque;
+    force.template tail<2>() += StanceAt<T>(self.standing, StanceParameters<T>(value), feet,
+                                            perceived.ankle, perceived.step)
+                                    .torque;
   } else {
     force.template tail<2>() += StandingTorque(self, StandingParameters<T>(value),
                                                Angles<T>(perceived.ankle.q), perceived.ankle.qd);

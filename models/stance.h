@@ -285,14 +285,11 @@ class StanceStep {
 };
 
 template <typename T>
-StanceForces<T> StanceAt(const SelfForce& self, const StanceParameters<T>& p,
-                         const FeetState<T>& feet, const Perceived<T>& perceived) {
-  const StanceBody& body = self.standing;
-  const auto hip = [&body](const PendulumState<T>& state) {
-    return HipOverFeet<T>(body, Angles<T>(state.q), state.qd);
-  };
-  return StanceStep<T>(body, p, feet, hip(perceived.ankle), hip(perceived.step).Capture(body))
-      .Run();
+StanceForces<T> StanceAt(const StanceBody& body, const StanceParameters<T>& p,
+                         const FeetState<T>& feet, const PosedPendulum<T>& ankle,
+                         const PosedPendulum<T>& step) {
+  const HipOverFeet<T> felt(body, step.angles, step.qd);
+  return StanceStep<T>(body, p, feet, {body, ankle.angles, ankle.qd}, felt.Capture(body)).Run();
 }
 
 }  // namespace pushid

@@ -10,8 +10,8 @@ namespace {
 
 using Ids = StanceParameters<double>;
 
-PerceivedHip HipOf(const PendulumState<double>& state) {
-  const Angles<double> angles(state.q);
+PerceivedHip HipOf(const PosedPendulum<double>& state) {
+  const Angles<double>& angles = state.angles;
   return {angles.s_th,
           angles.c_th,
           angles.s_ph,
@@ -21,7 +21,7 @@ PerceivedHip HipOf(const PendulumState<double>& state) {
 
 // by_ankle, by_foot: of the force; where nothing is late, by_ankle is by the state.
 void StanceColumns(const SelfForce& self, const ParameterSet<double>& p,
-                   const PendulumState<double>& state, const Perceived<double>* late, bool acts,
+                   const PosedPendulum<double>& state, const Perceived<double>* late, bool acts,
                    Eigen::Matrix<double, 4, 8>* by_ankle, Eigen::Matrix<double, 4, 8>* by_foot,
                    SelfForce::Jacobian* jacobian, StanceJacobian* stance) {
   StanceJetInputs in;
@@ -32,7 +32,7 @@ void StanceColumns(const SelfForce& self, const ParameterSet<double>& p,
   in.swings = feet.swings;
   in.landed = feet.landed;
   in.late = late != nullptr;
-  in.ankle = HipOf(in.late ? late->ankle : state);
+  in.ankle = in.late ? HipOf(late->ankle) : HipOf(state);
   in.step = in.late ? HipOf(late->step) : in.ankle;
   for (int i = 0; i < Ids::kCount; ++i) in.parameters[i] = p[Ids::kIds[i]];
   double by_input[kMostStanceJets * kStanceOutputs];
@@ -159,7 +159,7 @@ void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
 
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
-                              int frame, const PendulumState<double>& state,
+                              int frame, const PosedPendulum<double>& state,
                               SelfForce::Jacobian* jacobian, StanceJacobian* stance,
                               const Perceived<double>* late, PerceivedJacobian* by_perceived) {
   if (by_perceived != nullptr) by_perceived->SetZero();

@@ -36,7 +36,7 @@ struct StanceJacobian {
 // overwritten. perceived, by_perceived: as NetForceJacobian has them.
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
-                              int frame, const PendulumState<double>& state,
+                              int frame, const PosedPendulum<double>& state,
                               SelfForce::Jacobian* jacobian, StanceJacobian* stance,
                               const Perceived<double>* perceived = nullptr,
                               PerceivedJacobian* by_perceived = nullptr);
