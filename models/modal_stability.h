@@ -54,8 +54,10 @@ Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSe
     force.template tail<2>() += of_angles.template tail<2>();
   } else if (stance == Stance::kSteps) {
     FeetState<T> feet;
-    feet.apart = self.feet_apart.template cast<T>();
-    force.template tail<2>() += StanceAt(self, StanceParameters<T>(value), feet, perceived).torque;
+    for (int i = 0; i < 2; ++i) feet.apart[i] = T(self.standing.apart[i]);
+    force.template tail<2>() += StanceAt<T>(self.standing, StanceParameters<T>(value), feet,
+                                            perceived.ankle, perceived.step)
+                                    .torque;
   } else {
     force.template tail<2>() += StandingTorque(self, StandingParameters<T>(value),
                                                Angles<T>(perceived.ankle.q), perceived.ankle.qd);

@@ -109,10 +109,12 @@ void AddPublishedFriction(const PendulumState<T>& state, NetForce<T>* force) {
 // sliding cart act.
 template <typename T>
 void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
-                     const PendulumState<T>& state, const Perceived<T>& perceived,
-                     NetForce<T>* force) {
+                     const PosedPendulum<T>& state, const Perceived<T>* late, NetForce<T>* force) {
   const StanceParameters<T> stance([&p](Parameter id) { return p[id]; });
-  const StanceForces<T> of_stance = StanceAt(self, stance, state.feet, perceived);
+  const StanceForces<T> of_stance =
+      late != nullptr ? StanceAt(self.standing, stance, state.feet, PosedPendulum<T>(late->ankle),
+                                 PosedPendulum<T>(late->step))
+                      : StanceAt(self.standing, stance, state.feet, state, state);
   force->next_feet = of_stance.next;
   if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(state, force);
   if (active != ActiveForces::kAll) return;
@@ -163,8 +165,7 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
       AddSlidingForces(self, p, active, state, qd_previous, &force, perceived);
       break;
     case Stance::kSteps:
-      AddStanceForces(self, p, active, state,
-                      perceived != nullptr ? *perceived : Perceived<T>(state), &force);
+      AddStanceForces(self, p, active, state, perceived, &force);
       break;
     case Stance::kFixed:
       AddStandingForces<T>(self, p, active, state, perceived != nullptr ? perceived->ankle : state,

@@ -38,7 +38,7 @@ std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& option
   self.reserve(scene.people.size());
   for (const ScenePerson& person : scene.people) {
     self.emplace_back(options, person.body, person.start.q, scene.dt);
-    self.back().feet_apart = person.start.feet.apart;
+    for (int i = 0; i < 2; ++i) self.back().standing.apart[i] = person.start.feet.apart[i];
   }
   return self;
 }

@@ -14,23 +14,28 @@ namespace pushid {
 
 inline constexpr double kHeldFast = 1e8;  // 1/s, times the mass: the ground on feet that hold
 
+// What standing and stepping (stance.h) know of a person: plain numbers, which have the same layout
+// in files that are compiled for wider vectors (residuals/lanes).
+struct StanceBody {
+  double rod_length, dt;  // m, s
+  double capture_rate;    // 1/s, sqrt(g / l)
+  double weight;          // N: times the sine of the lean and the rod's length, gravity's torque
+  double stiffness, damping;            // of the gain scales
+  double hold[2];                       // N m
+  double rest[2] = {0.0, 0.0};          // m: the hip before the cart in the reference posture
+  double apart[2] = {0.0, kFeetApart};  // m: the left foot from the right one at frame 0
+  bool among_others;                    // of a model of people who touch
+};
+
 // One person's self force, with everything constant over a rollout computed once.
 struct SelfForce : SelfTerms<double> {
-  // Of feet that stand and step (stance.h): 1/s, sqrt(g / l); the hip before the cart in the
-  // reference posture, m; the left foot from the right one at frame 0, m.
-  double capture_rate;
-  Eigen::Vector2d rest_offset;
-  Eigen::Vector2d feet_apart = {0.0, kFeetApart};
-  bool among_others;                                          // of a model of people who touch
+  StanceBody standing;
   Vector3<double> rest_direction = Vector3<double>::UnitZ();  // along the rod, of the posture
   std::vector<std::shared_ptr<const ForceLaw>> laws;          // the user's own
 
   // q0: the pose at frame 0.
   SelfForce(const ModelOptions& options, const Body& person, const Vector4<double>& q0, double step)
-      : capture_rate(std::sqrt(kGravity / person.rod_length)),
-        rest_offset(Eigen::Vector2d::Zero()),
-        among_others(options.interaction.Any()),
-        laws(options.own_laws) {
+      : laws(options.own_laws) {
     body = person;
     scale = GainScale(options.gain_scaling, person);
     friction = options.friction;
@@ -39,10 +44,18 @@ struct SelfForce : SelfTerms<double> {
     if (options.posture == Posture::kInitial) {
       posture = q0.tail<2>();
       hold = Gravity(person, q0).tail<2>();
-      rest_offset = (HipPosition(person, q0).head<2>() - q0.head<2>());
+      for (int i = 0; i < 2; ++i) standing.rest[i] = HipPosition(person, q0)[i] - q0[i];
       const Angles<double> rest(q0);
       rest_direction = {rest.s_th, -rest.c_th * rest.s_ph, rest.c_th * rest.c_ph};
     }
+    standing.rod_length = person.rod_length;
+    standing.dt = dt;
+    standing.capture_rate = std::sqrt(kGravity / person.rod_length);
+    standing.weight = weight();
+    standing.stiffness = scale.stiffness;
+    standing.damping = scale.damping;
+    for (int i = 0; i < 2; ++i) standing.hold[i] = hold[i];
+    standing.among_others = options.interaction.Any();
   }
 
   // N: times the sine of the lean and the rod's length, gravity's torque.

@@ -70,15 +70,15 @@ template <typename T>
 class StanceStep {
  public:
   // ankle: the hip as the ankles feel it; xi: as the feet do.
-  StanceStep(const SelfForce& self, const StanceParameters<T>& p, const FeetState<T>& feet,
+  StanceStep(const StanceBody& body, const StanceParameters<T>& p, const FeetState<T>& feet,
              const HipOverFeet<T>& ankle, const Horizontal<T>& xi)
-      : self_(self),
+      : body_(body),
         p_(p),
         feet_(feet),
         ankle_(ankle),
         xi_(xi),
         d_(HalfApart(feet)),
-        rest_(self.rest_offset[0], self.rest_offset[1]) {}
+        rest_{body.rest[0], body.rest[1]} {}
 
   StanceForces<T> Run() {
     if (feet_.swings == 0) {
@@ -86,10 +86,10 @@ class StanceStep {
     } else {
       Swing(feet_);
     }
-    const double weight = self_.weight();
+    const double weight = body_.weight;
     const Horizontal<T> carried = pressure_ + Carried();
-    out_.torque = {self_.hold[0] - weight * (carried[0] - rest_[0]),
-                   self_.hold[1] + weight * (carried[1] - rest_[1])};
+    out_.torque = {body_.hold[0] - weight * (carried[0] - rest_[0]),
+                   body_.hold[1] + weight * (carried[1] - rest_[1])};
     return out_;
   }
 
@@ -97,7 +97,7 @@ class StanceStep {
   // A rod that leans by an angle e takes sin(e)^2 of its cart's acceleration along: the c that
   // takes that back, since legs have no mass.
   Horizontal<T> Carried() const {
-    const double by = 1.0 / (self_.body.rod_length * kGravity * self_.dt);
+    const double by = 1.0 / (body_.rod_length * kGravity * body_.dt);
     return by * ankle_.place.cwiseProduct(ankle_.place).cwiseProduct(out_.velocity - ankle_.cart);
   }
 
@@ -125,7 +125,7 @@ class StanceStep {
   }
 
   void Stand() {
-    const double dt = self_.dt;
+    const double dt = body_.dt;
     const T rate = ClockRate();
     const T clock = feet_.clock + dt * rate;
     out_.next = feet_;
@@ -139,8 +139,8 @@ class StanceStep {
     const Horizontal<T> behind = -1.0 * lifted.swings * feet_.apart;  // the standing foot from it
     const T along = behind[0] * Direction()[0] + behind[1] * Direction()[1];
     lifted.swing_time = p_.swing;
-    if (self_.among_others) {
-      const Horizontal<T> xi = xi_ + (self_.capture_rate * (dt - late)) * (xi_ - pressure_);
+    if (body_.among_others) {
+      const Horizontal<T> xi = xi_ + (body_.capture_rate * (dt - late)) * (xi_ - pressure_);
       lifted.swing_time = p_.swing / (1.0 + kQuicker * Rush(Over(xi)));
     }
     if (RealPart(along) > 0.0) lifted.swing_time += along * (1.0 / kFootSpeed);
@@ -162,7 +162,7 @@ class StanceStep {
   }
 
   // How far half the feet are farther apart along y than they were.
-  T SpreadSideways() const { return d_[1] - 0.5 * std::abs(self_.feet_apart[1]); }
+  T SpreadSideways() const { return d_[1] - 0.5 * std::abs(body_.apart[1]); }
 
   signed char LiftedFoot() const {
     const double far = std::hypot(RealPart(d_[0]), RealPart(SpreadSideways()));
@@ -176,15 +176,15 @@ class StanceStep {
   T Pressure(int i, const T& from) const {
     const T off = ankle_.place[i] - from;
     if (feet_.landed != 0) {
-      return kCaptureGain * (off + (1.0 / self_.capture_rate) * ankle_.velocity[i]);
+      return kCaptureGain * (off + (1.0 / body_.capture_rate) * ankle_.velocity[i]);
     }
-    const double moment = self_.weight() * self_.body.rod_length;
-    return (self_.scale.stiffness / moment) * p_.Kp[i] * off +
-           (self_.scale.damping / moment) * p_.Kd[i] * ankle_.velocity[i];
+    const double moment = body_.weight * body_.rod_length;
+    return (body_.stiffness / moment) * p_.Kp[i] * off +
+           (body_.damping / moment) * p_.Kd[i] * ankle_.velocity[i];
   }
   // foot: that which will stay, 1 or -1; how_far: of the way towards where it will be one of two.
   T Sideways(double foot, const T& how_far) const {
-    const T from = how_far * (0.5 * foot) * (feet_.apart[1] - self_.feet_apart[1]) + rest_[1];
+    const T from = how_far * (0.5 * foot) * (feet_.apart[1] - body_.apart[1]) + rest_[1];
     return rest_[1] + SmoothLimit<T>(from - rest_[1] + Pressure(1, from), d_[1] + kFootSide);
   }
   T Forwards(const T& foot, const T& from, const T& back, const T& front) const {
@@ -200,7 +200,7 @@ class StanceStep {
   }
   // Of c before the foremost ankle.
   T FrontReach() const {
-    if (!self_.among_others || feet_.landed != 0) return p_.foot_front;
+    if (!body_.among_others || feet_.landed != 0) return p_.foot_front;
     const T falls = SmoothRise(T(feet_.clock * kLetsFall / p_.onset));
     return p_.foot_front + falls * (0.5 * p_.front - p_.foot_front);
   }
@@ -209,7 +209,7 @@ class StanceStep {
   // negative: then it leaves during the step.
   void Swing(const FeetState<T>& feet) {
     using std::exp;
-    const double dt = self_.dt, omega = self_.capture_rate;
+    const double dt = body_.dt, omega = body_.capture_rate;
     const T& total = feet.swing_time;
     const Horizontal<T> own = (0.5 * feet.swings) * feet.apart, stands = -own;
     pressure_ = {Forwards(stands[0], T(stands[0] + rest_[0]), T(kFootBack),
@@ -222,8 +222,8 @@ class StanceStep {
     Horizontal<T> place;
     const T ahead = landing[0] - rest_[0] - stands[0];
     place[0] = stands[0] + SmoothLimit<T>(RealPart(ahead) < 0.0 ? ahead : p_.gain * ahead,
-                                          T(kReach * self_.body.rod_length));
-    const double lane = feet.swings * self_.feet_apart[1];
+                                          T(kReach * body_.rod_length));
+    const double lane = feet.swings * body_.apart[1];
     place[1] = stands[1] + lane +
                SmoothLimit<T>(landing[1] - rest_[1] - stands[1] - 0.5 * lane, T(kSideReach));
     T way = T(1.0);  // of what is left of it
@@ -253,8 +253,8 @@ class StanceStep {
     next.clock = (RealPart(prepared) > 0.0 ? prepared : T(0.0)) * beyond;
     HipOverFeet<T> hip = ankle_;
     hip.place -= 0.5 * gone;
-    const StanceStep then(self_, p_, next, hip, xi_ - 0.5 * gone);
-    pressure_ += (since * (1.0 / self_.dt)) * (then.StandingPressure() + 0.5 * gone - pressure_);
+    const StanceStep then(body_, p_, next, hip, xi_ - 0.5 * gone);
+    pressure_ += (since * (1.0 / body_.dt)) * (then.StandingPressure() + 0.5 * gone - pressure_);
     next.clock += since * then.ClockRate();
   }
 
@@ -274,24 +274,22 @@ class StanceStep {
   static constexpr double kReach = 1.2;      // of the rod: the longest step
   static constexpr double kSideReach = 0.4;  // m: the longest to the side
 
-  const SelfForce& self_;
+  const StanceBody& body_;
   const StanceParameters<T>& p_;
   const FeetState<T>& feet_;
   const HipOverFeet<T> ankle_;
   const Horizontal<T> xi_, d_;
-  const Eigen::Vector2d rest_;
+  const double rest_[2];
   Horizontal<T> pressure_;
   StanceForces<T> out_;
 };
 
 template <typename T>
-StanceForces<T> StanceAt(const SelfForce& self, const StanceParameters<T>& p,
-                         const FeetState<T>& feet, const Perceived<T>& perceived) {
-  const auto hip = [&self](const PendulumState<T>& state) {
-    return HipOverFeet<T>(self, Angles<T>(state.q), state.qd);
-  };
-  return StanceStep<T>(self, p, feet, hip(perceived.ankle), hip(perceived.step).Capture(self))
-      .Run();
+StanceForces<T> StanceAt(const StanceBody& body, const StanceParameters<T>& p,
+                         const FeetState<T>& feet, const PosedPendulum<T>& ankle,
+                         const PosedPendulum<T>& step) {
+  const HipOverFeet<T> felt(body, step.angles, step.qd);
+  return StanceStep<T>(body, p, feet, {body, ankle.angles, ankle.qd}, felt.Capture(body)).Run();
 }
 
 }  // namespace pushid

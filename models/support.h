@@ -44,16 +44,16 @@ struct HipOverFeet {
   Horizontal<T> place, velocity, cart;  // cart: its velocity
 
   HipOverFeet() = default;
-  HipOverFeet(const SelfForce& self, const Angles<T>& angles, const Vector4<T>& qd) {
-    const double l = self.body.rod_length;
+  HipOverFeet(const StanceBody& body, const Angles<T>& angles, const Vector4<T>& qd) {
+    const double l = body.rod_length;
     const auto& [s_th, c_th, s_ph, c_ph] = angles;
     place = {l * s_th, -l * c_th * s_ph};
     cart = {qd[0], qd[1]};
     velocity = {qd[0] + l * c_th * qd[2], qd[1] + l * (s_th * s_ph * qd[2] - c_th * c_ph * qd[3])};
   }
   // xi above.
-  Horizontal<T> Capture(const SelfForce& self) const {
-    return place + (1.0 / self.capture_rate) * velocity;
+  Horizontal<T> Capture(const StanceBody& body) const {
+    return place + (1.0 / body.capture_rate) * velocity;
   }
 };
 

@@ -29,7 +29,7 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
     {"models", {"", "restoration", "peers", "generators"}},
     {"datasets",
      {"files", "formats", "manifest", "sensors", "loading", "synthetic", "exchange", "inspection"}},
-    {"residuals", {"packed", "", "sensitivities", "lanes", "cost_functions", "adjoint"}},
+    {"residuals", {"packed", "", "lanes", "sensitivities", "cost_functions", "adjoint"}},
     {"ident", {"figures",     "parameters",  "problem",  "solver",     "large_networks",
                "uncertainty", "diagnostics", "model",    "observed",   "fit",
                "prediction",  "validation",  "push",     "bodies",     "peers",

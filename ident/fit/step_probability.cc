@@ -55,8 +55,9 @@ double MarginOfPath(const ModelOptions& options, const ParameterSet<double>& par
   double most = 0.0;
   for (int t = 0; t < path.num_frames(); ++t) {
     const PendulumState<double>& state = path.At(t, index);
-    const HipOverFeet<double> hip(self, Angles<double>(state.q), state.qd);
-    const Eigen::Vector2d xi = hip.Capture(self) - self.rest_offset;
+    const HipOverFeet<double> hip(self.standing, Angles<double>(state.q), state.qd);
+    const Eigen::Vector2d xi =
+        hip.Capture(self.standing) - Eigen::Vector2d(self.standing.rest[0], self.standing.rest[1]);
     most = std::max(most, SupportRatio<double>(p, xi, Eigen::Vector2d::Zero()));
   }
   return p.front * (most - 1.0);

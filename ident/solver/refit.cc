@@ -56,9 +56,9 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
   solve(by_secants ? kFewSteps : most);
   const double worth = kWorthAnother * problem.options().function_tolerance;
   for (int fresh = 0; !by_secants && !network && start.converged && fresh < kMostFresh; ++fresh) {
-    const double before = start.cost;
+    const SolveStage& last = start.stages.back();
+    if (last.initial_cost - last.final_cost <= worth * last.initial_cost) break;
     solve(most);
-    if (before - start.cost <= worth * before) break;
   }
   if (by_secants && !start.converged && start.iterations < most) {
     FitPoint point = start.to;

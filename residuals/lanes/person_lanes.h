@@ -9,6 +9,7 @@
 
 #include "models/self_terms.h"
 #include "residuals/frame_residual.h"
+#include "residuals/lanes/stance_jet.h"
 
 namespace pushid {
 
@@ -92,6 +93,7 @@ struct PersonLanes {
   const char* name;
   int lanes;
   void (*roll)(const LaneInputs& in, LaneSums sums, const LaneOutputs& out);
+  StanceJetFunction stance_jet;
 };
 
 // What this processor can run, the widest last; never empty.

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "residuals/lanes/person_roller.h"
+#include "residuals/lanes/stance_jet_loops.h"
 
 namespace pushid {
 namespace {
@@ -140,7 +141,7 @@ void RollLanes(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) {
   }
 }
 
-constexpr PersonLanes kPersonLanes = {PUSHID_VECTOR_NAME, kWidth, RollLanes};
+constexpr PersonLanes kPersonLanes = {PUSHID_VECTOR_NAME, kWidth, RollLanes, StanceJet};
 
 }  // namespace
 }  // namespace pushid

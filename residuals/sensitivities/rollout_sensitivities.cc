@@ -42,7 +42,7 @@ struct PersonStep {
   int frame, person;
   const SelfForce& self;
   const ParameterSet<double>& p;
-  const PendulumState<double>& state;
+  const PosedPendulum<double>& state;
   const Vector4<double>& previous;  // velocity, one frame before
   NetForce<double> force;
   Vector4<double> a;
@@ -119,7 +119,7 @@ class SensitivityRollout {
                     n,
                     forces_.self(n),
                     inputs_.parameters[n],
-                    path_.At(t, n),
+                    forces_.state(n),
                     previous,
                     forces_.On(n, t, previous),
                     {},
@@ -207,8 +207,10 @@ class SensitivityRollout {
   void AdvanceFeet(int t, int n) {
     const auto now = sensitivities_.Feet(t, n);
     auto next = sensitivities_.Feet(t + 1, n);
-    next.noalias() = stance_.next_by_state * sensitivities_.At(t, n);
-    next.noalias() += stance_.next_by_feet * now;
+    // The place, which comes first, is not among what feet know.
+    SetNarrowProduct(stance_.next_by_state.rightCols<6>(), sensitivities_.At(t, n).bottomRows<6>(),
+                     next);
+    AddNarrowProduct(stance_.next_by_feet, now, next);
     if (late_) {
       perceived_.AddTo(stance_.next_by_ankle, stance_.next_by_foot, next);
       perceived_.AddParameters(stance_.next_by_ankle, stance_.next_by_foot,
@@ -217,7 +219,7 @@ class SensitivityRollout {
     for (const ColumnEntry& entry : own_entries_[n]) {
       next.col(entry.column) += entry.derivative * stance_.next_by_parameter.col(entry.parameter);
     }
-    by_column_.noalias() += stance_.by_feet * now;
+    AddNarrowProduct(stance_.by_feet, now, by_column_);
   }
 
   void AdvanceRod(const PersonStep& step) {

@@ -3,116 +3,60 @@
 
 #include <ceres/jet.h>
 
+#include "residuals/lanes/person_lanes.h"
+
 namespace pushid {
 namespace {
 
 using Ids = StanceParameters<double>;
 
-// Inputs of the jets: the feet, the hip as ankles and steps perceive it (its place, its velocity
-// and the cart's), then the parameters. Where nothing is late both perceive the same, and share
-// their inputs.
-constexpr int kPerceived = 6, kAnkleAt = kFeetStates;
-
-template <bool kLate>
-struct StanceInputs {
-  static constexpr int kFootAt = kLate ? kAnkleAt + kPerceived : kAnkleAt;
-  static constexpr int kParametersAt = kFootAt + kPerceived;
-  static constexpr int kCount = kParametersAt + Ids::kCount;
-  using Jet = ceres::Jet<double, kCount>;
-};
-
-// The hip over the feet, and its derivatives by [two angles, qd].
-struct PerceivedHip {
-  using Jet = ceres::Jet<double, kPerceived>;
-  double value[kPerceived];
-  Eigen::Matrix<double, kPerceived, kPerceived, Eigen::RowMajor> by_state;
-
-  PerceivedHip(const SelfForce& self, const PendulumState<double>& state) {
-    Vector4<Jet> q = Vector4<Jet>::Zero(), qd;
-    for (int i = 0; i < 2; ++i) q[2 + i] = Jet(state.q[2 + i], i);
-    for (int i = 0; i < 4; ++i) qd[i] = Jet(state.qd[i], 2 + i);
-    const HipOverFeet<Jet> hip(self, Angles<Jet>(q), qd);
-    for (int i = 0; i < kPerceived; ++i) {
-      const Jet& jet = (i < 2 ? hip.place : i < 4 ? hip.velocity : hip.cart)[i % 2];
-      value[i] = jet.a;
-      by_state.row(i) = jet.v.transpose();
-    }
-  }
-
-  // As inputs of jets from `first` on.
-  template <typename T>
-  HipOverFeet<T> Inputs(int first) const {
-    HipOverFeet<T> hip;
-    for (int i = 0; i < 2; ++i) {
-      hip.place[i] = T(value[i], first + i);
-      hip.velocity[i] = T(value[2 + i], first + 2 + i);
-      hip.cart[i] = T(value[4 + i], first + 4 + i);
-    }
-    return hip;
-  }
-};
-
-template <bool kLate>
-auto JetsOfStance(const SelfForce& self, const ParameterSet<double>& p,
-                  const FeetState<double>& feet, const PerceivedHip& ankle,
-                  const PerceivedHip& step) {
-  using Inputs = StanceInputs<kLate>;
-  using Jet = typename Inputs::Jet;
-  FeetState<Jet> jets;
-  for (int i = 0; i < 2; ++i) jets.apart[i] = Jet(feet.apart[i], i);
-  jets.clock = Jet(feet.clock, 2);
-  jets.swing_time = Jet(feet.swing_time, 3);
-  jets.swings = feet.swings;
-  jets.landed = feet.landed;
-  int input = Inputs::kParametersAt;
-  // In the order of kIds, which is that of the members.
-  const StanceParameters<Jet> parameters([&](Parameter id) { return Jet(p[id], input++); });
-  return StanceStep<Jet>(self, parameters, jets, ankle.Inputs<Jet>(kAnkleAt),
-                         step.Inputs<Jet>(Inputs::kFootAt).Capture(self))
-      .Run();
-}
-
-// One output's derivatives, times `factor`, into row `row` of each.
-template <bool kLate, typename ByState, typename ByFeet, typename ByParameter>
-void SetRow(const typename StanceInputs<kLate>::Jet& output, double factor, int row,
-            const PerceivedHip& ankle, const PerceivedHip& step, ByState* by_ankle,
-            ByState* by_foot, ByFeet* by_feet, ByParameter* by_parameter) {
-  using Inputs = StanceInputs<kLate>;
-  const auto set = [&](const PerceivedHip& hip, ByState* by, int first) {
-    by->row(row).template tail<kPerceived>().noalias() =
-        (factor * output.v.template segment<kPerceived>(first).transpose()) * hip.by_state;
-  };
-  set(ankle, by_ankle, kAnkleAt);
-  if (kLate) set(step, by_foot, Inputs::kFootAt);
-  by_feet->row(row) = factor * output.v.template head<kFeetStates>().transpose();
-  for (int i = 0; i < Ids::kCount; ++i) {
-    (*by_parameter)(row, Ids::kIds[i]) = factor * output.v[Inputs::kParametersAt + i];
-  }
+PerceivedHip HipOf(const PosedPendulum<double>& state) {
+  const Angles<double>& angles = state.angles;
+  return {angles.s_th,
+          angles.c_th,
+          angles.s_ph,
+          angles.c_ph,
+          {state.qd[0], state.qd[1], state.qd[2], state.qd[3]}};
 }
 
 // by_ankle, by_foot: of the force; where nothing is late, by_ankle is by the state.
-template <bool kLate>
-void StanceRows(const SelfForce& self, const ParameterSet<double>& p,
-                const PendulumState<double>& state, const Perceived<double>& perceived, bool acts,
-                Eigen::Matrix<double, 4, 8>* by_ankle, Eigen::Matrix<double, 4, 8>* by_foot,
-                SelfForce::Jacobian* jacobian, StanceJacobian* stance) {
-  const PerceivedHip ankle(self, perceived.ankle);
-  const PerceivedHip step = kLate ? PerceivedHip(self, perceived.step) : ankle;
-  const auto jets = JetsOfStance<kLate>(self, p, state.feet, ankle, step);
-  auto* next_by_ankle = kLate ? &stance->next_by_ankle : &stance->next_by_state;
-  const typename StanceInputs<kLate>::Jet* next[] = {&jets.next.apart[0], &jets.next.apart[1],
-                                                     &jets.next.clock, &jets.next.swing_time};
-  for (int i = 0; i < kFeetStates; ++i) {
-    SetRow<kLate>(*next[i], 1.0, i, ankle, step, next_by_ankle, &stance->next_by_foot,
-                  &stance->next_by_feet, &stance->next_by_parameter);
-  }
-  if (!acts) return;
+void StanceColumns(const SelfForce& self, const ParameterSet<double>& p,
+                   const PosedPendulum<double>& state, const Perceived<double>* late, bool acts,
+                   Eigen::Matrix<double, 4, 8>* by_ankle, Eigen::Matrix<double, 4, 8>* by_foot,
+                   SelfForce::Jacobian* jacobian, StanceJacobian* stance) {
+  StanceJetInputs in;
+  in.body = self.standing;
+  const FeetState<double>& feet = state.feet;
+  in.feet[0] = feet.apart[0], in.feet[1] = feet.apart[1];
+  in.feet[2] = feet.clock, in.feet[3] = feet.swing_time;
+  in.swings = feet.swings;
+  in.landed = feet.landed;
+  in.late = late != nullptr;
+  in.ankle = in.late ? HipOf(late->ankle) : HipOf(state);
+  in.step = in.late ? HipOf(late->step) : in.ankle;
+  for (int i = 0; i < Ids::kCount; ++i) in.parameters[i] = p[Ids::kIds[i]];
+  double by_input[kMostStanceJets * kStanceOutputs];
+  BestPersonLanes().stance_jet(in, by_input);
+
+  // Of the force, at fixed acceleration, and of the feet after the step.
   const double ground = kHeldFast * self.body.mass;
-  for (int i = 0; i < 4; ++i) {
-    SetRow<kLate>(i < 2 ? jets.velocity[i] : jets.torque[i - 2], i < 2 ? ground : 1.0, i, ankle,
-                  step, by_ankle, by_foot, &stance->by_feet, &jacobian->by_parameter);
+  const Vector4<double> scale(ground, ground, 1.0, 1.0);
+  int input = 0;
+  const auto set = [&](auto&& of_force, auto&& of_feet) {
+    const double* const from = by_input + kStanceOutputs * input++;
+    if (acts) of_force = scale.cwiseProduct(Eigen::Map<const Vector4<double>>(from));
+    of_feet = Eigen::Map<const Vector4<double>>(from + 4);
+  };
+  for (int i = 0; i < kFeetInputs; ++i) set(stance->by_feet.col(i), stance->next_by_feet.col(i));
+  auto& next_by_ankle = in.late ? stance->next_by_ankle : stance->next_by_state;
+  for (int i = 0; i < kHipInputs; ++i) set(by_ankle->col(2 + i), next_by_ankle.col(2 + i));
+  for (int i = 0; in.late && i < kHipInputs; ++i) {
+    set(by_foot->col(2 + i), stance->next_by_foot.col(2 + i));
   }
-  for (int i = 0; i < 2; ++i) jacobian->by_state(i, 4 + i) -= ground;
+  for (Parameter id : Ids::kIds) {
+    set(jacobian->by_parameter.col(id), stance->next_by_parameter.col(id));
+  }
+  for (int i = 0; acts && i < 2; ++i) jacobian->by_state(i, 4 + i) -= ground;
 }
 
 // StandingTorque's derivatives, and the order of its parameters.
@@ -215,7 +159,7 @@ void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
 
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
-                              int frame, const PendulumState<double>& state,
+                              int frame, const PosedPendulum<double>& state,
                               SelfForce::Jacobian* jacobian, StanceJacobian* stance,
                               const Perceived<double>* late, PerceivedJacobian* by_perceived) {
   if (by_perceived != nullptr) by_perceived->SetZero();
@@ -225,13 +169,9 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
   jacobian->by_parameter.setZero();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   const bool acts = active == ActiveForces::kAll;
-  if (late != nullptr) {
-    StanceRows<true>(self, p, state, *late, acts, &by_perceived->by_ankle, &by_perceived->by_step,
-                     jacobian, stance);
-  } else {
-    StanceRows<false>(self, p, state, Perceived<double>(state), acts, &jacobian->by_state, nullptr,
-                      jacobian, stance);
-  }
+  StanceColumns(self, p, state, late, acts,
+                late != nullptr ? &by_perceived->by_ankle : &jacobian->by_state,
+                late != nullptr ? &by_perceived->by_step : nullptr, jacobian, stance);
   if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(jacobian);
   if (!acts) return;
   self.AddOwnJacobian(p, state, jacobian);

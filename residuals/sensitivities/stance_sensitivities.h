@@ -4,8 +4,8 @@
 // With v' = v + dt a the cart's velocity after a step, u that of the feet and D the ground's
 // resistance, which is constant,
 //   (M + dt D E) da = d(F - C - G) at fixed a - D (dv - du),   E = diag(1, 1, 0, 0).
-// The torques, u and the feet after the step depend on few numbers: jets over these. Which foot
-// steps has no derivative (models/stance.h).
+// The torques, u and the feet after the step depend on few numbers: jets over these
+// (residuals/lanes/stance_jet.h). Which foot steps has no derivative (models/stance.h).
 #pragma once
 
 #include "residuals/sensitivities/net_force_jacobian.h"
@@ -36,7 +36,7 @@ struct StanceJacobian {
 // overwritten. perceived, by_perceived: as NetForceJacobian has them.
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
-                              int frame, const PendulumState<double>& state,
+                              int frame, const PosedPendulum<double>& state,
                               SelfForce::Jacobian* jacobian, StanceJacobian* stance,
                               const Perceived<double>* perceived = nullptr,
                               PerceivedJacobian* by_perceived = nullptr);

@@ -216,7 +216,7 @@ TEST(Stance, WhoPreparesTheFirstStepAmongOthersLetsThemselvesFall) {
     state.feet.clock = clock;
     state.feet.landed = static_cast<signed char>(landed);
     const double torque =
-        StanceAt<double>(self, Stances(p), state.feet, Perceived<double>(state)).torque[0];
+        StanceAt<double>(self.standing, Stances(p), state.feet, state, state).torque[0];
     return -torque / self.weight();
   };
   const double k = 900.0 / (0.9 * 85.0 * kGravity * kReferenceRod);
@@ -239,7 +239,7 @@ TEST(Stance, StepsAfterHarderPushesAreQuickerAmongOthers) {
   for (const ModelOptions& options : {Steps(), AmongOthers()}) {
     const SelfForce self(options, {85.0, kReferenceRod, 0.0}, Vector4<double>::Zero(), 1e-6);
     const FeetState<double> next =
-        StanceAt<double>(self, Stances(p), state.feet, Perceived<double>(state)).next;
+        StanceAt<double>(self.standing, Stances(p), state.feet, state, state).next;
     EXPECT_NE(next.swings, 0);
     const double quicker = options.interaction.Any() ? 0.25 * 0.5 * (1.0 + std::sqrt(1.04)) : 0.0;
     EXPECT_NEAR(next.swing_time, 0.31 / (1.0 + quicker), 1e-5);
@@ -286,7 +286,7 @@ TEST(Stance, IsFiniteAtTheEdges) {
           state.feet.swings = static_cast<signed char>(swings);
           state.feet.landed = static_cast<signed char>(landed);
           const StanceForces<double> forces =
-              StanceAt<double>(self, Stances(p), state.feet, Perceived<double>(state));
+              StanceAt<double>(self.standing, Stances(p), state.feet, state, state);
           EXPECT_TRUE(forces.torque.allFinite() && forces.velocity.allFinite());
           EXPECT_TRUE(forces.next.apart.allFinite() && std::isfinite(forces.next.clock));
         }
