@@ -42,7 +42,7 @@ namespace pushid {
 namespace {
 
 // Flags that go with one way to bodies, where that is not the one.
-MaybeError CheckWayToBodies() {
+void CheckWayToBodies() {
   std::vector<FlagRule> rules = {
       {"restoration",
        FlagRule::kExcludes,
@@ -62,13 +62,13 @@ MaybeError CheckWayToBodies() {
                      "--{} needs bodies: give the folder of pushid-train-restoration as "
                      "--restoration, or that of pushid-train-generator as --generator"});
   }
-  return CheckFlagRules(rules);
+  CheckFlagRules(rules);
 }
 
-MaybeError CheckPicture(const std::string& flag, const std::string& file, int people, int most) {
-  if (file.empty() || people <= most) return std::nullopt;
-  return Error{"--" + flag + " shows at most " + std::to_string(most) +
-               " people; leave it out or lower --people"};
+void CheckPicture(const std::string& flag, const std::string& file, int people, int most) {
+  if (file.empty() || people <= most) return;
+  throw Error{"--" + flag + " shows at most " + std::to_string(most) +
+              " people; leave it out or lower --people"};
 }
 
 BodyScene SceneOfRun(const FormationRun& run) {
@@ -79,14 +79,13 @@ BodyScene SceneOfRun(const FormationRun& run) {
   return scene;
 }
 
-Result<LoadedGenerator> LoadFormationGenerator(const DiffusionGeneratorOptions& diffusion,
-                                               const Scene& scene) {
+LoadedGenerator LoadFormationGenerator(const DiffusionGeneratorOptions& diffusion,
+                                       const Scene& scene) {
   GeneratorChanges changes;
   changes.diffusion = diffusion;
-  Result<LoadedGenerator> loaded = LoadGenerator(FLAGS_generator, changes, "--generator");
-  if (!loaded.ok()) return loaded;
-  if (MaybeError error = PrepareForFormation(scene, "generator", &loaded.value())) return *error;
-  const std::string other = OtherPushKinds(loaded.value().settings, scene);
+  LoadedGenerator loaded = OrFail(LoadGenerator(FLAGS_generator, changes, "--generator"));
+  OrFail(PrepareForFormation(scene, "generator", &loaded));
+  const std::string other = OtherPushKinds(loaded.settings, scene);
   if (!other.empty()) Warn(other);
   return loaded;
 }
@@ -98,73 +97,63 @@ struct NamedOutput {
 };
 
 // Up to the first that fails.
-MaybeError WriteNamed(const std::vector<NamedOutput>& outputs) {
+void WriteNamed(const std::vector<NamedOutput>& outputs) {
   for (const NamedOutput& output : outputs) {
     if (output.file.empty()) continue;
-    if (MaybeError error = output.write(output.file)) return error;
+    OrFail(output.write(output.file));
   }
-  return std::nullopt;
 }
 
 }  // namespace
 
-MaybeError CheckOutputFlags(int people) {
-  for (MaybeError error :
-       {CheckPicture("svg_out", FLAGS_svg_out, people, kMostPeopleInWave),
-        CheckPicture("forces_svg_out", FLAGS_forces_svg_out, people, kMostPeopleInForces),
-        CheckTrajectoryFile("trajectories_out", FLAGS_trajectories_out),
-        CheckOutputFiles({FLAGS_agents_out, FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out,
-                          FLAGS_svg_out, FLAGS_forces_svg_out, FLAGS_html_out, FLAGS_strip_out,
-                          FLAGS_joints_out, FLAGS_bodies_out}),
-        FLAGS_bvh_out.empty() ? std::nullopt : CheckOutputFolder("bvh_out", FLAGS_bvh_out),
-        CheckNeeds({"forces_own_scale"}, {"forces_svg_out"})}) {
-    if (error) return error;
-  }
-  return std::nullopt;
+void CheckOutputFlags(int people) {
+  CheckPicture("svg_out", FLAGS_svg_out, people, kMostPeopleInWave);
+  CheckPicture("forces_svg_out", FLAGS_forces_svg_out, people, kMostPeopleInForces);
+  OrFail(CheckTrajectoryFile("trajectories_out", FLAGS_trajectories_out));
+  OrFail(CheckOutputFiles({FLAGS_agents_out, FLAGS_csv_out, FLAGS_trajectories_out,
+                           FLAGS_forces_out, FLAGS_svg_out, FLAGS_forces_svg_out, FLAGS_html_out,
+                           FLAGS_strip_out, FLAGS_joints_out, FLAGS_bodies_out}));
+  if (!FLAGS_bvh_out.empty()) OrFail(CheckOutputFolder("bvh_out", FLAGS_bvh_out));
+  CheckNeeds({"forces_own_scale"}, {"forces_svg_out"});
 }
 
 bool DrawsWave() { return !FLAGS_svg_out.empty(); }
 
-Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine() {
-  const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine();
-  if (!restoration.ok()) return restoration.error();
-  if (MaybeError error = CheckWayToBodies()) return *error;
-  const Result<DiffusionGeneratorOptions> diffusion = DiffusionOptionsFromCommandLine();
-  if (!diffusion.ok()) return diffusion.error();
-  return FormationBodyFlags{restoration.value(), diffusion.value()};
+FormationBodyFlags FormationBodyFlagsFromCommandLine() {
+  const RestorationFlags restoration = RestorationFlagsFromCommandLine();
+  CheckWayToBodies();
+  const DiffusionGeneratorOptions diffusion = DiffusionOptionsFromCommandLine();
+  return FormationBodyFlags{restoration, diffusion};
 }
 
-Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags,
-                                                    const std::vector<Pose>& first_poses,
-                                                    Scene* scene) {
+std::optional<FormationBodyPlan> PlanBodies(const FormationBodyFlags& flags,
+                                            const std::vector<Pose>& first_poses, Scene* scene) {
   const bool generates = !FLAGS_generator.empty();
-  if (!generates && !flags.restoration.given()) return std::optional<FormationBodyPlan>();
+  if (!generates && !flags.restoration.given()) return std::nullopt;
   FormationBodyPlan plan;
   if (generates) {
-    Result<LoadedGenerator> generator = LoadFormationGenerator(flags.diffusion, *scene);
-    if (!generator.ok()) return generator.error();
-    plan.generator = std::move(generator.value());
+    LoadedGenerator generator = LoadFormationGenerator(flags.diffusion, *scene);
+    plan.generator = std::move(generator);
   } else {
-    Result<std::unique_ptr<Restoration>> restoration =
+    std::unique_ptr<Restoration> restoration =
         LoadFlaggedRestoration(flags.restoration, scene->num_people());
-    if (!restoration.ok()) return restoration.error();
-    plan.restoration = std::move(restoration.value());
+    plan.restoration = std::move(restoration);
   }
   plan.first_poses = first_poses.empty()
                          ? TakePoses({SyntheticPose(scene->people.front().body.rod_length)}, scene)
                          : first_poses;
-  return std::optional<FormationBodyPlan>(std::move(plan));
+  return plan;
 }
 
-MaybeError WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
-                        const std::vector<OnsetBand>& onsets, const std::string& title) {
+void WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
+                  const std::vector<OnsetBand>& onsets, const std::string& title) {
   using File = const std::string&;
   const ForceScale scale = FLAGS_forces_own_scale ? ForceScale::kOwn : ForceScale::kShared;
-  return WriteNamed(
+  WriteNamed(
       {{FLAGS_agents_out,
-        [&](File file) -> MaybeError {
+        [&](File file) {
           const Result<nlohmann::ordered_json> agents = AgentsJson(run, model);
-          if (!agents.ok()) return Error{"--agents_out: " + agents.error().message};
+          if (!agents.ok()) throw Error{"--agents_out: " + agents.error().message};
           return WriteFileAtomically(file, agents.value().dump(1) + "\n");
         }},
        {FLAGS_bvh_out, [&](File file) { return WriteFormationRecording(file, run); }},
@@ -178,17 +167,15 @@ MaybeError WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
         [&](File file) { return WriteFileAtomically(file, ForcesSvg(run, title, scale)); }}});
 }
 
-MaybeError WriteFormationBodies(const PostprocessOptions& postprocess,
-                                const std::optional<FormationBodyPlan>& plan,
-                                const FormationRun& run, const std::string& title) {
+void WriteFormationBodies(const PostprocessOptions& postprocess,
+                          const std::optional<FormationBodyPlan>& plan, const FormationRun& run,
+                          const std::string& title) {
   const bool generates = plan && plan->generator;
   BodyScene scene = SceneOfRun(run);
   if (plan) {
-    Result<std::vector<BodyMotion>> bodies =
+    scene.bodies = OrFail(
         generates ? GeneratedBodies(run, plan->first_poses, *plan->generator)
-                  : FormationBodies(run, plan->first_poses, *plan->restoration, postprocess);
-    if (!bodies.ok()) return bodies.error();
-    scene.bodies = std::move(bodies.value());
+                  : FormationBodies(run, plan->first_poses, *plan->restoration, postprocess));
     if (!generates) scene.footprints = PredictedFootprints(run.recording, run.prediction);
   }
   Animation animation;
@@ -201,18 +188,17 @@ MaybeError WriteFormationBodies(const PostprocessOptions& postprocess,
   AddPushes(run.recording, &animation);
   animation.figures = FeetSvg(run);
   using File = const std::string&;
-  return WriteNamed(
-      {{FLAGS_html_out,
-        [&](File file) { return WriteFileAtomically(file, AnimationHtml({animation})); }},
-       {FLAGS_strip_out,
-        [&](File file) {
-          return WriteFileAtomically(file, PoseStrip(animation, kPosesOfStrip).ToString());
-        }},
-       {FLAGS_joints_out, [&](File file) { return WriteJointsCsv(file, scene); }},
-       {FLAGS_bodies_out, [&](File file) -> MaybeError {
-          const auto files = WriteBodyFiles(file, scene);
-          return files.ok() ? std::nullopt : MaybeError(files.error());
-        }}});
+  WriteNamed({{FLAGS_html_out,
+               [&](File file) { return WriteFileAtomically(file, AnimationHtml({animation})); }},
+              {FLAGS_strip_out,
+               [&](File file) {
+                 return WriteFileAtomically(file, PoseStrip(animation, kPosesOfStrip).ToString());
+               }},
+              {FLAGS_joints_out, [&](File file) { return WriteJointsCsv(file, scene); }},
+              {FLAGS_bodies_out, [&](File file) {
+                 OrFail(WriteBodyFiles(file, scene));
+                 return MaybeError();
+               }}});
 }
 
 }  // namespace pushid

@@ -14,7 +14,7 @@
 namespace pushid {
 
 // Errors: outputs that cannot be written, or too many people for a picture.
-MaybeError CheckOutputFlags(int people);
+void CheckOutputFlags(int people);
 // Whether a picture of the wave is asked for.
 bool DrawsWave();
 
@@ -23,7 +23,7 @@ struct FormationBodyFlags {
   RestorationFlags restoration;
   DiffusionGeneratorOptions diffusion;  // how --generator is sampled
 };
-Result<FormationBodyFlags> FormationBodyFlagsFromCommandLine();
+FormationBodyFlags FormationBodyFlagsFromCommandLine();
 
 struct FormationBodyPlan {
   std::unique_ptr<Restoration> restoration;  // or
@@ -33,17 +33,16 @@ struct FormationBodyPlan {
 
 // Nothing without either flag. first_poses: of recorded people; without them everybody gets the
 // synthetic skeleton, and the scene's people its pendulum.
-Result<std::optional<FormationBodyPlan>> PlanBodies(const FormationBodyFlags& flags,
-                                                    const std::vector<Pose>& first_poses,
-                                                    Scene* scene);
+std::optional<FormationBodyPlan> PlanBodies(const FormationBodyFlags& flags,
+                                            const std::vector<Pose>& first_poses, Scene* scene);
 
 // The tables and pictures of the run that the flags name.
-MaybeError WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
-                        const std::vector<OnsetBand>& onsets, const std::string& title);
+void WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
+                  const std::vector<OnsetBand>& onsets, const std::string& title);
 
 // The pages and bodies that the flags name; of pendulums where there is no plan for bodies.
-MaybeError WriteFormationBodies(const PostprocessOptions& postprocess,
-                                const std::optional<FormationBodyPlan>& plan,
-                                const FormationRun& run, const std::string& title);
+void WriteFormationBodies(const PostprocessOptions& postprocess,
+                          const std::optional<FormationBodyPlan>& plan, const FormationRun& run,
+                          const std::string& title);
 
 }  // namespace pushid

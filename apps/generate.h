@@ -16,47 +16,43 @@
 namespace pushid {
 
 // What --poses_out, --strip_out and --page_out ask for; their names go to stdout.
-MaybeError ShowForecast(const ForecastScene& scene, const GenerateFlags& flags);
+void ShowForecast(const ForecastScene& scene, const GenerateFlags& flags);
 
 // Windows of clips forecast, judged and shown. Returns the exit code.
 int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags);
 
 // The model of --physics; nothing where none is named.
-Result<std::optional<IdentifiedModel>> LoadPhysics(const std::string& file);
+std::optional<IdentifiedModel> LoadPhysics(const std::string& file);
 
 // Flags and generator as cross-validation chose them (pushid-train-generator --accuracy=best),
 // where it did and no flag says otherwise; told on stdout.
-MaybeError TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded);
+void TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded);
 
 // A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
 // the generator gets physics that see as many frames.
-Result<std::vector<BodyMotion>> GenerateWith(const LoadedGenerator& loaded,
-                                             const BodyRecording& recording,
-                                             const std::optional<IdentifiedModel>& physics,
-                                             int frames = 0);
+std::vector<BodyMotion> GenerateWith(const LoadedGenerator& loaded, const BodyRecording& recording,
+                                     const std::optional<IdentifiedModel>& physics, int frames = 0);
 
 // Whether what was recorded lies among sampled futures.
-Result<GroupSpread> SpreadOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
-                             const std::vector<BodyRecording>& recordings,
-                             const std::optional<IdentifiedModel>& physics);
+GroupSpread SpreadOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                     const std::vector<BodyRecording>& recordings,
+                     const std::optional<IdentifiedModel>& physics);
 
 // What all groups do in every second of forecasts of `frames` frames, beside physics where they are
 // given: printed, and as JSON.
-Result<nlohmann::ordered_json> ShowSeconds(const LoadedGenerator& loaded,
-                                           const std::vector<BodyRecording>& recordings,
-                                           const std::optional<IdentifiedModel>& physics,
-                                           const SocialCues& cues, int frames);
+nlohmann::ordered_json ShowSeconds(const LoadedGenerator& loaded,
+                                   const std::vector<BodyRecording>& recordings,
+                                   const std::optional<IdentifiedModel>& physics,
+                                   const SocialCues& cues, int frames);
 
 // The states of --states, or the built-in ones; writes --states_out.
-Result<SocialCues> FlaggedCues(const GenerateFlags& flags,
-                               const std::vector<BodyRecording>& recordings);
+SocialCues FlaggedCues(const GenerateFlags& flags, const std::vector<BodyRecording>& recordings);
 
 // What --poses_out, --strip_out and --page_out ask for: everybody recorded, forecast, and the
 // pendulums of the physics beside them; the page shows the figures too. Returns the files' names.
-Result<std::vector<std::string>> ShowGroup(const LoadedGenerator& loaded,
-                                           const GenerateFlags& flags,
-                                           const BodyRecording& recording,
-                                           const std::optional<IdentifiedModel>& physics,
-                                           const std::vector<std::string>& figures);
+std::vector<std::string> ShowGroup(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                                   const BodyRecording& recording,
+                                   const std::optional<IdentifiedModel>& physics,
+                                   const std::vector<std::string>& figures);
 
 }  // namespace pushid

@@ -55,26 +55,24 @@ std::vector<std::vector<SampledFuture>> Samples(const MotionGenerator& generator
 }
 
 // The windows of one action, all of the first where none is named.
-Result<size_t> FindWindow(const std::vector<ForecastWindow>& windows, const std::string& action,
-                          int number) {
+size_t FindWindow(const std::vector<ForecastWindow>& windows, const std::string& action,
+                  int number) {
   int found = 0;
   std::string of = action.empty() ? windows.front().action : action;
   for (size_t i = 0; i < windows.size(); ++i) {
     if (windows[i].action == of && found++ == number) return i;
   }
-  return Error{"there are " + std::to_string(found) + " windows of " + Quoted(of) +
-               "; --window and --target_window count from 0"};
+  throw Error{"there are " + std::to_string(found) + " windows of " + Quoted(of) +
+              "; --window and --target_window count from 0"};
 }
 
 // The scene's forecast becomes the most probable path to the target; its outcome goes to `json`.
-MaybeError SearchPath(const MotionGenerator& generator, const GenerateFlags& flags,
-                      const Eigen::VectorXf& target, ForecastScene* scene, Json* json) {
+void SearchPath(const MotionGenerator& generator, const GenerateFlags& flags,
+                const Eigen::VectorXf& target, ForecastScene* scene, Json* json) {
   scene->title += ", towards the end of window " + std::to_string(flags.target_window);
   if (flags.samples == 0) {
-    const Result<MinimizedPath> path =
-        PathToPose(generator, {scene->observed}, kForecastFrames, target);
-    if (!path.ok()) return path.error();
-    const MinimizedPath& found = path.value();
+    const MinimizedPath found =
+        OrFail(PathToPose(generator, {scene->observed}, kForecastFrames, target));
     (*json)["path"] = {{"distance_m", found.distance},
                        {"log_likelihood", found.log_likelihood},
                        {"log_likelihood_of_forecast", found.of_forecast},
@@ -86,12 +84,10 @@ MaybeError SearchPath(const MotionGenerator& generator, const GenerateFlags& fla
         Rounded(found.log_likelihood, 4).c_str(), Rounded(found.of_forecast, 4).c_str(),
         found.iterations);
     scene->forecast = found.motion;
-    return std::nullopt;
+    return;
   }
-  const Result<PathChoice> path =
-      MostProbablePath(scene->futures, target, flags.target_distance, scene->layout);
-  if (!path.ok()) return path.error();
-  const PathChoice& choice = path.value();
+  const PathChoice choice =
+      OrFail(MostProbablePath(scene->futures, target, flags.target_distance, scene->layout));
   (*json)["path"] = {{"future", choice.future + 1},
                      {"near", choice.near},
                      {"distance_m", choice.distance},
@@ -100,15 +96,13 @@ MaybeError SearchPath(const MotionGenerator& generator, const GenerateFlags& fla
               choice.near, flags.samples, flags.target_window, choice.future + 1,
               Rounded(choice.distance, 3).c_str());
   scene->forecast = scene->futures[choice.future].motion;
-  return std::nullopt;
 }
 
 // The window's forecast and futures; of a search its outcome goes to `json`.
-Result<ForecastScene> SceneOfWindow(const LoadedGenerator& loaded, const GenerateFlags& flags,
-                                    const std::vector<ForecastWindow>& windows, Json* json) {
-  const Result<size_t> at = FindWindow(windows, flags.action, flags.window);
-  if (!at.ok()) return at.error();
-  const ForecastWindow& window = windows[at.value()];
+ForecastScene SceneOfWindow(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                            const std::vector<ForecastWindow>& windows, Json* json) {
+  const size_t at = FindWindow(windows, flags.action, flags.window);
+  const ForecastWindow& window = windows[at];
   ForecastScene scene;
   scene.dt = 1.0 / loaded.settings.rate;
   scene.layout = loaded.settings.layout;
@@ -124,45 +118,37 @@ Result<ForecastScene> SceneOfWindow(const LoadedGenerator& loaded, const Generat
             .front();
   }
   if (flags.target_window < 0) return scene;
-  const Result<size_t> target = FindWindow(windows, flags.action, flags.target_window);
-  if (!target.ok()) return target.error();
-  const Eigen::VectorXf end = windows[target.value()].future.rightCols(1);
-  if (MaybeError error = SearchPath(*loaded.generator, flags, end, &scene, json)) return *error;
+  const size_t target = FindWindow(windows, flags.action, flags.target_window);
+  const Eigen::VectorXf end = windows[target].future.rightCols(1);
+  SearchPath(*loaded.generator, flags, end, &scene, json);
   return scene;
 }
 
 }  // namespace
 
-MaybeError ShowForecast(const ForecastScene& scene, const GenerateFlags& flags) {
+void ShowForecast(const ForecastScene& scene, const GenerateFlags& flags) {
   if (!flags.poses_out.empty()) {
-    const auto files = WritePoses(flags.poses_out, scene);
-    if (!files.ok()) return files.error();
-    for (const std::string& file : files.value()) std::printf("%s\n", file.c_str());
+    const auto files = OrFail(WritePoses(flags.poses_out, scene));
+    for (const std::string& file : files) std::printf("%s\n", file.c_str());
   }
-  const auto write = [](const std::string& file, const std::string& content) -> MaybeError {
-    if (MaybeError error = WriteFileAtomically(file, content)) return error;
+  const auto write = [](const std::string& file, const std::string& content) {
+    OrFail(WriteFileAtomically(file, content));
     std::printf("%s\n", file.c_str());
-    return std::nullopt;
   };
-  if (!flags.strip_out.empty()) {
-    if (MaybeError error = write(flags.strip_out, ForecastStripSvg(scene, flags.poses)))
-      return error;
-  }
-  return flags.page_out.empty() ? std::nullopt : write(flags.page_out, ForecastPageHtml(scene));
+  if (!flags.strip_out.empty()) write(flags.strip_out, ForecastStripSvg(scene, flags.poses));
+  if (!flags.page_out.empty()) write(flags.page_out, ForecastPageHtml(scene));
 }
 
 int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags) {
-  const Result<MocapFolder> mocap = ReadMocapFolder(flags.folder);
-  if (!mocap.ok()) return Fail(mocap.error());
+  const MocapFolder mocap = OrFail(ReadMocapFolder(flags.folder));
   const ParticleLayout& layout = loaded.settings.layout;
-  if (mocap.value().skeleton.layout.names != layout.names) {
-    return Fail(Error{"these clips have " +
-                          std::to_string(mocap.value().skeleton.layout.num_particles()) +
+  if (mocap.skeleton.layout.names != layout.names) {
+    return Fail(Error{"these clips have " + std::to_string(mocap.skeleton.layout.num_particles()) +
                           " particles, which are not the " +
                           std::to_string(layout.num_particles()) + " particles of the generator",
                       flags.folder});
   }
-  const auto windows = MakeForecastWindows(mocap.value(), flags.protocol, flags.stride);
+  const auto windows = MakeForecastWindows(mocap, flags.protocol, flags.stride);
   if (windows.empty()) {
     return Fail(
         Error{"no clip of --protocol=" + NameOf(flags.protocol) + " is long enough for a window",
@@ -182,13 +168,12 @@ int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags)
     AddSpreadJson(spread, &json);
   }
   if (flags.Shows() || flags.target_window >= 0) {
-    const Result<ForecastScene> scene = SceneOfWindow(loaded, flags, windows, &json);
-    if (!scene.ok()) return Fail(scene.error());
-    if (MaybeError error = ShowForecast(scene.value(), flags)) return Fail(*error);
+    const ForecastScene scene = SceneOfWindow(loaded, flags, windows, &json);
+    ShowForecast(scene, flags);
   }
   json["run"] = {{"seconds_per_window", per_window}};
   if (flags.json_out.empty()) return kDone;
-  if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
+  OrFail(WriteJson(flags.json_out, json));
   return kDone;
 }
 

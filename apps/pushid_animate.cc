@@ -31,26 +31,23 @@ namespace {
 
 using namespace pushid;
 
-MaybeError CheckFlags() {
-  if (MaybeError missing = Require("id", FLAGS_id, "name a recording of the manifest")) {
-    return missing;
-  }
+void CheckFlags() {
+  Require("id", FLAGS_id, "name a recording of the manifest");
   if (FLAGS_out.empty() && FLAGS_strip_out.empty()) {
-    return Error{"--out and --strip_out are missing: name a page (HTML) or a picture (SVG)"};
+    throw Error{"--out and --strip_out are missing: name a page (HTML) or a picture (SVG)"};
   }
-  if (FLAGS_poses < 2 || FLAGS_poses > 40) return Error{"--poses must lie between 2 and 40"};
-  return CheckOutputFiles({FLAGS_out, FLAGS_strip_out});
+  if (FLAGS_poses < 2 || FLAGS_poses > 40) throw Error{"--poses must lie between 2 and 40"};
+  OrFail(CheckOutputFiles({FLAGS_out, FLAGS_strip_out}));
 }
 
-MaybeError Write(const std::string& file, const std::string& content) {
-  if (MaybeError error = WriteFileAtomically(file, content)) return error;
+void Write(const std::string& file, const std::string& content) {
+  OrFail(WriteFileAtomically(file, content));
   std::printf("%s\n", file.c_str());
-  return std::nullopt;
 }
 
 // Of the model as it was fitted.
-MaybeError Explain(const std::string& who, const PendulumRecording& recording,
-                   const Prediction& prediction, Animation* animation) {
+void Explain(const std::string& who, const PendulumRecording& recording,
+             const Prediction& prediction, Animation* animation) {
   ForceStory story;
   if (who == "auto") {
     story = RichestStory(recording, prediction);
@@ -58,14 +55,13 @@ MaybeError Explain(const std::string& who, const PendulumRecording& recording,
   } else {
     const auto found = std::find(recording.subject_ids.begin(), recording.subject_ids.end(), who);
     if (found == recording.subject_ids.end()) {
-      return Error{"--explain names '" + who + "', who is not in recording " + recording.id +
-                   "; there are " + ListOfNames(recording.subject_ids)};
+      throw Error{"--explain names '" + who + "', who is not in recording " + recording.id +
+                  "; there are " + ListOfNames(recording.subject_ids)};
     }
     story = StoryOf(recording, prediction, static_cast<int>(found - recording.subject_ids.begin()));
   }
   std::printf("%s\n", StoryText(recording, story).c_str());
   animation->story = AnimatedStory{recording.subject_ids[story.person], std::move(story)};
-  return std::nullopt;
 }
 
 int LeftDomain(const RolloutStatus& status, const std::string& what) {
@@ -76,46 +72,39 @@ int LeftDomain(const RolloutStatus& status, const std::string& what) {
 }
 
 int Run() {
-  if (MaybeError error = CheckFlags()) return Fail(*error);
-  const Result<RestorationFlags> flags = RestorationFlagsFromCommandLine("rigid");
-  if (!flags.ok()) return Fail(flags.error());
-  const Result<std::vector<WhatIf>> what_ifs = LoadWhatIfs();
-  if (!what_ifs.ok()) return Fail(what_ifs.error());
-  const IdentifiedModel& model = what_ifs.value().front().model;
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({FLAGS_id}, true);
-  if (!recordings.ok()) return Fail(recordings.error());
-  const Result<std::unique_ptr<Restoration>> restoration = LoadFlaggedRestoration(
-      flags.value(), static_cast<int>(recordings.value().front().people.size()));
-  if (!restoration.ok()) return Fail(restoration.error());
-  const Result<BodyRecording> recording =
-      MakeBodyRecording(recordings.value().front(), model.mapping);
+  CheckFlags();
+  const RestorationFlags flags = RestorationFlagsFromCommandLine("rigid");
+  const std::vector<WhatIf> what_ifs = LoadWhatIfs();
+  const IdentifiedModel& model = what_ifs.front().model;
+  const std::vector<Recording> recordings = LoadFlaggedRecordings({FLAGS_id}, true);
+  const std::unique_ptr<Restoration> restoration =
+      LoadFlaggedRestoration(flags, static_cast<int>(recordings.front().people.size()));
+  const Result<BodyRecording> recording = MakeBodyRecording(recordings.front(), model.mapping);
   if (!recording.ok() && Given("restoration")) return Fail(recording.error());
   if (!recording.ok()) Warn(recording.error().ToString() + "; only pendulums are shown");
 
-  const PendulumRecording pendulum =
-      MakePendulumRecording(recordings.value().front(), model.mapping);
+  const PendulumRecording pendulum = MakePendulumRecording(recordings.front(), model.mapping);
   WarnGrouped(InputWarnings(model, {pendulum}));
   Animation animation;
   animation.title = pendulum.id;
   animation.dt = pendulum.scene.dt;
   AddPushes(pendulum, &animation);
-  if (recording.ok()) animation.title += ", " + std::string(restoration.value()->kind());
+  if (recording.ok()) animation.title += ", " + std::string(restoration->kind());
   if (FLAGS_recorded) {
     std::vector<BodyMotion> seen;
     if (recording.ok()) seen = recording.value().bodies;
     ToLaboratory(pendulum.scene, &seen);
     AddRecorded(InLaboratory(pendulum), seen, &animation);
   }
-  for (const WhatIf& one : what_ifs.value()) {
+  for (const WhatIf& one : what_ifs) {
     const Prediction prediction = Predict(one.model, pendulum);
     if (!prediction.status.ok) return LeftDomain(prediction.status, one.what);
     if (!FLAGS_explain.empty() && !animation.story) {
-      const MaybeError unknown = Explain(FLAGS_explain, pendulum, prediction, &animation);
-      if (unknown) return Fail(*unknown);
+      Explain(FLAGS_explain, pendulum, prediction, &animation);
     }
     std::vector<BodyMotion> bodies;
     if (recording.ok()) {
-      bodies = RestoreBodies(*restoration.value(), flags.value().postprocess,
+      bodies = RestoreBodies(*restoration, flags.postprocess,
                              PredictedPeople(recording.value(), prediction));
     }
     if (animation.figures.empty()) animation.figures = FeetSvg({pendulum, prediction, {}});
@@ -123,12 +112,11 @@ int Run() {
     AddPrediction(InLaboratory(pendulum), InLaboratory(pendulum, prediction), bodies, &animation,
                   one.what);
   }
-  MaybeError error;
-  if (!FLAGS_out.empty()) error = Write(FLAGS_out, AnimationHtml({animation}));
-  if (!error && !FLAGS_strip_out.empty()) {
-    error = Write(FLAGS_strip_out, PoseStrip(animation, FLAGS_poses).ToString());
+  if (!FLAGS_out.empty()) Write(FLAGS_out, AnimationHtml({animation}));
+  if (!FLAGS_strip_out.empty()) {
+    Write(FLAGS_strip_out, PoseStrip(animation, FLAGS_poses).ToString());
   }
-  return error ? Fail(*error) : kDone;
+  return kDone;
 }
 
 }  // namespace

@@ -43,25 +43,22 @@ using namespace pushid;
 // Only every `shards`-th job, starting with this one, from 1.
 int shard = 1, shards = 1;
 
-MaybeError ReadShard() {
-  if (FLAGS_shard.empty()) return std::nullopt;
+void ReadShard() {
+  if (FLAGS_shard.empty()) return;
   char rest = 0;
   const int read = std::sscanf(FLAGS_shard.c_str(), "%d/%d%c", &shard, &shards, &rest);
-  if (read == 2 && 1 <= shard && shard <= shards) return std::nullopt;
-  return Error{"--shard is '" + FLAGS_shard + "'; write i/n with 1 <= i <= n, as in 2/4"};
+  if (read == 2 && 1 <= shard && shard <= shards) return;
+  throw Error{"--shard is '" + FLAGS_shard + "'; write i/n with 1 <= i <= n, as in 2/4"};
 }
 
-MaybeError CheckFlags() {
-  for (MaybeError error :
-       {Require("plan", FLAGS_plan, "name the TOML file of the batch"), ReadShard()}) {
-    if (error) return error;
-  }
-  if (FLAGS_jobs < 1) return Error{"--jobs must be at least 1"};
+void CheckFlags() {
+  Require("plan", FLAGS_plan, "name the TOML file of the batch");
+  ReadShard();
+  if (FLAGS_jobs < 1) throw Error{"--jobs must be at least 1"};
   if (!(FLAGS_time_limit >= 0.0)) {
-    return Error{"--time_limit must be a number of seconds, 0 for none"};
+    throw Error{"--time_limit must be a number of seconds, 0 for none"};
   }
-  if (FLAGS_memory_limit < 0) return Error{"--memory_limit must be a number of MB, 0 for none"};
-  return std::nullopt;
+  if (FLAGS_memory_limit < 0) throw Error{"--memory_limit must be a number of MB, 0 for none"};
 }
 
 // The last line on stderr of a command that fails, without the name of who says it; nothing when
@@ -85,30 +82,28 @@ std::string ComplaintOf(const std::vector<std::string>& command) {
   return last;
 }
 
-MaybeError CheckRestoration(const BatchPlan& plan, const BatchVariant& variant,
-                            const std::string& bin) {
+void CheckRestoration(const BatchPlan& plan, const BatchVariant& variant, const std::string& bin) {
   const std::string trainer = bin + "/pushid-train-restoration";
   const auto wrong = [&](const std::string& what) {
     return Error{"variant '" + variant.name + "': " + what, plan.path, variant.restoration_line};
   };
   std::error_code ignored;
   if (!std::filesystem::exists(trainer, ignored)) {
-    return wrong("a restoration needs " + trainer + ", which is only built with LibTorch");
+    throw wrong("a restoration needs " + trainer + ", which is only built with LibTorch");
   }
   // Which model and where to is said by each job.
   std::vector<std::string> command = {trainer, "--check", "--model=model.json",
                                       "--out=restoration"};
   command.insert(command.end(), variant.restoration->begin(), variant.restoration->end());
   const std::string complaint = ComplaintOf(command);
-  if (complaint.empty()) return std::nullopt;
-  return wrong(complaint);
+  if (!complaint.empty()) throw wrong(complaint);
 }
 
 // The flags of the variants of these jobs, checked by the programs themselves before any job
 // starts: a flag misspelt would fail in every job, one after the other. Errors: what the program
 // says, with the plan's line; there is no program that trains.
-MaybeError CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
-                         const std::string& bin) {
+void CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
+                   const std::string& bin) {
   for (const BatchVariant& variant : plan.variants) {
     const bool wanted = std::any_of(jobs.begin(), jobs.end(), [&variant](const BatchJob& job) {
       return job.variant == variant.name;
@@ -118,22 +113,20 @@ MaybeError CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& job
     command.insert(command.end(), variant.flags.begin(), variant.flags.end());
     const std::string complaint = ComplaintOf(command);
     if (!complaint.empty()) {
-      return Error{"variant '" + variant.name + "': " + complaint, plan.path, variant.line};
+      throw Error{"variant '" + variant.name + "': " + complaint, plan.path, variant.line};
     }
-    if (!variant.restoration) continue;
-    if (MaybeError error = CheckRestoration(plan, variant, bin)) return error;
+    if (variant.restoration) CheckRestoration(plan, variant, bin);
   }
-  return std::nullopt;
 }
 
-Result<std::vector<BatchJob>> ChosenJobs(const std::vector<BatchJob>& all) {
+std::vector<BatchJob> ChosenJobs(const std::vector<BatchJob>& all) {
   const std::vector<BatchJob> jobs = Shard(all, shard, shards);
   if (FLAGS_job.empty()) return jobs;
   std::vector<BatchJob> named;
   for (const BatchJob& job : jobs) {
     if (job.id.rfind(FLAGS_job, 0) == 0) named.push_back(job);
   }
-  if (named.empty()) return Error{"--job: the plan has no job '" + FLAGS_job + "' (see --list)"};
+  if (named.empty()) throw Error{"--job: the plan has no job '" + FLAGS_job + "' (see --list)"};
   return named;
 }
 
@@ -169,15 +162,14 @@ std::string TimeText(double seconds) {
 }
 
 // Of all jobs of the plan, whichever of them ran now.
-MaybeError ShowSummary(const BatchPlan& plan, const std::vector<BatchJob>& all) {
+void ShowSummary(const BatchPlan& plan, const std::vector<BatchJob>& all) {
   const std::vector<JobResult> rows = ReadResults(plan, all);
-  if (MaybeError error = WriteSummary(plan, rows)) return error;
+  OrFail(WriteSummary(plan, rows));
   std::printf("%s", SummaryText(rows).c_str());
-  return std::nullopt;
 }
 
 int Gather(const BatchPlan& plan, const std::vector<BatchJob>& all) {
-  if (MaybeError error = ShowSummary(plan, all)) return Fail(*error);
+  ShowSummary(plan, all);
   std::map<std::string, int> rows;
   for (const JobResult& row : ReadResults(plan, all)) ++rows[NameOf(row.status.state)];
   std::printf("%d done, %d failed, %d open; results in %s\n", rows["done"], rows["failed"],
@@ -195,18 +187,13 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   options.memory_limit_mb = Given("memory_limit") ? FLAGS_memory_limit : plan.memory_limit_mb;
   options.bin = OwnFolder();
   ProgressLine line;
-  const Result<BatchOutcome> outcome =
-      RunBatch(plan, jobs, options, [&line](const BatchProgress& p) {
-        line.Show(std::to_string(p.done) + " done, " + std::to_string(p.failed) + " failed, " +
-                  std::to_string(p.left) + " left" +
-                  (p.done + p.failed > 0 ? ", about " + TimeText(p.seconds_left) : ""));
-      });
+  const BatchOutcome o = OrFail(RunBatch(plan, jobs, options, [&line](const BatchProgress& p) {
+    line.Show(std::to_string(p.done) + " done, " + std::to_string(p.failed) + " failed, " +
+              std::to_string(p.left) + " left" +
+              (p.done + p.failed > 0 ? ", about " + TimeText(p.seconds_left) : ""));
+  }));
   line.Finish();
-  if (!outcome.ok()) return Fail(outcome.error());
-  const BatchOutcome& o = outcome.value();
-  if (FLAGS_summary) {
-    if (MaybeError error = ShowSummary(plan, all)) return Fail(*error);
-  }
+  if (FLAGS_summary) ShowSummary(plan, all);
   std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
               plan.dir.c_str());
   if (o.elsewhere > 0) {
@@ -223,23 +210,17 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
 }
 
 int Run() {
-  if (MaybeError error = CheckFlags()) return Fail(*error);
-  const Result<BatchPlan> plan = ReadPlan(FLAGS_plan);
-  if (!plan.ok()) return Fail(plan.error());
-  const Result<Manifest> manifest = ReadManifests(plan.value().manifest);
-  if (!manifest.ok()) return Fail(plan.value().ErrorAt("recordings", manifest.error()));
-  const Result<std::vector<BatchJob>> all = ExpandPlan(plan.value(), manifest.value());
-  if (!all.ok()) return Fail(all.error());
-  const Result<std::vector<BatchJob>> jobs = ChosenJobs(all.value());
-  if (!jobs.ok()) return Fail(jobs.error());
-  if (!FLAGS_gather || FLAGS_list || FLAGS_dry_run) {
-    const MaybeError wrong = CheckVariants(plan.value(), jobs.value(), OwnFolder());
-    if (wrong) return Fail(*wrong);
-  }
-  if (FLAGS_list) return List(plan.value(), jobs.value());
-  if (FLAGS_dry_run) return PrintCommands(plan.value(), jobs.value());
-  if (FLAGS_gather) return Gather(plan.value(), all.value());
-  return RunJobs(plan.value(), all.value(), jobs.value());
+  CheckFlags();
+  const BatchPlan plan = OrFail(ReadPlan(FLAGS_plan));
+  const Result<Manifest> manifest = ReadManifests(plan.manifest);
+  if (!manifest.ok()) return Fail(plan.ErrorAt("recordings", manifest.error()));
+  const std::vector<BatchJob> all = OrFail(ExpandPlan(plan, manifest.value()));
+  const std::vector<BatchJob> jobs = ChosenJobs(all);
+  if (!FLAGS_gather || FLAGS_list || FLAGS_dry_run) CheckVariants(plan, jobs, OwnFolder());
+  if (FLAGS_list) return List(plan, jobs);
+  if (FLAGS_dry_run) return PrintCommands(plan, jobs);
+  if (FLAGS_gather) return Gather(plan, all);
+  return RunJobs(plan, all, jobs);
 }
 
 }  // namespace

@@ -24,29 +24,25 @@ namespace {
 
 using namespace pushid;
 
-Result<uint64_t> SeedOf(const FitOptions& options) {
+uint64_t SeedOf(const FitOptions& options) {
   if (FLAGS_seed.empty()) return options.seed;
   FitOptions given;
-  if (MaybeError error = FindFitOption("seed")->apply(FLAGS_seed, &given)) return *error;
+  OrFail(FindFitOption("seed")->apply(FLAGS_seed, &given));
   return given.seed;
 }
 
 // The recordings of the model, loaded as the fit loaded them, and the bodies of --body_weight.
-Result<std::vector<PendulumRecording>> LoadFitted(FittedModel* model) {
+std::vector<PendulumRecording> LoadFitted(FittedModel* model) {
   const std::map<std::string, std::string>& fit_flags = model->provenance.configuration;
   FitOptions& options = model->fit.options;
   LoadAs(fit_flags);
   const auto loaded = LoadFlaggedRecordings(FittedIds(model->fit), NeedsJoints(options));
-  if (!loaded.ok()) return loaded.error();
   if (options.body_weight > 0.0) {
     const auto folder = fit_flags.find("body_restoration");
-    const auto bodies =
-        LoadBodyData(folder == fit_flags.end() ? "" : folder->second,
-                     "--body_restoration of the fit", loaded.value(), options.mapping);
-    if (!bodies.ok()) return bodies.error();
-    options.body = bodies.value();
+    options.body = OrFail(LoadBodyData(folder == fit_flags.end() ? "" : folder->second,
+                                       "--body_restoration of the fit", loaded, options.mapping));
   }
-  return AsFitted(MakePendulumRecordings(loaded.value(), options.mapping), model->fit);
+  return OrFail(AsFitted(MakePendulumRecordings(loaded, options.mapping), model->fit));
 }
 
 // A model says how it was made: with these flags too.
@@ -64,41 +60,30 @@ void AddToProvenance(Provenance* from) {
 
 int Run() {
   const double begin = Now();
-  for (MaybeError error :
-       {Require("model", FLAGS_model, "give a file that pushid-fit wrote"),
-        CheckRange("num_threads", FLAGS_num_threads, 1, 1024), CheckRecordingFlags()}) {
-    if (error) return Fail(*error);
-  }
-  Result<FittedModel> read = ReadFittedModel(FLAGS_model);
-  if (!read.ok()) return Fail(read.error());
-  FittedModel& model = read.value();
-  const Result<uint64_t> seed = SeedOf(model.fit.options);
-  if (!seed.ok()) return Fail(seed.error());
-  const Result<ModelChecks> checks = ModelChecksFromCommandLine(seed.value(), FLAGS_num_threads);
-  if (!checks.ok()) return Fail(checks.error());
-  if (!checks.value().Any()) {
+  Require("model", FLAGS_model, "give a file that pushid-fit wrote");
+  CheckRange("num_threads", FLAGS_num_threads, 1, 1024);
+  CheckRecordingFlags();
+  FittedModel model = OrFail(ReadFittedModel(FLAGS_model));
+  const uint64_t seed = SeedOf(model.fit.options);
+  const ModelChecks checks = ModelChecksFromCommandLine(seed, FLAGS_num_threads);
+  if (!checks.Any()) {
     return Fail(
         "nothing is asked; give one of --profile, --bootstrap=199, --prior_check, "
         "--push_check, --horizon_check, --learn_forecasts, --design=all and --population");
   }
   const std::string& out = FLAGS_model_out.empty() ? FLAGS_model : FLAGS_model_out;
-  const bool writes = checks.value().Adds() || !FLAGS_model_out.empty();
-  if (writes) {
-    if (MaybeError error = CheckWritable(out)) return Fail(*error);
-  }
-  const Result<std::vector<PendulumRecording>> recordings = LoadFitted(&model);
-  if (!recordings.ok()) return Fail(recordings.error());
-  MaybeError failed = CheckAgainst(checks.value(), model.fit.options, recordings.value());
-  if (!failed) failed = ResumeFit(recordings.value(), &model.fit);
+  const bool writes = checks.Adds() || !FLAGS_model_out.empty();
+  if (writes) OrFail(CheckWritable(out));
+  const std::vector<PendulumRecording> recordings = LoadFitted(&model);
+  OrFail(CheckAgainst(checks, model.fit.options, recordings));
+  OrFail(ResumeFit(recordings, &model.fit));
   AddToProvenance(&model.provenance);
   model.provenance.model_file = out;
-  if (!failed) failed = AddFlaggedChecks(recordings.value(), checks.value(), &model);
-  if (failed) return Fail(*failed);
-  const Result<std::string> sections = CheckSections(recordings.value(), checks.value(), model.fit);
-  if (!sections.ok()) return Fail(sections.error());
-  std::printf("%s%s", ReportText(model).c_str(), sections.value().c_str());
+  AddFlaggedChecks(recordings, checks, &model);
+  const std::string sections = OrFail(CheckSections(recordings, checks, model.fit));
+  std::printf("%s%s", ReportText(model).c_str(), sections.c_str());
   if (!writes) return kDone;
-  if (MaybeError error = WriteModelFile(out, model, FLAGS_num_threads, begin)) return Fail(*error);
+  OrFail(WriteModelFile(out, model, FLAGS_num_threads, begin));
   std::printf("model with the checks written to %s\n", out.c_str());
   return kDone;
 }

@@ -56,73 +56,70 @@ using Setups = std::vector<std::pair<std::string, FitSetup>>;
 using Candidates = std::vector<std::pair<std::string, FitOptions>>;
 
 // A candidate of --compare, with the options that it has over the given ones.
-Result<std::pair<std::string, GivenOptions>> CandidateFrom(const std::string& text) {
+std::pair<std::string, GivenOptions> CandidateFrom(const std::string& text) {
   const size_t colon = text.find(':');
   const std::string name(Trimmed(text.substr(0, colon)));
   if (colon == std::string::npos || name.empty()) {
-    return Error{"--compare: '" + text + "' is not 'name: --flag=value ...'"};
+    throw Error{"--compare: '" + text + "' is not 'name: --flag=value ...'"};
   }
   const Result<GivenOptions> options = ParseOptionWords(text.substr(colon + 1));
-  if (!options.ok()) return Error{"--compare, '" + name + "': " + options.error().message};
+  if (!options.ok()) throw Error{"--compare, '" + name + "': " + options.error().message};
   return std::make_pair(name, options.value());
 }
 
 // The flags' own model, whose name is its preset's, and those of --compare.
-Result<Setups> SetupsFromFlags() {
-  const Result<FitSetup> own = FitSetupFromFlags();
-  if (!own.ok()) return own.error();
-  Setups setups = {{"", own.value()}};
+Setups SetupsFromFlags() {
+  const FitSetup own = FitSetupFromFlags();
+  Setups setups = {{"", own}};
   for (const std::string& item : SplitList(FLAGS_compare, ';')) {
     const std::string trimmed(Trimmed(item));
     if (trimmed.empty()) continue;
     const auto candidate = CandidateFrom(trimmed);
-    if (!candidate.ok()) return candidate.error();
-    const auto& [name, more] = candidate.value();
+    const auto& [name, more] = candidate;
     const Result<FitSetup> setup = FitSetup::Make(Merged(GivenFitFlags(), more), more);
-    if (!setup.ok()) return Error{"--compare, '" + name + "': " + setup.error().message};
+    if (!setup.ok()) throw Error{"--compare, '" + name + "': " + setup.error().message};
     setups.emplace_back(name, setup.value());
   }
   return setups;
 }
 
 // Their options: what is known without recordings, or with them.
-Result<Candidates> CandidatesOf(const Setups& setups,
-                                const std::vector<PendulumRecording>* recordings = nullptr) {
+Candidates CandidatesOf(const Setups& setups,
+                        const std::vector<PendulumRecording>* recordings = nullptr) {
   Candidates candidates;
   for (const auto& [name, setup] : setups) {
     const Result<FitOptions> options =
         recordings == nullptr ? Result<FitOptions>(setup.roughly()) : setup.For(*recordings);
     if (!options.ok()) {
-      return name.empty() ? options.error()
-                          : Error{"--compare, '" + name + "': " + options.error().message};
+      throw name.empty() ? options.error()
+                         : Error{"--compare, '" + name + "': " + options.error().message};
     }
     candidates.emplace_back(name.empty() ? options.value().preset : name, options.value());
   }
   return candidates;
 }
 
-MaybeError ReadScheme(FoldScheme* scheme) {
-  if (MaybeError error = CheckExcludes({"scheme", "folds", "repeats"}, "folds_file",
-                                       "--folds_file already gives the folds; leave --{} out")) {
-    return error;
-  }
-  return ParseName("--scheme", FLAGS_scheme, scheme);
+void ReadScheme(FoldScheme* scheme) {
+  CheckExcludes({"scheme", "folds", "repeats"}, "folds_file",
+                "--folds_file already gives the folds; leave --{} out");
+  OrFail(ParseName("--scheme", FLAGS_scheme, scheme));
 }
+
 using Predictors = std::vector<std::unique_ptr<Predictor>>;
 
 // Those that futures can be drawn from.
-Result<Candidates> NoisyModels(const Candidates& candidates) {
+Candidates NoisyModels(const Candidates& candidates) {
   Candidates noisy;
   for (const auto& [name, candidate] : candidates) {
     if (candidate.model.process_noise.Any()) noisy.emplace_back(name, candidate);
   }
   if (Given("observed")) {
-    return Error{
+    throw Error{
         "--samples draws futures from frame 0, and --observed predicts from a later frame: leave "
         "one out"};
   }
   if (noisy.empty()) {
-    return Error{
+    throw Error{
         "--samples: no candidate has process noise to draw from; add "
         "--process_noise=diagonal or --likelihood=innovation"};
   }
@@ -148,30 +145,29 @@ void AddBaselines(const FitOptions& options, Predictors* predictors) {
 }
 
 // Two of one name could not be told apart in the tables.
-MaybeError CheckNames(const Predictors& predictors) {
+void CheckNames(const Predictors& predictors) {
   std::set<std::string> names;
   for (const auto& predictor : predictors) {
     if (names.insert(predictor->name).second) continue;
-    return Error{"--compare has more than one '" + predictor->name +
-                 "'; give each configuration its own name"};
+    throw Error{"--compare has more than one '" + predictor->name +
+                "'; give each configuration its own name"};
   }
-  return std::nullopt;
 }
 
-Result<Predictors> MakePredictors(const Candidates& candidates) {
+Predictors MakePredictors(const Candidates& candidates) {
   Predictors predictors;
   const int observed = ObservedFrames();
   for (const auto& [name, candidate] : candidates) {
     if (candidate.body_weight > 0.0) {
-      return Error{
+      throw Error{
           "--body_weight: '" + name +
           "' would be scored with a restoration that was trained on the held-out recordings; "
           "pushid-train-restoration --crossvalidate --body_weight retrains both"};
     }
     if (observed > 0 && candidate.model.push_tail == PushTail::kNone) {
-      return Error{"--observed: '" + name +
-                   "' has no push tail, which --observed estimates from the first frames; give it "
-                   "--push_tail=exponential (the presets tail and group have it)"};
+      throw Error{"--observed: '" + name +
+                  "' has no push tail, which --observed estimates from the first frames; give it "
+                  "--push_tail=exponential (the presets tail and group have it)"};
     }
     predictors.push_back(std::make_unique<ModelPredictor>(name, candidate, observed,
                                                           FramesUse::kForecast, ForecastUseFlag()));
@@ -181,11 +177,10 @@ Result<Predictors> MakePredictors(const Candidates& candidates) {
 }
 
 // What is wrong with the flags, before any recording is read.
-MaybeError CheckFlags(const Setups& setups) {
-  const Result<Predictors> predictors = MakePredictors(CandidatesOf(setups).value());
-  if (!predictors.ok()) return predictors.error();
-  if (MaybeError error = CheckObservedFlag()) return error;
-  return CheckOutputFiles({FLAGS_json_out});
+void CheckFlags(const Setups& setups) {
+  MakePredictors(CandidatesOf(setups));
+  CheckObservedFlag();
+  OrFail(CheckOutputFiles({FLAGS_json_out}));
 }
 
 nlohmann::ordered_json ScoresJson(const std::vector<CrossValidation>& validations) {
@@ -201,54 +196,44 @@ nlohmann::ordered_json ScoresJson(const std::vector<CrossValidation>& validation
 
 int Run() {
   FoldScheme scheme;
-  if (MaybeError error = ReadScheme(&scheme)) return Fail(*error);
-  const Result<Setups> setups = SetupsFromFlags();
-  if (!setups.ok()) return Fail(setups.error());
-  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(false);
-  if (!drawn.ok()) return Fail(drawn.error());
-  if (MaybeError error = CheckFlags(setups.value())) return Fail(*error);
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
-  if (!recordings.ok()) return Fail(recordings.error());
-  if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
+  ReadScheme(&scheme);
+  const Setups setups = SetupsFromFlags();
+  const FuturesFlags drawn = FuturesFlagsFromCommandLine(false);
+  CheckFlags(setups);
+  const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
+  CheckPushed(recordings);
   const std::vector<PendulumRecording> pendulums =
-      MakePendulumRecordings(recordings.value(), setups.value()[0].second.roughly().mapping);
-  if (MaybeError error = CheckObservedFlag(pendulums)) return Fail(*error);
-  if (MaybeError error = CheckGroups(pendulums, ParseLabelKeys(FLAGS_group_by)))
-    return Fail(*error);
-  const Result<Candidates> candidates = CandidatesOf(setups.value(), &pendulums);
-  if (!candidates.ok()) return Fail(candidates.error());
-  const FitOptions& options = candidates.value()[0].second;
+      MakePendulumRecordings(recordings, setups[0].second.roughly().mapping);
+  CheckObservedFlag(pendulums);
+  OrFail(CheckGroups(pendulums, ParseLabelKeys(FLAGS_group_by)));
+  const Candidates candidates = CandidatesOf(setups, &pendulums);
+  const FitOptions& options = candidates[0].second;
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options)) Warn(warning);
-  const Result<Predictors> predictors = MakePredictors(candidates.value());
-  if (!predictors.ok()) return Fail(predictors.error());
-  if (MaybeError error = CheckNames(predictors.value())) return Fail(*error);
-  const Result<Candidates> noisy = drawn.value().samples > 0 ? NoisyModels(candidates.value())
-                                                             : Result<Candidates>(Candidates{});
-  if (!noisy.ok()) return Fail(noisy.error());
-  const Result<std::vector<Fold>> folds =
+  const Predictors predictors = MakePredictors(candidates);
+  CheckNames(predictors);
+  const Candidates noisy = drawn.samples > 0 ? NoisyModels(candidates) : Candidates();
+  const std::vector<Fold> folds = OrFail(
       FLAGS_folds_file.empty() ? MakeFolds(pendulums, scheme, FLAGS_folds, FLAGS_repeats, Seed())
-                               : ReadFolds(FLAGS_folds_file, pendulums);
-  if (!folds.ok()) return Fail(folds.error());
+                               : ReadFolds(FLAGS_folds_file, pendulums));
 
   std::vector<CrossValidation> validations;
-  const RecordedBodies bodies = BodiesOfGroups(recordings.value());
+  const RecordedBodies bodies = BodiesOfGroups(recordings);
   ProgressLine line;
-  for (const auto& predictor : predictors.value()) {
-    validations.push_back(CrossValidate(pendulums, folds.value(), *predictor, NumThreads(),
+  for (const auto& predictor : predictors) {
+    validations.push_back(CrossValidate(pendulums, folds, *predictor, NumThreads(),
                                         line.OfJobs(predictor->name + ": fold"), bodies,
                                         ParseLabelKeys(FLAGS_group_by)));
   }
   std::vector<HeldOutFutures> futures;
-  for (const auto& [name, model] : noisy.value()) {
-    futures.push_back(CrossValidateFutures(name, pendulums, folds.value(), model,
-                                           drawn.value().samples, drawn.value().seed, NumThreads(),
-                                           line.OfJobs(name + ", futures: fold")));
+  for (const auto& [name, model] : noisy) {
+    futures.push_back(CrossValidateFutures(name, pendulums, folds, model, drawn.samples, drawn.seed,
+                                           NumThreads(), line.OfJobs(name + ", futures: fold")));
   }
   std::vector<BandCoverage> bands;
   if (FLAGS_bands) {
     BandOptions asked;
     asked.seed = Seed();
-    bands = CrossValidateBands(pendulums, folds.value(), options, asked, NumThreads(),
+    bands = CrossValidateBands(pendulums, folds, options, asked, NumThreads(),
                                line.OfJobs("bands: fold"));
   }
   line.Finish();
@@ -258,7 +243,7 @@ int Run() {
   if (!FLAGS_json_out.empty()) {
     nlohmann::ordered_json json = ScoresJson(validations);
     for (const HeldOutFutures& one : futures) json["futures"].push_back(ToJson(one.summary));
-    if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);
+    OrFail(WriteJson(FLAGS_json_out, json));
   }
   return kDone;
 }

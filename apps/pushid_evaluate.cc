@@ -34,84 +34,68 @@ namespace {
 using namespace pushid;
 
 // That of --restoration, once all flags have been checked.
-Result<RestorationFlags> CheckedFlags() {
-  if (MaybeError missing = RequireModel()) return *missing;
-  const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine();
-  if (!restoration.ok()) return restoration.error();
-  for (MaybeError error : {CheckNeeds({"peer"}, {"restoration"}, " to be compared with"),
-                           CheckOutputFiles({FLAGS_json_out})}) {
-    if (error) return *error;
-  }
+RestorationFlags CheckedFlags() {
+  RequireModel();
+  const RestorationFlags restoration = RestorationFlagsFromCommandLine();
+  CheckNeeds({"peer"}, {"restoration"}, " to be compared with");
+  OrFail(CheckOutputFiles({FLAGS_json_out}));
   return restoration;
 }
 
 // Bodies beside pendulums, where --restoration asks for them; else nothing.
-Result<std::optional<BodyEvaluation>> Bodies(const RestorationFlags& flags,
-                                             const IdentifiedModel& model,
-                                             const std::vector<Recording>& recordings) {
+std::optional<BodyEvaluation> Bodies(const RestorationFlags& flags, const IdentifiedModel& model,
+                                     const std::vector<Recording>& recordings) {
   if (!flags.given()) return std::optional<BodyEvaluation>();
   size_t people = 0;
   for (const Recording& recording : recordings) people = std::max(people, recording.people.size());
-  const Result<std::unique_ptr<Restoration>> restoration =
+  const std::unique_ptr<Restoration> restoration =
       LoadFlaggedRestoration(flags, static_cast<int>(people));
-  if (!restoration.ok()) return restoration.error();
-  const Result<std::vector<BodyRecording>> bodies = MakeBodyRecordings(recordings, model.mapping);
-  if (!bodies.ok()) return bodies.error();
+  const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings, model.mapping));
   BodyScores scores;
-  for (const BodyRecording& body : bodies.value()) {
-    ScoreRestoration(model, *restoration.value(), flags.postprocess, body, &scores,
-                     ObservedFrames(), ForecastUseFlag());
+  for (const BodyRecording& body : bodies) {
+    ScoreRestoration(model, *restoration, flags.postprocess, body, &scores, ObservedFrames(),
+                     ForecastUseFlag());
   }
   if (!FLAGS_peer.empty()) {
-    const Result<std::unique_ptr<Peer>> peer = LoadPeer(FLAGS_peer);
-    if (!peer.ok()) return peer.error();
-    for (const BodyRecording& body : bodies.value()) ScorePeer(*peer.value(), body, &scores);
+    const std::unique_ptr<Peer> peer = OrFail(LoadPeer(FLAGS_peer));
+    for (const BodyRecording& body : bodies) ScorePeer(*peer, body, &scores);
   }
   return std::optional<BodyEvaluation>(
-      SummarizeAll(bodies.value(), scores, ParseLabelKeys(FLAGS_group_by)));
+      SummarizeAll(bodies, scores, ParseLabelKeys(FLAGS_group_by)));
 }
 
 int Run() {
-  const Result<RestorationFlags> restoration = CheckedFlags();
-  if (!restoration.ok()) return Fail(restoration.error());
-  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(false);
-  if (!drawn.ok()) return Fail(drawn.error());
-  if (MaybeError error = CheckObservedFlag()) return Fail(*error);
-  const Result<IdentifiedModel> model = LoadFlaggedModel();
-  if (!model.ok()) return Fail(model.error());
-  if (MaybeError error = CheckDraws(drawn.value(), model.value())) return Fail(*error);
-  const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({}, restoration.value().given() || NeedsJoints(model.value().options));
-  if (!recordings.ok()) return Fail(recordings.error());
+  const RestorationFlags restoration = CheckedFlags();
+  const FuturesFlags drawn = FuturesFlagsFromCommandLine(false);
+  CheckObservedFlag();
+  const IdentifiedModel model = LoadFlaggedModel();
+  CheckDraws(drawn, model);
+  const std::vector<Recording> recordings =
+      LoadFlaggedRecordings({}, restoration.given() || NeedsJoints(model.options));
   const std::vector<PendulumRecording> pendulums =
-      MakePendulumRecordings(recordings.value(), model.value().mapping);
-  if (MaybeError error = CheckObservedFlag(pendulums, model.value())) return Fail(*error);
+      MakePendulumRecordings(recordings, model.mapping);
+  CheckObservedFlag(pendulums, model);
   const LabelKeys group_by = ParseLabelKeys(FLAGS_group_by);
-  if (MaybeError error = CheckGroups(pendulums, group_by)) return Fail(*error);
-  const Result<std::optional<BodyEvaluation>> bodies =
-      Bodies(restoration.value(), model.value(), recordings.value());
-  if (!bodies.ok()) return Fail(bodies.error());
-  WarnGrouped(InputWarnings(model.value(), pendulums));
+  OrFail(CheckGroups(pendulums, group_by));
+  const std::optional<BodyEvaluation> bodies = Bodies(restoration, model, recordings);
+  WarnGrouped(InputWarnings(model, pendulums));
   const Evaluation evaluation =
-      Evaluate(model.value(), pendulums, ObservedFrames(), group_by, ForecastUseFlag());
+      Evaluate(model, pendulums, ObservedFrames(), group_by, ForecastUseFlag());
   std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
   std::printf("\n%s", StepsReport(pendulums, FLAGS_per_recording).c_str());
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   json.update(ToJson(evaluation));
-  if (const int draws = drawn.value().samples; draws > 0) {
-    const auto futures = EvaluateFutures(model.value(), pendulums, draws, drawn.value().seed);
-    if (!futures.ok()) return Fail(futures.error());
-    std::printf("\n%s", FuturesText(std::vector<FuturesSummary>{futures.value()}).c_str());
-    json["futures"] = ToJson(futures.value());
+  if (const int draws = drawn.samples; draws > 0) {
+    const auto futures = OrFail(EvaluateFutures(model, pendulums, draws, drawn.seed));
+    std::printf("\n%s", FuturesText(std::vector<FuturesSummary>{futures}).c_str());
+    json["futures"] = ToJson(futures);
   }
   AddStepsJson(pendulums, &json);
-  if (bodies.value()) {
-    std::printf("\n%s", BodyText(*bodies.value()).c_str());
-    AddBodyJson(*bodies.value(), &json);
+  if (bodies) {
+    std::printf("\n%s", BodyText(*bodies).c_str());
+    AddBodyJson(*bodies, &json);
   }
-  if (!FLAGS_json_out.empty()) {
-    if (MaybeError error = WriteJson(FLAGS_json_out, json)) return Fail(*error);
-  }
+  if (!FLAGS_json_out.empty()) OrFail(WriteJson(FLAGS_json_out, json));
   return kDone;
 }
 

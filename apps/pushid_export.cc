@@ -27,13 +27,13 @@ namespace {
 
 using namespace pushid;
 // Of the files, one per recording; nullopt: a data set of Motion-BIDS.
-Result<std::optional<MotionFormat>> CrowdFormat() {
-  if (FLAGS_format == "bids") return std::optional<MotionFormat>();
+std::optional<MotionFormat> CrowdFormat() {
+  if (FLAGS_format == "bids") return std::nullopt;
   const std::optional<MotionFormat> format = FromName<MotionFormat>(FLAGS_format);
   if (format && HoldsCrowd(*format)) return format;
   const auto is_crowd = [](const MotionFormatRow& row) { return HoldsCrowd(row.value); };
-  return Error{"--format is '" + FLAGS_format + "'; it must be bids, " +
-               AnyName<MotionFormat>(is_crowd)};
+  throw Error{"--format is '" + FLAGS_format + "'; it must be bids, " +
+              AnyName<MotionFormat>(is_crowd)};
 }
 
 // "GeneratedBy" of a data set of BIDS.
@@ -47,64 +47,56 @@ bool WrittenByPushid(const std::string& description) {
 }
 
 // A folder with data of other origin stays as it is, whatever --overwrite says.
-MaybeError CheckFolder(const std::string& folder) {
+void CheckFolder(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   const std::string about = (fs::path(folder) / "dataset_description.json").string();
-  if (WrittenByPushid(about)) return CheckNew("out", about);
+  if (WrittenByPushid(about)) return OrFail(CheckNew("out", about));
   for (const char* name : {"dataset_description.json", "participants.tsv", "manifest.json"}) {
     const fs::path file = fs::path(folder) / name;
     if (!fs::exists(file, ignored)) continue;
-    return Error{"is not an output of pushid-export and would be overwritten; choose another --out",
-                 file.string()};
+    throw Error{"is not an output of pushid-export and would be overwritten; choose another --out",
+                file.string()};
   }
-  return std::nullopt;
 }
 
 // That of --format, once all flags have been checked.
-Result<std::optional<MotionFormat>> CheckedFormat() {
-  const Result<std::optional<MotionFormat>> format = CrowdFormat();
-  if (!format.ok()) return format.error();
-  if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) return *missing;
-  if (!format.value()) {
-    if (MaybeError error = CheckFolder(FLAGS_out)) return *error;
-  }
+std::optional<MotionFormat> CheckedFormat() {
+  const std::optional<MotionFormat> format = CrowdFormat();
+  Require("out", FLAGS_out, "name the folder to write");
+  if (!format) CheckFolder(FLAGS_out);
   return format;
 }
 
 // Which files there will be, before any is written.
-Result<std::vector<std::string>> TrajectoryFiles(MotionFormat format,
-                                                 const std::vector<Recording>& recordings) {
+std::vector<std::string> TrajectoryFiles(MotionFormat format,
+                                         const std::vector<Recording>& recordings) {
   std::vector<std::string> files;
   for (const Recording& recording : recordings) {
     files.push_back(FLAGS_out + "/" + recording.id + "." + NameOf(format));
-    if (MaybeError error = CheckNew("out", files.back())) return *error;
+    OrFail(CheckNew("out", files.back()));
   }
   return files;
 }
 
-MaybeError ExportTrajectories(MotionFormat format, const std::vector<Recording>& recordings) {
-  const Result<std::vector<std::string>> files = TrajectoryFiles(format, recordings);
-  if (!files.ok()) return files.error();
+void ExportTrajectories(MotionFormat format, const std::vector<Recording>& recordings) {
+  const std::vector<std::string> files = TrajectoryFiles(format, recordings);
   for (size_t i = 0; i < recordings.size(); ++i) {
-    if (MaybeError error = MakeFolderOf(files.value()[i])) return error;
-    if (MaybeError error = WriteTrajectories(files.value()[i], HipTrajectories(recordings[i]))) {
-      return error;
-    }
+    OrFail(MakeFolderOf(files[i]));
+    OrFail(WriteTrajectories(files[i], HipTrajectories(recordings[i])));
   }
-  return std::nullopt;
 }
 
 int Run() {
-  const Result<std::optional<MotionFormat>> format = CheckedFormat();
-  if (!format.ok()) return Fail(format.error());
-  const bool bids = !format.value();
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, bids);
-  if (!recordings.ok()) return Fail(recordings.error());
-  const MaybeError error = bids ? WriteBidsDataset(FLAGS_out, recordings.value(), Version())
-                                : ExportTrajectories(*format.value(), recordings.value());
-  if (error) return Fail(*error);
-  std::printf("%zu recordings written to %s%s\n", recordings.value().size(), FLAGS_out.c_str(),
+  const std::optional<MotionFormat> format = CheckedFormat();
+  const bool bids = !format;
+  const std::vector<Recording> recordings = LoadFlaggedRecordings({}, bids);
+  if (bids) {
+    OrFail(WriteBidsDataset(FLAGS_out, recordings, Version()));
+  } else {
+    ExportTrajectories(*format, recordings);
+  }
+  std::printf("%zu recordings written to %s%s\n", recordings.size(), FLAGS_out.c_str(),
               bids ? "; --recordings with its manifest.json reads them again"
                    : ": everybody's hip, without pushes and masses");
   return kDone;

@@ -35,16 +35,15 @@ namespace {
 using namespace pushid;
 
 // --body_weight and --body_restoration go together.
-MaybeError CheckBodyFlags(const FitOptions& options) {
+void CheckBodyFlags(const FitOptions& options) {
   if (options.body_weight > 0.0 && FLAGS_body_restoration.empty()) {
-    return Error{
+    throw Error{
         "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
         "--kind=window or cvae wrote"};
   }
   if (options.body_weight <= 0.0 && !FLAGS_body_restoration.empty()) {
-    return Error{"--body_restoration does nothing without --body_weight; give --body_weight=1"};
+    throw Error{"--body_restoration does nothing without --body_weight; give --body_weight=1"};
   }
-  return std::nullopt;
 }
 
 int Run() {
@@ -54,53 +53,41 @@ int Run() {
     std::printf("%s", ParameterGlossaryMarkdown().c_str());
     return kDone;
   }
-  const Result<FitSetup> setup = FitSetupFromFlags();
-  if (!setup.ok()) return Fail(setup.error());
-  const FitOptions& roughly = setup.value().roughly();
-  const Result<ModelChecks> read = ModelChecksFromCommandLine(Seed(), NumThreads());
-  if (!read.ok()) return Fail(read.error());
-  const ModelChecks& checks = read.value();
-  if (MaybeError error = CheckRecordingFlags()) return Fail(*error);
-  if (MaybeError error = CheckBodyFlags(roughly)) return Fail(*error);
+  const FitSetup setup = FitSetupFromFlags();
+  const FitOptions& roughly = setup.roughly();
+  const ModelChecks checks = ModelChecksFromCommandLine(Seed(), NumThreads());
+  CheckRecordingFlags();
+  CheckBodyFlags(roughly);
   if (FLAGS_check) return kDone;
-  if (!FLAGS_model_out.empty()) {
-    if (MaybeError error = CheckWritable(FLAGS_model_out)) return Fail(*error);
-  }
+  if (!FLAGS_model_out.empty()) OrFail(CheckWritable(FLAGS_model_out));
   Warnings file_warnings;  // a result says what it was made of
-  const Result<std::vector<Recording>> recordings =
+  const std::vector<Recording> recordings =
       LoadFlaggedRecordings({}, NeedsJoints(roughly), &file_warnings, true);
-  if (!recordings.ok()) return Fail(recordings.error());
-  if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
+  CheckPushed(recordings);
   const ClusterBy drawn_by =
       checks.bootstrap.by == ClusterBy::kAuto ? roughly.cluster : checks.bootstrap.by;
   const std::vector<PendulumRecording> pendulums = Resampled(
-      MakePendulumRecordings(recordings.value(), roughly.mapping), drawn_by, Seed(), FLAGS_replica);
+      MakePendulumRecordings(recordings, roughly.mapping), drawn_by, Seed(), FLAGS_replica);
 
-  Result<FitOptions> options = setup.value().For(pendulums);
-  if (!options.ok()) return Fail(options.error());
-  if (options.value().body_weight > 0.0) {
-    const auto bodies = LoadBodyData(FLAGS_body_restoration, "--body_restoration",
-                                     recordings.value(), options.value().mapping);
-    if (!bodies.ok()) return Fail(bodies.error());
-    options.value().body = bodies.value();
+  FitOptions options = OrFail(setup.For(pendulums));
+  if (options.body_weight > 0.0) {
+    options.body = OrFail(
+        LoadBodyData(FLAGS_body_restoration, "--body_restoration", recordings, options.mapping));
   }
-  for (const std::string& warning : OptionWarnings(GivenFitFlags(), options.value())) Warn(warning);
-  if (MaybeError error = CheckAgainst(checks, options.value(), pendulums)) {
-    return Fail(*error);
-  }
+  for (const std::string& warning : OptionWarnings(GivenFitFlags(), options)) Warn(warning);
+  OrFail(CheckAgainst(checks, options, pendulums));
   Warnings unit_warnings;
-  const MaybeError unprepared = PrepareFit(pendulums, &options.value(), &unit_warnings);
+  const MaybeError unprepared = PrepareFit(pendulums, &options, &unit_warnings);
   WarnGrouped(unit_warnings);
-  if (unprepared) return Fail(*unprepared);
+  OrFail(unprepared);
 
   ProgressLine line;
   FittedModel model;
   FitResult& result = model.fit;
-  result = Fit(pendulums, options.value(),
-               [&line](const std::string& phase, int iteration, double cost) {
-                 line.Show("fitting " + phase + ": iteration " + std::to_string(iteration) +
-                           ", cost " + Rounded(cost, 6));
-               });
+  result = Fit(pendulums, options, [&line](const std::string& phase, int iteration, double cost) {
+    line.Show("fitting " + phase + ": iteration " + std::to_string(iteration) + ", cost " +
+              Rounded(cost, 6));
+  });
   line.Finish();
   if (!result.ok()) {
     std::fprintf(stderr, "pushid-fit: the fit failed: %s\n", result.message.c_str());
@@ -109,14 +96,12 @@ int Run() {
   result.warnings.insert(result.warnings.begin(), file_warnings.begin(), file_warnings.end());
   model.provenance = ProvenanceOfRun();
   model.provenance.model_file = FLAGS_model_out;
-  if (MaybeError error = AddFlaggedChecks(pendulums, checks, &model)) return Fail(*error);
-  const Result<std::string> sections = CheckSections(pendulums, checks, result);
-  if (!sections.ok()) return Fail(sections.error());
+  AddFlaggedChecks(pendulums, checks, &model);
+  const std::string sections = OrFail(CheckSections(pendulums, checks, result));
 
-  std::printf("%s%s", ReportText(model).c_str(), sections.value().c_str());
+  std::printf("%s%s", ReportText(model).c_str(), sections.c_str());
   if (!FLAGS_model_out.empty()) {
-    if (MaybeError error = WriteModelFile(FLAGS_model_out, model, NumThreads(), begin))
-      return Fail(*error);
+    OrFail(WriteModelFile(FLAGS_model_out, model, NumThreads(), begin));
     std::printf("model written to %s\n", FLAGS_model_out.c_str());
   }
   if (result.converged) return kDone;

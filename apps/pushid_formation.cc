@@ -142,60 +142,50 @@ int LeftDomain(const RolloutStatus& status, double dt) {
 }
 
 // Takes the parameters of the named setting, or condition, for every person.
-MaybeError ActAsIn(const std::string& setting, IdentifiedModel* model) {
-  if (setting.empty()) return std::nullopt;
+void ActAsIn(const std::string& setting, IdentifiedModel* model) {
+  if (setting.empty()) return;
   const auto found = model->by_unit.find(setting);
   if (HoldsForRecording(model->pool_by) && found != model->by_unit.end()) {
     model->parameters = found->second;
-    return std::nullopt;
+    return;
   }
   std::string known;
   if (HoldsForRecording(model->pool_by)) {
     for (const auto& [name, values] : model->by_unit) known += (known.empty() ? "" : ", ") + name;
   }
-  return Error{"--as_setting names '" + setting + "'; " + model->source + " has " +
-               (known.empty() ? "no settings (--pool_by=setting fits them)" : known)};
+  throw Error{"--as_setting names '" + setting + "'; " + model->source + " has " +
+              (known.empty() ? "no settings (--pool_by=setting fits them)" : known)};
 }
 
 int Run() {
-  if (MaybeError missing = RequireModel()) return Fail(*missing);
-  Result<FormationFlags> flags = FormationFlagsFromCommandLine();
-  if (!flags.ok()) return Fail(flags.error());
-  Scene& scene = flags.value().scene;
-  const std::string& title = flags.value().title;
-  if (MaybeError error = CheckOutputFlags(scene.num_people())) return Fail(*error);
-  const Result<FormationBodyFlags> body_flags = FormationBodyFlagsFromCommandLine();
-  if (!body_flags.ok()) return Fail(body_flags.error());
+  RequireModel();
+  FormationFlags flags = FormationFlagsFromCommandLine();
+  Scene& scene = flags.scene;
+  const std::string& title = flags.title;
+  CheckOutputFlags(scene.num_people());
+  const FormationBodyFlags body_flags = FormationBodyFlagsFromCommandLine();
 
-  const Result<FuturesFlags> drawn = FuturesFlagsFromCommandLine(true);
-  if (!drawn.ok()) return Fail(drawn.error());
-  Result<IdentifiedModel> model = LoadFlaggedModel();
-  if (!model.ok()) return Fail(model.error());
-  const auto bodies = PlanBodies(body_flags.value(), flags.value().first_poses, &scene);
-  if (!bodies.ok()) return Fail(bodies.error());
-  if (MaybeError error = CheckDraws(drawn.value(), model.value())) return Fail(*error);
-  if (MaybeError error = ActAsIn(flags.value().as_setting, &model.value())) return Fail(*error);
-  const FormationRun run =
-      RunFormation(model.value(), scene, flags.value().frames, flags.value().names);
-  WarnGrouped(InputWarnings(model.value(), {run.recording}));
+  const FuturesFlags drawn = FuturesFlagsFromCommandLine(true);
+  IdentifiedModel model = LoadFlaggedModel();
+  const auto bodies = PlanBodies(body_flags, flags.first_poses, &scene);
+  CheckDraws(drawn, model);
+  ActAsIn(flags.as_setting, &model);
+  const FormationRun run = RunFormation(model, scene, flags.frames, flags.names);
+  WarnGrouped(InputWarnings(model, {run.recording}));
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, scene.dt);
   const ModelFlags named = ModelFlagsFromCommandLine();
-  const Result<FittedModel> fitted = ReadFittedModel(named.file);
-  if (!fitted.ok()) return Fail(fitted.error());
+  const FittedModel fitted = OrFail(ReadFittedModel(named.file));
   // What a setting's own parameters leave open is no part of a model.
-  const bool as_setting = !flags.value().as_setting.empty();
+  const bool as_setting = !flags.as_setting.empty();
   const bool banded = !as_setting && (DrawsWave() || scene.num_people() <= kMostPeopleForBands);
-  const WaveBands bands = banded ? BandsOfWave(fitted.value(), named.set, run) : WaveBands();
-  MaybeError error = WriteOutputs(model.value(), run, bands.onsets, title);
-  if (!error)
-    error = WriteFormationBodies(body_flags.value().restoration.postprocess, bodies.value(), run,
-                                 title);
-  if (error) return Fail(*error);
+  const WaveBands bands = banded ? BandsOfWave(fitted, named.set, run) : WaveBands();
+  WriteOutputs(model, run, bands.onsets, title);
+  WriteFormationBodies(body_flags.restoration.postprocess, bodies, run, title);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
-  PrintPeople(run, !flags.value().names.empty());
-  PrintWave(run, bands, HeldInDraws(fitted.value(), named.set), as_setting);
-  PrintFitWarnings(fitted.value());
-  return PrintFutures(drawn.value(), model.value(), run.recording, run.num_frames());
+  PrintPeople(run, !flags.names.empty());
+  PrintWave(run, bands, HeldInDraws(fitted, named.set), as_setting);
+  PrintFitWarnings(fitted);
+  return PrintFutures(drawn, model, run.recording, run.num_frames());
 }
 
 }  // namespace

@@ -19,11 +19,11 @@ namespace {
 using namespace pushid;
 using Json = nlohmann::ordered_json;
 
-Result<ForecastScene> SceneOfPerson(const LoadedGenerator& loaded, const GenerateFlags& flags,
-                                    const BodyRecording& recording) {
+ForecastScene SceneOfPerson(const LoadedGenerator& loaded, const GenerateFlags& flags,
+                            const BodyRecording& recording) {
   if (flags.person >= recording.num_people()) {
-    return Error{"recording " + recording.pendulum.id + " has " +
-                 std::to_string(recording.num_people()) + " people; --person counts from 0"};
+    throw Error{"recording " + recording.pendulum.id + " has " +
+                std::to_string(recording.num_people()) + " people; --person counts from 0"};
   }
   const GeneratorSettings& settings = loaded.settings;
   const ObservedMotion whole = ParticlesOf(recording, flags.person).motion;
@@ -47,17 +47,15 @@ Result<ForecastScene> SceneOfPerson(const LoadedGenerator& loaded, const Generat
 }
 
 // One recording as it is shown: a person of it and what particles make of that, or the whole group.
-MaybeError ShowPush(const LoadedGenerator& loaded, const GenerateFlags& flags,
-                    const BodyRecording& recording, const std::optional<IdentifiedModel>& physics,
-                    const std::vector<std::string>& figures) {
+void ShowPush(const LoadedGenerator& loaded, const GenerateFlags& flags,
+              const BodyRecording& recording, const std::optional<IdentifiedModel>& physics,
+              const std::vector<std::string>& figures) {
   if (RowOf(loaded.kind).groups) {
     const auto files = ShowGroup(loaded, flags, recording, physics, figures);
-    if (!files.ok()) return files.error();
-    for (const std::string& file : files.value()) std::printf("%s\n", file.c_str());
-    return std::nullopt;
+    for (const std::string& file : files) std::printf("%s\n", file.c_str());
+    return;
   }
-  const Result<ForecastScene> scene = SceneOfPerson(loaded, flags, recording);
-  return scene.ok() ? ShowForecast(scene.value(), flags) : MaybeError(scene.error());
+  ShowForecast(SceneOfPerson(loaded, flags, recording), flags);
 }
 
 // Once for all recordings whose pushes are of such kinds.
@@ -71,92 +69,76 @@ void WarnOfPushKinds(const GeneratorSettings& settings,
 }
 
 int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
-  const Result<std::optional<IdentifiedModel>> physics = LoadPhysics(flags.physics);
-  if (!physics.ok()) return Fail(physics.error());
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
-  if (!recordings.ok()) return Fail(recordings.error());
-  const Result<std::vector<BodyRecording>> bodies =
-      MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
-  if (!bodies.ok()) return Fail(bodies.error());
+  const std::optional<IdentifiedModel> physics = LoadPhysics(flags.physics);
+  const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
+  const std::vector<BodyRecording> bodies =
+      OrFail(MakeBodyRecordings(recordings, SkeletonMapping::kExact));
   BodyScores scores;
   const BodyRecording* shown = nullptr;
-  for (const BodyRecording& recording : bodies.value()) {
+  for (const BodyRecording& recording : bodies) {
     if (recording.pendulum.id == flags.id) shown = &recording;
   }
   if (flags.Shows() && shown == nullptr) {
     return Fail(Error{"--id is '" + flags.id + "', which is not one of the recordings"});
   }
-  WarnOfPushKinds(loaded.settings, bodies.value());
-  const Result<SocialCues> cues = FlaggedCues(flags, bodies.value());
-  if (!cues.ok()) return Fail(cues.error());
+  WarnOfPushKinds(loaded.settings, bodies);
+  const SocialCues cues = FlaggedCues(flags, bodies);
   double seconds = 0.0;
-  for (const BodyRecording& recording : bodies.value()) {
+  for (const BodyRecording& recording : bodies) {
     const double before = Now();
-    const auto generated = GenerateWith(loaded, recording, physics.value());
-    if (!generated.ok()) return Fail(generated.error());
-    seconds += (Now() - before) / static_cast<double>(bodies.value().size());
+    const auto generated = GenerateWith(loaded, recording, physics);
+    seconds += (Now() - before) / static_cast<double>(bodies.size());
     const int observed = loaded.settings.observed, seen = SeenByBaselines(observed);
     const auto score = [&](const char* name, const std::vector<BodyMotion>& forecast) {
       scores[name].push_back(ScoreBodies(recording, forecast, observed));
     };
-    score("generator", generated.value());
+    score("generator", generated);
     if (observed > 1) {
-      scores["generator_all_frames"].push_back(ScoreBodies(recording, generated.value()));
+      scores["generator_all_frames"].push_back(ScoreBodies(recording, generated));
     }
     score("static", StaticBodies(recording, seen));
     score("constant_velocity", ConstantVelocityBodies(recording, seen));
   }
-  BodyEvaluation evaluation = SummarizeAll(bodies.value(), scores);
+  BodyEvaluation evaluation = SummarizeAll(bodies, scores);
   std::optional<SocialReport> social;
   std::vector<std::string> figures;
   if (RowOf(loaded.kind).groups) {
-    social = CompareSocially(bodies.value(), cues.value(), &evaluation);
+    social = CompareSocially(bodies, cues, &evaluation);
     if (social) figures = SocialFigures(*social, "generator");
   }
   std::printf("%s\n%s", BodyText(evaluation).c_str(), TimedErrorsText(evaluation).c_str());
   if (social) std::printf("\n%s", SocialText(*social).c_str());
-  if (flags.Shows()) {
-    if (MaybeError error = ShowPush(loaded, flags, *shown, physics.value(), figures)) {
-      return Fail(*error);
-    }
-  }
+  if (flags.Shows()) ShowPush(loaded, flags, *shown, physics, figures);
   Json json = ResultHead(kScoresSchema);
   AddBodyJson(evaluation, &json);
   if (social) json["social"] = ToJson(*social);
   if (flags.samples > 0 && RowOf(loaded.kind).groups) {
-    const Result<GroupSpread> spread = SpreadOf(loaded, flags, bodies.value(), physics.value());
-    if (!spread.ok()) return Fail(spread.error());
-    std::printf("\n%s", SpreadText(spread.value()).c_str());
-    json["spread"] = ToJson(spread.value());
+    const GroupSpread spread = SpreadOf(loaded, flags, bodies, physics);
+    std::printf("\n%s", SpreadText(spread).c_str());
+    json["spread"] = ToJson(spread);
   }
   if (flags.frames > 0) {
-    const Result<Json> rows =
-        ShowSeconds(loaded, bodies.value(), physics.value(), cues.value(), flags.frames);
-    if (!rows.ok()) return Fail(rows.error());
-    json["seconds"] = rows.value();
+    json["seconds"] = ShowSeconds(loaded, bodies, physics, cues, flags.frames);
   }
   if (flags.json_out.empty()) return kDone;
   json["run"] = {{"seconds_per_recording", seconds}};
-  if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
+  OrFail(WriteJson(flags.json_out, json));
   return kDone;
 }
 
 int Run() {
-  Result<GenerateFlags> flags = GenerateFlagsFromCommandLine();
-  if (!flags.ok()) return Fail(flags.error());
-  Result<LoadedGenerator> loaded = LoadGenerator(flags.value().model, flags.value().changes);
-  if (!loaded.ok()) return Fail(loaded.error());
-  if (MaybeError error = CheckKindFlags(flags.value(), loaded.value().kind)) return Fail(*error);
-  if (MaybeError error = TakeChoice(&flags.value(), &loaded.value())) return Fail(*error);
-  if (flags.value().observed > 0) loaded.value().settings.observed = flags.value().observed;
-  const GeneratorData data = loaded.value().settings.data;
-  if (data != flags.value().data) {
+  GenerateFlags flags = GenerateFlagsFromCommandLine();
+  LoadedGenerator loaded = OrFail(LoadGenerator(flags.model, flags.changes));
+  CheckKindFlags(flags, loaded.kind);
+  TakeChoice(&flags, &loaded);
+  if (flags.observed > 0) loaded.settings.observed = flags.observed;
+  const GeneratorData data = loaded.settings.data;
+  if (data != flags.data) {
     return Fail(
         Error{"this generator forecasts " + NameOf(data) + "; give --dataset=" + NameOf(data),
-              flags.value().model});
+              flags.model});
   }
-  return data == GeneratorData::kCmu ? GenerateFromClips(loaded.value(), flags.value())
-                                     : FromPushes(loaded.value(), flags.value());
+  return data == GeneratorData::kCmu ? GenerateFromClips(loaded, flags) : FromPushes(loaded, flags);
 }
 
 }  // namespace

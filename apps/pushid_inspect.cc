@@ -27,20 +27,19 @@ using namespace pushid;
 
 std::vector<std::string> g_files;
 
-MaybeError CheckFlags() {
+void CheckFlags() {
   if (g_files.empty()) {
-    return Error{"name one or more files to inspect; see pushid-inspect --help"};
+    throw Error{"name one or more files to inspect; see pushid-inspect --help"};
   }
-  if (FLAGS_svg_out.empty() && FLAGS_json_out.empty()) return std::nullopt;
-  if (FLAGS_wave) return Error{"--wave writes no files; leave --svg_out and --json_out out"};
+  if (FLAGS_svg_out.empty() && FLAGS_json_out.empty()) return;
+  if (FLAGS_wave) throw Error{"--wave writes no files; leave --svg_out and --json_out out"};
   for (const std::string& file : g_files) {
-    if (MaybeError error = OutputFiles().CheckNotRead("the command line", file)) return error;
+    OrFail(OutputFiles().CheckNotRead("the command line", file));
   }
-  if (FLAGS_svg_out.empty()) return CheckOutputFiles({FLAGS_json_out});
-  if (g_files.size() > 1) {
-    return Error{"--svg_out draws one file, not " + std::to_string(g_files.size())};
+  if (!FLAGS_svg_out.empty() && g_files.size() > 1) {
+    throw Error{"--svg_out draws one file, not " + std::to_string(g_files.size())};
   }
-  return CheckOutputFiles({FLAGS_svg_out, FLAGS_json_out});
+  OrFail(CheckOutputFiles({FLAGS_svg_out, FLAGS_json_out}));
 }
 
 int RunWaves() {
@@ -62,16 +61,15 @@ int RunWaves() {
 }
 
 int Run() {
-  if (MaybeError error = CheckFlags()) return Fail(*error);
+  CheckFlags();
   if (FLAGS_wave) return RunWaves();
-  const Result<ColumnMapping> mapping =
-      FLAGS_mapping.empty() ? ColumnMapping() : ReadColumnMapping(FLAGS_mapping);
-  if (!mapping.ok()) return Fail(mapping.error());
+  const ColumnMapping mapping =
+      FLAGS_mapping.empty() ? ColumnMapping() : OrFail(ReadColumnMapping(FLAGS_mapping));
   // A file that cannot be read does not keep the others from being told about.
   int outcome = kDone;
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const std::string& file : g_files) {
-    const Result<Inspection> found = Inspect(file, mapping.value());
+    const Result<Inspection> found = Inspect(file, mapping);
     if (!found.ok()) {
       outcome = Fail(found.error());
       continue;
@@ -84,13 +82,11 @@ int Run() {
       return Fail(file + ": a " + seen.format +
                   " contains nothing to draw; give the file of a recording");
     }
-    if (MaybeError error = WriteFileAtomically(FLAGS_svg_out, InspectionSvg(found.value()))) {
-      return Fail(*error);
-    }
+    OrFail(WriteFileAtomically(FLAGS_svg_out, InspectionSvg(found.value())));
     std::printf("  picture         %s\n", FLAGS_svg_out.c_str());
   }
   if (FLAGS_json_out.empty()) return outcome;
-  if (MaybeError error = WriteJson(FLAGS_json_out, all, 1)) return Fail(*error);
+  OrFail(WriteJson(FLAGS_json_out, all, 1));
   return outcome;
 }
 

@@ -48,45 +48,35 @@ namespace {
 
 using namespace pushid;
 
-MaybeError CheckManifestFlags() {
-  for (MaybeError missing :
-       {Require("folder", FLAGS_folder, "name the folder of the recordings"),
-        Require("pattern", FLAGS_pattern,
-                "give the pattern of the file names, as in {subject}_{take}.bvh"),
-        Require("out", FLAGS_out, "name the manifest to write")}) {
-    if (missing) return missing;
-  }
+void CheckManifestFlags() {
+  Require("folder", FLAGS_folder, "name the folder of the recordings");
+  Require("pattern", FLAGS_pattern,
+          "give the pattern of the file names, as in {subject}_{take}.bvh");
+  Require("out", FLAGS_out, "name the manifest to write");
   if (!(FLAGS_mass_kg >= 0.0 && FLAGS_mass_kg <= 400.0)) {
-    return Error{"--mass_kg must be a mass of at most 400 kg"};
+    throw Error{"--mass_kg must be a mass of at most 400 kg"};
   }
   if (FLAGS_fps != 0.0 && !(FLAGS_fps >= 1.0 && FLAGS_fps <= 1e4)) {
-    return Error{"--fps must be from 1 to 10000 frames per second"};
+    throw Error{"--fps must be from 1 to 10000 frames per second"};
   }
-  if (FLAGS_pushed_person < 0) return Error{"--pushed_person counts from 0"};
+  if (FLAGS_pushed_person < 0) throw Error{"--pushed_person counts from 0"};
   if (!FLAGS_update) {
-    const MaybeError kept =
-        CheckNew("out", FLAGS_out, ", --update adds what is new and keeps its entries");
-    if (kept) return kept;
+    OrFail(CheckNew("out", FLAGS_out, ", --update adds what is new and keeps its entries"));
   }
-  return CheckOutputFiles({FLAGS_out});
+  OrFail(CheckOutputFiles({FLAGS_out}));
 }
 
 // The flags that name a choice or a file.
-MaybeError ReadNamed(ManifestOptions* options) {
+void ReadNamed(ManifestOptions* options) {
   if (!FLAGS_masses.empty()) {
-    const auto masses = ReadMasses(FLAGS_masses);
-    if (!masses.ok()) return masses.error();
-    options->masses = masses.value();
+    options->masses = OrFail(ReadMasses(FLAGS_masses));
   }
-  if (MaybeError error = ParseName("--push_kind", FLAGS_push_kind, &options->push_kind)) {
-    return error;
-  }
-  return TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options->length_unit,
-                    &options->length_scale);
+  OrFail(ParseName("--push_kind", FLAGS_push_kind, &options->push_kind));
+  TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options->length_unit, &options->length_scale);
 }
 
-Result<ManifestOptions> OptionsFromFlags() {
-  if (MaybeError error = CheckManifestFlags()) return *error;
+ManifestOptions OptionsFromFlags() {
+  CheckManifestFlags();
   ManifestOptions options;
   options.folder = FLAGS_folder;
   options.pattern = FLAGS_pattern;
@@ -100,23 +90,21 @@ Result<ManifestOptions> OptionsFromFlags() {
   options.mapping = FLAGS_mapping;
   options.up = FLAGS_up;
   options.forward = FLAGS_forward;
-  if (MaybeError error = ReadNamed(&options)) return *error;
+  ReadNamed(&options);
   return options;
 }
 
 // No flag names the files that the patterns find.
-MaybeError CheckFilesKept(const Manifest& manifest, const std::string& path) {
+void CheckFilesKept(const Manifest& manifest, const std::string& path) {
   const OutputFiles outputs;
   for (const ManifestRecording& recording : manifest.recordings) {
     std::vector<std::string> files = recording.motion;
     files.push_back(recording.push_csv);
     for (const std::string& file : files) {
       if (file.empty()) continue;
-      const MaybeError error = outputs.CheckNotRead("--folder", ResolvePath(path, file));
-      if (error) return error;
+      OrFail(outputs.CheckNotRead("--folder", ResolvePath(path, file)));
     }
   }
-  return std::nullopt;
 }
 
 void PrintIds(const char* what, const std::vector<std::string>& ids) {
@@ -125,14 +113,10 @@ void PrintIds(const char* what, const std::vector<std::string>& ids) {
 
 // What the folder has and the manifest that is there has not, behind its entries; those stay as
 // somebody may have edited them.
-Result<Manifest> Updated(const std::string& path, const std::vector<ManifestRecording>& found) {
+Manifest Updated(const std::string& path, const std::vector<ManifestRecording>& found) {
   std::error_code ignored;
   Manifest manifest;
-  if (std::filesystem::exists(path, ignored)) {
-    Result<Manifest> read = ReadManifest(path);
-    if (!read.ok()) return read;
-    manifest = std::move(read.value());
-  }
+  if (std::filesystem::exists(path, ignored)) manifest = OrFail(ReadManifest(path));
   std::set<std::string> known, in_folder;
   for (const ManifestRecording& entry : manifest.recordings) known.insert(entry.id);
   std::vector<std::string> added, gone;
@@ -152,24 +136,18 @@ Result<Manifest> Updated(const std::string& path, const std::vector<ManifestReco
 }
 
 int Run() {
-  const Result<ManifestOptions> options = OptionsFromFlags();
-  if (!options.ok()) return Fail(options.error());
+  const ManifestOptions options = OptionsFromFlags();
   const std::string& path = FLAGS_out;
-  const Result<MadeManifest> made = MakeManifest(options.value());
-  if (!made.ok()) return Fail(made.error());
-  Manifest manifest = made.value().manifest;
-  if (MaybeError error = CheckFilesKept(manifest, path)) return Fail(*error);
-  if (FLAGS_update) {
-    Result<Manifest> updated = Updated(path, manifest.recordings);
-    if (!updated.ok()) return Fail(updated.error());
-    manifest = std::move(updated.value());
-  }
-  if (MaybeError error = WriteManifest(path, manifest)) return Fail(*error);
-  for (const std::string& warning : made.value().warnings) Warn(warning);
-  for (const Error& error : made.value().unreadable) Warn("left out: " + error.ToString());
-  for (const std::string& id : made.value().without_push) Warn("recording " + id + " has no push");
+  const MadeManifest made = OrFail(MakeManifest(options));
+  Manifest manifest = made.manifest;
+  CheckFilesKept(manifest, path);
+  if (FLAGS_update) manifest = Updated(path, manifest.recordings);
+  OrFail(WriteManifest(path, manifest));
+  for (const std::string& warning : made.warnings) Warn(warning);
+  for (const Error& error : made.unreadable) Warn("left out: " + error.ToString());
+  for (const std::string& id : made.without_push) Warn("recording " + id + " has no push");
   std::printf("%zu recordings from %d files (%d others in the folder) written to %s\n",
-              manifest.recordings.size(), made.value().files, made.value().others, path.c_str());
+              manifest.recordings.size(), made.files, made.others, path.c_str());
   std::printf("check them with: pushid-inspect %s\n", path.c_str());
   return kDone;
 }

@@ -42,43 +42,36 @@ struct Ends {
   std::vector<std::string> names;  // as they were given
 };
 
-Result<Ends> ReadEnds() {
+Ends ReadEnds() {
   Ends ends;
-  const Result<PathEnd> from = ParsePathEnd("--from", FLAGS_from, true);
-  if (!from.ok()) return from.error();
-  ends.from = from.value();
+  ends.from = OrFail(ParsePathEnd("--from", FLAGS_from, true));
   for (const std::string& text : SplitList(FLAGS_to, ';')) {
     const std::string name(Trimmed(text));
-    const Result<PathEnd> to = ParsePathEnd("--to", name, false);
-    if (!to.ok()) return to.error();
-    if (name.empty()) return Error{"--to has an empty end; a person at rest upright is x=0,xd=0"};
-    if (!ends.to.empty() && to.value().rates_held != ends.to.front().rates_held) {
-      return Error{
+    const PathEnd to = OrFail(ParsePathEnd("--to", name, false));
+    if (name.empty()) throw Error{"--to has an empty end; a person at rest upright is x=0,xd=0"};
+    if (!ends.to.empty() && to.rates_held != ends.to.front().rates_held) {
+      throw Error{
           "--to fixes velocities in some ends and leaves them free in others, so their "
           "probabilities cannot be compared; name a velocity in all ends or in none"};
     }
-    ends.to.push_back(to.value());
+    ends.to.push_back(to);
     ends.names.push_back(name);
   }
-  if (MaybeError missing = Require("to", FLAGS_to, "give the final state, as in --to=x=0.5,xd=0")) {
-    return *missing;
-  }
+  Require("to", FLAGS_to, "give the final state, as in --to=x=0.5,xd=0");
   return ends;
 }
 
 // None where a recording is smoothed.
-Result<Ends> CheckedEnds() {
-  if (MaybeError missing = RequireModel()) return *missing;
-  Result<Ends> ends = FLAGS_id.empty() ? ReadEnds() : Ends();
-  if (!ends.ok()) return ends;
-  for (MaybeError error :
-       {CheckExcludes({"from", "to", "frames", "fps", "mass", "rod"}, "id",
-                      "--id smooths a recording, which gives both ends; leave --{} out"),
-        CheckRange("frames", FLAGS_frames, 6, 100000), CheckRange("fps", FLAGS_fps, 10, 10000),
-        CheckRange("mass", FLAGS_mass, 5, 500), CheckRange("rod", FLAGS_rod, 0.2, 2),
-        CheckOutputFiles({FLAGS_out, FLAGS_json_out})}) {
-    if (error) return *error;
-  }
+Ends CheckedEnds() {
+  RequireModel();
+  Ends ends = FLAGS_id.empty() ? ReadEnds() : Ends();
+  CheckExcludes({"from", "to", "frames", "fps", "mass", "rod"}, "id",
+                "--id smooths a recording, which gives both ends; leave --{} out");
+  CheckRange("frames", FLAGS_frames, 6, 100000);
+  CheckRange("fps", FLAGS_fps, 10, 10000);
+  CheckRange("mass", FLAGS_mass, 5, 500);
+  CheckRange("rod", FLAGS_rod, 0.2, 2);
+  OrFail(CheckOutputFiles({FLAGS_out, FLAGS_json_out}));
   return ends;
 }
 
@@ -91,13 +84,13 @@ nlohmann::ordered_json ActionJson(const ProbablePath& path) {
 // The CSV of the path and the JSON.
 int Write(const ProbablePath& path, double dt, const nlohmann::ordered_json& json) {
   if (!FLAGS_out.empty()) {
-    if (MaybeError error = WritePathCsv(FLAGS_out, path, dt)) return Fail(*error);
+    OrFail(WritePathCsv(FLAGS_out, path, dt));
     std::printf("%d frames written to %s\n", path.states.num_frames(), FLAGS_out.c_str());
   }
   if (FLAGS_json_out.empty()) return kDone;
   nlohmann::ordered_json whole = ResultHead("pushid-path/1");
   whole.update(json);
-  if (MaybeError error = WriteJson(FLAGS_json_out, whole)) return Fail(*error);
+  OrFail(WriteJson(FLAGS_json_out, whole));
   return kDone;
 }
 
@@ -107,16 +100,14 @@ int Between(const Ends& ends, const IdentifiedModel& model) {
   size_t best = 0;
   std::vector<ProbablePath> paths;
   for (size_t i = 0; i < ends.to.size(); ++i) {
-    Result<ProbablePath> path = PathBetween(model, {FLAGS_mass, FLAGS_rod, 0.0}, FLAGS_fps,
-                                            ends.from, ends.to[i], FLAGS_frames);
-    if (!path.ok()) return Fail(path.error());
-    const ProbablePath& found = path.value();
+    ProbablePath found = OrFail(PathBetween(model, {FLAGS_mass, FLAGS_rod, 0.0}, FLAGS_fps,
+                                            ends.from, ends.to[i], FLAGS_frames));
     table.Add({ends.names[i], Rounded(found.action(), 4), Rounded(found.noise_action, 4),
                Rounded(found.divergence_action, 4)});
     nlohmann::ordered_json one = ActionJson(found);
     one["end"] = ends.names[i];
     json["paths"].push_back(one);
-    paths.push_back(std::move(path.value()));
+    paths.push_back(std::move(found));
     if (paths[i].action() < paths[best].action()) best = i;
   }
   json["most_probable"] = ends.names[best];
@@ -131,13 +122,9 @@ int Between(const Ends& ends, const IdentifiedModel& model) {
 }
 
 int Smooth(const IdentifiedModel& model) {
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({FLAGS_id});
-  if (!recordings.ok()) return Fail(recordings.error());
-  const PendulumRecording recording =
-      MakePendulumRecording(recordings.value().front(), model.mapping);
-  const Result<ProbablePath> path = SmoothPath(model, recording);
-  if (!path.ok()) return Fail(path.error());
-  const ProbablePath& found = path.value();
+  const std::vector<Recording> recordings = LoadFlaggedRecordings({FLAGS_id});
+  const PendulumRecording recording = MakePendulumRecording(recordings.front(), model.mapping);
+  const ProbablePath found = OrFail(SmoothPath(model, recording));
   double furthest = 0.0;
   for (int n = 0; n < recording.num_people(); ++n) {
     for (int t = 0; t < recording.num_frames(); ++t) {
@@ -156,11 +143,9 @@ int Smooth(const IdentifiedModel& model) {
 }
 
 int Run() {
-  const Result<Ends> ends = CheckedEnds();
-  if (!ends.ok()) return Fail(ends.error());
-  const Result<IdentifiedModel> model = LoadFlaggedModel();
-  if (!model.ok()) return Fail(model.error());
-  return FLAGS_id.empty() ? Between(ends.value(), model.value()) : Smooth(model.value());
+  const Ends ends = CheckedEnds();
+  const IdentifiedModel model = LoadFlaggedModel();
+  return FLAGS_id.empty() ? Between(ends, model) : Smooth(model);
 }
 
 }  // namespace

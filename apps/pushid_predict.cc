@@ -58,15 +58,15 @@ bool IsThatOfTheRecording() {
   return FLAGS_frames == 0 && FLAGS_push_scale == 1.0 && FLAGS_push_again.empty();
 }
 
-Result<ChangedPushes> ChangedPushesFromCommandLine() {
+ChangedPushes ChangedPushesFromCommandLine() {
   ChangedPushes changed;
   changed.scale = FLAGS_push_scale;
   for (const std::string& spaced : SplitList(FLAGS_push_again)) {
     const std::string word(Trimmed(spaced));
     std::int64_t frame = 0;
     if (!ParseInteger(word, &frame) || std::abs(frame) > kMostFrames) {
-      return Error{"--push_again: " + Quoted(word) +
-                   " is not a frame's number; give numbers as in 40,80"};
+      throw Error{"--push_again: " + Quoted(word) +
+                  " is not a frame's number; give numbers as in 40,80"};
     }
     changed.again.push_back(static_cast<int>(frame));
   }
@@ -74,57 +74,47 @@ Result<ChangedPushes> ChangedPushesFromCommandLine() {
 }
 
 // With the pushes that the flags, once checked, ask for.
-Result<PendulumRecording> PushedRecording(const Recording& recorded, SkeletonMapping mapping) {
+PendulumRecording PushedRecording(const Recording& recorded, SkeletonMapping mapping) {
   const PendulumRecording recording = MakePendulumRecording(recorded, mapping);
-  const ChangedPushes changed = ChangedPushesFromCommandLine().value();
+  const ChangedPushes changed = ChangedPushesFromCommandLine();
   const int frames = FLAGS_frames > 0 ? FLAGS_frames : recording.num_frames();
-  if (MaybeError error = CheckChangedPushes(changed, recording, frames)) return *error;
+  OrFail(CheckChangedPushes(changed, recording, frames));
   return WithPushes(recording, changed);
 }
 
 // That of --restoration, once all flags have been checked.
-Result<RestorationFlags> CheckedFlags() {
-  for (MaybeError missing :
-       {RequireModel(), Require("id", FLAGS_id, "name a recording of the manifest"),
-        Require("out", FLAGS_out, "name the CSV, BVH or glTF file to write")}) {
-    if (missing) return *missing;
-  }
-  const Result<RestorationFlags> restoration = RestorationFlagsFromCommandLine();
-  if (!restoration.ok()) return restoration.error();
+RestorationFlags CheckedFlags() {
+  RequireModel();
+  Require("id", FLAGS_id, "name a recording of the manifest");
+  Require("out", FLAGS_out, "name the CSV, BVH or glTF file to write");
+  const RestorationFlags restoration = RestorationFlagsFromCommandLine();
   const std::string needy = BodyOutput();
-  if (!needy.empty() && !restoration.value().given()) return NeedsRestoration(needy);
+  if (!needy.empty() && !restoration.given()) throw NeedsRestoration(needy);
   if (FLAGS_frames != 0 && (FLAGS_frames < 2 || FLAGS_frames > kMostFrames)) {
-    return Error{"--frames must be 0, or lie between 2 and " + std::to_string(kMostFrames)};
+    throw Error{"--frames must be 0, or lie between 2 and " + std::to_string(kMostFrames)};
   }
-  const Result<ChangedPushes> changed = ChangedPushesFromCommandLine();
-  if (!changed.ok()) return changed.error();
-  if (MaybeError error = CheckExcludes({"push_scale", "push_again"}, "observed",
-                                       "--observed is for the recorded motion, and --{} for "
-                                       "another push than made it; leave one out")) {
-    return *error;
-  }
-  if (MaybeError error = CheckOutputFiles({FLAGS_joints_out, FLAGS_json_out, FLAGS_out})) {
-    return *error;
-  }
+  ChangedPushesFromCommandLine();
+  CheckExcludes({"push_scale", "push_again"}, "observed",
+                "--observed is for the recorded motion, and --{} for "
+                "another push than made it; leave one out");
+  OrFail(CheckOutputFiles({FLAGS_joints_out, FLAGS_json_out, FLAGS_out}));
   return restoration;
 }
 
-Result<std::vector<std::string>> WriteScene(const BodyScene& scene, const BodyRecording& recording,
-                                            const Prediction& prediction) {
+std::vector<std::string> WriteScene(const BodyScene& scene, const BodyRecording& recording,
+                                    const Prediction& prediction) {
   std::vector<std::string> files = {FLAGS_out};
   if (IsBodyFile(FLAGS_out)) {
-    const Result<std::vector<std::string>> written = WriteBodyFiles(FLAGS_out, scene);
-    if (!written.ok()) return written;
-    files = written.value();
-  } else if (MaybeError error = WriteTrajectoryCsv(FLAGS_out, recording.pendulum, prediction)) {
-    return *error;
+    files = OrFail(WriteBodyFiles(FLAGS_out, scene));
+  } else {
+    OrFail(WriteTrajectoryCsv(FLAGS_out, recording.pendulum, prediction));
   }
   if (!FLAGS_joints_out.empty()) {
-    if (MaybeError error = WriteJointsCsv(FLAGS_joints_out, scene)) return *error;
+    OrFail(WriteJointsCsv(FLAGS_joints_out, scene));
     files.push_back(FLAGS_joints_out);
   }
   if (!FLAGS_json_out.empty()) {
-    if (MaybeError error = WriteJson(FLAGS_json_out, ToJson(scene), -1)) return *error;
+    OrFail(WriteJson(FLAGS_json_out, ToJson(scene), -1));
     files.push_back(FLAGS_json_out);
   }
   return files;
@@ -134,26 +124,23 @@ Result<std::vector<std::string>> WriteScene(const BodyScene& scene, const BodyRe
 // are from the recorded ones; returns the exit code.
 int WriteBodies(const RestorationFlags& flags, const Recording& recorded, SkeletonMapping mapping,
                 const Prediction& prediction) {
-  const Result<std::unique_ptr<Restoration>> restoration =
+  const std::unique_ptr<Restoration> restoration =
       LoadFlaggedRestoration(flags, static_cast<int>(recorded.people.size()));
-  if (!restoration.ok()) return Fail(restoration.error());
-  const Result<BodyRecording> recording = MakeBodyRecording(recorded, mapping);
-  if (!recording.ok()) return Fail(recording.error());
-  std::vector<BodyMotion> bodies = RestoreBodies(*restoration.value(), flags.postprocess,
-                                                 PredictedPeople(recording.value(), prediction));
+  const BodyRecording recording = OrFail(MakeBodyRecording(recorded, mapping));
+  std::vector<BodyMotion> bodies =
+      RestoreBodies(*restoration, flags.postprocess, PredictedPeople(recording, prediction));
   BodyScore score;
   if (IsThatOfTheRecording()) {
-    score = ScoreBodies(recording.value(), bodies, std::max(1, prediction.observed));
+    score = ScoreBodies(recording, bodies, std::max(1, prediction.observed));
   }
-  ToLaboratory(recording.value().pendulum.scene, &bodies);
-  BodyScene scene = SceneOf(recording.value(), std::move(bodies));
-  scene.footprints = PredictedFootprints(recording.value().pendulum, prediction);
-  const Result<std::vector<std::string>> files = WriteScene(scene, recording.value(), prediction);
-  if (!files.ok()) return Fail(files.error());
+  ToLaboratory(recording.pendulum.scene, &bodies);
+  BodyScene scene = SceneOf(recording, std::move(bodies));
+  scene.footprints = PredictedFootprints(recording.pendulum, prediction);
+  const std::vector<std::string> files = WriteScene(scene, recording, prediction);
   std::printf("%s: %d frames of %d %s predicted (%s)\n", scene.id.c_str(), scene.num_frames(),
               scene.num_people(), scene.num_people() == 1 ? "body" : "bodies",
-              std::string(restoration.value()->kind()).c_str());
-  for (const std::string& file : files.value()) std::printf("  %s\n", file.c_str());
+              std::string(restoration->kind()).c_str());
+  for (const std::string& file : files) std::printf("  %s\n", file.c_str());
   if (IsThatOfTheRecording()) {
     std::printf("against the recording: %s\n", MetricsText(score.value, 3).c_str());
   }
@@ -161,9 +148,7 @@ int WriteBodies(const RestorationFlags& flags, const Recording& recorded, Skelet
 }
 
 int WritePendulums(const PendulumRecording& recording, const Prediction& prediction) {
-  if (MaybeError error = WriteTrajectoryCsv(FLAGS_out, recording, prediction)) {
-    return Fail(*error);
-  }
+  OrFail(WriteTrajectoryCsv(FLAGS_out, recording, prediction));
   std::printf("%s: %d frames predicted, written to %s\n", recording.id.c_str(),
               prediction.path.num_frames(), FLAGS_out.c_str());
   if (IsThatOfTheRecording()) {
@@ -174,48 +159,39 @@ int WritePendulums(const PendulumRecording& recording, const Prediction& predict
 }
 
 int Run() {
-  const Result<RestorationFlags> read = CheckedFlags();
-  if (!read.ok()) return Fail(read.error());
-  const RestorationFlags& restoration = read.value();
-  const Result<FuturesFlags> futures = FuturesFlagsFromCommandLine(true);
-  if (!futures.ok()) return Fail(futures.error());
-  const Result<IdentifiedModel> model = LoadFlaggedModel();
-  if (!model.ok()) return Fail(model.error());
-  if (MaybeError error = CheckDraws(futures.value(), model.value())) return Fail(*error);
-  const Result<std::vector<Recording>> recordings =
-      LoadFlaggedRecordings({FLAGS_id}, restoration.given() || NeedsJoints(model.value().options));
-  if (!recordings.ok()) return Fail(recordings.error());
-  const Result<PendulumRecording> pushed =
-      PushedRecording(recordings.value().front(), model.value().mapping);
-  if (!pushed.ok()) return Fail(pushed.error());
-  const PendulumRecording& recording = pushed.value();
+  const RestorationFlags restoration = CheckedFlags();
+  const FuturesFlags futures = FuturesFlagsFromCommandLine(true);
+  const IdentifiedModel model = LoadFlaggedModel();
+  CheckDraws(futures, model);
+  const std::vector<Recording> recordings =
+      LoadFlaggedRecordings({FLAGS_id}, restoration.given() || NeedsJoints(model.options));
+  const PendulumRecording recording = PushedRecording(recordings.front(), model.mapping);
 
-  WarnGrouped(InputWarnings(model.value(), {recording}));
-  if (MaybeError error = CheckObservedFlag({recording}, model.value())) return Fail(*error);
+  WarnGrouped(InputWarnings(model, {recording}));
+  CheckObservedFlag({recording}, model);
   if (FLAGS_frames != 0 && FLAGS_frames <= ObservedFrames()) {
     return Fail("--frames=" + std::to_string(FLAGS_frames) + " leaves none to predict after " +
                 "--observed=" + std::to_string(ObservedFrames()) + "; it must be larger");
   }
-  const Result<Prediction> predicted =
-      PredictFrom(model.value(), recording, ObservedFrames(), FLAGS_frames, ForecastUseFlag());
-  if (!predicted.ok()) return Fail(predicted.error());
-  const Prediction& prediction = predicted.value();
+  const Prediction predicted =
+      OrFail(PredictFrom(model, recording, ObservedFrames(), FLAGS_frames, ForecastUseFlag()));
+  const Prediction& prediction = predicted;
   if (!prediction.status.ok) {
     std::fprintf(stderr, "pushid-predict: recording %s: %s\n", recording.id.c_str(),
                  OutsideText(prediction.status).c_str());
     return kFitFailed;
   }
-  const int code = restoration.given() ? WriteBodies(restoration, recordings.value().front(),
-                                                     model.value().mapping, prediction)
-                                       : WritePendulums(recording, prediction);
+  const int code = restoration.given()
+                       ? WriteBodies(restoration, recordings.front(), model.mapping, prediction)
+                       : WritePendulums(recording, prediction);
   if (code != kDone) return code;
-  if (const ChangedPushes changed = ChangedPushesFromCommandLine().value(); changed.Any()) {
+  if (const ChangedPushes changed = ChangedPushesFromCommandLine(); changed.Any()) {
     std::printf("%s; no recorded motion to compare with\n",
                 ChangedPushesText(changed, recording).c_str());
   }
   std::printf("%s%s", PredictedStepsText(recording, prediction).c_str(),
               EffectText(prediction).c_str());
-  return PrintFutures(futures.value(), model.value(), recording, FLAGS_frames);
+  return PrintFutures(futures, model, recording, FLAGS_frames);
 }
 
 }  // namespace

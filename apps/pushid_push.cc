@@ -40,33 +40,30 @@ std::string PathFromManifest(const std::string& file) {
   return failed ? fs::absolute(file).string() : path.string();
 }
 
-Result<MadePush> FromSensor(const PushFlags& flags, const Recording& recorded,
-                            const PendulumRecording& recording) {
+MadePush FromSensor(const PushFlags& flags, const Recording& recorded,
+                    const PendulumRecording& recording) {
   const SensorSetup setup = flags.SensorOf(recorded.id);
   for (const SensorChoice& sensor : setup.sensors) {
-    if (MaybeError error = OutputFiles().CheckNotRead("--sensors", sensor.file)) return *error;
+    OrFail(OutputFiles().CheckNotRead("--sensors", sensor.file));
   }
-  const Result<SensorPush> made = PushFromSensors(setup, recorded, recording, flags.person);
-  if (!made.ok()) return made.error();
-  for (const std::string& warning : made.value().warnings) Warn(warning);
-  return MadePush{made.value().push, PushKind::kExternal, made.value().how};
+  const SensorPush made = OrFail(PushFromSensors(setup, recorded, recording, flags.person));
+  for (const std::string& warning : made.warnings) Warn(warning);
+  return MadePush{made.push, PushKind::kExternal, made.how};
 }
 
-Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecording& recording) {
+MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& recording) {
   const PushEstimationOptions options{flags.person, flags.smoothing, flags.initial_velocity};
   if (flags.smoothing > recording.num_frames()) {
-    return Error{"--smoothing is longer than recording " + recording.id + ", which has " +
-                 std::to_string(recording.num_frames()) + " frames"};
+    throw Error{"--smoothing is longer than recording " + recording.id + ", which has " +
+                std::to_string(recording.num_frames()) + " frames"};
   }
   PushWindow window = flags.window;
   if (window.start < 0 || window.end < 0) {
-    const Result<PushWindow> found = DetectPushWindow(recording, options);
-    if (!found.ok()) return found.error();
-    if (window.start < 0) window.start = found.value().start;
-    if (window.end < 0) window.end = found.value().end;
+    const PushWindow found = OrFail(DetectPushWindow(recording, options));
+    if (window.start < 0) window.start = found.start;
+    if (window.end < 0) window.end = found.end;
   }
-  const Result<EstimatedPush> push = EstimatePush(recording, window, options);
-  if (!push.ok()) return push.error();
+  const EstimatedPush push = OrFail(EstimatePush(recording, window, options));
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(flags.person, t) > 0.0) continue;
     Warn("hip or ankles are missing at frame " + std::to_string(t) +
@@ -74,11 +71,11 @@ Result<MadePush> ByInverseDynamics(const PushFlags& flags, const PendulumRecordi
     break;
   }
   return MadePush{
-      push.value().push, push.value().kind,
+      push.push, push.kind,
       "by inverse dynamics, " +
           (flags.smoothing > 0 ? "smoothed over " + std::to_string(flags.smoothing) + " frames"
                                : std::string("unsmoothed")),
-      push.value().start_speed};
+      push.start_speed};
 }
 
 void WarnOfFirstRow(const std::string& id, const MadePush& made) {
@@ -125,7 +122,7 @@ void PrintEntry(const RecordingsPush& of) {
 }
 
 // The push in the place of what the entry says of pushes on this person.
-MaybeError SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* entry) {
+void SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* entry) {
   const int person = of.made.push.person;
   std::string there = entry->pushed_person == person ? entry->push_csv : "";
   std::vector<ManifestPush> others;
@@ -137,71 +134,58 @@ MaybeError SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* 
     return Error{"recording " + of.id + " " + what, entry->manifest, entry->line};
   };
   if (!there.empty() && !overwrite) {
-    return where("has a push on person " + std::to_string(person) + " already, " + there +
-                 "; --overwrite replaces it");
+    throw where("has a push on person " + std::to_string(person) + " already, " + there +
+                "; --overwrite replaces it");
   }
   const bool others_stay = !others.empty() || (there.empty() && !entry->push_csv.empty());
   if (others_stay && entry->push_kind != of.made.kind) {
-    return where("has pushes on other people of the kind " + NameOf(entry->push_kind) +
-                 ", and this one is " + NameOf(of.made.kind) + "; an entry can have only one kind");
+    throw where("has pushes on other people of the kind " + NameOf(entry->push_kind) +
+                ", and this one is " + NameOf(of.made.kind) + "; an entry can have only one kind");
   }
   if (entry->pushed_person == person) entry->push_csv.clear();
   entry->pushes = std::move(others);
   entry->pushes.push_back({person, PathFromManifest(of.file), of.made.push.start_frame});
   entry->push_kind = of.made.kind;
-  return std::nullopt;
 }
 
-Result<Manifest> WithPushes(const std::vector<RecordingsPush>& pushes, bool overwrite) {
-  Result<Manifest> manifest = FlaggedManifest();
-  if (!manifest.ok()) return manifest;
-  for (ManifestRecording& entry : manifest.value().recordings) {
+Manifest WithPushes(const std::vector<RecordingsPush>& pushes, bool overwrite) {
+  Manifest manifest = OrFail(FlaggedManifest());
+  for (ManifestRecording& entry : manifest.recordings) {
     for (const RecordingsPush& push : pushes) {
       if (push.id != entry.id) continue;
-      if (MaybeError error = SetPush(push, overwrite, &entry)) return *error;
+      SetPush(push, overwrite, &entry);
     }
   }
   return manifest;
 }
 
 int Run() {
-  const Result<PushFlags> read = PushFlagsFromCommandLine();
-  if (!read.ok()) return Fail(read.error());
-  const PushFlags& flags = read.value();
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings(flags.ids);
-  if (!recordings.ok()) return Fail(recordings.error());
+  const PushFlags flags = PushFlagsFromCommandLine();
+  const std::vector<Recording> recordings = LoadFlaggedRecordings(flags.ids);
   std::vector<RecordingsPush> pushes;
   std::vector<Finding> findings;
-  for (const Recording& recorded : recordings.value()) {
+  for (const Recording& recorded : recordings) {
     const PendulumRecording recording = MakePendulumRecording(recorded, SkeletonMapping::kExact);
-    const Result<MadePush> made = flags.sensor.sensors.empty()
-                                      ? ByInverseDynamics(flags, recording)
-                                      : FromSensor(flags, recorded, recording);
-    if (!made.ok()) return Fail(made.error());
-    WarnOfFirstRow(recorded.id, made.value());
+    const MadePush made = flags.sensor.sensors.empty() ? ByInverseDynamics(flags, recording)
+                                                       : FromSensor(flags, recorded, recording);
+    WarnOfFirstRow(recorded.id, made);
     Recording pushed = recorded;
-    pushed.pushes = {made.value().push};
-    pushed.push_kind = made.value().kind;
+    pushed.pushes = {made.push};
+    pushed.push_kind = made.kind;
     for (Finding& finding : FindingsOf(pushed)) findings.push_back(std::move(finding));
-    pushes.push_back({recorded.id, flags.OutOf(recorded.id), made.value()});
+    pushes.push_back({recorded.id, flags.OutOf(recorded.id), made});
   }
   for (const std::string& warning : FindingTexts(FitFindings(std::move(findings)))) Warn(warning);
   // Every refusal comes before the first file is written.
   Manifest manifest;
-  if (flags.into_manifest) {
-    Result<Manifest> with = WithPushes(pushes, flags.overwrite);
-    if (!with.ok()) return Fail(with.error());
-    manifest = std::move(with.value());
-  }
+  if (flags.into_manifest) manifest = WithPushes(pushes, flags.overwrite);
   for (size_t i = 0; i < pushes.size(); ++i) {
-    if (MaybeError error = WritePushCsv(pushes[i].file, pushes[i].made.push.force)) {
-      return Fail(*error);
-    }
-    PrintPush(pushes[i], 1.0 / recordings.value()[i].fps);
+    OrFail(WritePushCsv(pushes[i].file, pushes[i].made.push.force));
+    PrintPush(pushes[i], 1.0 / recordings[i].fps);
     if (!flags.into_manifest) PrintEntry(pushes[i]);
   }
   if (!flags.into_manifest) return kDone;
-  if (MaybeError error = WriteManifest(manifest.path, manifest)) return Fail(*error);
+  OrFail(WriteManifest(manifest.path, manifest));
   std::printf("%zu %s written to %s\n", pushes.size(), pushes.size() == 1 ? "entry" : "entries",
               manifest.path.c_str());
   return kDone;

@@ -46,7 +46,7 @@ constexpr char kConverter[] = "rsvg-convert";
 constexpr char kResolution[] = "600";
 
 // Each picture in its turn. An interrupt ends it, and the folder's destructor cleans up.
-MaybeError Convert(const std::string& folder) {
+void Convert(const std::string& folder) {
   SignalReader reader;
   std::vector<fs::path> pictures;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -56,129 +56,119 @@ MaybeError Convert(const std::string& folder) {
   for (const fs::path& svg : pictures) {
     fs::path converted = svg;
     converted.replace_extension(FLAGS_figure_format);
-    const Result<pid_t> child =
+    const pid_t child = OrFail(
         StartChild({{FindProgram(kConverter), "--dpi-x", kResolution, "--dpi-y", kResolution,
                      "--format", FLAGS_figure_format, "--output", converted.string(), svg.string()},
                     log,
-                    log});
-    if (!child.ok()) return child.error();
+                    log}));
     ChildEnd end;
     while (end.pid == 0) {
       reader.Wait(1000);
       if (reader.interrupted()) {
-        KillChild(child.value(), SIGKILL);
-        return Error{"interrupted; nothing was written"};
+        KillChild(child, SIGKILL);
+        throw Error{"interrupted; nothing was written"};
       }
       end = NextEnded();
     }
     if (end.exit_code != 0) {
-      return Error{
+      throw Error{
           std::string(kConverter) + " failed on a figure of this name: try --figure_format=svg",
           svg.filename().string()};
     }
     fs::remove(svg);
   }
   fs::remove(log);
-  return std::nullopt;
 }
 
 bool FiguresAsked() { return !FLAGS_figures_out.empty(); }
 
 // Before anything is computed: flags that make no sense, a folder with other things in it, or no
 // program that makes PDF and PNG of SVG.
-MaybeError CheckFigureFlags() {
-  if (!FiguresAsked()) return std::nullopt;
+void CheckFigureFlags() {
+  if (!FiguresAsked()) return;
   if (FLAGS_figure_format != "svg" && FLAGS_figure_format != "pdf" &&
       FLAGS_figure_format != "png") {
-    return Error{"--figure_format is " + Quoted(FLAGS_figure_format) +
-                 "; it must be svg, pdf or png"};
+    throw Error{"--figure_format is " + Quoted(FLAGS_figure_format) +
+                "; it must be svg, pdf or png"};
   }
   if (!(FLAGS_figure_width >= 40.0 && FLAGS_figure_width <= 1000.0)) {
-    return Error{"--figure_width is " + Rounded(FLAGS_figure_width) + "; it must be 40 to 1000 mm"};
+    throw Error{"--figure_width is " + Rounded(FLAGS_figure_width) + "; it must be 40 to 1000 mm"};
   }
   if (!(FLAGS_figure_font >= 4.0 && FLAGS_figure_font <= 40.0)) {
-    return Error{"--figure_font is " + Rounded(FLAGS_figure_font) + "; it must be 4 to 40 points"};
+    throw Error{"--figure_font is " + Rounded(FLAGS_figure_font) + "; it must be 4 to 40 points"};
   }
   if (FLAGS_figure_format != "svg" && FindProgram(kConverter).empty()) {
-    return Error{
+    throw Error{
         "--figure_format=" + FLAGS_figure_format + " needs " + kConverter +
         ", which is not installed: apt-get install librsvg2-bin, or use --figure_format=svg"};
   }
   std::error_code ignored;
-  if (!fs::exists(FLAGS_figures_out, ignored)) return AtomicFolder().Open(FLAGS_figures_out);
+  if (!fs::exists(FLAGS_figures_out, ignored)) {
+    return OrFail(AtomicFolder().Open(FLAGS_figures_out));
+  }
   if (!fs::is_directory(FLAGS_figures_out, ignored))
-    return Error{"--figures_out names a file; name a folder", FLAGS_figures_out};
-  if (fs::is_empty(FLAGS_figures_out, ignored)) return std::nullopt;
+    throw Error{"--figures_out names a file; name a folder", FLAGS_figures_out};
+  if (fs::is_empty(FLAGS_figures_out, ignored)) return;
   const std::string captions = (fs::path(FLAGS_figures_out) / kCaptionsFile).string();
-  if (fs::exists(captions, ignored)) return CheckNew("figures_out", captions);
-  return Error{"holds other files than figures of pushid-report; choose another --figures_out",
-               FLAGS_figures_out};
+  if (fs::exists(captions, ignored)) return OrFail(CheckNew("figures_out", captions));
+  throw Error{"holds other files than figures of pushid-report; choose another --figures_out",
+              FLAGS_figures_out};
 }
 
 // The folder as a whole, or nothing of it.
-MaybeError WriteFigures(const FittedModel& model, const Report& report) {
+void WriteFigures(const FittedModel& model, const Report& report) {
   AtomicFolder folder;
-  if (MaybeError failed = folder.Open(FLAGS_figures_out)) return failed;
+  OrFail(folder.Open(FLAGS_figures_out));
   std::vector<NamedText> files = FigureFiles(report, FLAGS_figure_width, FLAGS_figure_font);
   const TextTable parameters = PaperTable(model.fit);
   files.emplace_back("parameters.tex", LatexOf(parameters));
   files.emplace_back("parameters.md", MarkdownOf(parameters));
   for (const auto& [name, text] : files) {
     const std::string path = (fs::path(folder.path()) / name).string();
-    if (MaybeError failed = WriteFileAtomically(path, text)) return failed;
+    OrFail(WriteFileAtomically(path, text));
   }
-  if (FLAGS_figure_format != "svg") {
-    if (MaybeError failed = Convert(folder.path())) return failed;
-  }
-  if (MaybeError failed = folder.Commit()) return failed;
+  if (FLAGS_figure_format != "svg") Convert(folder.path());
+  OrFail(folder.Commit());
   std::fprintf(stderr, "figures and tables written to %s\n", FLAGS_figures_out.c_str());
-  return std::nullopt;
 }
 
 // The recordings to draw: those of the flags, or those that were fitted.
-Result<std::vector<Recording>> RecordingsOf(const FitResult& fit) {
-  if (FLAGS_recordings.empty()) return std::vector<Recording>();
+std::vector<Recording> RecordingsOf(const FitResult& fit) {
+  if (FLAGS_recordings.empty()) return {};
   return LoadFlaggedRecordings(FittedIds(fit), true);
 }
 
 int WriteWhole(const FittedModel& model) {
-  const Result<std::vector<Recording>> recordings = RecordingsOf(model.fit);
-  if (!recordings.ok()) return Fail(recordings.error());
+  const std::vector<Recording> recordings = RecordingsOf(model.fit);
   ProgressLine line;
   const BuildReportOptions options{FLAGS_num_threads, line.OfJobs("recording")};
-  Report report = BuildReport(model, recordings.value(), options);
+  Report report = BuildReport(model, recordings, options);
   line.Finish();
   if (FLAGS_text) std::printf("%s", ToText(report).c_str());
-  if (FiguresAsked()) {
-    if (MaybeError error = WriteFigures(model, report)) return Fail(*error);
-  }
+  if (FiguresAsked()) WriteFigures(model, report);
   if (FLAGS_html_out.empty()) return kDone;
   if (FLAGS_explore) report.sections.insert(report.sections.begin() + 1, ExploreSection(model));
-  if (MaybeError error = WriteFileAtomically(FLAGS_html_out, ToPage(report))) return Fail(*error);
+  OrFail(WriteFileAtomically(FLAGS_html_out, ToPage(report)));
   std::fprintf(stderr, "report written to %s\n", FLAGS_html_out.c_str());
-  if (recordings.value().empty()) {
+  if (recordings.empty()) {
     Warn("without --recordings the report shows no motion and no figure");
   }
   return kDone;
 }
 
 int Run() {
-  for (MaybeError error :
-       {Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote"),
-        CheckPageName("--html_out", FLAGS_html_out), CheckOutputFiles({FLAGS_html_out}),
-        CheckFigureFlags()}) {
-    if (error) return Fail(*error);
-  }
-  const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
-  if (!model.ok()) return Fail(model.error());
+  Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote");
+  OrFail(CheckPageName("--html_out", FLAGS_html_out));
+  OrFail(CheckOutputFiles({FLAGS_html_out}));
+  CheckFigureFlags();
+  const FittedModel model = OrFail(ReadFittedModel(FLAGS_model));
   if (!FLAGS_truth.empty()) {
-    const Result<std::map<std::string, double>> truth = ReadTruth(FLAGS_truth);
-    if (!truth.ok()) return Fail(truth.error());
-    std::printf("%s", TruthTable(model.value().fit, truth.value()).c_str());
+    const std::map<std::string, double> truth = OrFail(ReadTruth(FLAGS_truth));
+    std::printf("%s", TruthTable(model.fit, truth).c_str());
     return kDone;
   }
-  if (FLAGS_text || !FLAGS_html_out.empty() || FiguresAsked()) return WriteWhole(model.value());
-  std::printf("%s", ReportText(model.value()).c_str());
+  if (FLAGS_text || !FLAGS_html_out.empty() || FiguresAsked()) return WriteWhole(model);
+  std::printf("%s", ReportText(model).c_str());
   return kDone;
 }
 

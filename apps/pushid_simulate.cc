@@ -80,24 +80,21 @@ namespace {
 using namespace pushid;
 
 // The library checks them too, but knows no flags.
-MaybeError CheckRecordingNumbers() {
-  for (MaybeError error :
-       {CheckRange("people", FLAGS_people, 1, 10000),
-        CheckRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000),
-        CheckRange("group_size", FLAGS_group_size, 1, std::min(FLAGS_people, 100)),
-        CheckRange("frames", FLAGS_frames, 3, 100000), CheckRange("fps", FLAGS_fps, 10, 10000),
-        CheckRange("noise", FLAGS_noise, 0, 0.1),
-        CheckRange("ground_size", FLAGS_ground_size, 0, 1),
-        CheckRange("plate_noise", FLAGS_plate_noise, 0, 0.1),
-        CheckRange("recording_spread", FLAGS_recording_spread, 0, 2),
-        CheckRange("subject_spread", FLAGS_subject_spread, 0, 2)}) {
-    if (error) return error;
-  }
-  return std::nullopt;
+void CheckRecordingNumbers() {
+  CheckRange("people", FLAGS_people, 1, 10000);
+  CheckRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000);
+  CheckRange("group_size", FLAGS_group_size, 1, std::min(FLAGS_people, 100));
+  CheckRange("frames", FLAGS_frames, 3, 100000);
+  CheckRange("fps", FLAGS_fps, 10, 10000);
+  CheckRange("noise", FLAGS_noise, 0, 0.1);
+  CheckRange("ground_size", FLAGS_ground_size, 0, 1);
+  CheckRange("plate_noise", FLAGS_plate_noise, 0, 0.1);
+  CheckRange("recording_spread", FLAGS_recording_spread, 0, 2);
+  CheckRange("subject_spread", FLAGS_subject_spread, 0, 2);
 }
 
 // What --ground names; a file is sampled at the recordings' frames.
-MaybeError SetGround(SyntheticOptions* study) {
+void SetGround(SyntheticOptions* study) {
   const std::optional<GroundKind> kind = FromName<GroundKind>(FLAGS_ground);
   if (kind && *kind != GroundKind::kFile) {
     study->ground = *kind;
@@ -106,8 +103,8 @@ MaybeError SetGround(SyntheticOptions* study) {
     if (*kind == GroundKind::kSumOfSines && !Given("ground_size")) {
       study->ground_size_m = kSwayOfEach;
     }
-    if (study->pushes || study->ground != GroundKind::kNone) return std::nullopt;
-    return Error{"--push_kind=none leaves nothing that moves anybody; add --ground=step"};
+    if (study->pushes || study->ground != GroundKind::kNone) return;
+    throw Error{"--push_kind=none leaves nothing that moves anybody; add --ground=step"};
   }
   study->ground = GroundKind::kFile;
   ManifestRecording entry;
@@ -116,35 +113,27 @@ MaybeError SetGround(SyntheticOptions* study) {
   frames.fps = study->fps;
   frames.people.resize(1);
   frames.people[0].hip.resize(study->frames);
-  Result<std::vector<GroundPose>> read = LoadGround(entry, frames);
-  if (!read.ok()) return read.error();
-  study->ground_poses = std::move(read.value());
-  return std::nullopt;
+  study->ground_poses = OrFail(LoadGround(entry, frames));
 }
 
 // All but the truth: the terms of the model that the flags name, not its parameters.
-Result<SyntheticOptions> StudyFromCommandLine() {
-  for (MaybeError error :
-       {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
-        CheckRecordingNumbers(),
-        CheckExcludes({"truth_stance", "truth_delay", "truth_noise"}, "model",
-                      "--model sets the parameters of the people; leave --{} out")}) {
-    if (error) return *error;
-  }
+SyntheticOptions StudyFromCommandLine() {
+  Require("out", FLAGS_out, "name the folder to write");
+  OrFail(CheckOutputFolder("out", FLAGS_out));
+  CheckRecordingNumbers();
+  CheckExcludes({"truth_stance", "truth_delay", "truth_noise"}, "model",
+                "--model sets the parameters of the people; leave --{} out");
   SyntheticOptions study;
   study.pushes = FLAGS_push_kind != "none";
   const std::optional<PushKind> kind =
       study.pushes ? FromName<PushKind>(FLAGS_push_kind) : PushKind::kExternal;
   if (!kind || *kind == PushKind::kNetWithoutFriction) {
-    return Error{"--push_kind is '" + FLAGS_push_kind +
-                 "'; it must be net or external, or none with --ground"};
+    throw Error{"--push_kind is '" + FLAGS_push_kind +
+                "'; it must be net or external, or none with --ground"};
   }
-  for (MaybeError error :
-       {ParseName("--truth_stance", FLAGS_truth_stance, &study.model.stance),
-        ParseName("--truth_delay", FLAGS_truth_delay, &study.model.delay),
-        ParseName("--truth_noise", FLAGS_truth_noise, &study.model.process_noise)}) {
-    if (error) return *error;
-  }
+  OrFail(ParseName("--truth_stance", FLAGS_truth_stance, &study.model.stance));
+  OrFail(ParseName("--truth_delay", FLAGS_truth_delay, &study.model.delay));
+  OrFail(ParseName("--truth_noise", FLAGS_truth_noise, &study.model.process_noise));
   study.subjects = FLAGS_people;
   study.people_in_row = FLAGS_group_size;
   study.recordings_per_subject = FLAGS_recordings_per_person;
@@ -158,7 +147,7 @@ Result<SyntheticOptions> StudyFromCommandLine() {
   study.plates = FLAGS_plates;
   study.plate_noise_m = FLAGS_plate_noise;
   study.ground_size_m = FLAGS_ground_size;
-  if (MaybeError error = SetGround(&study)) return *error;
+  SetGround(&study);
   return study;
 }
 
@@ -181,19 +170,16 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
 }
 
 // --clips, --turns and --laboratory (allowed[0], of this value) draw all but these themselves.
-MaybeError CheckNothingBut(const std::vector<std::string>& allowed, int count) {
+void CheckNothingBut(const std::vector<std::string>& allowed, int count) {
   for (const std::string& name : ChangedFlags()) {
     if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
-      return Error{"--" + name + " says nothing to --" + allowed[0] + "; leave it out"};
+      throw Error{"--" + name + " says nothing to --" + allowed[0] + "; leave it out"};
     }
   }
-  for (MaybeError error :
-       {Require("out", FLAGS_out, "name the folder to write"), CheckOutputFolder("out", FLAGS_out),
-        CheckRange(allowed[0].c_str(), count, 1, 1000),
-        CheckRange("frames", FLAGS_frames, 3, 100000)}) {
-    if (error) return error;
-  }
-  return std::nullopt;
+  Require("out", FLAGS_out, "name the folder to write");
+  OrFail(CheckOutputFolder("out", FLAGS_out));
+  CheckRange(allowed[0].c_str(), count, 1, 1000);
+  CheckRange("frames", FLAGS_frames, 3, 100000);
 }
 
 int WriteTurns() {
@@ -201,9 +187,8 @@ int WriteTurns() {
   options.recordings = FLAGS_turns;
   if (Given("frames")) options.frames = FLAGS_frames;
   options.seed = FLAGS_seed;
-  MaybeError error = CheckNothingBut({"turns", "frames", "seed", "out", "overwrite"}, FLAGS_turns);
-  if (!error) error = WriteSyntheticTurns(FLAGS_out, options);
-  if (error) return Fail(*error);
+  CheckNothingBut({"turns", "frames", "seed", "out", "overwrite"}, FLAGS_turns);
+  OrFail(WriteSyntheticTurns(FLAGS_out, options));
   std::printf("%d recordings of three people who talk in turns: %s\n", options.recordings,
               (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
   return kDone;
@@ -214,9 +199,8 @@ int WriteClips() {
   options.clips = FLAGS_clips;
   if (Given("frames")) options.frames = FLAGS_frames;
   options.seed = FLAGS_seed;
-  MaybeError error = CheckNothingBut({"clips", "frames", "seed", "out", "overwrite"}, FLAGS_clips);
-  if (!error) error = WriteSyntheticClips(FLAGS_out, options);
-  if (error) return Fail(*error);
+  CheckNothingBut({"clips", "frames", "seed", "out", "overwrite"}, FLAGS_clips);
+  OrFail(WriteSyntheticClips(FLAGS_out, options));
   std::printf("%d clips of each action and one to test: %s\n", options.clips, FLAGS_out.c_str());
   return kDone;
 }
@@ -225,9 +209,8 @@ int WriteOfLaboratory() {
   LaboratoryOptions options;
   options.people = FLAGS_laboratory;
   options.seed = FLAGS_seed;
-  MaybeError error = CheckNothingBut({"laboratory", "seed", "out", "overwrite"}, FLAGS_laboratory);
-  if (!error) error = WriteLaboratoryStudy(FLAGS_out, options);
-  if (error) return Fail(*error);
+  CheckNothingBut({"laboratory", "seed", "out", "overwrite"}, FLAGS_laboratory);
+  OrFail(WriteLaboratoryStudy(FLAGS_out, options));
   std::printf("%d people, %d pulls each that they withstand and %d after which they step: %s\n",
               options.people, options.standing, options.stepping,
               (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
@@ -238,33 +221,26 @@ int Run() {
   if (FLAGS_turns != 0) return WriteTurns();
   if (FLAGS_clips != 0) return WriteClips();
   if (FLAGS_laboratory != 0) return WriteOfLaboratory();
-  const Result<SyntheticOptions> read = StudyFromCommandLine();
-  if (!read.ok()) return Fail(read.error());
-  SyntheticOptions study = read.value();
+  SyntheticOptions study = StudyFromCommandLine();
   const ModelFlags named = ModelFlagsFromCommandLine();
-  const Result<IdentifiedModel> truth =
-      named.file.empty() ? SyntheticTruth(study, named.set) : LoadFlaggedModel();
-  if (!truth.ok()) return Fail(truth.error());
-  study.model = truth.value().options;
-  study.parameters = truth.value().parameters;
+  const IdentifiedModel truth =
+      named.file.empty() ? OrFail(SyntheticTruth(study, named.set)) : LoadFlaggedModel();
+  study.model = truth.options;
+  study.parameters = truth.parameters;
   if (study.people_in_row > 1 && !study.model.interaction.Any()) {
     Warn("the people of --model do not act on each other: only the pushed one of a group moves");
   }
-  const Result<std::vector<SyntheticRecording>> made = MakeSyntheticRecordings(study);
-  if (!made.ok()) return Fail(made.error());
-  for (const std::string& warning : ExtrapolationWarnings(
-           truth.value(),
-           MakePendulumRecordings(Recordings(made.value()), truth.value().mapping))) {
+  const std::vector<SyntheticRecording> made = OrFail(MakeSyntheticRecordings(study));
+  for (const std::string& warning :
+       ExtrapolationWarnings(truth, MakePendulumRecordings(Recordings(made), truth.mapping))) {
     Warn(warning);
   }
-  if (MaybeError error = WriteSyntheticRecordings(FLAGS_out, study, made.value())) {
-    return Fail(*error);
-  }
-  PrintTruth(truth.value(), study);
+  OrFail(WriteSyntheticRecordings(FLAGS_out, study, made));
+  PrintTruth(truth, study);
   const std::string groups =
       study.people_in_row > 1 ? " in rows of " + std::to_string(study.people_in_row) : "";
   std::printf("%zu recordings of %d people%s, joint noise %s mm: %s lists the BVH and push files\n",
-              made.value().size(), study.subjects, groups.c_str(),
+              made.size(), study.subjects, groups.c_str(),
               Rounded(1000.0 * study.joint_noise_m, 3).c_str(),
               (std::filesystem::path(FLAGS_out) / "manifest.json").c_str());
   return kDone;

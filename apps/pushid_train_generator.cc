@@ -31,7 +31,7 @@ std::string Inside(const std::string& folder, const char* name) {
 
 int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecording>& recordings) {
   TrainingLine line;
-  const Result<GeneratorValidation> validation =
+  const GeneratorValidation validation = OrFail(
       CrossValidateGenerator(recordings, flags.options,
                              {flags.observed,
                               flags.scheme,
@@ -41,21 +41,20 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
                               flags.changes,
                               {},
                               flags.samples},
-                             [&](const std::string& step, double done) { line.Show(step, done); });
+                             [&](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
-  if (!validation.ok()) return Fail(validation.error());
-  std::printf("%s", BodyText(validation.value().evaluation).c_str());
-  const GroupSpread& spread = validation.value().spread;
+  std::printf("%s", BodyText(validation.evaluation).c_str());
+  const GroupSpread& spread = validation.spread;
   if (spread.samples > 0) std::printf("\n%s", SpreadText(spread).c_str());
   if (flags.json_out.empty()) return kDone;
   Json json = ResultHead(kScoresSchema);
-  AddBodyJson(validation.value().evaluation, &json);
+  AddBodyJson(validation.evaluation, &json);
   if (spread.samples > 0) {
     json["spread"] = ToJson(spread);
-    json["spread_of_noise_alone"] = ToJson(validation.value().noise_alone);
+    json["spread_of_noise_alone"] = ToJson(validation.noise_alone);
   }
-  json["run"] = {{"training_seconds", validation.value().training_seconds}};
-  if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
+  json["run"] = {{"training_seconds", validation.training_seconds}};
+  OrFail(WriteJson(flags.json_out, json));
   return kDone;
 }
 
@@ -63,29 +62,26 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
 int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json& data) {
   SetForData(samples, &flags.options);
   flags.options.checkpoint = Inside(flags.out, "checkpoint.bin");
-  if (MaybeError error = CheckWritable(flags.options.checkpoint)) return Fail(*error);
+  OrFail(CheckWritable(flags.options.checkpoint));
   SayWhenInterrupted(KeptCheckpoints(flags.out));
   TrainingLine line;
-  Result<TrainedGenerator> trained =
-      TrainGenerator(samples, flags.options, [&](const TrainingPoint& point, double done) {
+  TrainedGenerator trained =
+      OrFail(TrainGenerator(samples, flags.options, [&](const TrainingPoint& point, double done) {
         line.Show(point.stage + ", step " + std::to_string(point.epoch), done);
-      });
+      }));
   line.Finish();
-  if (!trained.ok()) return Fail(trained.error());
-  GeneratorSettings& settings = trained.value().networks.settings;
+  GeneratorSettings& settings = trained.networks.settings;
   settings.training = Json{{"version", Version()}, {"configuration", EffectiveFlags()}};
   (*settings.training)["data"] = data;
-  (*settings.training)["curve"] = CurveJson(trained.value().curve);
+  (*settings.training)["curve"] = CurveJson(trained.curve);
   const std::string title = NameOf(flags.options.kind) + ", " + NameOf(flags.data) + ", " +
                             std::to_string(data.size()) + " motions";
-  if (MaybeError error = WriteFileAtomically(Inside(flags.out, "curve.svg"),
-                                             TrainingCurveSvg(trained.value().curve, title))) {
-    return Fail(*error);
-  }
-  if (MaybeError error = WriteGenerator(flags.out, trained.value().networks)) return Fail(*error);
+  OrFail(
+      WriteFileAtomically(Inside(flags.out, "curve.svg"), TrainingCurveSvg(trained.curve, title)));
+  OrFail(WriteGenerator(flags.out, trained.networks));
   std::printf("%s: %d seeds, %s s%s; %s\n", title.c_str(), flags.options.seeds,
               Rounded(line.Seconds(), 3).c_str(),
-              trained.value().resumed ? " (resumed from a checkpoint)" : "",
+              trained.resumed ? " (resumed from a checkpoint)" : "",
               Inside(flags.out, "generator.json").c_str());
   return kDone;
 }
@@ -93,35 +89,33 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
 constexpr int kFolds = 4;  // of the comparison
 const std::vector<double> kBlends = {0.25, 0.5, 0.75};
 
-Result<FitOptions> PhysicsOf(const TrainGeneratorFlags& flags,
-                             const std::vector<PendulumRecording>& pendulums) {
+FitOptions PhysicsOf(const TrainGeneratorFlags& flags,
+                     const std::vector<PendulumRecording>& pendulums) {
   if (flags.physics) return *flags.physics;
-  Result<FitOptions> options = MakeFitOptions({}, &pendulums);
-  if (!options.ok()) return options;
-  options.value().num_threads = flags.options.num_threads;
-  if (MaybeError error = PrepareFit(pendulums, &options.value())) return *error;
+  FitOptions options = OrFail(MakeFitOptions({}, &pendulums));
+  options.num_threads = flags.options.num_threads;
+  OrFail(PrepareFit(pendulums, &options));
   return options;
 }
 
-MaybeError WritePhysics(const std::vector<PendulumRecording>& pendulums, const FitOptions& options,
-                        const std::string& file) {
+void WritePhysics(const std::vector<PendulumRecording>& pendulums, const FitOptions& options,
+                  const std::string& file) {
   const double begin = Now();
   FittedModel model;
   model.fit = Fit(pendulums, options);
-  if (!model.fit.ok()) return Error{"the pendulum's fit failed: " + model.fit.message};
+  if (!model.fit.ok()) throw Error{"the pendulum's fit failed: " + model.fit.message};
   model.provenance = ProvenanceOfRun();
-  return WriteModelFile(file, model, options.num_threads, begin);
+  OrFail(WriteModelFile(file, model, options.num_threads, begin));
 }
 
 // --accuracy=best: compares, then writes physics and restoration of all recordings into --out; the
 // generator itself is still to be trained. Returns what is to forecast.
-Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
-                                   const std::vector<BodyRecording>& recordings) {
+ForecastChoice TrainBeside(const TrainGeneratorFlags& flags,
+                           const std::vector<BodyRecording>& recordings) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  const Result<FitOptions> physics = PhysicsOf(flags, pendulums);
-  if (!physics.ok()) return physics.error();
+  const FitOptions physics = PhysicsOf(flags, pendulums);
   BestForecastOptions options;
-  options.chain.fit = physics.value();
+  options.chain.fit = physics;
   options.chain.training.seed = flags.options.seed;
   options.chain.training.num_threads = flags.options.num_threads;
   // A generator of few steps, a try, is compared with a restoration of few.
@@ -135,77 +129,63 @@ Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
   options.validation.blends = kBlends;
   TrainingLine line;
   const RunProgress show = [&line](const std::string& step, double done) { line.Show(step, done); };
-  const auto candidates = CompareForecasts(recordings, options, show);
+  const auto candidates = OrFail(CompareForecasts(recordings, options, show));
   line.Finish();
-  if (!candidates.ok()) return candidates.error();
-  std::printf("%s", CandidatesText(candidates.value()).c_str());
-  MaybeError error = WriteJson(Inside(flags.out, "candidates.json"), ToJson(candidates.value()));
-  if (!error) error = WritePhysics(pendulums, physics.value(), Inside(flags.out, kChosenPhysics));
-  if (error) return *error;
+  std::printf("%s", CandidatesText(candidates).c_str());
+  OrFail(WriteJson(Inside(flags.out, "candidates.json"), ToJson(candidates)));
+  WritePhysics(pendulums, physics, Inside(flags.out, kChosenPhysics));
   const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
-  const auto restoration = TrainFromRecordings(recordings, all, options.chain, show);
+  const auto restoration = OrFail(TrainFromRecordings(recordings, all, options.chain, show));
   line.Finish();
-  if (!restoration.ok()) return restoration.error();
-  error = WriteRestorationFile(Inside(flags.out, kChosenRestoration), restoration.value().file);
-  if (error) return *error;
-  return candidates.value().front().choice;
+  OrFail(WriteRestorationFile(Inside(flags.out, kChosenRestoration), restoration.file));
+  return candidates.front().choice;
 }
 
 int FromClips(const TrainGeneratorFlags& flags) {
-  const Result<MocapFolder> mocap = ReadMocapFolder(flags.folder);
-  if (!mocap.ok()) return Fail(mocap.error());
-  if (MaybeError error = MakeFolder(flags.out)) return Fail(*error);
+  const MocapFolder mocap = OrFail(ReadMocapFolder(flags.folder));
+  OrFail(MakeFolder(flags.out));
   Json data = Json::array();
-  for (const MocapClip& clip : mocap.value().clips) {
+  for (const MocapClip& clip : mocap.clips) {
     if (clip.is_test) continue;
     data.push_back({{"clip", clip.name}, {"content_hash", clip.content_hash}});
   }
-  return Train(flags, SamplesOf(mocap.value(), flags.with_validation), data);
+  return Train(flags, SamplesOf(mocap, flags.with_validation), data);
 }
 
 int FromPushes(const TrainGeneratorFlags& flags) {
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
-  if (!recordings.ok()) return Fail(recordings.error());
+  const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   // Groups move without a push too; people by themselves, and physics, need one.
   const bool needs_push = !RowOf(flags.options.kind).groups || flags.physics ||
                           flags.accuracy == ForecastAccuracy::kBest;
-  if (needs_push) {
-    if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
-  }
-  const Result<std::vector<BodyRecording>> bodies =
-      MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
-  if (!bodies.ok()) return Fail(bodies.error());
-  if (flags.crossvalidate > 0) return CrossValidate(flags, bodies.value());
-  if (MaybeError error = MakeFolder(flags.out)) return Fail(*error);
+  if (needs_push) CheckPushed(recordings);
+  const std::vector<BodyRecording> bodies =
+      OrFail(MakeBodyRecordings(recordings, SkeletonMapping::kExact));
+  if (flags.crossvalidate > 0) return CrossValidate(flags, bodies);
+  OrFail(MakeFolder(flags.out));
   Json data = Json::array();
-  const std::vector<int> all = Others({}, static_cast<int>(bodies.value().size()));
+  const std::vector<int> all = Others({}, static_cast<int>(bodies.size()));
   std::vector<int> learnt = all, held;
-  for (const BodyRecording& body : bodies.value()) {
+  for (const BodyRecording& body : bodies) {
     data.push_back({{"id", body.pendulum.id}, {"content_hash", body.pendulum.content_hash}});
   }
   if (flags.held_out > 0.0 && all.size() > 1) {
-    SplitHeldOut(PendulumsOf(bodies.value()), all, flags.held_out, flags.options.seed, &learnt,
-                 &held);
+    SplitHeldOut(PendulumsOf(bodies), all, flags.held_out, flags.options.seed, &learnt, &held);
   }
   std::vector<GroupHips> hips;
   if (flags.pendulum_input) {
-    hips = OutOfFoldHips(bodies.value(), all, *flags.physics, flags.options.seed);
+    hips = OutOfFoldHips(bodies, all, *flags.physics, flags.options.seed);
   }
-  GeneratorSamples samples = SamplesOf(bodies.value(), learnt, held, flags.observed, hips);
+  GeneratorSamples samples = SamplesOf(bodies, learnt, held, flags.observed, hips);
   if (flags.accuracy == ForecastAccuracy::kBest) {
-    const Result<ForecastChoice> choice = TrainBeside(flags, bodies.value());
-    if (!choice.ok()) return Fail(choice.error());
-    samples.settings.choice = choice.value();
+    samples.settings.choice = TrainBeside(flags, bodies);
   }
   return Train(flags, samples, data);
 }
 
 int Run() {
-  const Result<TrainGeneratorFlags> flags = TrainGeneratorFlagsFromCommandLine();
-  if (!flags.ok()) return Fail(flags.error());
-  SetBlasThreads(flags.value().options.num_threads);
-  return flags.value().data == GeneratorData::kCmu ? FromClips(flags.value())
-                                                   : FromPushes(flags.value());
+  const TrainGeneratorFlags flags = TrainGeneratorFlagsFromCommandLine();
+  SetBlasThreads(flags.options.num_threads);
+  return flags.data == GeneratorData::kCmu ? FromClips(flags) : FromPushes(flags);
 }
 
 }  // namespace

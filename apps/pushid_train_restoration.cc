@@ -25,18 +25,16 @@ using namespace pushid;
 int CrossValidate(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& recordings,
                   const RestorationRunOptions& options) {
   TrainingLine line;
-  const Result<ChainValidation> validation =
+  const ChainValidation validation = OrFail(
       CrossValidateChain(recordings, options, flags.scheme, flags.crossvalidate,
-                         [&](const std::string& step, double done) { line.Show(step, done); });
+                         [&](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
-  if (!validation.ok()) return Fail(validation.error());
-  std::printf("%s", BodyText(validation.value().evaluation).c_str());
+  std::printf("%s", BodyText(validation.evaluation).c_str());
   if (flags.json_out.empty()) return kDone;
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
-  AddBodyJson(validation.value().evaluation, &json);
-  json["run"] = {{"training_seconds", validation.value().training_seconds},
-                 {"rounds", validation.value().rounds}};
-  if (MaybeError error = WriteJson(flags.json_out, json)) return Fail(*error);
+  AddBodyJson(validation.evaluation, &json);
+  json["run"] = {{"training_seconds", validation.training_seconds}, {"rounds", validation.rounds}};
+  OrFail(WriteJson(flags.json_out, json));
   return kDone;
 }
 
@@ -62,46 +60,38 @@ nlohmann::ordered_json TrainingJson(const std::vector<BodyRecording>& recordings
 }
 
 // Alone, or as a whole with the pendulum.
-Result<TrainedRestoration> Learn(const TrainRestorationFlags& flags,
-                                 const std::vector<BodyRecording>& recordings,
-                                 const std::vector<int>& all, const RestorationRunOptions& options,
-                                 TrainingLine* line) {
+TrainedRestoration Learn(const TrainRestorationFlags& flags,
+                         const std::vector<BodyRecording>& recordings, const std::vector<int>& all,
+                         const RestorationRunOptions& options, TrainingLine* line) {
   const auto told = [line](const std::string& step, double done) { line->Show(step, done); };
   if (options.fit.body_weight <= 0.0) {
     SayWhenInterrupted(KeptCheckpoints(flags.out));
-    return TrainFromRecordings(recordings, all, options, told);
+    return OrFail(TrainFromRecordings(recordings, all, options, told));
   }
   SayWhenInterrupted("joint training keeps no checkpoints; run the same command to start again");
-  Result<TrainedChain> chain = TrainChain(recordings, all, options, told);
-  if (!chain.ok()) return chain.error();
-  return std::move(chain.value().restoration);
+  return OrFail(TrainChain(recordings, all, options, told)).restoration;
 }
 
 int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& recordings,
           RestorationRunOptions options) {
-  if (MaybeError error = MakeFolder(flags.out)) return Fail(*error);
+  OrFail(MakeFolder(flags.out));
   const auto in_out = [&flags](const char* name) {
     return (std::filesystem::path(flags.out) / name).string();
   };
   options.training.checkpoint = in_out("checkpoint.bin");
-  if (MaybeError error = CheckWritable(options.training.checkpoint)) return Fail(*error);
+  OrFail(CheckWritable(options.training.checkpoint));
   const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
   TrainingLine line;
-  const Result<TrainedRestoration> learnt = Learn(flags, recordings, all, options, &line);
+  const TrainedRestoration trained = Learn(flags, recordings, all, options, &line);
   line.Finish();
-  if (!learnt.ok()) return Fail(learnt.error());
-  const TrainedRestoration& trained = learnt.value();
   std::fprintf(stderr, "%s", SizesText(trained.sizes).c_str());
   RestorationFile file = trained.file;
   file.training = TrainingJson(recordings, options.more, trained);
   const std::string title = NameOf(options.training.kind) + " restoration, " +
                             std::to_string(recordings.size()) + " recordings (" +
                             RecordingFlagsFromCommandLine().setting + ")";
-  if (MaybeError error =
-          WriteFileAtomically(in_out("curve.svg"), TrainingCurveSvg(trained.curve, title))) {
-    return Fail(*error);
-  }
-  if (MaybeError error = WriteRestorationFile(flags.out, file)) return Fail(*error);
+  OrFail(WriteFileAtomically(in_out("curve.svg"), TrainingCurveSvg(trained.curve, title)));
+  OrFail(WriteRestorationFile(flags.out, file));
   const TrainingPoint& last = trained.curve.back();
   std::printf("%s: %zu points of the training curve, final held-out loss %s, %s s%s; %s\n",
               title.c_str(), trained.curve.size(), Rounded(last.validation_loss, 3).c_str(),
@@ -112,41 +102,31 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
 }
 
 // Those of --more_settings, without the ones that are learnt from (and scored) anyway.
-MaybeError AddMoreRecordings(const std::string& settings, const std::vector<Recording>& known,
-                             RestorationRunOptions* options) {
-  if (settings.empty()) return std::nullopt;
-  const Result<std::vector<Recording>> more = LoadBodiesOfSetting(settings);
-  if (!more.ok()) return more.error();
-  for (const Recording& recording : more.value()) {
+void AddMoreRecordings(const std::string& settings, const std::vector<Recording>& known,
+                       RestorationRunOptions* options) {
+  if (settings.empty()) return;
+  const std::vector<Recording> more = LoadBodiesOfSetting(settings);
+  for (const Recording& recording : more) {
     bool is_known = false;
     for (const Recording& other : known) is_known = is_known || other.id == recording.id;
     if (is_known) continue;
-    Result<BodyRecording> body = MakeBodyRecording(recording, options->fit.mapping);
-    if (!body.ok()) return body.error();
-    options->more.push_back(std::move(body.value()));
+    options->more.push_back(OrFail(MakeBodyRecording(recording, options->fit.mapping)));
   }
-  return std::nullopt;
 }
 
 int Run() {
-  const Result<TrainRestorationFlags> read = TrainRestorationFlagsFromCommandLine();
-  if (!read.ok()) return Fail(read.error());
-  const TrainRestorationFlags& flags = read.value();
+  const TrainRestorationFlags flags = TrainRestorationFlagsFromCommandLine();
   if (flags.check) return kDone;
   SetBlasThreads(flags.options.training.num_threads);
-  const Result<std::vector<Recording>> recordings = LoadFlaggedRecordings({}, true);
-  if (!recordings.ok()) return Fail(recordings.error());
-  if (MaybeError error = CheckPushed(recordings.value())) return Fail(*error);
+  const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
+  CheckPushed(recordings);
   RestorationRunOptions options = flags.options;
-  const Result<std::vector<BodyRecording>> bodies =
-      MakeBodyRecordings(recordings.value(), options.fit.mapping);
-  if (!bodies.ok()) return Fail(bodies.error());
-  if (MaybeError error = CheckObservedFlag(PendulumsOf(bodies.value()))) return Fail(*error);
-  if (MaybeError error = AddMoreRecordings(flags.more_settings, recordings.value(), &options)) {
-    return Fail(*error);
-  }
-  return flags.crossvalidate > 0 ? CrossValidate(flags, bodies.value(), options)
-                                 : Train(flags, bodies.value(), options);
+  const std::vector<BodyRecording> bodies =
+      OrFail(MakeBodyRecordings(recordings, options.fit.mapping));
+  CheckObservedFlag(PendulumsOf(bodies));
+  AddMoreRecordings(flags.more_settings, recordings, &options);
+  return flags.crossvalidate > 0 ? CrossValidate(flags, bodies, options)
+                                 : Train(flags, bodies, options);
 }
 
 }  // namespace

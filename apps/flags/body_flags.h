@@ -16,14 +16,14 @@
 namespace pushid {
 
 // postprocess_flags.cc: what makes restored bodies fit, as --postprocess lists it.
-Result<PostprocessOptions> PostprocessFromCommandLine();
+PostprocessOptions PostprocessFromCommandLine();
 
 // scheme_flags.cc: --scheme of the training programs, what the folds of their --crossvalidate hold
 // out. takes_folds: whether there are any. Errors: no such scheme, or one where there are no folds.
-Result<FoldScheme> SchemeFromCommandLine(bool takes_folds);
+FoldScheme SchemeFromCommandLine(bool takes_folds);
 
 // diffusion_flags.cc: how a generator of diffusion is sampled. Errors name the flag.
-Result<DiffusionGeneratorOptions> DiffusionOptionsFromCommandLine();
+DiffusionGeneratorOptions DiffusionOptionsFromCommandLine();
 
 // These flags.
 std::vector<const char*> DiffusionFlagNames();
@@ -39,12 +39,11 @@ struct RestorationFlags {
 };
 
 // Without --restoration, `otherwise` is taken.
-Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& otherwise = "");
+RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise = "");
 
 // people: the most there are in one recording. Warns where a restoration that never saw a group is
 // to make one.
-Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
-                                                            int people);
+std::unique_ptr<Restoration> LoadFlaggedRestoration(const RestorationFlags& flags, int people);
 
 // "--joints_out needs bodies: name the folder ...".
 Error NeedsRestoration(const std::string& flag);

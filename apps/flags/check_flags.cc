@@ -52,7 +52,7 @@ void AllowBareProfile(int argc, char** argv) {
   }
 }
 
-Result<ModelChecks> ModelChecksFromCommandLine(uint64_t seed, int num_threads) {
+ModelChecks ModelChecksFromCommandLine(uint64_t seed, int num_threads) {
   ModelChecks checks;
   checks.profile = FLAGS_profile;
   checks.bootstrap.replicas = FLAGS_bootstrap;
@@ -66,16 +66,11 @@ Result<ModelChecks> ModelChecksFromCommandLine(uint64_t seed, int num_threads) {
   checks.design = FLAGS_design;
   checks.bootstrap.seed = checks.pushes.seed = seed;
   checks.bootstrap.num_threads = checks.num_threads = num_threads;
-  if (MaybeError error = CheckNumbers(checks)) return *error;
-  if (MaybeError error =
-          CheckFlagRules({{"bootstrap_file", FlagRule::kNeeds, {"bootstrap"}, "=N"},
-                          {"push_check_noise", FlagRule::kNeeds, {"push_check"}, ""}})) {
-    return *error;
-  }
-  if (MaybeError error = ParseName("--bootstrap_by", FLAGS_bootstrap_by, &checks.bootstrap.by)) {
-    return *error;
-  }
-  if (MaybeError error = CheckOutputFiles({FLAGS_bootstrap_file})) return *error;
+  OrFail(CheckNumbers(checks));
+  CheckFlagRules({{"bootstrap_file", FlagRule::kNeeds, {"bootstrap"}, "=N"},
+                  {"push_check_noise", FlagRule::kNeeds, {"push_check"}, ""}});
+  OrFail(ParseName("--bootstrap_by", FLAGS_bootstrap_by, &checks.bootstrap.by));
+  OrFail(CheckOutputFiles({FLAGS_bootstrap_file}));
   return checks;
 }
 
@@ -83,15 +78,15 @@ MovedFlags MovedCheckFlags() {
   return {CheckFlagNames(), "pushid-check", "checks of a finished model"};
 }
 
-MaybeError AddFlaggedChecks(const std::vector<PendulumRecording>& recordings,
-                            const ModelChecks& checks, FittedModel* model) {
+void AddFlaggedChecks(const std::vector<PendulumRecording>& recordings, const ModelChecks& checks,
+                      FittedModel* model) {
   if (!checks.bootstrap.file.empty()) {
     SayWhenInterrupted("finished replicas are in " + checks.bootstrap.file +
                        "; run the same command to continue");
   }
   ProgressLine line;
   const auto progress = [&line](const std::string& what) { return line.OfJobs(what); };
-  return AddChecks(recordings, checks, progress, model);
+  OrFail(AddChecks(recordings, checks, progress, model));
 }
 
 }  // namespace pushid

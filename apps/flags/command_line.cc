@@ -139,6 +139,8 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
                    ProgramName().c_str(), flag.c_str(), moved.program.c_str(), MovedFlags::kUntil);
     }
     return exit_code;
+  } catch (const Error& error) {
+    return Fail(error);
   } catch (const std::bad_alloc&) {
     return Fail("out of memory");
   } catch (const std::exception& exception) {

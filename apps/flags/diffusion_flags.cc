@@ -22,16 +22,13 @@ DEFINE_double(blend, kOptions.blend,
 
 namespace pushid {
 
-Result<DiffusionGeneratorOptions> DiffusionOptionsFromCommandLine() {
+DiffusionGeneratorOptions DiffusionOptionsFromCommandLine() {
   DiffusionGeneratorOptions options;
-  for (const MaybeError& error :
-       {ParseName("--sampler", FLAGS_sampler, &options.sampler),
-        ParseName("--settle", FLAGS_settle, &options.settle),
-        CheckRange("averaged", FLAGS_averaged, 1, 1000),
-        CheckRange("sampling_steps", FLAGS_sampling_steps, 1, kDiffusionTime),
-        CheckRange("blend", FLAGS_blend, 0.0, 1.0)}) {
-    if (error) return *error;
-  }
+  OrFail(ParseName("--sampler", FLAGS_sampler, &options.sampler));
+  OrFail(ParseName("--settle", FLAGS_settle, &options.settle));
+  CheckRange("averaged", FLAGS_averaged, 1, 1000);
+  CheckRange("sampling_steps", FLAGS_sampling_steps, 1, kDiffusionTime);
+  CheckRange("blend", FLAGS_blend, 0.0, 1.0);
   options.averaged = FLAGS_averaged;
   options.steps = FLAGS_sampling_steps;
   options.blend = FLAGS_blend;

@@ -6,6 +6,7 @@
 #include <list>
 #include <string>
 
+#include "apps/support/app_support.h"
 #include "ident/parameters/option_table.h"
 
 namespace pushid {
@@ -53,9 +54,9 @@ GivenOptions GivenFitFlags() {
   return given;
 }
 
-Result<FitSetup> FitSetupFromFlags() {
+FitSetup FitSetupFromFlags() {
   const GivenOptions given = GivenFitFlags();
-  return FitSetup::Make(given, given);
+  return OrFail(FitSetup::Make(given, given));
 }
 
 namespace {

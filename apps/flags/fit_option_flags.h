@@ -16,7 +16,7 @@ GivenOptions GivenFitFlags();
 
 // The given flags over the preset's settings; once in a program. Errors also where a given flag
 // acts on nothing.
-Result<FitSetup> FitSetupFromFlags();
+FitSetup FitSetupFromFlags();
 
 int NumThreads();
 uint64_t Seed();
@@ -28,13 +28,13 @@ uint64_t Seed();
 void AllowBareProfile(int argc, char** argv);
 
 // Errors also for flags without the one that they belong to.
-Result<ModelChecks> ModelChecksFromCommandLine(uint64_t seed, int num_threads);
+ModelChecks ModelChecksFromCommandLine(uint64_t seed, int num_threads);
 
 // Those that moved from pushid-fit to pushid-check.
 MovedFlags MovedCheckFlags();
 
 // AddChecks with a progress line, and the message that Ctrl-C prints about --bootstrap_file.
-MaybeError AddFlaggedChecks(const std::vector<PendulumRecording>& recordings,
-                            const ModelChecks& checks, FittedModel* model);
+void AddFlaggedChecks(const std::vector<PendulumRecording>& recordings, const ModelChecks& checks,
+                      FittedModel* model);
 
 }  // namespace pushid

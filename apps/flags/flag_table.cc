@@ -117,7 +117,7 @@ std::string HeadingOf(const FlagInfo& flag) {
 
 }  // namespace
 
-MaybeError CheckFlagRules(const std::vector<FlagRule>& rules) {
+void CheckFlagRules(const std::vector<FlagRule>& rules) {
   for (const FlagRule& rule : rules) {
     const FlagInfo flag = gflags::GetCommandLineFlagInfoOrDie(rule.flag.c_str());
     if (flag.is_default || flag.current_value.empty() || IsOff(flag)) continue;
@@ -125,61 +125,60 @@ MaybeError CheckFlagRules(const std::vector<FlagRule>& rules) {
     if (acts == (rule.kind == FlagRule::kNeeds)) continue;
     std::string sentence = rule.why;
     const size_t name = sentence.find("{}");
-    if (name != std::string::npos) return Error{sentence.replace(name, 2, rule.flag)};
-    if (acts) return Error{sentence};
-    return Error{"--" + rule.flag + " needs " + WithDashes(rule.others, " or ") + sentence};
+    if (name != std::string::npos) throw Error{sentence.replace(name, 2, rule.flag)};
+    if (acts) throw Error{sentence};
+    throw Error{"--" + rule.flag + " needs " + WithDashes(rule.others, " or ") + sentence};
   }
-  return std::nullopt;
 }
 
 namespace {
 
-MaybeError CheckSame(const std::vector<std::string>& flags, FlagRule::Kind kind,
-                     const std::vector<std::string>& others, const std::string& why) {
+void CheckSame(const std::vector<std::string>& flags, FlagRule::Kind kind,
+               const std::vector<std::string>& others, const std::string& why) {
   std::vector<FlagRule> rules;
   for (const std::string& flag : flags) rules.push_back({flag, kind, others, why});
-  return CheckFlagRules(rules);
+  CheckFlagRules(rules);
 }
 
 }  // namespace
 
-MaybeError CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
-                      const std::string& why) {
-  return CheckSame(flags, FlagRule::kNeeds, others, why);
+void CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
+                const std::string& why) {
+  CheckSame(flags, FlagRule::kNeeds, others, why);
 }
 
-MaybeError CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
-                         const std::string& why) {
-  return CheckSame(flags, FlagRule::kExcludes, {other}, why);
+void CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
+                   const std::string& why) {
+  CheckSame(flags, FlagRule::kExcludes, {other}, why);
 }
 
 bool Given(const char* flag) { return !gflags::GetCommandLineFlagInfoOrDie(flag).is_default; }
 
-MaybeError Require(const std::string& flag, const std::string& value, const std::string& what) {
-  if (!value.empty()) return std::nullopt;
-  return Error{"--" + flag + " is missing: " + what};
+void Require(const std::string& flag, const std::string& value, const std::string& what) {
+  if (!value.empty()) return;
+  throw Error{"--" + flag + " is missing: " + what};
 }
 
-MaybeError CheckRange(const char* flag, double value, double lowest, double highest) {
-  if (value >= lowest && value <= highest) return std::nullopt;
+void CheckRange(const char* flag, double value, double lowest, double highest) {
+  if (value >= lowest && value <= highest) return;
   std::ostringstream text;
   text << "--" << flag << " is " << value << "; it must lie between " << lowest << " and "
        << highest;
-  return Error{text.str()};
+  throw Error{text.str()};
 }
 
-MaybeError TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
-                      std::optional<double>* length_scale) {
+void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
+                std::optional<double>* length_scale) {
   if (scale != 0.0 && !unit.empty()) {
-    return Error{"--length_scale is given together with --length_unit; give one of them"};
+    throw Error{"--length_scale is given together with --length_unit; give one of them"};
   }
   if (scale != 0.0) {
     const std::string problem = LengthScaleProblem(scale);
-    if (!problem.empty()) return Error{"--length_scale " + problem};
+    if (!problem.empty()) throw Error{"--length_scale " + problem};
     *length_scale = scale;
   }
-  if (unit.empty()) return std::nullopt;
-  return ParseName("--length_unit", unit, &length_unit->emplace());
+  if (unit.empty()) return;
+  OrFail(ParseName("--length_unit", unit, &length_unit->emplace()));
 }
 
 std::map<std::string, std::string> EffectiveFlags() {

@@ -32,33 +32,32 @@ struct FlagRule {
 };
 // Whether a flag that is given has what it needs, and nothing that it excludes. A flag of others
 // acts where its value is not its default. A switch that is given as off asks for nothing.
-MaybeError CheckFlagRules(const std::vector<FlagRule>& rules);
+void CheckFlagRules(const std::vector<FlagRule>& rules);
 // Of many flags that need, or exclude, the same.
-MaybeError CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
-                      const std::string& why = "");
-MaybeError CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
-                         const std::string& why);
+void CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
+                const std::string& why = "");
+void CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
+                   const std::string& why);
 
 // Whether a flag was given at all, even with its default's value.
 bool Given(const char* flag);
 
 // "--recordings is missing ..." when a flag that is needed is empty.
-MaybeError Require(const std::string& flag, const std::string& value, const std::string& what);
+void Require(const std::string& flag, const std::string& value, const std::string& what);
 
 // "--spacing is -1; it must lie between ...". Written so that NaN fails.
-MaybeError CheckRange(const char* flag, double value, double lowest, double highest);
+void CheckRange(const char* flag, double value, double lowest, double highest);
 // The value that a flag has, into its place.
 template <typename Value, typename Target>
-MaybeError TakeInRange(const char* flag, Value value, double lowest, double highest,
-                       Target* target) {
+void TakeInRange(const char* flag, Value value, double lowest, double highest, Target* target) {
   *target = value;
-  return CheckRange(flag, static_cast<double>(value), lowest, highest);
+  CheckRange(flag, static_cast<double>(value), lowest, highest);
 }
 
 // --length_unit or --length_scale, whichever has a value, into its place. Errors: both; a unit or a
 // scale that is none.
-MaybeError TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
-                      std::optional<double>* length_scale);
+void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
+                std::optional<double>* length_scale);
 
 // The effective flags of this executable that are part of a result: not outputs, threads,
 // verbosity.

@@ -58,12 +58,12 @@ bool FromFile() {
   return format && HoldsCrowd(*format);
 }
 
-Result<FormationShape> Shape() {
+FormationShape Shape() {
   if (FLAGS_formation == "line") return FormationShape::kLine;
   if (FLAGS_formation == "diamond") return FormationShape::kDiamond;
   if (FLAGS_formation == "grid") return FormationShape::kGrid;
-  return Error{"--formation is '" + FLAGS_formation +
-               "'; it must be line, diamond or grid, or a trajectory file (.txt, .sqlite)"};
+  throw Error{"--formation is '" + FLAGS_formation +
+              "'; it must be line, diamond or grid, or a trajectory file (.txt, .sqlite)"};
 }
 
 struct Places {
@@ -71,128 +71,121 @@ struct Places {
   std::vector<std::string> names;  // of a file's people
 };
 
-Result<Places> PlacesOfFile() {
+Places PlacesOfFile() {
   for (const char* flag : {"people", "spacing"}) {
     if (!Given(flag)) continue;
-    return Error{std::string("--") + flag + " is for line, diamond and grid; " + FLAGS_formation +
-                 " gives the positions"};
+    throw Error{std::string("--") + flag + " is for line, diamond and grid; " + FLAGS_formation +
+                " gives the positions"};
   }
-  const Result<std::vector<CrowdPlace>> read =
-      Given("formation_frame") ? ReadCrowdPlaces(FLAGS_formation, FLAGS_formation_frame)
-                               : ReadCrowdPlaces(FLAGS_formation, std::nullopt);
-  if (!read.ok()) return read.error();
-  const std::string odd = OddSpacing(read.value());
+  const std::vector<CrowdPlace> read =
+      OrFail(Given("formation_frame") ? ReadCrowdPlaces(FLAGS_formation, FLAGS_formation_frame)
+                                      : ReadCrowdPlaces(FLAGS_formation, std::nullopt));
+  const std::string odd = OddSpacing(read);
   if (!odd.empty()) Warn(FLAGS_formation + ": " + odd);
   Places places;
-  for (const CrowdPlace& place : read.value()) {
+  for (const CrowdPlace& place : read) {
     places.positions.push_back(place.position);
     places.names.push_back(place.name);
   }
   if (places.names.size() > kMostPeople) {
-    return Error{std::to_string(places.names.size()) + " people are too many", FLAGS_formation};
+    throw Error{std::to_string(places.names.size()) + " people are too many", FLAGS_formation};
   }
   return places;
 }
 
-Result<Places> FormationPlaces() {
+Places FormationPlaces() {
   if (FromFile()) return PlacesOfFile();
   if (Given("formation_frame")) {
-    return Error{"--formation_frame needs a trajectory file (.txt, .sqlite)"};
+    throw Error{"--formation_frame needs a trajectory file (.txt, .sqlite)"};
   }
-  const Result<FormationShape> shape = Shape();
-  if (!shape.ok()) return shape.error();
-  return Places{FormationPositions(shape.value(), FLAGS_people, FLAGS_spacing), {}};
+  return {FormationPositions(Shape(), FLAGS_people, FLAGS_spacing), {}};
 }
 
 // Counted from the back, whatever the file's ids.
-Result<std::vector<int>> PushedPeople(const Places& places) {
+std::vector<int> PushedPeople(const Places& places) {
   std::vector<int> people;
   std::set<int> seen;
   for (const std::string& spaced : SplitList(FLAGS_pushed)) {
     const std::string word(Trimmed(spaced));
     std::int64_t person = 0;
     if (!ParseInteger(word, &person)) {
-      return Error{"--pushed: " + Quoted(word) +
-                   " is not a person's number; give numbers as in 0,1,3"};
+      throw Error{"--pushed: " + Quoted(word) +
+                  " is not a person's number; give numbers as in 0,1,3"};
     }
     const int count = static_cast<int>(places.positions.size());
     if (person < 0 || person >= count) {
       const auto named = std::find(places.names.begin(), places.names.end(), word);
       if (named != places.names.end()) {
-        return Error{"--pushed counts people from the back, from 0; the file's id " + word +
-                     " is person " + std::to_string(named - places.names.begin())};
+        throw Error{"--pushed counts people from the back, from 0; the file's id " + word +
+                    " is person " + std::to_string(named - places.names.begin())};
       }
-      return Error{"--pushed names person " + word + ", but " +
-                   (FromFile() ? "the " + std::to_string(count) + " people of the file count"
-                               : "--people=" + std::to_string(count) + " counts them") +
-                   " from 0 to " + std::to_string(count - 1)};
+      throw Error{"--pushed names person " + word + ", but " +
+                  (FromFile() ? "the " + std::to_string(count) + " people of the file count"
+                              : "--people=" + std::to_string(count) + " counts them") +
+                  " from 0 to " + std::to_string(count - 1)};
     }
     if (!seen.insert(static_cast<int>(person)).second) {
-      return Error{"--pushed names person " + word + " twice"};
+      throw Error{"--pushed names person " + word + " twice"};
     }
     people.push_back(static_cast<int>(person));
   }
   if (people.empty())
-    return Error{"--pushed is empty; give the numbers of the pushed people, as in 0,1,3"};
+    throw Error{"--pushed is empty; give the numbers of the pushed people, as in 0,1,3"};
   return people;
 }
 
-Result<HipPush> ParsePush(const std::string& word) {
+HipPush ParsePush(const std::string& word) {
   HipPush push;
   push.duration = FLAGS_push_duration;
   push.direction = FLAGS_push_direction * M_PI / 180.0;
   const size_t at = word.find('@');
   const std::string start = at == std::string::npos ? "0" : word.substr(at + 1);
   if (!ParseDouble(word.substr(0, at), &push.impulse) || !ParseDouble(start, &push.start)) {
-    return Error{"--push: " + Quoted(word) +
-                 " is not a push; give N s, or N s@start in s, as in 80@0,80@1.5"};
+    throw Error{"--push: " + Quoted(word) +
+                " is not a push; give N s, or N s@start in s, as in 80@0,80@1.5"};
   }
   if (push.impulse <= 0.0 || push.impulse > 2000.0) {
-    return Error{"--push: " + Quoted(word) + " has an impulse outside 0 to 2000 N s"};
+    throw Error{"--push: " + Quoted(word) + " has an impulse outside 0 to 2000 N s"};
   }
   if (push.start < 0.0 || push.start > 3600.0) {
-    return Error{"--push: " + Quoted(word) + " starts at a time outside 0 to 3600 s"};
+    throw Error{"--push: " + Quoted(word) + " starts at a time outside 0 to 3600 s"};
   }
   return push;
 }
 
-Result<std::vector<HipPush>> Pushes() {
+std::vector<HipPush> Pushes() {
   std::vector<HipPush> pushes;
   for (const std::string& word : SplitList(FLAGS_push)) {
-    const Result<HipPush> push = ParsePush(std::string(Trimmed(word)));
-    if (!push.ok()) return push.error();
-    pushes.push_back(push.value());
+    const HipPush push = ParsePush(std::string(Trimmed(word)));
+    pushes.push_back(push);
   }
-  if (pushes.empty()) return Error{"--push is empty; give an impulse in N s, as in 80"};
+  if (pushes.empty()) throw Error{"--push is empty; give an impulse in N s, as in 80"};
   return pushes;
 }
 
-MaybeError CheckFormationNumbers() {
-  for (MaybeError error :
-       {CheckRange("people", FLAGS_people, 1, kMostPeople), CheckRange("fps", FLAGS_fps, 10, 10000),
-        CheckRange("spacing", FLAGS_spacing, 0.05, 100),
-        CheckRange("push_duration", FLAGS_push_duration, 0.001, 60),
-        CheckRange("push_direction", FLAGS_push_direction, -360, 360),
-        CheckRange("mass", FLAGS_mass, 1, 400), CheckRange("rod_length", FLAGS_rod_length, 0.2, 2),
-        CheckRange("duration", FLAGS_duration, 0, 3600)}) {
-    if (error) return error;
-  }
-  return CheckExcludes({"mass", "rod_length"}, "people_from",
-                       "--people_from gives the recorded people's mass and rod length; leave out "
-                       "--{}");
+void CheckFormationNumbers() {
+  CheckRange("people", FLAGS_people, 1, kMostPeople);
+  CheckRange("fps", FLAGS_fps, 10, 10000);
+  CheckRange("spacing", FLAGS_spacing, 0.05, 100);
+  CheckRange("push_duration", FLAGS_push_duration, 0.001, 60);
+  CheckRange("push_direction", FLAGS_push_direction, -360, 360);
+  CheckRange("mass", FLAGS_mass, 1, 400);
+  CheckRange("rod_length", FLAGS_rod_length, 0.2, 2);
+  CheckRange("duration", FLAGS_duration, 0, 3600);
+  CheckExcludes({"mass", "rod_length"}, "people_from",
+                "--people_from gives the recorded people's mass and rod length; leave out "
+                "--{}");
 }
 
 // Their first poses; nobody without the flag.
-Result<std::vector<Pose>> PlaceFlaggedPeople(Scene* scene) {
+std::vector<Pose> PlaceFlaggedPeople(Scene* scene) {
   if (FLAGS_people_from.empty()) return std::vector<Pose>();
   LoadOptions options;
   options.keep_all_joints = true;
-  const Result<std::vector<Recording>> recordings = LoadRecordings(FLAGS_people_from, options);
-  if (!recordings.ok()) return recordings.error();
-  const Result<std::vector<BodyRecording>> bodies =
-      MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
-  if (!bodies.ok()) return bodies.error();
-  return PlacePeople(DistinctPeople(bodies.value()), scene);
+  const std::vector<Recording> recordings = OrFail(LoadRecordings(FLAGS_people_from, options));
+  const std::vector<BodyRecording> bodies =
+      OrFail(MakeBodyRecordings(recordings, SkeletonMapping::kExact));
+  return PlacePeople(DistinctPeople(bodies), scene);
 }
 
 // "10 people in a line, 0.45 m apart".
@@ -234,52 +227,44 @@ int NumFrames(const Scene& scene) {
   return static_cast<int>(std::lround(seconds * FLAGS_fps)) + 1;
 }
 
-MaybeError CheckFrames(int frames, int people, const std::vector<HipPush>& pushes) {
-  if (frames < 3) return Error{"--duration is shorter than two frames"};
+void CheckFrames(int frames, int people, const std::vector<HipPush>& pushes) {
+  if (frames < 3) throw Error{"--duration is shorter than two frames"};
   for (const HipPush& push : pushes) {
     if (std::lround(push.start * FLAGS_fps) < frames - 1) continue;
     std::ostringstream text;
     text << "--duration ends at " << FLAGS_duration << " s, before the push of " << push.impulse
          << " N s at " << push.start << " s; lengthen it, or leave the push out";
-    return Error{text.str()};
+    throw Error{text.str()};
   }
   if (static_cast<double>(frames) * people > kMostPersonFrames) {
-    return Error{std::to_string(people) + " people over " + std::to_string(frames) +
-                 " frames are too many; lower --people, --duration or --fps"};
+    throw Error{std::to_string(people) + " people over " + std::to_string(frames) +
+                " frames are too many; lower --people, --duration or --fps"};
   }
-  return std::nullopt;
 }
 
 }  // namespace
 
-Result<FormationFlags> FormationFlagsFromCommandLine() {
-  for (MaybeError error :
-       {Require("formation", FLAGS_formation, "give line, diamond or grid, or a trajectory file"),
-        CheckFormationNumbers()}) {
-    if (error) return *error;
-  }
-  const Result<Places> placed = FormationPlaces();
-  if (!placed.ok()) return placed.error();
-  const std::vector<Eigen::Vector2d>& positions = placed.value().positions;
+FormationFlags FormationFlagsFromCommandLine() {
+  Require("formation", FLAGS_formation, "give line, diamond or grid, or a trajectory file");
+  CheckFormationNumbers();
+  const Places placed = FormationPlaces();
+  const std::vector<Eigen::Vector2d>& positions = placed.positions;
   const int people = static_cast<int>(positions.size());
-  const Result<std::vector<int>> pushed = PushedPeople(placed.value());
-  if (!pushed.ok()) return pushed.error();
-  const Result<std::vector<HipPush>> pushes = Pushes();
-  if (!pushes.ok()) return pushes.error();
+  const std::vector<int> pushed = PushedPeople(placed);
+  const std::vector<HipPush> pushes = Pushes();
 
   FormationFlags flags;
-  flags.title = RunTitle(people, pushes.value());
-  flags.names = placed.value().names;
+  flags.title = RunTitle(people, pushes);
+  flags.names = placed.names;
   flags.as_setting = FLAGS_as_setting;
   flags.scene = FormationScene(positions, {FLAGS_mass, FLAGS_rod_length, 0.0}, 1.0 / FLAGS_fps);
-  const Result<std::vector<Pose>> poses = PlaceFlaggedPeople(&flags.scene);
-  if (!poses.ok()) return poses.error();
-  flags.first_poses = poses.value();
-  for (const HipPush& push : pushes.value()) {
-    for (int person : pushed.value()) AddHipPush(person, push, &flags.scene);
+  const std::vector<Pose> poses = PlaceFlaggedPeople(&flags.scene);
+  flags.first_poses = poses;
+  for (const HipPush& push : pushes) {
+    for (int person : pushed) AddHipPush(person, push, &flags.scene);
   }
   flags.frames = NumFrames(flags.scene);
-  if (MaybeError error = CheckFrames(flags.frames, people, pushes.value())) return *error;
+  CheckFrames(flags.frames, people, pushes);
   return flags;
 }
 

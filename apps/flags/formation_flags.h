@@ -19,6 +19,6 @@ struct FormationFlags {
   std::string as_setting;         // whose parameters all people have; empty: the shared ones
 };
 // Errors name the flag.
-Result<FormationFlags> FormationFlagsFromCommandLine();
+FormationFlags FormationFlagsFromCommandLine();
 
 }  // namespace pushid

@@ -18,40 +18,35 @@ DEFINE_string(samples_out, "",
 
 namespace pushid {
 
-MaybeError CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model) {
-  if (flags.samples == 0) return std::nullopt;
+void CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model) {
+  if (flags.samples == 0) return;
   gflags::CommandLineFlagInfo observed;  // not of every program
   if (gflags::GetCommandLineFlagInfo("observed", &observed) && !observed.is_default) {
-    return Error{
+    throw Error{
         "--samples draws futures from frame 0, and --observed predicts from a later frame: leave "
         "one out"};
   }
-  return CheckDrawsFrom(model);
+  OrFail(CheckDrawsFrom(model));
 }
 
-Result<FuturesFlags> FuturesFlagsFromCommandLine(bool writes) {
-  if (MaybeError error = CheckRange("samples", FLAGS_samples, 0, 100000)) return *error;
-  if (FLAGS_samples == 1) return Error{"--samples is 1; one draw has no spread: give 2 or more"};
-  if (MaybeError error =
-          CheckNeeds({"samples_seed", "samples_out"}, {"samples"}, ", the number of futures")) {
-    return *error;
-  }
+FuturesFlags FuturesFlagsFromCommandLine(bool writes) {
+  CheckRange("samples", FLAGS_samples, 0, 100000);
+  if (FLAGS_samples == 1) throw Error{"--samples is 1; one draw has no spread: give 2 or more"};
+  CheckNeeds({"samples_seed", "samples_out"}, {"samples"}, ", the number of futures");
   if (!writes && Given("samples_out")) {
-    return Error{
+    throw Error{
         "--samples_out is for pushid-predict and pushid-formation; this program only scores "
         "futures"};
   }
-  if (MaybeError error = CheckOutputFiles({FLAGS_samples_out})) return *error;
+  OrFail(CheckOutputFiles({FLAGS_samples_out}));
   return FuturesFlags{FLAGS_samples, FLAGS_samples_seed, FLAGS_samples_out};
 }
 
 int PrintFutures(const FuturesFlags& flags, const IdentifiedModel& model,
                  const PendulumRecording& recording, int num_frames) {
   if (flags.samples == 0) return kDone;
-  const Result<Futures> drawn =
-      DrawFutures(model, recording, flags.samples, flags.seed, num_frames);
-  if (!drawn.ok()) return Fail(drawn.error());
-  const Futures& futures = drawn.value();
+  const Futures futures =
+      OrFail(DrawFutures(model, recording, flags.samples, flags.seed, num_frames));
   if (futures.paths.empty()) {
     std::fprintf(stderr, "every drawn future leaves the model's domain\n");
     return kFitFailed;
@@ -62,7 +57,7 @@ int PrintFutures(const FuturesFlags& flags, const IdentifiedModel& model,
     std::printf("%d more draws left the model's domain\n", futures.failed);
   }
   if (flags.out.empty()) return kDone;
-  if (MaybeError error = WriteFuturesCsv(flags.out, futures)) return Fail(*error);
+  OrFail(WriteFuturesCsv(flags.out, futures));
   std::printf("all futures written to %s\n", flags.out.c_str());
   return kDone;
 }

@@ -17,10 +17,10 @@ struct FuturesFlags {
   std::string out;  // all of them (CSV); empty: not written
 };
 // writes: whether the program has --samples_out.
-Result<FuturesFlags> FuturesFlagsFromCommandLine(bool writes);
+FuturesFlags FuturesFlagsFromCommandLine(bool writes);
 
 // What is wrong with drawing from a model: no process noise, or frames that were seen.
-MaybeError CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model);
+void CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model);
 
 // Draws them, prints where everybody is at the end, writes --samples_out; nothing without
 // --samples. num_frames: 0 means as many as the recording has. Returns an exit code.
@@ -36,11 +36,11 @@ int ObservedFrames();
 ForecastUse ForecastUseFlag();
 
 // What is wrong with them, by themselves.
-MaybeError CheckObservedFlag();
+void CheckObservedFlag();
 // For these recordings.
-MaybeError CheckObservedFlag(const std::vector<PendulumRecording>& recordings);
+void CheckObservedFlag(const std::vector<PendulumRecording>& recordings);
 // And this model.
-MaybeError CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
-                             const IdentifiedModel& model);
+void CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
+                       const IdentifiedModel& model);
 
 }  // namespace pushid

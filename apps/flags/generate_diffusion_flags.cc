@@ -16,12 +16,9 @@ DEFINE_double(push_spread, kSampling.push_spread,
 namespace pushid {
 namespace {
 
-MaybeError ReadDiffusionFlags(GenerateFlags* flags) {
-  const Result<DiffusionGeneratorOptions> options = DiffusionOptionsFromCommandLine();
-  if (!options.ok()) return options.error();
-  flags->changes.diffusion = options.value();
-  return TakeInRange("push_spread", FLAGS_push_spread, 0.0, 3.0,
-                     &flags->changes.diffusion.push_spread);
+void ReadDiffusionFlags(GenerateFlags* flags) {
+  flags->changes.diffusion = DiffusionOptionsFromCommandLine();
+  TakeInRange("push_spread", FLAGS_push_spread, 0.0, 3.0, &flags->changes.diffusion.push_spread);
 }
 
 std::vector<const char*> DiffusionNames() {

@@ -74,59 +74,52 @@ const std::vector<PublishedFlags> kPublishedForecast = {
     {"sdm",
      {{"sampler", "ddpm"}, {"sampling_steps", "1000"}, {"averaged", "8"}, {"settle", "none"}}}};
 
-MaybeError ReadNumbers(GenerateFlags* flags) {
-  if (FLAGS_samples != 0) {
-    if (MaybeError error = CheckRange("samples", FLAGS_samples, kLeastSamples, 10000)) return error;
-  }
-  for (const MaybeError& error :
-       {TakeInRange("stride", FLAGS_stride, 0, 1e6, &flags->stride),
-        TakeInRange("window", FLAGS_window, 0, 1e9, &flags->window),
-        TakeInRange("person", FLAGS_person, 0, 1e6, &flags->person),
-        TakeInRange("poses", FLAGS_poses, 2, 40, &flags->poses),
-        TakeInRange("target_window", FLAGS_target_window, -1, 1e9, &flags->target_window),
-        TakeInRange("target_distance", FLAGS_target_distance, 0.0, 100.0, &flags->target_distance),
-        TakeInRange("observed", FLAGS_observed, 0, 1000, &flags->observed),
-        TakeInRange("frames", FLAGS_frames, 0, 10000, &flags->frames),
-        CheckPosesPath("--poses_out", FLAGS_poses_out)}) {
-    if (error) return error;
-  }
-  return std::nullopt;
+void ReadNumbers(GenerateFlags* flags) {
+  if (FLAGS_samples != 0) CheckRange("samples", FLAGS_samples, kLeastSamples, 10000);
+  TakeInRange("stride", FLAGS_stride, 0, 1e6, &flags->stride);
+  TakeInRange("window", FLAGS_window, 0, 1e9, &flags->window);
+  TakeInRange("person", FLAGS_person, 0, 1e6, &flags->person);
+  TakeInRange("poses", FLAGS_poses, 2, 40, &flags->poses);
+  TakeInRange("target_window", FLAGS_target_window, -1, 1e9, &flags->target_window);
+  TakeInRange("target_distance", FLAGS_target_distance, 0.0, 100.0, &flags->target_distance);
+  TakeInRange("observed", FLAGS_observed, 0, 1000, &flags->observed);
+  TakeInRange("frames", FLAGS_frames, 0, 10000, &flags->frames);
+  OrFail(CheckPosesPath("--poses_out", FLAGS_poses_out));
 }
 
-MaybeError CheckData(const GenerateFlags& flags) {
+void CheckData(const GenerateFlags& flags) {
   if (flags.data == GeneratorData::kCmu) {
     for (const char* flag : {"id", "person", "recordings", "setting"}) {
-      if (Given(flag)) return Error{std::string("--") + flag + " needs --dataset=pushes"};
+      if (Given(flag)) throw Error{std::string("--") + flag + " needs --dataset=pushes"};
     }
     if (Given("target_distance") && (flags.target_window < 0 || flags.samples == 0)) {
-      return Error{"--target_distance needs --samples and --target_window"};
+      throw Error{"--target_distance needs --samples and --target_window"};
     }
-    return Require("folder", FLAGS_folder, "name the folder of the clips");
+    Require("folder", FLAGS_folder, "name the folder of the clips");
+    return;
   }
   for (const char* flag :
        {"folder", "action", "window", "protocol", "stride", "target_window", "target_distance"}) {
-    if (Given(flag)) return Error{std::string("--") + flag + " needs --dataset=cmu"};
+    if (Given(flag)) throw Error{std::string("--") + flag + " needs --dataset=cmu"};
   }
-  if (flags.Shows()) {
-    if (MaybeError missing = Require("id", FLAGS_id, "name the recording to show")) return missing;
-  }
+  if (flags.Shows()) Require("id", FLAGS_id, "name the recording to show");
   if (Given("push_spread") && flags.samples == 0) {
-    return Error{"--push_spread needs --samples"};
+    throw Error{"--push_spread needs --samples"};
   }
   if (flags.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
-    return Error{"--blend needs --physics, the model to blend with"};
+    throw Error{"--blend needs --physics, the model to blend with"};
   }
-  return CheckRecordingFlags();
+  CheckRecordingFlags();
 }
 
 }  // namespace
 
-MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
+void CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   const GeneratorKindRow& row = RowOf(kind);
   if (flags.data == GeneratorData::kPushes && !row.groups && flags.samples > 0 && !flags.Shows()) {
-    return Error{"with pushes and " + NameOf(kind) +
-                 ", --samples only adds a fan to --poses_out, --strip_out or --page_out; give one "
-                 "of them"};
+    throw Error{"with pushes and " + NameOf(kind) +
+                ", --samples only adds a fan to --poses_out, --strip_out or --page_out; give one "
+                "of them"};
   }
   std::vector<const char*> foreign;
   for (const auto& other : KindFlags<GenerateFlags>::ForeignTo(kind)) foreign.push_back(other.flag);
@@ -136,22 +129,19 @@ MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   if (!row.futures) foreign.insert(foreign.end(), {"samples", "target_window"});
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
-    return Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),
-                 FLAGS_model};
+    throw Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),
+                FLAGS_model};
   }
-  return std::nullopt;
 }
 
-Result<GenerateFlags> GenerateFlagsFromCommandLine() {
-  if (MaybeError error = TakePublished(kPublishedForecast)) return *error;
+GenerateFlags GenerateFlagsFromCommandLine() {
+  TakePublished(kPublishedForecast);
   GenerateFlags flags;
-  for (const MaybeError& error :
-       {Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote"),
-        ParseName("--dataset", FLAGS_dataset, &flags.data),
-        ParseName("--protocol", FLAGS_protocol, &flags.protocol), ReadNumbers(&flags),
-        KindFlags<GenerateFlags>::ReadAll(&flags)}) {
-    if (error) return *error;
-  }
+  Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote");
+  OrFail(ParseName("--dataset", FLAGS_dataset, &flags.data));
+  OrFail(ParseName("--protocol", FLAGS_protocol, &flags.protocol));
+  ReadNumbers(&flags);
+  KindFlags<GenerateFlags>::ReadAll(&flags);
   if (!Given("dataset") && Given("recordings")) flags.data = GeneratorData::kPushes;
   flags.model = FLAGS_model;
   flags.folder = FLAGS_folder;
@@ -167,11 +157,9 @@ Result<GenerateFlags> GenerateFlagsFromCommandLine() {
   flags.poses_out = FLAGS_poses_out;
   flags.strip_out = FLAGS_strip_out;
   flags.page_out = FLAGS_page_out;
-  if (MaybeError error = CheckData(flags)) return *error;
-  if (MaybeError error = CheckOutputFiles(
-          {flags.json_out, flags.poses_out, flags.strip_out, flags.page_out, flags.states_out})) {
-    return *error;
-  }
+  CheckData(flags);
+  OrFail(CheckOutputFiles(
+      {flags.json_out, flags.poses_out, flags.strip_out, flags.page_out, flags.states_out}));
   return flags;
 }
 

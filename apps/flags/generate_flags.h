@@ -32,9 +32,9 @@ struct GenerateFlags {
 
   bool Shows() const { return !poses_out.empty() || !strip_out.empty() || !page_out.empty(); }
 };
-Result<GenerateFlags> GenerateFlagsFromCommandLine();
+GenerateFlags GenerateFlagsFromCommandLine();
 
 // Errors: flags that say something to generators of another kind alone.
-MaybeError CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind);
+void CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind);
 
 }  // namespace pushid

@@ -26,23 +26,19 @@ DEFINE_bool(correlated_noise, kAsTrained.particles.correlated_noise,
 namespace pushid {
 namespace {
 
-MaybeError ReadParticleFlags(GenerateFlags* flags) {
+void ReadParticleFlags(GenerateFlags* flags) {
   ParticleGeneratorOptions& particles = flags->changes.particles;
-  const auto take = [](const char* flag, double share, std::optional<double>* into) -> MaybeError {
-    if (share == -1.0) return std::nullopt;
+  const auto take = [](const char* flag, double share, std::optional<double>* into) {
+    if (share == -1.0) return;
     *into = share;
-    return CheckRange(flag, share, 0.0, 1.0);
+    CheckRange(flag, share, 0.0, 1.0);
   };
-  for (const MaybeError& error :
-       {take("ridge_share", FLAGS_ridge_share, &flags->changes.ridge_share),
-        take("simlpe_share", FLAGS_simlpe_share, &flags->changes.simlpe_share),
-        TakeInRange("noise_memory", FLAGS_noise_memory, 0.0, 0.99, &particles.noise_memory),
-        TakeInRange("noise_scale", FLAGS_noise_scale, 0.01, 100.0, &particles.noise_scale)}) {
-    if (error) return error;
-  }
+  take("ridge_share", FLAGS_ridge_share, &flags->changes.ridge_share);
+  take("simlpe_share", FLAGS_simlpe_share, &flags->changes.simlpe_share);
+  TakeInRange("noise_memory", FLAGS_noise_memory, 0.0, 0.99, &particles.noise_memory);
+  TakeInRange("noise_scale", FLAGS_noise_scale, 0.01, 100.0, &particles.noise_scale);
   particles.project_bones = FLAGS_project_bones;
   particles.correlated_noise = FLAGS_correlated_noise;
-  return std::nullopt;
 }
 
 const KindFlags<GenerateFlags> kParticleFlags(GeneratorKind::kParticles,

@@ -17,16 +17,13 @@ class KindFlags {
  public:
   // read: checks them, and puts what they say into its argument; also what the kind makes of flags
   // that several kinds have.
-  KindFlags(GeneratorKind kind, std::vector<const char*> names, MaybeError (*read)(Flags* flags))
+  KindFlags(GeneratorKind kind, std::vector<const char*> names, void (*read)(Flags* flags))
       : kind_(kind), names_(std::move(names)), read_(read) {
     All().push_back(this);
   }
 
-  static MaybeError ReadAll(Flags* flags) {
-    for (const KindFlags* of_kind : All()) {
-      if (MaybeError error = of_kind->read_(flags)) return error;
-    }
-    return std::nullopt;
+  static void ReadAll(Flags* flags) {
+    for (const KindFlags* of_kind : All()) of_kind->read_(flags);
   }
 
   // The flags of other kinds, which do not apply to this one, each with its kind.
@@ -51,7 +48,7 @@ class KindFlags {
 
   GeneratorKind kind_;
   std::vector<const char*> names_;
-  MaybeError (*read_)(Flags* flags);
+  void (*read_)(Flags* flags);
 };
 
 // --published: the settings of a paper, as other defaults of a program's own flags.
@@ -63,6 +60,6 @@ struct PublishedFlags {
 
 // Makes the values of the paper that --published names the defaults, before any flag is read: flags
 // that are given win. Errors: no such paper.
-MaybeError TakePublished(const std::vector<PublishedFlags>& papers);
+void TakePublished(const std::vector<PublishedFlags>& papers);
 
 }  // namespace pushid

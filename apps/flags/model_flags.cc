@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include <sstream>
+#include <utility>
 
 #include "apps/flags/command_line.h"
 #include "apps/support/app_support.h"
@@ -28,48 +29,46 @@ std::string ModelFile() {
 }
 
 // That of --model.
-Result<FittedModel> ReadFlaggedModel() {
+FittedModel ReadFlaggedModel() {
   Result<FittedModel> read = ReadFittedModel(ModelFile());
-  if (!IsShipped()) return read;
+  if (!IsShipped()) return OrFail(std::move(read));
   if (!read.ok()) {
-    return Error{"--model=" + FLAGS_model +
-                 " is no model that comes with the programs; there is pushid:synthetic_group (" +
-                 read.error().ToString() + ")"};
+    throw Error{"--model=" + FLAGS_model +
+                " is no model that comes with the programs; there is pushid:synthetic_group (" +
+                read.error().ToString() + ")"};
   }
   Warn(FLAGS_model +
        " was fitted to synthetic people (pushid-simulate), not to recorded ones: it "
        "shows what the programs do; fit your own recordings for numbers about people");
-  return read;
+  return std::move(read).value();
 }
 
 }  // namespace
 
 ModelFlags ModelFlagsFromCommandLine() { return {ModelFile(), FLAGS_set}; }
 
-MaybeError RequireModel(const std::string& why) { return Require("model", FLAGS_model, why); }
+void RequireModel(const std::string& why) { return Require("model", FLAGS_model, why); }
 
-Result<IdentifiedModel> LoadFlaggedModel() {
-  if (MaybeError missing = RequireModel()) return *missing;
-  const Result<FittedModel> read = ReadFlaggedModel();
-  if (!read.ok()) return read.error();
-  IdentifiedModel model = ModelOf(read.value().fit);
+IdentifiedModel LoadFlaggedModel() {
+  RequireModel();
+  const FittedModel read = ReadFlaggedModel();
+  IdentifiedModel model = ModelOf(read.fit);
   model.source = FLAGS_model;
-  if (MaybeError error = SetValues(FLAGS_set, &model)) return *error;
+  OrFail(SetValues(FLAGS_set, &model));
   return model;
 }
 
-Result<std::vector<WhatIf>> LoadWhatIfs() {
-  if (MaybeError missing = RequireModel()) return *missing;
+std::vector<WhatIf> LoadWhatIfs() {
+  RequireModel();
   const ModelFlags flags = ModelFlagsFromCommandLine();
-  const Result<FittedModel> read = ReadFlaggedModel();
-  if (!read.ok()) return read.error();
-  IdentifiedModel fitted = ModelOf(read.value().fit);
+  const FittedModel read = ReadFlaggedModel();
+  IdentifiedModel fitted = ModelOf(read.fit);
   fitted.source = flags.file;
   std::vector<WhatIf> what_ifs = {{"", fitted}};
   std::stringstream sets(flags.set);
   for (std::string set; std::getline(sets, set, kBetweenSets);) {
     WhatIf one{set, fitted};
-    if (MaybeError error = SetValues(set, &one.model)) return *error;
+    OrFail(SetValues(set, &one.model));
     what_ifs.push_back(std::move(one));
   }
   return what_ifs;

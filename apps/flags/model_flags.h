@@ -21,10 +21,10 @@ struct ModelFlags {
 ModelFlags ModelFlagsFromCommandLine();
 
 // Whether --model is given; `why` says what it must name, or what needs it.
-MaybeError RequireModel(const std::string& why = "give a file that pushid-fit --model_out wrote");
+void RequireModel(const std::string& why = "give a file that pushid-fit --model_out wrote");
 
 // The model of --model with the values of --set.
-Result<IdentifiedModel> LoadFlaggedModel();
+IdentifiedModel LoadFlaggedModel();
 
 // Several what-ifs at once: --set=mu=10 --set=mu=60,a_x=-5.
 inline constexpr char kBetweenSets = ';';
@@ -36,6 +36,6 @@ struct WhatIf {
 
 // The model of --model as it was fitted, and then with each --set; main joins them by ;
 // (JoinRepeated).
-Result<std::vector<WhatIf>> LoadWhatIfs();
+std::vector<WhatIf> LoadWhatIfs();
 
 }  // namespace pushid

@@ -23,25 +23,25 @@ ForecastUse ForecastUseFlag() {
 
 int ObservedFrames() { return Given("observed") ? FLAGS_observed : 0; }
 
-MaybeError CheckObservedFlag() {
+void CheckObservedFlag() {
   ForecastUse use;
-  if (MaybeError error = ParseName("--forecast", FLAGS_forecast, &use)) return error;
+  OrFail(ParseName("--forecast", FLAGS_forecast, &use));
   if (Given("forecast") && !Given("observed")) {
-    return Error{"--forecast says who forecasts after observed frames: it needs --observed"};
+    throw Error{"--forecast says who forecasts after observed frames: it needs --observed"};
   }
-  return CheckObservedFlag({});
+  CheckObservedFlag({});
 }
 
-MaybeError CheckObservedFlag(const std::vector<PendulumRecording>& recordings) {
-  if (!Given("observed")) return std::nullopt;
-  return CheckObserved(recordings, FLAGS_observed);
+void CheckObservedFlag(const std::vector<PendulumRecording>& recordings) {
+  if (!Given("observed")) return;
+  OrFail(CheckObserved(recordings, FLAGS_observed));
 }
 
-MaybeError CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
-                             const IdentifiedModel& model) {
-  if (!Given("observed")) return std::nullopt;
-  if (MaybeError error = CheckLearnsFromFrames(model)) return error;
-  return CheckObservedFlag(recordings);
+void CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
+                       const IdentifiedModel& model) {
+  if (!Given("observed")) return;
+  OrFail(CheckLearnsFromFrames(model));
+  CheckObservedFlag(recordings);
 }
 
 }  // namespace pushid

@@ -15,8 +15,8 @@ bool OverwriteGiven() { return FLAGS_overwrite; }
 MaybeError CheckNew(const std::string& flag, const std::string& file, const std::string& besides) {
   std::error_code ignored;
   if (FLAGS_overwrite || !std::filesystem::exists(file, ignored)) return std::nullopt;
-  return Error{"already exists; --overwrite replaces it" + besides + "; or name another --" + flag,
-               file};
+  throw Error{"already exists; --overwrite replaces it" + besides + "; or name another --" + flag,
+              file};
 }
 
 MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder) {

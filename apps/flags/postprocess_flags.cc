@@ -10,7 +10,7 @@ DEFINE_string(postprocess, "fade,bones,feet",
 
 namespace pushid {
 
-Result<PostprocessOptions> PostprocessFromCommandLine() {
+PostprocessOptions PostprocessFromCommandLine() {
   PostprocessOptions options;
   options.fade_residual = options.keep_bones = options.lock_feet = false;
   if (FLAGS_postprocess == "none") return options;
@@ -22,8 +22,7 @@ Result<PostprocessOptions> PostprocessFromCommandLine() {
     } else if (name == "feet") {
       options.lock_feet = true;
     } else {
-      return Error{"--postprocess names '" + name +
-                   "'; it must list fade, bones, feet, or be none"};
+      throw Error{"--postprocess names '" + name + "'; it must list fade, bones, feet, or be none"};
     }
   }
   return options;

@@ -11,8 +11,8 @@ DEFINE_string(
 
 namespace pushid {
 
-MaybeError TakePublished(const std::vector<PublishedFlags>& papers) {
-  if (FLAGS_published.empty()) return std::nullopt;
+void TakePublished(const std::vector<PublishedFlags>& papers) {
+  if (FLAGS_published.empty()) return;
   std::string names;
   for (const PublishedFlags& paper : papers) {
     names += (names.empty() ? "" : " or ") + std::string(paper.paper);
@@ -20,9 +20,9 @@ MaybeError TakePublished(const std::vector<PublishedFlags>& papers) {
     for (const auto& [flag, value] : paper.values) {
       gflags::SetCommandLineOptionWithMode(flag, value, gflags::SET_FLAGS_DEFAULT);
     }
-    return std::nullopt;
+    return;
   }
-  return Error{"--published is " + Quoted(FLAGS_published) + ", not " + names};
+  throw Error{"--published is " + Quoted(FLAGS_published) + ", not " + names};
 }
 
 }  // namespace pushid

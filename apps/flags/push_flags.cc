@@ -79,8 +79,8 @@ const std::vector<std::string> kOfOneSensor = {
     "sensor_zero", "sensor_column", "sensor_gain", "sensor_up",    "sensor_forward",
     "direction",   "height",        "height_m",    "sensor_start", "idle_force"};
 
-Result<std::vector<SensorChoice>> SensorsFromFlags() {
-  if (!FLAGS_sensors.empty()) return ReadSensorList(FLAGS_sensors);
+std::vector<SensorChoice> SensorsFromFlags() {
+  if (!FLAGS_sensors.empty()) return OrFail(ReadSensorList(FLAGS_sensors));
   SensorChoice sensor;
   sensor.file = FLAGS_sensor;
   sensor.column = FLAGS_sensor_column;
@@ -97,38 +97,32 @@ Result<std::vector<SensorChoice>> SensorsFromFlags() {
   Eigen::Vector3d& d = sensor.direction;
   if (!(text >> d[0] >> comma1 >> d[1] >> comma2 >> d[2]) || comma1 != ',' || comma2 != ',' ||
       text >> rest) {
-    return Error{"--direction is '" + FLAGS_direction + "'; it must be x,y,z, as in 1,0,0"};
+    throw Error{"--direction is '" + FLAGS_direction + "'; it must be x,y,z, as in 1,0,0"};
   }
-  return std::vector<SensorChoice>{sensor};
+  return {sensor};
 }
 
-MaybeError CheckSensors() {
-  for (MaybeError error :
-       {CheckExcludes({"sensor"}, "sensors", "give --sensor or --sensors, not both"),
-        CheckNeeds(kOfOneSensor, {"sensor"}, ": name the file of its forces"),
-        CheckNeeds({"estimate_offset", "max_offset_s"}, {"sensor", "sensors"})}) {
-    if (error) return error;
-  }
-  if (Given("height") && Given("height_m")) return Error{"give --height or --height_m, not both"};
+void CheckSensors() {
+  CheckExcludes({"sensor"}, "sensors", "give --sensor or --sensors, not both");
+  CheckNeeds(kOfOneSensor, {"sensor"}, ": name the file of its forces");
+  CheckNeeds({"estimate_offset", "max_offset_s"}, {"sensor", "sensors"});
+  if (Given("height") && Given("height_m")) throw Error{"give --height or --height_m, not both"};
   if (!(FLAGS_height >= 0.0 && FLAGS_height <= 2.0)) {
-    return Error{"--height must be a fraction of the rod between 0 and 2; --height_m takes metres"};
+    throw Error{"--height must be a fraction of the rod between 0 and 2; --height_m takes metres"};
   }
   if (!(FLAGS_height_m >= 0.0 && FLAGS_height_m <= 3.0)) {
-    return Error{"--height_m must be a height between 0 and 3 m"};
+    throw Error{"--height_m must be a height between 0 and 3 m"};
   }
   if (!(FLAGS_idle_force >= 0.0) || !std::isfinite(FLAGS_idle_force)) {
-    return Error{"--idle_force must be a force of at least 0 N"};
+    throw Error{"--idle_force must be a force of at least 0 N"};
   }
-  return std::nullopt;
 }
 
-Result<SensorSetup> SensorsFromCommandLine() {
-  if (MaybeError error = CheckSensors()) return *error;
+SensorSetup SensorsFromCommandLine() {
+  CheckSensors();
   SensorSetup flags;
   if (SensorGiven()) {
-    Result<std::vector<SensorChoice>> sensors = SensorsFromFlags();
-    if (!sensors.ok()) return sensors.error();
-    flags.sensors = std::move(sensors.value());
+    flags.sensors = SensorsFromFlags();
   }
   flags.estimate_offset = FLAGS_estimate_offset;
   flags.max_offset_s = FLAGS_max_offset_s;
@@ -145,46 +139,42 @@ std::string WithId(std::string path, const std::string& id) {
 bool HasPlace(const std::string& path) { return path.find(kPlace) != std::string::npos; }
 
 // A flag of the other way would be taken and do nothing.
-MaybeError CheckInverseDynamics() {
+void CheckInverseDynamics() {
   for (const char* flag : {"first_frame", "end_frame", "smoothing", "initial_velocity"}) {
     if (SensorGiven() && Given(flag)) {
-      return Error{std::string("--") + flag + " applies to inverse dynamics, not to --sensor"};
+      throw Error{std::string("--") + flag + " applies to inverse dynamics, not to --sensor"};
     }
   }
   if (FLAGS_first_frame < -1 || FLAGS_end_frame < -1) {
-    return Error{"--first_frame and --end_frame are frames, counted from 0"};
+    throw Error{"--first_frame and --end_frame are frames, counted from 0"};
   }
-  return std::nullopt;
 }
 
 // Inputs and outputs of one recording, or of several.
-MaybeError CheckRecordings(const PushFlags& flags) {
+void CheckRecordings(const PushFlags& flags) {
   const std::vector<std::string>& ids = flags.ids;
   if (ids.size() > 1 && !HasPlace(flags.out)) {
-    return Error{"--out needs {id} for " + std::to_string(ids.size()) +
-                 " recordings, as in push/{id}.csv"};
+    throw Error{"--out needs {id} for " + std::to_string(ids.size()) +
+                " recordings, as in push/{id}.csv"};
   }
   const std::vector<SensorChoice>& sensors = flags.sensor.sensors;
   const bool each_its_own =
       std::all_of(sensors.begin(), sensors.end(),
                   [](const SensorChoice& sensor) { return HasPlace(sensor.file); });
   if (ids.size() > 1 && !each_its_own) {
-    return Error{
+    throw Error{
         "a sensor file belongs to one recording; name it by --id, or put {id} into the sensor's "
         "file, as in force/{id}.csv"};
   }
   const std::string manifest = RecordingFlagsFromCommandLine().manifest;
   if (flags.into_manifest && ManifestPaths(manifest).size() > 1) {
-    return Error{"--into_manifest writes into one manifest; --recordings names several"};
+    throw Error{"--into_manifest writes into one manifest; --recordings names several"};
   }
   for (const std::string& id : ids) {
-    if (MaybeError error = CheckNew("out", flags.OutOf(id))) return error;
-    if (HasPlace(flags.out)) {
-      if (MaybeError error = MakeFolderOf(flags.OutOf(id))) return error;
-    }
-    if (MaybeError error = CheckOutputFiles({flags.OutOf(id)})) return error;
+    OrFail(CheckNew("out", flags.OutOf(id)));
+    if (HasPlace(flags.out)) OrFail(MakeFolderOf(flags.OutOf(id)));
+    OrFail(CheckOutputFiles({flags.OutOf(id)}));
   }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -197,34 +187,33 @@ SensorSetup PushFlags::SensorOf(const std::string& id) const {
   return of;
 }
 
-Result<PushFlags> PushFlagsFromCommandLine() {
+PushFlags PushFlagsFromCommandLine() {
   PushFlags flags;
   flags.ids = FLAGS_id.empty() ? RecordingFlagsFromCommandLine().ids : std::vector{FLAGS_id};
   if (flags.ids.empty())
-    return Error{"--id is missing: name a recording of the manifest, or several by --ids"};
-  if (MaybeError missing = Require("out", FLAGS_out, "name the CSV file to write")) return *missing;
-  if (MaybeError error = CheckInverseDynamics()) return *error;
+    throw Error{"--id is missing: name a recording of the manifest, or several by --ids"};
+  Require("out", FLAGS_out, "name the CSV file to write");
+  CheckInverseDynamics();
   if (Given("resample_fps")) {
-    return Error{
+    throw Error{
         "a push has a row for each of the recording's own frames; leave --resample_fps out"};
   }
-  const Result<SensorSetup> sensor = SensorsFromCommandLine();
-  if (!sensor.ok()) return sensor.error();
+  const SensorSetup sensor = SensorsFromCommandLine();
   flags.person = FLAGS_person;
   flags.out = FLAGS_out;
   flags.into_manifest = FLAGS_into_manifest;
   flags.overwrite = OverwriteGiven();
-  flags.sensor = sensor.value();
+  flags.sensor = sensor;
   flags.window = {FLAGS_first_frame, FLAGS_end_frame};
   flags.smoothing = FLAGS_smoothing;
   if (FLAGS_initial_velocity != kAuto) {
     flags.initial_velocity = FromName<InitialVelocity>(FLAGS_initial_velocity);
     if (!flags.initial_velocity || *flags.initial_velocity == InitialVelocity::kFree) {
-      return Error{"--initial_velocity is '" + FLAGS_initial_velocity +
-                   "'; it must be zero, estimated or auto"};
+      throw Error{"--initial_velocity is '" + FLAGS_initial_velocity +
+                  "'; it must be zero, estimated or auto"};
     }
   }
-  if (MaybeError error = CheckRecordings(flags)) return *error;
+  CheckRecordings(flags);
   return flags;
 }
 

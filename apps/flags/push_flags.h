@@ -26,6 +26,6 @@ struct PushFlags {
   std::string OutOf(const std::string& id) const;
   SensorSetup SensorOf(const std::string& id) const;  // {id} in the names of its files alike
 };
-Result<PushFlags> PushFlagsFromCommandLine();
+PushFlags PushFlagsFromCommandLine();
 
 }  // namespace pushid

@@ -2,6 +2,7 @@
 #include "apps/flags/recording_flags.h"
 
 #include <set>
+#include <utility>
 
 #include "apps/flags/command_line.h"
 #include "apps/support/app_support.h"
@@ -34,17 +35,14 @@ DEFINE_double(resample_fps, pushid::PreparationOptions{}.resample_fps,
 namespace pushid {
 namespace {
 
-Result<LoadOptions> LoadOptionsOfFlags() {
+LoadOptions LoadOptionsOfFlags() {
   LoadOptions options;
   options.setting = FLAGS_setting;
   options.preparation = {FLAGS_max_gap_s, FLAGS_lowpass_hz, FLAGS_resample_fps};
   options.ids = SplitList(FLAGS_ids);
   options.leave_out = SplitList(FLAGS_leave_out);
-  if (MaybeError error = TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options.length_unit,
-                                    &options.length_scale)) {
-    return *error;
-  }
-  if (MaybeError error = CheckPreparation(options.preparation)) return *error;
+  TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options.length_unit, &options.length_scale);
+  OrFail(CheckPreparation(options.preparation));
   return options;
 }
 
@@ -79,36 +77,28 @@ void LoadAs(const std::map<std::string, std::string>& configuration) {
   }
 }
 
-MaybeError CheckRecordingFlags() {
-  const Result<LoadOptions> options = LoadOptionsOfFlags();
-  return options.ok() ? std::nullopt : MaybeError(options.error());
-}
+void CheckRecordingFlags() { LoadOptionsOfFlags(); }
 
 const Result<Manifest>& FlaggedManifest() {
   static const Result<Manifest> manifest = ReadManifests(FLAGS_recordings);
   return manifest;
 }
 
-Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids,
-                                                     bool keep_all_joints, Warnings* warnings,
-                                                     bool plates_alone) {
-  if (MaybeError missing =
-          Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings")) {
-    return *missing;
-  }
-  Result<LoadOptions> options = LoadOptionsOfFlags();
-  if (!options.ok()) return options.error();
-  options.value().keep_all_joints = keep_all_joints;
-  options.value().plates_alone = plates_alone;
+std::vector<Recording> LoadFlaggedRecordings(const std::vector<std::string>& ids,
+                                             bool keep_all_joints, Warnings* warnings,
+                                             bool plates_alone) {
+  Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings");
+  LoadOptions options = LoadOptionsOfFlags();
+  options.keep_all_joints = keep_all_joints;
+  options.plates_alone = plates_alone;
   if (!ids.empty()) {
-    options.value().ids = ids;
-    options.value().leave_out.clear();
+    options.ids = ids;
+    options.leave_out.clear();
   }
   const Result<Manifest>& manifest = FlaggedManifest();
-  if (!manifest.ok()) return manifest.error();
+  if (!manifest.ok()) throw manifest.error();
   Warnings found;
-  Result<std::vector<Recording>> recordings =
-      LoadRecordings(manifest.value(), options.value(), &found);
+  Result<std::vector<Recording>> recordings = LoadRecordings(manifest.value(), options, &found);
   if (recordings.ok()) {
     std::vector<Finding> facing;
     for (const Recording& recording : recordings.value()) {
@@ -118,22 +108,20 @@ Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::stri
   }
   WarnGrouped(found);
   if (warnings != nullptr) *warnings = found;
-  if (!recordings.ok()) return recordings;
+  if (!recordings.ok()) throw recordings.error();
   // Pushes may be written again where they were read; a motion cannot be had back.
   const OutputFiles outputs;
   for (const ManifestRecording& entry : manifest.value().recordings) {
     std::vector<std::string> files = entry.motion;
     if (!entry.mapping.empty()) files.push_back(entry.mapping);
     for (const std::string& file : files) {
-      const MaybeError error =
-          outputs.CheckNotRead("recording " + entry.id, ResolvePath(entry.manifest, file));
-      if (error) return *error;
+      OrFail(outputs.CheckNotRead("recording " + entry.id, ResolvePath(entry.manifest, file)));
     }
   }
-  return recordings;
+  return std::move(recordings).value();
 }
 
-Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting) {
+std::vector<Recording> LoadBodiesOfSetting(const std::string& setting) {
   const gflags::FlagSaver saver;
   FLAGS_setting = setting;
   FLAGS_ids.clear();
@@ -154,22 +142,21 @@ Provenance ProvenanceOfRun() {
   return from;
 }
 
-MaybeError CheckPushed(const std::vector<Recording>& recordings) {
+void CheckPushed(const std::vector<Recording>& recordings) {
   for (const Recording& recording : recordings) {
     if (!recording.pushes.empty() || !recording.ground.empty()) continue;
     if (recording.people[0].weight == std::vector<double>(recording.num_frames(), 0.0)) {
-      return Error{"recording " + recording.id +
-                       " was measured by force plates alone, on ground that does not move: nothing "
-                       "in it tells what moved the person; give its \"ground\", or leave it out "
-                       "(--leave_out)",
-                   FLAGS_recordings};
+      throw Error{"recording " + recording.id +
+                      " was measured by force plates alone, on ground that does not move: nothing "
+                      "in it tells what moved the person; give its \"ground\", or leave it out "
+                      "(--leave_out)",
+                  FLAGS_recordings};
     }
-    return Error{"recording " + recording.id +
-                     " has no push, and no ground that moves: estimate a push with pushid-push, or "
-                     "leave it out (--leave_out)",
-                 FLAGS_recordings};
+    throw Error{"recording " + recording.id +
+                    " has no push, and no ground that moves: estimate a push with pushid-push, or "
+                    "leave it out (--leave_out)",
+                FLAGS_recordings};
   }
-  return std::nullopt;
 }
 
 }  // namespace pushid

@@ -29,10 +29,10 @@ const Result<Manifest>& FlaggedManifest();
 // The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr, and to
 // `warnings` too. Other ids than the flags' may be asked for, all joints instead of hip and ankles,
 // and people whom force plates alone measured.
-Result<std::vector<Recording>> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
-                                                     bool keep_all_joints = false,
-                                                     Warnings* warnings = nullptr,
-                                                     bool plates_alone = false);
+std::vector<Recording> LoadFlaggedRecordings(const std::vector<std::string>& ids = {},
+                                             bool keep_all_joints = false,
+                                             Warnings* warnings = nullptr,
+                                             bool plates_alone = false);
 
 // How files are read: the flags of that by name.
 inline constexpr const char* kLoadFlags[] = {"length_unit", "length_scale", "max_gap_s",
@@ -45,16 +45,16 @@ void LoadAs(const std::map<std::string, std::string>& configuration);
 std::vector<std::string> FittedIds(const FitResult& fit);
 
 // What is wrong with their flags, before any file is read.
-MaybeError CheckRecordingFlags();
+void CheckRecordingFlags();
 
 // Those of another --setting, with whole bodies.
-Result<std::vector<Recording>> LoadBodiesOfSetting(const std::string& setting);
+std::vector<Recording> LoadBodiesOfSetting(const std::string& setting);
 
 // Version, flags and manifest of this program's run, as a model keeps them.
 Provenance ProvenanceOfRun();
 
 // Whether there is a push in every one of them: without it there is nothing to learn from.
-MaybeError CheckPushed(const std::vector<Recording>& recordings);
+void CheckPushed(const std::vector<Recording>& recordings);
 
 // overwrite_flag.cc: --overwrite, of the programs that write what a person may have edited or
 // cannot make again.

@@ -17,46 +17,39 @@ DEFINE_uint64(latent_seed, pushid::LatentChoice{}.seed, "with --latent=draw: see
 
 namespace pushid {
 
-Result<RestorationFlags> RestorationFlagsFromCommandLine(const std::string& otherwise) {
+RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise) {
   RestorationFlags flags;
   flags.name = FLAGS_restoration.empty() ? otherwise : FLAGS_restoration;
-  if (MaybeError error = ParseName("--latent", FLAGS_latent, &flags.latent.latent)) return *error;
+  OrFail(ParseName("--latent", FLAGS_latent, &flags.latent.latent));
   flags.latent.seed = FLAGS_latent_seed;
   const bool draws = flags.latent.latent == CvaeLatent::kDraw;
   if (draws && FLAGS_restoration.empty()) {
-    return Error{"--latent=draw needs --restoration, the folder of a cvae"};
+    throw Error{"--latent=draw needs --restoration, the folder of a cvae"};
   }
-  if (!draws && Given("latent_seed")) return Error{"--latent_seed needs --latent=draw"};
+  if (!draws && Given("latent_seed")) throw Error{"--latent_seed needs --latent=draw"};
   if (!flags.given()) return flags;
-  const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
-  if (!postprocess.ok()) return postprocess.error();
-  flags.postprocess = postprocess.value();
+  flags.postprocess = PostprocessFromCommandLine();
   return flags;
 }
 
 namespace {
 
 // A restoration that never saw a group is to make one.
-MaybeError WarnOfCrowd(const RestorationFlags& flags, int people) {
-  if (people < 2) return std::nullopt;
-  const Result<bool> alone = LearnedAlone(flags.name);
-  if (!alone.ok()) return alone.error();
-  if (alone.value()) {
+void WarnOfCrowd(const RestorationFlags& flags, int people) {
+  if (people < 2) return;
+  if (OrFail(LearnedAlone(flags.name))) {
     Warn(flags.name +
          " was trained on people pushed alone; in groups its bodies stay on tiptoe when others "
          "push them: train one with --more_settings=groups");
   }
-  return std::nullopt;
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Restoration>> LoadFlaggedRestoration(const RestorationFlags& flags,
-                                                            int people) {
-  Result<std::unique_ptr<Restoration>> restoration = LoadRestoration(flags.name);
-  if (!restoration.ok()) return restoration;
-  if (MaybeError error = ChooseLatent(flags.latent, restoration.value().get())) return *error;
-  if (MaybeError error = WarnOfCrowd(flags, people)) return *error;
+std::unique_ptr<Restoration> LoadFlaggedRestoration(const RestorationFlags& flags, int people) {
+  std::unique_ptr<Restoration> restoration = OrFail(LoadRestoration(flags.name));
+  OrFail(ChooseLatent(flags.latent, restoration.get()));
+  WarnOfCrowd(flags, people);
   return restoration;
 }
 

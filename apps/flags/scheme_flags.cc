@@ -12,10 +12,10 @@ DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),
 
 namespace pushid {
 
-Result<FoldScheme> SchemeFromCommandLine(bool takes_folds) {
+FoldScheme SchemeFromCommandLine(bool takes_folds) {
   FoldScheme scheme = FoldScheme::kStratified;
-  if (MaybeError error = ParseName("--scheme", FLAGS_scheme, &scheme)) return *error;
-  if (!takes_folds && Given("scheme")) return Error{"--scheme needs --crossvalidate"};
+  OrFail(ParseName("--scheme", FLAGS_scheme, &scheme));
+  if (!takes_folds && Given("scheme")) throw Error{"--scheme needs --crossvalidate"};
   return scheme;
 }
 

@@ -30,28 +30,23 @@ DEFINE_double(bystanders, kDiffusion.bystanders,
 namespace pushid {
 namespace {
 
-MaybeError ReadDiffusionFlags(TrainGeneratorFlags* flags) {
+void ReadDiffusionFlags(TrainGeneratorFlags* flags) {
   DiffusionTrainingOptions& diffusion = flags->options.diffusion;
-  for (const MaybeError& error :
-       {ParseName("--pooling", FLAGS_pooling, &diffusion.structure.pooling),
-        ParseName("--pooling_at", FLAGS_pooling_at, &diffusion.structure.join),
-        ParseName("--frame", FLAGS_frame, &diffusion.structure.frame),
-        TakeInRange("joint_weight", FLAGS_joint_weight, 0.0, 1e6, &diffusion.joint_weight),
-        TakeInRange("difference_weight", FLAGS_difference_weight, 0.0, 1e6,
-                    &diffusion.difference_weight),
-        TakeInRange("bystanders", FLAGS_bystanders, 0.0, 1.0, &diffusion.bystanders)}) {
-    if (error) return error;
-  }
+  OrFail(ParseName("--pooling", FLAGS_pooling, &diffusion.structure.pooling));
+  OrFail(ParseName("--pooling_at", FLAGS_pooling_at, &diffusion.structure.join));
+  OrFail(ParseName("--frame", FLAGS_frame, &diffusion.structure.frame));
+  TakeInRange("joint_weight", FLAGS_joint_weight, 0.0, 1e6, &diffusion.joint_weight);
+  TakeInRange("difference_weight", FLAGS_difference_weight, 0.0, 1e6, &diffusion.difference_weight);
+  TakeInRange("bystanders", FLAGS_bystanders, 0.0, 1.0, &diffusion.bystanders);
   if (diffusion.structure.frame == MotionFrame::kOwn) {
     if (diffusion.joint_weight > 0.0) {
-      return Error{"--frame=own has no joint errors in m; give --joint_weight=0"};
+      throw Error{"--frame=own has no joint errors in m; give --joint_weight=0"};
     }
     diffusion.turn = diffusion.size = 0.0;  // own frames are turned and scaled already
   }
   if (flags->steps > 0) diffusion.steps = flags->steps;
   if (flags->batch > 0) diffusion.groups = flags->batch;
   if (flags->learning_rate > 0.0) diffusion.learning_rate = flags->learning_rate;
-  return std::nullopt;
 }
 
 const KindFlags<TrainGeneratorFlags> kDiffusionFlags(GeneratorKind::kDiffusion,

@@ -111,131 +111,115 @@ const std::vector<PublishedFlags> kPublished = {
 
 bool Best() { return FLAGS_accuracy == pushid::NameOf(ForecastAccuracy::kBest); }
 
-MaybeError ReadNumbers(TrainGeneratorFlags* flags) {
+void ReadNumbers(TrainGeneratorFlags* flags) {
   GeneratorTrainingOptions& options = flags->options;
-  for (const MaybeError& error :
-       {CheckRange("seeds", FLAGS_seeds, 0, 20),
-        TakeInRange("steps", FLAGS_steps, 0, 1e6, &flags->steps),
-        TakeInRange("batch", FLAGS_batch, 0, 4096, &flags->batch),
-        CheckRange("observed", FLAGS_observed, 0, 1000),
-        TakeInRange("learning_rate", FLAGS_learning_rate, 0.0, 1.0, &flags->learning_rate),
-        TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &flags->changes.diffusion.blend),
-        TakeInRange("samples", FLAGS_samples, 0, 10000, &flags->samples),
-        TakeInRange("push_spread", FLAGS_push_spread, 0.0, 3.0,
-                    &flags->changes.diffusion.push_spread),
-        TakeInRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0, &options.ridge_share),
-        TakeInRange("ridge_penalty", FLAGS_ridge_penalty, 1e-12, 1e12, &options.ridge_penalty),
-        TakeInRange("held_out", FLAGS_held_out, 0.0, 0.5, &flags->held_out),
-        TakeInRange("checkpoint_seconds", FLAGS_checkpoint_seconds, 0.0, 1e9,
-                    &options.checkpoint_seconds),
-        TakeInRange("num_threads", FLAGS_num_threads, 1, 1024, &options.num_threads)}) {
-    if (error) return error;
-  }
-  return std::nullopt;
+  CheckRange("seeds", FLAGS_seeds, 0, 20);
+  TakeInRange("steps", FLAGS_steps, 0, 1e6, &flags->steps);
+  TakeInRange("batch", FLAGS_batch, 0, 4096, &flags->batch);
+  CheckRange("observed", FLAGS_observed, 0, 1000);
+  TakeInRange("learning_rate", FLAGS_learning_rate, 0.0, 1.0, &flags->learning_rate);
+  TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &flags->changes.diffusion.blend);
+  TakeInRange("samples", FLAGS_samples, 0, 10000, &flags->samples);
+  TakeInRange("push_spread", FLAGS_push_spread, 0.0, 3.0, &flags->changes.diffusion.push_spread);
+  TakeInRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0, &options.ridge_share);
+  TakeInRange("ridge_penalty", FLAGS_ridge_penalty, 1e-12, 1e12, &options.ridge_penalty);
+  TakeInRange("held_out", FLAGS_held_out, 0.0, 0.5, &flags->held_out);
+  TakeInRange("checkpoint_seconds", FLAGS_checkpoint_seconds, 0.0, 1e9,
+              &options.checkpoint_seconds);
+  TakeInRange("num_threads", FLAGS_num_threads, 1, 1024, &options.num_threads);
 }
 
-MaybeError OfOtherKinds(GeneratorKind kind) {
+void OfOtherKinds(GeneratorKind kind) {
   for (const auto& foreign : KindFlags<TrainGeneratorFlags>::ForeignTo(kind)) {
     if (!Given(foreign.flag)) continue;
-    return Error{std::string("--") + foreign.flag + " needs --kind=" + NameOf(foreign.of)};
+    throw Error{std::string("--") + foreign.flag + " needs --kind=" + NameOf(foreign.of)};
   }
-  return std::nullopt;
 }
 
 // Flags of the other data, or of another kind, would do nothing.
-MaybeError CheckForeign(GeneratorKind kind, GeneratorData data) {
+void CheckForeign(GeneratorKind kind, GeneratorData data) {
   const bool is_cmu = data == GeneratorData::kCmu, groups = RowOf(kind).groups;
-  const auto refuse = [](std::initializer_list<const char*> flags,
-                         const std::string& goes_with) -> MaybeError {
+  const auto refuse = [](std::initializer_list<const char*> flags, const std::string& goes_with) {
     for (const char* flag : flags) {
-      if (Given(flag)) return Error{std::string("--") + flag + " needs " + goes_with};
+      if (Given(flag)) throw Error{std::string("--") + flag + " needs " + goes_with};
     }
-    return std::nullopt;
   };
   if (is_cmu && groups) {
-    return Error{"--kind=" + NameOf(kind) + " trains on pushed groups; give --dataset=pushes"};
+    throw Error{"--kind=" + NameOf(kind) + " trains on pushed groups; give --dataset=pushes"};
   }
-  const std::string pushes = "--dataset=pushes", cmu = "--dataset=cmu";
-  for (const MaybeError& error :
-       {is_cmu ? refuse({"recordings", "setting", "observed", "held_out"}, pushes)
-               : refuse({"folder", "with_validation", "correction", "ridge_share", "ridge_penalty",
-                         "simlpe_share", "simlpe_steps"},
-                        cmu),
-        OfOtherKinds(kind),
-        groups ? MaybeError()
-               : refuse({"physics", "blend", "pendulum_input", "samples", "accuracy"},
-                        "--kind=" + KindsOfGroups()),
-        FLAGS_crossvalidate > 0 ? MaybeError() : refuse({"blend", "samples"}, "--crossvalidate"),
-        FLAGS_samples > 0 ? MaybeError() : refuse({"push_spread"}, "--samples")}) {
-    if (error) return error;
+  if (is_cmu) {
+    refuse({"recordings", "setting", "observed", "held_out"}, "--dataset=pushes");
+  } else {
+    refuse({"folder", "with_validation", "correction", "ridge_share", "ridge_penalty",
+            "simlpe_share", "simlpe_steps"},
+           "--dataset=cmu");
   }
+  OfOtherKinds(kind);
+  if (!groups) {
+    refuse({"physics", "blend", "pendulum_input", "samples", "accuracy"},
+           "--kind=" + KindsOfGroups());
+  }
+  if (FLAGS_crossvalidate == 0) refuse({"blend", "samples"}, "--crossvalidate");
+  if (FLAGS_samples == 0) refuse({"push_spread"}, "--samples");
   if (Best() && (FLAGS_crossvalidate > 0 || FLAGS_pendulum_input)) {
-    return Error{
+    throw Error{
         "--accuracy=best makes its own folds and blends with physics afterwards; leave out "
         "--crossvalidate and --pendulum_input"};
   }
   const bool uses_physics = FLAGS_blend > 0.0 || FLAGS_pendulum_input;
   if (uses_physics && FLAGS_physics.empty()) {
-    return Error{"--blend and --pendulum_input need --physics, the pendulum's model"};
+    throw Error{"--blend and --pendulum_input need --physics, the pendulum's model"};
   }
   if (!uses_physics && !Best() && !FLAGS_physics.empty()) {
-    return Error{
+    throw Error{
         "--physics is only used by --pendulum_input, --blend and --accuracy=best: give one of "
         "them"};
   }
-  return std::nullopt;
 }
 
-MaybeError CheckData(GeneratorKind kind, GeneratorData data) {
-  if (MaybeError error = CheckForeign(kind, data)) return error;
+void CheckData(GeneratorKind kind, GeneratorData data) {
+  CheckForeign(kind, data);
   if (data == GeneratorData::kCmu) {
     if (FLAGS_crossvalidate != 0) {
-      return Error{
+      throw Error{
           "--crossvalidate makes folds of pushes; --dataset=cmu has a validation split, which "
           "pushid-generate scores"};
     }
-    if (MaybeError missing = Require("folder", FLAGS_folder, "name the folder of the clips")) {
-      return missing;
-    }
-  } else if (MaybeError error = CheckRecordingFlags()) {
-    return error;
+    Require("folder", FLAGS_folder, "name the folder of the clips");
+  } else {
+    CheckRecordingFlags();
   }
   if (FLAGS_crossvalidate != 0 && FLAGS_crossvalidate < 2) {
-    return Error{"--crossvalidate must be 0 or at least 2 folds"};
+    throw Error{"--crossvalidate must be 0 or at least 2 folds"};
   }
-  if (FLAGS_crossvalidate == 0) return Require("out", FLAGS_out, "name the folder to write");
-  return std::nullopt;
+  if (FLAGS_crossvalidate == 0) Require("out", FLAGS_out, "name the folder to write");
 }
 
 }  // namespace
 
-Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
-  if (MaybeError error = TakePublished(kPublished)) return *error;
+TrainGeneratorFlags TrainGeneratorFlagsFromCommandLine() {
+  TakePublished(kPublished);
   TrainGeneratorFlags flags;
   GeneratorTrainingOptions& options = flags.options;
-  for (const MaybeError& error :
-       {ParseName("--kind", FLAGS_kind, &options.kind),
-        ParseName("--dataset", FLAGS_dataset, &flags.data),
-        ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy), ReadNumbers(&flags),
-        KindFlags<TrainGeneratorFlags>::ReadAll(&flags)}) {
-    if (error) return *error;
-  }
+  OrFail(ParseName("--kind", FLAGS_kind, &options.kind));
+  OrFail(ParseName("--dataset", FLAGS_dataset, &flags.data));
+  OrFail(ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy));
+  ReadNumbers(&flags);
+  KindFlags<TrainGeneratorFlags>::ReadAll(&flags);
   for (const PublishedFlags& paper : kPublished) {
     const std::string kind = paper.values.front().second;
     if (FLAGS_published == paper.paper && FLAGS_kind != kind) {
-      return Error{"--published=" + FLAGS_published + " needs --kind=" + kind};
+      throw Error{"--published=" + FLAGS_published + " needs --kind=" + kind};
     }
   }
   if (FLAGS_pendulum_input && options.diffusion.structure.frame == MotionFrame::kOwn) {
-    return Error{"--frame=own knows no pendulum; leave out --pendulum_input"};
+    throw Error{"--frame=own knows no pendulum; leave out --pendulum_input"};
   }
-  const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0 || Best());
-  if (!scheme.ok()) return scheme.error();
-  flags.scheme = scheme.value();
+  flags.scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0 || Best());
   const GeneratorKindRow& kind = RowOf(options.kind);
   if (!Given("dataset") && kind.groups) flags.data = GeneratorData::kPushes;
-  if (MaybeError error = CheckData(options.kind, flags.data)) return *error;
-  if (MaybeError error = CheckOutputFiles({FLAGS_json_out})) return *error;
+  CheckData(options.kind, flags.data);
+  OrFail(CheckOutputFiles({FLAGS_json_out}));
   flags.folder = FLAGS_folder;
   flags.with_validation = FLAGS_with_validation;
   flags.observed = FLAGS_observed > 0 ? FLAGS_observed : kind.observed;
@@ -246,9 +230,8 @@ Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine() {
   options.seed = FLAGS_seed;
   options.correction = FLAGS_correction;
   if (FLAGS_physics.empty()) return flags;
-  const Result<FittedModel> physics = ReadFittedModel(FLAGS_physics);
-  if (!physics.ok()) return physics.error();
-  flags.physics = physics.value().fit.options;
+  const FittedModel physics = OrFail(ReadFittedModel(FLAGS_physics));
+  flags.physics = physics.fit.options;
   flags.physics->num_threads = FLAGS_num_threads;
   flags.pendulum_input = FLAGS_pendulum_input;
   return flags;

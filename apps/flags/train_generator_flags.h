@@ -33,6 +33,6 @@ struct TrainGeneratorFlags {
   int samples = 0;                    // futures sampled of them; 0: none
   std::string json_out;               // scores of the cross-validation; empty: none
 };
-Result<TrainGeneratorFlags> TrainGeneratorFlagsFromCommandLine();
+TrainGeneratorFlags TrainGeneratorFlagsFromCommandLine();
 
 }  // namespace pushid

@@ -47,21 +47,18 @@ DEFINE_string(
 namespace pushid {
 namespace {
 
-MaybeError ReadParticleFlags(TrainGeneratorFlags* flags) {
+void ReadParticleFlags(TrainGeneratorFlags* flags) {
   ParticleTrainingOptions& particles = flags->options.particles;
-  for (const MaybeError& error :
-       {ParseName("--cell", FLAGS_cell, &particles.structure.cell),
-        ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss),
-        TakeInRange("noise_steps", FLAGS_noise_steps, 0, 1e6, &particles.noise_steps),
-        TakeInRange("jitter", FLAGS_jitter, 0.0, 100.0, &particles.jitter),
-        TakeInRange("transition_weight", FLAGS_transition_weight, 0.0, 1e6, &particles.transitions),
-        TakeInRange("mirrored_share", FLAGS_mirrored_share, 0.0, 1.0, &particles.mirrored),
-        TakeInRange("distance_weight", FLAGS_distance_weight, 0.0, 1e6, &particles.distance),
-        TakeInRange("squared_weight", FLAGS_squared_weight, 0.0, 1e6, &particles.squared),
-        TakeInRange("bone_weight", FLAGS_bone_weight, 0.0, 1e6, &particles.bones),
-        TakeInRange("critic_weight", FLAGS_critic_weight, 0.0, 1e6, &particles.critic)}) {
-    if (error) return error;
-  }
+  OrFail(ParseName("--cell", FLAGS_cell, &particles.structure.cell));
+  OrFail(ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss));
+  TakeInRange("noise_steps", FLAGS_noise_steps, 0, 1e6, &particles.noise_steps);
+  TakeInRange("jitter", FLAGS_jitter, 0.0, 100.0, &particles.jitter);
+  TakeInRange("transition_weight", FLAGS_transition_weight, 0.0, 1e6, &particles.transitions);
+  TakeInRange("mirrored_share", FLAGS_mirrored_share, 0.0, 1.0, &particles.mirrored);
+  TakeInRange("distance_weight", FLAGS_distance_weight, 0.0, 1e6, &particles.distance);
+  TakeInRange("squared_weight", FLAGS_squared_weight, 0.0, 1e6, &particles.squared);
+  TakeInRange("bone_weight", FLAGS_bone_weight, 0.0, 1e6, &particles.bones);
+  TakeInRange("critic_weight", FLAGS_critic_weight, 0.0, 1e6, &particles.critic);
   if (flags->steps > 0) particles.steps = flags->steps;
   if (flags->batch > 0) particles.batch = flags->batch;
   if (flags->learning_rate > 0.0) particles.learning_rate = flags->learning_rate;
@@ -74,15 +71,14 @@ MaybeError ReadParticleFlags(TrainGeneratorFlags* flags) {
   particles.constant_rate = FLAGS_constant_rate;
   particles.even_frames = FLAGS_even_frames;
   if (!FLAGS_poses && !FLAGS_particles) {
-    return Error{"--poses=false leaves displacements alone, and --particles=false poses; give one"};
+    throw Error{"--poses=false leaves displacements alone, and --particles=false poses; give one"};
   }
   if (!FLAGS_together && Given("transition_weight")) {
-    return Error{"--transition_weight needs --together"};
+    throw Error{"--transition_weight needs --together"};
   }
   if (FLAGS_together && Given("noise_steps")) {
-    return Error{"--together trains the noise with the drift; leave out --noise_steps"};
+    throw Error{"--together trains the noise with the drift; leave out --noise_steps"};
   }
-  return std::nullopt;
 }
 
 const KindFlags<TrainGeneratorFlags> kParticleFlags(

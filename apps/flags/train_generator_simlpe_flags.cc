@@ -19,7 +19,7 @@ DEFINE_int32(simlpe_steps, kSimlpe.steps, "cmu: training steps of the siMLPe tha
 namespace pushid {
 namespace {
 
-MaybeError ReadSimlpeFlags(TrainGeneratorFlags* flags) {
+void ReadSimlpeFlags(TrainGeneratorFlags* flags) {
   SimlpeTrainingOptions& simlpe = flags->options.simlpe;
   simlpe.steps = FLAGS_simlpe_steps;
   if (flags->options.kind == GeneratorKind::kSimlpe && flags->steps > 0) {
@@ -27,13 +27,9 @@ MaybeError ReadSimlpeFlags(TrainGeneratorFlags* flags) {
   }
   if (flags->batch > 0) simlpe.batch = flags->batch;
   if (flags->learning_rate > 0.0) simlpe.learning_rate = flags->learning_rate;
-  for (const MaybeError& error :
-       {CheckRange("simlpe_steps", FLAGS_simlpe_steps, 1, 1e6),
-        TakeInRange("simlpe_share", FLAGS_simlpe_share, 0.0, 1.0, &flags->options.simlpe_share),
-        TakeInRange("blocks", FLAGS_blocks, 1, 1000, &simlpe.blocks)}) {
-    if (error) return error;
-  }
-  return std::nullopt;
+  CheckRange("simlpe_steps", FLAGS_simlpe_steps, 1, 1e6);
+  TakeInRange("simlpe_share", FLAGS_simlpe_share, 0.0, 1.0, &flags->options.simlpe_share);
+  TakeInRange("blocks", FLAGS_blocks, 1, 1000, &simlpe.blocks);
 }
 
 const KindFlags<TrainGeneratorFlags> kSimlpeFlags(GeneratorKind::kSimlpe, {"blocks"},

@@ -91,83 +91,76 @@ bool AtDefault(const char* flag) {
 }
 
 // What goes with which kind.
-MaybeError CheckKind(RestorationKind kind, RestorationView view) {
+void CheckKind(RestorationKind kind, RestorationView view) {
   const RestorationKindRow& row = RowOf(kind);
   if (view != RestorationView::kPendulum && !row.follows_pendulum) {
-    return Error{"--sees is for kinds that follow a pendulum, and --kind=" + FLAGS_kind +
-                 " continues recorded bodies"};
+    throw Error{"--sees is for kinds that follow a pendulum, and --kind=" + FLAGS_kind +
+                " continues recorded bodies"};
   }
   if (view == RestorationView::kNeighbours && !row.sees_neighbours) {
-    return Error{"--sees=neighbours needs --kind=window"};
+    throw Error{"--sees=neighbours needs --kind=window"};
   }
   for (const FlagOfKind& own : kFlagsOfKinds) {
     if (kind == own.kind || AtDefault(own.flag)) continue;
-    return Error{std::string(own.given) + " needs --kind=" + NameOf(own.kind)};
+    throw Error{std::string(own.given) + " needs --kind=" + NameOf(own.kind)};
   }
   if (ObservedFrames() > 0 && !row.follows_pendulum) {
-    return Error{
+    throw Error{
         "--observed is for predicted pendulums; a peer always gets the number of frames that "
         "--kind=" +
         FLAGS_kind + " takes"};
   }
-  if (AtDefault("coordinates")) return std::nullopt;
+  if (AtDefault("coordinates")) return;
   if (kind != RestorationKind::kCvae || view == RestorationView::kPose) {
-    return Error{
+    throw Error{
         "--coordinates needs --kind=cvae --sees=pendulum: without a pendulum there is no tip"};
   }
-  return std::nullopt;
 }
 
 // What the command line says, but the model.
-MaybeError ReadOptions(RestorationRunOptions* options) {
-  if (MaybeError missing =
-          Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote")) {
-    return missing;
-  }
+void ReadOptions(RestorationRunOptions* options) {
+  Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote");
   const auto kind = FromName<RestorationKind>(FLAGS_kind);
   if (!kind || !RowOf(*kind).trained) {
-    return Error{"--kind is '" + FLAGS_kind + "'; it must be " + TrainedRestorationKinds()};
+    throw Error{"--kind is '" + FLAGS_kind + "'; it must be " + TrainedRestorationKinds()};
   }
   RestorationTrainingOptions& training = options->training;
   training.kind = *kind;
-  for (const MaybeError& error :
-       {ParseName("--coordinates", FLAGS_coordinates, &training.coordinates),
-        ParseName("--sees", FLAGS_sees, &training.view),
-        ParseName("--training", FLAGS_training, &training.training),
-        ParseName("--mrt_size", FLAGS_mrt_size, &training.mrt_size)}) {
-    if (error) return error;
-  }
-  if (MaybeError error = CheckKind(*kind, training.view)) return error;
+  OrFail(ParseName("--coordinates", FLAGS_coordinates, &training.coordinates));
+  OrFail(ParseName("--sees", FLAGS_sees, &training.view));
+  OrFail(ParseName("--training", FLAGS_training, &training.training));
+  OrFail(ParseName("--mrt_size", FLAGS_mrt_size, &training.mrt_size));
+  CheckKind(*kind, training.view);
   if (FLAGS_crossvalidate == 0) {
-    if (MaybeError missing = Require("out", FLAGS_out, "name the folder to write")) return missing;
+    Require("out", FLAGS_out, "name the folder to write");
   } else if (FLAGS_crossvalidate < 2) {
-    return Error{"--crossvalidate must be 0 or at least 2 folds"};
+    throw Error{"--crossvalidate must be 0 or at least 2 folds"};
   }
   if (Given("forecast")) {
-    return Error{"--forecast: restorations are scored on all forecasters together; leave it out"};
+    throw Error{"--forecast: restorations are scored on all forecasters together; leave it out"};
   }
   options->observed = ObservedFrames();
   if (options->observed > 0 && FLAGS_crossvalidate == 0) {
-    return Error{"--observed needs --crossvalidate: training uses whole recordings"};
+    throw Error{"--observed needs --crossvalidate: training uses whole recordings"};
   }
-  if (!(FLAGS_body_weight >= 0.0)) return Error{"--body_weight must not be negative"};
+  if (!(FLAGS_body_weight >= 0.0)) throw Error{"--body_weight must not be negative"};
   if (FLAGS_body_weight > 0.0 &&
       (!RowOf(*kind).differentiable || training.view != RestorationView::kPendulum)) {
-    return Error{"--body_weight needs --kind=window or cvae, and --sees=pendulum"};
+    throw Error{"--body_weight needs --kind=window or cvae, and --sees=pendulum"};
   }
-  if (FLAGS_rounds < 1) return Error{"--rounds must be positive"};
+  if (FLAGS_rounds < 1) throw Error{"--rounds must be positive"};
   if (FLAGS_body_weight == 0.0 && FLAGS_rounds != options->rounds) {
-    return Error{"--rounds does nothing without --body_weight; give --body_weight=1"};
+    throw Error{"--rounds does nothing without --body_weight; give --body_weight=1"};
   }
-  if (FLAGS_inner_folds < 2) return Error{"--inner_folds must be at least 2"};
+  if (FLAGS_inner_folds < 2) throw Error{"--inner_folds must be at least 2"};
   if (!(FLAGS_held_out > 0.0 && FLAGS_held_out <= 0.5)) {
-    return Error{"--held_out must lie above 0 and not above 0.5"};
+    throw Error{"--held_out must lie above 0 and not above 0.5"};
   }
   if (!(FLAGS_effort > 0.0 && FLAGS_effort <= 100.0)) {
-    return Error{"--effort must lie above 0 and not above 100"};
+    throw Error{"--effort must lie above 0 and not above 100"};
   }
-  if (!(FLAGS_checkpoint_seconds >= 0.0)) return Error{"--checkpoint_seconds must not be negative"};
-  if (FLAGS_num_threads < 1) return Error{"--num_threads must be positive"};
+  if (!(FLAGS_checkpoint_seconds >= 0.0)) throw Error{"--checkpoint_seconds must not be negative"};
+  if (FLAGS_num_threads < 1) throw Error{"--num_threads must be positive"};
   options->rounds = FLAGS_rounds;
   options->inner_folds = FLAGS_inner_folds;
   options->held_out = FLAGS_held_out;
@@ -178,34 +171,27 @@ MaybeError ReadOptions(RestorationRunOptions* options) {
   training.seed = FLAGS_seed;
   training.num_threads = FLAGS_num_threads;
   training.checkpoint_seconds = FLAGS_checkpoint_seconds;
-  return std::nullopt;
 }
 
 // The pendulum's options as the model has them.
-MaybeError ReadModel(FitOptions* fit) {
-  const Result<FittedModel> model = ReadFittedModel(FLAGS_model);
-  if (!model.ok()) return model.error();
-  *fit = model.value().fit.options;
+void ReadModel(FitOptions* fit) {
+  const FittedModel model = OrFail(ReadFittedModel(FLAGS_model));
+  *fit = model.fit.options;
   fit->num_threads = FLAGS_num_threads;
   fit->body_weight = FLAGS_body_weight;
-  return std::nullopt;
 }
 
 }  // namespace
 
-Result<TrainRestorationFlags> TrainRestorationFlagsFromCommandLine() {
+TrainRestorationFlags TrainRestorationFlagsFromCommandLine() {
   TrainRestorationFlags flags;
-  if (MaybeError error = ReadOptions(&flags.options)) return *error;
-  const Result<PostprocessOptions> postprocess = PostprocessFromCommandLine();
-  if (!postprocess.ok()) return postprocess.error();
-  flags.options.postprocess = postprocess.value();
+  ReadOptions(&flags.options);
+  flags.options.postprocess = PostprocessFromCommandLine();
   flags.check = FLAGS_check;
   if (flags.check) return flags;
-  if (MaybeError error = ReadModel(&flags.options.fit)) return *error;
-  const Result<FoldScheme> scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0);
-  if (!scheme.ok()) return scheme.error();
-  if (MaybeError error = CheckOutputFiles({FLAGS_json_out})) return *error;
-  flags.scheme = scheme.value();
+  ReadModel(&flags.options.fit);
+  flags.scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0);
+  OrFail(CheckOutputFiles({FLAGS_json_out}));
   flags.out = FLAGS_out;
   flags.crossvalidate = FLAGS_crossvalidate;
   flags.json_out = FLAGS_json_out;

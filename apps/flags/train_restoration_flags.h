@@ -16,6 +16,6 @@ struct TrainRestorationFlags {
   std::string more_settings;  // of recordings to learn from too; empty: none
   bool check = false;         // nothing else was read
 };
-Result<TrainRestorationFlags> TrainRestorationFlagsFromCommandLine();
+TrainRestorationFlags TrainRestorationFlagsFromCommandLine();
 
 }  // namespace pushid

@@ -24,6 +24,16 @@ const std::string& ProgramName();
 // "pushid-fit: error: ..." on stderr; returns kBadInput.
 int Fail(const Error& error);
 int Fail(const std::string& message);
+// What a program cannot do without: the value, or an Error is thrown, which RunApp says once all
+// that was open is closed. The libraries under the programs return their errors.
+template <typename T>
+T OrFail(Result<T> result) {
+  if (!result.ok()) throw result.error();
+  return std::move(result).value();
+}
+inline void OrFail(const MaybeError& error) {
+  if (error) throw *error;
+}
 void Warn(const std::string& message);
 // Those that differ only in the recording as one.
 void WarnGrouped(const Warnings& warnings);

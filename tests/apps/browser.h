@@ -71,18 +71,27 @@ inline constexpr char kLayoutProbe[] = R"js(
   said.push(`${labels} labels in ${innerWidth} pixels`);
 )js";
 
-// A probed page in a frame of a width of its own, whose note is copied out of it: windows are at
-// least 500 pixels wide.
-inline std::string Framed(const std::string& page, int width) {
-  std::string quoted;
-  for (const char c : page) {
-    quoted += c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+// Widths that pages are looked at in: a desk's and a telephone's.
+inline constexpr int kWidths[] = {1200, 400};
+
+// Probed pages, each in a frame of every width, whose notes are copied out of them: windows are at
+// least 500 pixels wide, and a browser takes a second to start.
+inline std::string Framed(const std::vector<std::string>& pages) {
+  std::string frames;
+  for (const std::string& page : pages) {
+    std::string quoted;
+    for (const char c : page) {
+      quoted += c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
+    }
+    for (const int width : kWidths) {
+      frames += "<iframe style=\"border:0;height:800px;width:" + std::to_string(width) +
+                "px\" srcdoc=\"" + quoted + "\"></iframe>";
+    }
   }
-  return "<!DOCTYPE html><html><head><meta charset=\"utf-8\"></head><body><iframe style=\"border:0;"
-         "height:800px;width:" +
-         std::to_string(width) + "px\" srcdoc=\"" + quoted + R"js("></iframe><script>
-onload = () => document.body.append(
-    document.querySelector('iframe').contentDocument.getElementById('probe').cloneNode(true));
+  return "<!DOCTYPE html><html><head><meta charset=\"utf-8\"></head><body>" + frames +
+         R"js(<script>
+onload = () => document.querySelectorAll('iframe').forEach(frame => document.body.append(
+    frame.contentDocument.getElementById('probe').cloneNode(true)));
 </script></body></html>)js";
 }
 
@@ -101,10 +110,12 @@ inline AppRun Browse(const std::string& profile, const std::string& page, int mi
   return RunProgram(Browser(), flags);
 }
 
-// What a probe said; a remark of its own where the page's script stopped early.
-inline std::string WhatItSaid(const AppRun& seen) {
+// What a probe said, the one of the frame with this number; a remark of its own where the page's
+// script stopped early.
+inline std::string WhatItSaid(const AppRun& seen, int frame = 0) {
   const std::string opens = "<pre id=\"probe\">";
-  const size_t begin = seen.out.find(opens);
+  size_t begin = seen.out.find(opens);
+  for (; frame > 0 && begin != std::string::npos; --frame) begin = seen.out.find(opens, begin + 1);
   if (begin == std::string::npos) return "the probe did not finish: " + seen.err;
   const size_t end = seen.out.find("</pre>", begin);
   return seen.out.substr(begin + opens.size(), end - begin - opens.size());

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 #include <string>
@@ -48,7 +49,10 @@ TEST_F(FrontTest, HelpListsAllPrograms) {
   }
 }
 
-TEST_F(FrontTest, CompletionKnowsFlagsAndTheirWords) {
+// All that is asked of the scripts, as writing one asks every program for its flags. In zsh a colon
+// or a bracket would end a description.
+TEST_F(FrontTest, ShellsCompleteFlagsAndTheirWords) {
+  std::map<std::string, std::string> scripts;
   for (const char* shell : {"bash", "zsh", "fish"}) {
     SCOPED_TRACE(shell);
     const AppRun run = RunApp("pushid", {"completion", shell});
@@ -56,17 +60,27 @@ TEST_F(FrontTest, CompletionKnowsFlagsAndTheirWords) {
     EXPECT_TRUE(Contains(run.out, "settling_weight"));
     EXPECT_TRUE(Contains(run.out, "slide steps"));  // --stance
     EXPECT_EQ(run.out.find("minloglevel"), std::string::npos);
+    scripts[shell] = run.out;
   }
-}
-
-// In zsh a colon or a bracket would end a description.
-TEST_F(FrontTest, DescriptionsAreWhole) {
-  const std::string zsh = RunApp("pushid", {"completion", "zsh"}).out;
-  EXPECT_TRUE(Contains(zsh, "'check:question a fitted model\\: profiles, bootstrap, "));
-  EXPECT_TRUE(Contains(zsh, "--setting=[recordings to use\\: settings of the manifest, comma-"));
-  const std::string fish = RunApp("pushid", {"completion", "fish"}).out;
-  EXPECT_TRUE(Contains(fish, "-d 'question a fitted model: profiles, bootstrap, "));
-  EXPECT_TRUE(Contains(fish, "each recording\\'s effect'"));
+  EXPECT_TRUE(Contains(scripts["zsh"], "'check:question a fitted model\\: profiles, bootstrap, "));
+  EXPECT_TRUE(
+      Contains(scripts["zsh"], "--setting=[recordings to use\\: settings of the manifest, comma-"));
+  EXPECT_TRUE(Contains(scripts["fish"], "-d 'question a fitted model: profiles, bootstrap, "));
+  EXPECT_TRUE(Contains(scripts["fish"], "each recording\\'s effect'"));
+  // What bash itself makes of its script.
+  const std::string functions = WriteText("functions", scripts["bash"]);
+  const auto completed = [&](const std::string& words, int at) {
+    const std::string script = "source " + functions + "\nCOMP_WORDS=(" + words +
+                               ")\nCOMP_CWORD=" + std::to_string(at) +
+                               "\ncompopt() { [[ \"$1 $#\" == \"-o 2\" ]] || echo compopt $*; "
+                               "}\n_pushid\necho \"${COMPREPLY[@]}\"\n";
+    return RunProgram("/bin/bash", {WriteText("complete.sh", script)});
+  };
+  EXPECT_EQ(completed("pushid fi", 1).out, "fit\n");
+  EXPECT_EQ(completed("pushid fit --settling_", 2).out, "--settling_weight=\n");
+  EXPECT_EQ(completed("pushid-fit --stance = ste", 3).out, "steps\n");
+  EXPECT_EQ(completed("pushid check --prior", 2).out, "--prior_check\n");
+  EXPECT_EQ(completed("pushid-fit --prof", 1).out, "\n") << "a flag that moved";
 }
 
 // Every program has its page, which man and groff read without a warning.
@@ -99,24 +113,6 @@ TEST_F(FrontTest, PagesOfTheManual) {
     EXPECT_TRUE(Contains(read.out, "--flagfile=FILE"));
   }
   EXPECT_TRUE(Refused(RunApp("pushid", {"man", "fitt"}), {"did you mean 'fit'?"}));
-}
-
-// What bash itself makes of the script.
-TEST_F(FrontTest, BashCompletes) {
-  const std::string functions =
-      WriteText("functions", RunApp("pushid", {"completion", "bash"}).out);
-  const auto completed = [&](const std::string& words, int at) {
-    const std::string script = "source " + functions + "\nCOMP_WORDS=(" + words +
-                               ")\nCOMP_CWORD=" + std::to_string(at) +
-                               "\ncompopt() { [[ \"$1 $#\" == \"-o 2\" ]] || echo compopt $*; "
-                               "}\n_pushid\necho \"${COMPREPLY[@]}\"\n";
-    return RunProgram("/bin/bash", {WriteText("complete.sh", script)});
-  };
-  EXPECT_EQ(completed("pushid fi", 1).out, "fit\n");
-  EXPECT_EQ(completed("pushid fit --settling_", 2).out, "--settling_weight=\n");
-  EXPECT_EQ(completed("pushid-fit --stance = ste", 3).out, "steps\n");
-  EXPECT_EQ(completed("pushid check --prior", 2).out, "--prior_check\n");
-  EXPECT_EQ(completed("pushid-fit --prof", 1).out, "\n") << "a flag that moved";
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ def written(folder, binaries):
     run("pushid-simulate", "--out=rows", "--people=2", "--group_size=2", "--seed=1")
     run("pushid-fit", data, "--model_out=model.json")
     run("pushid-fit", data, "--model_out=learned.json", "--self_force=mlp:2")
-    run("pushid-check", model, data, "--prior_check", "--push_check", "--horizon_check", "--profile", "--bootstrap=5")
+    run("pushid-check", model, data, "--prior_check", "--push_check", "--horizon_check", "--profile=mu", "--bootstrap=3")
     run("pushid-evaluate", model, data, "--json_out=evaluation.json")
     run("pushid-crossvalidate", data, "--folds=2", "--compare=pd: --preset=ldp", "--json_out=folds.json")
     run("pushid-fit", "--recordings=rows/manifest.json", "--preset=group", "--model_out=group.json")

@@ -76,15 +76,16 @@ TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
   EXPECT_NE(drawn, mean);
 }
 
-// Pendulums with rods that move, restored and fitted to bodies through the chain: of four
+// Pendulums with rods that move, restored and fitted to bodies through the chain: of four short
 // recordings, as the derivative of each goes through all frames' networks.
 TEST_F(CvaeAppTest, IsTrainedAsAWholeOnRodsThatMove) {
   const std::string model = "--model=" + FitModel("rod.json", {"--rod=linear", "--max_iterations=2",
                                                                "--fix=Kd_theta=70"});
-  const std::string few = ChangedManifest([](nlohmann::ordered_json& json) {
-    auto& all = json["recordings"];
-    all = {all[0], all[1], all[6], all[7]};
-  });
+  ASSERT_EQ(RunApp("pushid-simulate", {"--out=" + Path("short"), "--people=2", "--frames=16",
+                                       "--recordings_per_person=2", "--quiet"})
+                .exit_code,
+            0);
+  const std::string few = "--recordings=" + Path("short/manifest.json");
   const AppRun run = RunApp(
       "pushid-train-restoration",
       {few, model, "--crossvalidate=2", "--kind=cvae", "--effort=0.001", "--body_weight=1",
