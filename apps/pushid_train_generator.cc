@@ -1,4 +1,5 @@
 // apps: pushid-train-generator: learned generators of motion.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -91,6 +92,8 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
 }
 
 constexpr int kFolds = 4;  // of the comparison
+// Networks that are only compared are trained more briefly, by these shares of steps and epochs.
+constexpr double kShareOfSteps = 0.4, kShareOfEpochs = 1.0 / 3.0;
 const std::vector<double> kBlends = {0.25, 0.5, 0.75};
 
 Result<FitOptions> PhysicsOf(const TrainGeneratorFlags& flags,
@@ -113,21 +116,26 @@ MaybeError WritePhysics(const std::vector<PendulumRecording>& pendulums, const F
   return WriteModelFile(file, model, options.num_threads, begin);
 }
 
-// --accuracy=best: compares, then writes physics and restoration of all recordings into --out; the
-// generator itself is still to be trained. Returns what is to forecast.
+// --accuracy=best: compares, then writes physics of all recordings into --out, and the restoration
+// where that won; the generator itself is still to be trained. Returns what is to forecast.
 Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
                                    const std::vector<BodyRecording>& recordings) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   const Result<FitOptions> physics = PhysicsOf(flags, pendulums);
   if (!physics.ok()) return physics.error();
-  BestForecastOptions options;
-  options.chain.fit = physics.value();
-  options.chain.training.seed = flags.options.seed;
-  options.chain.training.num_threads = flags.options.num_threads;
+  RestorationRunOptions chain;
+  chain.fit = physics.value();
+  chain.training.seed = flags.options.seed;
+  chain.training.num_threads = flags.options.num_threads;
   // A generator of few steps, a try, is compared with a restoration of few.
-  options.chain.training.effort =
+  chain.training.effort =
       static_cast<double>(flags.options.diffusion.steps) / DiffusionTrainingOptions{}.steps;
+  BestForecastOptions options;
+  options.chain = chain;
+  options.chain.training.effort *= kShareOfEpochs;
   options.generator = flags.options;
+  int& steps = options.generator.diffusion.steps;
+  steps = std::max(1, static_cast<int>(kShareOfSteps * steps));
   options.validation.observed = flags.observed;
   options.validation.scheme = flags.scheme;
   options.validation.folds = kFolds;
@@ -142,13 +150,15 @@ Result<ForecastChoice> TrainBeside(const TrainGeneratorFlags& flags,
   MaybeError error = WriteJson(Inside(flags.out, "candidates.json"), ToJson(candidates.value()));
   if (!error) error = WritePhysics(pendulums, physics.value(), Inside(flags.out, kChosenPhysics));
   if (error) return *error;
+  const ForecastChoice choice = candidates.value().front().choice;
+  if (choice.by != ForecastBy::kRestoration) return choice;
   const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
-  const auto restoration = TrainFromRecordings(recordings, all, options.chain, show);
+  const auto restoration = TrainFromRecordings(recordings, all, chain, show);
   line.Finish();
   if (!restoration.ok()) return restoration.error();
   error = WriteRestorationFile(Inside(flags.out, kChosenRestoration), restoration.value().file);
   if (error) return *error;
-  return candidates.value().front().choice;
+  return choice;
 }
 
 int FromClips(const TrainGeneratorFlags& flags) {
@@ -189,7 +199,10 @@ int FromPushes(const TrainGeneratorFlags& flags) {
   }
   std::vector<GroupHips> hips;
   if (flags.pendulum_input) {
-    hips = OutOfFoldHips(bodies.value(), all, *flags.physics, flags.options.seed);
+    const Result<FittedFolds> fitted =
+        FitFolds(PendulumsOf(bodies.value()), all, *flags.physics, kHipFolds, flags.options.seed);
+    if (!fitted.ok()) return Fail(fitted.error());
+    hips = HipsOf(bodies.value(), all, fitted.value().predictions);
   }
   GeneratorSamples samples = SamplesOf(bodies.value(), learnt, held, flags.observed, hips);
   if (flags.accuracy == ForecastAccuracy::kBest) {

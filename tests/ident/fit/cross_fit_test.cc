@@ -100,5 +100,30 @@ TEST(CrossFit, NeedsThreeRecordings) {
   EXPECT_EQ(one.forecasts->folds, 4);
 }
 
+double LargestChangeOf(const IdentifiedModel& model, const IdentifiedModel& from) {
+  double largest = 0.0;
+  for (const Parameter p : model.table.Free()) {
+    largest =
+        std::max(largest, std::abs(model.parameters[p] - from.parameters[p]) / from.parameters[p]);
+  }
+  return largest;
+}
+
+// A refit ends where a solve without these recordings does, but for the weights of the whole.
+TEST(SolveFolds, RefitsToWhatASolveWithoutThemFinds) {
+  const SyntheticOptions study = DifferingPeople();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const FitOptions options = UnbiasedFit(study);
+  const std::vector<int> held_out = {0, 1, 2, 3};
+  const Result<FoldedModels> folded = SolveFolds(recordings, options, {held_out});
+  ASSERT_TRUE(folded.ok());
+  ASSERT_TRUE(folded.value().without[0].has_value());
+  const Result<IdentifiedModel> anew =
+      SolveModel({recordings.begin() + 4, recordings.end()}, options);
+  ASSERT_TRUE(anew.ok());
+  EXPECT_LT(LargestChangeOf(*folded.value().without[0], anew.value()), 0.02);
+  EXPECT_GT(LargestChangeOf(folded.value().whole, anew.value()), 0.02);
+}
+
 }  // namespace
 }  // namespace pushid
