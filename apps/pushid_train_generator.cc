@@ -1,4 +1,5 @@
 // apps: pushid-train-generator: learned generators of motion.
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -87,6 +88,8 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
 }
 
 constexpr int kFolds = 4;  // of the comparison
+// Networks that are only compared are trained more briefly, by these shares of steps and epochs.
+constexpr double kShareOfSteps = 0.4, kShareOfEpochs = 1.0 / 3.0;
 const std::vector<double> kBlends = {0.25, 0.5, 0.75};
 
 FitOptions PhysicsOf(const TrainGeneratorFlags& flags,
@@ -108,20 +111,24 @@ void WritePhysics(const std::vector<PendulumRecording>& pendulums, const FitOpti
   OrFail(WriteModelFile(file, model, options.num_threads, begin));
 }
 
-// --accuracy=best: compares, then writes physics and restoration of all recordings into --out; the
-// generator itself is still to be trained. Returns what is to forecast.
+// --accuracy=best: compares, then writes physics of all recordings into --out, and the restoration
+// where that won; the generator itself is still to be trained. Returns what is to forecast.
 ForecastChoice TrainBeside(const TrainGeneratorFlags& flags,
                            const std::vector<BodyRecording>& recordings) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  const FitOptions physics = PhysicsOf(flags, pendulums);
-  BestForecastOptions options;
-  options.chain.fit = physics;
-  options.chain.training.seed = flags.options.seed;
-  options.chain.training.num_threads = flags.options.num_threads;
+  RestorationRunOptions chain;
+  chain.fit = PhysicsOf(flags, pendulums);
+  chain.training.seed = flags.options.seed;
+  chain.training.num_threads = flags.options.num_threads;
   // A generator of few steps, a try, is compared with a restoration of few.
-  options.chain.training.effort =
+  chain.training.effort =
       static_cast<double>(flags.options.diffusion.steps) / DiffusionTrainingOptions{}.steps;
+  BestForecastOptions options;
+  options.chain = chain;
+  options.chain.training.effort *= kShareOfEpochs;
   options.generator = flags.options;
+  int& steps = options.generator.diffusion.steps;
+  steps = std::max(1, static_cast<int>(kShareOfSteps * steps));
   options.validation.observed = flags.observed;
   options.validation.scheme = flags.scheme;
   options.validation.folds = kFolds;
@@ -133,12 +140,14 @@ ForecastChoice TrainBeside(const TrainGeneratorFlags& flags,
   line.Finish();
   std::printf("%s", CandidatesText(candidates).c_str());
   OrFail(WriteJson(Inside(flags.out, "candidates.json"), ToJson(candidates)));
-  WritePhysics(pendulums, physics, Inside(flags.out, kChosenPhysics));
+  WritePhysics(pendulums, chain.fit, Inside(flags.out, kChosenPhysics));
+  const ForecastChoice choice = candidates.front().choice;
+  if (choice.by != ForecastBy::kRestoration) return choice;
   const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
-  const auto restoration = OrFail(TrainFromRecordings(recordings, all, options.chain, show));
+  const auto restoration = OrFail(TrainFromRecordings(recordings, all, chain, show));
   line.Finish();
   OrFail(WriteRestorationFile(Inside(flags.out, kChosenRestoration), restoration.file));
-  return candidates.front().choice;
+  return choice;
 }
 
 int FromClips(const TrainGeneratorFlags& flags) {
@@ -173,7 +182,9 @@ int FromPushes(const TrainGeneratorFlags& flags) {
   }
   std::vector<GroupHips> hips;
   if (flags.pendulum_input) {
-    hips = OutOfFoldHips(bodies, all, *flags.physics, flags.options.seed);
+    const FittedFolds fitted = OrFail(
+        FitFolds(PendulumsOf(bodies), all, *flags.physics, kHipFolds, flags.options.seed));
+    hips = HipsOf(bodies, all, fitted.predictions);
   }
   GeneratorSamples samples = SamplesOf(bodies, learnt, held, flags.observed, hips);
   if (flags.accuracy == ForecastAccuracy::kBest) {

@@ -5,6 +5,7 @@
 #include "ident/fit/fit.h"
 #include "ident/model/push_range.h"
 #include "ident/observed/recording_filter.h"
+#include "ident/problem/folds.h"
 #include "ident/problem/parallel.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/bootstrap.h"
@@ -33,37 +34,51 @@ std::vector<std::vector<int>> FoldsOf(const FitProblem& problem) {
   return folds;
 }
 
+bool TooLargeToRepeat(const FitOptions& options) {
+  return NeedsGradientTraining(options) || options.body_weight > 0.0;
+}
+
+std::vector<PendulumRecording> Without(const std::vector<PendulumRecording>& recordings,
+                                       const std::vector<int>& held_out) {
+  std::vector<PendulumRecording> left;
+  for (int i : Others(held_out, static_cast<int>(recordings.size()))) left.push_back(recordings[i]);
+  return left;
+}
+
 }  // namespace
+
+std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const FitPoint& optimum,
+                                            const IdentifiedModel& model,
+                                            const std::vector<int>& held_out) {
+  FitOptions options = problem.options();
+  options.num_threads = 1;
+  options.function_tolerance = std::max(kFoldTolerance, options.function_tolerance);
+  std::vector<int> counts(problem.recordings().size(), 1);
+  for (int i : held_out) counts[i] = 0;
+  const FitProblem others(problem.recordings(), options, counts);
+  const SolveStart fit = Refit(others, optimum);
+  if (!fit.usable) return std::nullopt;
+  IdentifiedModel refitted = model;
+  refitted.options = others.ModelAt(fit.to);
+  refitted.parameters = others.Parameters(fit.to, "");
+  for (auto& [unit, parameters] : refitted.by_unit) parameters = others.Parameters(fit.to, unit);
+  refitted.others.clear();
+  refitted.push_range.reset();
+  refitted.push_range = FittedPushRange(refitted, Without(problem.recordings(), held_out));
+  return refitted;
+}
 
 std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optimum,
                                 const IdentifiedModel& model, int num_threads) {
-  FitOptions options = problem.options();
-  if (NeedsGradientTraining(options) || options.body_weight > 0.0) return {};
-  options.num_threads = 1;
-  options.function_tolerance = std::max(kFoldTolerance, options.function_tolerance);
+  if (TooLargeToRepeat(problem.options())) return {};
   const std::vector<std::vector<int>> held_out = FoldsOf(problem);
   std::vector<std::optional<FoldModel>> made(held_out.size());
   ParallelFor(static_cast<int>(held_out.size()), num_threads, [&](int f) {
-    std::vector<int> counts(problem.recordings().size(), 1);
-    for (int i : held_out[f]) counts[i] = 0;
-    const FitProblem others(problem.recordings(), options, counts);
-    const SolveStart fit = Refit(others, optimum);
-    if (!fit.usable) return;
-    FoldModel& fold = made[f].emplace(FoldModel{model, held_out[f]});
-    fold.model.options = others.ModelAt(fit.to);
-    fold.model.parameters = others.Parameters(fit.to, "");
-    for (auto& [unit, parameters] : fold.model.by_unit) {
-      parameters = others.Parameters(fit.to, unit);
-    }
-    fold.model.others.clear();
-    std::vector<PendulumRecording> fitted;
-    for (size_t i = 0; i < counts.size(); ++i) {
-      if (counts[i] > 0) fitted.push_back(problem.recordings()[i]);
-    }
-    fold.model.push_range.reset();
-    fold.model.push_range = FittedPushRange(fold.model, fitted);
-    fold.model.recording_effect = FitRecordingEffect(fold.model, fitted);
-    if (!fold.model.recording_effect) made[f].reset();
+    std::optional<IdentifiedModel> refitted = RefitWithout(problem, optimum, model, held_out[f]);
+    if (!refitted) return;
+    refitted->recording_effect =
+        FitRecordingEffect(*refitted, Without(problem.recordings(), held_out[f]));
+    if (refitted->recording_effect) made[f].emplace(FoldModel{*std::move(refitted), held_out[f]});
   });
   std::vector<FoldModel> folds;
   for (std::optional<FoldModel>& fold : made) {

@@ -10,6 +10,7 @@
 #include "ident/fit/weighted_solve.h"
 #include "ident/model/push_range.h"
 #include "ident/observed/recording_filter.h"
+#include "ident/problem/folds.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "residuals/takeover.h"
@@ -125,6 +126,18 @@ void ForgetWeights(Eigen::Index weights, FitResult* result) {
   result->nuisance.resize(result->nuisance.size() - weights);
 }
 
+std::optional<IdentifiedModel> SolvedWithout(const std::vector<PendulumRecording>& recordings,
+                                             const FitOptions& options,
+                                             const std::vector<int>& held_out) {
+  std::vector<PendulumRecording> others;
+  for (int i : Others(held_out, static_cast<int>(recordings.size()))) {
+    others.push_back(recordings[i]);
+  }
+  Result<IdentifiedModel> model = SolveModel(others, options);
+  if (!model.ok()) return std::nullopt;
+  return std::move(model.value());
+}
+
 FitResult Judge(const SolvedFit& fit) {
   FitResult result = ResultOf(fit);
   if (!result.ok()) return result;
@@ -190,23 +203,39 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   return none;
 }
 
-Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
-                                   FitOptions options, bool forecasts) {
+Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings,
+                                FitOptions options, const std::vector<std::vector<int>>& held_out,
+                                bool forecasts) {
+  const FitOptions asked = options;
   if (MaybeError error = PrepareFit(recordings, &options)) return *error;
   const Result<SolvedFit> fit = SolveFit(recordings, options, nullptr);
   if (!fit.ok()) return fit.error();
   if (!fit.value().ok()) return Error{"no usable optimum was found"};
-  IdentifiedModel model = ModelOf(ResultOf(fit.value()));
+  const SolvedFit& solved = fit.value();
+  const FitPoint& optimum = solved.Best().to;
+  FoldedModels models{ModelOf(ResultOf(solved)), {}};
+  IdentifiedModel& model = models.whole;
   model.push_range = FittedPushRange(model, recordings);
   model.step_probability = FitStepProbability(model, recordings);
-  if (!forecasts) return model;
-  const SolvedFit& solved = fit.value();
+  for (const std::vector<int>& fold : held_out) {
+    models.without.push_back(options.model.learned || options.body_weight > 0.0
+                                 ? SolvedWithout(recordings, asked, fold)
+                                 : RefitWithout(solved.problem, optimum, model, fold));
+  }
+  if (!forecasts) return models;
   model.recording_effect = FitRecordingEffect(model, recordings, options.num_threads);
   if (model.recording_effect) {
     model.forecasts =
-        CrossFitForecasts(solved.problem, solved.Best().to, model, recordings, options.num_threads);
+        CrossFitForecasts(solved.problem, optimum, model, recordings, options.num_threads);
   }
-  return model;
+  return models;
+}
+
+Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
+                                   FitOptions options, bool forecasts) {
+  Result<FoldedModels> models = SolveFolds(recordings, std::move(options), {}, forecasts);
+  if (!models.ok()) return models.error();
+  return std::move(models.value().whole);
 }
 
 }  // namespace pushid

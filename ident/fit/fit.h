@@ -40,10 +40,26 @@ Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordi
 // A fitted model again, without a fold of its recordings, and what its forecasts then teach
 // (observed/learn_forecasts.h).
 
-// Solved again from the optimum, without one fold after the other: people where some were recorded
-// more than once and no two share a recording, otherwise (and of fewer than three people)
-// recordings, dealt out to four folds. Weights of residuals and spreads of pooled units are those
-// of the whole fit. None of fewer than three recordings, and of fits that are too large to repeat:
+// Solved again from the optimum, without the recordings held out (indices), by the weights of
+// residuals and the spreads of pooled units of the whole. None without a usable optimum.
+std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const FitPoint& optimum,
+                                            const IdentifiedModel& model,
+                                            const std::vector<int>& held_out);
+
+// SolveModel, and beside it a model without each of some folds: refitted, which takes a fraction of
+// a solve, or, of fits that are too large to repeat and of networks, which would remember what is
+// held out, solved anew. None of a fold without a usable optimum.
+struct FoldedModels {
+  IdentifiedModel whole;
+  std::vector<std::optional<IdentifiedModel>> without;
+};
+Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings,
+                                FitOptions options, const std::vector<std::vector<int>>& held_out,
+                                bool forecasts = false);
+
+// Refitted without one fold after the other: people where some were recorded more than once and no
+// two share a recording, otherwise (and of fewer than three people) recordings, dealt out to four
+// folds. None of fewer than three recordings, and of fits that are too large to repeat:
 // large networks, bodies. Folds without a usable optimum are left out.
 std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optimum,
                                 const IdentifiedModel& model, int num_threads);

@@ -141,14 +141,17 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
   for (const Fold& fold : made.value()) {
     const std::vector<int> among = Others(fold.held_out, total);
     std::optional<IdentifiedModel> model;
-    if (validation.physics) {
-      if (progress) progress(fold.name + ", physics", 0.0);
-      model = FitTo(pendulums, among, *validation.physics);
-      if (!model) return Error{fold.name + ": the pendulum's fit found no usable optimum"};
-    }
     std::vector<GroupHips> hips;
-    if (validation.pendulum_input) {
-      hips = OutOfFoldHips(recordings, among, *validation.physics, options.seed);
+    if (!validation.pendulums.empty()) {
+      model = validation.pendulums[&fold - made.value().data()];
+    } else if (validation.physics) {
+      if (progress) progress(fold.name + ", physics", 0.0);
+      Result<FittedFolds> fitted =
+          FitFolds(pendulums, among, *validation.physics, validation.pendulum_input ? kHipFolds : 0,
+                   options.seed);
+      if (!fitted.ok()) return Error{fold.name + ": " + fitted.error().message};
+      if (validation.pendulum_input) hips = HipsOf(recordings, among, fitted.value().predictions);
+      model = std::move(fitted.value().model);
     }
     const GeneratorSamples samples = SamplesOf(recordings, among, {}, validation.observed, hips);
     GeneratorTrainingOptions of_fold = options;
@@ -177,14 +180,14 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
 Result<std::vector<ForecastCandidate>> CompareForecasts(
     const std::vector<BodyRecording>& recordings, const BestForecastOptions& options,
     const RunProgress& progress) {
+  const auto chain = CrossValidateChain(recordings, options.chain, options.validation.scheme,
+                                        options.validation.folds, progress);
+  if (!chain.ok()) return chain.error();
   GeneratorValidationOptions of_generator = options.validation;
-  of_generator.physics = options.chain.fit;
+  of_generator.pendulums = chain.value().models;
   const auto generator =
       CrossValidateGenerator(recordings, options.generator, of_generator, progress);
   if (!generator.ok()) return generator.error();
-  const auto chain = CrossValidateChain(recordings, options.chain, of_generator.scheme,
-                                        of_generator.folds, progress);
-  if (!chain.ok()) return chain.error();
   const BodyEvaluation& scores = generator.value().evaluation;
   const std::string kind = NameOf(options.generator.kind);
   std::vector<ForecastCandidate> candidates = {{kind, {}, scores.at("generator")},

@@ -31,11 +31,12 @@ struct GeneratorValidationOptions {
   int observed = 20;  // frames that the generator is shown; 1: the first pose, and the push
   FoldScheme scheme = FoldScheme::kStratified;
   int folds = 0;
-  std::optional<FitOptions> physics;  // of the pendulum, fitted in every fold too
-  bool pendulum_input = false;        // the pendulum goes into diffusion
-  GeneratorChanges changes;           // as in its use
-  std::vector<double> blends;         // to compare with, besides that of changes
-  int samples = 0;                    // futures of diffusion for every recording; 0: none
+  std::optional<FitOptions> physics;            // of the pendulum, fitted in every fold too
+  bool pendulum_input = false;                  // the pendulum goes into diffusion
+  GeneratorChanges changes;                     // as in its use
+  std::vector<double> blends;                   // to compare with, besides that of changes
+  int samples = 0;                              // futures of diffusion for every recording; 0: none
+  std::vector<IdentifiedModel> pendulums = {};  // in place of physics, by fold: fitted already
 };
 
 struct GeneratorValidation : ChainValidation {
@@ -52,7 +53,7 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
 
 // The kind that forecasts groups best. Physics, restored bodies and diffusion are trained in every
 // fold and judged on the recordings held out; the one with the smallest mean joint error is chosen,
-// and all three are then trained on all recordings, so that another can be used instead.
+// and it is then trained on all recordings.
 
 struct BestForecastOptions {
   RestorationRunOptions chain;  // physics in its fit, and the restoration

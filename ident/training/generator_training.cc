@@ -233,13 +233,10 @@ GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation) {
   return samples;
 }
 
-std::vector<GroupHips> OutOfFoldHips(const std::vector<BodyRecording>& recordings,
-                                     const std::vector<int>& among, const FitOptions& physics,
-                                     uint64_t seed) {
-  constexpr int kInnerFolds = 4;
+std::vector<GroupHips> HipsOf(const std::vector<BodyRecording>& recordings,
+                              const std::vector<int>& among,
+                              const std::vector<Prediction>& predictions) {
   std::vector<GroupHips> hips(recordings.size());
-  const auto predictions =
-      PredictOutOfFold(PendulumsOf(recordings), among, physics, kInnerFolds, seed);
   for (size_t k = 0; k < among.size(); ++k) {
     if (predictions[k].path.num_frames() == 0) continue;
     hips[among[k]] = PendulumHips(recordings[among[k]], predictions[k]);

@@ -6,7 +6,7 @@
 
 #include "datasets/loading/mocap_folder.h"
 #include "ident/generators/push_particles.h"
-#include "ident/parameters/fit_options.h"
+#include "ident/prediction/prediction.h"
 #include "ident/training/training_run.h"
 
 namespace pushid {
@@ -35,13 +35,15 @@ struct GeneratorSamples {
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation);
 
 // Where physics have everybody who were fitted to other recordings of `among`, by recording;
-// nothing of recordings that are not among them, or whose rollout failed.
-std::vector<GroupHips> OutOfFoldHips(const std::vector<BodyRecording>& recordings,
-                                     const std::vector<int>& among, const FitOptions& physics,
-                                     uint64_t seed);
+// nothing of recordings that are not among them, or whose rollout failed. predictions: of
+// FitFolds, with as many folds as kHipFolds.
+inline constexpr int kHipFolds = 4;
+std::vector<GroupHips> HipsOf(const std::vector<BodyRecording>& recordings,
+                              const std::vector<int>& among,
+                              const std::vector<Prediction>& predictions);
 
 // Every person of the recordings `among`, whole; those of `held` show how the training goes.
-// pendulums: OutOfFoldHips, of which diffusion leaves out recordings without any; or empty.
+// pendulums: HipsOf, of which diffusion leaves out recordings without any; or empty.
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            const std::vector<int>& among, const std::vector<int>& held,
                            int observed, const std::vector<GroupHips>& pendulums = {});

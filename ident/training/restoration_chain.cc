@@ -74,24 +74,30 @@ Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedMod
   return scores;
 }
 
-}  // namespace
+bool LearnsFromPredictions(const RestorationRunOptions& options) {
+  return options.predicted_pendulums && RowOf(options.training.kind).follows_pendulum &&
+         options.training.view != RestorationView::kPose;
+}
 
-Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>& recordings,
-                                               const std::vector<int>& among,
-                                               const RestorationRunOptions& options,
-                                               const RunProgress& progress) {
-  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  std::vector<Prediction> predictions;
-  if (options.predicted_pendulums && RowOf(options.training.kind).follows_pendulum &&
-      options.training.view != RestorationView::kPose) {
-    predictions = PredictOutOfFold(pendulums, among, options.fit, options.inner_folds,
-                                   options.training.seed, [&](int fold, int folds) {
-                                     if (progress) {
-                                       progress("predicting pendulums out of fold",
-                                                static_cast<double>(fold) / folds);
-                                     }
-                                   });
-  }
+// The pendulum, and what is predicted of it out of fold where that is learned from.
+Result<FittedFolds> FitPendulum(const std::vector<PendulumRecording>& pendulums,
+                                const std::vector<int>& among, const RestorationRunOptions& options,
+                                const RunProgress& progress) {
+  if (progress) progress("fitting the pendulum, and without each fold", 0.0);
+  Result<FittedFolds> fitted = FitFolds(pendulums, among, options.fit,
+                                        LearnsFromPredictions(options) ? options.inner_folds : 0,
+                                        options.training.seed, options.observed > 0);
+  if (!fitted.ok()) return Error{"the pendulum's fit: " + fitted.error().message};
+  return fitted;
+}
+
+// predictions: as FittedFolds, or none.
+Result<TrainedRestoration> TrainOn(const std::vector<BodyRecording>& recordings,
+                                   const std::vector<PendulumRecording>& pendulums,
+                                   const std::vector<int>& among,
+                                   const std::vector<Prediction>& predictions,
+                                   const RestorationRunOptions& options,
+                                   const RunProgress& progress) {
   std::vector<int> learnt, judged;
   SplitHeldOut(pendulums, among, options.held_out, options.training.seed, &learnt, &judged);
   if (learnt.empty() || judged.empty()) {
@@ -118,6 +124,22 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                           });
 }
 
+}  // namespace
+
+Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>& recordings,
+                                               const std::vector<int>& among,
+                                               const RestorationRunOptions& options,
+                                               const RunProgress& progress) {
+  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
+  std::vector<Prediction> predictions;
+  if (LearnsFromPredictions(options)) {
+    Result<FittedFolds> fitted = FitPendulum(pendulums, among, options, progress);
+    if (!fitted.ok()) return fitted.error();
+    predictions = std::move(fitted.value().predictions);
+  }
+  return TrainOn(recordings, pendulums, among, predictions, options, progress);
+}
+
 Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
                                 const std::vector<int>& among, const RestorationRunOptions& options,
                                 const RunProgress& progress) {
@@ -125,29 +147,33 @@ Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
   RestorationRunOptions now = options;
   now.fit.body_weight = 0.0;
   now.training.checkpoint.clear();  // one would be of one training, not of the whole
-  std::optional<IdentifiedModel> model = IdentifiedModel();  // a peer has no pendulum
-  if (RowOf(options.training.kind).follows_pendulum) {
-    model = FitTo(pendulums, among, now.fit, options.observed > 0);
-  }
-  if (!model) return Error{"the pendulum's fit found no usable optimum"};
-  Result<TrainedRestoration> trained = TrainFromRecordings(recordings, among, now, progress);
-  if (!trained.ok()) return trained.error();
-  TrainedChain chain{std::move(*model), std::move(trained.value())};
-  if (options.fit.body_weight <= 0.0) return chain;
+  const auto train = [&]() -> Result<TrainedChain> {
+    FittedFolds pendulum;  // a peer has none
+    if (RowOf(options.training.kind).follows_pendulum) {
+      Result<FittedFolds> fitted = FitPendulum(pendulums, among, now, progress);
+      if (!fitted.ok()) return fitted.error();
+      pendulum = std::move(fitted.value());
+    }
+    Result<TrainedRestoration> trained =
+        TrainOn(recordings, pendulums, among, pendulum.predictions, now, progress);
+    if (!trained.ok()) return trained.error();
+    return TrainedChain{std::move(pendulum.model), std::move(trained.value())};
+  };
+  Result<TrainedChain> chain = train();
+  if (!chain.ok() || options.fit.body_weight <= 0.0) return chain;
   now.fit.body_weight = options.fit.body_weight;
-  for (bool moves = true; moves && chain.rounds < options.rounds; ++chain.rounds) {
-    const auto restoration = MakeRestoration(chain.restoration.file, "");
+  bool moves = true;
+  for (int round = 1; moves && round <= options.rounds; ++round) {
+    const auto restoration = MakeRestoration(chain.value().restoration.file, "");
     if (!restoration.ok()) return restoration.error();
     const auto body = MakeBodyData(*restoration.value(), Picked(recordings, among));
     if (!body.ok()) return body.error();
     now.fit.body = body.value();
-    model = FitTo(pendulums, among, now.fit, options.observed > 0);
-    if (!model) return Error{"the pendulum's fit to bodies found no usable optimum"};
-    moves = LargestChange(chain.model, *model) > kWholeTolerance;
-    trained = TrainFromRecordings(recordings, among, now, progress);
-    if (!trained.ok()) return trained.error();
-    chain.model = std::move(*model);
-    chain.restoration = std::move(trained.value());
+    Result<TrainedChain> again = train();
+    if (!again.ok()) return again;
+    moves = LargestChange(chain.value().model, again.value().model) > kWholeTolerance;
+    chain = std::move(again);
+    chain.value().rounds = round;
   }
   return chain;
 }
@@ -181,6 +207,7 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
       if (!scores.ok()) return scores.error();
       for (const auto& [name, of_name] : scores.value()) by_recording[i][name] = of_name.front();
     }
+    validation.models.push_back(std::move(model));
   }
   validation.evaluation = SummarizeAll(recordings, by_recording);
   return validation;

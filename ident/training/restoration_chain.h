@@ -61,6 +61,7 @@ struct ChainValidation {
   BodyEvaluation evaluation;
   std::vector<double> training_seconds;  // of pendulum and restoration, by fold
   std::vector<int> rounds;               // of training as a whole, by fold
+  std::vector<IdentifiedModel> models;   // of the pendulum, by fold; of peers, empty
 };
 // Errors: folds that cannot be made; a fold whose pendulum fit finds no optimum, or which cannot
 // learn from first frames where some are to be seen.

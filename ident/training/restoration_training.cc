@@ -211,38 +211,31 @@ Result<TrainedRestoration> TrainRestoration(const std::vector<RestorationSample>
                TrainedRestorationKinds()};
 }
 
-std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
-                                     const std::vector<int>& train, const FitOptions& options,
-                                     bool forecasts) {
-  Result<IdentifiedModel> model = SolveModel(Picked(recordings, train), options, forecasts);
-  if (!model.ok()) return std::nullopt;
-  return std::move(model.value());
-}
-
-std::vector<Prediction> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
-                                         const std::vector<int>& among, const FitOptions& options,
-                                         int folds, uint64_t seed,
-                                         const OutOfFoldProgress& progress) {
+Result<FittedFolds> FitFolds(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& among, const FitOptions& options, int folds,
+                             uint64_t seed, bool forecasts) {
+  const std::vector<PendulumRecording> fitted = Picked(recordings, among);
   const int total = static_cast<int>(among.size());
-  std::vector<Prediction> predictions(total);
-  if (total < 2) return predictions;
-  const auto made = MakeFolds(Picked(recordings, among), FoldScheme::kStratified,
-                              std::min(folds, total), 1, seed);
-  if (!made.ok()) return predictions;
-  int done = 0;
-  for (const Fold& fold : made.value()) {
-    if (progress) progress(done++, static_cast<int>(made.value().size()));
-    const std::vector<int> train = Picked(among, Others(fold.held_out, total));
-    const std::optional<IdentifiedModel> model = FitTo(recordings, train, options);
-    if (!model) continue;
-    for (int k : fold.held_out) {
-      Prediction prediction = Predict(*model, recordings[among[k]]);
+  std::vector<std::vector<int>> held_out;
+  if (folds > 0 && total > 1) {
+    const auto made = MakeFolds(fitted, FoldScheme::kStratified, std::min(folds, total), 1, seed);
+    if (!made.ok()) return made.error();
+    for (const Fold& fold : made.value()) held_out.push_back(fold.held_out);
+  }
+  Result<FoldedModels> models = SolveFolds(fitted, options, held_out, forecasts);
+  if (!models.ok()) return models.error();
+  FittedFolds result{std::move(models.value().whole), {}};
+  result.predictions.resize(total);
+  for (size_t f = 0; f < held_out.size(); ++f) {
+    const std::optional<IdentifiedModel>& model = models.value().without[f];
+    for (size_t k = 0; model && k < held_out[f].size(); ++k) {
+      Prediction prediction = Predict(*model, fitted[held_out[f][k]]);
       if (!prediction.status.ok) continue;
       prediction.forces = {}, prediction.hip.clear();
-      predictions[k] = std::move(prediction);
+      result.predictions[held_out[f][k]] = std::move(prediction);
     }
   }
-  return predictions;
+  return result;
 }
 
 std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,

@@ -35,20 +35,18 @@ std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>
   return picked;
 }
 
-// The model of `options` fitted to some recordings (indices), without the uncertainty; nothing when
-// no start found a usable optimum.
-std::optional<IdentifiedModel> FitTo(const std::vector<PendulumRecording>& recordings,
-                                     const std::vector<int>& train, const FitOptions& options,
-                                     bool forecasts = false);
-
-// For every recording of `among` (indices) what a model predicts which was fitted to the other
-// folds of `among`, without forces and hips; an empty path where the rollout failed. Fewer
-// recordings than folds: one fold each. Results are in the order of `among`.
-using OutOfFoldProgress = std::function<void(int fold, int folds)>;
-std::vector<Prediction> PredictOutOfFold(const std::vector<PendulumRecording>& recordings,
-                                         const std::vector<int>& among, const FitOptions& options,
-                                         int folds, uint64_t seed,
-                                         const OutOfFoldProgress& progress = nullptr);
+// The model of `options` fitted to some recordings, without the uncertainty; and for every one of
+// them what a model predicts which was fitted without its fold (ident/fit/fit.h), without forces
+// and hips: an empty path where the rollout failed.
+struct FittedFolds {
+  IdentifiedModel model;
+  std::vector<Prediction> predictions;  // in the order of `among`
+};
+// among: indices. Fewer recordings than folds: one fold each. 0 folds: no predictions. forecasts:
+// as in SolveModel. Errors: those of SolveModel; folds that cannot be made.
+Result<FittedFolds> FitFolds(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& among, const FitOptions& options, int folds,
+                             uint64_t seed, bool forecasts = false);
 
 // One person of one recording with one pendulum, among everybody of the recording.
 struct RestorationSample {

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/restoration/float_product.h"
+
 namespace pushid {
 
 Eigen::MatrixXf Applied(const DenseLayer& layer, const Eigen::MatrixXf& values) {
-  Eigen::MatrixXf result(layer.weights.rows(), values.cols());
-  result.noalias() = layer.weights * values;
+  Eigen::MatrixXf result = FloatProduct(layer.weights, values);
   result.colwise() += layer.bias;
   return result;
 }
@@ -20,12 +21,10 @@ void ApplyElu(Eigen::MatrixXf* values) {
 }
 
 Eigen::MatrixXf DenseNetwork::Evaluate(const Eigen::MatrixXf& inputs) const {
-  Eigen::MatrixXf value = inputs, next;
+  Eigen::MatrixXf value = inputs;
   for (size_t i = 0; i < layers.size(); ++i) {
-    next.noalias() = layers[i].weights * value;
-    next.colwise() += layers[i].bias;
-    if (i + 1 < layers.size()) ApplyElu(&next);
-    value.swap(next);
+    value = Applied(layers[i], value);
+    if (i + 1 < layers.size()) ApplyElu(&value);
   }
   return value;
 }

@@ -7,6 +7,7 @@
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/observed/recording_filter.h"
+#include "ident/prediction/prediction.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 
@@ -98,6 +99,35 @@ TEST(CrossFit, NeedsThreeRecordings) {
   const FitResult one = FitAndLearn(recordings, UnbiasedFit(study));
   ASSERT_TRUE(one.forecasts.has_value());
   EXPECT_EQ(one.forecasts->folds, 4);
+}
+
+// The largest distance of hips that two models predict, m.
+double FarthestHips(const IdentifiedModel& a, const IdentifiedModel& b,
+                    const PendulumRecording& recording) {
+  const Prediction of_a = Predict(a, recording), of_b = Predict(b, recording);
+  double farthest = 0.0;
+  for (size_t t = 0; t < of_a.hip[0].size(); ++t) {
+    farthest = std::max(farthest, (of_a.hip[0][t] - of_b.hip[0][t]).norm());
+  }
+  return farthest;
+}
+
+// A refit predicts what a solve without these recordings does, but for the weights of the whole.
+TEST(SolveFolds, RefitsToWhatASolveWithoutThemFinds) {
+  const SyntheticOptions study = DifferingPeople();
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  const FitOptions options = UnbiasedFit(study);
+  const Result<FoldedModels> folded = SolveFolds(recordings, options, {{0, 1, 2, 3}});
+  ASSERT_TRUE(folded.ok());
+  ASSERT_TRUE(folded.value().without[0].has_value());
+  const Result<IdentifiedModel> anew =
+      SolveModel({recordings.begin() + 4, recordings.end()}, options);
+  ASSERT_TRUE(anew.ok());
+  for (int i = 0; i < 4; ++i) {
+    const double of_whole = FarthestHips(folded.value().whole, anew.value(), recordings[i]);
+    EXPECT_LT(FarthestHips(*folded.value().without[0], anew.value(), recordings[i]), 0.5 * of_whole)
+        << of_whole;
+  }
 }
 
 }  // namespace
