@@ -182,8 +182,8 @@ int FromPushes(const TrainGeneratorFlags& flags) {
   }
   std::vector<GroupHips> hips;
   if (flags.pendulum_input) {
-    const FittedFolds fitted = OrFail(
-        FitFolds(PendulumsOf(bodies), all, *flags.physics, kHipFolds, flags.options.seed));
+    const FittedFolds fitted =
+        OrFail(FitFolds(PendulumsOf(bodies), all, *flags.physics, kHipFolds, flags.options.seed));
     hips = HipsOf(bodies, all, fitted.predictions);
   }
   GeneratorSamples samples = SamplesOf(bodies, learnt, held, flags.observed, hips);
