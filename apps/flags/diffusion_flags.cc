@@ -11,6 +11,8 @@ const pushid::DiffusionGeneratorOptions kOptions;
 }  // namespace
 
 DEFINE_int32(averaged, kOptions.averaged, "diffusion: number of samples averaged into a forecast");
+DEFINE_bool(mirrored_samples, kOptions.mirrored,
+            "diffusion: every other of these samples is of the group in the mirror");
 DEFINE_string(sampler, pushid::NameOf(kOptions.sampler),
               "diffusion: sampler: renoised, ddpm or ddim");
 DEFINE_int32(sampling_steps, kOptions.steps, "diffusion: number of sampling steps");
@@ -30,13 +32,14 @@ DiffusionGeneratorOptions DiffusionOptionsFromCommandLine() {
   CheckRange("sampling_steps", FLAGS_sampling_steps, 1, kDiffusionTime);
   CheckRange("blend", FLAGS_blend, 0.0, 1.0);
   options.averaged = FLAGS_averaged;
+  options.mirrored = FLAGS_mirrored_samples;
   options.steps = FLAGS_sampling_steps;
   options.blend = FLAGS_blend;
   return options;
 }
 
 std::vector<const char*> DiffusionFlagNames() {
-  return {"averaged", "sampler", "sampling_steps", "settle", "blend"};
+  return {"averaged", "mirrored_samples", "sampler", "sampling_steps", "settle", "blend"};
 }
 
 }  // namespace pushid

@@ -65,14 +65,17 @@ namespace pushid {
 namespace {
 
 // The forecast of a network by itself, on the windows of the tables.
-const std::vector<PublishedFlags> kPublishedForecast = {
-    {"sde",
-     {{"protocol", "test"},
-      {"project_bones", "false"},
-      {"noise_memory", "0"},
-      {"correlated_noise", "false"}}},
-    {"sdm",
-     {{"sampler", "ddpm"}, {"sampling_steps", "1000"}, {"averaged", "8"}, {"settle", "none"}}}};
+const std::vector<PublishedFlags> kPublishedForecast = {{"sde",
+                                                         {{"protocol", "test"},
+                                                          {"project_bones", "false"},
+                                                          {"noise_memory", "0"},
+                                                          {"correlated_noise", "false"}}},
+                                                        {"sdm",
+                                                         {{"sampler", "ddpm"},
+                                                          {"sampling_steps", "1000"},
+                                                          {"averaged", "8"},
+                                                          {"mirrored_samples", "false"},
+                                                          {"settle", "none"}}}};
 
 void ReadNumbers(GenerateFlags* flags) {
   if (FLAGS_samples != 0) CheckRange("samples", FLAGS_samples, kLeastSamples, 10000);

@@ -37,10 +37,11 @@ DEFINE_string(kind, pushid::NameOf(kOptions.kind), kKind.c_str());
 DEFINE_string(dataset, pushid::NameOf(kFlags.data),
               "training data: cmu (motion-capture clips in --folder) or pushes (--recordings; "
               "required by diffusion)");
-DEFINE_string(accuracy, pushid::NameOf(kFlags.accuracy),
-              "diffusion: best cross-validates it (four folds) against physics with restored "
-              "bodies and against blends of both, trains all of them, and pushid-generate uses the "
-              "most accurate (if interrupted, the comparison starts again); or usual");
+DEFINE_string(
+    accuracy, pushid::NameOf(kFlags.accuracy),
+    "diffusion: best cross-validates it (four folds) against physics with restored "
+    "bodies and against blends of both, and trains it and what else the most accurate needs, "
+    "which pushid-generate uses (if interrupted, the comparison starts again); or usual");
 DEFINE_string(folder, "", "cmu: the folder of clips, with skeleton.json and train/");
 DEFINE_bool(with_validation, kFlags.with_validation,
             "cmu: also train on the validation clips, which then cannot validate");
@@ -102,6 +103,8 @@ const std::vector<PublishedFlags> kPublished = {
     // SDM: Tanke et al., ICCV 2023.
     {"sdm",
      {{"kind", "diffusion"},
+      {"steps", "1500"},
+      {"batch", "8"},
       {"frame", "own"},
       {"pooling", "mean_all"},
       {"pooling_at", "bottleneck"},

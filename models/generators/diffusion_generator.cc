@@ -45,6 +45,17 @@ void Settle(int first, double frames, Trajectories* motion) {
   }
 }
 
+const GroupChange kMirror = {true};
+
+std::vector<Trajectories> InMirror(const std::vector<Trajectories>& motions) {
+  std::vector<ObservedMotion> people(motions.size());
+  for (size_t n = 0; n < motions.size(); ++n) people[n].frames = motions[n];
+  people = Changed(people, kMirror);
+  std::vector<Trajectories> mirrored;
+  for (ObservedMotion& person : people) mirrored.push_back(std::move(person.frames));
+  return mirrored;
+}
+
 int ObservedFrames(const std::vector<ObservedMotion>& people) {
   return static_cast<int>(people.front().frames.cols());
 }
@@ -126,9 +137,14 @@ Trajectories DiffusionGenerator::Finished(const ObservedMotion& person, Trajecto
 std::vector<Trajectories> DiffusionGenerator::SampledMean(const std::vector<ObservedMotion>& people,
                                                           int frames) const {
   const NormalSource normal = noise_();
-  std::vector<Trajectories> mean = SampleWhole(people, Member(0), frames, normal);
-  for (int k = 1; k < options_.averaged; ++k) {
-    const std::vector<Trajectories> sample = SampleWhole(people, Member(k), frames, normal);
+  const std::vector<ObservedMotion> mirrored = Changed(people, kMirror);
+  std::vector<Trajectories> mean(people.size(), Trajectories::Zero(kMotionRows, frames));
+  for (int k = 0; k < options_.averaged; ++k) {
+    const bool other = options_.mirrored && k % 2 == 1;
+    const DiffusionNetwork& network = Member(options_.mirrored ? k / 2 : k);
+    std::vector<Trajectories> sample =
+        SampleWhole(other ? mirrored : people, network, frames, normal);
+    if (other) sample = InMirror(sample);
     for (size_t n = 0; n < people.size(); ++n) mean[n] += sample[n];
   }
   for (Trajectories& motion : mean) motion /= static_cast<float>(options_.averaged);

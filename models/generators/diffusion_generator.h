@@ -4,7 +4,8 @@
 // From noise at T to hardly any in some steps; frames that were seen are put in the place of
 // what the network estimates for them, after every step (Eq. 6 of SDM). Networks of several seeds
 // take turns, sample by sample. The forecast is the mean of several samples, as the mean joint
-// error asks for. Recordings end before people stand still: past the longest one learnt from, what
+// error asks for, half of them of the group in the mirror, where the network errs otherwise.
+// Recordings end before people stand still: past the longest one learnt from, what
 // the network has them go on with fades, and they come to rest. Sampled futures may
 // each be pushed a little harder or less, which stands for what differs between recordings of like
 // pushes. With a pendulum's path its people are moved some of the way to it. Then each body
@@ -89,6 +90,7 @@ struct DiffusionGeneratorOptions {
   DiffusionSampler sampler = DiffusionSampler::kRenoised;
   int steps = 25;
   int averaged = 8;         // samples of a forecast
+  bool mirrored = true;     // every other one of them of the group in the mirror
   int learnt_frames = 128;  // of the longest motion learnt from; later ones settle
   Settling settle = Settling::kFade;
   double settling = 0.5;     // s, in which steps of later frames fade to 1/e

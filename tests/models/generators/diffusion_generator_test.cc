@@ -65,6 +65,29 @@ TEST_F(DiffusionGeneratorTest, TheOrderOfPeopleMakesNoDifferenceAsPublished) {
   }
 }
 
+// Where half of the samples are of the group in the mirror, and none has noise of its own.
+TEST_F(DiffusionGeneratorTest, InTheMirrorAGroupDoesTheMirrorImage) {
+  const GroupChange mirror = {true};
+  const auto largest_difference = [&] {
+    std::vector<DiffusionNetwork> networks = {RandomDiffusion(1, {})};
+    const DiffusionGenerator generator(layout_, networks, 1.0 / 60.0, options_,
+                                       [] { return NormalSource([] { return 0.0; }); });
+    const auto forecast = generator.Forecast(Seen(3, 5), 20);
+    std::vector<ObservedMotion> people(3);
+    for (size_t n = 0; n < 3; ++n) people[n].frames = forecast[n];
+    people = Changed(people, mirror);
+    const auto mirrored = generator.Forecast(Changed(Seen(3, 5), mirror), 20);
+    float largest = 0.0f;
+    for (size_t n = 0; n < 3; ++n) {
+      largest = std::max(largest, (mirrored[n] - people[n].frames).cwiseAbs().maxCoeff());
+    }
+    return largest;
+  };
+  EXPECT_LT(largest_difference(), 1e-4f);
+  options_.mirrored = false;
+  EXPECT_GT(largest_difference(), 1e-3f);
+}
+
 TEST_F(DiffusionGeneratorTest, TheSeamFades) {
   const std::vector<ObservedMotion> people = Seen(2, 12);
   const auto jump = [&people](const DiffusionGenerator& generator) {
