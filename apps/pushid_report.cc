@@ -138,7 +138,7 @@ MaybeError WriteFigures(const FittedModel& model, const Report& report) {
 // The recordings to draw: those of the flags, or those that were fitted.
 Result<std::vector<Recording>> RecordingsOf(const FitResult& fit) {
   if (FLAGS_recordings.empty()) return std::vector<Recording>();
-  return LoadFlaggedRecordings(FittedIds(fit), true);
+  return LoadFittedRecordings(fit, true);
 }
 
 int WriteWhole(const FittedModel& model) {
