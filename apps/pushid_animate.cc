@@ -128,6 +128,6 @@ int main(int argc, char** argv) {
       "pushid-animate shows recorded and predicted people, pendulums and net forces.\n\n"
       "  pushid-animate --model=model.json --restoration=restoration --recordings=M/manifest.json "
       "--id=NAME --out=motion.html --strip_out=poses.svg\n\n"
-      "Several what-ifs are shown over the fitted model: --set=mu=10 --set=mu=60",
+      "Several what-ifs are shown over the fitted model: --set=Kp_theta=1200 --set=Kp_theta=1800",
       Run);
 }

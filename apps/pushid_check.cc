@@ -36,7 +36,7 @@ std::vector<PendulumRecording> LoadFitted(FittedModel* model) {
   const std::map<std::string, std::string>& fit_flags = model->provenance.configuration;
   FitOptions& options = model->fit.options;
   LoadAs(fit_flags);
-  const auto loaded = LoadFlaggedRecordings(FittedIds(model->fit), NeedsJoints(options));
+  const auto loaded = LoadFittedRecordings(model->fit, NeedsJoints(options));
   if (options.body_weight > 0.0) {
     const auto folder = fit_flags.find("body_restoration");
     options.body = OrFail(LoadBodyData(folder == fit_flags.end() ? "" : folder->second,

@@ -135,7 +135,7 @@ void WriteFigures(const FittedModel& model, const Report& report) {
 // The recordings to draw: those of the flags, or those that were fitted.
 std::vector<Recording> RecordingsOf(const FitResult& fit) {
   if (FLAGS_recordings.empty()) return {};
-  return LoadFlaggedRecordings(FittedIds(fit), true);
+  return LoadFittedRecordings(fit, true);
 }
 
 int WriteWhole(const FittedModel& model) {

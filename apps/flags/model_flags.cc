@@ -14,7 +14,8 @@
 DEFINE_string(model, "",
               "model that pushid-fit --model_out wrote, or pushid:synthetic_group: a group model "
               "of synthetic people, which comes with the programs");
-DEFINE_string(set, "", "what-if: replace parameters, name=value comma-separated, as in mu=20");
+DEFINE_string(set, "",
+              "what-if: replace parameters, name=value comma-separated, as in Kp_theta=1500");
 
 namespace pushid {
 

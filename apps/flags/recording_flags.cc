@@ -1,6 +1,7 @@
 // apps: loading what --recordings names.
 #include "apps/flags/recording_flags.h"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -46,13 +47,7 @@ LoadOptions LoadOptionsOfFlags() {
   return options;
 }
 
-}  // namespace
-
-RecordingFlags RecordingFlagsFromCommandLine() {
-  const bool chosen = !FLAGS_ids.empty() || FLAGS_setting != LoadOptions{}.setting;
-  return {FLAGS_recordings, FLAGS_setting, SplitList(FLAGS_ids), chosen};
-}
-
+// Each once; none where the flags choose others.
 std::vector<std::string> FittedIds(const FitResult& fit) {
   std::vector<std::string> ids;
   if (RecordingFlagsFromCommandLine().chosen || !FLAGS_leave_out.empty()) return ids;
@@ -62,6 +57,13 @@ std::vector<std::string> FittedIds(const FitResult& fit) {
     if (seen.insert(fitted.id).second) ids.push_back(fitted.id);
   }
   return ids;
+}
+
+}  // namespace
+
+RecordingFlags RecordingFlagsFromCommandLine() {
+  const bool chosen = !FLAGS_ids.empty() || FLAGS_setting != LoadOptions{}.setting;
+  return {FLAGS_recordings, FLAGS_setting, SplitList(FLAGS_ids), chosen};
 }
 
 void LoadAs(const std::map<std::string, std::string>& configuration) {
@@ -119,6 +121,24 @@ std::vector<Recording> LoadFlaggedRecordings(const std::vector<std::string>& ids
     }
   }
   return std::move(recordings).value();
+}
+
+std::vector<Recording> LoadFittedRecordings(const FitResult& fit, bool keep_all_joints) {
+  const std::vector<std::string> ids = FittedIds(fit);
+  if (!ids.empty() && !FLAGS_recordings.empty() && FlaggedManifest().ok()) {
+    const Manifest& manifest = FlaggedManifest().value();
+    for (const std::string& id : ids) {
+      const bool known =
+          std::any_of(manifest.recordings.begin(), manifest.recordings.end(),
+                      [&id](const ManifestRecording& entry) { return entry.id == id; });
+      if (known) continue;
+      throw Error{"there is no recording " + Quoted(id) +
+                      ", to which the model was fitted; give the manifest of the fit "
+                      "(pushid-report shows other recordings with --ids or --setting)",
+                  manifest.path, 0};
+    }
+  }
+  return LoadFlaggedRecordings(ids, keep_all_joints);
 }
 
 std::vector<Recording> LoadBodiesOfSetting(const std::string& setting) {

@@ -40,9 +40,8 @@ inline constexpr const char* kLoadFlags[] = {"length_unit", "length_scale", "max
 // Those that are not given take the values that they had in another program's run.
 void LoadAs(const std::map<std::string, std::string>& configuration);
 
-// The ids of the recordings that a model was fitted to, each once; none where --setting, --ids or
-// --leave_out choose others.
-std::vector<std::string> FittedIds(const FitResult& fit);
+// The recordings that a model was fitted to, or those that --setting, --ids or --leave_out choose.
+std::vector<Recording> LoadFittedRecordings(const FitResult& fit, bool keep_all_joints);
 
 // What is wrong with their flags, before any file is read.
 void CheckRecordingFlags();

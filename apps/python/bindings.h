@@ -142,7 +142,7 @@ inline ForecastUse ForecastFrom(const std::string& name) {
 // hip, states, observed, and bands where there are any. Raises where the rollout left the domain.
 py::dict DictOf(const Prediction& prediction, const PendulumRecording& recording);
 
-// The model with some of its values replaced: "mu=20,...".
+// The model with some of its values replaced: "Kp_theta=1500,...".
 IdentifiedModel With(const Model& model, const std::string& set);
 
 // Warns of pushes beyond those that the model was fitted to.

@@ -61,11 +61,12 @@ function arrow(hip,force){const n=Math.hypot(...force);if(n<5)return;const c=sty
  const tail=[hip[0]-force[0],hip[1]-force[1],hip[2]],u=[force[0]/n,force[1]/n];line(tail,hip,c,30);
  for(const s of [1,-1])line(hip,[hip[0]-110*u[0]-s*60*u[1],hip[1]-110*u[1]+s*60*u[0],hip[2]],c,30);
  const p=project(...tail);words(Math.round(n)+' N',p[0],p[1]-16*d,c,true);}
-// A name over its person, raised until it covers no other.
+// A name over its person, raised until it covers no other, or lowered where there is no room above.
 function nameAt(name,x,y,labels){const d=devicePixelRatio||1,h=15*d;words('',0,0,style('--ink'));
  const w=pen.measureText(name).width+6*d;y=Math.max(16*d,y);
  const covers=l=>Math.abs(l.x-x)<(l.w+w)/2&&Math.abs(l.y-y)<h;
- for(let i=0;i<12&&y>h+16*d&&labels.some(covers);i++)y-=h;
+ const above=y;for(let i=0;i<12&&y>h+16*d&&labels.some(covers);i++)y-=h;
+ if(labels.some(covers))for(y=above;labels.some(covers);)y+=h;
  labels.push({x,y,w});words(name,x,y,style('--ink'));}
 function ring(p,r,colour){pen.strokeStyle=colour;pen.setLineDash([]);pen.lineWidth=2.5*(devicePixelRatio||1);pen.beginPath();pen.arc(p[0],p[1],r,0,7);pen.stroke();}
 function colourOf(p){return p.recorded?style('--recorded'):data.colours[(data.whats.length>1?p.what:names.indexOf(p.name))%data.colours.length];}

@@ -18,10 +18,15 @@ namespace {
 // known from any data there is.
 constexpr double kPriorIntercept = 10.0, kPriorSlope = 200.0;  // standard deviations; 1/m
 constexpr int kMostIterations = 50;
+constexpr double kFarthestFitted = -0.1;  // m
+constexpr double kLeastFactor = 1e-3, kMostFactor = 4.0;
+constexpr double kAgainstNone = 1.0 / 500.0;  // of 1/f
 
 double Logistic(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
-Eigen::Vector2d Features(const StepOutcome& outcome) { return {1.0, outcome.margin}; }
+Eigen::Vector2d Features(const StepOutcome& outcome) {
+  return {1.0, std::max(outcome.margin, kFarthestFitted)};
+}
 
 // Newton's method on the log posterior, which is concave.
 Eigen::Vector2d MostLikelyCoefficients(const std::vector<StepOutcome>& outcomes,
@@ -60,7 +65,7 @@ double MarginOfPath(const ModelOptions& options, const ParameterSet<double>& par
         hip.Capture(self.standing) - Eigen::Vector2d(self.standing.rest[0], self.standing.rest[1]);
     most = std::max(most, SupportRatio<double>(p, xi, Eigen::Vector2d::Zero()));
   }
-  return p.front * (most - 1.0);
+  return StepMargin(p.front, most);
 }
 
 // Whether somebody steps, or falls before that, with a support so many times as large.
@@ -94,6 +99,18 @@ std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
 
 }  // namespace
 
+double StepMargin(double support, double factor) {
+  const double f = std::max(factor, kLeastFactor);
+  return support * (f - 1.0 - kAgainstNone * (1.0 / f - 1.0));
+}
+
+double FactorAtMargin(double support, double margin) {
+  const double k = 1.0 - kAgainstNone + margin / support;
+  const double root = std::hypot(k, 2.0 * std::sqrt(kAgainstNone));
+  const double f = k > 0.0 ? 0.5 * (k + root) : 2.0 * kAgainstNone / (root - k);
+  return std::clamp(f, kLeastFactor, kMostFactor);
+}
+
 std::vector<double> StepMargins(const ModelOptions& options,
                                 const std::vector<ParameterSet<double>>& parameters,
                                 const Scene& scene, const RolloutPath<double>& path,
@@ -107,12 +124,12 @@ std::vector<double> StepMargins(const ModelOptions& options,
       margins.push_back(MarginOfPath(options, own, scene.people[n], path, n));
       continue;
     }
-    double steps = std::log(0.01), stands = std::log(4.0);
+    double steps = std::log(kLeastFactor), stands = std::log(kMostFactor);
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (steps + stands);
       (StepsWith(std::exp(middle), n, parameters, roll) ? steps : stands) = middle;
     }
-    margins.push_back(own[kSupportFront] * (std::exp(0.5 * (steps + stands)) - 1.0));
+    margins.push_back(StepMargin(own[kSupportFront], std::exp(0.5 * (steps + stands))));
   }
   return margins;
 }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "datasets/files/random.h"
+#include "ident/fit/step_probability.h"
 #include "ident/model/model_rollout.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/problem/own_axes.h"
@@ -39,11 +40,11 @@ bool StepsAreSpread(const IdentifiedModel& model) {
          model.step_probability->coefficients[1] > 0.0;
 }
 
-// A person steps if the support is smaller than b + margin, which has the probability At(margin).
+// A person steps if the support is smaller than f b, which has the probability At(margin).
 void DrawSupport(const StepProbability& p, Random* random, ParameterSet<double>* own) {
   const double u = random->Unit();
-  const double more = (std::log(u / (1.0 - u)) - p.coefficients[0]) / p.coefficients[1];
-  const double factor = std::clamp(1.0 + more / (*own)[kSupportFront], 0.01, 4.0);
+  const double margin = (std::log(u / (1.0 - u)) - p.coefficients[0]) / p.coefficients[1];
+  const double factor = FactorAtMargin((*own)[kSupportFront], margin);
   for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) (*own)[id] *= factor;
 }
 

@@ -13,6 +13,7 @@
 // Kolmogorov and Smirnov's test, which any error that lasts makes significant.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -46,6 +47,11 @@ struct UniformityTest {
   std::array<double, 5> errors{};  // standard errors, clustered
   double f = 0.0, p = 1.0;
   int recordings = 0;
+  bool Rejects() const { return p < 0.01; }
+  // Neither end of the distribution holds too much: what was recorded lies nearer to what was
+  // predicted than the model says of its errors. So it is of simulated recordings, whose errors are
+  // noise that does not grow as those of real ones do (observed/recording_filter.h).
+  bool TooWide() const { return Rejects() && std::max(shares.front(), shares.back()) < 0.2; }
 };
 
 struct VisualCheck {

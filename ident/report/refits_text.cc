@@ -46,7 +46,8 @@ std::string FailuresText(const RefitTable& check) {
   return text;
 }
 
-// Pushes made anew with the fit's own window should leave it where it is.
+}  // namespace
+
 std::string SameWindowText(const RefitTable& check) {
   for (const RefitRow& row : check.rows) {
     if (row.name != kSameWindow || row.value.empty()) continue;
@@ -54,12 +55,14 @@ std::string SameWindowText(const RefitTable& check) {
       const double errors = std::abs(row.value[i] - check.value[i]) / check.standard_error[i];
       if (!(errors > kFarMove)) continue;
       return "even the same window moves " + check.parameters[i] + " by " + Rounded(errors, 2) +
-             " standard errors: inverse dynamics cannot reproduce these pushes, so the total "
-             "errors are not valid for them\n";
+             " standard errors: inverse dynamics cannot reproduce these pushes, so what other "
+             "windows do says nothing of their errors\n";
     }
   }
   return "";
 }
+
+namespace {
 
 // Which parameters other priors move by more than twice their error.
 std::string PriorVerdict(const RefitTable& check) {
@@ -85,9 +88,11 @@ TextTable PushErrorTable(const RefitTable& check) {
   TextTable table({"pushes", "value", "standard error", "push error", "total error", "unit"},
                   {true, false, false, false, false, true});
   const std::vector<PushError> errors = PushErrors(check);
+  const bool valid = SameWindowText(check).empty();
   for (size_t i = 0; i < errors.size(); ++i) {
     table.Add({check.parameters[i], Rounded(check.value[i], 4), Rounded(check.standard_error[i], 3),
-               Rounded(errors[i].push, 3), Rounded(errors[i].total, 3), check.units[i]});
+               valid ? Rounded(errors[i].push, 3) : "-", valid ? Rounded(errors[i].total, 3) : "-",
+               check.units[i]});
   }
   return table;
 }
@@ -123,19 +128,35 @@ TextTable PriorTable(const RefitTable& check) {
   return SideBySide(check, "priors", "as fitted", false);
 }
 
+namespace {
+
+std::string SingleStepsText(const RefitTable& check) {
+  std::string names;
+  for (const Drift& move : MovesOfSingleSteps(check)) {
+    names += (names.empty() ? "" : ", ") + check.parameters[move.parameter];
+  }
+  if (names.empty()) return "";
+  return "single steps give other values of " + names +
+         " (more than two standard errors apart): noise of the joints does that too, so it does "
+         "not "
+         "show that the model omits something\n";
+}
+
+}  // namespace
+
 std::string DriftText(const RefitTable& check) {
   std::string text;
   for (const Drift& drift : Drifts(check)) {
     const RefitRow& row = check.rows[drift.row];
     text += check.parameters[drift.parameter] + " drifts: " +
             ValueText(row.value[drift.parameter], row.standard_error[drift.parameter]) +
-            (row.frames == kOneStep ? " in single steps, "
-                                    : " in the first " + row.name + " of the push, ") +
+            " in the first " + row.name + " of the push, " +
             ValueText(check.value[drift.parameter], check.standard_error[drift.parameter]) +
             " in all, " + Rounded(drift.in_errors, 2) +
             " standard errors apart; it compensates for something that the model omits\n";
   }
-  return text.empty() ? "no parameter drifts by more than twice its error\n" : text;
+  return (text.empty() ? "no parameter drifts by more than twice its error\n" : text) +
+         SingleStepsText(check);
 }
 
 std::string HorizonClaims(const RefitTable& check) {
@@ -147,9 +168,9 @@ std::string HorizonClaims(const RefitTable& check) {
 }
 
 std::string PushCheckText(const RefitTable& check) {
-  return PushErrorTable(check).ToString() +
+  return SameWindowText(check) + PushErrorTable(check).ToString() +
          "total error: includes the uncertainty of the pushes; change in each refit:\n" +
-         MovesTable(check).ToString() + SameWindowText(check) + FailuresText(check);
+         MovesTable(check).ToString() + FailuresText(check);
 }
 
 std::string PriorCheckText(const RefitTable& check) {

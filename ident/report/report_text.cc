@@ -21,7 +21,9 @@ std::string Count(int number, const std::string& noun) {
 
 std::string PoolingText(const FitOptions& options) {
   for (const ParameterSpec& spec : options.table.specs) {
-    if (spec.free && spec.pooled) return ", pooled by " + options.pool_by;
+    if (!spec.free || !spec.pooled) continue;
+    const bool may_lack = options.pool_by != kSubjectUnit && options.pool_by != kSettingLabel;
+    return ", pooled by " + options.pool_by + (may_lack ? " (without one by setting)" : "");
   }
   return "";
 }
@@ -209,20 +211,32 @@ Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path
 std::string TruthTable(const FitResult& result, const std::map<std::string, double>& truth) {
   TextTable table({"parameter", "truth", "fitted", "std error", "95 % interval", "unit", ""},
                   {true, false, false, false, true, true, true});
-  int covered = 0, compared = 0;
+  int covered = 0, compared = 0, by_total = 0, with_total = 0;
   for (const Estimate& e : result.estimates) {
     const auto known = truth.find(e.name);
     if (e.status == EstimateStatus::kFixed || known == truth.end()) continue;
     // Without noise the interval shrinks below what the files' decimals can hold.
     const double slack = kFileRounding * std::abs(known->second);
-    const bool inside = e.lower95 - slack <= known->second && known->second <= e.upper95 + slack;
+    const auto within = [&](double lower, double upper) {
+      return lower - slack <= known->second && known->second <= upper + slack;
+    };
+    const bool inside = within(e.lower95, e.upper95);
     ++compared;
     covered += inside;
+    if (e.total) {
+      ++with_total;
+      by_total += within(e.total->lower95, e.total->upper95);
+    }
     table.Add({e.name, Rounded(known->second, 4), Rounded(e.value, 4), Rounded(e.standard_error, 3),
                IntervalText(e.value, e.lower95, e.upper95), e.unit, inside ? "covers" : "misses"});
   }
   return table.ToString() + std::to_string(covered) + " of " + std::to_string(compared) +
-         " intervals cover the truth (on average one in 20 does not)\n";
+         " intervals cover the truth (on average one in 20 does not)" +
+         (with_total > 0
+              ? "; of total ones, which hold the errors of what is taken as known too, " +
+                    std::to_string(by_total) + " of " + std::to_string(with_total)
+              : "") +
+         "\n";
 }
 
 std::string ForecastSentence(const ForecastStack& f) {

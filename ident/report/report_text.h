@@ -128,7 +128,12 @@ std::string StudySizesNote(const StudyPlan& plan);
 
 // What other pushes and shorter horizons make of the estimates, as tables and in words.
 
-// Parameter, value, standard error, push error and total error (push/push_check.h).
+// Why push and total errors say nothing: pushes made anew with the fit's own window should leave it
+// where it is. Empty where they do.
+std::string SameWindowText(const RefitTable& check);
+
+// Parameter, value, standard error, push error and total error (push/push_check.h), those two empty
+// where they say nothing.
 TextTable PushErrorTable(const RefitTable& check);
 
 // A row for each refit: by how much it moves every parameter.

@@ -32,12 +32,35 @@ const Remedy* FindRemedy(const AssumptionTest& test) {
   return found == std::end(kRemedies) ? nullptr : found;
 }
 
+// Without a unit it is a share, of a held gain the logarithm of a factor.
+bool IsLogarithm(const AssumptionTest& test) {
+  return test.unit.empty() && FindRemedy(test) == nullptr;
+}
+
+// "0.6 +- 0.2 frames", "-3 +- 1 %", "factor 0.74 (0.6 to 0.91)".
+std::string ValueText(const AssumptionTest& test) {
+  if (IsLogarithm(test)) {
+    return "factor " + Rounded(std::exp(test.wanted), 2) + " (" +
+           Rounded(std::exp(test.wanted - test.error), 2) + " to " +
+           Rounded(std::exp(test.wanted + test.error), 2) + ")";
+  }
+  const double factor = test.unit.empty() ? 100.0 : 1.0;
+  return Rounded(factor * test.wanted, 2) + " +- " + Rounded(factor * test.error, 2) + " " +
+         (test.unit.empty() ? "%" : test.unit);
+}
+
+// "+- 3 %", "factor 2".
+std::string StatedText(const AssumptionTest& test) {
+  if (!(test.stated > 0.0)) return "-";
+  if (IsLogarithm(test)) return "factor " + Rounded(std::exp(test.stated), 2);
+  return test.unit.empty() ? "+- " + Rounded(100.0 * test.stated, 2) + " %"
+                           : "+- " + Rounded(test.stated, 2) + " " + test.unit;
+}
+
 // "the lag of the pushes 0.6 +- 0.2 frames larger", "Kd_theta 40 % smaller".
 std::string WantedText(const AssumptionTest& test) {
   const bool share = test.unit.empty();
-  // Of a held gain it is a logarithm, of the others a share.
-  const bool logarithm = share && FindRemedy(test) == nullptr;
-  const double size = std::abs(logarithm ? std::expm1(test.wanted) : test.wanted);
+  const double size = std::abs(IsLogarithm(test) ? std::expm1(test.wanted) : test.wanted);
   const double factor = share ? 100.0 : 1.0;
   const std::string how_much = share && size > kFar ? "more than a half"
                                                     : Rounded(factor * size, 2) + " +- " +
@@ -136,7 +159,6 @@ TextTable AssumptionTable(const FitResult& result) {
                    "by itself moves most"},
                   {true, false, false, false, false, true});
   for (const AssumptionTest& test : result.verdict.assumptions) {
-    const std::string unit = test.unit.empty() ? "" : " " + test.unit;
     std::string moves;
     double most = 0.0;
     const size_t known = std::min(test.moves.size(), result.uncertainty.estimates.size());
@@ -147,8 +169,7 @@ TextTable AssumptionTable(const FitResult& result) {
       moves = e.name + " by " + Rounded(test.moves[i], 2) + (e.unit == "1" ? "" : " " + e.unit);
     }
     const bool tells = test.error > 0.0;
-    table.Add({test.name, test.stated > 0.0 ? "+- " + Rounded(test.stated, 2) + unit : "-",
-               tells ? Rounded(test.wanted, 2) + " +- " + Rounded(test.error, 2) + unit : "-",
+    table.Add({test.name, StatedText(test), tells ? ValueText(test) : "-",
                tells ? Rounded(test.t, 2) : "-", tells ? Rounded(test.p, 2) : "-", moves});
   }
   return table;

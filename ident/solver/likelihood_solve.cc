@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
@@ -21,8 +22,8 @@ constexpr double kSettled = 0.01;    // relative change of a spread
 // rises. Of what transitions leave, measured velocities err too.
 constexpr double kShareOfNoise = 0.1;
 constexpr double kLowMeasurementError = 3e-4;  // m
-// Beside gains that are not its own the likelihood of the noise has two basins: all roughness is
-// force, or most of it errors of measurement.
+// The likelihood of the noise has two basins: all roughness is force, or most of it errors of
+// measurement.
 constexpr double kMeasurementErrors[] = {kLowMeasurementError, 3e-3};
 
 // Steps of Fisher scoring before BFGS.
@@ -55,8 +56,9 @@ bool GivenByUser(const ParameterSpec& spec) {
   return spec.nominal != AllParameterFacts()[spec.id].nominal;
 }
 
-// Where the user has given no other start.
-void StartNoise(const FitProblem& problem, const FitPoint& point, FitOptions* options) {
+// Where the user has given no other start; error: of measurement, m.
+void StartNoise(const FitProblem& problem, const FitPoint& point, double error,
+                FitOptions* options) {
   const Vector4<double> spread = SpreadOfTransitions(problem, point);
   for (int i = 0; i < 4; ++i) {
     ParameterSpec& spec = options->table.specs[kSigmaX + i];
@@ -65,7 +67,7 @@ void StartNoise(const FitProblem& problem, const FitPoint& point, FitOptions* op
   }
   for (Parameter id : {kMeasuredCart, kMeasuredHip}) {
     ParameterSpec& spec = options->table[id];
-    if (spec.free && !GivenByUser(spec)) spec.nominal = kLowMeasurementError;
+    if (spec.free && !GivenByUser(spec)) spec.nominal = error;
   }
 }
 
@@ -76,6 +78,27 @@ void TakeNoise(const FitProblem& problem, FitPoint* point) {
   for (size_t i = 0; i < fitted.size(); ++i) {
     if (IsNoiseParameter(fitted[i].parameter)) point->shared[i] = nominal.shared[i];
   }
+}
+
+// With the likelier of the noise's starts, which the point takes.
+FitProblem WithNoise(const FitProblem& problem, FitPoint* point) {
+  std::optional<FitProblem> best;
+  FitPoint best_point;
+  double least = std::numeric_limits<double>::infinity();
+  for (double error : kMeasurementErrors) {
+    FitOptions options = problem.options();
+    StartNoise(problem, *point, error, &options);
+    FitProblem with(problem.recordings(), std::move(options), problem.counts());
+    FitPoint at = *point;
+    TakeNoise(with, &at);
+    const double deviance = with.DevianceAt(at).value;
+    if (best && !(deviance < least)) continue;
+    least = deviance;
+    best.emplace(std::move(with));
+    best_point = std::move(at);
+  }
+  *point = std::move(best_point);
+  return *std::move(best);
 }
 
 // BFGS, and the units' spread anew, in turns. Whether the likelihood stays.
@@ -128,10 +151,8 @@ LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& p
     FitPoint from = !first ? RandomStart(as_asked, asked.start_spread, RandomStartSeed(asked, s))
                     : by_equation ? EquationErrorStart(as_asked)
                                   : as_asked.NominalPoint();
-    FitOptions own = asked;
-    StartNoise(as_asked, from, &own);
-    FitProblem with_noise(as_asked.recordings(), own, as_asked.counts());
-    TakeNoise(with_noise, &from);
+    FitProblem with_noise = WithNoise(as_asked, &from);
+    FitOptions own = with_noise.options();
     const std::string label = asked.num_starts > 1 ? "start " + std::to_string(s + 1) + "/" +
                                                          std::to_string(asked.num_starts) + ", "
                                                    : "";
@@ -174,7 +195,7 @@ std::string EstimateNoise(const FitPoint& point, FitProblem* problem) {
   for (ParameterSpec& spec : own.table.specs) {
     if (IsNoiseParameter(spec.id) && GivenByUser(spec)) spec.free = false;
   }
-  StartNoise(*problem, point, &own);
+  StartNoise(*problem, point, kLowMeasurementError, &own);
   const FitProblem steps(recordings, own);
   FitPoint noise = steps.NominalPoint();
   noise.unit = point.unit;

@@ -71,6 +71,9 @@ struct Drift {
   double in_errors = 0.0;         // of the larger of both
 };
 std::vector<Drift> Drifts(const RefitTable& horizons);
+// The same of single steps. No drifts: noise of the joints moves them too, as the posture that
+// people return to is taken from one frame, and what that errs by acts in every step.
+std::vector<Drift> MovesOfSingleSteps(const RefitTable& horizons);
 
 // What the estimates become where the priors were others: centres and widths halved, doubled.
 //

@@ -166,7 +166,7 @@ TextTable StepScoresTable(const NamedStepScores& scores) {
   });
   add("Brier score", [](const StepScore& s) { return WithError(s.brier, s.brier_error); });
   for (size_t i = 0; i < fifths; ++i) {
-    const std::string title = "group " + std::to_string(i + 1) + " by P(step): mean -> share";
+    const std::string title = "fifth " + std::to_string(i + 1) + " of P(step): mean -> share";
     add(title, [i](const StepScore& s) {
       return i < s.fifths.size() ? FifthText(s.fifths[i]) : std::string();
     });

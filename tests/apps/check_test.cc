@@ -121,7 +121,10 @@ TEST_F(CheckTest, OtherRecordingsThanThoseOfTheFitAreNamed) {
                       {"recording " + id_ + " is not what the model was fitted to", "manifest"}));
   const std::string fewer =
       ChangedManifest([](nlohmann::ordered_json& json) { json["recordings"].erase(0); });
-  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, fewer, "--prior_check"}), {id_}));
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, fewer, "--prior_check"}),
+                      {id_, "give the manifest of the fit", "--ids"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-report", {"--model=" + whole, fewer}),
+                      {id_, "give the manifest of the fit", "--ids"}));
 }
 
 TEST_F(CheckTest, WhatItRefuses) {

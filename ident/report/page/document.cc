@@ -203,8 +203,10 @@ std::string Paragraph(std::string text, const char* opening = "<p>") {
 std::string SectionHtml(const ReportSection& section) {
   std::string html = "<section id=\"" + section.id + "\">\n" + Element("h2", section.title);
   html += Paragraph(section.alarm, "<p class=\"alarm\">");
-  for (const ReportFigure& figure : section.figures) html += FigureHtml(figure);
-  for (const std::string& text : section.paragraphs) html += Paragraph(text);
+  std::string figures, text;
+  for (const ReportFigure& figure : section.figures) figures += FigureHtml(figure);
+  for (const std::string& paragraph : section.paragraphs) text += Paragraph(paragraph);
+  html += section.text_first ? text + figures : figures + text;
   for (const auto& [sentence, command] : section.advice) {
     html += Paragraph(sentence);
     if (!command.empty()) html += "<pre>" + EscapeXml(command) + "</pre>\n";
@@ -212,16 +214,16 @@ std::string SectionHtml(const ReportSection& section) {
   html += section.widget;
   for (const ReportTable& table : section.tables) html += TableHtml(table);
   for (const ReportFold& fold : section.folds) {
-    std::string figures;
-    for (const ReportFigure& figure : fold.figures) figures += FigureHtml(figure);
-    html += Folded(fold.title, figures + fold.widget);
+    std::string in_fold;
+    for (const ReportFigure& figure : fold.figures) in_fold += FigureHtml(figure);
+    html += Folded(fold.title, in_fold + fold.widget);
   }
   return html + "</section>\n";
 }
 
 }  // namespace
 
-// The links stand behind the first section, whose pictures lead.
+// The links stand behind the first section, which is what most readers want.
 std::string ToPage(const Report& report) {
   std::string nav, lead, body;
   bool scripted = false;

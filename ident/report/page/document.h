@@ -39,7 +39,8 @@ struct ReportSection {
   std::vector<ReportFigure> figures;
   std::vector<ReportFold> folds;
   std::string widget;      // HTML that only a page can show; empty elsewhere
-  std::string alarm = {};  // before everything else, and in red
+  std::string alarm = {};   // before everything else, and in red
+  bool text_first = false;  // paragraphs stand before the figures
 
   // A further paragraph or table, unless there is nothing in it.
   void Say(const std::string& text) {

@@ -7,7 +7,7 @@ inline constexpr char kPageStyle[] = R"css(
 :root{--paper:#fff;--ink:#222;--faint:#666;--line:#ddd;--link:#0b57d0;--box:#f5f6f8;color-scheme:light dark}
 @media(prefers-color-scheme:dark){:root{--paper:#15181c;--ink:#e8e8e8;--faint:#a0a0a0;--line:#3a3f46;--link:#8ab4f8;--box:#1e2328}}
 *{box-sizing:border-box}
-body{margin:0 auto;padding:0 1.2rem 4rem;max-width:1060px;background:var(--paper);color:var(--ink);font:15px/1.5 system-ui,sans-serif}
+body{margin:0 auto;padding:0 1.2rem 4rem;max-width:1240px;background:var(--paper);color:var(--ink);font:15px/1.5 system-ui,sans-serif}
 h1{margin:1.4rem 0 .2rem;font-size:1.7rem}
 h2{margin:2.6rem 0 .6rem;font-size:1.25rem;border-bottom:1px solid var(--line);padding-bottom:.2rem}
 section{scroll-margin-top:5.5rem}
@@ -19,16 +19,16 @@ p{max-width:78ch}
 pre{background:var(--box);padding:.5rem .7rem;overflow-x:auto;font-size:.85rem;border-radius:4px}
 .panels{display:flex;flex-wrap:wrap;align-items:flex-start}
 .scroll{overflow-x:auto}  /* pictures keep their size, so that labels stay readable */
-table{border-collapse:collapse;margin:1rem 0;font-size:.85rem;font-variant-numeric:tabular-nums}
-th,td{padding:.2rem .8rem .2rem 0;text-align:left;border-bottom:1px solid var(--line);white-space:nowrap}
+table{border-collapse:collapse;margin:1rem 0;font-size:.8rem;font-variant-numeric:tabular-nums}
+th,td{padding:.2rem .6rem .2rem 0;text-align:left;border-bottom:1px solid var(--line);white-space:nowrap}
 td:last-child{white-space:normal;min-width:6rem}
-th{font-weight:600}
+th{font-weight:600;white-space:normal;vertical-align:bottom}
 .number{text-align:right}
 .alarm{border-left:5px solid #c62828;background:var(--box);padding:.5rem .8rem}
 figure{margin:1rem 0;break-inside:avoid}
 figcaption{color:var(--faint);font-size:.85rem;max-width:78ch}
 .panels svg{display:block;flex:none}
-@media(max-width:1000px){nav{position:static}section{scroll-margin-top:1rem}}
+@media(max-width:1000px){nav{position:static}section{scroll-margin-top:1rem}table{font-size:.7rem}td{white-space:normal}}
 details{border-bottom:1px solid var(--line);padding:.3rem 0}
 summary{cursor:pointer}
 .controls{display:flex;flex-wrap:wrap;gap:.6rem 1.2rem;align-items:center;margin:.6rem 0}

@@ -163,13 +163,14 @@ ReportSection ParameterSection(const ReportSource& source) {
 ReportSection UnitSection(const ReportSource& source) {
   const std::string by = source.fit.options.pool_by;
   ReportSection section;
-  section.title = "By " + by;
+  const bool may_lack = by != kSubjectUnit && by != kSettingLabel;
+  section.title = "By " + by + (may_lack ? " or setting" : "");
   const TextTable pooled = PooledTable(source.fit);
   if (pooled.empty()) return section;
   section.paragraphs = {
       "Partially pooled: each value deviates from the shared value as far as its "
       "recordings require."};
-  if (by != kSubjectUnit && by != kSettingLabel) {
+  if (may_lack) {
     section.paragraphs.back() += " A recording without a " + by + " is grouped by its setting.";
   }
   std::map<std::string, std::pair<Chart, TextTable>> by_parameter;

@@ -126,11 +126,12 @@ ReportSection GroupSection(const ReportSource& source) {
   const auto model = CompareHips(groups.recordings, bodies, groups.by_model);
   if (!model) return section;
   const auto velocity = CompareHips(groups.recordings, bodies, groups.by_velocity);
-  section.paragraphs = {
-      bodies.empty()
-          ? "The recordings have no whole bodies, so only onsets are scored."
-          : "Bodies are rigid here: the first poses move with the predicted hips and never step.",
-      GroupMetricsLegend()};
+  section.paragraphs = {bodies.empty()
+                            ? "The recordings have no whole bodies, so only onsets are scored."
+                            : "For these scores whole bodies are the first poses, carried by the "
+                              "predicted hips; steps "
+                              "that the model predicts do not move them.",
+                        GroupMetricsLegend()};
   section.tables.push_back(
       {"the recordings shown here; pushid-crossvalidate scores recordings that were not fitted",
        GroupMetricsTable({{"predicted", &*model}, {"constant velocity", &*velocity}})});
@@ -233,7 +234,10 @@ ReportFigure HistogramFigure(const VisualCheck& check) {
 std::string TestText(const std::string& axis, const UniformityTest& test) {
   return axis + " the push: F = " + Rounded(test.f, 3) + ", p = " + Rounded(test.p, 2) + " (" +
          std::to_string(test.values.size()) + " values of " + std::to_string(test.recordings) +
-         " recordings)";
+         " recordings)" +
+         (test.TooWide() ? ", as the recorded hips are nearer to the prediction than its errors "
+                           "say: predicted intervals are too wide rather than wrong"
+                         : "");
 }
 
 }  // namespace

@@ -64,6 +64,7 @@ ReportSection PushCheckSection(const ReportSource& source) {
       "The pushes are not known exactly: a push from inverse dynamics depends on its window and on "
       "smoothing, a measured push on the noise and the clock of its sensor. The fit was repeated "
       "with other pushes; the total error combines the resulting changes with the standard error."};
+  section.Say(SameWindowText(*source.model.push_check));
   section.tables.push_back(
       {"errors including those of the pushes", PushErrorTable(*source.model.push_check)});
   section.tables.push_back(

@@ -113,8 +113,6 @@ std::string Travels(const PropagationSummary& p) {
          Rounded(p.movers, 4) + " people who moved.";
 }
 
-constexpr double kBadFit = 0.01;  // a p-value that is told
-
 // Tests of the model that it fails.
 std::string DoesNotFit(const ReportSource& source) {
   std::string text;
@@ -122,7 +120,7 @@ std::string DoesNotFit(const ReportSource& source) {
   const std::pair<const char*, const UniformityTest*> axes[] = {{"along", &source.check.along},
                                                                 {"across", &source.check.across}};
   for (const auto& [axis, test] : axes) {
-    if (test->recordings == 0 || test->p >= kBadFit) continue;
+    if (!test->Rejects() || test->TooWide()) continue;
     add(std::string(axis) + " the push, the recorded hips are not distributed as predicted (p = " +
         Rounded(test->p, 1) + ")");
   }
@@ -149,6 +147,7 @@ TextTable Legend(const FitResult& result) {
 
 ReportSection LeadSection(const ReportSource& source) {
   ReportSection section;
+  section.text_first = true;
   if (const std::optional<ReportFigure> typical = TypicalFigure(source))
     section.figures.push_back(*typical);
   section.figures.push_back(IntervalFigure(source));
@@ -161,7 +160,7 @@ ReportSection LeadSection(const ReportSource& source) {
   section.Say(Known(source.fit) + Brackets(source.fit));
   section.Say(NotKnown(source.fit));
   section.Say(GainsText(source.fit));
-  if (!source.fit.verdict.checked()) section.Say(DoesNotFit(source));
+  section.Say(DoesNotFit(source));
   section.Say(Travels(source.propagation));
   section.Say(Next(source.model));
   section.Show("what the names mean", Legend(source.fit));

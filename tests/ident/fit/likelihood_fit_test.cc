@@ -50,6 +50,23 @@ FitOptions NoisyRollouts(const SyntheticOptions& study) {
   return options;
 }
 
+// Noise of the joints alone, and a measured push: from errors of measurement that start far too low
+// the likelihood climbs to a place where all roughness is force, and damping is four times the
+// truth.
+TEST(InnovationFit, FindsErrorsOfMeasurementWhereNothingElseDrives) {
+  SyntheticOptions study = SmallStudy();
+  study.push_kind = PushKind::kExternal;
+  study.joint_noise_m = 0.002;
+  study.frames = 90;
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  FitOptions options = MakeFitOptions({{"likelihood", "innovation"}, {"stance", "slide"}}).value();
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  const FitResult result = Fit(recordings, options);
+  ASSERT_TRUE(result.ok()) << result.message;
+  EXPECT_NEAR(result.parameters[kMeasuredHip], 0.002, 0.0002);
+  EXPECT_NEAR(result.parameters[kKdTheta], study.parameters[kKdTheta], 40.0);
+}
+
 TEST(InnovationFit, FindsPlantedNoiseAndGains) {
   int covered = 0, free = 0;
   for (uint64_t seed : {1, 2, 3}) {

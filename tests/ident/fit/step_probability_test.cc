@@ -78,7 +78,20 @@ TEST(StepProbability, SurvivesAFile) {
   EXPECT_THROW(FromJson<StepProbability>(damaged), std::runtime_error);
 }
 
-// At rest the margin is the support in front; a lean forwards moves it by the hip's way.
+// Supports are positive: whom nothing moves takes no step, whatever the spread.
+TEST(StepProbability, WhomNothingMovesDoesNotStep) {
+  for (double factor : {0.002, 0.1, 0.5, 1.0, 3.0}) {
+    EXPECT_NEAR(FactorAtMargin(0.1, StepMargin(0.1, factor)), factor, 1e-9 * factor);
+  }
+  EXPECT_NEAR(StepMargin(0.1, 1.0), 0.0, 1e-12);
+  EXPECT_NEAR(StepMargin(0.1, 0.5), -0.05, 1e-3);
+  StepProbability p;
+  p.coefficients = {0.4, 35.0};  // as in groups
+  EXPECT_LT(p.At(StepMargin(0.1, 0.0)), 1e-4);
+  EXPECT_GT(FactorAtMargin(0.1, -1.0), 0.0);
+}
+
+// At rest the margin is far down; a lean forwards moves it by the hip's way.
 TEST(StepProbability, MarginIsTheDistanceBeyondTheSupport) {
   ModelOptions options;
   ParameterSet<double> p{};
@@ -88,11 +101,11 @@ TEST(StepProbability, MarginIsTheDistanceBeyondTheSupport) {
   Scene scene;
   scene.people = {person};
   const auto margin = [&] { return StepMargins(options, {p}, scene, path, nullptr)[0]; };
-  EXPECT_NEAR(margin(), -0.1, 1e-6);
+  EXPECT_NEAR(margin(), StepMargin(0.1, 0.0), 1e-6);
   path.At(1, 0).q[2] = std::asin(0.15 / kReferenceRod);
-  EXPECT_NEAR(margin(), 0.05, 1e-6);
+  EXPECT_NEAR(margin(), 0.05, 5e-4);
   path.At(1, 0).q[2] = std::asin(-0.15 / kReferenceRod);
-  EXPECT_NEAR(margin(), 0.1 * (0.15 / 0.06 - 1.0), 1e-6);
+  EXPECT_NEAR(margin(), StepMargin(0.1, 0.15 / 0.06), 1e-6);
 }
 
 // Of feet that step: with a support that is larger by the margin a person just steps no more.
@@ -116,7 +129,7 @@ TEST(StepProbability, MarginOfFeetThatStepIsTheirOwn) {
     EXPECT_GT(margin, before);
     before = margin;
     EXPECT_EQ(margin > 0.0, steps(p)) << velocity;
-    const double factor = 1.0 + margin / p[kSupportFront];
+    const double factor = FactorAtMargin(p[kSupportFront], margin);
     if (factor < 0.26 || factor > 3.9) continue;
     for (double wider : {0.98, 1.02}) {
       ParameterSet<double> other = p;

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "ident/prediction/predicted_steps.h"
+#include "ident/validation/scores_report.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -39,6 +41,16 @@ TEST(StepScore, FifthsAreByProbabilityAndOfOneSize) {
   EXPECT_NEAR(score.fifths[0].predicted, 0.09, 1e-12);
   EXPECT_EQ(score.fifths[0].observed, 0.0);
   EXPECT_EQ(score.fifths[2].observed, 0.5);
+}
+
+// Recordings have groups too: those by P(step) are called something else.
+TEST(StepScore, FifthsAreNotCalledGroups) {
+  std::vector<StepPrediction> predictions;
+  for (int i = 0; i < 50; ++i) predictions.push_back(Track(i / 50.0, i >= 25));
+  const StepScore score = ScoreSteps(predictions);
+  const std::string text = StepScoresText({{"model", &score}});
+  EXPECT_TRUE(Contains(text, "fifth 1 of P(step)"));
+  EXPECT_FALSE(Contains(text, "group"));
 }
 
 // The jackknife by person: a person more with the same tracks changes nothing but the count.

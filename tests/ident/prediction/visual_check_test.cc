@@ -70,9 +70,25 @@ TEST_F(PlantedCheck, AWrongModelIsSeen) {
   model_.parameters[kTailGain] *= 2.5;
   const VisualCheck check = CheckVisually(model_, recordings_);
   EXPECT_LT(check.along.p, 1e-3);
+  EXPECT_TRUE(check.along.Rejects() && !check.along.TooWide());
   double inside = 0.0;
   for (const CheckedStratum& stratum : check.strata) inside += stratum.Inside() / 3.0;
   EXPECT_LT(inside, 0.6);
+}
+
+// Noise of the joints does not grow as the errors of real recordings do: intervals are too wide,
+// and the model is right.
+TEST(VisualCheck, SimulatedRecordingsAreNotRejected) {
+  SyntheticOptions study = SmallStudy();
+  study.joint_noise_m = 0.002;
+  IdentifiedModel model = TrueModel(study);
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  model.recording_effect = FitRecordingEffect(model, recordings);
+  const VisualCheck check = CheckVisually(model, recordings);
+  for (const UniformityTest& test : {check.along, check.across}) {
+    EXPECT_GT(test.recordings, 0);
+    EXPECT_TRUE(test.TooWide());
+  }
 }
 
 TEST_F(PlantedCheck, NeedsAModelThatSaysHowRecordingsDiffer) {

@@ -40,6 +40,21 @@ TEST(TruthTable, SaysWhichIntervalsCoverTheTruth) {
   EXPECT_TRUE(Contains(table, "1 of 3 intervals"));
 }
 
+TEST(TruthTable, CountsTotalIntervalsToo) {
+  FitResult result;
+  result.estimates = {Estimated("narrow", 2.0, 1.0, 3.0), Estimated("wide", 2.0, 1.0, 3.0)};
+  EXPECT_FALSE(Contains(TruthTable(result, {{"narrow", 4.0}}), "total"));
+  for (Estimate& e : result.estimates) {
+    e.total.emplace();
+    e.total->lower95 = 0.0, e.total->upper95 = 5.0;
+  }
+  const std::string table = TruthTable(result, {{"narrow", 4.0}, {"wide", 2.0}});
+  EXPECT_TRUE(Contains(table, "1 of 2 intervals cover the truth"));
+  EXPECT_TRUE(Contains(table,
+                       "of total ones, which hold the errors of what is taken as known too, "
+                       "2 of 2"));
+}
+
 TEST(TruthTable, LeavesOutWhatWasNotFittedOrIsNotKnown) {
   FitResult result;
   result.estimates = {Estimated("fitted", 2.0, 1.0, 3.0), Estimated("held", 2.0, 1.0, 3.0),

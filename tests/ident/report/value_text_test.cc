@@ -21,6 +21,22 @@ TEST(ValueText, IntervalsSayWhatTheyTell) {
   EXPECT_EQ(IntervalText(0.001, -0.5, 0.5), "[-0.5, 0.5]");
 }
 
+TEST(ValueText, WhatIsTakenAsKnownHasItsUnit) {
+  FitResult result;
+  AssumptionTest masses, support, drift;
+  masses.name = "masses", masses.stated = 0.03;
+  support.name = "support_back", support.stated = std::log(2.0);
+  support.wanted = std::log(0.5), support.error = std::log(2.0);
+  drift.name = "drift of the cameras", drift.unit = "m", drift.stated = drift.wanted = 0.005;
+  drift.error = 0.001;
+  result.verdict.assumptions = {masses, support, drift};
+  const std::string table = AssumptionTable(result).ToString();
+  EXPECT_TRUE(Contains(table, "+- 3 %"));
+  EXPECT_TRUE(Contains(table, "factor 2 "));
+  EXPECT_TRUE(Contains(table, "factor 0.5 (0.25 to 1)"));
+  EXPECT_TRUE(Contains(table, "0.005 +- 0.001 m"));
+}
+
 TEST(ValueText, GainsAreSaidInWords) {
   FitResult result;
   EXPECT_EQ(GainsText(result), "");

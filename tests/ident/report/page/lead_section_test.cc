@@ -1,6 +1,7 @@
 // The report's three sentences, by hand.
 #include <gtest/gtest.h>
 
+#include "ident/report/page/document.h"
 #include "ident/report/page/sections.h"
 #include "tests/test_support.h"
 
@@ -35,6 +36,8 @@ TEST(LeadSection, SaysWhatIsKnownWhatIsNotAndWhatToDo) {
   model.advice = {{"Record more people.", "pushid-fit"}};
   const ReportSection section = SectionOf(model, {});
   ASSERT_EQ(section.paragraphs.size(), 4u);
+  const std::string page = ToPage({"title", "", {section}});
+  EXPECT_LT(page.find("The model was not checked"), page.find("<figure"));
   EXPECT_EQ(section.paragraphs[0], "The model was not checked: an older version fitted.");
   EXPECT_TRUE(Contains(section.paragraphs[1],
                        "What is known: these recordings identify mu = 31.2 N s/m (20 to 42)"));
@@ -71,7 +74,9 @@ TEST(LeadSection, SaysWhatDoesNotFit) {
   source.check.along.recordings = 20;
   source.check.along.p = 0.0004;
   source.check.across.recordings = 20;
-  source.check.across.p = 0.3;
+  source.check.across.p = 0.0001;  // nobody far off: wide rather than wrong
+  source.check.along.shares = {0.6, 0.1, 0.1, 0.1, 0.1};
+  source.check.across.shares = {0.0, 0.3, 0.4, 0.3, 0.0};
   const ReportSection section = LeadSection(source);
   ASSERT_EQ(section.paragraphs.size(), 6u);
   EXPECT_TRUE(Contains(section.paragraphs[2], "Kp_theta = 2340 N s/m (undetermined)"));
@@ -79,6 +84,9 @@ TEST(LeadSection, SaysWhatDoesNotFit) {
   EXPECT_EQ(section.paragraphs[4],
             "What does not fit: along the push, the recorded hips are not distributed as predicted "
             "(p = 0.0004).");
+  model.fit.verdict.not_checked.clear();
+  EXPECT_EQ(LeadSection({model, model.fit, {}, {}, source.check}).paragraphs[4],
+            section.paragraphs[4]);
 }
 
 TEST(LeadSection, ManyNamesAreCounted) {
