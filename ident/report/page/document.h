@@ -38,7 +38,7 @@ struct ReportSection {
   std::vector<ReportTable> tables;
   std::vector<ReportFigure> figures;
   std::vector<ReportFold> folds;
-  std::string widget;      // HTML that only a page can show; empty elsewhere
+  std::string widget;       // HTML that only a page can show; empty elsewhere
   std::string alarm = {};   // before everything else, and in red
   bool text_first = false;  // paragraphs stand before the figures
 
