@@ -67,7 +67,7 @@ TEST(GroupSectionTest, TellsWhatPredictedGroupsDo) {
   EXPECT_EQ(rows[1], exact);
   EXPECT_EQ(rows[2][0], "constant velocity");
   EXPECT_NE(rows[2][1], "0.000") << "it ends with the push, before anybody goes off";
-  EXPECT_TRUE(Contains(section.paragraphs[0], "rigid"));
+  EXPECT_TRUE(Contains(section.paragraphs[0], "do not move them"));
 }
 
 TEST(GroupSectionTest, WithoutBodiesOnsetsAreLeft) {
