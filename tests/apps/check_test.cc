@@ -123,7 +123,7 @@ TEST_F(CheckTest, OtherRecordingsThanThoseOfTheFitAreNamed) {
       ChangedManifest([](nlohmann::ordered_json& json) { json["recordings"].erase(0); });
   EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, fewer, "--prior_check"}),
                       {id_, "give the manifest of the fit", "--ids"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-report", {"--model=" + whole, fewer}),
+  EXPECT_TRUE(Refused(RunApp("pushid-report", {"--model=" + whole, fewer, "--text"}),
                       {id_, "give the manifest of the fit", "--ids"}));
 }
 

@@ -203,10 +203,12 @@ std::string Paragraph(std::string text, const char* opening = "<p>") {
 std::string SectionHtml(const ReportSection& section) {
   std::string html = "<section id=\"" + section.id + "\">\n" + Element("h2", section.title);
   html += Paragraph(section.alarm, "<p class=\"alarm\">");
-  std::string figures, text;
-  for (const ReportFigure& figure : section.figures) figures += FigureHtml(figure);
-  for (const std::string& paragraph : section.paragraphs) text += Paragraph(paragraph);
-  html += section.text_first ? text + figures : figures + text;
+  const size_t before = std::min<size_t>(section.verdict_first ? 1 : 0, section.paragraphs.size());
+  for (size_t i = 0; i < before; ++i) html += Paragraph(section.paragraphs[i]);
+  for (const ReportFigure& figure : section.figures) html += FigureHtml(figure);
+  for (size_t i = before; i < section.paragraphs.size(); ++i) {
+    html += Paragraph(section.paragraphs[i]);
+  }
   for (const auto& [sentence, command] : section.advice) {
     html += Paragraph(sentence);
     if (!command.empty()) html += "<pre>" + EscapeXml(command) + "</pre>\n";

@@ -38,9 +38,9 @@ struct ReportSection {
   std::vector<ReportTable> tables;
   std::vector<ReportFigure> figures;
   std::vector<ReportFold> folds;
-  std::string widget;       // HTML that only a page can show; empty elsewhere
-  std::string alarm = {};   // before everything else, and in red
-  bool text_first = false;  // paragraphs stand before the figures
+  std::string widget;          // HTML that only a page can show; empty elsewhere
+  std::string alarm = {};      // before everything else, and in red
+  bool verdict_first = false;  // the first paragraph stands before the figures
 
   // A further paragraph or table, unless there is nothing in it.
   void Say(const std::string& text) {

@@ -147,7 +147,6 @@ TextTable Legend(const FitResult& result) {
 
 ReportSection LeadSection(const ReportSource& source) {
   ReportSection section;
-  section.text_first = true;
   if (const std::optional<ReportFigure> typical = TypicalFigure(source))
     section.figures.push_back(*typical);
   section.figures.push_back(IntervalFigure(source));
@@ -156,6 +155,7 @@ ReportSection LeadSection(const ReportSource& source) {
     section.alarm = verdict;
   } else {
     section.Say(verdict);
+    section.verdict_first = true;
   }
   section.Say(Known(source.fit) + Brackets(source.fit));
   section.Say(NotKnown(source.fit));
