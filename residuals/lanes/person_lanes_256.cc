@@ -2,13 +2,16 @@
 #include "residuals/lanes/person_lanes.h"
 
 #if defined(__AVX2__) && defined(__FMA__)
-#define PUSHID_VECTOR_NAME "256-bit vectors"
 #define PUSHID_VECTOR_DOUBLES 4
 #include "residuals/lanes/person_lanes_loops.h"
+#include "residuals/lanes/stance_jet_loops.h"
 
 namespace pushid {
 
-const PersonLanes* PersonLanes256() { return &kPersonLanes; }
+const PersonLanes* PersonLanes256() {
+  static constexpr PersonLanes lanes = {"256-bit vectors", kWidth, RollLanes, StanceJet};
+  return &lanes;
+}
 
 }  // namespace pushid
 #else

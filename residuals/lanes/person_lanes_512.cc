@@ -2,13 +2,16 @@
 #include "residuals/lanes/person_lanes.h"
 
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
-#define PUSHID_VECTOR_NAME "512-bit vectors"
 #define PUSHID_VECTOR_DOUBLES 8
 #include "residuals/lanes/person_lanes_loops.h"
+#include "residuals/lanes/stance_jet_loops.h"
 
 namespace pushid {
 
-const PersonLanes* PersonLanes512() { return &kPersonLanes; }
+const PersonLanes* PersonLanes512() {
+  static constexpr PersonLanes lanes = {"512-bit vectors", kWidth, RollLanes, StanceJet};
+  return &lanes;
+}
 
 }  // namespace pushid
 #else

@@ -1,6 +1,5 @@
 // residuals: the loops of person_lanes.h, for the file that includes this, which says
 //   PUSHID_VECTOR_DOUBLES      doubles in a vector
-//   PUSHID_VECTOR_NAME
 //   PUSHID_LANE_SCALAR         the header with its scalar, where it is another (tests/benchmarks)
 // What is compiled here for wide vectors must not be linked to by other files: the scalar is a type
 // without linkage, so that every template of it has none either, and nothing else is called that
@@ -8,7 +7,6 @@
 #pragma once
 
 #include "residuals/lanes/person_roller.h"
-#include "residuals/lanes/stance_jet_loops.h"
 
 namespace pushid {
 namespace {
@@ -140,8 +138,6 @@ void RollLanes(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) {
     if (sums == LaneSums::kRobust) Store(carried.robust[i], out.robust + i * kWidth);
   }
 }
-
-constexpr PersonLanes kPersonLanes = {PUSHID_VECTOR_NAME, kWidth, RollLanes, StanceJet};
 
 }  // namespace
 }  // namespace pushid

@@ -19,7 +19,6 @@
 #include "tests/benchmarks/benchmark_recordings.h"
 
 #define PUSHID_VECTOR_DOUBLES 1
-#define PUSHID_VECTOR_NAME "counted"
 #define PUSHID_LANE_SCALAR "tests/benchmarks/counted_scalar.h"
 #include "residuals/lanes/person_lanes_loops.h"
 
@@ -76,7 +75,8 @@ void SumsSideBySide(benchmark::State& state) {
     }
   };
   counted = {};
-  evaluate(groups(kPersonLanes), 1);
+  static constexpr PersonLanes kCounted = {"counted", kWidth, RollLanes, nullptr};
+  evaluate(groups(kCounted), 1);
   const double operations = static_cast<double>(counted.sums_and_products);
   const PersonLanes& lanes = *SupportedPersonLanes()[state.range(1)];
   const double peak = PeakRate(*SupportedVectorKernels()[state.range(1)]);
