@@ -25,14 +25,14 @@ constexpr char kStickFigure[] = R"({
 )";
 enum Joint {
   kRightThigh = 1,
-  kRightKnee,
+  kRightShin,
   kLeftThigh = 4,
-  kLeftKnee,
+  kLeftShin,
   kWaist = 7,
   kRightArm = 10,
-  kRightElbow,
+  kRightForearm,
   kLeftArm = 13,
-  kLeftElbow
+  kLeftForearm
 };
 constexpr int kJoints = 16;
 constexpr double kStep = 1.0 / 50.0;  // s
@@ -61,8 +61,8 @@ std::string Clip(const StickAction& action, int frames, Random* random) {
     for (size_t i = 3; i < maps.size(); ++i) maps[i] = kTremor * tremor[i].Next();
     const auto bend = [](double phi) { return 0.5 * (1.0 + std::sin(phi + M_PI / 2.0)); };
     for (const auto& [thigh, shin, upper, fore, phi] :
-         {std::tuple(kRightThigh, kRightKnee, kRightArm, kRightElbow, phase),
-          std::tuple(kLeftThigh, kLeftKnee, kLeftArm, kLeftElbow, phase + M_PI)}) {
+         {std::tuple(kRightThigh, kRightShin, kRightArm, kRightForearm, phase),
+          std::tuple(kLeftThigh, kLeftShin, kLeftArm, kLeftForearm, phase + M_PI)}) {
       maps[3 * thigh] += leg * std::sin(phi);
       maps[3 * shin] -= knee * bend(phi);
       maps[3 * upper] -= arm * std::sin(phi);
