@@ -89,7 +89,7 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
 
 constexpr int kFolds = 4;  // of the comparison
 // Networks that are only compared are trained more briefly, by these shares of steps and epochs.
-constexpr double kShareOfSteps = 0.4, kShareOfEpochs = 1.0 / 3.0;
+constexpr double kShareOfSteps = 0.5, kShareOfEpochs = 1.0 / 3.0;
 const std::vector<double> kBlends = {0.25, 0.5, 0.75};
 
 FitOptions PhysicsOf(const TrainGeneratorFlags& flags,
