@@ -156,30 +156,34 @@ def batch():
             "beside them.")
 
 
-def solve_seconds(*flags):
-    fit = studies.on_recordings("pushid-fit", "single", *flags, "--quiet", out="model_out", keep=False)
+def solve_seconds(*flags, setting="single"):
+    fit = studies.on_recordings("pushid-fit", setting, *flags, "--quiet", out="model_out", keep=False)
     return fit.json["run"]["solve_seconds"]
 
 
 def rivals():
     """One start each; the physics, recordings and six parameters of the published PD model."""
-    def script(name):
+    def script(name, *flags):
         return ["/usr/bin/python3", os.path.join(studies.SOURCE, f"tests/benchmarks/{name}_pd_fit.py"), studies.MANIFEST,
-                "--start=textbook"]
+                "--start=textbook", *flags]
 
-    def told(name):  # "... 58 evaluations, 3.91 s"
-        printed = subprocess.run(script(name), check=True, stdout=subprocess.PIPE, text=True,
+    def told(name, *flags):  # "... 58 evaluations, 3.91 s"
+        printed = subprocess.run(script(name, *flags), check=True, stdout=subprocess.PIPE, text=True,
                                  env=dict(os.environ, OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1")).stdout
         return float(re.search(r"evaluations, ([0-9.]+) s", printed).group(1))
 
     six_parameters = ["--preset=ldp", "--friction=anisotropic", "--free=mu_y", "--gain_scaling=mass"]
     fit = [os.path.join(studies.BIN, "pushid-fit"), f"--recordings={studies.MANIFEST}", "--setting=single"]
+    groups = [*fit[:-1], "--setting=groups"]
     times = {"`pushid-fit --preset=ldp`, with six parameters": ([], []), "`pushid-fit`, its default of 6 parameters and 2 pooled": ([], []),
-             "SciPy, `least_squares`": ([], []), "PyTorch, autograd and `LBFGS`": ([], [])}
+             "SciPy, `least_squares`, plain squares": ([], []), "SciPy, the same with a robust loss": ([], []),
+             "PyTorch, autograd and `LBFGS`": ([], []), "`pushid-fit --setting=groups`": ([], [])}
     for _ in range(5):  # in turns
         for (solves, processes_of), (solve, command) in zip(times.values(), [
                 (lambda: solve_seconds(*six_parameters), [*fit, *six_parameters]), (solve_seconds, fit),
-                (lambda: told("scipy"), script("scipy")), (lambda: told("torch"), script("torch"))]):
+                (lambda: told("scipy", "--loss=linear"), script("scipy", "--loss=linear")),
+                (lambda: told("scipy"), script("scipy")), (lambda: told("torch"), script("torch")),
+                (lambda: solve_seconds("--num_threads=1", setting="groups"), [*groups, "--num_threads=1"])]):
             solves.append(solve())
             processes_of.append(processor_seconds_once(*command))
     rows = [[title, *(f"{number(statistics.median(of), 2)} s" for of in found)] for title, found in times.items()]
