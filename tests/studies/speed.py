@@ -229,7 +229,7 @@ def limits():
     text = studies.table(["", "normal equations / gradients / costs", "sums and products", "limit", "measured", "ratio"],
                          rows)
     return (f"{text}\n\nAt {number(peak / 1e9)} 10^9 sums and products a second, one core, "
-            f"{of['CostsSideBySide']['label'].split(',')[0]} vectors; {machine()}.")
+            f"{of['CostsSideBySide']['label'].split(',')[0]}; {machine()}.")
 
 
 def machine():
