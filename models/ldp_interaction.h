@@ -81,20 +81,23 @@ Vector4<double> Reals(const Vector4<T>& v) {
   return {RealPart(v[0]), RealPart(v[1]), RealPart(v[2]), RealPart(v[3])};
 }
 
-struct LdpPublishedTerm {
+// A term that says, by AddOn, what each of two people gets from the other.
+template <typename Term>
+struct ToEachOther {
   template <typename T>
   static void Add(const Pair&, const ParameterSet<T>& p, const PendulumState<T>& n,
                   const PendulumState<T>& j, PairForce<T>* force) {
-    if (!InLdpRange(p, n.q, j.q)) return;
-    AddOn(p, n, j, &force->on_n);
-    AddOn(p, j, n, &force->on_j);
-    force->acts = true;
+    Term::AddOn(p, n, j, &force->on_n, &force->acts);
+    Term::AddOn(p, j, n, &force->on_j, &force->acts);
   }
+};
 
- private:
+struct LdpPublishedTerm : ToEachOther<LdpPublishedTerm> {
   template <typename T>
   static void AddOn(const ParameterSet<T>& p, const PendulumState<T>& n, const PendulumState<T>& j,
-                    Vector4<T>* on_n) {
+                    Vector4<T>* on_n, bool* acts) {
+    if (!InLdpRange(p, n.q, j.q)) return;
+    *acts = true;
     const Eigen::Matrix<T, 2, 1> r = n.q.template head<2>() - j.q.template head<2>();
     const Eigen::Matrix<T, 2, 1> v = j.qd.template head<2>() - n.qd.template head<2>();
     on_n->template head<2>() += LdpRepulsion(p, r, v);
@@ -104,15 +107,7 @@ struct LdpPublishedTerm {
   }
 };
 
-struct LdpDiscreteTerm {
-  template <typename T>
-  static void Add(const Pair&, const ParameterSet<T>& p, const PendulumState<T>& n,
-                  const PendulumState<T>& j, PairForce<T>* force) {
-    AddOn(p, n, j, &force->on_n, &force->acts);
-    AddOn(p, j, n, &force->on_j, &force->acts);
-  }
-
- private:
+struct LdpDiscreteTerm : ToEachOther<LdpDiscreteTerm> {
   template <typename T>
   static void AddOn(const ParameterSet<T>& p, const PendulumState<T>& n, const PendulumState<T>& j,
                     Vector4<T>* on_n, bool* acts) {
@@ -187,15 +182,7 @@ T SmoothLdpGain(const ParameterSet<T>& p, const PendulumState<T>& n, const Pendu
          SoftStep<T>(own - kLdpMovingSpeed, kLdpSoftSpeed) * clamped * distance;
 }
 
-struct PotentialTerm {
-  template <typename T>
-  static void Add(const Pair&, const ParameterSet<T>& p, const PendulumState<T>& n,
-                  const PendulumState<T>& j, PairForce<T>* force) {
-    AddOn(p, n, j, &force->on_n, &force->acts);
-    AddOn(p, j, n, &force->on_j, &force->acts);
-  }
-
- private:
+struct PotentialTerm : ToEachOther<PotentialTerm> {
   template <typename T>
   static void AddOn(const ParameterSet<T>& p, const PendulumState<T>& n, const PendulumState<T>& j,
                     Vector4<T>* on_n, bool* acts) {
@@ -208,15 +195,7 @@ struct PotentialTerm {
   }
 };
 
-struct LeanTerm {
-  template <typename T>
-  static void Add(const Pair&, const ParameterSet<T>& p, const PendulumState<T>& n,
-                  const PendulumState<T>& j, PairForce<T>* force) {
-    AddOn(p, n, j, &force->on_n, &force->acts);
-    AddOn(p, j, n, &force->on_j, &force->acts);
-  }
-
- private:
+struct LeanTerm : ToEachOther<LeanTerm> {
   // "I lean towards the neighbour, or the neighbour leans towards me", of two smooth switches;
   // side: +1 where the neighbour stands ahead (or to the left), -1 where behind. The caller weights
   // the two sides.

@@ -36,7 +36,6 @@ struct Mlp {
   std::vector<MlpLayer> layers;  // at least one; the last is linear
 
   int num_inputs() const { return static_cast<int>(layers.front().weights.cols()); }
-  int num_outputs() const { return static_cast<int>(layers.back().weights.rows()); }
   int num_weights() const;
 
   // by_input (outputs x inputs) may be null.

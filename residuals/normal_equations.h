@@ -33,7 +33,6 @@ class NormalEquations {
   void Add(const NormalEquations& other) { gram_ += other.gram_; }
 
   int columns() const { return columns_; }
-  double squared_residuals() const { return gram_(columns_, columns_); }
   // F: columns + 1 rows, the last of which is [0 rho].
   RowMajorMatrix Factor() const;
 

@@ -38,13 +38,6 @@ bool TooLargeToRepeat(const FitOptions& options) {
   return NeedsGradientTraining(options) || options.body_weight > 0.0;
 }
 
-std::vector<PendulumRecording> Without(const std::vector<PendulumRecording>& recordings,
-                                       const std::vector<int>& held_out) {
-  std::vector<PendulumRecording> left;
-  for (int i : Others(held_out, static_cast<int>(recordings.size()))) left.push_back(recordings[i]);
-  return left;
-}
-
 }  // namespace
 
 std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const FitPoint& optimum,

@@ -129,11 +129,7 @@ void ForgetWeights(Eigen::Index weights, FitResult* result) {
 std::optional<IdentifiedModel> SolvedWithout(const std::vector<PendulumRecording>& recordings,
                                              const FitOptions& options,
                                              const std::vector<int>& held_out) {
-  std::vector<PendulumRecording> others;
-  for (int i : Others(held_out, static_cast<int>(recordings.size()))) {
-    others.push_back(recordings[i]);
-  }
-  Result<IdentifiedModel> model = SolveModel(others, options);
+  Result<IdentifiedModel> model = SolveModel(Without(recordings, held_out), options);
   if (!model.ok()) return std::nullopt;
   return std::move(model.value());
 }

@@ -39,6 +39,20 @@ Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& record
 // The indices below `total` that are not held out, ascending.
 std::vector<int> Others(const std::vector<int>& held_out, int total);
 
+// Those of the positions, or none where there is nothing to pick from.
+template <typename Value>
+std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>& positions) {
+  std::vector<Value> picked;
+  if (from.empty()) return picked;
+  for (int k : positions) picked.push_back(from[k]);
+  return picked;
+}
+
+template <typename Value>
+std::vector<Value> Without(const std::vector<Value>& all, const std::vector<int>& held_out) {
+  return Picked(all, Others(held_out, static_cast<int>(all.size())));
+}
+
 // Folds that a file gives, such as a published split or quarters of the recordings.
 //
 //   {"folds": [{"name": "1", "held_out": ["single_X05_00", ...]}, ...]}

@@ -18,6 +18,7 @@
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/model/identified_model.h"
+#include "ident/problem/folds.h"
 #include "ident/training/training_run.h"
 #include "models/peers/mrt_network.h"
 #include "models/restoration/cvae_trainer.h"
@@ -25,15 +26,6 @@
 #include "models/restoration/trainer.h"
 
 namespace pushid {
-
-// Those of the positions, or none where there is nothing to pick from.
-template <typename Value>
-std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>& positions) {
-  std::vector<Value> picked;
-  if (from.empty()) return picked;
-  for (int k : positions) picked.push_back(from[k]);
-  return picked;
-}
 
 // The model of `options` fitted to some recordings, without the uncertainty; and for every one of
 // them what a model predicts which was fitted without its fold (ident/fit/fit.h), without forces

@@ -38,23 +38,14 @@ HeldOutValues MeansOverRepeats(size_t recordings,
   return means;
 }
 
-std::vector<PendulumRecording> Picked(const std::vector<PendulumRecording>& recordings,
-                                      const std::vector<int>& indices) {
-  std::vector<PendulumRecording> picked;
-  for (int i : indices) picked.push_back(recordings[i]);
-  return picked;
-}
-
 // visit(fold, recordings to fit, options): the folds run in parallel, each fit on one thread.
 template <typename Visit>
 void ForEachFold(const std::vector<PendulumRecording>& recordings, const std::vector<Fold>& folds,
                  FitOptions options, int num_threads, const JobProgress& progress, Visit visit) {
   options.num_threads = 1;
-  const int total = static_cast<int>(recordings.size());
   ParallelFor(
       static_cast<int>(folds.size()), num_threads,
-      [&](int f) { visit(f, Picked(recordings, Others(folds[f].held_out, total)), options); },
-      progress);
+      [&](int f) { visit(f, Without(recordings, folds[f].held_out), options); }, progress);
 }
 
 }  // namespace

@@ -21,9 +21,7 @@ ModelPredictor::ModelPredictor(std::string label, FitOptions options, int seen, 
 FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
                                            const std::vector<int>& train,
                                            const std::vector<int>& test) const {
-  std::vector<PendulumRecording> training;
-  for (int i : train) training.push_back(recordings[i]);
-  Result<IdentifiedModel> solved = SolveModel(training, options_, bands);
+  Result<IdentifiedModel> solved = SolveModel(Picked(recordings, train), options_, bands);
   if (solved.ok() && bands && !solved.value().forecasts) {
     solved = Error{"no recording stays in the model's domain"};
   }

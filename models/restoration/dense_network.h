@@ -23,7 +23,6 @@ struct DenseNetwork {
   std::vector<DenseLayer> layers;  // ELU between them
 
   int num_inputs() const { return static_cast<int>(layers.front().weights.cols()); }
-  int num_outputs() const { return static_cast<int>(layers.back().weights.rows()); }
   // A column per sample.
   Eigen::MatrixXf Evaluate(const Eigen::MatrixXf& inputs) const;
 };
