@@ -127,9 +127,7 @@ std::string LeftDomainAdvice(double fps) {
   return fps < kUsualFps - 0.5
              ? "the time step is long: try --fps=60, and if that does not help a weaker --push"
              : "the person falls: try a weaker or longer push (--push, --push_duration), or a "
-               "higher "
-               "--fps "
-               "if the push is no harder than those the model was fitted to";
+               "higher --fps if the push is no harder than those the model was fitted to";
 }
 
 int LeftDomain(const RolloutStatus& status, double dt) {

@@ -19,10 +19,8 @@ Row PresetRow() {
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
       "tail, posture-relative recovery), group (tail with linear self forces and contact, pooled "
       "by setting), ldp (plain PD and friction from upright), ldp_groups (that with LDP's "
-      "potential "
-      "and torques between people, and a small network beside them), or ldp_published (LDP with "
-      "all "
-      "its networks, of one person or of groups)",
+      "potential and torques between people, and a small network beside them), or ldp_published "
+      "(LDP with all its networks, of one person or of groups)",
       nullptr);
   row.choices = PresetNames();
   row.text = [](const FitOptions&) { return std::string(kAutoPreset); };

@@ -138,8 +138,7 @@ std::string SingleStepsText(const RefitTable& check) {
   if (names.empty()) return "";
   return "single steps give other values of " + names +
          " (more than two standard errors apart): noise of the joints does that too, so it does "
-         "not "
-         "show that the model omits something\n";
+         "not show that the model omits something\n";
 }
 
 }  // namespace

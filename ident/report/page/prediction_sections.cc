@@ -129,8 +129,8 @@ ReportSection GroupSection(const ReportSource& source) {
   section.paragraphs = {bodies.empty()
                             ? "The recordings have no whole bodies, so only onsets are scored."
                             : "For these scores whole bodies are the first poses, carried by the "
-                              "predicted hips; steps "
-                              "that the model predicts do not move them.",
+                              "predicted hips; steps that the model predicts do "
+                              "not move them.",
                         GroupMetricsLegend()};
   section.tables.push_back(
       {"the recordings shown here; pushid-crossvalidate scores recordings that were not fitted",
