@@ -43,11 +43,13 @@ def known():
                     continue
                 lower, upper = p["interval_95"]
                 covered.setdefault(p["name"], []).append(lower <= truth[p["name"]] <= upper)
-                apart.setdefault(p["name"], []).append(p["value"] / truth[p["name"]] - 1.0)
+                of = truth[p["name"]]
+                apart.setdefault(p["name"], []).append(p["value"] / of - 1.0 if of != 0.0 else p["value"])
     rows = []
     for name, hits in covered.items():
         mean = sum(apart[name]) / len(apart[name])
-        rows.append([f"`{name}`", f"{sum(hits)} of {len(hits)}", f"{100 * mean:+.1f} %"])
+        rows.append([f"`{name}`", f"{sum(hits)} of {len(hits)}",
+                     f"{100 * mean:+.1f} %" if truth[name] != 0.0 else f"{mean:+.2g}"])
     every = [hit for hits in covered.values() for hit in hits]
     rows.append(["all", f"{sum(every)} of {len(every)} ({100 * sum(every) / len(every):.1f} %)", None])
     return studies.table(["planted", "95 % interval covers", "mean error"], rows)
