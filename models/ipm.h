@@ -54,9 +54,10 @@ template <typename T>
 struct FeetState {
   Eigen::Matrix<T, 2, 1> apart{T(0.0), T(kFeetApart)};  // the left foot from the right one, m
   T clock = T(0.0);        // s: how far a step is prepared; of a swing, since lift-off
-  T swing_time = T(0.0);   // s, of the swing
+  T swing_time = T(0.0);   // s, of the swing; where fresh and both stand: since landing
   signed char swings = 0;  // 1: the left foot is in the air, -1: the right one, 0: both stand
   signed char landed = 0;  // which landed last; 0: none has yet
+  bool fresh = false;      // a foot left the ground or landed within the last step
 };
 
 template <typename T>

@@ -35,8 +35,10 @@
 // lift-off.
 //
 // Lifting off and landing happen at their moments within a step of the rollout: the clock goes on
-// from there, and c is the mean over the step. So paths are continuous in the parameters, with
-// derivatives, but for which foot steps and whether it does.
+// from there, c is the mean over the step, and the foot follows its place until the last step. How
+// long it swings, and the clock after landing, are those at that moment, between what the frames
+// before and after it tell: the second one is known a step later. So paths are continuous in the
+// parameters, with derivatives, but for which foot steps and whether it does.
 //
 // While a `net` push lasts the ground does nothing, since its rows hold the feet's reaction. From a
 // `net_without_friction` push LDP's friction of 100 N s/m was taken out, and it gets that back.
@@ -81,6 +83,7 @@ class StanceStep {
         rest_{body.rest[0], body.rest[1]} {}
 
   StanceForces<T> Run() {
+    if (feet_.fresh) Complete();
     if (feet_.swings == 0) {
       Stand();
     } else {
@@ -136,20 +139,43 @@ class StanceStep {
     const T late = (clock - p_.onset) / rate;  // s, since lift-off
     FeetState<T> lifted = feet_;
     lifted.swings = LiftedFoot();
-    const Horizontal<T> behind = -1.0 * lifted.swings * feet_.apart;  // the standing foot from it
-    const T along = behind[0] * Direction()[0] + behind[1] * Direction()[1];
-    lifted.swing_time = p_.swing;
-    if (body_.among_others) {
-      const Horizontal<T> xi = xi_ + (body_.capture_rate * (dt - late)) * (xi_ - pressure_);
-      lifted.swing_time = p_.swing / (1.0 + kQuicker * Rush(Over(xi)));
-    }
-    if (RealPart(along) > 0.0) lifted.swing_time += along * (1.0 / kFootSpeed);
+    lifted.swing_time = SwingTime(lifted.swings);
+    lifted.fresh = true;
     lifted.clock = late - dt;  // so that it is `late` after this step
     const Horizontal<T> standing = pressure_;
     Swing(lifted);
     if (RealPart(late) < dt) {
       pressure_ = standing + (late * (1.0 / dt)) * (pressure_ - standing);
     }
+  }
+
+  // What began within the last step, from what the frame before told and what this one tells.
+  void Complete() {
+    const T since = feet_.swings != 0 ? feet_.clock : feet_.swing_time;
+    const T before = RealPart(since) < body_.dt ? T(since * (1.0 / body_.dt)) : T(1.0);
+    if (feet_.swings != 0) {
+      feet_.swing_time += (1.0 - before) * (SwingTime(feet_.swings) - feet_.swing_time);
+    } else {
+      feet_.clock += (1.0 - before) * (ClockOnLanding() - feet_.clock);
+      feet_.swing_time = T(0.0);
+    }
+    feet_.fresh = false;
+  }
+
+  // foot: which lifts off, 1 or -1.
+  T SwingTime(double foot) const {
+    const Horizontal<T> behind = -foot * feet_.apart;  // the standing foot from it
+    const T along = behind[0] * Direction()[0] + behind[1] * Direction()[1];
+    T time = p_.swing;
+    if (body_.among_others) time = time / (1.0 + kQuicker * Rush(Over(xi_)));
+    return RealPart(along) > 0.0 ? T(time + along * (1.0 / kFootSpeed)) : time;
+  }
+
+  T ClockOnLanding() const {
+    using std::exp;
+    const T prepared = p_.onset - kAgain;
+    return (RealPart(prepared) > 0.0 ? prepared : T(0.0)) /
+           (1.0 + exp(Over(xi_) * (-1.0 / kSupportEdge)));
   }
 
   // Of xi from the middle of the support, by its extent: a unit vector.
@@ -226,8 +252,11 @@ class StanceStep {
     const double lane = feet.swings * body_.apart[1];
     place[1] = stands[1] + lane +
                SmoothLimit<T>(landing[1] - rest_[1] - stands[1] - 0.5 * lane, T(kSideReach));
-    T way = T(1.0);  // of what is left of it
-    if (!lands) {
+    T way;  // of what is left of it
+    if (lands) {
+      way = RealPart(left) > 0.0 ? T(left * (1.0 / dt)) : T(0.0);
+      if (RealPart(way) > 1.0) way = T(1.0);
+    } else {
       const T before = SmoothRise(T(feet.clock / total));
       way = (SmoothRise(T(after / total)) - before) / (1.0 - before);
     }
@@ -241,21 +270,17 @@ class StanceStep {
 
   // gone: by the foot in this step; landing: xi then, seen from where the ankles were; since: s.
   void Land(const Horizontal<T>& gone, const Horizontal<T>& landing, const T& since) {
-    using std::exp;
     FeetState<T>& next = out_.next;
     next.landed = next.swings;
     next.swings = 0;
-    Horizontal<T> xi = landing - 0.5 * gone;
-    xi[1] -= rest_[1];
-    const T over = SupportRatio(p_, xi, HalfApart(next)) - 1.0;
-    const T beyond = 1.0 / (1.0 + exp(over * (-1.0 / kSupportEdge)));
-    const T prepared = p_.onset - kAgain;
-    next.clock = (RealPart(prepared) > 0.0 ? prepared : T(0.0)) * beyond;
     HipOverFeet<T> hip = ankle_;
     hip.place -= 0.5 * gone;
-    const StanceStep then(body_, p_, next, hip, xi_ - 0.5 * gone);
+    StanceStep then(body_, p_, next, hip, landing - 0.5 * gone);
+    then.feet_.clock = then.ClockOnLanding();
     pressure_ += (since * (1.0 / body_.dt)) * (then.StandingPressure() + 0.5 * gone - pressure_);
-    next.clock += since * then.ClockRate();
+    next.clock = then.feet_.clock + body_.dt * then.ClockRate();  // after a whole step
+    next.swing_time = since;
+    next.fresh = true;
   }
 
   static constexpr double kRushEdge = 0.2;  // of S
@@ -276,7 +301,7 @@ class StanceStep {
 
   const StanceBody& body_;
   const StanceParameters<T>& p_;
-  const FeetState<T>& feet_;
+  FeetState<T> feet_;
   const HipOverFeet<T> ankle_;
   const Horizontal<T> xi_, d_;
   const double rest_[2];

@@ -16,6 +16,7 @@ struct StanceJetInputs {
   StanceBody body;
   double feet[4];  // apart, clock, swing_time
   signed char swings, landed;
+  bool fresh;
   PerceivedHip ankle, step;
   bool late;  // ankles and steps perceive different states
   double parameters[StanceParameters<double>::kCount];

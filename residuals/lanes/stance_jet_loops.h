@@ -20,6 +20,7 @@ void StanceJetOf(const StanceJetInputs& in, double* by_input) {
   feet.swing_time = input(in.feet[3]);
   feet.swings = in.swings;
   feet.landed = in.landed;
+  feet.fresh = in.fresh;
   const auto hip = [&](const PerceivedHip& felt) {
     Angles<T> angles;
     angles.s_th = T(felt.s_th, at, felt.c_th), angles.c_th = T(felt.c_th, at, -felt.s_th);

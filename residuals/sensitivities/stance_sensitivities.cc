@@ -31,6 +31,7 @@ void StanceColumns(const SelfForce& self, const ParameterSet<double>& p,
   in.feet[2] = feet.clock, in.feet[3] = feet.swing_time;
   in.swings = feet.swings;
   in.landed = feet.landed;
+  in.fresh = feet.fresh;
   in.late = late != nullptr;
   in.ankle = in.late ? HipOf(late->ankle) : HipOf(state);
   in.step = in.late ? HipOf(late->step) : in.ankle;

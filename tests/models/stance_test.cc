@@ -270,6 +270,41 @@ TEST(Stance, ARowThatWasPushedStandsAgain) {
   }
 }
 
+// Lift-off and landing move through the frames as a step takes longer to prepare, and nothing jumps
+// where they cross one: neither the hip in the end nor the cost of a fit, which is why a solver can
+// descend.
+TEST(Stance, PathsAreContinuousWhereStepsCrossFrames) {
+  constexpr double kFrom = 0.45, kTo = 0.55, kPart = 2e-5;  // s
+  ParameterSet<double> p = SteppingParameters();
+  p[kContactStiffness] = 4000.0, p[kContactDamping] = 500.0;
+  p[kContactDistance] = 0.42, p[kContactKappa] = 0.53, p[kContactHeight] = 0.95;
+  const Scene scene = SettlingScene(80.0, 60.0, 3);
+  const int frames = static_cast<int>(std::lround(1.6 / scene.dt));
+  const auto path_at = [&](double onset) {
+    p[kStepOnset] = onset;
+    RolloutPath<double> path;
+    EXPECT_TRUE(
+        Rollout<double>(scene, AmongOthers(), {p}, InitialVelocities(scene), frames, &path).ok);
+    return path;
+  };
+  double most = 0.0;
+  RolloutPath<double> before = path_at(kFrom);
+  int crossings = 0;
+  for (double onset = kFrom + kPart; onset < kTo; onset += kPart) {
+    const RolloutPath<double> path = path_at(onset);
+    for (int n = 0; n < 3; ++n) {
+      for (int t = 0; t < frames; ++t) {
+        const PendulumState<double>&now = path.At(t, n), &then = before.At(t, n);
+        crossings += now.feet.swings != then.feet.swings;
+        most = std::max(most, (now.q - then.q).norm());
+      }
+    }
+    before = path;
+  }
+  EXPECT_GT(crossings, 20);
+  EXPECT_LT(most, 10.0 * kPart);  // of the hip and ankles, m, rad
+}
+
 // At rest, at the edges and far out: finite everywhere.
 TEST(Stance, IsFiniteAtTheEdges) {
   const ParameterSet<double> p = SteppingParameters();

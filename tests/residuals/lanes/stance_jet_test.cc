@@ -40,13 +40,13 @@ Step StepOf(const StanceBody& body, const ParameterSet<double>& p,
   in.body = body;
   in.feet[0] = feet.apart[0], in.feet[1] = feet.apart[1];
   in.feet[2] = feet.clock, in.feet[3] = feet.swing_time;
-  in.swings = feet.swings, in.landed = feet.landed;
+  in.swings = feet.swings, in.landed = feet.landed, in.fresh = feet.fresh;
   in.ankle = NumbersOf(ankle), in.step = NumbersOf(step);
   in.late = late;
   FeetState<Jet> jets;
   jets.apart = {Jet(in.feet[0], 0), Jet(in.feet[1], 1)};
   jets.clock = Jet(in.feet[2], 2), jets.swing_time = Jet(in.feet[3], 3);
-  jets.swings = feet.swings, jets.landed = feet.landed;
+  jets.swings = feet.swings, jets.landed = feet.landed, jets.fresh = feet.fresh;
   const PosedPendulum<Jet> of_ankle = HipOf(ankle, kFeetInputs);
   const PosedPendulum<Jet> of_step = late ? HipOf(step, kFeetInputs + kHipInputs) : of_ankle;
   const int size = StanceJetSize(late), first = size - StanceParameters<double>::kCount;
@@ -88,6 +88,11 @@ TEST(StanceJet, EqualsJetsAtEveryWidth) {
     now.feet.swings = static_cast<signed char>(trial / 3 % 3 - 1);
     now.feet.swing_time = p[kStepSwing];
     now.feet.clock = random.Uniform(0.0, now.feet.swings != 0 ? p[kStepSwing] : p[kStepOnset]);
+    now.feet.fresh = trial / 9 % 3 == 0;
+    if (now.feet.fresh) {  // lifted off or landed within the last step
+      (now.feet.swings != 0 ? now.feet.clock : now.feet.swing_time) =
+          random.Uniform(0.0, self.standing.dt);
+    }
     const PendulumState<double> felt = state();
     for (bool late : {false, true}) {
       const Step step = StepOf(self.standing, p, now, late ? felt : now, late);
