@@ -29,7 +29,6 @@ FitOptions WithPeopleApart(const FitResult& result) {
   options.ensemble = 1;
   options.early_stopping = 0.0;
   options.hold_network = true;
-  options.start = FitStart::kNominal;
   options.num_starts = 1;
   options.horizons = {0};
   for (ParameterSpec& spec : options.table.specs) {

@@ -25,14 +25,15 @@ constexpr double kRough = 1e-3;     // function tolerance on the way
 // everything else where people are far from settled, and the solver creeps along its edge. A
 // thirtieth moves the optimum near the edge, and from there along it by steps of ordinary length.
 constexpr double kDemandSteps[] = {0.03, 0.3, 1.0};
+constexpr double kLessExact = 10.0;  // function tolerances, of the steps before the last
 
 double Change(double from, double to) {
   return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;
 }
 
 // What the problem's parts weigh by what is known at a point; the largest relative change.
-double Reweigh(const FitProblem& problem, const FitPoint& point, CostWeights* weights) {
-  const FitOptions& options = problem.options();
+double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights) {
+  const FitOptions options = problem.options();
   double change = 0.0;
   if (options.sigma_source == SigmaSource::kEstimate) {
     const ResidualSigmas& before = options.sigmas;
@@ -43,6 +44,7 @@ double Reweigh(const FitProblem& problem, const FitPoint& point, CostWeights* we
                                {before.rate, now.rate}}) {
       change = std::max(change, Change(a, b));
     }
+    problem.Weigh(*weights);  // the effective weight is that of residuals in these sigmas
   }
   if (options.recording_weight == RecordingWeight::kEffective) {
     weights->effective_weight = EstimateEffectiveWeight(problem, point);
@@ -70,6 +72,12 @@ FitProblem Briefly(const FitProblem& problem) {
   return rough;
 }
 
+// With a share of a demand.
+FitProblem OnTheWay(FitProblem problem) {
+  problem.set_function_tolerance(kLessExact * problem.options().function_tolerance);
+  return problem;
+}
+
 // From the optimum under other weights to that under these.
 void SolveOn(const FitProblem& problem, SolveStart* start) {
   const FitOptions& options = problem.options();
@@ -80,7 +88,6 @@ void SolveOn(const FitProblem& problem, SolveStart* start) {
   start->to = std::move(again.to);
   start->cost = again.cost;
   start->converged = again.converged;
-  start->failed = problem.Failures(start->to, 0);
   start->message = std::move(again.message);
 }
 
@@ -120,9 +127,10 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
     if (share == kDemandSteps[0] && std::isinf(CostAt(part, free.to))) {
       held = SolveFrom(Roughly(part), part.NominalPoint(), "nominal", "", nullptr);
     } else {
-      SolveOn(part, &held);
+      SolveOn(share < 1.0 ? OnTheWay(part) : part, &held);
     }
   }
+  held.failed = demanding.Failures(held.to, 0);
   return held;
 }
 
@@ -159,6 +167,7 @@ bool SolveOthers(const FitProblem& problem, Solution* solution) {
     SolveStart& start = solution->starts[i];
     if (i == found || !start.usable) continue;
     SolveOn(problem, &start);
+    start.failed = problem.Failures(start.to, 0);
     const SolveStart& best = solution->Best();
     const bool better = start.converged && start.failed.size() <= best.failed.size() &&
                         start.cost < best.cost - kSameCost * std::abs(best.cost);
@@ -182,7 +191,9 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
     problem->set_settling_weight(0.0);
     solved.settling = {};
     solved.free.reset();
-    solved.weights_settled = Weigh(problem, &solution.starts[solution.best]);
+    SolveStart& best = solution.starts[solution.best];
+    solved.weights_settled = Weigh(problem, &best);
+    best.failed = problem->Failures(best.to, 0);
     solved.work.Add("weights");
     Demand(weight, problem, &solved);
     solved.work.Add("settling");

@@ -102,7 +102,6 @@ Result<FitOptions> TrainByGradient(const std::vector<PendulumRecording>& recordi
   FitOptions held = options;
   held.model.learned = trained.value().Network(*options.model.learned);
   held.hold_network = true;
-  held.start = FitStart::kNominal;
   held.horizons = {0};
   const ParameterSet<double> learned =
       fit.map.Apply<double>(trained.value().shared.data(), nullptr);

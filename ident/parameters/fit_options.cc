@@ -64,8 +64,7 @@ std::string StanceViolation(const FitOptions& o) {
   if (o.model.stance == Stance::kSlide) return "";
   const char* sliding = RodMoves(o.model)          ? "--rod"
                         : NeedsGradientTraining(o) ? "a network that is trained by its gradient"
-                        : o.start != FitStart::kNominal        ? "--start=equation_error"
-                        : o.model.push != PushUse::kAsRecorded ? "--push=added"
+                        : o.model.push != PushUse::kAsRecorded             ? "--push=added"
                         : o.model.cart_derivative != CartDerivative::kNone ? "--cart_derivative"
                                                                            : nullptr;
   if (sliding == nullptr) return "";

@@ -39,15 +39,6 @@ constexpr EnumNames<SigmaSource, 2> Names(SigmaSource) {
   return {{{"estimate", SigmaSource::kEstimate}, {"fixed", SigmaSource::kFixed}}};
 }
 
-// Where the first start of a fit comes from.
-enum class FitStart {
-  kNominal,       // the table's nominal values
-  kEquationError  // equation error minimized from the nominal values
-};
-constexpr EnumNames<FitStart, 2> Names(FitStart) {
-  return {{{"nominal", FitStart::kNominal}, {"equation_error", FitStart::kEquationError}}};
-}
-
 // How a network that is too large for Gauss-Newton is trained, and by what.
 enum class NetworkTraining {
   kAfterPhysics,  // the physical model alone, then the weights, then the physical model again
@@ -145,8 +136,7 @@ struct FitOptions {
   // Frames rolled out in each stage; 0 means all. Short horizons first keep the path from wandering
   // off while the gains are still wrong.
   std::vector<int> horizons = {8, 16, 32, 64, 0};
-  FitStart start = FitStart::kEquationError;
-  int num_starts = 1;         // the best of so many; the first is `start`, the rest are random
+  int num_starts = 1;         // the best of so many: from the nominal values, the others random
   double start_spread = 5.0;  // random starts multiply every free gain by up to this, either way
   uint64_t seed = 1;
   int num_threads = 1;

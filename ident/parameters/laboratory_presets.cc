@@ -14,7 +14,6 @@ void FreeFrom(const WeakStart& start, ParameterTable* table) {
 void SetBody(BodyModel body, FitOptions* options) {
   options->model.body = body;
   if (body != BodyModel::kTable) return;
-  options->start = FitStart::kNominal;  // the equation errors' Jacobian knows no masses
   ParameterSpec& com = options->table[kComHeight];
   com.nominal = 1.0;
   com.free = false;
@@ -26,7 +25,6 @@ void SetDelay(Delay delay, FitOptions* options) {
   if (delay == Delay::kNone) return;
   // A hinge on the free modes knows none of it; settling simulations do.
   options->mode_weight = 0.0;
-  options->start = FitStart::kNominal;
   // Weak priors: published delays are 0.10 to 0.16 s (median 0.134), passive shares 0 to 0.9.
   for (const WeakStart& start :
        {WeakStart{kReactionDelay, 0.13, 0.1}, WeakStart{kStepDelay, 0.2, 0.15},
@@ -84,7 +82,6 @@ FitOptions LdpPublishedPreset() {
   o.sigmas = kLdpSigmas;
   o.sigma_source = SigmaSource::kFixed;
   o.recording_weight = RecordingWeight::kFrame;
-  o.start = FitStart::kNominal;
   o.network_training = NetworkTraining::kTogether;
   o.network_optimizer = NetworkOptimizer::kAdam;  // L-BFGS ends at the first hard switch
   o.network_prior = 0.0;

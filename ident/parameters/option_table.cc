@@ -203,8 +203,6 @@ std::vector<Row> SolverRows() {
   using O = FitOptions;
   return {
       HorizonsRow(),
-      Decided(NameRow<FitStart>("start", "/start", &O::start,
-                                "first start: equation_error, or nominal (where feet hold)")),
       CountRow("starts", "/num_starts", &O::num_starts, "number of starts; the best one is used"),
       NumberRow("start_spread", "/start_spread", &O::start_spread,
                 {1.0, 1000.0, false, "must lie between 1 and 1000"},

@@ -129,7 +129,6 @@ void SetFixed(FitOptions* options) {
   options->model.push = PushUse::kAsRecorded;
   options->model.push_tail = PushTail::kNone;
   options->model.directions = Directions::kBody;
-  options->start = FitStart::kNominal;
   options->settling_weight = options->mode_weight = 0.0;
   for (const WeakStart& start : {WeakStart{kKpTheta, 1250, 1250}, WeakStart{kKpPhi, 1250, 1250},
                                  WeakStart{kKdTheta, 300, 300}, WeakStart{kKdPhi, 300, 300},
@@ -146,7 +145,6 @@ void SetStance(Stance stance, FitOptions* options) {
   ParameterTable& table = options->table;
   if (stance == Stance::kFixed) return SetFixed(options);
   options->model.push = PushUse::kAsRecorded;
-  options->start = FitStart::kNominal;
   options->model.directions = Directions::kAxes;  // the feet's support has a front
   SetSelfForce(SelfForceKind::kNone, options);    // those act on feet that slide
   const NamedPreset* preset = FindPreset(options->preset);

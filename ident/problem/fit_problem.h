@@ -26,12 +26,6 @@ namespace pushid {
 // happens.
 int PushFrame(const PendulumRecording& recording);
 
-// What is minimized at a time.
-struct FitStage {
-  int horizon = 0;              // frames of each rollout; 0: all
-  bool equation_error = false;  // of single frames, instead of rollouts
-};
-
 // How much each part of a problem's cost weighs: what a fit estimates between two solves. Fields as
 // those of FitOptions and ParameterSpec.
 struct CostWeights {
@@ -165,19 +159,12 @@ class FitProblem {
 
   using Built = BuiltProblem;
   // hold_network: its weights are constant. num_threads: of the evaluations; the same bits for any.
-  Built Build(FitPoint* point, int horizon, bool hold_network = false, int num_threads = 1) const {
-    return BuildStage({horizon, false}, point, hold_network, num_threads);
-  }
-
-  // The same blocks with equation-error residuals instead of rollouts.
-  Built BuildEquationError(FitPoint* point) const { return BuildStage({0, true}, point, true, 1); }
+  Built Build(FitPoint* point, int horizon, bool hold_network = false, int num_threads = 1) const;
 
  private:
   void AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const;
   std::shared_ptr<const RolloutProblem> StageRollout(int recording, int horizon,
                                                      const Built& built) const;
-  Built BuildStage(const FitStage& stage, FitPoint* point, bool hold_network,
-                   int num_threads) const;
 
   std::shared_ptr<const std::vector<PendulumRecording>>
       turned_;  // null where the file's axes serve
@@ -223,7 +210,6 @@ double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, Cos
 // Where a family adds blocks.
 struct FamilyPlace {
   const FitProblem& problem;
-  const FitStage& stage;
   FitPoint* point;
   FitProblem::Built* built;
   int recording = -1;     // of a family of recordings
@@ -241,7 +227,7 @@ struct ResidualFamily {
   const char* name;
   Per per;
   int cluster;  // of its rows, one of FitProblem's; of recordings: their index
-  bool (*on)(const FitOptions& options, const FitStage& stage);
+  bool (*on)(const FitOptions& options, int horizon);
   void (*add)(const ResidualFamily& family, const FamilyPlace& place);
 };
 

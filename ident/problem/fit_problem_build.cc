@@ -56,23 +56,23 @@ std::shared_ptr<const RolloutProblem> FitProblem::StageRollout(int recording, in
                             Weight(recording, horizon), frames);
 }
 
-FitProblem::Built FitProblem::BuildStage(const FitStage& stage, FitPoint* point, bool hold_network,
-                                         int num_threads) const {
+FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_network,
+                                    int num_threads) const {
   Built built;
   AddParameterBlocks(point, num_threads, &built);
-  const bool rolls = !stage.equation_error && options_.likelihood == Likelihood::kTrajectory;
-  if (rolls) built.shortened = Failures(*point, stage.horizon);
+  const bool rolls = options_.likelihood == Likelihood::kTrajectory;
+  if (rolls) built.shortened = Failures(*point, horizon);
 
-  FamilyPlace place{*this, stage, point, &built};
+  FamilyPlace place{*this, point, &built};
   const auto add = [&](ResidualFamily::Per per) {
     for (const ResidualFamily& family : ResidualFamilies()) {
-      if (family.per == per && family.on(options_, stage)) family.add(family, place);
+      if (family.per == per && family.on(options_, horizon)) family.add(family, place);
     }
   };
   for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
     if (Count(i) == 0) continue;
     place.recording = i;
-    if (rolls) place.rollout = StageRollout(i, stage.horizon, built);
+    if (rolls) place.rollout = StageRollout(i, horizon, built);
     add(ResidualFamily::kRecording);
   }
   add(ResidualFamily::kPoint);

@@ -5,7 +5,6 @@
 #include "ident/problem/fit_problem.h"
 #include "residuals/cost_functions/body_residual.h"
 #include "residuals/cost_functions/condensed_rollout.h"
-#include "residuals/cost_functions/equation_error_residual.h"
 #include "residuals/cost_functions/prior_residual.h"
 #include "residuals/cost_functions/rest_residual.h"
 
@@ -17,13 +16,8 @@ constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the o
 using Family = ResidualFamily;
 using Place = FamilyPlace;
 using Options = FitOptions;
-using Stage = FitStage;
 
-bool Rolls(const Options& o, const Stage& stage) {
-  return !stage.equation_error && o.likelihood == Likelihood::kTrajectory;
-}
-// Long rollouts join once the horizon is as long.
-bool AllFrames(const Stage& stage) { return !stage.equation_error && stage.horizon == 0; }
+bool Rolls(const Options& o) { return o.likelihood == Likelihood::kTrajectory; }
 
 void AddTrajectory(const Family&, const Place& at) {
   if (at.rollout == nullptr) return;
@@ -54,14 +48,6 @@ void AddLikelihood(const Family&, const Place& at) {
   }
   at.built->offsets[i] = problem.Count(i) * residual->offset();
   at.built->AddRollout(std::move(residual), blocks, i);
-}
-
-void AddEquationError(const Family&, const Place& at) {
-  const FitProblem& problem = at.problem;
-  at.built->AddRollout(
-      std::make_unique<EquationErrorResidual>(problem.recordings()[at.recording],
-                                              problem.options().model, problem.map()),
-      problem.RecordingBlocks(at.point, at.recording), at.recording);
 }
 
 // On the i-th shared value, natural mean and sigma on the fitted scale.
@@ -159,34 +145,29 @@ void AddModes(const Family& family, const Place& at) {
 const std::vector<ResidualFamily>& ResidualFamilies() {
   constexpr int kOwn = 0;  // the recording's
   static const std::vector<ResidualFamily> families = {
-      {"trajectory", Family::kRecording, kOwn,
-       [](const Options& o, const Stage& s) { return Rolls(o, s); }, AddTrajectory},
+      {"trajectory", Family::kRecording, kOwn, [](const Options& o, int) { return Rolls(o); },
+       AddTrajectory},
       {"bodies", Family::kRecording, kOwn,
-       [](const Options& o, const Stage& s) {
-         return Rolls(o, s) && AllFrames(s) && o.body_weight > 0.0 && o.body != nullptr;
+       [](const Options& o, int horizon) {
+         return Rolls(o) && horizon == 0 && o.body_weight > 0.0 && o.body != nullptr;
        },
        AddBodies},
-      {"likelihood", Family::kRecording, kOwn,
-       [](const Options& o, const Stage& s) {
-         return !s.equation_error && o.likelihood != Likelihood::kTrajectory;
-       },
+      {"likelihood", Family::kRecording, kOwn, [](const Options& o, int) { return !Rolls(o); },
        AddLikelihood},
-      {"equation error", Family::kRecording, kOwn,
-       [](const Options&, const Stage& s) { return s.equation_error; }, AddEquationError},
       {"priors", Family::kPoint, FitProblem::kPriorCluster,
-       [](const Options&, const Stage&) { return true; }, AddPriors},
+       [](const Options&, int) { return true; }, AddPriors},
       {"pooling", Family::kPoint, FitProblem::kPoolingCluster,
-       [](const Options&, const Stage&) { return true; }, AddPooling},
+       [](const Options&, int) { return true; }, AddPooling},
       {"network prior", Family::kPoint, FitProblem::kNetworkCluster,
-       [](const Options& o, const Stage&) { return o.network_prior > 0.0; }, AddNetworkPrior},
+       [](const Options& o, int) { return o.network_prior > 0.0; }, AddNetworkPrior},
       {"stage priors", Family::kPoint, FitProblem::kPriorCluster,
-       [](const Options&, const Stage& s) { return s.horizon != 0; }, AddStagePriors},
+       [](const Options&, int horizon) { return horizon != 0; }, AddStagePriors},
       {"settling", Family::kUnit, FitProblem::kSettlingCluster,
-       [](const Options& o, const Stage& s) { return AllFrames(s) && o.settling_weight > 0.0; },
+       [](const Options& o, int horizon) { return horizon == 0 && o.settling_weight > 0.0; },
        AddSettling},
       {"modes", Family::kUnit, FitProblem::kSettlingCluster,
-       [](const Options& o, const Stage& s) {
-         return AllFrames(s) && o.mode_weight > 0.0 && o.model.delay == Delay::kNone;
+       [](const Options& o, int horizon) {
+         return horizon == 0 && o.mode_weight > 0.0 && o.model.delay == Delay::kNone;
        },
        AddModes},
   };

@@ -147,10 +147,8 @@ LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& p
   const FitProblem as_asked = *problem;
   const FitOptions& asked = as_asked.options();
   for (int s = 0; s < asked.num_starts; ++s) {
-    const bool first = s == 0, by_equation = asked.start == FitStart::kEquationError;
-    FitPoint from = !first ? RandomStart(as_asked, asked.start_spread, RandomStartSeed(asked, s))
-                    : by_equation ? EquationErrorStart(as_asked)
-                                  : as_asked.NominalPoint();
+    FitPoint from = s > 0 ? RandomStart(as_asked, asked.start_spread, RandomStartSeed(asked, s))
+                          : as_asked.NominalPoint();
     FitProblem with_noise = WithNoise(as_asked, &from);
     FitOptions own = with_noise.options();
     const std::string label = asked.num_starts > 1 ? "start " + std::to_string(s + 1) + "/" +
@@ -159,11 +157,7 @@ LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& p
     own.horizons = {0};
     own.max_iterations = kScoringSteps;
     const FitProblem whole(as_asked.recordings(), own, as_asked.counts());
-    SolveStart start = SolveFrom(whole, from,
-                                 !first        ? "random"
-                                 : by_equation ? "equation_error"
-                                               : "nominal",
-                                 label, progress);
+    SolveStart start = SolveFrom(whole, from, s > 0 ? "random" : "nominal", label, progress);
     for (int round = 1; round < kScoringRounds; ++round) {
       start.to = SolveFrom(whole, start.to, start.kind, label, progress).to;
     }

@@ -15,7 +15,7 @@
 namespace pushid {
 namespace {
 
-constexpr double kStartBox = 5.0;
+constexpr double kOnTheWay = 0.03;  // function tolerance: stages before the last need not be exact
 constexpr double kOffBound = 0.1;
 // In a row, each of a smaller trust region: where people fall, or leave the model's domain.
 constexpr int kInvalidSteps = 20;
@@ -154,8 +154,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
     for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
       FitProblem::Built built = problem.Build(&start.to, horizons[i], true, options.num_threads);
       ceres::Solver::Options solver = SolverOptions(options, *built.problem);
-      // Stages on the way need not be exact.
-      if (!last) solver.function_tolerance = std::max(1e-4, options.function_tolerance);
+      if (!last) solver.function_tolerance = std::max(kOnTheWay, options.function_tolerance);
       ProgressCallback callback(progress, label + HorizonName(horizons[i]));
       if (progress) solver.callbacks.push_back(&callback);
       const SolveStage stage = SolveBuilt(&built, solver, horizons[i], &start.message);
@@ -173,23 +172,6 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
   }
   if (!from.weights.empty()) TrainNetwork(problem, label, progress, &start);
   return start;
-}
-
-FitPoint EquationErrorStart(const FitProblem& problem) {
-  const FitPoint nominal = problem.NominalPoint();
-  FitPoint point = nominal;
-  FitProblem::Built built = problem.BuildEquationError(&point);
-  std::string message;
-  SolveBuilt(&built, SolverOptions(problem.options(), *built.problem), 0, &message);
-  for (size_t i = 0; i < point.shared.size(); ++i) {
-    const ParameterSpec& spec = problem.options().table[problem.map().fitted[i].parameter];
-    const double reach = spec.transform == Transform::kIdentity
-                             ? (kStartBox - 1.0) * std::max(spec.scale, std::abs(spec.nominal))
-                             : std::log(kStartBox);
-    point.shared[i] =
-        std::clamp(point.shared[i], nominal.shared[i] - reach, nominal.shared[i] + reach);
-  }
-  return point;
 }
 
 std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* point) {
@@ -237,23 +219,11 @@ Solution Solve(const FitProblem& problem, const SolveProgress& progress) {
     const std::string label =
         num_starts > 1 ? "start " + std::to_string(i + 1) + "/" + std::to_string(num_starts) + ", "
                        : "";
-    FitPoint from;
-    std::string kind;
-    if (i > 0) {
-      from = RandomStart(problem, options.start_spread, RandomStartSeed(options, i));
-      kind = "random";
-    } else if (options.start == FitStart::kEquationError) {
-      from = EquationErrorStart(problem);
-      kind = "equation_error";
-    } else {
-      from = problem.NominalPoint();
-      kind = "nominal";
-    }
-    solution.starts.push_back(SolveFrom(problem, from, kind, label, progress));
-    if (kind == "equation_error" && !solution.starts.back().usable) {
-      solution.starts.push_back(
-          SolveFrom(problem, problem.NominalPoint(), "nominal", label, progress));
-    }
+    const FitPoint from =
+        i > 0 ? RandomStart(problem, options.start_spread, RandomStartSeed(options, i))
+              : problem.NominalPoint();
+    solution.starts.push_back(
+        SolveFrom(problem, from, i > 0 ? "random" : "nominal", label, progress));
   }
   for (int i = 0; i < static_cast<int>(solution.starts.size()); ++i) {
     const SolveStart& tried = solution.starts[i];

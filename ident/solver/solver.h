@@ -41,10 +41,6 @@ double CostAt(const FitProblem& problem, FitPoint point);
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,
                      const std::string& label, const SolveProgress& progress);
 
-// The equation-error optimum, kept within a factor (log scale) or multiple (identity scale) of 5 of
-// the nominal values, so that no start sits on a bound.
-FitPoint EquationErrorStart(const FitProblem& problem);
-
 // A start on a bound stalls: such values are moved inwards by a tenth of their typical size (on a
 // log scale by 10 %). Returns what was moved, in words.
 std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* point);

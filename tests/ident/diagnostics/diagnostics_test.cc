@@ -36,7 +36,6 @@ TEST(StartDiagnostics, StartsOnABoundAreMovedOff) {
   FitOptions options = UnbiasedFit(study);
   ParameterSpec& gain = options.table[kTailGain];
   gain.nominal = gain.lower;
-  options.start = FitStart::kNominal;
   const FitResult result = Fit(recordings, options);
   ASSERT_EQ(result.diagnostics.start.notes.size(), 1u);
   EXPECT_TRUE(Contains(result.diagnostics.start.notes[0], "tail_gain started on its bound"));

@@ -84,7 +84,6 @@ TEST(FitSetup, StanceBringsWhatGoesWithIt) {
   EXPECT_FALSE(slide.table[kStepOnset].free);
   const FitOptions holds = MakeFitOptions({{"preset", "tail"}, {"stance", "steps"}}).value();
   EXPECT_EQ(holds.model.push, PushUse::kAsRecorded);
-  EXPECT_EQ(holds.start, FitStart::kNominal);
   for (Parameter id :
        {kTailGain, kSupportFront, kStepOnset, kStepSwing, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) {
     EXPECT_TRUE(holds.table[id].free) << holds.table[id].name;
@@ -94,7 +93,7 @@ TEST(FitSetup, StanceBringsWhatGoesWithIt) {
     EXPECT_FALSE(holds.table[id].free) << holds.table[id].name;
   }
   for (const auto& [flag, value] :
-       {std::pair("rod", "linear"), std::pair("start", "equation_error"),
+       {std::pair("rod", "linear"),
         std::pair("push", "added"),  // a net push holds the feet's reaction already
         std::pair("cart_derivative", "backward"), std::pair("self_force", "lstm:64")}) {
     EXPECT_TRUE(Contains(Complaint({{"preset", "tail"}, {"stance", "steps"}, {flag, value}}),

@@ -260,7 +260,6 @@ TEST(OptionNames, RoundTrip) {
   ExpectRoundTrip<SkeletonMapping>();
   ExpectRoundTrip<SelfForceKind>();
   ExpectRoundTrip<RecordingWeight>();
-  ExpectRoundTrip<FitStart>();
   ExpectRoundTrip<FoldScheme>();
   ExpectRoundTrip<Transform>();
   ExpectRoundTrip<EstimateStatus>();

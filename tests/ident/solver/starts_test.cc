@@ -93,7 +93,7 @@ TEST(Starts, StagesFollowTheHorizons) {
   const Solution solution = Solve(problem);
   ASSERT_EQ(solution.starts.size(), 1u);
   const SolveStart& start = solution.Best();
-  EXPECT_EQ(start.kind, "equation_error");
+  EXPECT_EQ(start.kind, "nominal");
   ASSERT_EQ(start.stages.size(), 3u);
   EXPECT_EQ(start.stages[0].horizon, 10);
   EXPECT_EQ(start.stages[1].horizon, 20);
