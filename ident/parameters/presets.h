@@ -54,10 +54,9 @@ void FreeTerms(FitOptions* options);
 MaybeError PoolParameters(FitOptions* options);
 
 // What the feet do, with what goes with it: where they hold and step, pushes act as their kind says
-// (a `net` push holds the feet's reaction), the balance gains are the ankles', and the fit starts
-// from the nominal values, for equation error does not know the feet. Where they hold whatever
-// happens, pushes have no tail, people are not held to settle, and both gains of both directions
-// are free.
+// (a `net` push holds the feet's reaction), and the balance gains are the ankles'. Where they hold
+// whatever happens, pushes have no tail, people are not held to settle, and both gains of both
+// directions are free.
 // Unless told which, a preset takes the stance from what the feet did (pushed_feet.h), and has one
 // for people who nearly all move: of people alone feet slide, of people who touch they step, each
 // the one that predicts them better (models/README.md). Presets that stand for something published

@@ -1,4 +1,4 @@
-// ident: from starts to an optimum: equation error, horizon curriculum, multi-start.
+// ident: from starts to an optimum: horizon curriculum, multi-start.
 #pragma once
 
 #include <ceres/solver.h>
@@ -55,8 +55,8 @@ Solution Solve(const FitProblem& problem, const SolveProgress& progress = nullpt
 
 // A solve that maximizes a likelihood of single steps (residuals/fit_choices.h).
 //
-// The noise starts at the spread of the transitions that the other parameters' start leaves, and
-// equation error starts these. A few steps of Fisher scoring
+// The noise starts at the spread of the transitions that the other parameters' start leaves. A few
+// steps of Fisher scoring
 // (residuals/cost_functions/likelihood_residual.h), the problem built anew after every third, come
 // near the optimum; BFGS finds it, in turns with the spread of pooled units.
 

@@ -274,7 +274,7 @@ TEST(Stance, ARowThatWasPushedStandsAgain) {
 // where they cross one: neither the hip in the end nor the cost of a fit, which is why a solver can
 // descend.
 TEST(Stance, PathsAreContinuousWhereStepsCrossFrames) {
-  constexpr double kFrom = 0.45, kTo = 0.55, kPart = 2e-5;  // s
+  constexpr double kFrom = 0.45, kTo = 0.55, kPart = 1e-4;  // s
   ParameterSet<double> p = SteppingParameters();
   p[kContactStiffness] = 4000.0, p[kContactDamping] = 500.0;
   p[kContactDistance] = 0.42, p[kContactKappa] = 0.53, p[kContactHeight] = 0.95;

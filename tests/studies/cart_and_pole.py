@@ -20,7 +20,7 @@ from studies import number
 
 RIGS = int(os.environ.get("PUSHID_STUDIES", "10"))
 RIG = ("--preset=ldp", "--body=table", "--friction=coulomb", "--stance=slide", "--fix=Kp_theta=0,Kp_phi=0,Kd_theta=0,Kd_phi=0,Kp_x=0",
-       "--settling_weight=0", "--start=nominal", "--marker_noise=0.0001",
+       "--settling_weight=0", "--marker_noise=0.0001",
        "--resample_fps=1000")  # a falling pole: steps of 5 ms are too long for semi-implicit Euler
 RIG_FREE = "mu=0.5,mu_coulomb,cart_share=0.65"
 

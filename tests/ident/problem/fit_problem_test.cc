@@ -32,10 +32,10 @@ TEST(FitProblem, FindsThePointOfARow) {
   EXPECT_FALSE(problem.PointAt(short_row).has_value());
 }
 
-std::vector<std::string> FamiliesOf(const FitOptions& options, const FitStage& stage) {
+std::vector<std::string> FamiliesOf(const FitOptions& options, int horizon) {
   std::vector<std::string> names;
   for (const ResidualFamily& family : ResidualFamilies()) {
-    if (family.on(options, stage)) names.push_back(family.name);
+    if (family.on(options, horizon)) names.push_back(family.name);
   }
   return names;
 }
@@ -43,18 +43,19 @@ std::vector<std::string> FamiliesOf(const FitOptions& options, const FitStage& s
 // Which rows of the table a fit minimizes, stage by stage.
 TEST(FitProblem, FamiliesOfAStage) {
   using Names = std::vector<std::string>;
-  const FitStage start{0, true}, first{10, false}, last{0, false};
+  constexpr int kFirst = 10, kLast = 0;
   FitOptions options = MakePreset("tail").value();
   options.network_prior = 0.0;
-  EXPECT_EQ(FamiliesOf(options, start), (Names{"equation error", "priors", "pooling"}));
-  EXPECT_EQ(FamiliesOf(options, first), (Names{"trajectory", "priors", "pooling", "stage priors"}));
-  EXPECT_EQ(FamiliesOf(options, last), (Names{"trajectory", "priors", "pooling", "settling"}));
+  EXPECT_EQ(FamiliesOf(options, kFirst),
+            (Names{"trajectory", "priors", "pooling", "stage priors"}));
+  EXPECT_EQ(FamiliesOf(options, kLast), (Names{"trajectory", "priors", "pooling", "settling"}));
   SetSelfForce(SelfForceKind::kLinear, &options);
   options.network_prior = 0.5;
-  EXPECT_EQ(FamiliesOf(options, last),
+  EXPECT_EQ(FamiliesOf(options, kLast),
             (Names{"trajectory", "priors", "pooling", "network prior", "settling", "modes"}));
   SetLikelihood(Likelihood::kInnovation, &options);
-  EXPECT_EQ(FamiliesOf(options, last), (Names{"likelihood", "priors", "pooling", "network prior"}));
+  EXPECT_EQ(FamiliesOf(options, kLast),
+            (Names{"likelihood", "priors", "pooling", "network prior"}));
 }
 
 // Rows of recordings come first, by recording; then what is added once, then what units are asked.
