@@ -89,8 +89,8 @@ int Run(const std::string& word, const std::vector<std::string>& arguments) {
     const bool begins = command.rfind(one, 0) == 0 || one.rfind(command, 0) == 0;
     if (meant.empty() && begins && !command.empty()) meant = one;
   }
-  return Fail("there is no command '" + word + "'" +
-              (meant.empty() ? "" : "; did you mean '" + meant + "'?") + "; see pushid help");
+  return Fail("there is no command '" + word + "'; " +
+              (meant.empty() ? "" : "did you mean '" + meant + "'? Or ") + "see pushid help");
 }
 
 int HelpOn(const std::string& command) {

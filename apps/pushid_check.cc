@@ -69,7 +69,7 @@ int Run() {
   if (!checks.Any()) {
     return Fail(
         "nothing is asked; give one of --profile, --bootstrap=199, --prior_check, "
-        "--push_check, --horizon_check, --learn_forecasts, --design=all and --population");
+        "--push_check, --horizon_check, --learn_forecasts, --design=all or --population");
   }
   const std::string& out = FLAGS_model_out.empty() ? FLAGS_model : FLAGS_model_out;
   const bool writes = checks.Adds() || !FLAGS_model_out.empty();

@@ -101,9 +101,11 @@ void PrintPush(const RecordingsPush& of, double dt) {
   if (made.start_speed > 0.0) {
     std::printf("the cart moves at %s m/s at its start\n", Rounded(made.start_speed, 3).c_str());
   }
-  std::printf("impulse %s N s forwards, %s N s to the left; peak %s N\n",
-              Rounded(impulse[0], 3).c_str(), Rounded(impulse[1], 3).c_str(),
-              Rounded(peak, 3).c_str());
+  const auto towards = [](double part, const char* ahead, const char* back) {
+    return Rounded(std::fabs(part), 3) + " N s " + (part < 0.0 ? back : ahead);
+  };
+  std::printf("impulse %s, %s; peak %s N\n", towards(impulse[0], "forwards", "backwards").c_str(),
+              towards(impulse[1], "to the left", "to the right").c_str(), Rounded(peak, 3).c_str());
   if (std::fabs(impulse[1]) > std::fabs(impulse[0])) {
     Warn("recording " + of.id +
          ": the push is sideways rather than forwards; check `up` and `forward` in the manifest");

@@ -38,7 +38,6 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
                               flags.scheme,
                               flags.crossvalidate,
                               flags.physics,
-                              flags.pendulum_input,
                               flags.changes,
                               {},
                               flags.samples},
@@ -180,13 +179,7 @@ int FromPushes(const TrainGeneratorFlags& flags) {
   if (flags.held_out > 0.0 && all.size() > 1) {
     SplitHeldOut(PendulumsOf(bodies), all, flags.held_out, flags.options.seed, &learnt, &held);
   }
-  std::vector<GroupHips> hips;
-  if (flags.pendulum_input) {
-    const FittedFolds fitted =
-        OrFail(FitFolds(PendulumsOf(bodies), all, *flags.physics, kHipFolds, flags.options.seed));
-    hips = HipsOf(bodies, all, fitted.predictions);
-  }
-  GeneratorSamples samples = SamplesOf(bodies, learnt, held, flags.observed, hips);
+  GeneratorSamples samples = SamplesOf(bodies, learnt, held, flags.observed);
   if (flags.accuracy == ForecastAccuracy::kBest) {
     samples.settings.choice = TrainBeside(flags, bodies);
   }

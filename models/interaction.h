@@ -5,7 +5,6 @@
 
 #include "models/contact.h"
 #include "models/ldp_interaction.h"
-#include "models/network_interaction.h"
 #include "models/options.h"
 #include "models/pair.h"
 
@@ -18,19 +17,15 @@ struct ContactPart {};
 template <typename Term>
 struct TermOfRow {};
 template <typename Term, typename Visit>
-void VisitRow(TermOfRow<Term>, const InteractionNetwork*, const Visit& visit) {
+void VisitRow(TermOfRow<Term>, const Visit& visit) {
   visit(Term{});
 }
 template <typename Visit>
-void VisitRow(TermOfRow<NetworkTerm>, const InteractionNetwork* network, const Visit& visit) {
-  if (network != nullptr) visit(NetworkTerm{network});
-}
-template <typename Visit>
-void VisitRow(TermOfRow<ContactPart>, const InteractionNetwork*, const Visit&) {}
+void VisitRow(TermOfRow<ContactPart>, const Visit&) {}
 
 // Calls visit(term) for every term of the model that acts between two people.
 template <typename Visit>
-void ForEachTerm(const InteractionTerms& terms, const InteractionNetwork* network, Visit&& visit) {
+void ForEachTerm(const InteractionTerms& terms, Visit&& visit) {
   if (terms.spring && terms.damping) {
     visit(ContactTerm<true, true>{});
   } else if (terms.spring) {
@@ -39,19 +34,19 @@ void ForEachTerm(const InteractionTerms& terms, const InteractionNetwork* networ
     visit(ContactTerm<false, true>{});
   }
 #define PUSHID_TERM(member, near, Term, ...) \
-  if (terms.member) VisitRow(TermOfRow<Term>{}, network, visit);
+  if (terms.member) VisitRow(TermOfRow<Term>{}, visit);
   PUSHID_INTERACTION_TERMS(PUSHID_TERM)
 #undef PUSHID_TERM
 }
 
 // What two people do to each other; their poses as PosedPendulum or, to be posed here, as states.
 template <typename T>
-PairForce<T> InteractionBetween(const InteractionTerms& terms, const InteractionNetwork* network,
-                                const Pair& pair, const ParameterSet<T>& p,
+PairForce<T> InteractionBetween(const InteractionTerms& terms, const Pair& pair,
+                                const ParameterSet<T>& p,
                                 const std::common_type_t<PosedPendulum<T>>& n,
                                 const std::common_type_t<PosedPendulum<T>>& j) {
   PairForce<T> force;
-  ForEachTerm(terms, network, [&](auto term) { term.Add(pair, p, n, j, &force); });
+  ForEachTerm(terms, [&](auto term) { term.Add(pair, p, n, j, &force); });
   return force;
 }
 

@@ -46,5 +46,4 @@
   X(potential, kCarts, PotentialTerm, "")                                                        \
   X(lean, kCarts, LeanTerm, "")                                                                  \
   X(ldp_published, kCarts, LdpPublishedTerm, "LDP's equations 10 and 11 and its table of signs") \
-  X(ldp_discrete, kCarts, LdpDiscreteTerm, "the same as LDP released it, for evaluation only")   \
-  X(network, kCarts, NetworkTerm, "given by --interaction_network")
+  X(ldp_discrete, kCarts, LdpDiscreteTerm, "the same as LDP released it, for evaluation only")

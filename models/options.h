@@ -219,7 +219,6 @@ constexpr EnumNames<BodyModel, 3> Names(BodyModel) {
 }
 
 class ForceLaw;
-struct InteractionNetwork;
 struct LearnedTerms;
 
 struct ModelOptions {
@@ -234,7 +233,6 @@ struct ModelOptions {
   BodyModel body = BodyModel::kLdp;
   CartDerivative cart_derivative = CartDerivative::kNone;
   InteractionTerms interaction;
-  std::shared_ptr<const InteractionNetwork> interaction_network;  // of the network term
   // What is learned (learned_terms.h); null: nothing.
   std::shared_ptr<const LearnedTerms> learned;
   // A user's own laws (force_law.h). Their parameters take the slots from kFirstOwnParameter on, in

@@ -153,8 +153,7 @@ class SceneForces {
   PairForce<T> Between(int n, int j) const {
     const Pair pair = finder_.Of(n, j);
     PairForce<T> force =
-        InteractionBetween<T>(options_->interaction, options_->interaction_network.get(), pair,
-                              Parameters(0), states_[n], states_[j]);
+        InteractionBetween<T>(options_->interaction, pair, Parameters(0), states_[n], states_[j]);
     if (options_->interaction.learned) {
       const LearnedTerms& learned = *options_->learned;
       AddLearnedPair(learned.pair, network_weights_ + learned.pair_at(), pair, Parameters(0),

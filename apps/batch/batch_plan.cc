@@ -31,7 +31,7 @@ namespace pushid {
 namespace {
 
 // Flags that name files to read: as all paths of a plan they are relative to it.
-const std::set<std::string> kFileFlags = {"self_from", "interaction_network"};
+const std::set<std::string> kFileFlags = {"self_from"};
 
 // Flags that no variant has, and what to do instead.
 const std::map<std::string, std::string> kOwnFlags = {

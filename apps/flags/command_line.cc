@@ -127,7 +127,7 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
     const std::string word = argv[1];
     const bool manifest = EndsWith(word, ".json") && NamesFlag("--recordings");
     return Fail("'" + word + "' is not a flag; " +
-                (manifest ? "is it --recordings=" + word + "?; " : "") + "see " + ProgramName() +
+                (manifest ? "is it --recordings=" + word + "? Or see " : "see ") + ProgramName() +
                 " --help");
   }
   if (MaybeError error = CheckOutputs()) return Fail(*error);

@@ -280,8 +280,8 @@ Error NoSuchFlag(const std::string& name) {
     if (!meant.empty() && !EndsWith(meant, "_" + name)) break;
     if (EndsWith(one, "_" + name)) meant += (meant.empty() ? "" : " or --") + one;
   }
-  return Error{"there is no flag --" + name +
-               (meant.empty() ? "" : "; did you mean --" + meant + "?") + "; see " + ProgramName() +
+  return Error{"there is no flag --" + name + "; " +
+               (meant.empty() ? "see " : "did you mean --" + meant + "? Or see ") + ProgramName() +
                " --help"};
 }
 

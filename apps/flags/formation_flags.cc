@@ -145,7 +145,8 @@ HipPush ParsePush(const std::string& word) {
                 " is not a push; give N s, or N s@start in s, as in 80@0,80@1.5"};
   }
   if (push.impulse <= 0.0 || push.impulse > 2000.0) {
-    throw Error{"--push: " + Quoted(word) + " has an impulse outside 0 to 2000 N s"};
+    throw Error{"--push: " + Quoted(word) +
+                " has an impulse outside 0 to 2000 N s; --push_direction turns it"};
   }
   if (push.start < 0.0 || push.start > 3600.0) {
     throw Error{"--push: " + Quoted(word) + " starts at a time outside 0 to 3600 s"};

@@ -17,8 +17,6 @@ DEFINE_bool(project_bones, kAsTrained.particles.project_bones,
             "keep the bone lengths of the last observed frame");
 DEFINE_double(noise_memory, kAsTrained.particles.noise_memory,
               "sampled futures: correlation of the noise between one frame and the next");
-DEFINE_double(noise_scale, kAsTrained.particles.noise_scale,
-              "sampled futures: factor on the learned noise");
 DEFINE_bool(correlated_noise, kAsTrained.particles.correlated_noise,
             "sampled futures: noise is correlated across coordinates, like the errors of the "
             "drift; off: independent");
@@ -36,14 +34,13 @@ void ReadParticleFlags(GenerateFlags* flags) {
   take("ridge_share", FLAGS_ridge_share, &flags->changes.ridge_share);
   take("simlpe_share", FLAGS_simlpe_share, &flags->changes.simlpe_share);
   TakeInRange("noise_memory", FLAGS_noise_memory, 0.0, 0.99, &particles.noise_memory);
-  TakeInRange("noise_scale", FLAGS_noise_scale, 0.01, 100.0, &particles.noise_scale);
   particles.project_bones = FLAGS_project_bones;
   particles.correlated_noise = FLAGS_correlated_noise;
 }
 
 const KindFlags<GenerateFlags> kParticleFlags(GeneratorKind::kParticles,
                                               {"ridge_share", "simlpe_share", "project_bones",
-                                               "noise_memory", "noise_scale", "correlated_noise"},
+                                               "noise_memory", "correlated_noise"},
                                               ReadParticleFlags);
 
 }  // namespace

@@ -54,10 +54,7 @@ DEFINE_int32(crossvalidate, kFlags.crossvalidate,
              "score the held-out recordings; 0: off");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote; its pendulum is refitted to the "
-              "training recordings, for --pendulum_input and --blend");
-DEFINE_bool(pendulum_input, kFlags.pendulum_input,
-            "diffusion: the hips of the pendulum of --physics (fitted to other recordings) are an "
-            "input, and it learns the difference");
+              "training recordings, for --blend and --accuracy=best");
 DEFINE_double(
     blend, kFlags.changes.diffusion.blend,
     "diffusion, --crossvalidate: blend of the hip paths, from 0 (forecast) to 1 (pendulum)");
@@ -76,8 +73,6 @@ DEFINE_bool(correction, kOptions.correction,
             "low frequencies");
 DEFINE_double(ridge_share, kOptions.ridge_share,
               "cmu: share of the linear forecast, which fades over the next frames; 0: none");
-DEFINE_double(ridge_penalty, kOptions.ridge_penalty,
-              "cmu: ridge penalty of the linear forecast, m^2");
 DEFINE_double(checkpoint_seconds, kOptions.checkpoint_seconds,
               "time between two checkpoints in --out");
 DEFINE_uint64(seed, kOptions.seed, "the first of --seeds, and the seed of the folds");
@@ -125,7 +120,6 @@ void ReadNumbers(TrainGeneratorFlags* flags) {
   TakeInRange("samples", FLAGS_samples, 0, 10000, &flags->samples);
   TakeInRange("push_spread", FLAGS_push_spread, 0.0, 3.0, &flags->changes.diffusion.push_spread);
   TakeInRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0, &options.ridge_share);
-  TakeInRange("ridge_penalty", FLAGS_ridge_penalty, 1e-12, 1e12, &options.ridge_penalty);
   TakeInRange("held_out", FLAGS_held_out, 0.0, 0.5, &flags->held_out);
   TakeInRange("checkpoint_seconds", FLAGS_checkpoint_seconds, 0.0, 1e9,
               &options.checkpoint_seconds);
@@ -153,30 +147,24 @@ void CheckForeign(GeneratorKind kind, GeneratorData data) {
   if (is_cmu) {
     refuse({"recordings", "setting", "observed", "held_out"}, "--dataset=pushes");
   } else {
-    refuse({"folder", "with_validation", "correction", "ridge_share", "ridge_penalty",
-            "simlpe_share", "simlpe_steps"},
-           "--dataset=cmu");
+    refuse(
+        {"folder", "with_validation", "correction", "ridge_share", "simlpe_share", "simlpe_steps"},
+        "--dataset=cmu");
   }
   OfOtherKinds(kind);
   if (!groups) {
-    refuse({"physics", "blend", "pendulum_input", "samples", "accuracy"},
-           "--kind=" + KindsOfGroups());
+    refuse({"physics", "blend", "samples", "accuracy"}, "--kind=" + KindsOfGroups());
   }
   if (FLAGS_crossvalidate == 0) refuse({"blend", "samples"}, "--crossvalidate");
   if (FLAGS_samples == 0) refuse({"push_spread"}, "--samples");
-  if (Best() && (FLAGS_crossvalidate > 0 || FLAGS_pendulum_input)) {
-    throw Error{
-        "--accuracy=best makes its own folds and blends with physics afterwards; leave out "
-        "--crossvalidate and --pendulum_input"};
+  if (Best() && FLAGS_crossvalidate > 0) {
+    throw Error{"--accuracy=best makes its own folds; leave out --crossvalidate"};
   }
-  const bool uses_physics = FLAGS_blend > 0.0 || FLAGS_pendulum_input;
-  if (uses_physics && FLAGS_physics.empty()) {
-    throw Error{"--blend and --pendulum_input need --physics, the pendulum's model"};
+  if (FLAGS_blend > 0.0 && FLAGS_physics.empty()) {
+    throw Error{"--blend needs --physics, the pendulum's model"};
   }
-  if (!uses_physics && !Best() && !FLAGS_physics.empty()) {
-    throw Error{
-        "--physics is only used by --pendulum_input, --blend and --accuracy=best: give one of "
-        "them"};
+  if (FLAGS_blend == 0.0 && !Best() && !FLAGS_physics.empty()) {
+    throw Error{"--physics is only used by --blend and --accuracy=best: give one of them"};
   }
 }
 
@@ -215,9 +203,6 @@ TrainGeneratorFlags TrainGeneratorFlagsFromCommandLine() {
       throw Error{"--published=" + FLAGS_published + " needs --kind=" + kind};
     }
   }
-  if (FLAGS_pendulum_input && options.diffusion.structure.frame == MotionFrame::kOwn) {
-    throw Error{"--frame=own knows no pendulum; leave out --pendulum_input"};
-  }
   flags.scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0 || Best());
   const GeneratorKindRow& kind = RowOf(options.kind);
   if (!Given("dataset") && kind.groups) flags.data = GeneratorData::kPushes;
@@ -236,7 +221,6 @@ TrainGeneratorFlags TrainGeneratorFlagsFromCommandLine() {
   const FittedModel physics = OrFail(ReadFittedModel(FLAGS_physics));
   flags.physics = physics.fit.options;
   flags.physics->num_threads = FLAGS_num_threads;
-  flags.pendulum_input = FLAGS_pendulum_input;
   return flags;
 }
 

@@ -28,7 +28,6 @@ struct TrainGeneratorFlags {
   int crossvalidate = 0;         // folds, instead of writing a generator; 0: off
   FoldScheme scheme = FoldScheme::kStratified;
   std::optional<FitOptions> physics;  // of the pendulum
-  bool pendulum_input = false;        // it goes into diffusion
   GeneratorChanges changes;           // how held-out recordings are forecast
   int samples = 0;                    // futures sampled of them; 0: none
   std::string json_out;               // scores of the cross-validation; empty: none

@@ -26,7 +26,6 @@ DEFINE_bool(poses, kParticles.structure.poses,
 DEFINE_bool(together, kParticles.together,
             "train drift and noise together by SDE's Eq. 6 on the observed displacements, and the "
             "other losses on sampled paths (Eq. 2); off: the drift first, then the noise alone");
-DEFINE_double(transition_weight, kParticles.transitions, "--together: weight of Eq. 6 in the loss");
 DEFINE_bool(constant_rate, kParticles.constant_rate,
             "keep the learning rate; off: a warm-up, then down to nothing by a cosine");
 DEFINE_double(mirrored_share, kParticles.mirrored, "share of windows trained on in the mirror");
@@ -53,7 +52,6 @@ void ReadParticleFlags(TrainGeneratorFlags* flags) {
   OrFail(ParseName("--noise_loss", FLAGS_noise_loss, &particles.noise_loss));
   TakeInRange("noise_steps", FLAGS_noise_steps, 0, 1e6, &particles.noise_steps);
   TakeInRange("jitter", FLAGS_jitter, 0.0, 100.0, &particles.jitter);
-  TakeInRange("transition_weight", FLAGS_transition_weight, 0.0, 1e6, &particles.transitions);
   TakeInRange("mirrored_share", FLAGS_mirrored_share, 0.0, 1.0, &particles.mirrored);
   TakeInRange("distance_weight", FLAGS_distance_weight, 0.0, 1e6, &particles.distance);
   TakeInRange("squared_weight", FLAGS_squared_weight, 0.0, 1e6, &particles.squared);
@@ -73,9 +71,6 @@ void ReadParticleFlags(TrainGeneratorFlags* flags) {
   if (!FLAGS_poses && !FLAGS_particles) {
     throw Error{"--poses=false leaves displacements alone, and --particles=false poses; give one"};
   }
-  if (!FLAGS_together && Given("transition_weight")) {
-    throw Error{"--transition_weight needs --together"};
-  }
   if (FLAGS_together && Given("noise_steps")) {
     throw Error{"--together trains the noise with the drift; leave out --noise_steps"};
   }
@@ -83,12 +78,10 @@ void ReadParticleFlags(TrainGeneratorFlags* flags) {
 
 const KindFlags<TrainGeneratorFlags> kParticleFlags(
     GeneratorKind::kParticles,
-    {"noise_steps",       "jitter",         "cell",           "skip",
-     "pose_operator",     "particles",      "poses",          "together",
-     "transition_weight", "constant_rate",  "mirrored_share", "even_frames",
-     "distance_weight",   "squared_weight", "bone_weight",    "critic_weight",
-     "noise_loss",        "correction",     "ridge_share",    "ridge_penalty",
-     "simlpe_share",      "simlpe_steps"},
+    {"noise_steps", "jitter",          "cell",           "skip",          "pose_operator",
+     "particles",   "poses",           "together",       "constant_rate", "mirrored_share",
+     "even_frames", "distance_weight", "squared_weight", "bone_weight",   "critic_weight",
+     "noise_loss",  "correction",      "ridge_share",    "simlpe_share",  "simlpe_steps"},
     ReadParticleFlags);
 
 }  // namespace

@@ -8,44 +8,24 @@ namespace pushid {
 
 template <class Archive>
 void Fields(Archive& a, Push& p) {
-  a("person", p.person);
-  a("start_frame", p.start_frame);
-  a("force", p.force);
-  a("file", p.file);
+  PUSHID_FIELDS(a, p, person, start_frame, force, file);
 }
 
 template <class Archive>
 void Fields(Archive& a, PlateSample& sample) {
-  a("force", sample.force);
-  a("centre", sample.centre);
-  a("weight", sample.weight);
+  PUSHID_FIELDS(a, sample, force, centre, weight);
 }
 
 // Roles are of the joints, and go with them. A BVH file's skeleton stays behind: only the programs
 // write motions back into such files.
 template <class Archive>
 void Fields(Archive& a, RecordedPerson& p) {
-  a("subject_id", p.subject_id);
-  a("mass_kg", p.mass_kg);
+  PUSHID_FIELDS(a, p, subject_id, mass_kg);
   a("numbers", p.known.numbers);
   a("texts", p.known.texts);
-  a("file", p.file);
-  a("file_clock_s", p.file_clock_s);
-  a("skipped_s", p.skipped_s);
-  a("file_up", p.file_up);
-  a("file_forward", p.file_forward);
-  a("hip", p.hip);
-  a("left_ankle", p.left_ankle);
-  a("right_ankle", p.right_ankle);
-  a("left_toe", p.left_toe);
-  a("right_toe", p.right_toe);
-  a("left_heel", p.left_heel);
-  a("right_heel", p.right_heel);
-  a("weight", p.weight);
-  a("plates", p.plates);
-  a("joints", p.joints);
-  a("joint_names", p.joint_names);
-  a("joint_parents", p.joint_parents);
+  PUSHID_FIELDS(a, p, file, file_clock_s, skipped_s, file_up, file_forward, hip, left_ankle,
+                right_ankle, left_toe, right_toe, left_heel, right_heel, weight, plates, joints,
+                joint_names, joint_parents);
   std::vector<std::vector<int>> roles(p.roles.joints.begin(), p.roles.joints.end());
   a("roles", roles);
   std::copy_n(roles.begin(), std::min(roles.size(), p.roles.joints.size()), p.roles.joints.begin());
@@ -66,15 +46,8 @@ void Fields(Archive& a, Recording& r) {
   for (const std::string& key : r.labels.Keys()) labels[key] = r.labels.Of(key);
   a("labels", labels);
   for (const auto& [key, text] : labels) r.labels.Set(key, text);
-  a("fps", r.fps);
-  a("pushed_person", r.pushed_person);
-  a("push_kind", r.push_kind);
-  a("initial_velocity", r.initial_velocity);
-  a("people", r.people);
-  a("pushes", r.pushes);
-  a("ground", r.ground);
-  a("stated_errors", r.stated_errors);
-  a("content_hash", r.content_hash);
+  PUSHID_FIELDS(a, r, fps, pushed_person, push_kind, initial_velocity, people, pushes, ground,
+                stated_errors, content_hash);
 }
 
 void BindPickle(py::module_* module) {

@@ -71,7 +71,7 @@ class Maker {
     }
     if (!massless_.empty()) {
       return Error{"no mass is given for " + ListOfNames({massless_.begin(), massless_.end()}) +
-                   "; list them in a file with the columns id,mass_kg"};
+                   "; list them in a file with the columns id,mass_kg (--masses)"};
     }
     WarnOfUnusedMasses();
     return std::move(made_);
@@ -115,9 +115,10 @@ class Maker {
       recordings_[IdOf(pattern_, *values)].push_back({path, *values});
     }
     if (made_.files == 0) {
+      if (files.value().empty()) return Error{"there is no file in it", options_.folder};
       return Error{"none of its " + std::to_string(files.value().size()) +
-                       " files fits the pattern " + Quoted(options_.pattern) +
-                       (files.value().empty() ? "" : "; the first is " + files.value()[0]),
+                       " files fits the pattern " + Quoted(options_.pattern) + "; the first is " +
+                       files.value()[0],
                    options_.folder};
     }
     return std::nullopt;

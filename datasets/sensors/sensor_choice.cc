@@ -43,58 +43,28 @@ std::vector<int> ColumnsCalled(const std::string& name, const std::vector<std::s
   return {};
 }
 
-// The first columns of the table, one or three.
-MaybeError TakeForces(const SensorChoice& choice, const NumericTable& table, std::size_t columns,
-                      SensorRecord* record) {
-  record->is_vector = columns == 3;
+// A column or three of a table, or of the channels of a Motion-BIDS file ("cell" for cell_x,
+// cell_y, cell_z), whose clock starts with the file.
+Result<SensorRecord> FromTable(const SensorChoice& choice, MotionFormat format) {
+  const Result<TimedColumns> read = ReadTimedColumns(
+      choice.file, [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+        const std::vector<int> columns = ColumnsCalled(choice.column, names);
+        if (!columns.empty()) return columns;
+        return NoColumn(choice, format == MotionFormat::kBids ? "channel" : "column", names);
+      });
+  if (!read.ok()) return read.error();
+  const TimedColumns& table = read.value();
+  SensorRecord record;
+  record.is_vector = table.values.size() == 3;
   for (int row = 0; row < table.num_rows(); ++row) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < columns; ++i) force[i] = table.data[i][row];
+    for (std::size_t i = 0; i < table.values.size(); ++i) force[i] = table.values[i][row];
     if (!force.allFinite()) {
       return Error{choice.column + " is missing; fill the gap or cut the record there", choice.file,
                    table.lines[row]};
     }
-    record->force.push_back(force);
-  }
-  return std::nullopt;
-}
-
-// A column or three of a table, or of the channels of a Motion-BIDS file ("cell" for cell_x,
-// cell_y, cell_z), whose clock starts with the file.
-Result<SensorRecord> FromTable(const SensorChoice& choice, MotionFormat format) {
-  const bool bids = format == MotionFormat::kBids;
-  std::vector<int> columns;
-  int time = -1;
-  TableReadOptions options;
-  options.keep_lines = true;
-  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-    if (!bids) time = FindTimeColumn(names, "");
-    if (!bids && time < 0) return Error{"there is no column called time", choice.file};
-    columns = ColumnsCalled(choice.column, names);
-    if (columns.empty()) return NoColumn(choice, bids ? "channel" : "column", names);
-    std::vector<int> wanted = columns;
-    if (!bids) wanted.push_back(time);
-    return wanted;
-  };
-  const Result<BidsHeader> header = bids ? ReadBidsHeader(choice.file) : BidsHeader{};
-  if (!header.ok()) return header.error();
-  const Result<NumericTable> table =
-      bids
-          ? ReadBidsTable(choice.file, header.value(), options)
-          : ReadNumericTable(choice.file, RowOf(format).table.value_or(TableFormat::kCsv), options);
-  if (!table.ok()) return table.error();
-  SensorRecord record;
-  if (bids) {
-    for (int row = 0; row < table.value().num_rows(); ++row) {
-      record.time_s.push_back(row / header.value().rate_hz);
-    }
-  } else {
-    record.time_s = table.value().data.back();
-    const Result<double> step = EvenTimeStep(table.value(), time);
-    if (!step.ok()) return step.error();
-  }
-  if (MaybeError failed = TakeForces(choice, table.value(), columns.size(), &record)) {
-    return *std::move(failed);
+    record.time_s.push_back(table.first_s + row / table.rate_hz);
+    record.force.push_back(force);
   }
   return record;
 }

@@ -26,7 +26,6 @@ FitOptions WithPeopleApart(const FitResult& result) {
   options.pool_by = kSubjectUnit;
   options.pooling_sigma.reset();
   options.start_deviations.clear();
-  options.ensemble = 1;
   options.early_stopping = 0.0;
   options.hold_network = true;
   options.num_starts = 1;

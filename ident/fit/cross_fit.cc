@@ -55,7 +55,6 @@ std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const Fit
   refitted.options = others.ModelAt(fit.to);
   refitted.parameters = others.Parameters(fit.to, "");
   for (auto& [unit, parameters] : refitted.by_unit) parameters = others.Parameters(fit.to, unit);
-  refitted.others.clear();
   refitted.push_range.reset();
   refitted.push_range = FittedPushRange(refitted, Without(problem.recordings(), held_out));
   return refitted;

@@ -22,7 +22,6 @@ namespace {
 struct SolvedFit {
   FitProblem problem;
   WeightedSolution solved;
-  std::vector<EnsembleMember> others;
   std::string no_noise;  // a warning
 
   bool ok() const { return solved.solution.best >= 0; }
@@ -35,7 +34,7 @@ Result<SolvedFit> SolveFit(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options, const SolveProgress& progress) {
   const Result<FitOptions> trained = WithLargeNetworkTrained(recordings, options, progress);
   if (!trained.ok()) return trained.error();
-  SolvedFit fit{FitProblem(recordings, trained.value()), {}, {}, ""};
+  SolvedFit fit{FitProblem(recordings, trained.value()), {}, ""};
   // What was trained together is an optimum of it all already.
   const bool stays =
       options.network_training == NetworkTraining::kTogether && NeedsGradientTraining(options);
@@ -44,7 +43,6 @@ Result<SolvedFit> SolveFit(const std::vector<PendulumRecording>& recordings,
   fit.problem.set_gradient_tolerance(options.gradient_tolerance);
   if (!fit.ok()) return fit;
   fit.no_noise = EstimateNoise(fit.Best().to, &fit.problem);
-  if (options.ensemble > 1) fit.others = FitOtherSeeds(recordings, trained.value());
   return fit;
 }
 
@@ -67,7 +65,6 @@ FitResult ResultOf(const SolvedFit& fit) {
   result.message = best.message;
   result.options.model = fit.problem.ModelAt(best.to);
   result.parameters = fit.problem.Parameters(best.to, "");
-  result.others = fit.others;
   result.behaviour = fit.problem.BehaviourAt(best.to);
   AddUnits(fit.problem, best.to, &result);
   return result;

@@ -64,7 +64,7 @@ MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* 
 // Options that were given but act on nothing: an error that says what is missing.
 MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   const auto& network = options.model.learned;
-  for (const char* name : {"network_prior", "early_stopping", "ensemble", "network_training",
+  for (const char* name : {"network_prior", "early_stopping", "network_training",
                            "network_optimizer", "network_iterations", "network_rate"}) {
     if (network != nullptr || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name +
@@ -98,12 +98,10 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   return std::nullopt;
 }
 
-// What the preset pools by name may have been fixed since, or not act any more; and the members of
-// an ensemble share all parameters.
+// What the preset pools by name may have been fixed since, or not act any more.
 void PoolOnlyFree(FitOptions* options) {
   if (PoolsAllOrNone(options->pool)) return;
   std::string free;
-  if (options->ensemble > 1) options->pool.clear();
   for (const std::string& name : SplitList(options->pool)) {
     if (options->table.Find(name)->free) free += (free.empty() ? "" : ",") + name;
   }

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 
-#include "ident/parameters/learned_terms_io.h"
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/network_training.h"
@@ -231,23 +230,6 @@ Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>&
   const Solution solution = SolveAsAsked(&physics, progress).solution;
   if (solution.best < 0) return Error{"the physical model alone has no usable optimum"};
   return TrainLargeNetwork(recordings, options, {physics.options(), solution.Best().to}, progress);
-}
-
-std::vector<EnsembleMember> FitOtherSeeds(const std::vector<PendulumRecording>& recordings,
-                                          const FitOptions& options) {
-  std::vector<EnsembleMember> members;
-  for (int k = 1; k < options.ensemble; ++k) {
-    FitOptions seeded = options;
-    seeded.seed = options.seed + k;
-    const LearnedTerms& network = *options.model.learned;
-    seeded.model.learned = InitialNetwork(network.shape, seeded.seed, network.rod, network.pair);
-    const FitProblem problem(recordings, seeded);
-    const Solution solution = Solve(problem);
-    if (solution.best < 0) continue;
-    const FitPoint& point = solution.Best().to;
-    members.push_back({problem.Parameters(point, ""), problem.ModelAt(point).learned});
-  }
-  return members;
 }
 
 }  // namespace pushid

@@ -19,7 +19,6 @@
 #include <optional>
 #include <vector>
 
-#include "ident/model/identified_model.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/work.h"
@@ -49,10 +48,5 @@ WeightedSolution SolveAsAsked(FitProblem* problem, const SolveProgress& progress
 Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>& recordings,
                                            const FitOptions& options,
                                            const SolveProgress& progress = nullptr);
-
-// The fits of all seeds but the first (options.seed), one by one; a seed without a usable optimum
-// is left out.
-std::vector<EnsembleMember> FitOtherSeeds(const std::vector<PendulumRecording>& recordings,
-                                          const FitOptions& options);
 
 }  // namespace pushid

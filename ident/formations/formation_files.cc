@@ -150,7 +150,7 @@ std::string Untold(const IdentifiedModel& model) {
   if (o.delay != Delay::kNone) return "a reaction delay (--delay=none)";
   if (o.friction == FrictionKind::kCoulomb) return "dry friction (--friction=isotropic)";
   if (o.cart_derivative != CartDerivative::kNone) return "a derivative of the cart's velocity";
-  if (o.learned != nullptr || !model.others.empty()) return "a network";
+  if (o.learned != nullptr) return "a network";
   if (!o.own_laws.empty()) return "laws of your own";
   if (o.interaction.Any() && !o.interaction.Mutual()) return "LDP's or a learned interaction";
   return "";

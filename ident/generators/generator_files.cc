@@ -65,9 +65,11 @@ ParticleLayout LayoutFrom(const Json& json) {
 
 Json SettingsJson(const TrainedNetworks& trained) {
   const GeneratorSettings& settings = trained.settings;
-  Json json = {{"data", NameOf(settings.data)},   {"observed", settings.observed},
-               {"predicted", settings.predicted}, {"rate_hz", settings.rate},
-               {"pendulum", settings.pendulum},   {"layout", LayoutJson(settings.layout)}};
+  Json json = {{"data", NameOf(settings.data)},
+               {"observed", settings.observed},
+               {"predicted", settings.predicted},
+               {"rate_hz", settings.rate},
+               {"layout", LayoutJson(settings.layout)}};
   if (settings.choice) {
     json["choice"] = {{"by", NameOf(settings.choice->by)}, {"blend", settings.choice->blend}};
   }
@@ -84,7 +86,9 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   settings.observed = json.at("observed");
   settings.predicted = json.at("predicted");
   settings.rate = json.at("rate_hz");
-  settings.pendulum = json.value("pendulum", false);  // files from before have none
+  Demand(!json.value("pendulum", false),
+         "it corrects physics (--pendulum_input), which is gone: blend it with them, and train it "
+         "again");
   for (const Json& name : json.value("push_kinds", Json::array())) {
     const std::optional<PushKind> kind = FromName<PushKind>(name.get<std::string>());
     Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is not a kind of push");

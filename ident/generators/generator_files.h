@@ -173,7 +173,6 @@ struct GeneratorSettings {
   int observed = 25;                      // frames that it is given
   int predicted = 25;                     // frames that it was trained to forecast
   double rate = 25.0;                     // Hz
-  bool pendulum = false;                  // whether it must be told where physics have the hips
   std::vector<PushKind> push_kinds = {};  // of the pushes learned from; empty: not known
   ParticleLayout layout;
   std::optional<ForecastChoice> choice;  // none: nothing was compared
@@ -187,10 +186,9 @@ struct TrainedNetworks {
   GeneratorKind kind() const { return of_kind->kind(); }
 };
 
-// Frames that physics beside a generator see, as it does (one is the first, which everybody has);
-// 0 where physics go into the network: then they start at frame 0, as in its training.
+// Frames that physics beside a generator see, as it does: one is the first, which everybody has.
 inline int ShownToPhysics(const GeneratorSettings& settings) {
-  return settings.observed > 1 && !settings.pendulum ? settings.observed : 0;
+  return settings.observed > 1 ? settings.observed : 0;
 }
 
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained);

@@ -151,9 +151,6 @@ SharedNetworks ReadDiffusion(const nlohmann::ordered_json& json, const Generator
   ParseSetting(json, "pooling", &structure.pooling);
   ParseSetting(json, "pooling_at", &structure.join);
   ParseSetting(json, "frame", &structure.frame);
-  Demand(structure.frame == MotionFrame::kGroup || !settings.pendulum,
-         "people's own frames know no pendulum");
-  structure.pendulum = settings.pendulum;
   const int members = ReadMembers(json);
   for (int m = 0; m < members; ++m) {
     trained->members.push_back(TakeDiffusion(MemberName(m), structure, reader));

@@ -125,9 +125,6 @@ Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings
                  std::to_string(std::min(frames, recorded)) + " frames; the generator is given " +
                  std::to_string(observed) + " and has nothing to forecast"};
   }
-  if (settings.pendulum && hips.empty()) {
-    return Error{"this generator corrects the physical model; give that model by --physics"};
-  }
   std::vector<ObservedMotion> people = GroupOf(recording, hips);
   for (ObservedMotion& person : people) {
     person.frames = Trajectories(person.frames.leftCols(observed));

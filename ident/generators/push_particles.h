@@ -44,7 +44,7 @@ BodyMotion BodyFromParticles(const Trajectories& motion, const Eigen::Vector3d& 
 
 // What a generator makes of a recording whose first `observed` frames it is shown: those, then its
 // forecast to the recording's end, or for `frames` frames in all. Errors: a recording that is not
-// at the generator's rate, or too short; no hips where settings.pendulum asks for them.
+// at the generator's rate, or too short.
 Result<std::vector<BodyMotion>> GenerateBodies(const GeneratorSettings& settings,
                                                const MotionGenerator& generator,
                                                const BodyRecording& recording,

@@ -30,10 +30,7 @@ template <class Archive>
 void Fields(Archive& a, Estimate& e) {
   // Models written before shares were computed say nothing of them, nor of degrees of freedom.
   const bool shares = a.Has("shares");
-  a("name", e.name);
-  a("value", e.value);
-  a("standard_error", e.standard_error);
-  a("standard_error_naive", e.standard_error_naive);
+  PUSHID_FIELDS(a, e, name, value, standard_error, standard_error_naive);
   a.Pair("interval_95", e.lower95, e.upper95);
   if (shares) {
     a("freedom", e.freedom);
@@ -56,15 +53,12 @@ void Fields(Archive& a, Estimate& e) {
     });
   }
   a.Optional("these_people", e.these);
-  a("unit", e.unit);
-  a("status", e.status);
+  PUSHID_FIELDS(a, e, unit, status);
 }
 
 template <class Archive>
 void Fields(Archive& a, Combination& c) {
-  a("name", c.name);
-  a("value", c.value);
-  a("standard_error", c.standard_error);
+  PUSHID_FIELDS(a, c, name, value, standard_error);
   a.Pair("interval_95", c.lower95, c.upper95);
   QuantileField(a, &c.quantile);
   a.Optional("these_people", c.these);
@@ -73,23 +67,16 @@ void Fields(Archive& a, Combination& c) {
 
 template <class Archive>
 void Fields(Archive& a, ContrastRow& r) {
-  a("name", r.name);
-  a("first", r.first);
-  a("second", r.second);
-  a("difference", r.difference);
+  PUSHID_FIELDS(a, r, name, first, second, difference);
   a.Pair("interval_95", r.lower95, r.upper95);
-  a("p", r.p);
-  a("p_holm", r.p_holm);
+  PUSHID_FIELDS(a, r, p, p_holm);
   a.Optional("effect", r.effect);
-  a("unit", r.unit);
-  a("status", r.status);
+  PUSHID_FIELDS(a, r, unit, status);
 }
 
 template <class Archive>
 void Fields(Archive& a, Contrast& c) {
-  a("label", c.label);
-  a("first", c.first);
-  a("second", c.second);
+  PUSHID_FIELDS(a, c, label, first, second);
   a("people_first", c.only_first);
   a("people_second", c.only_second);
   a("people_both", c.both);
@@ -98,19 +85,14 @@ void Fields(Archive& a, Contrast& c) {
 
 template <class Archive>
 void Fields(Archive& a, NullDirection& n) {
-  a("parameters", n.parameters);
-  a("coefficients", n.coefficients);
-  a("identified", n.identified);
-  a("sentence", n.sentence);
+  PUSHID_FIELDS(a, n, parameters, coefficients, identified, sentence);
 }
 
 template <class Archive>
 void Fields(Archive& a, SettlingDemand& s) {
-  a("binds", s.binds);
-  a("contradicted", s.contradicted);
+  PUSHID_FIELDS(a, s, binds, contradicted);
   if (a.Has("unmet")) a("unmet", s.unmet);
-  a("rise", s.rise);
-  a("free_seconds", s.free_seconds);
+  PUSHID_FIELDS(a, s, rise, free_seconds);
 }
 
 // All but the estimates, which stand at the top of the file.
@@ -130,26 +112,21 @@ void Fields(Archive& a, Uncertainty& u) {
   }
   a("residuals", u.num_residuals);
   if (a.Has("full_hessian")) a("full_hessian", u.full_hessian);
-  a("sigma", u.sigma);
-  a("freedom", u.freedom);
-  a("too_few_clusters", u.too_few_clusters);
-  a("condition_number", u.condition_number);
+  PUSHID_FIELDS(a, u, sigma, freedom, too_few_clusters, condition_number);
   a.Written("fitted", [&] {
     std::vector<std::string> names;
     for (const Estimate& e : u.estimates) names.push_back(e.name);
     return names;
   });
   a("covariance_fitted_scale", u.covariance);
-  a("correlation", u.correlation);
-  a("null_directions", u.null_directions);
+  PUSHID_FIELDS(a, u, correlation, null_directions);
   if (a.Has("held_directions")) a("held_directions", u.held_directions);
   if (a.Has("settling")) a("settling", u.settling);
 }
 
 template <class Archive>
 void Fields(Archive& a, SubjectParameters& s) {
-  a("mass_kg", s.mass_kg);
-  a("pooled", s.pooled);
+  PUSHID_FIELDS(a, s, mass_kg, pooled);
 }
 
 // The solve.

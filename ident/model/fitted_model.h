@@ -44,7 +44,6 @@ struct FitResult {
   ParameterSet<double> parameters{};
   std::optional<Takeover> takeover;                 // by the network, where there is one
   std::optional<ContactTakeover> contact_takeover;  // by a learned interaction beside contact
-  std::vector<EnsembleMember> others;               // of an ensemble, besides the one reported
   std::vector<Estimate> estimates;   // one per Parameter that the table shows, fixed ones included
   std::vector<Estimate> nuisance;    // units' deviations and initial velocities
   std::vector<Combination> derived;  // c_x, c_y and per-mass gains

@@ -28,7 +28,6 @@ IdentifiedModel ModelOf(const FitResult& result) {
   model.mapping = result.options.mapping;
   model.table = result.options.table;
   model.parameters = result.parameters;
-  model.others = result.others;
   model.pool_by = result.options.pool_by;
   model.push_range = result.push_range;
   model.step_probability = result.step_probability;
@@ -77,7 +76,6 @@ MaybeError SetValues(const std::string& assignments, IdentifiedModel* model) {
     };
     set(&model->parameters);
     for (auto& [unit, own] : model->by_unit) set(&own);
-    for (EnsembleMember& member : model->others) set(&member.parameters);
   }
   return std::nullopt;
 }

@@ -22,14 +22,6 @@
 
 namespace pushid {
 
-// What one seed of an ensemble found. Predictions are put together by their median
-// (prediction/prediction.h), so that one bad seed does no harm; members that leave the
-// model's domain do not count while most of them stay in it.
-struct EnsembleMember {
-  ParameterSet<double> parameters{};
-  std::shared_ptr<const LearnedTerms> network;
-};
-
 struct ValueRange {
   double lower = std::numeric_limits<double>::infinity(), upper = 0.0;
 
@@ -149,7 +141,6 @@ struct IdentifiedModel {
   SkeletonMapping mapping = SkeletonMapping::kExact;
   ParameterTable table;  // names, units and bounds, for --set
   ParameterSet<double> parameters{};
-  std::vector<EnsembleMember> others;  // of an ensemble
   std::string pool_by = kSubjectUnit;
   std::map<std::string, ParameterSet<double>> by_unit;  // options' pool_by; only where pooled
   std::optional<PushRange> push_range;                  // that it was fitted to
@@ -167,7 +158,7 @@ struct IdentifiedModel {
 
 IdentifiedModel ModelOf(const FitResult& result);
 
-// A model with some values replaced, in every member of an ensemble, for what-ifs (--set).
+// A model with some values replaced, for what-ifs (--set).
 MaybeError SetValues(const std::string& assignments, IdentifiedModel* model);
 
 }  // namespace pushid

@@ -51,20 +51,12 @@ void WarningFields(Archive& a, const std::string& key, Warnings& warnings) {
 
 template <class Archive>
 void Fields(Archive& a, SolveStage& s) {
-  a("horizon", s.horizon);
-  a("iterations", s.iterations);
-  a("initial_cost", s.initial_cost);
-  a("final_cost", s.final_cost);
-  a("converged", s.converged);
+  PUSHID_FIELDS(a, s, horizon, iterations, initial_cost, final_cost, converged);
 }
 
 template <class Archive>
 void Fields(Archive& a, SolveStart& s) {
-  a("kind", s.kind);
-  a("usable", s.usable);
-  a("converged", s.converged);
-  a("cost", s.cost);
-  a("iterations", s.iterations);
+  PUSHID_FIELDS(a, s, kind, usable, converged, cost, iterations);
   a.Via(
       "failed_rollouts", [&] { return s.failed.size(); },
       [&](size_t count) { s.failed.resize(count); });
@@ -82,8 +74,7 @@ void Fields(Archive& a, SolveStart& s) {
   };
   point("from_fitted_scale", s.from);
   point("to_fitted_scale", s.to);
-  a("stages", s.stages);
-  a("message", s.message);
+  PUSHID_FIELDS(a, s, stages, message);
 }
 
 template <class Archive>
@@ -97,20 +88,16 @@ void Fields(Archive& a, Work& w) {
 
 template <class Archive>
 void Fields(Archive& a, FittedRecording& r) {
-  a("id", r.id);
-  a("frames", r.frames);
+  PUSHID_FIELDS(a, r, id, frames);
   if (a.Has("people")) a("people", r.people);
-  a("cost", r.cost);
-  a("failure", r.failure);
-  a("content_hash", r.content_hash);
+  PUSHID_FIELDS(a, r, cost, failure, content_hash);
 }
 
 // What the model does.
 
 template <class Archive>
 void Fields(Archive& a, SettlingSimulation& s) {
-  a("setting", s.setting);
-  a("people", s.people);
+  PUSHID_FIELDS(a, s, setting, people);
   a("mass_kg", s.mass);
   a("impulse_Ns", s.impulse);
   a("speed_m_s", s.speed);
@@ -118,14 +105,12 @@ void Fields(Archive& a, SettlingSimulation& s) {
   a("distance_m", s.distance);
   if (a.Has("advance_m")) a("advance_m", s.advance);
   if (a.Has("pushed_advance_m")) a("pushed_advance_m", s.pushed_advance);
-  a("fell", s.fell);
-  a("settled", s.settled);
+  PUSHID_FIELDS(a, s, fell, settled);
 }
 
 template <class Archive>
 void Fields(Archive& a, Behaviour& b) {
-  a("settles", b.settles);
-  a("self_propelling", b.self_propelling);
+  PUSHID_FIELDS(a, b, settles, self_propelling);
   a("fastest_growth_per_s", b.fastest_growth);
   a("harder_moves_farther", b.harder_moves_farther);
   a("demonstrations", b.simulations);
@@ -134,8 +119,7 @@ void Fields(Archive& a, Behaviour& b) {
 template <class Archive>
 void Fields(Archive& a, PushedFeet& f) {
   a("pushed", f.seen);
-  a("moved", f.moved);
-  a("stepped", f.stepped);
+  PUSHID_FIELDS(a, f, moved, stepped);
 }
 
 template <class Archive>
@@ -153,9 +137,7 @@ template <class Archive>
 void Fields(Archive& a, StepProbability& p) {
   a("intercept", p.coefficients[0]);
   a("slope_per_m", p.coefficients[1]);
-  a("covariance", p.covariance);
-  a("tracks", p.tracks);
-  a("stepped", p.stepped);
+  PUSHID_FIELDS(a, p, covariance, tracks, stepped);
   a("people", p.clusters);
   a.Check(p.coefficients.allFinite() && p.stepped >= 0 && p.stepped <= p.tracks,
           "step_probability has numbers that cannot be");
@@ -163,12 +145,9 @@ void Fields(Archive& a, StepProbability& p) {
 
 template <class Archive>
 void Fields(Archive& a, EffectOfRecording& e) {
-  a("id", e.id);
-  a("person", e.person);
-  a("condition", e.condition);
+  PUSHID_FIELDS(a, e, id, person, condition);
   a("effect", e.mean);
-  a("error", e.error);
-  a("alone", e.alone);
+  PUSHID_FIELDS(a, e, error, alone);
 }
 
 template <class Archive>
@@ -176,16 +155,13 @@ void Fields(Archive& a, RecordingEffect& e) {
   a("spread", e.spread);
   a("spread_standard_error", e.spread_error);
   a("error_scale_m", e.error_scale);
-  a("explained", e.explained);
-  a("clusters", e.clusters);
-  a("recordings", e.recordings);
+  PUSHID_FIELDS(a, e, explained, clusters, recordings);
   a.Check(e.spread >= 0.0 && e.error_scale > 0.0, "recording_effect has numbers that cannot be");
 }
 
 template <class Archive>
 void Fields(Archive& a, ErrorScale& e) {
-  a("coefficients", e.coefficients);
-  a("quantiles", e.quantiles);
+  PUSHID_FIELDS(a, e, coefficients, quantiles);
   a.Check(e.coefficients.allFinite() &&
               (e.quantiles.empty() || e.quantiles.size() == std::size(kErrorShares)) &&
               std::is_sorted(e.quantiles.begin(), e.quantiles.end()) &&
@@ -216,8 +192,7 @@ void Fields(Archive& a, InputNoise& n) {
 template <class Archive>
 void Fields(Archive& a, ForecastStack& f) {
   a("input", f.noise);
-  a("tail_strength", f.tail_strength);
-  a("tail_time", f.tail_time);
+  PUSHID_FIELDS(a, f, tail_strength, tail_time);
   a("likeliest_input", f.likeliest);
   a.Group("logits", [&f](auto& g) {
     for (int i = 0; i < kNumForecasters; ++i) {
@@ -228,17 +203,13 @@ void Fields(Archive& a, ForecastStack& f) {
     constexpr const char* kAxes[] = {"along", "across", "upwards"};
     for (int i = 0; i < 3; ++i) g(kAxes[i], f.errors[i]);
   });
-  a("scores", f.scores);
-  a("folds", f.folds);
-  a("recordings", f.recordings);
+  PUSHID_FIELDS(a, f, scores, folds, recordings);
   a.Check(f.tail_strength > 0.0 && f.tail_time > 0.0, "forecasts have numbers that cannot be");
 }
 
 template <class Archive>
 void Fields(Archive& a, LikelihoodScore& s) {
-  a("deviance", s.deviance);
-  a("measured", s.measured);
-  a("parameters", s.parameters);
+  PUSHID_FIELDS(a, s, deviance, measured, parameters);
   a.Written("aic", [&] { return s.Aic(); });
   a.Written("bic", [&] { return s.Bic(); });
 }

@@ -19,15 +19,6 @@ inline nlohmann::ordered_json ValuesJson(const ParameterTable& table,
   return values;
 }
 
-inline nlohmann::ordered_json EnsembleJson(const FitResult& fit) {
-  nlohmann::ordered_json members = nlohmann::ordered_json::array();
-  for (const EnsembleMember& member : fit.others) {
-    members.push_back({{"values", ValuesJson(fit.options.table, member.parameters)},
-                       {"self_network", ToJson(*member.network)}});
-  }
-  return members;
-}
-
 // The file from top to bottom. Entries that are only written are read by ModelReader first: the
 // others are of a model whose options and parameters are known.
 template <class Archive>
@@ -38,13 +29,9 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
   a("version", from.version);
   a.Written("model", [&] { return OptionsJson(fit.options); });
   a("parameters", fit.estimates);
-  a("derived", fit.derived);
-  a("nuisance", fit.nuisance);
-  a("subjects", fit.subjects);
-  a("settings", fit.settings);
+  PUSHID_FIELDS(a, fit, derived, nuisance, subjects, settings);
   a.Written("values", [&] { return ValuesJson(fit.options.table, fit.parameters); });
-  a("behaviour", fit.behaviour);
-  a("uncertainty", fit.uncertainty);
+  PUSHID_FIELDS(a, fit, behaviour, uncertainty);
   if (a.Has("verdict")) a("verdict", fit.verdict);
   if (a.Has("diagnostics")) {
     a.Group("diagnostics", [&](auto& g) {
@@ -53,17 +40,11 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
     });
   }
   WarningFields(a, "warnings", fit.warnings);
-  a.Group("fit", [&](auto& g) {
-    g("converged", fit.converged);
-    g("cost", fit.cost);
-    g("message", fit.message);
-    g("best_start", fit.best_start);
-    g("starts", fit.starts);
-  });
+  a.Group("fit",
+          [&](auto& g) { PUSHID_FIELDS(g, fit, converged, cost, message, best_start, starts); });
   a.Written("table", [&] { return TableJson(fit.options.table); });
   a.Group("data", [&](auto& g) {
-    g("manifest_hash", from.manifest_hash);
-    g("setting", from.setting);
+    PUSHID_FIELDS(g, from, manifest_hash, setting);
     g("recordings", fit.recordings);
   });
   a("configuration", from.configuration);
@@ -90,14 +71,8 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
   }
   a.Optional("network_takeover", fit.takeover);
   a.Optional("contact_takeover", fit.contact_takeover);
-  if (a.Has("ensemble", !fit.others.empty())) {
-    a.Written("ensemble", [&] { return EnsembleJson(fit); });
-  }
   if (const auto laws = LawNames(options); a.Has("force_laws", !laws.empty())) {
     a.Written("force_laws", [&] { return laws; });
-  }
-  if (a.Has("interaction_network", options.interaction_network != nullptr)) {
-    a.Written("interaction_network", [&] { return ToJson(*options.interaction_network); });
   }
   if (a.Has("profiles", !model.profiles.empty())) a("profiles", model.profiles);
   a.Optional("bootstrap", model.bootstrap);

@@ -53,7 +53,7 @@ class ModelReader {
   MaybeError Read(const ForceLaws& laws) {
     if (MaybeError error = ReadOptions(laws)) return error;
     ReadLearned();
-    ReadValues();
+    result_.parameters = ValuesFrom(At("values"));
     ModelFields(reader_, model_, RunInfo{});
     Uncertainty& u = result_.uncertainty;
     for (const Estimate& e : result_.estimates) {
@@ -102,14 +102,11 @@ class ModelReader {
       throw WrongEntry("model/interaction",
                        "interaction is " + interaction + ", which self_network is not");
     }
-    if (json_.contains("interaction_network")) {
-      options.interaction_network = InteractionNetworkFromJson(At("interaction_network"));
-    }
   }
 
   // A model written before there was such a parameter, which its table does not name then, has its
   // nominal value: nothing it did used it.
-  ParameterSet<double> ValuesFrom(const Json& values, const std::string& path) {
+  ParameterSet<double> ValuesFrom(const Json& values) {
     const Json& rows = json_.at("table");
     ParameterSet<double> set{};
     for (const ParameterSpec& spec : result_.options.table.specs) {
@@ -117,32 +114,10 @@ class ModelReader {
         return row.at("name") == spec.name;
       });
       set[spec.id] =
-          known ? ReadAt(path + "/" + spec.name, [&] { return values.at(spec.name).get<double>(); })
+          known ? ReadAt("values/" + spec.name, [&] { return values.at(spec.name).get<double>(); })
                 : spec.nominal;
     }
     return set;
-  }
-
-  EnsembleMember MemberFrom(const Json& json, const std::string& path) {
-    EnsembleMember member;
-    const Json& values = ReadAt(path, [&]() -> const Json& { return json.at("values"); });
-    member.parameters = ValuesFrom(values, path + "/values");
-    const std::string at = path + "/self_network";
-    member.network = ReadAt(at, [&] { return LearnedFromJson(json.at("self_network")); });
-    const auto& network = result_.options.model.learned;
-    if (network == nullptr || LearnedName(*member.network) != LearnedName(*network)) {
-      throw WrongEntry(at, "a member's network is not that of self_network");
-    }
-    return member;
-  }
-
-  void ReadValues() {
-    result_.parameters = ValuesFrom(At("values"), "values");
-    if (!json_.contains("ensemble")) return;
-    const Json& members = At("ensemble");
-    for (size_t i = 0; i < members.size(); ++i) {
-      result_.others.push_back(MemberFrom(members.at(i), "ensemble/" + std::to_string(i)));
-    }
   }
 
   const Json& json_;

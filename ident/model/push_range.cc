@@ -48,10 +48,11 @@ struct Outside {
     farthest = factor, value = of, id = recording, range = fitted;
   }
   std::string Sentence(const std::string& what, const std::string& unit, int all) const {
-    const std::string these = all > 1 ? std::to_string(recordings) + " of " + std::to_string(all) +
-                                            " recordings, farthest " + id
-                                      : id;
-    return what + " of " + these + " is " + Rounded(value, 3) + " " + unit +
+    const std::string others = recordings > 1
+                                   ? " (the farthest of " + std::to_string(recordings) +
+                                         " such among " + std::to_string(all) + " recordings)"
+                                   : "";
+    return what + " of " + id + " is " + Rounded(value, 3) + " " + unit + others +
            "; the model was fitted to " + Rounded(range.lower, 3) + " to " +
            Rounded(range.upper, 3) + " " + unit + ": an extrapolation";
   }

@@ -18,12 +18,9 @@ namespace {
 // What options of networks ask for that there is not; empty: nothing.
 std::string MissingNetwork(const FitOptions& o) {
   const auto& network = o.model.learned;
-  const char* asks = o.ensemble > 1           ? "--ensemble"
-                     : o.early_stopping > 0.0 ? "--early_stopping"
-                                              : nullptr;
-  if (network == nullptr && asks != nullptr) {
-    return std::string(asks) +
-           " acts on networks, but there is none; add one, as in --self_force=mlp:4";
+  if (network == nullptr && o.early_stopping > 0.0) {
+    return "--early_stopping acts on networks, but there is none; add one, as in "
+           "--self_force=mlp:4";
   }
   const bool pair = network != nullptr && network->pair.any();
   if (o.model.interaction.learned_in_range != (pair && network->pair.ldp)) {
@@ -38,23 +35,6 @@ std::string MissingNetwork(const FitOptions& o) {
   if (terms.ldp_published + terms.ldp_discrete + (terms.potential || terms.lean) > 1) {
     return "--interaction names ldp (potential,lean), ldp_published and ldp_discrete, forms of the "
            "same forces, which would count twice; name one of them";
-  }
-  if (o.model.interaction.network && o.model.interaction_network == nullptr) {
-    return "--interaction names network: --interaction_network must name its JSON file";
-  }
-  return "";
-}
-
-// What a network cannot do together with the rest; empty: nothing.
-std::string NetworkViolation(const FitOptions& o) {
-  const auto& network = o.model.learned;
-  if (network == nullptr) return "";
-  const bool large = NeedsGradientTraining(o), pooled = AnyPooled(o.table);
-  if (o.ensemble > 1 && large) {
-    return "--ensemble is for small networks; this one is trained by its gradient";
-  }
-  if (o.ensemble > 1 && pooled) {
-    return "--ensemble does not go together with --pool: its members share all parameters";
   }
   return "";
 }
@@ -103,7 +83,6 @@ bool FitOptions::IsValid(std::string* error) const {
     return false;
   }
   *error = MissingNetwork(*this);
-  if (error->empty()) *error = NetworkViolation(*this);
   if (error->empty()) *error = StanceViolation(*this);
   if (error->empty()) *error = LossViolation(*this);
   if (error->empty()) *error = BodyViolation(*this);
@@ -123,8 +102,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Of earlier versions. A model that did not use them can still be read.
-constexpr const char* kRetiredWeights[] = {"stability_weight", "takeover_weight"};
+// Options of earlier versions, and their values that did nothing or are those of now. A model that
+// has these can still be read.
+constexpr std::pair<const char*, double> kRetiredOptions[] = {{"stability_weight", 0.0},
+                                                              {"takeover_weight", 0.0},
+                                                              {"ensemble", 1.0},
+                                                              {"mode_margin_per_s", 0.2}};
 // The parameters of the interaction term `drive`, which `interaction` would name.
 constexpr const char* kRetiredParameters[] = {"drive_gain", "drive_torque", "drive_time"};
 
@@ -237,8 +220,8 @@ ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
 
 FitOptions OptionsFrom(const Json& json) {
   FitOptions options;
-  for (const char* retired : kRetiredWeights) {
-    if (json.value(retired, 0.0) == 0.0) continue;
+  for (const auto& [retired, unused] : kRetiredOptions) {
+    if (json.value(retired, unused) == unused) continue;
     throw std::runtime_error(std::string(retired) +
                              " was an option of earlier versions; models fitted with it cannot be "
                              "read any more");

@@ -92,10 +92,9 @@ struct FitOptions {
   // Weight of the demand that people settle (cost_functions/rest_residual.h), which the data may
   // contradict (fit/weighted_solve.h): 0: none.
   double settling_weight = 0.0;
-  // Weight of the hinge that makes the free modes at rest decay by at least `mode_margin` 1/s; 0
-  // for models with no term that could feed a mode.
+  // Weight of the hinge that makes the free modes at rest decay; 0 for models with no term that
+  // could feed a mode.
   double mode_weight = 0.0;
-  double mode_margin = 0.2;
   // Which parameters may differ by unit: names, comma-separated, "all", "all,-mu" (all but mu)
   // or "none".
   std::string pool = "none";
@@ -126,7 +125,6 @@ struct FitOptions {
   int network_iterations = 200;  // of L-BFGS, or Adam's passes over the recordings, at most
   double network_rate = 1e-3;    // learning rate of Adam, which falls to a hundredth of it
   bool hold_network = false;     // its weights are taken as they are
-  int ensemble = 1;              // networks from so many seeds; predictions are their median
 
   // Weight of restored bodies against recorded ones (residuals/cost_functions/body_residual.h), and
   // what is known of the bodies, which no file holds; 0: pendulums alone.

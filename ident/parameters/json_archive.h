@@ -2,8 +2,8 @@
 //
 //   template <class Archive>
 //   void Fields(Archive& a, SolveStage& stage) {
-//     a("horizon", stage.horizon);
-//     a("initial_cost", stage.initial_cost);
+//     PUSHID_FIELDS(a, stage, horizon, iterations, cost);  // keys are the members' names
+//     a("initial_cost", stage.first_cost);
 //     if (a.Has("people")) a("people", stage.people);  // older files have none
 //   }
 //   Json json = JsonOf(stage);   SolveStage same = FromJson<SolveStage>(json);
@@ -25,6 +25,15 @@
 #include <vector>
 
 #include "ident/parameters/option_names.h"
+
+// At most sixty, by the macros with which nlohmann's JSON goes through members.
+#define PUSHID_FIELDS(archive, object, ...)                              \
+  do {                                                                   \
+    auto& fields_of = archive;                                           \
+    auto& has_fields = object;                                           \
+    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(PUSHID_FIELD, __VA_ARGS__)) \
+  } while (false)
+#define PUSHID_FIELD(name) fields_of(#name, has_fields.name);
 
 namespace pushid {
 

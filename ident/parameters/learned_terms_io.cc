@@ -114,14 +114,14 @@ Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::s
   InteractionChoice choice;
   std::string others;
   for (const std::string& part : SplitList(text, ',')) {
-    const bool ldp = part.rfind(kLdpNetworkTerm, 0) == 0;
-    if (!ldp && part.rfind(kNetworkTerm, 0) != 0) {
+    const bool ldp = (part + ":").rfind(kLdpNetworkTerm, 0) == 0;
+    if (!ldp && (part + ":").rfind(kNetworkTerm, 0) != 0) {
       others += (others.empty() ? "" : ",") + part;
       continue;
     }
     if (choice.pair.any()) return Error{flag + " names more than one network"};
     const size_t sizes_at = ldp ? kLdpNetworkTerm.size() : kNetworkTerm.size();
-    choice.pair = {HiddenSizes(part.substr(sizes_at)), ldp};
+    choice.pair = {HiddenSizes(part.substr(std::min(sizes_at, part.size()))), ldp};
     if (choice.pair.any()) continue;
     return Error{flag + " names '" + part +
                  "'; a network is network:4 or, as LDP's, ldp_network:512-512 (hidden sizes of 1 "

@@ -17,8 +17,9 @@ Row PresetRow() {
   Row row = WordsRow(
       "preset", OptionStage::kPreset,
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
-      "tail, posture-relative recovery), group (tail with linear self forces and contact, pooled "
-      "by setting), ldp (plain PD and friction from upright), ldp_groups (that with LDP's "
+      "tail, posture-relative recovery), group (tail with contact, pooled by setting; with feet "
+      "that slide, linear self forces too), ldp (plain PD and friction from upright), ldp_groups "
+      "(that with LDP's "
       "potential and torques between people, and a small network beside them), or ldp_published "
       "(LDP with all its networks, of one person or of groups)",
       nullptr);
@@ -124,13 +125,6 @@ Row PresetPriorsRow() {
       [](bool value, FitOptions* o) { o->preset_priors = value; });
 }
 
-std::string FrictionHelp() {
-  std::string text;
-  for (const auto& law : Names(FrictionKind{}))
-    text += (text.empty() ? "" : " or ") + std::string(law.name);
-  return text;
-}
-
 std::string InteractionHelp() {
   std::string text =
       "interaction between people: none, or some of these, comma-separated: contact (smooth and "
@@ -167,22 +161,6 @@ Row InteractionRow() {
   return row;
 }
 
-Row InteractionNetworkRow() {
-  return WordsRow(
-      "interaction_network", OptionStage::kModel,
-      "JSON file of the network that --interaction=network evaluates "
-      "(ident/parameters/learned_terms_io.h)",
-      [](const std::string& text, FitOptions* o) -> MaybeError {
-        if (!o->model.interaction.network) {
-          return Error{"--interaction_network is given, but --interaction does not name network"};
-        }
-        const auto network = ReadInteractionNetwork(text);
-        if (!network.ok()) return network.error();
-        o->model.interaction_network = network.value();
-        return std::nullopt;
-      });
-}
-
 }  // namespace
 
 std::vector<Row> ModelOptionRows() {
@@ -205,7 +183,7 @@ std::vector<Row> ModelOptionRows() {
           NameRow<GainScaling>("gain_scaling", "/gain_scaling", &ModelOptions::gain_scaling,
                                "gains of other bodies: none, mass, or body (mass and rod length)")),
       Decided(NameRow<FrictionKind>("friction", "/friction", &ModelOptions::friction,
-                                    FrictionHelp().c_str())),
+                                    AnyName<FrictionKind>().c_str())),
       Decided(NameRow<PushUse>("push", "/push", &ModelOptions::push,
                                "as_recorded (honour push_kind) or added")),
       Decided(NameRow<PushTail>("push_tail", "/push_tail", &ModelOptions::push_tail,
@@ -223,7 +201,6 @@ std::vector<Row> ModelOptionRows() {
       NameRow<CartDerivative>("cart_derivative", "/cart_derivative", &ModelOptions::cart_derivative,
                               "none or backward: lets Kd_x and Kd_y act"),
       InteractionRow(),
-      InteractionNetworkRow(),
       MayBeAbsent(NameRow<ProcessNoiseTerms>(
           "process_noise", "/process_noise", &ModelOptions::process_noise,
           "white-noise forces in addition to all others: none, diagonal, or full (correlated); "
@@ -260,9 +237,6 @@ std::vector<FitOptionRow> NetworkOptionRows() {
           "early_stopping", "/early_stopping", &O::early_stopping,
           {0.0, 0.5, false, "must lie between 0 and 0.5"},
           "share of the recordings held out for early stopping of a network's training; 0: none")),
-      MayBeAbsent(CountRow(
-          "ensemble", "/ensemble", &O::ensemble,
-          "number of networks, trained from different seeds; the model predicts their median")),
   };
 }
 

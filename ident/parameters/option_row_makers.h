@@ -44,7 +44,6 @@ inline constexpr double kAnyNumber = std::numeric_limits<double>::max();
 inline constexpr OptionRange kPositive = {0.0, kAnyNumber, true, "must be positive"};
 inline constexpr OptionRange kNotNegative = {0.0, kAnyNumber, false,
                                              "must be a number of at least 0"};
-inline constexpr OptionRange kNumber = {-kAnyNumber, kAnyNumber, false, "must be a number"};
 
 // "--sigma_hip is 'abc'; it must be positive".
 Error BadOption(const std::string& name, const std::string& value, const std::string& must);

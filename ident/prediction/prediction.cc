@@ -18,28 +18,6 @@
 namespace pushid {
 namespace {
 
-Prediction PredictOne(const ModelOptions& options,
-                      const std::vector<ParameterSet<double>>& parameters,
-                      const PendulumRecording& recording, int frames) {
-  Prediction prediction;
-  prediction.parts = ReportedParts(options);
-  prediction.rod_moves = RodMoves(options);
-  prediction.feet_step = options.stance == Stance::kSteps;
-  for (const ParameterSet<double>& own : parameters) prediction.rod_lift.push_back(own[kRodLift]);
-  prediction.status = RolloutInOwnAxes(recording, options, parameters, frames, &prediction.path,
-                                       &prediction.forces);
-  if (!prediction.status.ok) return prediction;
-  for (int n = 0; n < recording.scene.num_people(); ++n) {
-    std::vector<Vector3<double>> hip;
-    for (int t = 0; t < frames; ++t) {
-      hip.push_back(
-          HipPosition(prediction.BodyAt(recording.scene, t, n), prediction.path.At(t, n).q));
-    }
-    prediction.hip.push_back(std::move(hip));
-  }
-  return prediction;
-}
-
 void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
               Prediction* prediction) {
   if (!model.step_probability) return;
@@ -54,20 +32,23 @@ void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording, int num_frames,
                    double effect) {
   const int frames = num_frames > 0 ? num_frames : recording.num_frames();
-  std::vector<Prediction> stayed, left;  // in the model's domain, or not
-  const auto add = [&](Prediction prediction) {
-    (prediction.status.ok ? stayed : left).push_back(std::move(prediction));
-  };
-  add(PredictOne(model.options, PeoplesParameters(model, recording, effect), recording, frames));
-  for (const EnsembleMember& member : model.others) {
-    ModelOptions options = model.options;
-    options.learned = member.network;
-    ParameterSet<double> parameters = member.parameters;
-    ApplyEffect(effect, &parameters);
-    add(PredictOne(options, {parameters}, recording, frames));
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording, effect);
+  Prediction prediction;
+  prediction.parts = ReportedParts(model.options);
+  prediction.rod_moves = RodMoves(model.options);
+  prediction.feet_step = model.options.stance == Stance::kSteps;
+  for (const ParameterSet<double>& own : parameters) prediction.rod_lift.push_back(own[kRodLift]);
+  prediction.status = RolloutInOwnAxes(recording, model.options, parameters, frames,
+                                       &prediction.path, &prediction.forces);
+  if (!prediction.status.ok) return prediction;
+  for (int n = 0; n < recording.scene.num_people(); ++n) {
+    std::vector<Vector3<double>> hip;
+    for (int t = 0; t < frames; ++t) {
+      hip.push_back(
+          HipPosition(prediction.BodyAt(recording.scene, t, n), prediction.path.At(t, n).q));
+    }
+    prediction.hip.push_back(std::move(hip));
   }
-  if (left.size() >= stayed.size()) return left.front();
-  Prediction prediction = stayed.size() == 1 ? stayed.front() : MedianPrediction(recording, stayed);
   AddSteps(model, recording, &prediction);
   return prediction;
 }
@@ -133,57 +114,6 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
     }
   }
   return WriteFileAtomically(path, text);
-}
-
-namespace {
-
-// The median of what `value` picks from each of them.
-template <typename Pick>
-double MedianOf(const std::vector<Prediction>& predictions, const Pick& value) {
-  std::vector<double> values;
-  for (const Prediction& prediction : predictions) values.push_back(value(prediction));
-  return Median(std::move(values));
-}
-
-template <typename Vector, typename Pick>
-Vector MedianVector(const std::vector<Prediction>& predictions, const Pick& vector) {
-  Vector median;
-  for (int i = 0; i < median.size(); ++i) {
-    median[i] = MedianOf(predictions, [&](const Prediction& p) { return vector(p)[i]; });
-  }
-  return median;
-}
-
-NetForce<double> MedianForce(const std::vector<Prediction>& predictions, int frame, int person) {
-  NetForce<double> median;
-  for (ForcePart part : kForceParts) {
-    median[part] = MedianVector<Vector4<double>>(
-        predictions, [&](const Prediction& p) { return p.forces.At(frame, person)[part]; });
-  }
-  return median;
-}
-
-}  // namespace
-
-Prediction MedianPrediction(const PendulumRecording& recording,
-                            const std::vector<Prediction>& predictions) {
-  Prediction median = predictions.front();
-  for (int n = 0; n < static_cast<int>(median.rod_lift.size()); ++n) {
-    median.rod_lift[n] = MedianOf(predictions, [n](const Prediction& p) { return p.Lift(n); });
-  }
-  for (int t = 0; t < median.path.num_frames(); ++t) {
-    for (int n = 0; n < recording.scene.num_people(); ++n) {
-      PendulumState<double>& state = median.path.At(t, n);
-      state.q = MedianVector<Vector4<double>>(
-          predictions, [&](const Prediction& p) { return p.path.At(t, n).q; });
-      state.qd = MedianVector<Vector4<double>>(
-          predictions, [&](const Prediction& p) { return p.path.At(t, n).qd; });
-      state.rod = MedianOf(predictions, [&](const Prediction& p) { return p.path.At(t, n).rod; });
-      median.hip[n][t] = HipPosition(median.BodyAt(recording.scene, t, n), state.q);
-      median.forces.At(t, n) = MedianForce(predictions, t, n);
-    }
-  }
-  return median;
 }
 
 Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,

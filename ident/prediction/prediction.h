@@ -65,11 +65,6 @@ MaybeError WriteTrajectoryCsv(const std::string& path, const PendulumRecording& 
 Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
                              int observed);
 
-// The predictions of an ensemble put together by their median, frame by frame, person by person; at
-// least one of them, all of them whole and equally long.
-Prediction MedianPrediction(const PendulumRecording& recording,
-                            const std::vector<Prediction>& predictions);
-
 // What is odd about recordings that a model is to predict: recordings in other units than they say,
 // people who stand together under a model without contact, pushes beyond those of the fit.
 // Sentences for GroupedWarnings.

@@ -117,7 +117,6 @@ IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<doub
     }
   };
   for (auto& [unit, set] : drawn.by_unit) shift(&set);
-  for (EnsembleMember& member : drawn.others) shift(&member.parameters);
   return drawn;
 }
 

@@ -49,8 +49,7 @@ struct BandOptions {
 Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& result,
                                                            const BandOptions& options);
 
-// The model with other shared values; units and members of an ensemble keep their deviation from
-// them on the fitted scale.
+// The model with other shared values; units keep their deviation from them on the fitted scale.
 IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<double>& shared);
 
 // Of the pushed person: measured less predicted, over impulse per mass, frame by frame.

@@ -11,6 +11,7 @@
 namespace pushid {
 namespace {
 
+constexpr double kLeastDecay = 0.2;  // 1/s, asked of free modes at rest
 constexpr double kStagePrior = 5.0;  // factor on a log scale, multiple on the others
 
 using Family = ResidualFamily;
@@ -134,10 +135,9 @@ void AddSettling(const Family& family, const Place& at) {
 void AddModes(const Family& family, const Place& at) {
   const Options& o = at.problem.options();
   const Body body = SettlingScene(kSettlingMass, 0.0).people[0].body;
-  at.built->Add(
-      std::make_unique<ModalStabilityResidual>(o.model, body, at.problem.map(), o.mode_margin,
-                                               o.mode_weight, !at.unit.empty()),
-      UnitBlocks(at), family.cluster);
+  at.built->Add(std::make_unique<ModalStabilityResidual>(
+                    o.model, body, at.problem.map(), kLeastDecay, o.mode_weight, !at.unit.empty()),
+                UnitBlocks(at), family.cluster);
 }
 
 }  // namespace

@@ -13,11 +13,12 @@
 #include "ident/validation/scores_report.h"
 
 namespace pushid {
-namespace {
 
 std::string Count(int number, const std::string& noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
+
+namespace {
 
 std::string PoolingText(const FitOptions& options) {
   for (const ParameterSpec& spec : options.table.specs) {
@@ -61,10 +62,6 @@ std::string NetworkText(const FitResult& result) {
   std::string text = (network->shape.any() ? "network " : "") + LearnedName(*network) + " (" +
                      Count(network->num_weights(), "weight") + ", " + TrainingText(result.options) +
                      ")";
-  if (!result.others.empty()) {
-    text += ", the first of " + std::to_string(result.others.size() + 1) +
-            " seeds; predictions are their median";
-  }
   const auto signed_number = [](double value) {
     return (value < 0.0 ? "" : "+") + Rounded(value, 3);
   };

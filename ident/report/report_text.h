@@ -15,6 +15,9 @@
 
 namespace pushid {
 
+// "1 score", "2 scores".
+std::string Count(int number, const std::string& noun);
+
 // The parameter table, what is derived, what the data cannot tell apart, what the fitted person
 // does after a push, warnings.
 std::string ReportText(const FittedModel& model);

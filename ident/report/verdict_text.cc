@@ -142,11 +142,12 @@ std::string ModelVerdictText(const ModelVerdict& v) {
   }
   return "The model check found no contradiction: " + std::to_string(v.NumTested()) +
          " quantities that are taken as known (p = " + Rounded(v.p_assumptions, 2) + "), " +
-         std::to_string(v.parts.size()) +
-         " scores of parts of the data (p = " + Rounded(v.p_parts, 2) + ") and " +
-         std::to_string(v.motion.tests.size()) +
-         " measures of feet and hips (p = " + Rounded(v.p_motion, 2) + "; each after all tests, " +
-         std::to_string(v.freedom) + " degrees of freedom)" +
+         Count(static_cast<int>(v.parts.size()), "score") +
+         " of parts of the data (p = " + Rounded(v.p_parts, 2) + ") and " +
+         Count(static_cast<int>(v.motion.tests.size()), "measure") +
+         " of feet and hips (p = " + Rounded(v.p_motion, 2) + "; each after all tests, " +
+         std::to_string(v.freedom) + " degrees of freedom; less than " + Rounded(kVerdictLevel, 2) +
+         " contradicts)" +
          (std::isnan(v.motion.explained)
               ? std::string("; nobody saw the motion.")
               : "; it explains " + Rounded(100.0 * v.motion.explained, 3) +

@@ -30,7 +30,7 @@ class FoldJudge {
   MaybeError AddSpreads(const BodyRecording& recording, GeneratorValidation* result) const {
     GroupHips hips;
     std::map<std::string, BodyScore> unused;
-    if (NeedsHips(validation_.changes)) {
+    if (validation_.changes.diffusion.blend > 0.0) {
       Result<GroupHips> predicted = Hips(recording, trained_.settings, &unused);
       if (!predicted.ok()) return predicted.error();
       hips = std::move(predicted.value());
@@ -78,10 +78,6 @@ class FoldJudge {
   }
 
  private:
-  bool NeedsHips(const GeneratorChanges& changes) const {
-    return changes.diffusion.blend > 0.0 || trained_.settings.pendulum;
-  }
-
   // Where the fold's physics have everybody; nothing without physics.
   Result<GroupHips> Hips(const BodyRecording& recording, const GeneratorSettings& settings,
                          std::map<std::string, BodyScore>* scores) const {
@@ -106,7 +102,7 @@ class FoldJudge {
     GeneratorSettings settings = trained_.settings;
     settings.observed = observed;
     GroupHips hips;
-    if (NeedsHips(changes)) {
+    if (changes.diffusion.blend > 0.0) {
       Result<GroupHips> predicted = Hips(recording, settings, scores);
       if (!predicted.ok()) return predicted.error();
       hips = std::move(predicted.value());
@@ -141,19 +137,15 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
   for (const Fold& fold : made.value()) {
     const std::vector<int> among = Others(fold.held_out, total);
     std::optional<IdentifiedModel> model;
-    std::vector<GroupHips> hips;
     if (!validation.pendulums.empty()) {
       model = validation.pendulums[&fold - made.value().data()];
     } else if (validation.physics) {
       if (progress) progress(fold.name + ", physics", 0.0);
-      Result<FittedFolds> fitted =
-          FitFolds(pendulums, among, *validation.physics, validation.pendulum_input ? kHipFolds : 0,
-                   options.seed);
+      Result<FittedFolds> fitted = FitFolds(pendulums, among, *validation.physics, 0, options.seed);
       if (!fitted.ok()) return Error{fold.name + ": " + fitted.error().message};
-      if (validation.pendulum_input) hips = HipsOf(recordings, among, fitted.value().predictions);
       model = std::move(fitted.value().model);
     }
-    const GeneratorSamples samples = SamplesOf(recordings, among, {}, validation.observed, hips);
+    const GeneratorSamples samples = SamplesOf(recordings, among, {}, validation.observed);
     GeneratorTrainingOptions of_fold = options;
     SetForData(samples, &of_fold);
     const double before = Now();

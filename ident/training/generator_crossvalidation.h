@@ -5,8 +5,7 @@
 //   generator_all_frames       the recording as far as it is shown, then the forecast
 //   generator_unblended        without the physics that the forecast is blended with
 //   generator_blend_0.25       the same with another share of physics, where such are compared
-//   rigid                      those physics alone, first poses carried by the rods' tips; where
-//                              they go into the network, they know frame 0 alone
+//   rigid                      those physics alone, first poses carried by the rods' tips
 //   generator_shown_20         of kinds that are trained for it: shown 20 frames, no physics; not
 //                              where shares of physics are compared
 //   static, constant_velocity  as in body_evaluation.h, shown as many frames as the generator
@@ -32,7 +31,6 @@ struct GeneratorValidationOptions {
   FoldScheme scheme = FoldScheme::kStratified;
   int folds = 0;
   std::optional<FitOptions> physics;            // of the pendulum, fitted in every fold too
-  bool pendulum_input = false;                  // the pendulum goes into diffusion
   GeneratorChanges changes;                     // as in its use
   std::vector<double> blends;                   // to compare with, besides that of changes
   int samples = 0;                              // futures of diffusion for every recording; 0: none

@@ -15,6 +15,8 @@
 namespace pushid {
 namespace {
 
+constexpr double kRidgePenalty = 1e-2;  // m^2
+
 void AddTo(ContentHash* hash, const Eigen::MatrixXf& values) {
   hash->Add({reinterpret_cast<const char*>(values.data()),
              static_cast<size_t>(values.size()) * sizeof(float)});
@@ -57,16 +59,15 @@ std::string KeyOf(const GeneratorSamples& samples, const DiffusionTrainingOption
       for (const ObservedMotion& person : group) {
         AddTo(&hash, person.frames);
         AddTo(&hash, person.controls);
-        AddTo(&hash, person.pendulum);
         AddTo(&hash, Eigen::Vector3f(person.place.x(), person.place.y(), person.mass));
       }
     }
   }
   return Joined("diffusion 3 " + NameOf(o.structure.pooling) + " " + NameOf(o.structure.join) +
                     " " + NameOf(o.structure.frame),
-                hash, o.structure.pendulum, o.steps, o.groups, o.people_alone, o.warm_up,
-                o.learning_rate, o.weight_decay, o.clip, o.averaging, o.dropout, o.joint_weight,
-                o.difference_weight, o.bystanders, o.turn, o.size, o.dt, o.seed);
+                hash, o.steps, o.groups, o.people_alone, o.warm_up, o.learning_rate, o.weight_decay,
+                o.clip, o.averaging, o.dropout, o.joint_weight, o.difference_weight, o.bystanders,
+                o.turn, o.size, o.dt, o.seed);
 }
 
 // The options of a seed.
@@ -135,7 +136,7 @@ Result<SharedNetworks> TrainParticles(const GeneratorSamples& samples,
     for (const Trajectories& motion : samples.ridge) {
       fit.Add(motion, samples.settings.observed, samples.settings.predicted);
     }
-    particles->partners.ridge = fit.Solve(options.ridge_penalty);
+    particles->partners.ridge = fit.Solve(kRidgePenalty);
     particles->ridge_share = options.ridge_share;
   }
   return SharedNetworks(particles);
@@ -200,13 +201,9 @@ std::vector<LearntParticles> People(const std::vector<BodyRecording>& recordings
 }
 
 std::vector<ObservedGroup> ObservedGroups(const std::vector<BodyRecording>& recordings,
-                                          const std::vector<int>& among,
-                                          const std::vector<GroupHips>& pendulums) {
+                                          const std::vector<int>& among) {
   std::vector<ObservedGroup> groups;
-  for (int i : among) {
-    if (!pendulums.empty() && pendulums[i].empty()) continue;
-    groups.push_back(GroupOf(recordings[i], pendulums.empty() ? GroupHips() : pendulums[i]));
-  }
+  for (int i : among) groups.push_back(GroupOf(recordings[i]));
   return groups;
 }
 
@@ -233,27 +230,15 @@ GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation) {
   return samples;
 }
 
-std::vector<GroupHips> HipsOf(const std::vector<BodyRecording>& recordings,
-                              const std::vector<int>& among,
-                              const std::vector<Prediction>& predictions) {
-  std::vector<GroupHips> hips(recordings.size());
-  for (size_t k = 0; k < among.size(); ++k) {
-    if (predictions[k].path.num_frames() == 0) continue;
-    hips[among[k]] = PendulumHips(recordings[among[k]], predictions[k]);
-  }
-  return hips;
-}
-
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            const std::vector<int>& among, const std::vector<int>& held,
-                           int observed, const std::vector<GroupHips>& pendulums) {
+                           int observed) {
   GeneratorSamples samples;
   GeneratorSettings& settings = samples.settings;
   settings.data = GeneratorData::kPushes;
   settings.observed = observed;
   settings.rate = 1.0 / recordings.front().pendulum.scene.dt;
   settings.layout = PushLayout(recordings.front().joint_names);
-  settings.pendulum = !pendulums.empty();
   std::set<PushKind> kinds;
   for (int i : among) {
     for (const PushKind kind : PushKindsOf(recordings[i].pendulum.scene)) kinds.insert(kind);
@@ -261,8 +246,8 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
   settings.push_kinds.assign(kinds.begin(), kinds.end());
   samples.learnt = People(recordings, among);
   samples.held = People(recordings, held);
-  samples.groups = ObservedGroups(recordings, among, pendulums);
-  samples.held_groups = ObservedGroups(recordings, held, pendulums);
+  samples.groups = ObservedGroups(recordings, among);
+  samples.held_groups = ObservedGroups(recordings, held);
   int longest = observed + 1;
   for (const auto& motion : samples.learnt) {
     longest = std::max(longest, static_cast<int>(motion.motion.cols()));
@@ -274,7 +259,6 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options) {
   const GeneratorSettings& settings = samples.settings;
   options->diffusion.dt = 1.0 / settings.rate;
-  options->diffusion.structure.pendulum = settings.pendulum;
   ParticleTrainingOptions& particles = options->particles;
   particles.observed = settings.observed;
   particles.predicted = settings.predicted;

@@ -6,7 +6,6 @@
 
 #include "datasets/loading/mocap_folder.h"
 #include "ident/generators/push_particles.h"
-#include "ident/prediction/prediction.h"
 #include "ident/training/training_run.h"
 
 namespace pushid {
@@ -20,7 +19,6 @@ struct GeneratorTrainingOptions : TrainerOptions, CheckpointOptions, KindTrainin
   // cmu: of the blend that particles are part of.
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;
   double simlpe_share = ParticleGeneratorOptions{}.simlpe_share;
-  double ridge_penalty = 1e-2;  // m^2
 };
 
 struct GeneratorSamples {
@@ -34,19 +32,10 @@ struct GeneratorSamples {
 // otherwise only show how the training goes.
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation);
 
-// Where physics have everybody who were fitted to other recordings of `among`, by recording;
-// nothing of recordings that are not among them, or whose rollout failed. predictions: of
-// FitFolds, with as many folds as kHipFolds.
-inline constexpr int kHipFolds = 4;
-std::vector<GroupHips> HipsOf(const std::vector<BodyRecording>& recordings,
-                              const std::vector<int>& among,
-                              const std::vector<Prediction>& predictions);
-
 // Every person of the recordings `among`, whole; those of `held` show how the training goes.
-// pendulums: HipsOf, of which diffusion leaves out recordings without any; or empty.
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            const std::vector<int>& among, const std::vector<int>& held,
-                           int observed, const std::vector<GroupHips>& pendulums = {});
+                           int observed);
 
 // Options that the data decide: frames of a window, where it starts, controls, the rate.
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options);

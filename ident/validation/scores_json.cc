@@ -15,21 +15,12 @@ namespace pushid {
 
 template <class Archive>
 void Fields(Archive& a, StepFifth& f) {
-  a("tracks", f.tracks);
-  a("predicted", f.predicted);
-  a("observed", f.observed);
+  PUSHID_FIELDS(a, f, tracks, predicted, observed);
 }
 
 template <class Archive>
 void Fields(Archive& a, StepScore& s) {
-  a("tracks", s.tracks);
-  a("stepped", s.stepped);
-  a("people", s.people);
-  a("brier", s.brier);
-  a("brier_error", s.brier_error);
-  a("auc", s.auc);
-  a("auc_error", s.auc_error);
-  a("fifths", s.fifths);
+  PUSHID_FIELDS(a, s, tracks, stepped, people, brier, brier_error, auc, auc_error, fifths);
   if (!a.Has("lift_off", s.lift_off.people > 0)) return;
   a.Group("lift_off", [&](auto& g) {
     g("people", s.lift_off.people);
@@ -42,8 +33,7 @@ void Fields(Archive& a, StepScore& s) {
 
 void Fields(JsonWriter& a, StepPrediction& s) {
   a("margin_m", s.margin);
-  a("probability", s.probability);
-  a("stepped", s.stepped);
+  PUSHID_FIELDS(a, s, probability, stepped);
   if (!s.timing) return;
   // All null where the model has the person stand.
   std::optional<Eigen::Vector2d> travel;
@@ -75,10 +65,7 @@ template <class Archive>
 void Fields(Archive& a, PropagationSummary& s) {
   a("recordings", s.recordings);
   a.Written("onset_distance_m", [] { return kOnsetDistance; });
-  a("movers", s.movers);
-  a("bystanders", s.bystanders);
-  a("missed_movers", s.missed_movers);
-  a("false_movers", s.false_movers);
+  PUSHID_FIELDS(a, s, movers, bystanders, missed_movers, false_movers);
   for (int i = 0; i < kNumPropagationFigures; ++i) {
     FigureField(a, Info(static_cast<PropagationFigure>(i)).key, s.figures[i]);
   }
@@ -117,8 +104,7 @@ void MeanFields(Archive& a, MeanScore& mean, const ShownMetrics& shown) {
   ErrorFields(a, mean.error, shown);
   a("recordings", mean.recordings);
   if (a.Has("clustered_by")) {
-    a("clustered_by", mean.clustered_by);
-    a("clusters", mean.clusters);
+    PUSHID_FIELDS(a, mean, clustered_by, clusters);
   } else {  // older files: they were recordings
     mean.clusters = mean.recordings;
   }
@@ -126,8 +112,7 @@ void MeanFields(Archive& a, MeanScore& mean, const ShownMetrics& shown) {
 
 template <class Archive>
 void RecordingFields(Archive& a, RecordingScore& r, const ScoreSummary& of) {
-  a("id", r.id);
-  a("frames", r.frames);
+  PUSHID_FIELDS(a, r, id, frames);
   if (a.Has("failure", !r.failure.empty())) {
     a("failure", r.failure);
   } else {
@@ -183,11 +168,9 @@ using Json = nlohmann::ordered_json;
 
 // A table of folds: those of a cross-validation.
 void FoldFields(JsonWriter& a, FoldScore& fold, const ShownMetrics& shown) {
-  a("name", fold.name);
-  a("held_out", fold.held_out);
+  PUSHID_FIELDS(a, fold, name, held_out);
   MetricFields(a, fold, shown);
-  a("failures", fold.failures);
-  a("falls", fold.falls);
+  PUSHID_FIELDS(a, fold, failures, falls);
   if (fold.behaviour) a("behaviour", ToJson(*fold.behaviour));
   if (fold.propagation.recordings > 0) a("propagation", fold.propagation);
 }
@@ -224,8 +207,7 @@ Json ToJson(const CrossValidation& validation) {
   JsonWriter a(&json);
   a("name", v.predictor);
   SummaryFields(a, v.summary, true);
-  a("failures", v.failures);
-  a("falls", v.falls);
+  PUSHID_FIELDS(a, v, failures, falls);
   a("falls_when_pushed_harder", v.falls_harder);
   if (v.groups) a("group_metrics", ToJson(*v.groups));
   if (v.fits > 0) {
@@ -251,8 +233,7 @@ Json ToJson(const PairedDifference& difference) {
     a(metric.Key().c_str(), d.*metric.value);
     a(metric.ErrorKey().c_str(), d.error.*metric.value);
   }
-  a("clustered_by", d.clustered_by);
-  a("clusters", d.clusters);
+  PUSHID_FIELDS(a, d, clustered_by, clusters);
   return json;
 }
 

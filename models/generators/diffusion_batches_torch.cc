@@ -107,18 +107,16 @@ DiffusionBatch WithoutMaps(const GroupFeatures& features, const DiffusionStructu
 // Groups of one batch.
 DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vector<int>& past,
                       const MotionScales& scales, const DiffusionTrainingOptions& options) {
-  const bool pendulum = options.structure.pendulum;
   std::vector<torch::Tensor> truth, given, weights, step_weights, statics;
   DiffusionBatch all;
   for (size_t g = 0; g < groups.size(); ++g) {
     const int frames = FramesOf(groups[g]);
-    const GroupFeatures features =
-        FeaturesOf(groups[g], scales, past[g], frames, options.dt, pendulum);
+    const GroupFeatures features = FeaturesOf(groups[g], scales, past[g], frames, options.dt);
     const DiffusionBatch one = WithoutMaps(features, options.structure);
     torch::Tensor of_person = torch::ones({frames, 1});
     of_person.narrow(0, 0, past[g]).fill_(kObservedWeight);
     for (const ObservedMotion& person : groups[g]) {
-      truth.push_back(ToTensor(MotionRows(person, scales, pendulum)));
+      truth.push_back(ToTensor(MotionRows(person, scales)));
       weights.push_back(of_person);
     }
     of_person = of_person.clone();
@@ -159,10 +157,6 @@ void DiffusionBatches::AddBystanders(ObservedGroup* group) const {
     const Eigen::VectorXf first = person.frames.col(0);
     person.frames = first.replicate(1, group->front().frames.cols());
     person.controls = {};
-    if (person.pendulum.size() > 0) {
-      const Eigen::VectorXf place = person.pendulum.col(0);
-      person.pendulum = place.replicate(1, person.frames.cols());
-    }
     const double way = Uniform(kNearestBystander, kFarthestBystander);
     const double angle = Uniform(-M_PI, M_PI);
     // Seen from the outermost in that direction, so that nobody is nearer.

@@ -13,8 +13,6 @@ constexpr float kUsualMass = 80.0f, kUsualHip = 1.0f;              // kg, m
 constexpr float kFirstPoseShare = 0.5f;
 constexpr float kFramesUnit = 15.0f;
 
-using Columns = Eigen::Matrix3Xf;
-
 // Joints seen from the hip; the hip's own rows are its place.
 Trajectories FromHip(const Trajectories& frames) {
   Trajectories seen = frames;
@@ -23,12 +21,9 @@ Trajectories FromHip(const Trajectories& frames) {
 }
 
 // Since frame 0; m.
-Trajectories Moved(const ObservedMotion& person, bool pendulum) {
+Trajectories Moved(const ObservedMotion& person) {
   Trajectories moved = FromHip(person.frames);
   moved.colwise() -= Eigen::VectorXf(moved.col(0));
-  if (!pendulum) return moved;
-  const Columns physics = person.pendulum.leftCols(moved.cols());
-  moved.topRows(3) -= physics.colwise() - Eigen::Vector3f(physics.col(0));
   return moved;
 }
 
@@ -103,7 +98,7 @@ JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups
   float frames = 0.0f;
   for (const auto& group : groups) {
     for (const ObservedMotion& person : group) {
-      const Trajectories moved = Moved(person, false);
+      const Trajectories moved = Moved(person);
       for (int j = 0; j < kBodyJoints; ++j) {
         squares[j] += moved.middleRows(3 * j, 3).squaredNorm() / 3.0f;
       }
@@ -148,37 +143,32 @@ MotionScales OwnFrameScalesOf(const std::vector<std::vector<ObservedMotion>>& gr
   return scales;
 }
 
-Eigen::MatrixXf MotionRows(const ObservedMotion& person, const MotionScales& scales,
-                           bool pendulum) {
+Eigen::MatrixXf MotionRows(const ObservedMotion& person, const MotionScales& scales) {
   if (scales.own_frames()) {
     return scales.spread.cwiseInverse().asDiagonal() * (OwnRows(person).colwise() - scales.mean);
   }
-  return ByCoordinate(scales.joints).cwiseInverse().asDiagonal() * Moved(person, pendulum);
+  return ByCoordinate(scales.joints).cwiseInverse().asDiagonal() * Moved(person);
 }
 
 Trajectories FromMotionRows(const Eigen::MatrixXf& rows, const ObservedMotion& person,
-                            const MotionScales& scales, bool pendulum) {
+                            const MotionScales& scales) {
   if (scales.own_frames()) {
     const Eigen::MatrixXf spread = scales.spread.asDiagonal() * rows;
     return FromOwnRows(spread.colwise() + scales.mean, person);
   }
   Trajectories frames = ByCoordinate(scales.joints).asDiagonal() * rows;
-  if (pendulum) {
-    const Columns physics = person.pendulum.leftCols(rows.cols());
-    frames.topRows(3) += physics.colwise() - Eigen::Vector3f(physics.col(0));
-  }
   frames.colwise() += Eigen::VectorXf(FromHip(person.frames.leftCols(1)));
   for (int j = 1; j < kBodyJoints; ++j) frames.middleRows(3 * j, 3) += frames.topRows(3);
   return frames;
 }
 
 GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const MotionScales& scales,
-                         int observed, int frames, double dt, bool pendulum) {
+                         int observed, int frames, double dt) {
   GroupFeatures features;
   features.people = static_cast<int>(group.size());
   features.frames = frames;
   const int rows = scales.rows();
-  features.given = Eigen::MatrixXf::Zero(GivenRows(pendulum, rows), features.people * frames);
+  features.given = Eigen::MatrixXf::Zero(GivenRows(rows), features.people * frames);
   features.statics.resize(kStaticRows, features.people);
   features.places.resize(2, features.people);
   const Eigen::MatrixXf push = PushOf(group, frames);
@@ -190,15 +180,10 @@ GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const MotionS
     const ObservedMotion& person = group[n];
     auto given = features.given.middleCols(n * frames, frames);
     if (observed > 0) {
-      given.topLeftCorner(rows, observed) = MotionRows(person, scales, pendulum).leftCols(observed);
+      given.topLeftCorner(rows, observed) = MotionRows(person, scales).leftCols(observed);
       given.row(rows).head(observed).setOnes();
     }
     given.middleRows(rows + 1, kPushRows) = push / kForceUnit;
-    if (pendulum) {
-      const Columns physics = person.pendulum.leftCols(frames);
-      given.bottomRows(3) =
-          (physics.colwise() - Eigen::Vector3f(physics.col(0))) / scales.joints[kBodyHip];
-    }
     const Trajectories first = FromHip(person.frames.leftCols(1));
     const Eigen::Vector2f from_source = person.place - source;
     const Eigen::MatrixXf pose = scales.first_pose.Scaled(first.bottomRows(kFirstPoseRows));

@@ -26,9 +26,7 @@ inline constexpr int kPushRows = 4;
 inline constexpr int kFirstPoseRows = 3 * (kBodyJoints - 1);
 inline constexpr int kStaticRows = kFirstPoseRows + 2 + 1 + 1 + 1 + kPushRows + 1;
 inline constexpr int kOwnFrameRows = kMotionRows + 2;
-inline int GivenRows(bool pendulum, int motion_rows = kMotionRows) {
-  return motion_rows + 1 + kPushRows + (pendulum ? 3 : 0);
-}
+inline int GivenRows(int motion_rows = kMotionRows) { return motion_rows + 1 + kPushRows; }
 
 // m, by joint: what a unit of a motion's row is.
 using JointScales = Eigen::Matrix<float, kBodyJoints, 1>;
@@ -64,13 +62,12 @@ struct GroupFeatures {
 // observed: the frames of each person that are shown, frames: of the whole motion. The push is that
 // of all people together.
 GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const MotionScales& scales,
-                         int observed, int frames, double dt, bool pendulum);
+                         int observed, int frames, double dt);
 
-// Rows of a motion: with physics (not in people's own frames) the hip is what they leave over.
-Eigen::MatrixXf MotionRows(const ObservedMotion& person, const MotionScales& scales, bool pendulum);
-// The motion that begins as the person's does; rows as above.
+Eigen::MatrixXf MotionRows(const ObservedMotion& person, const MotionScales& scales);
+// The motion that begins as the person's does.
 Trajectories FromMotionRows(const Eigen::MatrixXf& rows, const ObservedMotion& person,
-                            const MotionScales& scales, bool pendulum);
+                            const MotionScales& scales);
 
 // A group as it may as well have been: in the mirror, turned about z, of another size.
 struct GroupChange {

@@ -77,13 +77,9 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
                                                           const NormalSource& normal) const {
   const int count = static_cast<int>(people.size());
   const int seen = ObservedFrames(people);
-  const bool pendulum = network.structure.pendulum;
-  const GroupDenoiser denoise(network,
-                              FeaturesOf(people, network.scales, seen, frames, dt_, pendulum));
+  const GroupDenoiser denoise(network, FeaturesOf(people, network.scales, seen, frames, dt_));
   std::vector<Eigen::MatrixXf> past;
-  for (const ObservedMotion& person : people) {
-    past.push_back(MotionRows(person, network.scales, pendulum));
-  }
+  for (const ObservedMotion& person : people) past.push_back(MotionRows(person, network.scales));
   const std::vector<int> order = ByPlace(people);
   Eigen::MatrixXf fresh(network.structure.NumMotion(), count * frames), estimate;
   Draw(order, normal, &fresh);
@@ -104,8 +100,8 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
   }
   std::vector<Trajectories> motions;
   for (int n = 0; n < count; ++n) {
-    motions.push_back(FromMotionRows(estimate.middleCols(n * frames, frames), people[n],
-                                     network.scales, pendulum));
+    motions.push_back(
+        FromMotionRows(estimate.middleCols(n * frames, frames), people[n], network.scales));
   }
   for (Trajectories& motion : motions) {
     if (options_.settle == Settling::kNone) break;

@@ -56,7 +56,6 @@ constexpr EnumNames<MotionFrame, 2> Names(MotionFrame) {
 
 struct DiffusionStructure {
   SocialPooling pooling = SocialPooling::kLocal;
-  bool pendulum = false;  // where physics have the hip is given, and what they leave is predicted
   SocialJoin join = SocialJoin::kLevels;
   MotionFrame frame = MotionFrame::kGroup;
 
@@ -67,7 +66,7 @@ struct DiffusionStructure {
     return pooling == SocialPooling::kHeads && PoolsAfter(block);
   }
   int NumMotion() const { return frame == MotionFrame::kOwn ? kOwnFrameRows : kMotionRows; }
-  int NumInputs() const { return NumMotion() + GivenRows(pendulum, NumMotion()); }
+  int NumInputs() const { return NumMotion() + GivenRows(NumMotion()); }
 };
 
 inline constexpr int kDiffusionLevels = 4, kDiffusionBlocks = 8;  // four down, middle, three up

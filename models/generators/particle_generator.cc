@@ -20,16 +20,15 @@ class ColouredNoise {
  public:
   ColouredNoise(Eigen::Index rows, Eigen::Index columns, const ParticleGeneratorOptions& options)
       : memory_(static_cast<float>(options.noise_memory)),
-        scale_(static_cast<float>(options.noise_scale)),
         noise_(Eigen::MatrixXf::Zero(rows, columns)) {}
 
   const Eigen::MatrixXf& Next(const NormalSource& normal) {
     Eigen::MatrixXf fresh(noise_.rows(), noise_.cols());
     for (float& value : fresh.reshaped()) value = static_cast<float>(normal());
     const float share = is_first_ ? 1.0f : std::sqrt(1.0f - memory_ * memory_);
-    noise_ = memory_ * noise_ + scale_ * share * fresh;
+    noise_ = memory_ * noise_ + share * fresh;
     is_first_ = false;
-    const float constant = static_cast<float>(noise_.rows()) * std::log(scale_ * share);
+    const float constant = static_cast<float>(noise_.rows()) * std::log(share);
     change_ = 0.5f * (noise_.colwise().squaredNorm() - fresh.colwise().squaredNorm()).transpose();
     change_.array() -= constant;
     return noise_;
@@ -37,7 +36,7 @@ class ColouredNoise {
   const Eigen::VectorXf& log_likelihood_change() const { return change_; }
 
  private:
-  float memory_, scale_;
+  float memory_;
   bool is_first_ = true;
   Eigen::MatrixXf noise_;
   Eigen::VectorXf change_;

@@ -67,10 +67,10 @@ struct ParticleGeneratorOptions {
   double simlpe_share = 0.5;  // of siMLPe in the far future; 0 needs none
   bool project_bones = true;  // to the lengths of the last frame that was seen
   double jitter = 0.7;        // of the pose in sampled futures; as the members were trained
-  // Of the noise of sampled futures: e_t = memory e_{t-1} + sqrt(1 - memory^2) N(0, 1), times
-  // scale. Both were chosen on the validation split, where the noise that was learned, drawn anew
-  // every frame, covers 80 ms but too little of 1000 ms: errors of a forecast last.
-  double noise_memory = 0.32, noise_scale = 1.0;
+  // Of the noise of sampled futures: e_t = memory e_{t-1} + sqrt(1 - memory^2) N(0, 1). Chosen on
+  // the validation split, where the noise that was learned, drawn anew every frame, covers 80 ms
+  // but too little of 1000 ms: errors of a forecast last.
+  double noise_memory = 0.32;
   bool correlated_noise = true;  // off: coordinates are drawn independently
 };
 

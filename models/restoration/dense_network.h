@@ -1,8 +1,7 @@
 // models: a fully connected network of single-precision weights, evaluated for many inputs at once:
 // y = W_L e(... e(W_1 x + b_1) ...) + b_L, e = ELU (exp(x) - 1 below zero) or max(0, .).
-//
-// Apart from network_interaction.h, which is in double precision and has derivatives: a restoration
-// has neither need, but poses whole crowds. Its numbers are stored as named matrices.
+// Apart from learned_terms.h, which is in double precision and has derivatives: a restoration has
+// neither need, but poses whole crowds.
 #pragma once
 
 #include <Eigen/Core>

@@ -54,8 +54,7 @@ void TouchingPeople::FindContacts(Group* group, const PeopleNow& now,
   group->finder.ForEachPair([&](int n, int j) {
     Contact contact{first + n, first + j, first, group->finder.Of(n, j), false, 0.0};
     const PairForce<double> force =
-        InteractionBetween<double>(options_.interaction, options_.interaction_network.get(),
-                                   contact.pair, p, states[n], states[j]);
+        InteractionBetween<double>(options_.interaction, contact.pair, p, states[n], states[j]);
     contact.terms = force.acts;
     if (network_) {
       contact.gate =
@@ -105,9 +104,8 @@ void TouchingPeople::Backward(int step, const PeopleNow& now, const Matrix& by_r
 
 void TouchingPeople::TermsBack(const Contact& c, const PeopleNow& now, const Matrix& by_received,
                                Matrix* by_state, ParameterSet<double>* by_parameter) const {
-  const PairJacobian jacobian =
-      ComputePairJacobian(options_.interaction, options_.interaction_network.get(), c.pair,
-                          now.parameters[c.first], now.states[c.n], now.states[c.j]);
+  const PairJacobian jacobian = ComputePairJacobian(
+      options_.interaction, c.pair, now.parameters[c.first], now.states[c.n], now.states[c.j]);
   Eigen::Matrix<double, 1, 8> by_forces;
   by_forces << by_received.col(c.n).transpose(), by_received.col(c.j).transpose();
   AddToBoth(by_forces * jacobian.by_states, c.n, c.j, by_state);

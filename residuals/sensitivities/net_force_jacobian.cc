@@ -95,9 +95,8 @@ Vector4<double> StepJacobian::Velocity(int frame, int person,
     for (const auto& [n, j] : forces_.acting()) {
       if (n != person && j != person) continue;
       const Pair two = forces_.pairs().Of(n, j);
-      PairJacobian pair =
-          ComputePairJacobian(options_.interaction, options_.interaction_network.get(), two,
-                              forces_.Parameters(0), forces_.state(n), forces_.state(j));
+      PairJacobian pair = ComputePairJacobian(options_.interaction, two, forces_.Parameters(0),
+                                              forces_.state(n), forces_.state(j));
       if (options_.interaction.learned) {
         const LearnedTerms& learned = *options_.learned;
         AddLearnedPairJacobian(learned.pair, learned.weights.data() + learned.pair_at(), two,

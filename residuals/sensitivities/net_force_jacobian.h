@@ -65,9 +65,9 @@ struct PairJacobian {
   Eigen::Matrix<double, 8, kNumPairParameters> by_parameter;  // from kFirstPairParameter on
 };
 
-PairJacobian ComputePairJacobian(const InteractionTerms& terms, const InteractionNetwork* network,
-                                 const Pair& pair, const ParameterSet<double>& p,
-                                 const PosedPendulum<double>& n, const PosedPendulum<double>& j);
+PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
+                                 const ParameterSet<double>& p, const PosedPendulum<double>& n,
+                                 const PosedPendulum<double>& j);
 
 // Derivatives by what decides a body's masses: the height of the centre of mass of who
 // stands, and the masses that the table gives (models/mass_distribution.h).

@@ -119,9 +119,9 @@ PairJacobian ContactJacobian(const Pair& pair, const ParameterSet<double>& p,
 }
 
 // Jets over both states and all pair parameters, for terms other than contact.
-PairJacobian OtherJacobian(const InteractionTerms& terms, const InteractionNetwork* network,
-                           const Pair& pair, const ParameterSet<double>& p,
-                           const PendulumState<double>& n, const PendulumState<double>& j) {
+PairJacobian OtherJacobian(const InteractionTerms& terms, const Pair& pair,
+                           const ParameterSet<double>& p, const PendulumState<double>& n,
+                           const PendulumState<double>& j) {
   using Jet = ceres::Jet<double, 16 + kNumPairParameters>;
   PendulumState<Jet> a, b;
   for (int i = 0; i < 4; ++i) {
@@ -134,7 +134,7 @@ PairJacobian OtherJacobian(const InteractionTerms& terms, const InteractionNetwo
   for (int i = 0; i < kNumPairParameters; ++i) {
     parameters[kFirstPairParameter + i] = Jet(p[kFirstPairParameter + i], 16 + i);
   }
-  const PairForce<Jet> force = InteractionBetween<Jet>(terms, network, pair, parameters, a, b);
+  const PairForce<Jet> force = InteractionBetween<Jet>(terms, pair, parameters, a, b);
   PairJacobian jacobian;
   for (int row = 0; row < 4; ++row) {
     jacobian.by_states.row(row) = force.on_n[row].v.head<16>().transpose();
@@ -147,14 +147,14 @@ PairJacobian OtherJacobian(const InteractionTerms& terms, const InteractionNetwo
 
 }  // namespace
 
-PairJacobian ComputePairJacobian(const InteractionTerms& terms, const InteractionNetwork* network,
-                                 const Pair& pair, const ParameterSet<double>& p,
-                                 const PosedPendulum<double>& n, const PosedPendulum<double>& j) {
+PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
+                                 const ParameterSet<double>& p, const PosedPendulum<double>& n,
+                                 const PosedPendulum<double>& j) {
   InteractionTerms others = terms;
   others.spring = others.damping = others.learned = false;
   PairJacobian jacobian;
   if (others.Any()) {
-    jacobian = OtherJacobian(others, network, pair, p, n, j);
+    jacobian = OtherJacobian(others, pair, p, n, j);
   } else {
     jacobian.by_states.setZero();
     jacobian.by_parameter.setZero();

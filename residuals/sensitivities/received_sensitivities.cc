@@ -52,9 +52,8 @@ void ReceivedSensitivities::Update(const RolloutSensitivities& sensitivities, in
 PairJacobian ReceivedSensitivities::Of(size_t k, const SceneForces<double>& forces) {
   const auto& [n, j] = forces.acting()[k];
   const Pair pair = forces.pairs().Of(n, j);
-  PairJacobian jacobian =
-      ComputePairJacobian(options_.interaction, options_.interaction_network.get(), pair,
-                          forces.Parameters(0), forces.state(n), forces.state(j));
+  PairJacobian jacobian = ComputePairJacobian(options_.interaction, pair, forces.Parameters(0),
+                                              forces.state(n), forces.state(j));
   if (held_) {
     held_->AddTo(k, forces, &jacobian);
   } else if (weights_ != nullptr) {

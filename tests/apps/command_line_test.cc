@@ -50,7 +50,9 @@ TEST_F(CommandLineTest, UnknownFlagsAndLooseWordsAreRefused) {
     EXPECT_TRUE(
         Refused(RunApp(app.name, {"--no_such_flag=1"}),
                 {std::string(app.name) + ": error: there is no flag --no_such_flag", "--help"}));
-    EXPECT_TRUE(Refused(RunApp(app.name, {"manifest.json"}), {"'manifest.json'", "--help"}));
+    const AppRun bare = RunApp(app.name, {"manifest.json"});
+    EXPECT_TRUE(Refused(bare, {"'manifest.json'", "--help"}));
+    EXPECT_FALSE(Contains(bare.err, "?;")) << bare.err;
   }
 }
 

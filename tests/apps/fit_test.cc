@@ -142,26 +142,13 @@ Words ShellWords(const std::string& line) {
 }
 
 TEST_F(FitAppTest, AdviceRepeatsTheVeryFit) {
-  const std::string first = FitModel("first.json", {"--preset=group",
-                                                    "--interaction=none",
-                                                    "--pool=mu,a_x",
-                                                    "--pool_by=subject",
-                                                    "--pooling_sigma=0.15",
-                                                    "--posture=upright",
-                                                    "--gain_scaling=mass",
-                                                    "--preset_priors=false",
-                                                    "--prior=a_x:-11:3",
-                                                    "--settling_weight=3",
-                                                    "--mode_weight=5",
-                                                    "--mode_margin=0.1",
-                                                    "--cart_derivative=backward",
-                                                    "--fix=c_q,d_q=0.1",
-                                                    "--robust=0.3",
-                                                    "--horizons=8,20",
-                                                    "--recording_weight=frame",
-                                                    "--seed=3",
-                                                    "--function_tolerance=1e-7",
-                                                    "--leave_out=" + id_});
+  const std::string first = FitModel(
+      "first.json",
+      {"--preset=group", "--interaction=none", "--pool=mu,a_x", "--pool_by=subject",
+       "--pooling_sigma=0.15", "--posture=upright", "--gain_scaling=mass", "--preset_priors=false",
+       "--prior=a_x:-11:3", "--settling_weight=3", "--mode_weight=5", "--cart_derivative=backward",
+       "--fix=c_q,d_q=0.1", "--robust=0.3", "--horizons=8,20", "--recording_weight=frame",
+       "--seed=3", "--function_tolerance=1e-7", "--leave_out=" + id_});
   const std::string out = fit_.out;
   const size_t begin = out.find("\n  pushid-fit ", out.find("alone changes"));
   ASSERT_NE(begin, std::string::npos) << out;

@@ -20,11 +20,9 @@ std::vector<std::string> CellsOf(std::istream* table) {
   return all;
 }
 
-TEST_F(NetworkAppTest, EveryProgramTakesAnEnsemble) {
-  const std::string model =
-      FitModel("model.json", {"--self_force=mlp:2", "--ensemble=2", "--network_prior=1"});
+TEST_F(NetworkAppTest, EveryProgramTakesANetwork) {
+  const std::string model = FitModel("model.json", {"--self_force=mlp:2", "--network_prior=1"});
   EXPECT_EQ(Json(model).at("self_network").at("weights").size(), 24u);
-  EXPECT_EQ(Json(model).at("ensemble").size(), 1u);
   for (const auto& [app, arguments] : std::vector<std::pair<std::string, std::vector<std::string>>>{
            {"pushid-report", {Recordings(), "--html_out=" + Path("report.html")}},
            {"pushid-evaluate", {Recordings(), "--json_out=" + Path("scores.json")}},
@@ -37,8 +35,7 @@ TEST_F(NetworkAppTest, EveryProgramTakesAnEnsemble) {
 }
 
 TEST_F(NetworkAppTest, ARodThatMovesGoesThroughEveryProgram) {
-  const std::string model =
-      FitModel("model.json", {"--self_force=mlp:2", "--rod=linear", "--ensemble=2"});
+  const std::string model = FitModel("model.json", {"--self_force=mlp:2", "--rod=linear"});
   EXPECT_EQ(Json(model).at("self_network").at("rod").at("kind"), "linear");
   EXPECT_EQ(Json(model).at("self_network").at("weights").size(), 24u + 11u);
   for (const auto& [app, arguments] : std::vector<std::pair<std::string, std::vector<std::string>>>{
@@ -98,7 +95,6 @@ TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {
   for (const auto& [flags, complaint] :
        std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--rod=gru:4"}, "--rod is 'gru:4'"},
-           {{"--rod=mlp:256-128-256", "--ensemble=2"}, "--ensemble is for small networks"},
            {{"--self_force=mlp:2", "--early_stopping=0.25", "--profile=mu"},
             "--profile and --bootstrap need the minimum of the cost"},
            {{"--self_from=" + Path("gru.json")},

@@ -161,6 +161,13 @@ TEST_F(PushAppTest, TheWindowMayBeNamed) {
   EXPECT_TRUE(Contains(made.out, "\"start_frame\": 2"));
 }
 
+TEST_F(PushAppTest, TheImpulseIsSaidByItsDirection) {
+  const std::string sensor =
+      "--sensor=" + WriteText("force.csv", "time,force\n0.1,0\n0.2,200\n0.3,0\n");
+  const AppRun made = MakePush({sensor, "--direction=-1,-1,0", "--height=0.9"});
+  EXPECT_TRUE(Contains(made.out, "impulse 14.1 N s backwards, 14.1 N s to the right")) << made.out;
+}
+
 TEST_F(PushAppTest, ASensorsForceGivesLinesForTheManifest) {
   const std::string sensor =
       "--sensor=" + WriteText("force.csv", "time,force\n0.1,0\n0.2,200\n0.3,0\n");

@@ -121,8 +121,8 @@ void Jacobian_OfContact_Chained(benchmark::State& state) {
   Touching touching;
   for (auto _ : state) {
     benchmark::DoNotOptimize(touching);
-    benchmark::DoNotOptimize(ComputePairJacobian(touching.terms, nullptr, touching.pair, touching.p,
-                                                 touching.n, touching.j));
+    benchmark::DoNotOptimize(
+        ComputePairJacobian(touching.terms, touching.pair, touching.p, touching.n, touching.j));
   }
 }
 BENCHMARK(Jacobian_OfContact_Chained)->Unit(benchmark::kNanosecond);
@@ -143,7 +143,7 @@ void Jacobian_OfContact_ByJets(benchmark::State& state) {
     for (int i = 0; i < kContact; ++i) {
       p[kContactStiffness + i] = Jet(touching.p[kContactStiffness + i], 16 + i);
     }
-    benchmark::DoNotOptimize(InteractionBetween(touching.terms, nullptr, touching.pair, p, n, j));
+    benchmark::DoNotOptimize(InteractionBetween(touching.terms, touching.pair, p, n, j));
   }
 }
 BENCHMARK(Jacobian_OfContact_ByJets)->Unit(benchmark::kNanosecond);

@@ -1,7 +1,6 @@
 // Models and interaction networks in JSON: what is read can be reported, written and read again.
 #include "datasets/files/json_file.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/learned_terms_io.h"
 #include "ident/report/report_text.h"
 #include "tests/fuzz/memory_file.h"
 
@@ -17,6 +16,5 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Result<FittedModel> again = FittedModelFromJson(written, "written");
     Demand(again.ok() && ToJson(again.value(), RunInfo{}).dump() == written.dump());
   }
-  (void)ReadInteractionNetwork(path);
   return 0;
 }

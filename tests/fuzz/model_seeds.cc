@@ -96,19 +96,8 @@ void AddConfidence(FittedModel* model) {
 }
 
 void AddNetworks(FitResult* result) {
-  const auto learned = [](uint64_t seed) {
-    return InitialNetwork({NetworkKind::kGru, 2}, seed, {RodKind::kMlp, {2}});
-  };
-  result->options.model.learned = learned(1);
+  result->options.model.learned = InitialNetwork({NetworkKind::kGru, 2}, 1, {RodKind::kMlp, {2}});
   result->takeover = Takeover{1.0, 2.0, 3.0, 0.1};
-  result->others = {{result->parameters, learned(2)}};
-}
-
-InteractionNetwork SmallInteraction() {
-  InteractionNetwork network;
-  network.mlp.layers = {{Eigen::MatrixXd::Constant(3, 10, 0.1), Eigen::VectorXd::Ones(3)},
-                        {Eigen::MatrixXd::Constant(4, 3, 0.25), Eigen::VectorXd::Zero(4)}};
-  return network;
 }
 
 }  // namespace
@@ -117,8 +106,6 @@ MaybeError WriteModelSeeds(const std::string& folder) {
   FittedModel judged = OfPreset("tail"), learned = OfPreset("ldp"), group = OfPreset("group");
   AddConfidence(&judged);
   AddNetworks(&learned.fit);
-  const InteractionNetwork interaction = SmallInteraction();
-  group.fit.options.model.interaction_network = std::make_shared<InteractionNetwork>(interaction);
   for (const auto& [name, result] :
        {std::pair{"tail", judged}, std::pair{"learned", learned}, std::pair{"group", group}}) {
     const std::string path = folder + "/" + name + ".json";
@@ -126,7 +113,7 @@ MaybeError WriteModelSeeds(const std::string& folder) {
     const Result<FittedModel> readable = ReadFittedModel(path);
     if (!readable.ok()) return readable.error();
   }
-  return WriteJson(folder + "/network.json", ToJson(interaction));
+  return std::nullopt;
 }
 
 }  // namespace pushid

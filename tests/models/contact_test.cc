@@ -24,7 +24,7 @@ PairForce<T> Contact(const Pair& pair, const ParameterSet<T>& p, const PendulumS
                      const PendulumState<T>& j) {
   InteractionTerms terms;
   terms.spring = terms.damping = true;
-  return InteractionBetween(terms, nullptr, pair, p, n, j);
+  return InteractionBetween(terms, pair, p, n, j);
 }
 
 Pair PairApart(double distance) {

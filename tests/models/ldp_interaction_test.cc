@@ -29,7 +29,7 @@ PendulumState<double> At(double x, double y, double theta, double phi, double xd
 
 PairForce<double> Between(const InteractionTerms& terms, const PendulumState<double>& n,
                           const PendulumState<double>& j) {
-  return InteractionBetween(terms, nullptr, Pair{}, Constants(), n, j);
+  return InteractionBetween(terms, Pair{}, Constants(), n, j);
 }
 
 PairForce<double> Discrete(const PendulumState<double>& n, const PendulumState<double>& j) {

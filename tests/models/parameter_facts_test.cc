@@ -75,7 +75,6 @@ TEST(ParameterFacts, ActWhereTheirTermsAre) {
   EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.ldp_discrete = true; }),
             (Names{"potential_strength", "potential_length", "neighbour_range", "lean_theta",
                    "lean_phi"}));
-  EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.network = true; }), Names{"neighbour_range"});
   EXPECT_EQ(adds([](ModelOptions* m) {
               LearnedTerms network;
               network.rod.kind = RodKind::kLinear;

@@ -235,7 +235,7 @@ inline std::vector<ModelOptions> EveryModelOptions() {
                   std::pair(Stance::kSteps, CartDerivative::kNone)})
               all.push_back({posture, scaling, Directions::kAxes, friction, use, tail, stance,
                              Delay::kNone, BodyModel::kLdp, derivative,
-                             interactions[all.size() % interactions.size()], nullptr, nullptr});
+                             interactions[all.size() % interactions.size()], nullptr});
   return all;
 }
 

@@ -62,21 +62,6 @@ TEST_F(DiffusionAppTest, CrossValidatesBesidePhysics) {
   EXPECT_EQ(Generate({"--physics=" + Path("m.json"), "--blend=0.3"}).exit_code, 0);
 }
 
-// Physics go in, and must be there whenever such a generator is used.
-TEST_F(DiffusionAppTest, CorrectsPhysics) {
-  const std::string physics = "--physics=" + Path("m.json");
-  ASSERT_EQ(RunApp("pushid-fit", {Recordings(), "--model_out=" + Path("m.json")}).exit_code, 0);
-  const AppRun train = Train({"--out=" + Path("g"), physics, "--pendulum_input"});
-  ASSERT_EQ(train.exit_code, 0) << train.err;
-  const AppRun run = Generate({physics, "--json_out=" + Path("e.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_LT(Json(Path("e.json"))["mean"]["hipADE_m"].get<double>(), 0.06)
-      << "hardly trained, it leaves the hips where physics have them";
-  const AppRun alone = Generate({});
-  EXPECT_EQ(alone.exit_code, 1);
-  EXPECT_TRUE(Contains(alone.err, "--physics"));
-}
-
 // Everything that may forecast is compared and written, and what won is used without being asked.
 TEST_F(DiffusionAppTest, TheBestForecastIsChosenAndUsed) {
   const AppRun train = Train({"--out=" + Path("g"), "--accuracy=best"});
@@ -188,12 +173,12 @@ TEST_F(DiffusionAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--pooling=all"}), {"--pooling is 'all'"}));
   EXPECT_TRUE(
       Refused(Train({"--out=" + Path("g"), "--blend=0.3"}), {"--blend needs --crossvalidate"}));
-  EXPECT_TRUE(Refused(Train({"--crossvalidate=2", "--blend=0.3"}), {"need --physics"}));
+  EXPECT_TRUE(Refused(Train({"--crossvalidate=2", "--blend=0.3"}), {"--blend needs --physics"}));
   EXPECT_TRUE(
       Refused(Train({"--out=" + Path("g"), "--physics=" + Path("m.json")}), {"--accuracy=best"}));
   ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
   EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"needs --physics"}));
-  EXPECT_TRUE(Refused(Generate({"--noise_scale=2"}), {"--noise_scale", "of diffusion"}));
+  EXPECT_TRUE(Refused(Generate({"--noise_memory=0.2"}), {"--noise_memory", "of diffusion"}));
   EXPECT_TRUE(Refused(Generate({"--simlpe_share=1"}), {"--simlpe_share", "of diffusion"}));
   EXPECT_TRUE(Refused(Generate({"--sampler=ode"}), {"--sampler is 'ode'"}));
   EXPECT_TRUE(Refused(Generate({"--id=nobody", "--page_out=" + Path("p.html")}), {"nobody"}));

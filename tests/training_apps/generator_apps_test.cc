@@ -94,7 +94,6 @@ TEST_F(GeneratorAppTest, SdeAsPublishedOnSyntheticClips) {
   }
   EXPECT_TRUE(Refused(Train("g", {"--published=ode"}), {"--published is 'ode'", "sde"}));
   EXPECT_TRUE(Refused(Train("g", {"--poses=false", "--particles=false"}), {"--poses=false"}));
-  EXPECT_TRUE(Refused(Train("g", {"--transition_weight=1"}), {"needs --together"}));
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--clips=2", "--people=3", "--out=x"}),
                       {"--people says nothing to --clips"}));
 }

@@ -264,12 +264,14 @@ ReportSection SolveSection(const ReportSource& source) {
       if (trace[i].horizon != trace[i - 1].horizon) chart->marks.push_back(static_cast<double>(i));
     }
   }
-  section.figures.push_back({"trace",
-                             source.fit.options.likelihood == Likelihood::kTrajectory
-                                 ? "The best start. The cost jumps where the horizon grows (lines)."
-                                 : "The best start: Fisher scoring, then BFGS.",
-                             {{}, {cost, gradient}},
-                             numbers});
+  section.figures.push_back(
+      {"trace",
+       source.fit.options.likelihood == Likelihood::kTrajectory
+           ? "The best start. The cost jumps where the horizon grows (lines) and where "
+             "the data are weighed anew."
+           : "The best start: Fisher scoring, then BFGS.",
+       {{}, {cost, gradient}},
+       numbers});
   return section;
 }
 

@@ -243,6 +243,7 @@ TEST_F(ManifestMakerTest, WhatCannotBeMade) {
   options_.masses = {};
   options_.mass_kg = 0.0;
   EXPECT_TRUE(Contains(MakingMessage(), "no mass is given for anna, ben"));
+  EXPECT_TRUE(Contains(MakingMessage(), "(--masses)"));
   options_.mass_kg = 70.0;
   options_.push_pattern = "";
   options_.pattern = "{subject}_*.bvh";
@@ -252,6 +253,9 @@ TEST_F(ManifestMakerTest, WhatCannotBeMade) {
   options_.pattern = "{subject}.md";
   EXPECT_TRUE(Contains(MakingMessage(), "must end like its files"));
   options_.pattern = "{subject}.bvh";
+  std::filesystem::create_directory(Path("empty"));
+  options_.folder = Path("empty");
+  EXPECT_TRUE(Contains(MakingMessage(), "there is no file in it"));
   options_.folder = Path("nowhere");
   EXPECT_TRUE(Contains(MakingMessage(), "no such folder"));
   options_.up = "x";

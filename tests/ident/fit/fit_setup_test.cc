@@ -52,6 +52,16 @@ TEST(FitSetup, PoolingFollowsTheTerms) {
   EXPECT_FALSE(AnyPooled(none.table));
 }
 
+// Groups have linear self forces where their feet slide alone, and the help says so.
+TEST(FitSetup, ThePresetOfGroupsIsWhatItsHelpSays) {
+  const auto self_force = [](const char* stance) {
+    return MakeFitOptions({{"preset", "group"}, {"stance", stance}}).value().self_force;
+  };
+  EXPECT_EQ(self_force("slide"), SelfForceKind::kLinear);
+  EXPECT_EQ(self_force("steps"), SelfForceKind::kNone);
+  EXPECT_TRUE(Contains(FindFitOption("preset")->help, "feet that slide, linear self forces too"));
+}
+
 // The preset's own pooling gives way to what else is asked for; that of a user does not.
 TEST(FitSetup, ThePresetPoolsWhatItCan) {
   const FitOptions tail = MakeFitOptions({{"preset", "tail"}}).value();
@@ -59,8 +69,7 @@ TEST(FitSetup, ThePresetPoolsWhatItCan) {
   EXPECT_EQ(tail.pool_by, kConditionLabel);
   EXPECT_EQ(tail.pooling_sigma, 0.5);
   for (const GivenOptions& given :
-       {GivenOptions{{"fix", "tail_base"}}, GivenOptions{{"push_tail", "none"}},
-        GivenOptions{{"self_force", "mlp:4"}, {"ensemble", "2"}}}) {
+       {GivenOptions{{"fix", "tail_base"}}, GivenOptions{{"push_tail", "none"}}}) {
     const Result<FitOptions> made = MakeFitOptions(Merged(given, {{"preset", "tail"}}));
     ASSERT_TRUE(made.ok()) << made.error().ToString();
     EXPECT_FALSE(AnyPooled(made.value().table)) << given[0].first;
@@ -182,10 +191,9 @@ TEST(FitSetup, BadOptionsAreNamed) {
       {{{"horizons", "8,x"}}, "--horizons: 'x'"},
       {{{"seed", "-1"}}, "--seed is '-1'"},
       {{{"fix", "nu"}}, "--fix names 'nu'"},
-      {{{"interaction", "network"}}, "--interaction_network must name"},
-      {{{"interaction_network", "n.json"}}, "--interaction does not name network"},
+      {{{"interaction", "network"}}, "a network is network:4"},
       {{{"network_prior", "0.5"}}, "--network_prior acts on networks"},
-      {{{"ensemble", "2"}}, "--ensemble acts on networks"},
+      {{{"early_stopping", "0.2"}}, "--early_stopping acts on networks"},
       {{{"preset_priors", "of course"}},
        "--preset_priors is 'of course'; it must be true or false"},
       {{{"seed", "2x"}}, "--seed is '2x'"},
@@ -193,9 +201,6 @@ TEST(FitSetup, BadOptionsAreNamed) {
        "--pooling_sigma is 'guess'; it must be positive, or estimate"},
       {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}},
        "--pooling_sigma applies to pooled parameters"},
-      {{{"self_force", "lstm:64"}, {"ensemble", "2"}}, "--ensemble is for small networks"},
-      {{{"preset", "group"}, {"self_force", "mlp:4"}, {"ensemble", "2"}},
-       "--ensemble does not go together with --pool"},
       {{{"self_from", "no/such.json"}}, "no/such.json"},
   };
   for (const auto& [given, says] : cases) EXPECT_TRUE(Contains(Complaint(given), says)) << says;
@@ -220,12 +225,10 @@ TEST(FitSetup, OnlyACandidatesOwnOptionsMustAct) {
   EXPECT_TRUE(MakeFitOptions(Merged(given, {{"self_force", "none"}})).ok());
   const GivenOptions more = {{"self_force", "none"}, {"network_prior", "1"}};
   EXPECT_FALSE(MakeFitOptions(Merged(given, more), nullptr, more).ok());
-  // An ensemble of nothing is no fit at all.
-  EXPECT_FALSE(
-      MakeFitOptions({{"self_force", "mlp:2"}, {"ensemble", "2"}, {"preset", "group"}}).ok());
-  EXPECT_FALSE(
-      MakeFitOptions(Merged({{"self_force", "mlp:2"}, {"ensemble", "2"}}, {{"self_force", "none"}}))
-          .ok());
+  // A part of the recordings held out from a network that is none is no fit at all.
+  EXPECT_FALSE(MakeFitOptions(Merged({{"self_force", "mlp:2"}, {"early_stopping", "0.2"}},
+                                     {{"self_force", "none"}}))
+                   .ok());
 }
 
 TEST(FitSetup, SeedsAndBoolsAsFlagsTakeThem) {

@@ -129,20 +129,16 @@ TEST(EarlyStopping, AShareThatCannotBeHeldOutIsAFailure) {
 
 TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   Study study = PlantedStudy(PlantedNetwork({NetworkKind::kGru, 2}), 0.002);
-  study.options.ensemble = 3;
   study.options.network_prior = 1.0;
   const FittedModel model{FitWith(study, {NetworkKind::kGru, 2}), {}, {}, {}, {}};
   const FitResult& result = model.fit;
-  ASSERT_EQ(result.others.size(), 2u);
   const nlohmann::ordered_json json = ToJson(model, RunInfo{});
   const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   EXPECT_EQ(ToJson(read.value(), RunInfo{}).dump(), json.dump());
   EXPECT_EQ(read.value().fit.options.model.learned->weights, result.options.model.learned->weights);
-  EXPECT_EQ(read.value().fit.options.ensemble, 3);
   EXPECT_EQ(HeldOutAde(study, read.value().fit), HeldOutAde(study, result));
   EXPECT_NE(ReportText(read.value()).find("self force gru:2"), std::string::npos);
-  EXPECT_NE(ReportText(read.value()).find("the first of 3 seeds"), std::string::npos);
   // Weights are not in the table.
   for (const Estimate& e : read.value().fit.nuisance) {
     EXPECT_EQ(e.name.find("weight"), std::string::npos);
@@ -179,7 +175,6 @@ TEST(NetworkFit, ProfilesAreAsWideAsTheClusteredIntervals) {
 
 TEST(NetworkFit, FilesThatContradictThemselvesAreNamed) {
   Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
-  study.options.ensemble = 2;
   const nlohmann::ordered_json good =
       ToJson({FitWith(study, {NetworkKind::kMlp, 2}), {}, {}, {}, {}}, RunInfo{});
   const auto complaint = [](const nlohmann::ordered_json& json) {
@@ -187,43 +182,9 @@ TEST(NetworkFit, FilesThatContradictThemselvesAreNamed) {
     return read.ok() ? "" : read.error().ToString();
   };
   EXPECT_EQ(complaint(good), "");
-  nlohmann::ordered_json without = good, other = good;
+  nlohmann::ordered_json without = good;
   without.erase("self_network");
   EXPECT_NE(complaint(without).find("self_force is mlp:2"), std::string::npos);
-  other["ensemble"][0]["self_network"] = ToJson(*InitialNetwork({NetworkKind::kMlp, 3}, 1));
-  EXPECT_NE(complaint(other).find("a member's network"), std::string::npos);
-}
-
-// The prediction of an ensemble lies between those of its members.
-TEST(Ensemble, PredictsTheMedian) {
-  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
-  study.options.ensemble = 3;
-  study.options.network_prior = 3.0;
-  const FitResult result = FitWith(study, {NetworkKind::kMlp, 2});
-  const IdentifiedModel model = ModelOf(result);
-  const PendulumRecording& recording = study.held_out.front();
-  const Prediction median = Predict(model, recording);
-  std::vector<IdentifiedModel> members(3, model);
-  for (IdentifiedModel& member : members) member.others.clear();
-  for (int k : {0, 1}) {
-    members[k + 1].parameters = result.others[k].parameters;
-    members[k + 1].options.learned = result.others[k].network;
-  }
-  for (int t = 0; t < recording.num_frames(); ++t) {
-    std::vector<double> x;
-    for (const IdentifiedModel& m : members) x.push_back(Predict(m, recording).path.At(t, 0).q[0]);
-    std::sort(x.begin(), x.end());
-    EXPECT_EQ(median.path.At(t, 0).q[0], x[1]);
-  }
-  // One that falls has no say; two of three have the last.
-  IdentifiedModel bad = model;
-  bad.others[0].parameters[kKpTheta] = -1e5;
-  const Prediction two = Predict(bad, recording);
-  ASSERT_TRUE(two.status.ok);
-  EXPECT_EQ(two.path.At(20, 0).q[0], 0.5 * (Predict(members[0], recording).path.At(20, 0).q[0] +
-                                            Predict(members[2], recording).path.At(20, 0).q[0]));
-  bad.others[1].parameters[kKpTheta] = -1e5;
-  EXPECT_FALSE(Predict(bad, recording).status.ok);
 }
 
 }  // namespace

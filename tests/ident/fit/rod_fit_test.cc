@@ -28,9 +28,8 @@ std::shared_ptr<const LearnedTerms> PlantedRod() {
   return std::make_shared<const LearnedTerms>(network);
 }
 
-FitResult FitRod(const Study& study, const RodShape& rod, int ensemble = 1) {
+FitResult FitRod(const Study& study, const RodShape& rod) {
   FitOptions options = study.options;
-  options.ensemble = ensemble;
   options.model.learned = InitialNetwork({}, 1, rod);
   options.table[kRodLift].nominal = 1.0;
   FreeTerms(&options);
@@ -52,8 +51,7 @@ TEST(RodFit, PlantedLawsPredictUnseenPushes) {
 TEST(RodFit, ResultsComeBackFromJsonWithoutLoss) {
   Study study = PlantedStudy(PlantedRod(), 0.002, kPlantedLift);
   study.options.network_prior = 1.0;
-  const FittedModel model{FitRod(study, {RodKind::kMlp, {2}}, 2), {}, {}, {}, {}};
-  ASSERT_EQ(model.fit.others.size(), 1u);
+  const FittedModel model{FitRod(study, {RodKind::kMlp, {2}}), {}, {}, {}, {}};
   EXPECT_FALSE(model.fit.takeover.has_value());
   const nlohmann::ordered_json json = ToJson(model, RunInfo{});
   const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
@@ -62,7 +60,7 @@ TEST(RodFit, ResultsComeBackFromJsonWithoutLoss) {
   EXPECT_EQ(HeldOutAde(study, read.value().fit), HeldOutAde(study, model.fit));
   const std::string text = ReportText(read.value());
   EXPECT_NE(text.find("self force none"), std::string::npos);
-  EXPECT_NE(text.find("rod mlp:2 (26 weights, prior 1), the first of 2 seeds"), std::string::npos);
+  EXPECT_NE(text.find("rod mlp:2 (26 weights, prior 1)"), std::string::npos);
   EXPECT_NE(text.find("rod_lift"), std::string::npos);
 }
 

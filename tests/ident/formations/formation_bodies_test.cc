@@ -13,9 +13,7 @@ namespace {
 
 constexpr int kBodyFrames = 40;
 
-LoadedGenerator RandomGenerator(double blend, bool pendulum = false) {
-  DiffusionStructure structure;
-  structure.pendulum = pendulum;
+LoadedGenerator RandomGenerator(double blend) {
   DiffusionGeneratorOptions options;
   options.averaged = 1;
   options.steps = 2;
@@ -26,12 +24,10 @@ LoadedGenerator RandomGenerator(double blend, bool pendulum = false) {
   loaded.settings.data = GeneratorData::kPushes;
   loaded.settings.observed = 20;
   loaded.settings.rate = 60.0;
-  loaded.settings.pendulum = pendulum;
   loaded.settings.push_kinds = {PushKind::kNet};
   loaded.generator = std::make_unique<DiffusionGenerator>(
       PushLayout(std::vector<std::string>(kBodyJoints, "joint")),
-      std::vector<DiffusionNetwork>{RandomDiffusion(1, structure)}, 1.0 / 60.0, options,
-      SeededNoise());
+      std::vector<DiffusionNetwork>{RandomDiffusion(1, {})}, 1.0 / 60.0, options, SeededNoise());
   return loaded;
 }
 
@@ -86,12 +82,6 @@ TEST_F(GeneratedBodiesTest, BeginAtTheFirstPosesAndKeepTheirBones) {
 TEST_F(GeneratedBodiesTest, BlendWithTheRunsOwnPhysics) {
   EXPECT_LT(FarthestHip(Bodies(RandomGenerator(1.0))), 1e-5);
   EXPECT_GT(FarthestHip(Bodies(RandomGenerator(0.0))), 1e-3);
-}
-
-TEST_F(GeneratedBodiesTest, PhysicsGoIntoANetworkThatAsksForThem) {
-  const std::vector<BodyMotion> bodies = Bodies(RandomGenerator(0.0, true));
-  EXPECT_LT((bodies[0][0] - first_poses_[0]).norm(), 1e-5);
-  EXPECT_GT((bodies[0][kBodyFrames - 1] - first_poses_[0]).norm(), 1e-3);
 }
 
 // Nothing of what follows the first poses is seen: another run, without physics in it, is the same.

@@ -35,30 +35,6 @@ TEST(FormationRun, ForcesAreThoseThatMovePeople) {
   }
 }
 
-// What an ensemble predicts of a formation is the median of its members, as of a recording.
-TEST(FormationRun, AnEnsembleIsTheMedianOfItsMembers) {
-  const Scene scene = SampleFormation(FormationShape::kLine, 3, {0});
-  IdentifiedModel ensemble = ContactModel();
-  std::vector<double> ways;
-  for (const double mu : {20.0, 60.0, 180.0}) {
-    IdentifiedModel member = ContactModel();
-    member.parameters[kMu] = mu;
-    ways.push_back(RunFormation(member, scene, 60).prediction.hip[0].back().x());
-    if (mu == 20.0) ensemble.parameters = member.parameters;
-    if (mu != 20.0) ensemble.others.push_back({member.parameters, nullptr});
-  }
-  const FormationRun run = RunFormation(ensemble, scene, 60);
-  EXPECT_GT(std::abs(ways[0] - ways[1]), 1e-3);
-  EXPECT_NEAR(
-      run.prediction.path.At(59, 0).q[0],
-      [&] {
-        IdentifiedModel middle = ContactModel();
-        middle.parameters[kMu] = 60.0;
-        return RunFormation(middle, scene, 60).prediction.path.At(59, 0).q[0];
-      }(),
-      1e-12);
-}
-
 TEST(FormationRun, ContactPassesMomentumOnAndMakesNone) {
   const FormationRun run = RunShape(FormationShape::kGrid, 6, {0, 1});
   double passed = 0.0;

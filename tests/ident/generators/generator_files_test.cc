@@ -107,6 +107,10 @@ TEST_F(GeneratorFilesTest, MistakesAreNamed) {
   Particles().simlpe_share = 0.0;
   EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"observed\": 3"), "more observed frames"));
   EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"seen\": 12"), "observed"));
+  // Files of earlier versions say whether physics go into the network.
+  EXPECT_EQ(ErrorAfter("\"observed\": 12", "\"pendulum\": false,\n\"observed\": 12"), "no error");
+  EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"pendulum\": true,\n\"observed\": 12"),
+                       "--pendulum_input"));
   EXPECT_TRUE(Contains(ErrorAfter("\"parent\": 0", "\"parent\": 7"), "particle 1"));
   EXPECT_TRUE(Contains(ErrorAfter("\"up_axis\": 1", "\"up_axis\": 0"), "up_axis"));
 }

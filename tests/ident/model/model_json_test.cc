@@ -231,10 +231,8 @@ TEST(ResultJson, DamageIsNamed) {
   json["subjects"].front()["pooled"]["nu"] = json["parameters"][0];
   EXPECT_TRUE(Contains(message(json), "/pooled/nu': subject"));
   json = good;
-  json["ensemble"] = Json::array({{{"values", good["values"]}}});
-  EXPECT_TRUE(Contains(message(json), "at 'ensemble/0/self_network'"));
-  json["ensemble"][0]["values"].erase("mu");
-  EXPECT_TRUE(Contains(message(json), "at 'ensemble/0/values/mu'"));
+  json["values"].erase("mu");
+  EXPECT_TRUE(Contains(message(json), "at 'values/mu'"));
   // Any entry of the top gone is an error, never a crash.
   for (const auto& [key, value] : good.items()) {
     // Older models have none.
@@ -253,22 +251,27 @@ TEST(ResultJson, WhatIsGoneMustHaveBeenOff) {
   const Json now = ToJson(SampleModel(), kRun);
   Json before = now;
   before["model"]["stability_weight"] = before["model"]["takeover_weight"] = 0.0;
+  before["model"]["ensemble"] = 1;
+  before["model"]["mode_margin_per_s"] = 0.2;
   before["table"].push_back({{"name", "drive_gain"}, {"nominal", 0.5}});
   before["values"]["drive_gain"] = 0.5;
   const Result<FittedModel> read = FittedModelFromJson(before, "some.json");
   ASSERT_TRUE(read.ok()) << read.error().ToString();
   EXPECT_EQ(ToJson(read.value(), kRun)["table"], now["table"]);
-  for (const char* option : {"stability_weight", "takeover_weight"}) {
+  for (const char* option :
+       {"stability_weight", "takeover_weight", "ensemble", "mode_margin_per_s"}) {
     Json used = before;
-    used["model"][option] = 1.0;
+    used["model"][option] = 2;
     const Result<FittedModel> refused = FittedModelFromJson(used, "some.json");
     ASSERT_FALSE(refused.ok());
     EXPECT_TRUE(Contains(refused.error().ToString(), option));
   }
-  before["model"]["interaction"] = "spring,damping,drive";
-  const Result<FittedModel> driven = FittedModelFromJson(before, "some.json");
-  ASSERT_FALSE(driven.ok());
-  EXPECT_TRUE(Contains(driven.error().ToString(), "drive"));
+  for (const std::string term : {"drive", "network"}) {
+    before["model"]["interaction"] = "spring,damping," + term;
+    const Result<FittedModel> acting = FittedModelFromJson(before, "some.json");
+    ASSERT_FALSE(acting.ok());
+    EXPECT_TRUE(Contains(acting.error().ToString(), "'" + term + "'"));
+  }
 }
 
 using ResultFile = TempDirTest;

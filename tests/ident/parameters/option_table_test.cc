@@ -89,7 +89,7 @@ TEST(OptionTable, JsonOfOtherTypesAndNamesThrows) {
     EXPECT_THROW(OptionsFrom(json), std::exception) << key;
   }
   auto older = good;  // than these options
-  for (const char* key : {"ensemble", "network_prior"}) older.erase(key);
+  for (const char* key : {"early_stopping", "network_prior"}) older.erase(key);
   EXPECT_NO_THROW(OptionsFrom(older));
 }
 
@@ -110,10 +110,8 @@ TEST(FitOptions, IsValidSaysOptionValueAndConstraint) {
          o->horizons = {1, 0};
        },
        "--horizons is 1; it must be numbers of frames of at least 2"},
-      {[](FitOptions* o) { o->ensemble = 2; },
-       "--ensemble acts on networks, but there is none; add one, as in --self_force=mlp:4"},
-      {[](FitOptions* o) { o->model.interaction.network = true; },
-       "--interaction names network: --interaction_network must name its JSON file"},
+      {[](FitOptions* o) { o->early_stopping = 0.2; },
+       "--early_stopping acts on networks, but there is none; add one, as in --self_force=mlp:4"},
       {[](FitOptions* o) { o->num_starts = 0; }, "--starts is 0; it must be positive"},
       {[](FitOptions* o) { o->early_stopping = 0.6; },
        "--early_stopping is 0.6; it must lie between 0 and 0.5"},

@@ -97,25 +97,6 @@ TEST(PredictiveBands, LieAroundTheRollout) {
   EXPECT_LT(band.middle[last][0], band.upper50[last][0]);
 }
 
-// Every member of an ensemble is drawn along.
-TEST(PredictiveBands, OfAnEnsembleOfEqualsAreThoseOfOne) {
-  const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
-  FitResult one = Fit(recordings, DefaultFit(TinyStudy()));
-  FitResult three = one;
-  three.others.assign(2, {one.parameters, nullptr});
-  BandOptions options;
-  options.samples = 20;
-  const auto samples = SampleParameters(one, options);
-  ASSERT_TRUE(samples.ok());
-  const PredictiveBands a = ComputeBands(one, samples.value(), {}, recordings[0], 1);
-  const PredictiveBands b = ComputeBands(three, samples.value(), {}, recordings[0], 1);
-  ASSERT_EQ(a.people.size(), 1u);
-  const size_t last = a.people[0].lower90.size() - 1;
-  EXPECT_GT((a.people[0].upper90[last] - a.people[0].lower90[last]).norm(), 1e-4);
-  EXPECT_EQ(a.people[0].lower90[last], b.people[0].lower90[last]);
-  EXPECT_EQ(a.people[0].upper90[last], b.people[0].upper90[last]);
-}
-
 TEST(PredictiveBands, HoldNewRecordingsAsOftenAsTheySay) {
   const std::vector<PendulumRecording> recordings = MakePendulums(VaryingStudy());
   const std::vector<Fold> folds = MakeFolds(recordings, FoldScheme::kStratified, 4, 1, 1).value();

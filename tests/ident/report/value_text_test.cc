@@ -51,5 +51,17 @@ TEST(ValueText, GainsAreSaidInWords) {
             "(undetermined), friction of the feet with a time constant of 2.5 s.");
 }
 
+// A p of 0.04 contradicts nothing, and the sentence says so.
+TEST(ModelVerdictText, SaysWhichPContradicts) {
+  ModelVerdict verdict;
+  verdict.not_checked.clear();
+  verdict.motion.tests.resize(1);
+  verdict.motion.explained = 0.9;
+  verdict.p_motion = 0.04;
+  const std::string text = ModelVerdictText(verdict);
+  EXPECT_TRUE(Contains(text, "1 measure of feet and hips (p = 0.04; ")) << text;
+  EXPECT_TRUE(Contains(text, "; less than 0.017 contradicts)")) << text;
+}
+
 }  // namespace
 }  // namespace pushid

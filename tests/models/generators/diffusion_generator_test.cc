@@ -53,8 +53,7 @@ TEST_F(DiffusionGeneratorTest, ForecastsRepeatThemselvesInAnyOrder) {
 TEST_F(DiffusionGeneratorTest, TheOrderOfPeopleMakesNoDifferenceAsPublished) {
   options_.settle = Settling::kNone;
   for (const SocialPooling pooling : {SocialPooling::kMeanAll, SocialPooling::kHeads}) {
-    const DiffusionStructure published = {pooling, false, SocialJoin::kBottleneck,
-                                          MotionFrame::kOwn};
+    const DiffusionStructure published = {pooling, SocialJoin::kBottleneck, MotionFrame::kOwn};
     const auto forecast = Generator(1, published).Forecast(Seen(4, 5), 20);
     std::vector<ObservedMotion> turned = Seen(4, 5);
     std::reverse(turned.begin(), turned.end());

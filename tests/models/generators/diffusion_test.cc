@@ -36,19 +36,15 @@ TEST(DiffusionScheduleTest, StepsBackKeepTheShares) {
 }
 
 TEST(DiffusionFeaturesTest, MotionsComeBack) {
-  std::vector<ObservedMotion> group = PushedGroup(3, 40);
+  const std::vector<ObservedMotion> group = PushedGroup(3, 40);
   const JointScales scales = JointScalesOf({group});
   EXPECT_GE(scales.minCoeff(), 0.02f);
   EXPECT_GE(scales[kBodyHip], 0.05f);
-  for (ObservedMotion& person : group) {
-    person.pendulum = person.frames.topRows(3).array() + 0.03f;
-    person.pendulum.row(0) *= 1.1f;
-    for (const bool pendulum : {false, true}) {
-      const Eigen::MatrixXf rows = MotionRows(person, scales, pendulum);
-      EXPECT_EQ(rows.col(0).norm(), 0.0f) << "everything counts from frame 0";
-      const Trajectories back = FromMotionRows(rows, person, scales, pendulum);
-      EXPECT_LT((back - person.frames).cwiseAbs().maxCoeff(), 1e-5f);
-    }
+  for (const ObservedMotion& person : group) {
+    const Eigen::MatrixXf rows = MotionRows(person, scales);
+    EXPECT_EQ(rows.col(0).norm(), 0.0f) << "everything counts from frame 0";
+    const Trajectories back = FromMotionRows(rows, person, scales);
+    EXPECT_LT((back - person.frames).cwiseAbs().maxCoeff(), 1e-5f);
   }
 }
 
@@ -63,15 +59,14 @@ TEST(DiffusionFeaturesTest, OwnFramesKnowNoTurn) {
   plain.spread.setOnes();
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(kOwnFrameRows), squares = sum;
   for (size_t n = 0; n < group.size(); ++n) {
-    const Eigen::MatrixXf a = MotionRows(group[n], plain, false);
-    const Eigen::MatrixXf b = MotionRows(turned[n], plain, false);
+    const Eigen::MatrixXf a = MotionRows(group[n], plain);
+    const Eigen::MatrixXf b = MotionRows(turned[n], plain);
     EXPECT_LT((a - b).middleRows(3, kMotionRows - 3).cwiseAbs().maxCoeff(), 1e-5f);
     const double from = std::atan2(a(67, 9), a(66, 9)), to = std::atan2(b(67, 9), b(66, 9));
     EXPECT_NEAR(to - from, 0.7, 1e-5);
-    const Eigen::MatrixXf rows = MotionRows(group[n], scales, false);
-    EXPECT_LT(
-        (FromMotionRows(rows, group[n], scales, false) - group[n].frames).cwiseAbs().maxCoeff(),
-        1e-5f);
+    const Eigen::MatrixXf rows = MotionRows(group[n], scales);
+    EXPECT_LT((FromMotionRows(rows, group[n], scales) - group[n].frames).cwiseAbs().maxCoeff(),
+              1e-5f);
     sum += rows.cast<double>().array().rowwise().sum();
     squares += rows.cast<double>().array().square().rowwise().sum();
   }
@@ -81,8 +76,7 @@ TEST(DiffusionFeaturesTest, OwnFramesKnowNoTurn) {
 
 TEST(DiffusionFeaturesTest, EverybodyIsToldOfThePushAndWhereItComesFrom) {
   const std::vector<ObservedMotion> group = PushedGroup(3, 20);
-  const GroupFeatures features =
-      FeaturesOf(group, JointScales::Constant(0.1f), 2, 20, 1.0 / 60.0, false);
+  const GroupFeatures features = FeaturesOf(group, JointScales::Constant(0.1f), 2, 20, 1.0 / 60.0);
   for (int n = 0; n < 3; ++n) {
     const auto given = features.given.middleCols(20 * n, 20);
     EXPECT_EQ(given(kMotionRows, 1), 1.0f);
@@ -145,9 +139,9 @@ Eigen::MatrixXf Noise(Eigen::Index columns) {
 
 class DenoiserTest : public ::testing::TestWithParam<SocialPooling> {
  protected:
-  DiffusionNetwork Network() const { return RandomDiffusion(3, {GetParam(), false}); }
+  DiffusionNetwork Network() const { return RandomDiffusion(3, {GetParam()}); }
   static GroupFeatures Features(const std::vector<ObservedMotion>& group, int frames) {
-    return FeaturesOf(group, JointScales::Constant(0.1f), 1, frames, 1.0 / 60.0, false);
+    return FeaturesOf(group, JointScales::Constant(0.1f), 1, frames, 1.0 / 60.0);
   }
 };
 

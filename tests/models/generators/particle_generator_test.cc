@@ -250,7 +250,7 @@ TEST_F(ParticleGeneratorTest, WithoutNoiseTheMembersThemselvesAreSampled) {
 }
 
 // Noise that remembers: after two frames, of steps g e_1 and g e_2 with a correlation of 0.5, the
-// spread is sqrt(3) g scale, against sqrt(2) g of white noise; the likelihood is that of the fresh
+// spread is sqrt(3) g, against sqrt(2) g of white noise; the likelihood is that of the fresh
 // draws.
 TEST_F(ParticleGeneratorTest, NoiseMayLast) {
   ParticleNetwork network = RandomParticles(1);
@@ -258,9 +258,9 @@ TEST_F(ParticleGeneratorTest, NoiseMayLast) {
     layer->weights.setZero(), layer->bias.setZero();
   }
   network.skip.setZero();
-  const auto spread = [&](double memory, double scale) {
+  const auto spread = [&](double memory) {
     const ParticleGenerator generator(FourParticles(), {network}, {},
-                                      {0.0, 0.0, false, 0.0, memory, scale});
+                                      {0.0, 0.0, false, 0.0, memory});
     Random random(1);
     const auto futures = generator.Sample(people_, 2, 2000, [&] { return random.Normal(); });
     double square = 0.0;
@@ -269,14 +269,12 @@ TEST_F(ParticleGeneratorTest, NoiseMayLast) {
     }
     return std::sqrt(square) / 0.01;
   };
-  EXPECT_NEAR(spread(0.0, 1.0), std::sqrt(2.0), 0.03);
-  EXPECT_NEAR(spread(0.5, 1.0), std::sqrt(3.0), 0.04);
-  EXPECT_NEAR(spread(0.5, 2.0), 2.0 * std::sqrt(3.0), 0.08);
-  const ParticleGenerator generator(FourParticles(), {network}, {},
-                                    {0.0, 0.0, false, 0.0, 0.5, 2.0});
+  EXPECT_NEAR(spread(0.0), std::sqrt(2.0), 0.03);
+  EXPECT_NEAR(spread(0.5), std::sqrt(3.0), 0.04);
+  const ParticleGenerator generator(FourParticles(), {network}, {}, {0.0, 0.0, false, 0.0, 0.5});
   const auto still = generator.Sample(people_, 2, 1, [] { return 1.0; });
-  // g is 1: -log(share scale) - 1/2 - log(2 pi) / 2 for each coordinate and frame.
-  const double constant = -0.5 - 0.5 * std::log(2.0 * M_PI) - std::log(2.0);
+  // g is 1: -log(share) - 1/2 - log(2 pi) / 2 for each coordinate and frame.
+  const double constant = -0.5 - 0.5 * std::log(2.0 * M_PI);
   EXPECT_NEAR(still[0][0].log_likelihood, 12 * (2 * constant - 0.5 * std::log(0.75)), 1e-3);
 }
 

@@ -29,14 +29,14 @@ PairForce<PairJet> ForceOfJets(const InteractionTerms& terms, const Pair& pair,
     const bool shared = column >= 0 && column < kNumPairParameters;
     parameters[i] = shared ? PairJet(p[i], kPairStates + column) : PairJet(p[i]);
   }
-  return InteractionBetween(terms, nullptr, pair, parameters, JetState<PairJet>(n, 0),
+  return InteractionBetween(terms, pair, parameters, JetState<PairJet>(n, 0),
                             JetState<PairJet>(j, 8));
 }
 
 void ExpectEqualJets(const InteractionTerms& terms, const Pair& pair, const ParameterSet<double>& p,
                      const PendulumState<double>& n, const PendulumState<double>& j, bool* acts) {
   const PairForce<PairJet> force = ForceOfJets(terms, pair, p, n, j);
-  const PairJacobian jacobian = ComputePairJacobian(terms, nullptr, pair, p, n, j);
+  const PairJacobian jacobian = ComputePairJacobian(terms, pair, p, n, j);
   for (int row = 0; row < 8; ++row) {
     const PairJet& expected = row < 4 ? force.on_n[row] : force.on_j[row - 4];
     const double scale = std::max(1.0, expected.v.cwiseAbs().maxCoeff());
