@@ -21,6 +21,7 @@ BlockLayout::BlockLayout(const ParameterMap& map,
     unit_of_person.push_back(static_cast<int>(found - units.begin()));
     if (found == units.end()) units.push_back(unit);
   }
+  first_acting.reserve(map.fitted.size() + 1);
   for (size_t i = 0; i < map.fitted.size(); ++i) {
     const int deviation = num_deviations > 0 ? map.fitted[i].deviation : -1;
     if (deviation >= 0) of_deviation[deviation] = static_cast<int>(i);

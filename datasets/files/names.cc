@@ -54,11 +54,13 @@ std::string Plain(std::string key) {
 std::string MeantBy(const std::string& word, const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), word) != known.end()) return "";
   std::string nearest;
+  const std::string plain = Plain(word);
   std::size_t least = 3;
   for (const std::string& one : known) {
     // Short words are near to too much.
     const std::size_t most = one.size() < 5 ? 0 : 2;
-    const std::size_t distance = Distance(Plain(word), Plain(one));
+    if (one.size() > word.size() + most || word.size() > one.size() + most) continue;
+    const std::size_t distance = Distance(plain, Plain(one));
     if (distance > most || distance >= least) continue;
     nearest = one;
     least = distance;

@@ -6,6 +6,7 @@
 
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/raw_residuals.h"
 #include "ident/problem/statistics.h"
 
 namespace pushid {
@@ -72,7 +73,8 @@ void AddFrames(const PendulumRecording& recording, const std::vector<double>& ra
 }
 
 std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
-                                                     const FitPoint& point) {
+                                                     const FitPoint& point,
+                                                     const ResidualsByRecording& all) {
   std::vector<RecordingDiagnostics> diagnostics;
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
@@ -87,7 +89,7 @@ std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
       d.cost += cost;
     }
     d.cost -= built.OffsetOf(g);
-    const std::vector<double> raw = problem.RawResiduals(point, g);
+    const std::vector<double>& raw = all[g];
     if (!raw.empty()) {
       AddFrames(recording, raw, problem.options().sigmas, &d);
       const std::vector<double> forward = Series(recording, raw, recording.pushed_person, 0);
@@ -102,14 +104,12 @@ std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,
   return diagnostics;
 }
 
-std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem, const FitPoint& point) {
+std::vector<Whiteness> DiagnoseWhiteness(const FitProblem& problem, ResidualsByRecording raw) {
   const auto& recordings = problem.recordings();
   int lags = kLags, frames = 0, counted = 0, freedom = 0;
-  std::vector<std::vector<double>> raw;
   for (size_t g = 0; g < recordings.size(); ++g) {
-    raw.push_back(problem.RawResiduals(point, static_cast<int>(g)));
-    if (!recordings[g].IsSeen()) raw.back().clear();
-    if (raw.back().empty()) continue;
+    if (!recordings[g].IsSeen()) raw[g].clear();
+    if (raw[g].empty()) continue;
     lags = std::min(lags, LagsOf(recordings[g]));
     frames += recordings[g].num_frames() - 1;
     ++counted;
@@ -182,8 +182,9 @@ Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
                      const Uncertainty& uncertainty) {
   Diagnostics d;
   d.start = DiagnoseStart(problem, best);
-  d.recordings = DiagnoseRecordings(problem, best.to);
-  d.whiteness = DiagnoseWhiteness(problem, best.to);
+  const ResidualsByRecording raw = RawResiduals(problem, best.to);
+  d.recordings = DiagnoseRecordings(problem, best.to, raw);
+  d.whiteness = DiagnoseWhiteness(problem, raw);
   d.leverage = ComputeLeverage(problem, best.to, uncertainty);
   for (const SolveStage& stage : best.stages) {
     d.trace.insert(d.trace.end(), stage.trace.begin(), stage.trace.end());

@@ -16,8 +16,8 @@ constexpr double kNearby = 2.0;      // factor of the second look
 constexpr uint64_t kNearbySeed = 7;  // fixed: the check is part of no random choice
 
 // Norms of the shared columns over the rows of data, per typical size of each parameter.
-std::vector<double> ColumnNorms(const FitProblem& problem, FitPoint point) {
-  const JacobianBlocks score = EvaluateJacobianBlocks(problem.Build(&point, 0));
+std::vector<double> ColumnNorms(const FitProblem& problem, const FitPoint& point,
+                                const JacobianBlocks& score) {
   std::vector<double> norms(point.shared.size(), 0.0);
   for (size_t i = 0; i < norms.size(); ++i) {
     const FittedParameter& f = problem.map().fitted[i];
@@ -34,8 +34,9 @@ std::vector<double> ColumnNorms(const FitProblem& problem, FitPoint point) {
   return norms;
 }
 
-std::vector<std::string> WithoutEffect(const FitProblem& problem, const FitPoint& point) {
-  const std::vector<double> norms = ColumnNorms(problem, point);
+std::vector<std::string> WithoutEffect(const FitProblem& problem, const FitPoint& point,
+                                       const JacobianBlocks& score) {
+  const std::vector<double> norms = ColumnNorms(problem, point, score);
   double largest = 0.0;
   for (double norm : norms) largest = std::max(largest, norm);
   std::vector<std::string> names;
@@ -44,6 +45,10 @@ std::vector<std::string> WithoutEffect(const FitProblem& problem, const FitPoint
     names.push_back(problem.options().table[problem.map().fitted[i].parameter].name);
   }
   return names;
+}
+
+JacobianBlocks EvaluateAt(const FitProblem& problem, FitPoint point) {
+  return EvaluateJacobianBlocks(problem.Build(&point, 0));
 }
 
 }  // namespace
@@ -65,7 +70,8 @@ void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions
 }
 
 MaybeError CheckEffects(const FitProblem& problem) {
-  std::vector<std::string> names = WithoutEffect(problem, problem.NominalPoint());
+  const FitPoint nominal = problem.NominalPoint();
+  std::vector<std::string> names = WithoutEffect(problem, nominal, EvaluateAt(problem, nominal));
   if (names.empty()) return std::nullopt;
   // A term may rest at the nominal values (a contact not reached, a network that begins without
   // any output) and act beside them.
@@ -73,7 +79,8 @@ MaybeError CheckEffects(const FitProblem& problem) {
   Random random(kNearbySeed);
   for (double& weight : nearby.weights) weight += random.Uniform(-kNearbyWeight, kNearbyWeight);
   MoveOffBounds(problem, &nearby);
-  const std::vector<std::string> still = WithoutEffect(problem, nearby);
+  const std::vector<std::string> still =
+      WithoutEffect(problem, nearby, EvaluateAt(problem, nearby));
   std::string list;
   for (const std::string& name : names) {
     if (std::find(still.begin(), still.end(), name) == still.end()) continue;
@@ -91,9 +98,11 @@ MaybeError CheckEffects(const FitProblem& problem) {
 }
 
 StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start) {
-  const Conditioning at_start = ComputeConditioning(problem, start.from);
-  return {at_start.condition_number, at_start.null_directions, WithoutEffect(problem, start.from),
-          start.notes, FitFindings(FindingsOf(problem.recordings()))};
+  const JacobianBlocks score = EvaluateAt(problem, start.from);
+  const Conditioning at_start = ComputeConditioning(problem, start.from, score);
+  return {at_start.condition_number, at_start.null_directions,
+          WithoutEffect(problem, start.from, score), start.notes,
+          FitFindings(FindingsOf(problem.recordings()))};
 }
 
 }  // namespace pushid

@@ -124,7 +124,8 @@ void AddUnitErrors(const FitProblem& problem, const FitPoint& point, FitResult* 
   }
 }
 
-std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best) {
+std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best,
+                                              const Diagnostics& diagnostics) {
   std::vector<FittedRecording> fitted;
   for (const PendulumRecording& recording : problem.recordings()) {
     FittedRecording one;
@@ -132,18 +133,11 @@ std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const S
     one.content_hash = recording.content_hash;
     one.frames = recording.num_frames();
     one.people = recording.num_people();
+    one.cost = diagnostics.recordings[fitted.size()].cost;
     fitted.push_back(one);
   }
   for (const FailedRollout& failed : best.failed) {
     fitted[failed.recording].failure = Describe(failed.status);
-  }
-  FitPoint copy = best.to;
-  const FitProblem::Built built = problem.Build(&copy, 0);
-  for (const FitProblem::Built::Block& block : built.blocks) {
-    if (block.cluster < 0) continue;
-    double cost = 0.0;
-    built.problem->EvaluateResidualBlock(block.id, false, &cost, nullptr, nullptr);
-    fitted[block.cluster].cost = cost - built.OffsetOf(block.cluster);
   }
   return fitted;
 }

@@ -25,7 +25,8 @@ void AddUnits(const FitProblem& problem, const FitPoint& point, FitResult* resul
 void AddUnitErrors(const FitProblem& problem, const FitPoint& point, FitResult* result);
 
 // Cost of every recording at the optimum, and where its rollout failed.
-std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best);
+std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best,
+                                              const Diagnostics& diagnostics);
 
 // fit_warnings.cc: failed rollouts, a solver that stopped early, a verdict other than that people
 // settle, few clusters, what the demand to settle did, parameters at bounds, a tail that cannot

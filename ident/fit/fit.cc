@@ -166,7 +166,7 @@ FitResult Judge(const SolvedFit& fit) {
 
   // Residuals: what the model leaves unexplained, recording by recording.
   result.diagnostics = Diagnose(problem, fit.Best(), result.uncertainty);
-  result.recordings = FittedRecordings(problem, fit.Best());
+  result.recordings = FittedRecordings(problem, fit.Best(), result.diagnostics);
   if (ScoresSingleSteps(result.options.likelihood)) {
     result.likelihood = ScoreByLikelihood(problem, optimum);
   }

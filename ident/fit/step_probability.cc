@@ -68,17 +68,22 @@ double MarginOfPath(const ModelOptions& options, const ParameterSet<double>& par
   return StepMargin(p.front, most);
 }
 
-// Whether somebody steps, or falls before that, with a support so many times as large.
-bool StepsWith(double factor, int person, std::vector<ParameterSet<double>> parameters,
-               const RollWith& roll) {
+// Whether somebody steps, or falls before that, with a support so many times as large: looked at no
+// longer than until it is so.
+bool StepsWith(double factor, int person, const ModelOptions& options,
+               std::vector<ParameterSet<double>> parameters, const Scene& scene,
+               RolloutPath<double>* path) {
   ParameterSet<double>& own = parameters[parameters.size() == 1 ? 0 : person];
   for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) own[id] *= factor;
-  RolloutPath<double> path;
-  const RolloutStatus status = roll(parameters, &path);
-  if (!status.ok && status.person == person) return true;
-  const FeetState<double>& end =
-      path.At(status.ok ? path.num_frames() - 1 : status.frame - 1, person).feet;
-  return end.landed != 0 || end.swings != 0;
+  SceneForces<double> forces(scene, options, parameters);
+  StartPath(scene, InitialVelocities(scene), path);
+  for (int t = 0; t + 1 < path->num_frames(); ++t) {
+    const RolloutStatus status = StepOn<double>(scene, options, &forces, t, path);
+    if (!status.ok) return status.person == person;
+    const FeetState<double>& feet = path->At(t + 1, person).feet;
+    if (feet.landed != 0 || feet.swings != 0) return true;
+  }
+  return false;
 }
 
 // Of everybody, in order; none where the model's rollout of the recording leaves its domain.
@@ -113,22 +118,28 @@ double FactorAtMargin(double support, double margin) {
 
 std::vector<double> StepMargins(const ModelOptions& options,
                                 const std::vector<ParameterSet<double>>& parameters,
-                                const Scene& scene, const RolloutPath<double>& path,
-                                const RollWith& roll) {
+                                const PendulumRecording& recording,
+                                const RolloutPath<double>& path) {
   constexpr int kHalvings = 12;
-  if (options.stance == Stance::kSteps && scene.num_people() > kMostPeopleWithMargins) return {};
   std::vector<double> margins;
-  for (int n = 0; n < scene.num_people(); ++n) {
-    const ParameterSet<double>& own = parameters[parameters.size() == 1 ? 0 : n];
-    if (options.stance != Stance::kSteps) {
-      margins.push_back(MarginOfPath(options, own, scene.people[n], path, n));
-      continue;
+  if (options.stance != Stance::kSteps) {
+    for (int n = 0; n < path.num_people(); ++n) {
+      const ParameterSet<double>& own = parameters[parameters.size() == 1 ? 0 : n];
+      margins.push_back(MarginOfPath(options, own, recording.scene.people[n], path, n));
     }
+    return margins;
+  }
+  const Scene scene = SceneInOwnAxes(recording, options);
+  if (scene.num_people() > kMostPeopleWithMargins) return {};
+  RolloutPath<double> other(path.num_frames(), path.num_people());
+  for (int n = 0; n < scene.num_people(); ++n) {
     double steps = std::log(kLeastFactor), stands = std::log(kMostFactor);
     for (int i = 0; i < kHalvings; ++i) {
       const double middle = 0.5 * (steps + stands);
-      (StepsWith(std::exp(middle), n, parameters, roll) ? steps : stands) = middle;
+      (StepsWith(std::exp(middle), n, options, parameters, scene, &other) ? steps : stands) =
+          middle;
     }
+    const ParameterSet<double>& own = parameters[parameters.size() == 1 ? 0 : n];
     margins.push_back(StepMargin(own[kSupportFront], std::exp(0.5 * (steps + stands))));
   }
   return margins;
@@ -136,11 +147,7 @@ std::vector<double> StepMargins(const ModelOptions& options,
 
 std::vector<double> StepMargins(const IdentifiedModel& model, const PendulumRecording& recording,
                                 const RolloutPath<double>& path) {
-  return StepMargins(model.options, PeoplesParameters(model, recording), recording.scene, path,
-                     [&](const std::vector<ParameterSet<double>>& p, RolloutPath<double>* other) {
-                       return RolloutInOwnAxes(recording, model.options, p, path.num_frames(),
-                                               other);
-                     });
+  return StepMargins(model.options, PeoplesParameters(model, recording), recording, path);
 }
 
 std::optional<StepProbability> FitStepProbability(const std::vector<StepOutcome>& outcomes) {

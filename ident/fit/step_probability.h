@@ -23,7 +23,6 @@
 // recorded pushes among it; of a push that is known less well than those, P(step) is too sure.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,15 +48,12 @@ struct StepOutcome {
 // Each person asks for a dozen rollouts of all: seconds at this number, hours in a crowd.
 inline constexpr int kMostPeopleWithMargins = 20;
 
-// Of everybody in a scene; path: the model's own rollout. roll: the same with other parameters.
-// None where more people than that have feet that step.
-using RollWith =
-    std::function<RolloutStatus(const std::vector<ParameterSet<double>>&, RolloutPath<double>*)>;
+// Of everybody in a recording; path: the model's own rollout of it. None where more people than
+// that have feet that step.
 std::vector<double> StepMargins(const ModelOptions& options,
                                 const std::vector<ParameterSet<double>>& parameters,
-                                const Scene& scene, const RolloutPath<double>& path,
-                                const RollWith& roll);
-// Of everybody in a recording.
+                                const PendulumRecording& recording,
+                                const RolloutPath<double>& path);
 std::vector<double> StepMargins(const IdentifiedModel& model, const PendulumRecording& recording,
                                 const RolloutPath<double>& path);
 

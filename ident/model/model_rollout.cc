@@ -6,6 +6,8 @@
 
 #include "ident/problem/own_axes.h"
 #include "models/learned_terms.h"
+#include "models/turn.h"
+#include "residuals/cost_functions/lane_tables.h"
 #include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
@@ -26,6 +28,26 @@ void BoundTails(const PushRange& range, const PendulumRecording& recording,
     const double most = std::max(0.0, range.impulse_per_mass.upper * mass - rows);
     if (tail > most) ScaleTail(most / tail, &p);
   }
+}
+
+HipPaths HipsOf(const Scene& scene, const ModelOptions& options,
+                const std::vector<ParameterSet<double>>& parameters, int frames) {
+  RolloutPath<double> path;
+  HipPaths hips;
+  if (!Rollout<double>(scene, options, parameters, InitialVelocities(scene), frames, &path).ok) {
+    return hips;
+  }
+  const bool moves = RodMoves(options);
+  for (int n = 0; n < scene.num_people(); ++n) {
+    const Body& body = scene.people[n].body;
+    hips.emplace_back();
+    for (int t = 0; t < frames; ++t) {
+      const PendulumState<double>& state = path.At(t, n);
+      hips[n].push_back(
+          HipPosition(moves ? BodyNow(body, state.rod, parameters[n][kRodLift]) : body, state.q));
+    }
+  }
+  return hips;
 }
 
 }  // namespace
@@ -51,26 +73,34 @@ void ApplyEffect(double effect, ParameterSet<double>* parameters) {
   for (Parameter id : {kTailGain, kTailBase}) (*parameters)[id] *= std::exp(effect);
 }
 
-HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& recording,
-                       double effect, int frames) {
-  const Scene& scene = recording.scene;
-  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording, effect);
-  RolloutPath<double> path;
-  HipPaths hips;
-  if (!RolloutInOwnAxes(recording, model.options, parameters, frames, &path).ok) {
-    return hips;
+std::vector<HipPaths> HipsOfRollouts(const IdentifiedModel& model,
+                                     const PendulumRecording& recording,
+                                     const std::vector<double>& effects, int frames) {
+  const double angle = OwnAxes(recording, model.options.directions);
+  const TurnedAxes back(-angle);
+  const Scene scene = SceneInOwnAxes(recording, model.options);
+  const std::vector<ParameterSet<double>> without = PeoplesParameters(model, recording);
+  std::vector<std::vector<ParameterSet<double>>> parameters;
+  for (double effect : effects) {
+    parameters.push_back(without);
+    for (ParameterSet<double>& set : parameters.back()) ApplyEffect(effect, &set);
   }
-  const bool moves = RodMoves(model.options);
-  for (int n = 0; n < scene.num_people(); ++n) {
-    const Body& body = scene.people[n].body;
-    hips.emplace_back();
-    for (int t = 0; t < frames; ++t) {
-      const PendulumState<double>& state = path.At(t, n);
-      hips[n].push_back(
-          HipPosition(moves ? BodyNow(body, state.rod, parameters[n][kRodLift]) : body, state.q));
+  std::vector<HipPaths> all;
+  if (HasLanes(scene, model.options)) {
+    std::vector<ParameterSet<double>> of_person;
+    for (const auto& sets : parameters) of_person.push_back(sets[0]);
+    for (HipPath& path : HipsSideBySide(scene, model.options, of_person, frames)) {
+      all.push_back(path.empty() ? HipPaths() : HipPaths{std::move(path)});
+    }
+  } else {
+    for (const auto& sets : parameters) all.push_back(HipsOf(scene, model.options, sets, frames));
+  }
+  for (HipPaths& hips : all) {
+    for (HipPath& path : hips) {
+      for (Vector3<double>& hip : path) hip = back.Point(hip);
     }
   }
-  return hips;
+  return all;
 }
 
 std::string OutsideText(const RolloutStatus& status) {

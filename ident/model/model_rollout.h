@@ -25,9 +25,10 @@ std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model
 // 0.094 against 0.086 m).
 void ApplyEffect(double effect, ParameterSet<double>* parameters);
 
-// Everybody's hips in a rollout; empty where it leaves the model's domain.
-HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& recording,
-                       double effect, int frames);
+// Everybody's hips in rollouts with each of some effects; none where one leaves the model's domain.
+std::vector<HipPaths> HipsOfRollouts(const IdentifiedModel& model,
+                                     const PendulumRecording& recording,
+                                     const std::vector<double>& effects, int frames);
 
 // "theta of person 0 leaves the model's domain at frame 31"
 std::string OutsideText(const RolloutStatus& status);

@@ -46,7 +46,7 @@ std::vector<ForecastTrial> TrialsOf(const IdentifiedModel& model, const Forecast
     if (t > 0) first.Observe(FrameAt(recording, t));
     if (first.seconds() < kMoments[moment] - 1e-9) continue;
     const double effect = first.filter().Effect(*model.recording_effect).mean;
-    const HipPaths rollout = HipsOfRollout(model, recording, effect, frames);
+    const HipPaths rollout = HipsOfRollouts(model, recording, {effect}, frames).front();
     trials.push_back(MakeTrial(recording, first, rollout));
     trials.back().moment = moment;
     if (++moment == static_cast<int>(std::size(kMoments))) break;

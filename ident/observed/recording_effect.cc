@@ -166,11 +166,9 @@ struct Squares {
 };
 Squares SquaresOf(const IdentifiedModel& model, const PendulumRecording& recording, double effect,
                   double unit) {
-  const auto square = [&](double b) {
-    return MeanSquare(recording, HipsOfRollout(model, recording, b, recording.num_frames())) /
-           (unit * unit);
-  };
-  return {square(effect), square(0.0)};
+  const auto hips = HipsOfRollouts(model, recording, {effect, 0.0}, recording.num_frames());
+  return {MeanSquare(recording, hips[0]) / (unit * unit),
+          MeanSquare(recording, hips[1]) / (unit * unit)};
 }
 
 }  // namespace

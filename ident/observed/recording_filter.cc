@@ -44,10 +44,12 @@ RecordingFilter::RecordingFilter(const IdentifiedModel& model, const PendulumRec
       process_(recording.scene.num_people(), ErrorProcess(recording.scene.dt)),
       nodes_(EffectActs(model.options, recording) ? kEffectNodes : 1),
       misfit_(nodes_.size(), 0.0) {
+  std::vector<double> effects(nodes_.size(), 0.0);
+  for (size_t j = 0; j < nodes_.size() && acts(); ++j) effects[j] = EffectNode(static_cast<int>(j));
+  std::vector<HipPaths> hips = HipsOfRollouts(model, recording, effects, frames);
   for (size_t j = 0; j < nodes_.size(); ++j) {
     Node& node = nodes_[j];
-    node.hip =
-        HipsOfRollout(model, recording, acts() ? EffectNode(static_cast<int>(j)) : 0.0, frames);
+    node.hip = std::move(hips[j]);
     node.error.resize(node.hip.size());
     if (node.hip.empty()) misfit_[j] = kFailed;
   }
@@ -220,11 +222,6 @@ void SetForecastGains(ParameterSet<double>* p) {
   (*p)[kAx] = (*p)[kAy] = -1.5;
 }
 
-Scene SceneOf(const IdentifiedModel& model, const PendulumRecording& recording, double angle) {
-  const Scene scene = angle == 0.0 ? recording.scene : TurnedScene(recording, angle);
-  return WithBodies(scene, recording, model.options.body);
-}
-
 }  // namespace
 
 SceneFilter::SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
@@ -232,7 +229,7 @@ SceneFilter::SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<
     : angle_(OwnAxes(recording, model.options.directions)),
       to_(angle_),
       back_(-angle_),
-      filter_(SceneOf(model, recording, angle_), model.options, std::move(parameters), noise,
+      filter_(SceneInOwnAxes(recording, model.options), model.options, std::move(parameters), noise,
               frames) {}
 
 RolloutStatus SceneFilter::Observe(const std::vector<PendulumState<double>>& measured,

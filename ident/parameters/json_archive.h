@@ -92,7 +92,12 @@ T FromJson(const nlohmann::ordered_json& json) {
 class JsonWriter {
  public:
   static constexpr bool kReads = false;
-  explicit JsonWriter(nlohmann::ordered_json* json) : json_(*json) {}
+  explicit JsonWriter(nlohmann::ordered_json* object) : json_(*object) {
+    // One that outgrows its room copies all that it holds.
+    constexpr std::size_t kManyFields = 32;
+    if (!object->is_object()) return;
+    object->get_ref<nlohmann::ordered_json::object_t&>().reserve(kManyFields);
+  }
 
   // Whether an entry is to be written; and whether there is one to be read.
   bool Has(const char*, bool present = true) const { return present; }

@@ -29,18 +29,14 @@ class PushedPerson {
   // In the first 1.5 s: later only who does not settle would step.
   double StepProbability() const {
     RolloutPath<double> path;
-    const RollWith roll = [this](const std::vector<ParameterSet<double>>& p,
-                                 RolloutPath<double>* rolled) {
-      return Roll(p, kStepSeconds, rolled);
-    };
-    if (!roll({model_.parameters}, &path).ok) return 1.0;
+    if (!Roll(kStepSeconds, &path).ok) return 1.0;
     return model_.step_probability->At(
-        StepMargins(model_.options, {model_.parameters}, recording_.scene, path, roll)[0]);
+        StepMargins(model_.options, {model_.parameters}, recording_, path)[0]);
   }
 
   double End() const {
     RolloutPath<double> path;
-    if (!Roll({model_.parameters}, kEndSeconds, &path).ok) {
+    if (!Roll(kEndSeconds, &path).ok) {
       return std::numeric_limits<double>::quiet_NaN();
     }
     const Body& body = recording_.scene.people[0].body;
@@ -51,12 +47,11 @@ class PushedPerson {
   }
 
  private:
-  RolloutStatus Roll(const std::vector<ParameterSet<double>>& p, double seconds,
-                     RolloutPath<double>* path) const {
+  RolloutStatus Roll(double seconds, RolloutPath<double>* path) const {
     const Scene& scene = recording_.scene;
     const int frames =
         scene.pushes[0].EndFrame() + static_cast<int>(std::lround(seconds / scene.dt));
-    return RolloutInOwnAxes(recording_, model_.options, p, frames, path);
+    return RolloutInOwnAxes(recording_, model_.options, {model_.parameters}, frames, path);
   }
 
   const IdentifiedModel& model_;

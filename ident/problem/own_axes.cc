@@ -59,14 +59,18 @@ std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
   return turned;
 }
 
+Scene SceneInOwnAxes(const PendulumRecording& recording, const ModelOptions& options) {
+  const double angle = OwnAxes(recording, options.directions);
+  return WithBodies(angle == 0.0 ? recording.scene : TurnedScene(recording, angle), recording,
+                    options.body);
+}
+
 RolloutStatus RollInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,
                             const std::function<RolloutStatus(const Scene&)>& roll, int num_frames,
                             RolloutPath<double>* path, FrameTable<NetForce<double>>* trace) {
   const double angle = OwnAxes(recording, options.directions);
-  if (angle == 0.0) return roll(WithBodies(recording.scene, recording, options.body));
-  const RolloutStatus status =
-      roll(WithBodies(TurnedScene(recording, angle), recording, options.body));
-  TurnBack(angle, path, trace, status.ok ? num_frames : status.frame);
+  const RolloutStatus status = roll(SceneInOwnAxes(recording, options));
+  if (angle != 0.0) TurnBack(angle, path, trace, status.ok ? num_frames : status.frame);
   return status;
 }
 

@@ -24,6 +24,9 @@ Scene WithBodies(Scene scene, const PendulumRecording& recording, BodyModel body
 std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
     const std::vector<PendulumRecording>& recordings, const ModelOptions& options);
 
+// The scene of one of them.
+Scene SceneInOwnAxes(const PendulumRecording& recording, const ModelOptions& options);
+
 // What `roll` does to the scene as a model sees it, seen in the axes of the file. num_frames: of
 // the path. trace may be null.
 RolloutStatus RollInOwnAxes(const PendulumRecording& recording, const ModelOptions& options,

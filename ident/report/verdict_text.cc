@@ -160,8 +160,8 @@ TextTable AssumptionTable(const FitResult& result) {
                    "by itself moves most"},
                   {true, false, false, false, false, true});
   for (const AssumptionTest& test : result.verdict.assumptions) {
-    std::string moves;
-    double most = 0.0;
+    std::string moves = test.moves.empty() ? "" : "nothing";
+    double most = 1e-6;  // standard errors: differences of rollouts round by that
     const size_t known = std::min(test.moves.size(), result.uncertainty.estimates.size());
     for (size_t i = 0; i < known; ++i) {
       const Estimate& e = result.uncertainty.estimates[i];

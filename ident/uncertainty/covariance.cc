@@ -109,6 +109,7 @@ Scatter ClusteredScatter(const JacobianBlocks& score, const Clustering& clusteri
                          const Eigen::MatrixXd& back, const Eigen::MatrixXd& hessian,
                          const Eigen::MatrixXd& inverse_hessian) {
   Scatter scatter;
+  if (clustering.first.count < 2) return scatter;
   const ClusterScores first = GatherScores(score, clustering.first, back);
   if (first.scores.cols() < 2) return scatter;
   scatter.parts.push_back(DataScatter(score, clustering, first, back, hessian));
@@ -155,8 +156,8 @@ SingularDirections Decompose(const Eigen::MatrixXd& jacobian, double null_value)
   return directions;
 }
 
-Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
-                             const Clustering& clustering, double null_value) {
+Covariance NaiveCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
+                           double null_value) {
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   Covariance c;
   c.directions = Decompose(scaled, null_value);
@@ -168,12 +169,19 @@ Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd&
   c.naive_freedom = std::max(1, score.num_data_rows - rank);
   c.sigma = std::sqrt(sum / c.naive_freedom);
 
-  // In the base of the identified directions, then back to the columns as they came.
-  const Eigen::MatrixXd base = c.directions.v.leftCols(rank);
-  const Eigen::MatrixXd back = unit.asDiagonal() * base;
+  const Eigen::MatrixXd back = unit.asDiagonal() * c.directions.v.leftCols(rank);
   const Eigen::VectorXd squared = c.directions.singular.head(rank).cwiseAbs2();
   c.naive = c.sigma * c.sigma * back * squared.cwiseInverse().asDiagonal() * back.transpose();
+  return c;
+}
 
+Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
+                             const Clustering& clustering, double null_value) {
+  Covariance c = NaiveCovariance(score, unit, null_value);
+  // In the base of the identified directions, then back to the columns as they came.
+  const int rank = c.directions.rank;
+  const Eigen::MatrixXd back = unit.asDiagonal() * c.directions.v.leftCols(rank);
+  const Eigen::VectorXd squared = c.directions.singular.head(rank).cwiseAbs2();
   SplitHessian(score, back, &c);
   Eigen::MatrixXd hessian =
       back.transpose() * (c.by_data + c.by_prior + c.by_settling + c.by_pooling) * back;

@@ -106,9 +106,14 @@ struct Covariance {
   Eigen::VectorXd prior_gradient, settling_gradient;
 };
 
-// unit: the size of one step in each column, for judging what counts as null; 0 holds a column.
+// unit: the size of one step in each column, for judging what counts as null; 0 holds a column. No
+// scatter without clusters.
 Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
                              const Clustering& clustering, double null_value = kNullSingularValue);
+
+// The first of it alone: directions, sigma and what rows taken as independent scatter.
+Covariance NaiveCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
+                           double null_value = kNullSingularValue);
 
 // J'J of what is no data: priors, demands, pooling.
 Eigen::MatrixXd InformationBeside(const JacobianBlocks& score);

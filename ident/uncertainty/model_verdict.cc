@@ -100,9 +100,7 @@ class ModelJudge {
     clustering_ = ClusterRows(problem_, clusters_, rows_.rows);
     const Eigen::Index n = rows_.num_estimates;
     const Eigen::MatrixXd own = rows_.rows.robust_jacobian.leftCols(n);
-    JacobianBlocks beside = rows_.rows;
-    beside.jacobian = rows_.rows.jacobian.leftCols(n);
-    beside_ = InformationBeside(beside);
+    beside_ = InformationBeside(rows_.rows).topLeftCorner(n, n);
     const Eigen::MatrixXd hessian = own.transpose() * own + beside_;
     inverse_ = SolveSymmetric(hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
     scores_ = Scores(rows_, clustering_.first, std::vector<bool>(rows_.part_of_row.size(), true));
@@ -178,20 +176,19 @@ class ModelJudge {
   template <typename Holds>
   void TestPart(const std::string& name, const Eigen::MatrixXd& own, const Holds& holds) {
     const Eigen::Index n = rows_.num_estimates, shared = problem_.map().num_shared();
-    Eigen::MatrixXd first = Eigen::MatrixXd::Zero(n, n);
+    std::vector<int> rows;
     std::set<int> inside, outside;  // clusters
     std::vector<bool> held(rows_.part_of_row.size(), false);
     for (size_t i = 0; i < held.size(); ++i) {
       if (rows_.part_of_row[i] < 0 || clustering_.first.of_row[i] < 0) continue;
       held[i] = holds(i);
       (held[i] ? inside : outside).insert(clustering_.first.of_row[i]);
-      if (!held[i]) continue;
-      first.selfadjointView<Eigen::Lower>().rankUpdate(
-          own.row(static_cast<Eigen::Index>(i)).transpose());
+      if (held[i]) rows.push_back(static_cast<int>(i));
     }
     // Fewer know nothing of their own scatter.
     if (static_cast<int>(std::min(inside.size(), outside.size())) < kFewestClusters) return;
-    const Eigen::MatrixXd share = Eigen::MatrixXd(first.selfadjointView<Eigen::Lower>()) * inverse_;
+    const Eigen::MatrixXd first = own(rows, Eigen::all);
+    const Eigen::MatrixXd share = first.transpose() * first * inverse_;
     const Eigen::MatrixXd some = Scores(rows_, clustering_.first, held).topRows(n);
     const Eigen::MatrixXd parts = some - share * scores_.topRows(n);
     // What priors and demands pull at the optimum is balanced by all rows, and by their share of
@@ -222,9 +219,10 @@ class ModelJudge {
       joint.push_back(n + static_cast<int>(k));
       unit.push_back(assumptions_[k].sigma);
     }
-    JacobianBlocks rows = rows_.rows;
-    rows.jacobian = rows_.rows.jacobian(Eigen::all, joint);
-    rows.robust_jacobian = rows_.rows.robust_jacobian(Eigen::all, joint);
+    JacobianBlocks rows = std::move(rows_.rows);  // the last to ask
+    rows.jacobian = rows.jacobian(Eigen::all, joint).eval();
+    rows.robust_jacobian = rows.robust_jacobian(Eigen::all, joint).eval();
+    clustering_.recordings = {};  // nobody asks for the errors of these people
     const Covariance c = ComputeCovariance(
         rows, Eigen::Map<const Eigen::VectorXd>(unit.data(), unit.size()), clustering_);
     const Eigen::VectorXd moves = -c.inverse_hessian * (rows.jacobian.transpose() * rows.residuals);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/raw_residuals.h"
 #include "ident/problem/statistics.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/model_verdict.h"
@@ -132,10 +133,11 @@ MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
                                const Clusters& clusters) {
   Differences feet, time, turns;
   std::vector<double> explained;
+  const ResidualsByRecording all = RawResiduals(problem, point);
   for (size_t i = 0; i < problem.recordings().size(); ++i) {
     const PendulumRecording& r = problem.recordings()[i];
     if (problem.Count(static_cast<int>(i)) == 0 || !r.IsSeen()) continue;
-    const std::vector<double> raw = problem.RawResiduals(point, static_cast<int>(i));
+    const std::vector<double>& raw = all[i];
     if (raw.empty()) return {};
     const Compared c = MotionOf(r, raw, problem.options().sigmas);
     if (c.way > 0.0) explained.push_back(1.0 - c.error / c.way);

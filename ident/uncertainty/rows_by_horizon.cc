@@ -4,6 +4,7 @@
 
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/parallel.h"
+#include "ident/problem/raw_residuals.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/covariance.h"
 #include "residuals/cost_functions/plate_residual.h"
@@ -15,18 +16,12 @@ namespace {
 
 constexpr double kStep = 1e-5;  // of a column's unit
 
-using RawResiduals = std::vector<std::vector<double>>;  // by recording
-
-// Of some recordings; nothing of the others and of those that do not count.
-RawResiduals RawOf(const FitProblem& problem, const FitPoint& point,
-                   const std::vector<bool>& wanted) {
-  RawResiduals raw;
+std::vector<bool> Counting(const FitProblem& problem) {
+  std::vector<bool> counting;
   for (size_t i = 0; i < problem.recordings().size(); ++i) {
-    const int recording = static_cast<int>(i);
-    raw.push_back(problem.Count(recording) > 0 && wanted[i] ? problem.RawResiduals(point, recording)
-                                                            : std::vector<double>());
+    counting.push_back(problem.Count(static_cast<int>(i)) > 0);
   }
-  return raw;
+  return counting;
 }
 
 FitPoint Moved(const FitPoint& point, int column, double step) {
@@ -37,15 +32,15 @@ FitPoint Moved(const FitPoint& point, int column, double step) {
   return moved;
 }
 
-RawResiduals RawUnder(const Assumption& assumption, const FitProblem& problem,
-                      const FitPoint& point) {
+ResidualsByRecording RawUnder(const Assumption& assumption, const FitProblem& problem,
+                              const FitPoint& point) {
   FitPoint moved = point;
   for (const auto& [index, shift] : assumption.along) moved.shared[index] += shift;
   ChangedProblem changed{problem.recordings(), problem.options()};
   changed.options.model.directions = Directions::kAxes;  // the problem's own are turned already
   assumption.change(assumption.step, &changed);
   const FitProblem there(changed.recordings, changed.options, problem.counts());
-  return RawOf(there, moved, std::vector<bool>(changed.recordings.size(), true));
+  return RawResiduals(there, moved, Counting(there));
 }
 
 // With d(model - (1 + eta) measured) = d(model) - measured, the column holds the noise of what was
@@ -72,8 +67,8 @@ struct ColumnDifferences {
 
 // All columns beside the residuals here: there[column], step[column].
 struct Probes {
-  RawResiduals here;
-  std::vector<RawResiduals> there;
+  ResidualsByRecording here;
+  std::vector<ResidualsByRecording> there;
   std::vector<double> step;
 };
 
@@ -238,20 +233,21 @@ std::vector<bool> MovedBy(const JacobianBlocks& score, Eigen::Index column, size
 
 Probes Probe(const FitProblem& problem, const FitPoint& point,
              const std::vector<Assumption>& assumptions, const JacobianBlocks& score,
-             RawResiduals here) {
+             ResidualsByRecording here) {
   const size_t recordings = problem.recordings().size();
   const int estimates = static_cast<int>(score.jacobian.cols());
   const int columns = estimates + static_cast<int>(assumptions.size());
   const Eigen::VectorXd unit = Units(FittedColumns(problem, point));
-  Probes probes{std::move(here), std::vector<RawResiduals>(columns), std::vector<double>(columns)};
+  Probes probes{std::move(here), std::vector<ResidualsByRecording>(columns),
+                std::vector<double>(columns)};
   ParallelFor(columns, problem.options().num_threads, [&](int c) {
     const bool of_estimate = c < estimates;
     const double step = probes.step[c] =
         of_estimate ? kStep * unit[c] : assumptions[c - estimates].step;
     if (step == 0.0) return;  // on a bound
-    probes.there[c] = of_estimate
-                          ? RawOf(problem, Moved(point, c, step), MovedBy(score, c, recordings))
-                          : RawUnder(assumptions[c - estimates], problem, point);
+    probes.there[c] =
+        of_estimate ? RawResiduals(problem, Moved(point, c, step), MovedBy(score, c, recordings))
+                    : RawUnder(assumptions[c - estimates], problem, point);
   });
   return probes;
 }
@@ -263,7 +259,7 @@ RowsByHorizon EvaluateByHorizon(const FitProblem& problem, const FitPoint& point
                                 const std::vector<int>& horizons) {
   RowsByHorizon result;
   const int recordings = static_cast<int>(problem.recordings().size());
-  RawResiduals here = RawOf(problem, point, std::vector<bool>(recordings, true));
+  ResidualsByRecording here = RawResiduals(problem, point, Counting(problem));
   for (int i = 0; i < recordings; ++i) {
     if (here[i].empty() && problem.Count(i) > 0) return result;
     result.rows.num_data_rows += static_cast<int>(here[i].size());

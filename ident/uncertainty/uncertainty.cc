@@ -203,16 +203,18 @@ Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point) {
   return ComputeCovariance(e.score, e.unit, e.clustering);
 }
 
-Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point) {
-  const Evaluated e = Evaluate(problem, point, false);
-  const Covariance c = ComputeCovariance(e.score, e.unit, e.clustering);
+Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point,
+                                 const JacobianBlocks& score) {
+  const std::vector<FittedColumn> columns = FittedColumns(problem, point);
+  const Eigen::VectorXd unit = Units(columns);
+  const Covariance c = NaiveCovariance(score, unit);
   Uncertainty u;
   u.covariance = c.naive;
   u.scatter.Add(c.naive, c.naive_freedom);
   u.freedom = c.naive_freedom;
-  const Eigen::MatrixXd scaled = e.score.jacobian * e.unit.asDiagonal();
+  const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   return {c.directions.Condition(),
-          DescribeNullSpace(problem, point, DataNullSpace(e.score, scaled, e.columns), u)};
+          DescribeNullSpace(problem, point, DataNullSpace(score, scaled, columns), u)};
 }
 
 double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
@@ -243,7 +245,7 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   const Evaluated e = Evaluate(problem, point, free == nullptr);
   const auto& [score, columns, unit, clusters, clustering] = e;
   const int size = static_cast<int>(columns.size());
-  const Covariance c = ComputeCovariance(score, unit, clustering);
+  const Covariance c = ComputeCovariance(score, unit, free == nullptr ? clustering : Clustering{});
   const Covariance spread = free == nullptr ? c : CovarianceWithoutDemand(problem, *free);
 
   Uncertainty u;

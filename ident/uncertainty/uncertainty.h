@@ -154,12 +154,13 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
                                const FitPoint* free = nullptr);
 
 // What the recordings alone leave undetermined at a point, and how badly conditioned the rest is;
-// cheaper than all of Uncertainty.
+// cheaper than all of Uncertainty. score: of the problem there.
 struct Conditioning {
   double condition_number = 0.0;
   std::vector<NullDirection> null_directions;
 };
-Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point);
+Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point,
+                                 const JacobianBlocks& score);
 
 // A linear combination of natural values of shared parameters, and its error by the delta method.
 struct Term {

@@ -6,14 +6,13 @@
 
 #include <vector>
 
+#include "residuals/cost_functions/lane_tables.h"
 #include "residuals/cost_functions/rollout_problem.h"
-#include "residuals/lanes/person_lanes.h"
 #include "residuals/normal_equations.h"
 
 namespace pushid {
 
-// Whether a recording can be rolled out so: one person, of sliding feet, with no force that
-// remembers or that a user brings.
+// Whether a recording can be rolled out so.
 bool HasLanes(const RolloutProblem& problem);
 
 // What a rollout's residuals sum up to.
@@ -22,6 +21,7 @@ struct RolloutSums {
   double squares = 0.0;           // r'r; all there is without derivatives
   Eigen::VectorXd gradient;       // J'r, where it alone was asked for
   NormalEquations plain, robust;  // robust: with the robust loss's own Hessian, where asked for
+  std::vector<double> residuals;  // where nothing was to be summed up
 };
 
 class LaneGroup {
@@ -35,15 +35,8 @@ class LaneGroup {
                                     LaneSums sums) const;
 
  private:
-  void SetSteps(int lane);
-  void SetTails(int lane);
-  double& Constant(int id, int lane) { return constants_[id * width_ + lane]; }
-
   std::vector<const RolloutProblem*> problems_;
-  const PersonLanes* lanes_;
-  int width_ = 0, frames_ = 0, num_tails_ = 0;
-  bool friction_alone_ = false;
-  std::vector<double> constants_, steps_, tails_;
+  LaneTables tables_;
 };
 
 struct SideBySide {

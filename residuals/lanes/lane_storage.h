@@ -20,12 +20,13 @@ Eigen::Matrix<Lanes, kSize, 1> LoadVector(const double* from) {
 
 // The derivatives that are carried from step to step, and what they are summed up to.
 struct Carried {
-  Lanes* by_column = nullptr;  // P x 8: [q, qd]
-  Lanes* before = nullptr;     // P x 2: of the cart's velocity, one frame earlier
-  Lanes* rows = nullptr;       // (P + 1) x kFrameResiduals: [J r] of one frame
-  Lanes* plain = nullptr;      // (P + 1) x (P + 1)
-  Lanes* robust = nullptr;     // the same
-  Lanes* path = nullptr;       // frames x 8: [q, qd], of the gradient alone
+  Lanes* by_column = nullptr;   // P x 8: [q, qd]
+  Lanes* before = nullptr;      // P x 2: of the cart's velocity, one frame earlier
+  Lanes* rows = nullptr;        // (P + 1) x kFrameResiduals: [J r] of one frame
+  Lanes* plain = nullptr;       // (P + 1) x (P + 1)
+  Lanes* robust = nullptr;      // the same
+  Lanes* path = nullptr;        // frames x 8: [q, qd], of the gradient alone
+  double* residuals = nullptr;  // of LaneOutputs
 };
 
 // Lanes of which storage has room for, one after the other.

@@ -66,6 +66,7 @@ struct LaneInputs {
 };
 
 enum class LaneSums {
+  kNone,      // r alone, frame by frame from frame 1 on, without the robust loss's weight
   kSquares,   // r'r alone
   kGradient,  // and J'r, by the adjoint: work that columns do not add to
   kPlain,     // [J r]'[J r]
@@ -73,12 +74,13 @@ enum class LaneSums {
 };
 
 struct LaneOutputs {
-  double* failed = nullptr;    // 1 where a rollout left the domain
-  double* squares = nullptr;   // r'r
-  double* gradient = nullptr;  // P
-  double* plain = nullptr;     // (P + 1) x (P + 1), the upper triangle
-  double* robust = nullptr;    // the same
-  double* storage = nullptr;   // LaneStorage
+  double* failed = nullptr;     // 1 where a rollout left the domain
+  double* residuals = nullptr;  // (frames - 1) x kFrameResiduals, where nothing is summed up
+  double* squares = nullptr;    // r'r
+  double* gradient = nullptr;   // P
+  double* plain = nullptr;      // (P + 1) x (P + 1), the upper triangle
+  double* robust = nullptr;     // the same
+  double* storage = nullptr;    // LaneStorage
 };
 
 // Doubles that a rollout needs besides.

@@ -118,9 +118,10 @@ void RollLanes(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) {
   const int columns = in.columns, size = (columns + 1) * (columns + 1);
   const bool equations = sums == LaneSums::kPlain || sums == LaneSums::kRobust;
   Carried carried;
+  carried.residuals = out.residuals;
   if (sums == LaneSums::kGradient) {
     carried.path = room.Take(8 * in.frames);
-  } else {
+  } else if (equations) {
     carried = {room.Take(8 * columns), room.Take(2 * columns),
                room.Take(kFrameResiduals * (columns + 1)), room.Take(size), room.Take(size)};
   }

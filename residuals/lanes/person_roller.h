@@ -48,7 +48,7 @@ class Roller {
     for (int t = 0; t < in_.frames; ++t) {
       angles_ = Angles<Lanes>(state_.q);
       const double* const step = in_.steps + t * kLaneFields * kWidth;
-      if (t > 0) AddResidual(step);
+      if (t > 0) AddResidual(t, step);
       if (sums_ == LaneSums::kGradient) Remember(t);
       alive &= LoadLanes(step + kLaneGoesOn * kWidth) != Lanes(0.0);
       if (t + 1 < in_.frames) StepOn(t, step, &alive);
@@ -205,10 +205,15 @@ class Roller {
     return measured;
   }
 
-  void AddResidual(const double* step) {
+  void AddResidual(int t, const double* step) {
     const Lanes weight = LoadLanes(step + kLaneWeight * kWidth);
     const FrameVector<Lanes> r =
         RawFrameResidual(self_.body, state_, angles_, Measured(step), in_.sigmas);
+    if (sums_ == LaneSums::kNone) {
+      double* const to = carried_.residuals + (t - 1) * kFrameResiduals * kWidth;
+      for (int k = 0; k < kFrameResiduals; ++k) Store(weight * r[k], to + k * kWidth);
+      return;
+    }
     const Lanes squares = r.squaredNorm();
     const RobustSlope<Lanes> robust(squares, in_.sigmas.robust);
     const Lanes scale = weight * robust.w;

@@ -1,6 +1,8 @@
 // What the BVH reader refuses, and that the message says where and why.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -123,6 +125,47 @@ TEST_F(BvhErrorsTest, CutAnywhere) {
     const Result<BvhMotion> read = ReadBvh(WriteText("cut.bvh", text.substr(0, length)));
     ASSERT_FALSE(read.ok()) << text.substr(0, length);
     EXPECT_FALSE(read.error().message.empty());
+  }
+}
+
+// Plain decimals are read by themselves: to the same last bit, and only where they are plain.
+TEST_F(BvhErrorsTest, NumbersInEveryForm) {
+  const std::vector<std::string> tokens = {"0",
+                                           "-0",
+                                           "7",
+                                           "-7.25",
+                                           "1.",
+                                           ".5",
+                                           "0.1",
+                                           "455.778020",
+                                           "-3.324210",
+                                           "1e3",
+                                           "-2.5E-3",
+                                           "+4.5",
+                                           "000.000001",
+                                           "9007199254740993",
+                                           "9007199254740992.5",
+                                           "0.3333333333333333",
+                                           "12345678901234567890",
+                                           "0.0000000000000001234",
+                                           "99999.999999999999"};
+  std::string row;
+  for (const std::string& token : tokens) row += " " + token;
+  std::string joints, ends;
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    joints += (i == 0 ? "ROOT a" : "JOINT a") + std::to_string(i) +
+              " { OFFSET 0 0 0 CHANNELS 1 Xrotation ";
+    ends += " }";
+  }
+  const Result<BvhMotion> read =
+      ReadBvh(WriteText("forms.bvh", "HIERARCHY\n" + joints + "End Site { OFFSET 0 0 0 }" + ends +
+                                         "\nMOTION\nFrames: 1\nFrame Time: 1\n" + row + "\n"));
+  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  ASSERT_EQ(read.value().values.size(), tokens.size());
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    const double expected = std::strtod(tokens[i].c_str(), nullptr);
+    EXPECT_EQ(read.value().values[i], expected) << tokens[i];
+    EXPECT_EQ(std::signbit(read.value().values[i]), std::signbit(expected)) << tokens[i];
   }
 }
 

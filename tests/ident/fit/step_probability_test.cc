@@ -98,9 +98,9 @@ TEST(StepProbability, MarginIsTheDistanceBeyondTheSupport) {
   p[kSupportFront] = 0.1, p[kSupportBack] = 0.06, p[kSupportSide] = 0.12;
   ScenePerson person;
   RolloutPath<double> path(3, 1);
-  Scene scene;
-  scene.people = {person};
-  const auto margin = [&] { return StepMargins(options, {p}, scene, path, nullptr)[0]; };
+  PendulumRecording recording;
+  recording.scene.people = {person};
+  const auto margin = [&] { return StepMargins(options, {p}, recording, path)[0]; };
   EXPECT_NEAR(margin(), StepMargin(0.1, 0.0), 1e-6);
   path.At(1, 0).q[2] = std::asin(0.15 / kReferenceRod);
   EXPECT_NEAR(margin(), 0.05, 5e-4);
@@ -114,21 +114,20 @@ TEST(StepProbability, MarginOfFeetThatStepIsTheirOwn) {
   options.stance = Stance::kSteps;
   double before = -1.0;
   for (double velocity : {0.1, 0.2, 0.3, 0.4}) {
-    Scene scene = SettlingScene(75.0, 75.0 * velocity);
+    PendulumRecording recording;
+    recording.scene = SettlingScene(75.0, 75.0 * velocity);
     RolloutPath<double> path;
-    const RollWith roll = [&](const std::vector<ParameterSet<double>>& p,
-                              RolloutPath<double>* rolled) {
-      return Rollout<double>(scene, options, p, InitialVelocities(scene), 180, rolled);
-    };
     const auto steps = [&](const ParameterSet<double>& p) {
-      EXPECT_TRUE(roll({p}, &path).ok);
+      const Scene& scene = recording.scene;
+      EXPECT_TRUE(Rollout<double>(scene, options, {p}, InitialVelocities(scene), 180, &path).ok);
       return path.At(path.num_frames() - 1, 0).feet.landed != 0;
     };
     ParameterSet<double> p = PublishedStanceParameters();
-    const double margin = StepMargins(options, {p}, scene, path, roll)[0];
+    const bool stepped = steps(p);
+    const double margin = StepMargins(options, {p}, recording, path)[0];
     EXPECT_GT(margin, before);
     before = margin;
-    EXPECT_EQ(margin > 0.0, steps(p)) << velocity;
+    EXPECT_EQ(margin > 0.0, stepped) << velocity;
     const double factor = FactorAtMargin(p[kSupportFront], margin);
     if (factor < 0.26 || factor > 3.9) continue;
     for (double wider : {0.98, 1.02}) {

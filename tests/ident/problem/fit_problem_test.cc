@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "ident/problem/raw_residuals.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -30,6 +31,30 @@ TEST(FitProblem, FindsThePointOfARow) {
   std::vector<double> short_row = point.Flat();
   short_row.pop_back();
   EXPECT_FALSE(problem.PointAt(short_row).has_value());
+}
+
+TEST(FitProblem, RawResidualsSideBySideAreThoseOfEachRecording) {
+  const auto recordings = MakePendulums(TinyStudy());
+  FitOptions options = MakePreset("tail").value();
+  options.pool = "mu,tail_time";
+  options.pool_by = kSubjectUnit;
+  ASSERT_FALSE(PoolParameters(&options));
+  const FitProblem problem(recordings, options);
+  FitPoint point = problem.NominalPoint();
+  double step = 0.0;
+  for (auto& [unit, deviations] : point.unit) {
+    for (double& x : deviations) x += step += 0.05;
+  }
+  std::vector<bool> wanted(recordings.size(), true);
+  wanted[1] = false;
+  const auto all = RawResiduals(problem, point), some = RawResiduals(problem, point, wanted);
+  EXPECT_TRUE(some[1].empty());
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const std::vector<double> alone = problem.RawResiduals(point, static_cast<int>(i));
+    ASSERT_EQ(all[i].size(), alone.size());
+    for (size_t k = 0; k < alone.size(); ++k) EXPECT_NEAR(all[i][k], alone[k], 1e-11);
+    if (wanted[i]) EXPECT_EQ(some[i], all[i]);
+  }
 }
 
 std::vector<std::string> FamiliesOf(const FitOptions& options, int horizon) {

@@ -88,7 +88,7 @@ struct Crowd {
 // The oracle: row by row.
 RolloutSums OfRows(const RolloutProblem& problem, double const* const* blocks) {
   const int columns = problem.layout.num_acting();
-  RolloutSums sums{true, 0.0, {}, NormalEquations(columns), NormalEquations(columns)};
+  RolloutSums sums{true, 0.0, {}, NormalEquations(columns), NormalEquations(columns), {}};
   const RolloutStatus status =
       VisitFrames(problem, blocks, Derivatives::kAll,
                   [&](int t, int person, const FrameVector<double>& r, FrameRows* rows) {
@@ -156,6 +156,52 @@ TEST(LaneGroup, SumsUpTheRowsOfEveryRecording) {
   }
 }
 
+TEST(LaneGroup, TellsResidualsWithoutTheRobustWeight) {
+  for (const LaneRegime& regime : kRegimes) {
+    const Crowd crowd(regime);
+    for (const PersonLanes* lanes : SupportedPersonLanes()) {
+      SCOPED_TRACE(lanes->name);
+      const int count = lanes->lanes;
+      const auto told = crowd.Sums(0, count, *lanes, LaneSums::kNone);
+      for (int k = 0; k < count; ++k) {
+        RolloutProblem plain = *crowd.problems[k];
+        plain.sigmas.robust = 0.0;
+        std::vector<double> expected(plain.num_residuals());
+        ASSERT_TRUE(RolloutResiduals(plain, crowd.at[k].data(), expected.data()));
+        ASSERT_EQ(told[k].residuals.size(), expected.size());
+        for (size_t i = 0; i < expected.size(); ++i) {
+          EXPECT_NEAR(told[k].residuals[i], expected[i], 1e-11) << k << ", " << i;
+        }
+      }
+    }
+  }
+}
+
+// Nine sets are more than a vector holds. The last falls.
+TEST(LaneTables, HipsAreThoseOfRollouts) {
+  const Crowd crowd(kRegimes[0]);
+  const PendulumRecording& recording = crowd.recordings[2];
+  const ModelOptions& options = crowd.problems[2]->options;
+  const int frames = recording.num_frames();
+  std::vector<ParameterSet<double>> sets(9, WithTailBase());
+  for (size_t i = 0; i < sets.size(); ++i) sets[i][kTailGain] = 0.1 * static_cast<double>(i);
+  sets.back()[kKpTheta] = -2e4;
+  const auto hips = HipsSideBySide(recording.scene, options, sets, frames);
+  ASSERT_EQ(hips.size(), sets.size());
+  EXPECT_TRUE(hips.back().empty());
+  for (size_t i = 0; i + 1 < sets.size(); ++i) {
+    RolloutPath<double> path;
+    ASSERT_TRUE(Rollout<double>(recording.scene, options, {sets[i]},
+                                InitialVelocities(recording.scene), frames, &path)
+                    .ok);
+    ASSERT_EQ(hips[i].size(), static_cast<size_t>(frames));
+    for (int t = 0; t < frames; ++t) {
+      const Vector3<double> expected = HipPosition(recording.scene.people[0].body, path.At(t, 0).q);
+      EXPECT_LT((hips[i][t] - expected).norm(), 1e-12) << i << ", " << t;
+    }
+  }
+}
+
 TEST(LaneGroup, WhoElseIsThereChangesNoBit) {
   const Crowd crowd(kRegimes[0]);
   const int most = BestPersonLanes().lanes;
@@ -194,7 +240,7 @@ TEST(LaneGroup, HasNoPlaceForWhatItsLoopsDoNotKnow) {
   EXPECT_FALSE(HasLanes(problem));
   problem = *crowd.problems[0];
   PendulumRecording two = crowd.recordings[0];
-  two.hip.push_back(two.hip[0]);
+  two.scene.people.push_back(two.scene.people[0]);
   problem.recording = &two;
   EXPECT_FALSE(HasLanes(problem));
 }

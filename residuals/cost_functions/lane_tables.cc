@@ -1,0 +1,165 @@
+// residuals: scenes laid out in lanes.
+#include "residuals/cost_functions/lane_tables.h"
+
+#include <algorithm>
+
+#include "models/scene_forces.h"
+
+namespace pushid {
+namespace {
+
+std::vector<const ScenePush*> PushesWithTails(const Scene& scene, const ModelOptions& options) {
+  std::vector<const ScenePush*> pushes;
+  if (options.push_tail == PushTail::kNone) return pushes;
+  for (const ScenePush& push : scene.pushes) {
+    if (push.person == 0 && TailActs(push, push.EndFrame())) pushes.push_back(&push);
+  }
+  return pushes;
+}
+
+}  // namespace
+
+bool HasLanes(const Scene& scene, const ModelOptions& options) {
+  return scene.num_people() == 1 && options.stance == Stance::kSlide &&
+         options.learned == nullptr && options.own_laws.empty() && options.delay == Delay::kNone &&
+         options.body != BodyModel::kTable && !scene.ground.moves();
+}
+
+int NumTails(const Scene& scene, const ModelOptions& options) {
+  return static_cast<int>(PushesWithTails(scene, options).size());
+}
+
+LaneTables::LaneTables(const PersonLanes& lanes, int frames, int num_tails)
+    : lanes_(&lanes),
+      frames_(frames),
+      num_tails_(num_tails),
+      constants_(kLaneConstants * width(), 1.0),  // of a lane that nobody is in
+      steps_(frames * kLaneFields * width()),
+      tails_(num_tails * kLaneTails * width()) {}
+
+void LaneTables::Set(int lane, const Scene& scene, const ModelOptions& options, int frames) {
+  friction_ = options.friction;
+  cart_derivative_ = options.cart_derivative == CartDerivative::kBackward;
+  const SelfForce self(options, scene.people[0].body, scene.people[0].start.q, scene.dt);
+  Constant(kLaneMass, lane) = self.body.mass;
+  Constant(kLaneRod, lane) = self.body.rod_length;
+  Constant(kLaneHeight, lane) = self.body.cart_height;
+  Constant(kLanePointShare, lane) = self.body.point_share;
+  Constant(kLanePendulumRatio, lane) = self.body.pendulum_ratio;
+  Constant(kLaneScale, lane) = self.scale.force;
+  Constant(kLaneScale + 1, lane) = self.scale.stiffness;
+  Constant(kLaneScale + 2, lane) = self.scale.damping;
+  for (int i = 0; i < 2; ++i) {
+    Constant(kLanePosture + i, lane) = self.posture[i];
+    Constant(kLaneHold + i, lane) = self.hold[i];
+  }
+  Constant(kLaneStep, lane) = scene.dt;
+  for (int i = 0; i < 4; ++i) {
+    Constant(kLaneStart + i, lane) = scene.people[0].start.q[i];
+    Constant(kLaneStart + 4 + i, lane) = scene.people[0].start.qd[i];
+  }
+  SetSteps(lane, scene, options, frames);
+  SetTails(lane, scene, options);
+}
+
+void LaneTables::SetSteps(int lane, const Scene& scene, const ModelOptions& options, int frames) {
+  for (int t = 0; t < frames; ++t) {
+    double* const step = Step(lane, t);
+    const ActiveForces active = ForcesAt(scene, options.push, 0, t);
+    step[kLaneActs * width()] = active == ActiveForces::kAll ? 1.0 : 0.0;
+    step[kLaneSlides * width()] = active == ActiveForces::kPushOnly ? 0.0 : 1.0;
+    friction_alone_ = friction_alone_ || active == ActiveForces::kPushAndFriction;
+    step[kLaneGoesOn * width()] = t + 1 < frames ? 1.0 : 0.0;
+  }
+  for (const ScenePush& push : scene.pushes) {
+    if (push.person != 0) continue;
+    for (int t = std::max(0, push.start_frame); t < std::min(frames, push.EndFrame()); ++t) {
+      for (int i = 0; i < 4; ++i) {
+        Step(lane, t)[(kLanePush + i) * width()] += push.force[t - push.start_frame][i];
+      }
+    }
+  }
+}
+
+void LaneTables::SetMeasured(int lane, int frame, const Vector3<double>& hip,
+                             const PendulumState<double>& state, double weight) {
+  double* const step = Step(lane, frame);
+  for (int i = 0; i < 3; ++i) step[(kLaneHip + i) * width()] = hip[i];
+  for (int i = 0; i < 4; ++i) {
+    step[(kLanePose + i) * width()] = state.q[i];
+    step[(kLaneVelocity + i) * width()] = state.qd[i];
+  }
+  step[kLaneWeight * width()] = weight;
+}
+
+void LaneTables::SetTails(int lane, const Scene& scene, const ModelOptions& options) {
+  double* tail = tails_.data() + lane;
+  for (const ScenePush* push : PushesWithTails(scene, options)) {
+    const TailOf<double> at_end =
+        TailAt(*push, scene.people[0].body.mass, push->EndFrame(), scene.dt);
+    for (int i = 0; i < 4; ++i) tail[(kLaneMean + i) * width()] = at_end.mean[i];
+    tail[kLaneMassPerForce * width()] = at_end.mass_per_force;
+    tail[kLaneLogDuration * width()] = at_end.log_duration;
+    tail[kLaneEnd * width()] = push->EndFrame();
+    tail += kLaneTails * width();
+  }
+}
+
+LaneInputs LaneTables::Inputs() const {
+  LaneInputs in;
+  in.friction = friction_;
+  in.cart_derivative = cart_derivative_;
+  in.friction_alone = friction_alone_;
+  in.frames = frames_;
+  in.num_tails = num_tails_;
+  in.constants = constants_.data();
+  in.tails = tails_.data();
+  in.steps = steps_.data();
+  return in;
+}
+
+std::vector<std::vector<Vector3<double>>> HipsSideBySide(
+    const Scene& scene, const ModelOptions& options,
+    const std::vector<ParameterSet<double>>& parameters, int frames) {
+  const PersonLanes& lanes = BestPersonLanes();
+  const size_t width = static_cast<size_t>(lanes.lanes);
+  LaneTables tables(lanes, frames, NumTails(scene, options));
+  const Vector3<double> nowhere = Vector3<double>::Zero();
+  for (int lane = 0; lane < static_cast<int>(std::min(width, parameters.size())); ++lane) {
+    tables.Set(lane, scene, options, frames);
+    for (int t = 1; t < frames; ++t) tables.SetMeasured(lane, t, nowhere, {}, 1.0);
+  }
+  LaneInputs in = tables.Inputs();
+  in.sigmas.hip = 1.0;  // of what was not measured, the residual is the hip
+  std::vector<double> of_lanes(kLaneParameters * width, 1.0), failed(width), squares(width);
+  std::vector<double> residuals((frames - 1) * kFrameResiduals * width);
+  in.parameters = of_lanes.data();
+  LaneOutputs out;
+  out.failed = failed.data();
+  out.squares = squares.data();
+  out.residuals = residuals.data();
+  const ScenePerson& person = scene.people[0];
+  std::vector<std::vector<Vector3<double>>> hips(parameters.size());
+  for (size_t first = 0; first < parameters.size(); first += width) {
+    const size_t count = std::min(width, parameters.size() - first);
+    for (size_t lane = 0; lane < count; ++lane) {
+      for (size_t i = 0; i < kLaneParameters; ++i) {
+        of_lanes[i * width + lane] = parameters[first + lane][i];
+      }
+    }
+    tables.Roll(in, LaneSums::kNone, out);
+    for (size_t lane = 0; lane < count; ++lane) {
+      if (failed[lane] != 0.0) continue;
+      std::vector<Vector3<double>>& path = hips[first + lane];
+      path.reserve(static_cast<size_t>(frames));
+      path.push_back(HipPosition(person.body, person.start.q));
+      for (int t = 1; t < frames; ++t) {
+        const double* const hip = residuals.data() + (t - 1) * kFrameResiduals * width + lane;
+        path.push_back({hip[0], hip[width], hip[2 * width]});
+      }
+    }
+  }
+  return hips;
+}
+
+}  // namespace pushid

@@ -1,0 +1,59 @@
+// residuals: scenes of people alone laid out in lanes (person_lanes.h): what is constant over a
+// rollout, and from step to step.
+#pragma once
+
+#include <vector>
+
+#include "models/options.h"
+#include "models/parameters.h"
+#include "models/scene.h"
+#include "residuals/lanes/person_lanes.h"
+
+namespace pushid {
+
+// Whether a scene can be rolled out so: one person, of sliding feet, with no force that remembers
+// or that a user brings.
+bool HasLanes(const Scene& scene, const ModelOptions& options);
+
+class LaneTables {
+ public:
+  // frames, num_tails: the most that one of them has.
+  LaneTables(const PersonLanes& lanes, int frames, int num_tails);
+
+  // Who is in a lane. Options are those of all but for the tail.
+  void Set(int lane, const Scene& scene, const ModelOptions& options, int frames);
+  void SetMeasured(int lane, int frame, const Vector3<double>& hip,
+                   const PendulumState<double>& state, double weight);
+
+  // All but parameters, columns and sigmas.
+  LaneInputs Inputs() const;
+  const std::vector<double>& constants() const { return constants_; }
+  int width() const { return lanes_->lanes; }
+  int frames() const { return frames_; }
+  void Roll(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) const {
+    lanes_->roll(in, sums, out);
+  }
+
+ private:
+  void SetSteps(int lane, const Scene& scene, const ModelOptions& options, int frames);
+  void SetTails(int lane, const Scene& scene, const ModelOptions& options);
+  double* Step(int lane, int frame) { return steps_.data() + frame * kLaneFields * width() + lane; }
+  double& Constant(int id, int lane) { return constants_[id * width() + lane]; }
+
+  const PersonLanes* lanes_;
+  int frames_, num_tails_;
+  FrictionKind friction_ = FrictionKind::kIsotropic;
+  bool cart_derivative_ = false, friction_alone_ = false;
+  std::vector<double> constants_, steps_, tails_;
+};
+
+// Pushes on the person with a tail.
+int NumTails(const Scene& scene, const ModelOptions& options);
+
+// Hips, frame by frame, of rollouts of a scene that has lanes under each set of parameters; none
+// where one leaves the model's domain.
+std::vector<std::vector<Vector3<double>>> HipsSideBySide(
+    const Scene& scene, const ModelOptions& options,
+    const std::vector<ParameterSet<double>>& parameters, int frames);
+
+}  // namespace pushid
