@@ -93,6 +93,7 @@ int CheckPrinted(int exit_code) {
 
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
            std::vector<std::string>* words, const MovedFlags& moved) {
+  SetBlasThreads(1);
   SetProgramName(argv[0]);
   gflags::SetUsageMessage(usage);
   gflags::SetVersionString(Version());

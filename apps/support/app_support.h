@@ -68,12 +68,14 @@ inline constexpr int kInterrupted = 130;  // as shells count SIGINT
 // what starts it again. Called again, it replaces what is said.
 void SayWhenInterrupted(const std::string& what);
 
-// The threads of the system's BLAS, which training asks for products (nothing else is linked to
-// one); does nothing where the BLAS is another one, or the user has said OPENBLAS_NUM_THREADS.
+// The threads of the system's BLAS, which sparse normal equations and training ask for
+// products; does nothing where the BLAS is another one, or the user has said
+// OPENBLAS_NUM_THREADS.
 //
 // OpenBLAS starts a thread for every core when it is loaded, and these look for work in a loop for
-// 0.1 s before they sleep, on a core that another job may need. Products that threads share also
-// round otherwise, so that results would depend on how many cores a machine has.
+// 0.1 s before they sleep: a third of what a fit of 32 recordings takes, on a core that another job
+// may need. Products that threads share also round otherwise, so that results would depend on how
+// many cores a machine has.
 void SetBlasThreads(int num_threads);
 
 // The message of a training into this folder that Ctrl-C stops.

@@ -49,7 +49,6 @@ struct PathProblem {
   MaybeError Solve(ProbablePath* path) {
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-    solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     solver.max_num_iterations = 200;
     solver.function_tolerance = 1e-12;
     solver.logging_type = ceres::SILENT;

@@ -57,7 +57,6 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
   ceres::Solver::Options solver;
   solver.linear_solver_type = LinearSolverFor(problem, options.model.learned != nullptr);
   solver.dense_linear_algebra_library_type = ceres::EIGEN;
-  solver.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
   solver.gradient_tolerance = options.gradient_tolerance;

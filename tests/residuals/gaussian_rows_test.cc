@@ -128,9 +128,7 @@ LangevinFit FitLangevin(const std::vector<Eigen::Matrix<double, N, 1>>& path, do
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
     if ((fit.value - before).norm() > 1e-9 * before.norm()) continue;
-    ceres::Covariance::Options dense;
-    dense.algorithm_type = ceres::DENSE_SVD;
-    ceres::Covariance covariance(dense);
+    ceres::Covariance covariance(ceres::Covariance::Options{});
     EXPECT_TRUE(covariance.Compute(
         std::vector<std::pair<const double*, const double*>>{{fit.value.data(), fit.value.data()}},
         &problem));

@@ -48,7 +48,6 @@ double BridgeError(int steps) {
   ceres::Solver::Options options;
   options.logging_type = ceres::SILENT;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.function_tolerance = 1e-16;
   options.gradient_tolerance = 1e-14;
   ceres::Solver::Summary summary;
