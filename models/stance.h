@@ -35,10 +35,9 @@
 // lift-off.
 //
 // Lifting off and landing happen at their moments within a step of the rollout: the clock goes on
-// from there, c is the mean over the step, and the foot follows its place until the last step. How
-// long it swings, and the clock after landing, are those at that moment, between what the frames
-// before and after it tell: the second one is known a step later. So paths are continuous in the
-// parameters, with derivatives, but for which foot steps and whether it does.
+// from there, and c is the mean over the step. How long the foot swings, and the clock on landing,
+// lie between what the frames before and after that moment tell, and are known a step later. So
+// paths are continuous in the parameters, but for which foot steps and whether it does.
 //
 // While a `net` push lasts the ground does nothing, since its rows hold the feet's reaction. From a
 // `net_without_friction` push LDP's friction of 100 N s/m was taken out, and it gets that back.
@@ -69,7 +68,7 @@ struct StanceForces {
 
 // One step of the rollout.
 template <typename T>
-class StanceStep {
+class StanceStep : StanceNumbers {
  public:
   // ankle: the hip as the ankles feel it; xi: as the feet do.
   StanceStep(const StanceBody& body, const StanceParameters<T>& p, const FeetState<T>& feet,
@@ -252,11 +251,8 @@ class StanceStep {
     const double lane = feet.swings * body_.apart[1];
     place[1] = stands[1] + lane +
                SmoothLimit<T>(landing[1] - rest_[1] - stands[1] - 0.5 * lane, T(kSideReach));
-    T way;  // of what is left of it
-    if (lands) {
-      way = RealPart(left) > 0.0 ? T(left * (1.0 / dt)) : T(0.0);
-      if (RealPart(way) > 1.0) way = T(1.0);
-    } else {
+    T way = RealPart(left) > 0.0 ? T(left * (1.0 / dt)) : T(0.0);  // of what is left of it
+    if (!lands) {
       const T before = SmoothRise(T(feet.clock / total));
       way = (SmoothRise(T(after / total)) - before) / (1.0 - before);
     }
@@ -282,22 +278,6 @@ class StanceStep {
     next.swing_time = since;
     next.fresh = true;
   }
-
-  static constexpr double kRushEdge = 0.2;  // of S
-  // Among others: by how much S makes a swing quicker; 1 / the share of t_on after which they fall.
-  static constexpr double kQuicker = 0.25, kLetsFall = 3.0;
-  static constexpr double kForgets = 0.2;       // s, until a step is not prepared any more
-  static constexpr double kBringsUp = 0.6;      // s, until the rear foot is brought up
-  static constexpr double kAgain = 0.06;        // s, between two steps of who is not caught yet
-  static constexpr double kShortStride = 0.02;  // m
-  // m, of half a stride and of a stride: feet farther apart than that take turns; the rear one
-  // goes.
-  static constexpr double kAbreast = 0.02, kStaggered = 0.15;
-  static constexpr double kFootSpeed = 4.4;  // m/s
-  static constexpr double kCaptureGain = 2.5;
-  static constexpr double kFootBack = 0.05, kFootSide = 0.03, kLeastReach = 0.02;  // m
-  static constexpr double kReach = 1.2;      // of the rod: the longest step
-  static constexpr double kSideReach = 0.4;  // m: the longest to the side
 
   const StanceBody& body_;
   const StanceParameters<T>& p_;

@@ -12,6 +12,25 @@ namespace pushid {
 inline constexpr double kSupportEdge = 0.05;         // of rho: where a step begins to be prepared
 inline constexpr double kPublishedFriction = 100.0;  // N s/m, taken out of net_without_friction
 
+// The numbers of the law without a name.
+struct StanceNumbers {
+  static constexpr double kRushEdge = 0.2;  // of S
+  // Among others: by how much S makes a swing quicker; 1 / the share of t_on after which they fall.
+  static constexpr double kQuicker = 0.25, kLetsFall = 3.0;
+  static constexpr double kForgets = 0.2;       // s, until a step is not prepared any more
+  static constexpr double kBringsUp = 0.6;      // s, until the rear foot is brought up
+  static constexpr double kAgain = 0.06;        // s, between two steps of who is not caught yet
+  static constexpr double kShortStride = 0.02;  // m
+  // m, of half a stride and of a stride: feet farther apart than that take turns; the rear one
+  // goes.
+  static constexpr double kAbreast = 0.02, kStaggered = 0.15;
+  static constexpr double kFootSpeed = 4.4;  // m/s
+  static constexpr double kCaptureGain = 2.5;
+  static constexpr double kFootBack = 0.05, kFootSide = 0.03, kLeastReach = 0.02;  // m
+  static constexpr double kReach = 1.2;      // of the rod: the longest step
+  static constexpr double kSideReach = 0.4;  // m: the longest to the side
+};
+
 // The parameters of stance, which derivatives are taken by.
 template <typename T>
 struct StanceParameters {

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "ident/parameters/option_names.h"
+#include "ident/parameters/wrong_entry.h"
 
 // At most sixty, by the macros with which nlohmann's JSON goes through members.
 #define PUSHID_FIELDS(archive, object, ...)                              \
@@ -42,30 +43,6 @@ namespace pushid {
 nlohmann::ordered_json NumberJson(double value);
 double NumberFrom(const nlohmann::ordered_json& json);
 nlohmann::ordered_json NumberOrNull(const std::optional<double>& value);
-
-// What is wrong with an entry, whose path it gives.
-class WrongEntry : public std::runtime_error {
- public:
-  WrongEntry(std::string path, const std::string& what)
-      : std::runtime_error(what), path_(std::move(path)) {}
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
-// What an exception says for people: without nlohmann's "[json.exception.type_error.302] ".
-std::string ReasonOf(const std::exception& exception);
-
-// What `read` gives; what it throws is said of that path.
-template <typename Read>
-auto ReadAt(const std::string& path, Read read) -> decltype(read()) {
-  try {
-    return read();
-  } catch (const std::exception& exception) {
-    throw WrongEntry(path, ReasonOf(exception));
-  }
-}
 
 // The value of an option by its name in option_names.h.
 template <typename E>
@@ -92,12 +69,7 @@ T FromJson(const nlohmann::ordered_json& json) {
 class JsonWriter {
  public:
   static constexpr bool kReads = false;
-  explicit JsonWriter(nlohmann::ordered_json* object) : json_(*object) {
-    // One that outgrows its room copies all that it holds.
-    constexpr std::size_t kManyFields = 32;
-    if (!object->is_object()) return;
-    object->get_ref<nlohmann::ordered_json::object_t&>().reserve(kManyFields);
-  }
+  explicit JsonWriter(nlohmann::ordered_json* object) : json_(*object) {}
 
   // Whether an entry is to be written; and whether there is one to be read.
   bool Has(const char*, bool present = true) const { return present; }
@@ -223,13 +195,13 @@ class JsonReader {
 namespace json_archive {
 
 template <typename T>
-struct IsVector : std::false_type {};
+inline constexpr bool kIsVector = false;
 template <typename T>
-struct IsVector<std::vector<T>> : std::true_type {};
+inline constexpr bool kIsVector<std::vector<T>> = true;
 template <typename T>
-struct IsMap : std::false_type {};
+inline constexpr bool kIsMap = false;
 template <typename T>
-struct IsMap<std::map<std::string, T>> : std::true_type {};
+inline constexpr bool kIsMap<std::map<std::string, T>> = true;
 template <typename T>
 inline constexpr bool kIsMatrix = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
 template <typename T>
@@ -253,11 +225,11 @@ nlohmann::ordered_json JsonOf(const T& value) {
     return value;
   } else if constexpr (std::is_enum_v<T>) {
     return NameOf(value);
-  } else if constexpr (json_archive::IsVector<T>::value) {
+  } else if constexpr (json_archive::kIsVector<T>) {
     Json array = Json::array();
     for (const auto& element : value) array.push_back(JsonOf(element));
     return array;
-  } else if constexpr (json_archive::IsMap<T>::value) {
+  } else if constexpr (json_archive::kIsMap<T>) {
     Json object = Json::object();
     for (const auto& [key, element] : value) object[key] = JsonOf(element);
     return object;
@@ -283,12 +255,12 @@ void ReadJson(const nlohmann::ordered_json& json, T* value) {
     *value = NumberFrom(json);
   } else if constexpr (json_archive::kIsPlain<T>) {
     *value = json.get<T>();
-  } else if constexpr (json_archive::IsVector<T>::value) {
+  } else if constexpr (json_archive::kIsVector<T>) {
     json_archive::Expect(json.is_array(), "array", json);
     value->clear();
     value->resize(json.size());
     for (size_t i = 0; i < json.size(); ++i) ReadJson(json[i], &(*value)[i]);
-  } else if constexpr (json_archive::IsMap<T>::value) {
+  } else if constexpr (json_archive::kIsMap<T>) {
     json_archive::Expect(json.is_object(), "object", json);
     value->clear();
     for (const auto& [key, element] : json.items()) ReadJson(element, &(*value)[key]);

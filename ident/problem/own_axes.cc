@@ -26,6 +26,15 @@ void TurnBack(double angle, RolloutPath<double>* path, FrameTable<NetForce<doubl
   }
 }
 
+// The scene with the bodies of a model.
+Scene WithBodies(Scene scene, const PendulumRecording& recording, BodyModel body) {
+  if (body != BodyModel::kAnthropometric) return scene;
+  for (size_t n = 0; n < std::min(scene.people.size(), recording.masses.size()); ++n) {
+    scene.people[n].body = Distributed<double>(scene.people[n].body, recording.masses[n]);
+  }
+  return scene;
+}
+
 }  // namespace
 
 double OwnAxes(const PendulumRecording& recording, Directions directions) {
@@ -35,14 +44,6 @@ double OwnAxes(const PendulumRecording& recording, Directions directions) {
   if (directions == Directions::kBody || touch) return recording.facing;
   const Eigen::Vector2d along = PushDirection(recording);
   return std::atan2(along[1], along[0]);
-}
-
-Scene WithBodies(Scene scene, const PendulumRecording& recording, BodyModel body) {
-  if (body != BodyModel::kAnthropometric) return scene;
-  for (size_t n = 0; n < std::min(scene.people.size(), recording.masses.size()); ++n) {
-    scene.people[n].body = Distributed<double>(scene.people[n].body, recording.masses[n]);
-  }
-  return scene;
 }
 
 std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(

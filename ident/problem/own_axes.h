@@ -17,9 +17,6 @@ namespace pushid {
 // rad, from the file's x axis to the model's.
 double OwnAxes(const PendulumRecording& recording, Directions directions);
 
-// The scene with the bodies of a model.
-Scene WithBodies(Scene scene, const PendulumRecording& recording, BodyModel body);
-
 // The recordings as a model sees them; null where that is as the files have them.
 std::shared_ptr<const std::vector<PendulumRecording>> InOwnAxes(
     const std::vector<PendulumRecording>& recordings, const ModelOptions& options);
