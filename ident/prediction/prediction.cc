@@ -11,7 +11,6 @@
 #include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/problem/own_axes.h"
-#include "ident/problem/statistics.h"
 #include "models/learned_terms.h"
 #include "models/scene_forces.h"
 
