@@ -142,7 +142,7 @@ MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit) {
   if (lean > kLargestLean) {
     return Error{"at frame 0 the line from the ankles to the hip leans " +
                      Rounded(lean * 180.0 / 3.14159265358979323846, 3) +
-                     " degrees from up: if z is not the file's vertical axis, set \"up\" and "
+                     " degrees from up: if the file's vertical axis is another, set \"up\" and "
                      "\"forward\" in the manifest; otherwise check \"joints\"",
                  person.file, 0};
   }

@@ -137,9 +137,9 @@ nlohmann::ordered_json SchemaOf(nlohmann::ordered_json* definitions) {
     return Ordered::object();
   } else if constexpr (std::is_enum_v<T>) {
     return {{"enum", AllNames<T>()}};
-  } else if constexpr (json_archive::IsVector<T>::value) {
+  } else if constexpr (json_archive::kIsVector<T>) {
     return json_schema::ListOf(SchemaOf<typename T::value_type>(definitions));
-  } else if constexpr (json_archive::IsMap<T>::value) {
+  } else if constexpr (json_archive::kIsMap<T>) {
     return {{"type", "object"},
             {"additionalProperties", SchemaOf<typename T::mapped_type>(definitions)}};
   } else if constexpr (json_archive::kIsMatrix<T>) {
