@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/raw_residuals.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/cost_functions/plate_residual.h"
@@ -51,9 +52,10 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) 
   double* const scales[] = {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate};
   std::array<std::vector<double>, 4> squares;
   std::array<std::vector<double>, 2> of_plates;
+  const ResidualsByRecording all = RawResiduals(problem, point);
   for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
     if (problem.Count(i) == 0) continue;
-    const std::vector<double> residuals = problem.RawResiduals(point, i);
+    const std::vector<double>& residuals = all[i];
     const size_t motion = problem.NumMotionRows(i);
     for (size_t row = motion; row < residuals.size(); row += kPlateResiduals) {
       const Eigen::Map<const PlateVector<double>> r(residuals.data() + row);
