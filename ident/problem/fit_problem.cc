@@ -195,19 +195,6 @@ std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horiz
   return failures;
 }
 
-std::vector<double> FitProblem::RawResiduals(const FitPoint& point, int recording) const {
-  FitPoint copy = point;
-  ResidualSigmas plain = options_.sigmas;
-  plain.robust = 0.0;
-  const auto rollout =
-      MakeRolloutProblem(recordings()[recording], options_.model, map_, plain, 1.0, 0);
-  std::vector<double> values(rollout->num_residuals());
-  if (!RolloutResiduals(*rollout, RecordingBlocks(&copy, recording).data(), values.data())) {
-    values.clear();
-  }
-  return values;
-}
-
 size_t FitProblem::NumMotionRows(int recording) const {
   const PendulumRecording& r = recordings()[recording];
   return static_cast<size_t>(r.num_frames() - 1) * r.num_people() * kFrameResiduals;

@@ -134,11 +134,7 @@ class FitProblem {
   // rollouts.
   Deviance DevianceAt(const FitPoint& point) const;
 
-  // A recording's residuals in sigmas before any weight: FrameResidual's, by frame from frame 1 on,
-  // then person; then those of platforms (cost_functions/plate_residual.h). Empty where its rollout
-  // leaves the domain.
-  std::vector<double> RawResiduals(const FitPoint& point, int recording) const;
-  // How many of them are of motion.
+  // How many residuals of a recording are of motion; those of platforms follow.
   size_t NumMotionRows(int recording) const;
 
   // Clusters of what is not data.

@@ -52,9 +52,12 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) 
   double* const scales[] = {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate};
   std::array<std::vector<double>, 4> squares;
   std::array<std::vector<double>, 2> of_plates;
-  const ResidualsByRecording all = RawResiduals(problem, point);
+  std::vector<bool> counts;
+  for (size_t i = 0; i < problem.recordings().size(); ++i) {
+    counts.push_back(problem.Count(static_cast<int>(i)) > 0);
+  }
+  const ResidualsByRecording all = RawResiduals(problem, point, counts);
   for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
-    if (problem.Count(i) == 0) continue;
     const std::vector<double>& residuals = all[i];
     const size_t motion = problem.NumMotionRows(i);
     for (size_t row = motion; row < residuals.size(); row += kPlateResiduals) {

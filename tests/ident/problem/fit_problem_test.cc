@@ -45,12 +45,18 @@ TEST(FitProblem, RawResidualsSideBySideAreThoseOfEachRecording) {
   for (auto& [unit, deviations] : point.unit) {
     for (double& x : deviations) x += step += 0.05;
   }
+  ResidualSigmas plain = options.sigmas;
+  plain.robust = 0.0;
   std::vector<bool> wanted(recordings.size(), true);
   wanted[1] = false;
   const auto all = RawResiduals(problem, point), some = RawResiduals(problem, point, wanted);
   EXPECT_TRUE(some[1].empty());
   for (size_t i = 0; i < recordings.size(); ++i) {
-    const std::vector<double> alone = problem.RawResiduals(point, static_cast<int>(i));
+    const auto rollout =
+        MakeRolloutProblem(problem.recordings()[i], options.model, problem.map(), plain, 1.0, 0);
+    std::vector<double> alone(rollout->num_residuals());
+    ASSERT_TRUE(RolloutResiduals(
+        *rollout, problem.RecordingBlocks(&point, static_cast<int>(i)).data(), alone.data()));
     ASSERT_EQ(all[i].size(), alone.size());
     for (size_t k = 0; k < alone.size(); ++k) EXPECT_NEAR(all[i][k], alone[k], 1e-11);
     if (wanted[i]) EXPECT_EQ(some[i], all[i]);
