@@ -26,6 +26,8 @@ constexpr double kLowMeasurementError = 3e-4;  // m
 // measurement.
 constexpr double kMeasurementErrors[] = {kLowMeasurementError, 3e-3};
 
+constexpr double kRoughRollouts = 1e-3;  // function tolerance
+
 // Steps of Fisher scoring before BFGS.
 constexpr int kScoringRounds = 3, kScoringSteps = 3;
 
@@ -138,6 +140,18 @@ NoiseFit FitNoise(const FitProblem& problem, const std::vector<int>& held, const
   return fit;
 }
 
+// The optimum of whole rollouts, roughly: from other values a likelihood of single steps may climb
+// to a place where all roughness is force.
+FitPoint RolloutStart(const FitProblem& problem) {
+  FitOptions options = problem.options();
+  options.likelihood = Likelihood::kTrajectory;
+  options.function_tolerance = kRoughRollouts;
+  const FitProblem rollouts(problem.recordings(), options, problem.counts());
+  const FitPoint nominal = problem.NominalPoint();
+  const SolveStart start = SolveFrom(rollouts, nominal, "nominal", "", nullptr);
+  return start.usable ? start.to : nominal;
+}
+
 }  // namespace
 
 LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress) {
@@ -148,7 +162,7 @@ LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& p
   const FitOptions& asked = as_asked.options();
   for (int s = 0; s < asked.num_starts; ++s) {
     FitPoint from = s > 0 ? RandomStart(as_asked, asked.start_spread, RandomStartSeed(asked, s))
-                          : as_asked.NominalPoint();
+                          : RolloutStart(as_asked);
     FitProblem with_noise = WithNoise(as_asked, &from);
     FitOptions own = with_noise.options();
     const std::string label = asked.num_starts > 1 ? "start " + std::to_string(s + 1) + "/" +

@@ -15,7 +15,9 @@
 namespace pushid {
 namespace {
 
-constexpr double kOnTheWay = 0.03;  // function tolerance: stages before the last need not be exact
+// Stages before the last need not be exact: function tolerance, and how much larger than the
+// last's.
+constexpr double kOnTheWay = 1e-4, kLessExact = 3.0;
 constexpr double kOffBound = 0.1;
 // In a row, each of a smaller trust region: where people fall, or leave the model's domain.
 constexpr int kInvalidSteps = 20;
@@ -154,7 +156,9 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
     for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
       FitProblem::Built built = problem.Build(&start.to, horizons[i], true, options.num_threads);
       ceres::Solver::Options solver = SolverOptions(options, *built.problem);
-      if (!last) solver.function_tolerance = std::max(kOnTheWay, options.function_tolerance);
+      if (!last) {
+        solver.function_tolerance = std::max(kOnTheWay, kLessExact * options.function_tolerance);
+      }
       ProgressCallback callback(progress, label + HorizonName(horizons[i]));
       if (progress) solver.callbacks.push_back(&callback);
       const SolveStage stage = SolveBuilt(&built, solver, horizons[i], &start.message);
