@@ -171,7 +171,7 @@ LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& p
     own.horizons = {0};
     own.max_iterations = kScoringSteps;
     const FitProblem whole(as_asked.recordings(), own, as_asked.counts());
-    SolveStart start = SolveFrom(whole, from, s > 0 ? "random" : "nominal", label, progress);
+    SolveStart start = SolveFrom(whole, from, s > 0 ? "random" : "rollouts", label, progress);
     for (int round = 1; round < kScoringRounds; ++round) {
       start.to = SolveFrom(whole, start.to, start.kind, label, progress).to;
     }

@@ -30,7 +30,7 @@ struct SolveStage {
 
 // One start of a multi-start.
 struct SolveStart {
-  std::string kind;  // nominal, random, or warm: from another optimum
+  std::string kind;  // nominal, random, rollouts, or warm: from another optimum
   bool usable = false;
   bool converged = false;
   double cost = 0.0;

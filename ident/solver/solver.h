@@ -55,11 +55,10 @@ Solution Solve(const FitProblem& problem, const SolveProgress& progress = nullpt
 
 // A solve that maximizes a likelihood of single steps (residuals/fit_choices.h).
 //
-// The noise starts at the spread of the transitions that the other parameters' start leaves. A few
-// steps of Fisher scoring
-// (residuals/cost_functions/likelihood_residual.h), the problem built anew after every third, come
-// near the optimum; BFGS finds it, in turns with the spread of pooled units.
-
+// The first start is the optimum of rollouts; the noise starts at the spread of the transitions
+// that it leaves. A few steps of Fisher scoring (residuals/cost_functions/likelihood_residual.h),
+// the problem built anew after every third, come near the optimum; BFGS finds it, in turns with the
+// spread of pooled units.
 struct LikelihoodSolution {
   Solution solution;
   bool stays = false;  // the best one's likelihood, from round to round

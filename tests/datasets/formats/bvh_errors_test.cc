@@ -128,7 +128,7 @@ TEST_F(BvhErrorsTest, CutAnywhere) {
   }
 }
 
-// Plain decimals are read by themselves: to the same last bit, and only where they are plain.
+// To the last bit, in every form that a file may have.
 TEST_F(BvhErrorsTest, NumbersInEveryForm) {
   const std::vector<std::string> tokens = {"0",
                                            "-0",

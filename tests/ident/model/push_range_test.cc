@@ -77,7 +77,9 @@ TEST(PushRange, WarnsOfWhatLiesOutsideByMoreThanAQuarter) {
       ExtrapolationWarnings(model, {fitted[0], PushedPerson("c", PushKind::kExternal, 60, 30.0),
                                     PushedPerson("d", PushKind::kExternal, 120, 10.0)});
   ASSERT_EQ(late.size(), 1u);
-  EXPECT_TRUE(Contains(late[0], "duration of d is 2 s (the farthest of 2 such among 3 recordings); the model")) << late[0];
+  EXPECT_TRUE(Contains(
+      late[0], "duration of d is 2 s (the farthest of 2 such among 3 recordings); the model"))
+      << late[0];
   // The rows of a net push are its beginning: their durations do not compare.
   IdentifiedModel no_tail = model;
   no_tail.options.push_tail = PushTail::kNone;

@@ -9,13 +9,18 @@
 namespace pushid {
 namespace {
 
-// A model's file keeps a point as one row of numbers.
-TEST(FitProblem, FindsThePointOfARow) {
-  const auto recordings = MakePendulums(TinyStudy());
+FitOptions PooledBySubject() {
   FitOptions options = MakePreset("tail").value();
   options.pool = "mu,tail_time";
   options.pool_by = kSubjectUnit;
-  ASSERT_FALSE(PoolParameters(&options));
+  EXPECT_FALSE(PoolParameters(&options));
+  return options;
+}
+
+// A model's file keeps a point as one row of numbers.
+TEST(FitProblem, FindsThePointOfARow) {
+  const auto recordings = MakePendulums(TinyStudy());
+  const FitOptions options = PooledBySubject();
   const FitProblem problem(recordings, options);
   FitPoint point = problem.NominalPoint();
   ASSERT_EQ(point.unit.size(), 2u);
@@ -35,10 +40,7 @@ TEST(FitProblem, FindsThePointOfARow) {
 
 TEST(FitProblem, RawResidualsSideBySideAreThoseOfEachRecording) {
   const auto recordings = MakePendulums(TinyStudy());
-  FitOptions options = MakePreset("tail").value();
-  options.pool = "mu,tail_time";
-  options.pool_by = kSubjectUnit;
-  ASSERT_FALSE(PoolParameters(&options));
+  const FitOptions options = PooledBySubject();
   const FitProblem problem(recordings, options);
   FitPoint point = problem.NominalPoint();
   double step = 0.0;
@@ -59,7 +61,9 @@ TEST(FitProblem, RawResidualsSideBySideAreThoseOfEachRecording) {
         *rollout, problem.RecordingBlocks(&point, static_cast<int>(i)).data(), alone.data()));
     ASSERT_EQ(all[i].size(), alone.size());
     for (size_t k = 0; k < alone.size(); ++k) EXPECT_NEAR(all[i][k], alone[k], 1e-11);
-    if (wanted[i]) EXPECT_EQ(some[i], all[i]);
+    if (wanted[i]) {
+      EXPECT_EQ(some[i], all[i]);
+    }
   }
 }
 
