@@ -7,13 +7,9 @@
 namespace pushid {
 namespace {
 
-// Gauss-Newton's curvature may be several times the true one, and its steps then reach the optimum
-// by a constant share of the way each: after so many, secants go on from its information.
-constexpr int kFewSteps = 5;
-constexpr double kLoose = 1e-6;  // a function tolerance that asks for no such optimum
-// Where demands begin and contacts close, Gauss-Newton's steps shrink with the trust region until
-// one is within a loose tolerance, which is no optimum: a fresh region goes on while it brings more
-// than so many tolerances.
+// Where demands begin and contacts close, steps shrink with the trust region until one is within
+// the tolerance, which is no optimum: from such an end a fresh region goes on, without what secants
+// learned, while it brings more than so many tolerances.
 constexpr double kWorthAnother = 50.0;
 constexpr int kMostFresh = 5;
 
@@ -39,10 +35,9 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
     return start;
   }
   const bool network = !from.weights.empty() && !hold_network;
-  const auto solve = [&](int max_iterations) {
+  const auto solve = [&] {
     FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads);
     ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
-    solver.max_num_iterations = std::min(max_iterations, solver.max_num_iterations);
     if (network) solver.function_tolerance = std::max(kNetworkTolerance, solver.function_tolerance);
     const SolveStage stage = SolveBuilt(&built, solver, 0, &start.message);
     start.failed = std::move(built.shortened);
@@ -51,25 +46,12 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
     start.cost = stage.final_cost;
     start.converged = stage.converged;
   };
-  const int most = problem.options().max_iterations;
-  const bool by_secants = from.weights.empty() && problem.options().function_tolerance < kLoose;
-  solve(by_secants ? kFewSteps : most);
+  solve();
   const double worth = kWorthAnother * problem.options().function_tolerance;
-  for (int fresh = 0; !by_secants && !network && start.converged && fresh < kMostFresh; ++fresh) {
+  for (int fresh = 0; !network && start.converged && fresh < kMostFresh; ++fresh) {
     const SolveStage& last = start.stages.back();
-    if (last.initial_cost - last.final_cost <= worth * last.initial_cost) break;
-    solve(most);
-  }
-  if (by_secants && !start.converged && start.iterations < most) {
-    FitPoint point = start.to;
-    std::string message;
-    const SolveStage stage = SolveByBfgs(problem, {}, &point, &message);
-    if (stage.final_cost < start.cost) {
-      start.to = std::move(point);
-      start.stages.push_back(stage);
-      start.iterations += stage.iterations;
-    }
-    solve(most);
+    if (!last.cramped || last.initial_cost - last.final_cost <= worth * last.initial_cost) break;
+    solve();
   }
   start.usable = start.converged && start.failed.empty();
   return start;

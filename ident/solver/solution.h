@@ -25,6 +25,7 @@ struct SolveStage {
   int iterations = 0;
   double initial_cost = 0.0, final_cost = 0.0;
   bool converged = false;
+  bool cramped = false;  // in a trust region smaller than the first: steps were refused
   std::vector<TracePoint> trace;
 };
 

@@ -7,10 +7,12 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/solver/network_training.h"
+#include "ident/solver/summed_cost.h"
 
 namespace pushid {
 namespace {
@@ -76,7 +78,21 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
                       std::string* message) {
   ceres::Solver::Summary summary;
-  ceres::Solve(options, built->problem.get(), &summary);
+  // Short stages are far from an optimum, where a step tells little of the next.
+  auto summed = std::make_unique<SummedCost>(built, horizon == 0);
+  if (summed->parameter_block_sizes()[0] > kDenseColumns || options.update_state_every_iteration) {
+    ceres::Solve(options, built->problem.get(), &summary);
+  } else {
+    ceres::Solver::Options dense = options;
+    dense.linear_solver_type = ceres::DENSE_QR;
+    const SummedCost& cost = *summed;
+    std::vector<double> x = cost.Values();
+    ceres::Problem sum;
+    sum.AddResidualBlock(summed.release(), nullptr, x.data());
+    cost.SetBounds(&sum, x.data());
+    ceres::Solve(dense, &sum, &summary);
+    cost.SetValues(x.data());
+  }
   *message = summary.message;
   SolveStage stage;
   stage.horizon = horizon;
@@ -84,6 +100,8 @@ SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& op
   stage.initial_cost = summary.initial_cost - built->Offset();
   stage.final_cost = summary.final_cost - built->Offset();
   stage.converged = summary.termination_type == ceres::CONVERGENCE;
+  stage.cramped = !summary.iterations.empty() && summary.iterations.back().trust_region_radius <
+                                                     options.initial_trust_region_radius;
   for (const ceres::IterationSummary& i : summary.iterations) {
     stage.trace.push_back({horizon, i.iteration, i.cost - built->Offset(), i.gradient_max_norm});
   }

@@ -17,7 +17,7 @@ namespace pushid {
 namespace {
 
 // Of the cost: what more would bring is a hundredth of what replicas differ by.
-constexpr double kReplicaTolerance = 1e-5;
+constexpr double kReplicaTolerance = 1e-6;
 
 // The combinations that move with a free parameter.
 std::vector<CombinationSpec> MovingCombinations(const FitProblem& problem) {

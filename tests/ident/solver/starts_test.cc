@@ -6,6 +6,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "ident/fit/fit.h"
+#include "ident/fit/weighted_solve.h"
 #include "ident/model/fitted_model.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
@@ -19,12 +20,22 @@ namespace {
 constexpr int kStarts = 32;
 constexpr double kSameCost = 1e-4;  // relative: tail_base and tail_gain lie in one valley
 
-// 32 starts with every gain wrong by up to 5x either way.
+// 32 starts with every gain wrong by up to 5x either way, and demands that join as in a fit.
 void ExpectOneOptimum(const FitProblem& problem) {
   std::vector<double> costs;
   for (uint64_t seed = 1; seed <= kStarts; ++seed) {
-    const SolveStart solved =
-        SolveFrom(problem, RandomStart(problem, 5.0, seed), "random", "", nullptr);
+    FitOptions options = problem.options();
+    options.sigma_source = SigmaSource::kFixed;  // costs by estimated weights do not compare
+    options.recording_weight = RecordingWeight::kFrame;
+    const FitPoint from = RandomStart(problem, 5.0, seed);
+    for (size_t i = 0; i < from.shared.size(); ++i) {
+      const FittedParameter& fitted = problem.map().fitted[i];
+      options.table[fitted.parameter].nominal = ToNatural(fitted.transform, from.shared[i]);
+    }
+    FitProblem moved(problem.recordings(), options);
+    const Solution solution = SolveWeighted(&moved, nullptr).solution;
+    ASSERT_GE(solution.best, 0) << "start " << seed;
+    const SolveStart& solved = solution.Best();
     EXPECT_TRUE(solved.usable) << "start " << seed << ": " << solved.message;
     EXPECT_TRUE(solved.failed.empty()) << "start " << seed;
     costs.push_back(solved.cost);

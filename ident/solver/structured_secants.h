@@ -1,0 +1,57 @@
+// ident: the curvature that J'J leaves out, learned from step to step.
+//
+// Gauss-Newton takes J'J for the Hessian H of the cost. Where a model is wrong, as every model of
+// people is, the rest, S = H - J'J, is not small: J'J is up to seven times H for people alone, and
+// its steps leave a constant share of the way to the optimum each. S is learned from differences of
+// gradients, y = g(x + s) - g(x):
+//   B = J'J + S,  S <- S + y y'/(y's) - (B s)(B s)'/(s'B s)        (BFGS, structured: Al-Baali and
+//                                                                 Fletcher 1985)
+// with S first a share of J'J, then shrunk where it says more than the last step shows, and used
+// where it tells the fall of the cost better than J'J alone does (NL2SOL: Dennis, Gay and Welsch
+// 1981). Priors have no S: their rows are linear in what they hold.
+// Rejected: their update (DFP; three times the steps for groups), rank one (SR1; as few steps for
+// groups, and half more for people alone), BFGS of the whole Hessian (stalls where contacts begin).
+#pragma once
+
+#include <Eigen/Core>
+
+namespace pushid {
+
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// J'J and J'r of some rows.
+struct SecondOrder {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+
+  explicit SecondOrder(Eigen::Index columns)
+      : information(Eigen::MatrixXd::Zero(columns, columns)),
+        gradient(Eigen::VectorXd::Zero(columns)) {}
+};
+
+class StructuredSecants {
+ public:
+  // learns: or S stays zero.
+  explicit StructuredSecants(bool learns) : learns_(learns) {}
+
+  // At the next accepted point. curved: rows that have an S; linear: all others.
+  void Add(const Eigen::VectorXd& x, double cost, const SecondOrder& curved,
+           const SecondOrder& linear);
+
+  // [B z; 0 rho] at that point: as many rows as columns with B'B the Hessian's model and B'z the
+  // gradient, and one that completes the cost.
+  RowMajorMatrix Rows() const;
+
+ private:
+  void Judge(const Eigen::VectorXd& step, double fall);
+  void Learn(const Eigen::VectorXd& step, const SecondOrder& curved, const SecondOrder& linear);
+
+  const bool learns_;
+  Eigen::VectorXd x_, curved_gradient_, gradient_;
+  Eigen::MatrixXd information_;
+  Eigen::MatrixXd beyond_;  // S
+  double cost_ = 0.0;
+  bool use_ = false;
+};
+
+}  // namespace pushid

@@ -1,0 +1,132 @@
+// ident: rows of all residual blocks, summed up.
+#include "ident/solver/summed_cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace pushid {
+
+using Eigen::VectorXd;
+
+SummedCost::SummedCost(FitProblem::Built* built, bool secants) : built_(*built), secants_(secants) {
+  const ceres::Problem& problem = *built_.problem;
+  std::map<const double*, int> column_of;
+  int columns = 0;
+  for (double* block : built_.parameter_blocks) {
+    if (problem.IsParameterBlockConstant(block)) continue;
+    moving_.push_back({block, columns, problem.ParameterBlockSize(block)});
+    column_of[block] = columns;
+    columns += moving_.back().size;
+  }
+  mutable_parameter_block_sizes()->push_back(columns);
+  set_num_residuals(columns + 1);
+  std::set<ceres::ResidualBlockId> curved;
+  for (const FitProblem::Built::Block& block : built_.blocks) {
+    if (block.cluster >= 0 || block.cluster == FitProblem::kSettlingCluster) {
+      curved.insert(block.id);
+    }
+  }
+  std::vector<ceres::ResidualBlockId> all;
+  problem.GetResidualBlocks(&all);
+  for (ceres::ResidualBlockId id : all) {
+    std::vector<double*> on;
+    problem.GetParameterBlocksForResidualBlock(id, &on);
+    Part part{problem.GetCostFunctionForResidualBlock(id),
+              curved.count(id) > 0,
+              {on.begin(), on.end()},
+              {}};
+    for (double* block : on) {
+      const auto found = column_of.find(block);
+      part.columns.push_back(found == column_of.end() ? -1 : found->second);
+    }
+    parts_.push_back(std::move(part));
+  }
+}
+
+std::vector<double> SummedCost::Values() const {
+  std::vector<double> values;
+  for (const Block& block : moving_) {
+    values.insert(values.end(), block.values, block.values + block.size);
+  }
+  return values;
+}
+
+void SummedCost::SetValues(const double* x) const {
+  for (const Block& block : moving_) std::copy_n(x + block.column, block.size, block.values);
+}
+
+void SummedCost::SetBounds(ceres::Problem* problem, double* x) const {
+  for (const Block& block : moving_) {
+    for (int i = 0; i < block.size; ++i) {
+      problem->SetParameterLowerBound(x, block.column + i,
+                                      built_.problem->GetParameterLowerBound(block.values, i));
+      problem->SetParameterUpperBound(x, block.column + i,
+                                      built_.problem->GetParameterUpperBound(block.values, i));
+    }
+  }
+}
+
+bool SummedCost::Squares(double* sum) const {
+  VectorXd residuals;
+  *sum = 0.0;
+  for (const Part& part : parts_) {
+    residuals.resize(part.cost->num_residuals());
+    if (!part.cost->Evaluate(part.on.data(), residuals.data(), nullptr)) return false;
+    *sum += residuals.squaredNorm();
+  }
+  return true;
+}
+
+bool SummedCost::AddPart(const Part& part, double* squares, SecondOrder* sum) const {
+  const int rows = part.cost->num_residuals();
+  const std::vector<int>& sizes = part.cost->parameter_block_sizes();
+  VectorXd residuals(rows);
+  std::vector<RowMajorMatrix> by_block(sizes.size());
+  std::vector<double*> pointers(sizes.size(), nullptr);
+  for (size_t b = 0; b < sizes.size(); ++b) {
+    if (part.columns[b] < 0) continue;
+    by_block[b].resize(rows, sizes[b]);
+    pointers[b] = by_block[b].data();
+  }
+  if (!part.cost->Evaluate(part.on.data(), residuals.data(), pointers.data())) return false;
+  *squares += residuals.squaredNorm();
+  for (size_t b = 0; b < sizes.size(); ++b) {
+    if (pointers[b] == nullptr) continue;
+    const auto own = by_block[b].transpose();
+    sum->gradient.segment(part.columns[b], sizes[b]).noalias() += own * residuals;
+    for (size_t c = 0; c < sizes.size(); ++c) {
+      if (pointers[c] == nullptr) continue;
+      sum->information.block(part.columns[b], part.columns[c], sizes[b], sizes[c]).noalias() +=
+          own * by_block[c];
+    }
+  }
+  return true;
+}
+
+bool SummedCost::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
+  const int columns = parameter_block_sizes()[0];
+  const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
+  SetValues(x[0]);
+  if (built_.evaluation != nullptr) built_.evaluation->PrepareForEvaluation(derivatives, true);
+  Eigen::Map<VectorXd> values(residuals, columns + 1);
+  double squares = 0.0;
+  if (!derivatives) {
+    if (!Squares(&squares)) return false;
+    values.setZero();
+    values[columns] = std::sqrt(squares);
+    return true;
+  }
+  SecondOrder curved(columns), linear(columns);
+  for (const Part& part : parts_) {
+    if (!AddPart(part, &squares, part.curved ? &curved : &linear)) return false;
+  }
+  secants_.Add(Eigen::Map<const VectorXd>(x[0], columns), 0.5 * squares, curved, linear);
+  const RowMajorMatrix rows = secants_.Rows();
+  values = rows.col(columns);
+  Eigen::Map<RowMajorMatrix>(jacobians[0], columns + 1, columns) = rows.leftCols(columns);
+  return true;
+}
+
+}  // namespace pushid

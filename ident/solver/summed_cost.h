@@ -1,0 +1,48 @@
+// ident: a built problem as one cost function, whose rows are a model of the Hessian
+// (structured_secants.h).
+#pragma once
+
+#include <ceres/cost_function.h>
+#include <ceres/problem.h>
+
+#include <vector>
+
+#include "ident/problem/fit_problem.h"
+#include "ident/solver/structured_secants.h"
+
+namespace pushid {
+
+// One block of all parameters that move, in the order of the problem's blocks; one row more than
+// there are. Ceres asks for derivatives only where it has accepted a step.
+class SummedCost : public ceres::CostFunction {
+ public:
+  // secants: whether the rows tell more than J'J.
+  SummedCost(FitProblem::Built* built, bool secants);
+  bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override;
+
+  // Of the problem's blocks.
+  std::vector<double> Values() const;
+  void SetValues(const double* x) const;
+  void SetBounds(ceres::Problem* problem, double* x) const;
+
+ private:
+  struct Block {  // of parameters
+    double* values;
+    int column, size;
+  };
+  struct Part {
+    const ceres::CostFunction* cost;
+    bool curved;  // rows of recordings and demands
+    std::vector<const double*> on;
+    std::vector<int> columns;  // of each block; -1: it stays
+  };
+  bool Squares(double* sum) const;
+  bool AddPart(const Part& part, double* squares, SecondOrder* sum) const;
+
+  FitProblem::Built& built_;
+  std::vector<Block> moving_;
+  std::vector<Part> parts_;
+  mutable StructuredSecants secants_;
+};
+
+}  // namespace pushid
