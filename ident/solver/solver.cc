@@ -76,10 +76,10 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
 }
 
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
-                      std::string* message) {
+                      std::string* message, const Eigen::MatrixXd& beyond) {
   ceres::Solver::Summary summary;
   // Short stages are far from an optimum, where a step tells little of the next.
-  auto summed = std::make_unique<SummedCost>(built, horizon == 0);
+  auto summed = std::make_unique<SummedCost>(built, StructuredSecants(horizon == 0, beyond));
   if (summed->parameter_block_sizes()[0] > kDenseColumns || options.update_state_every_iteration) {
     ceres::Solve(options, built->problem.get(), &summary);
   } else {

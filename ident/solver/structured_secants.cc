@@ -13,10 +13,12 @@ using Eigen::MatrixXd, Eigen::VectorXd;
 
 // The first S keeps at least so much of J'J: one step tells of one direction.
 constexpr double kFirstShare = 0.3;
-// J'J in use is given up where S is nearer to what a step brought; S where J'J is by so much.
-constexpr double kClearly = 1.5;
+// S is given up where it is so many times as far as J'J from what a step brought, until it is
+// nearer.
+constexpr double kClearly = 20.0;
 // Least curvature along a step that is learned from, and of B in any direction, to that of J'J.
 constexpr double kLeastLearned = 1e-3, kLeastCurvature = 0.1;
+constexpr double kLeastPart = 1e-3;    // of S
 constexpr double kLeastPivot = 1e-14;  // of a column's own (residuals/normal_equations.h)
 
 }  // namespace
@@ -24,7 +26,7 @@ constexpr double kLeastPivot = 1e-14;  // of a column's own (residuals/normal_eq
 void StructuredSecants::Add(const VectorXd& x, double cost, const SecondOrder& curved,
                             const SecondOrder& linear) {
   if (x_.size() == 0) {
-    beyond_ = MatrixXd::Zero(x.size(), x.size());
+    if (beyond_.size() == 0) beyond_ = MatrixXd::Zero(x.size(), x.size());
   } else if (learns_) {
     const VectorXd step = x - x_;
     Judge(step, cost_ - cost);
@@ -37,7 +39,7 @@ void StructuredSecants::Add(const VectorXd& x, double cost, const SecondOrder& c
   information_ = curved.information + linear.information;
 }
 
-// Whether the last step's fall of the cost is nearer to what S foretold.
+// Whether the last step's fall of the cost is as J'J foretold, and nothing like what S did.
 void StructuredSecants::Judge(const VectorXd& step, double fall) {
   const double plain = -(gradient_.dot(step) + 0.5 * step.dot(information_ * step));
   const double with = plain - 0.5 * step.dot(beyond_ * step);
@@ -89,10 +91,16 @@ RowMajorMatrix StructuredSecants::Rows() const {
   if (!use_ || beyond_.isZero(0.0)) return rows;
   const MatrixXd half = lower.solve(scale * beyond_ * scale);
   const SymmetricEigen ratio = DecomposeSymmetric(lower.solve(half.transpose()));
-  const VectorXd share = (1.0 + ratio.values.array()).max(kLeastCurvature).sqrt();
-  const VectorXd turned = (ratio.vectors.transpose() * z).cwiseQuotient(share);
-  // No rows have a cost below what such a step would bring.
-  if (turned.squaredNorm() > 2.0 * cost_) return rows;
+  const VectorXd along = ratio.vectors.transpose() * z;
+  VectorXd share, turned;
+  // As much of S as leaves the cost above nothing: no rows have one below.
+  double part = 2.0;
+  do {
+    part *= 0.5;
+    share = (1.0 + part * ratio.values.array()).max(kLeastCurvature).sqrt();
+    turned = along.cwiseQuotient(share);
+  } while (turned.squaredNorm() > 2.0 * cost_ && part > kLeastPart);
+  if (part <= kLeastPart) return rows;
   set(share.asDiagonal() * ratio.vectors.transpose() * root.transpose(), turned);
   return rows;
 }

@@ -6,14 +6,15 @@
 // gradients, y = g(x + s) - g(x):
 //   B = J'J + S,  S <- S + y y'/(y's) - (B s)(B s)'/(s'B s)        (BFGS, structured: Al-Baali and
 //                                                                 Fletcher 1985)
-// with S first a share of J'J, then shrunk where it says more than the last step shows, and used
-// where it tells the fall of the cost better than J'J alone does (NL2SOL: Dennis, Gay and Welsch
-// 1981). Priors have no S: their rows are linear in what they hold.
-// Rejected: their update (DFP; three times the steps for groups), rank one (SR1; as few steps for
-// groups, and half more for people alone), BFGS of the whole Hessian (stalls where contacts begin).
+// with S first a share of J'J, then shrunk where it says more than the last step shows (NL2SOL's
+// sizing: Dennis, Gay and Welsch 1981). Priors have no S: their rows are linear in what they hold.
+// Rejected: their update (DFP), which ends early for groups; rank one (SR1), half more steps for
+// people alone; BFGS of the whole Hessian, which stalls where contacts begin; never J'J alone
+// again, with which two more of NIST's sets do not converge from afar.
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 
 namespace pushid {
 
@@ -31,8 +32,9 @@ struct SecondOrder {
 
 class StructuredSecants {
  public:
-  // learns: or S stays zero.
-  explicit StructuredSecants(bool learns) : learns_(learns) {}
+  // learns: or S stays as it is. beyond: S at a point nearby; empty: unknown.
+  explicit StructuredSecants(bool learns, Eigen::MatrixXd beyond = {})
+      : learns_(learns), beyond_(std::move(beyond)), use_(beyond_.size() > 0) {}
 
   // At the next accepted point. curved: rows that have an S; linear: all others.
   void Add(const Eigen::VectorXd& x, double cost, const SecondOrder& curved,
@@ -47,11 +49,11 @@ class StructuredSecants {
   void Learn(const Eigen::VectorXd& step, const SecondOrder& curved, const SecondOrder& linear);
 
   const bool learns_;
+  Eigen::MatrixXd beyond_;  // S
+  bool use_;
   Eigen::VectorXd x_, curved_gradient_, gradient_;
   Eigen::MatrixXd information_;
-  Eigen::MatrixXd beyond_;  // S
   double cost_ = 0.0;
-  bool use_ = false;
 };
 
 }  // namespace pushid

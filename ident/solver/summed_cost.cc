@@ -5,12 +5,14 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace pushid {
 
 using Eigen::VectorXd;
 
-SummedCost::SummedCost(FitProblem::Built* built, bool secants) : built_(*built), secants_(secants) {
+SummedCost::SummedCost(FitProblem::Built* built, StructuredSecants secants)
+    : built_(*built), secants_(std::move(secants)) {
   const ceres::Problem& problem = *built_.problem;
   std::map<const double*, int> column_of;
   int columns = 0;
@@ -76,7 +78,7 @@ bool SummedCost::Squares(double* sum) const {
     if (!part.cost->Evaluate(part.on.data(), residuals.data(), nullptr)) return false;
     *sum += residuals.squaredNorm();
   }
-  return true;
+  return std::isfinite(*sum);
 }
 
 bool SummedCost::AddPart(const Part& part, double* squares, SecondOrder* sum) const {
@@ -122,6 +124,7 @@ bool SummedCost::Evaluate(double const* const* x, double* residuals, double** ja
   for (const Part& part : parts_) {
     if (!AddPart(part, &squares, part.curved ? &curved : &linear)) return false;
   }
+  if (!std::isfinite(squares)) return false;
   secants_.Add(Eigen::Map<const VectorXd>(x[0], columns), 0.5 * squares, curved, linear);
   const RowMajorMatrix rows = secants_.Rows();
   values = rows.col(columns);

@@ -16,8 +16,7 @@ namespace pushid {
 // there are. Ceres asks for derivatives only where it has accepted a step.
 class SummedCost : public ceres::CostFunction {
  public:
-  // secants: whether the rows tell more than J'J.
-  SummedCost(FitProblem::Built* built, bool secants);
+  SummedCost(FitProblem::Built* built, StructuredSecants secants);
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override;
 
   // Of the problem's blocks.

@@ -191,6 +191,7 @@ Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd&
     c.full_hessian = IsPositiveDefinite(full);
     if (c.full_hessian) hessian = full;
   }
+  c.curvature = score.curvature;
   c.inverse_hessian = back * SolveSymmetricTransposed(hessian, back);
   c.scatter = ClusteredScatter(score, clustering, back, hessian, c.inverse_hessian);
   if (clustering.recordings.count > 1) {

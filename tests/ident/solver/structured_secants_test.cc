@@ -1,0 +1,155 @@
+// What secants learn, and how many steps that saves.
+#include "ident/solver/structured_secants.h"
+
+#include <ceres/autodiff_cost_function.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ident/solver/solver.h"
+#include "ident/solver/summed_cost.h"
+
+namespace pushid {
+namespace {
+
+using Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
+
+// A quadratic cost 0.5 x'Hx + 10 whose rows say J'J = G.
+SecondOrder Quadratic(const MatrixXd& g, const MatrixXd& h, const VectorXd& x) {
+  SecondOrder rows(x.size());
+  rows.information = g;
+  rows.gradient = h * x;
+  return rows;
+}
+double CostOf(const MatrixXd& h, const VectorXd& x) { return 0.5 * x.dot(h * x) + 10.0; }
+
+struct Model {
+  MatrixXd hessian;
+  VectorXd gradient;
+  double cost;
+
+  explicit Model(const RowMajorMatrix& rows) {
+    const Eigen::Index size = rows.cols() - 1;
+    hessian = rows.leftCols(size).transpose() * rows.leftCols(size);
+    gradient = rows.leftCols(size).transpose() * rows.col(size);
+    cost = 0.5 * rows.col(size).squaredNorm();
+  }
+};
+
+class Secants : public ::testing::Test {
+ protected:
+  const MatrixXd g_ = (MatrixXd(2, 2) << 4.0, 1.0, 1.0, 3.0).finished();
+  const MatrixXd h_ = (MatrixXd(2, 2) << 1.5, 0.2, 0.2, 2.0).finished();
+  const SecondOrder nothing_{2};
+
+  Model After(const std::vector<Vector2d>& points, bool learns, const MatrixXd& beyond = {}) const {
+    StructuredSecants secants(learns, beyond);
+    for (const Vector2d& x : points) {
+      secants.Add(x, CostOf(h_, x), Quadratic(g_, h_, x), nothing_);
+    }
+    return Model(secants.Rows());
+  }
+};
+
+TEST_F(Secants, RowsAreTheCostAndItsGradient) {
+  const Vector2d x(0.3, -0.2);
+  for (bool learns : {false, true}) {
+    const Model model = After({{1.0, 0.5}, {0.5, 0.1}, x}, learns);
+    EXPECT_NEAR(model.cost, CostOf(h_, x), 1e-9);
+    EXPECT_LT((model.gradient - h_ * x).norm(), 1e-9);
+  }
+}
+
+TEST_F(Secants, NothingIsLearnedFromOnePointOrWhereItIsNotAsked) {
+  EXPECT_LT((After({{1.0, 0.5}}, true).hessian - g_).norm(), 1e-9);
+  EXPECT_LT((After({{1.0, 0.5}, {0.4, 0.1}, {0.1, 0.2}}, false).hessian - g_).norm(), 1e-9);
+}
+
+TEST_F(Secants, TheLastStepIsKnown) {
+  const Vector2d from(0.4, 0.1), to(0.1, 0.2);
+  const Model model = After({{1.0, 0.5}, from, to}, true);
+  EXPECT_LT((model.hessian * (to - from) - h_ * (to - from)).norm(), 1e-9);
+}
+
+TEST_F(Secants, StartFromWhatIsKnownNearby) {
+  EXPECT_LT((After({{1.0, 0.5}}, true, h_ - g_).hessian - h_).norm(), 1e-9);
+}
+
+// Priors are linear: what they say is known already, and only recordings differ from it.
+TEST_F(Secants, LinearRowsStayWhatTheyAre) {
+  StructuredSecants secants(true);
+  SecondOrder prior(2);
+  prior.information = MatrixXd::Identity(2, 2);
+  for (const Vector2d& x : {Vector2d(1.0, 0.5), Vector2d(0.4, 0.1)}) {
+    prior.gradient = x;
+    secants.Add(x, CostOf(h_, x) + 0.5 * x.squaredNorm(), Quadratic(g_, g_, x), prior);
+  }
+  const MatrixXd both = g_ + MatrixXd::Identity(2, 2);
+  EXPECT_LT((Model(secants.Rows()).hessian - both).norm(), 1e-9);
+}
+
+// Brown and Dennis (1971), problem 16 of More, Garbow and Hillstrom (1981): residuals are large at
+// the optimum, whose squares sum to 85822.2.
+struct BrownDennis {
+  double t;
+  template <typename T>
+  bool operator()(const T* x, T* residual) const {
+    const T a = x[0] + t * x[1] - std::exp(t);
+    const T b = x[2] + std::sin(t) * x[3] - std::cos(t);
+    residual[0] = a * a + b * b;
+    return true;
+  }
+};
+
+SolveStage SolveBrownDennis(int horizon, std::vector<double>* x) {
+  FitProblem::Built built;
+  built.problem = std::make_unique<ceres::Problem>();
+  built.problem->AddParameterBlock(x->data(), 4);
+  built.parameter_blocks = {x->data()};
+  for (int i = 1; i <= 20; ++i) {
+    auto* cost = new ceres::AutoDiffCostFunction<BrownDennis, 1, 4>(new BrownDennis{0.2 * i});
+    built.blocks.push_back({built.problem->AddResidualBlock(cost, nullptr, x->data()), 0, cost});
+  }
+  FitOptions options;
+  options.max_iterations = 1000;
+  options.function_tolerance = 1e-12;
+  std::string message;
+  return SolveBuilt(&built, SolverOptions(options, *built.problem), horizon, &message);
+}
+
+TEST(SummedCost, FindsTheOptimumOfLargeResiduals) {
+  std::vector<double> by_secants = {25.0, 5.0, -5.0, -1.0}, plain = by_secants;
+  const SolveStage with = SolveBrownDennis(0, &by_secants);
+  const SolveStage without = SolveBrownDennis(8, &plain);  // short stages do without
+  EXPECT_NEAR(2.0 * with.final_cost, 85822.2, 0.05);
+  EXPECT_GT(2.0 * without.final_cost, 1e5);  // as far as it comes in a thousand steps
+}
+
+struct Difference {
+  template <typename T>
+  bool operator()(const T* a, const T* b, T* residual) const {
+    residual[0] = a[0] - b[0];
+    residual[1] = a[0] * b[0] - 6.0;
+    return true;
+  }
+};
+
+TEST(SummedCost, BlocksStayAndBoundsHold) {
+  double a = 0.5, b = 2.0;
+  FitProblem::Built built;
+  built.problem = std::make_unique<ceres::Problem>();
+  auto* cost = new ceres::AutoDiffCostFunction<Difference, 2, 1, 1>(new Difference);
+  built.blocks.push_back({built.problem->AddResidualBlock(cost, nullptr, &a, &b), 0, cost});
+  built.parameter_blocks = {&a, &b};
+  built.problem->SetParameterBlockConstant(&b);
+  built.problem->SetParameterUpperBound(&a, 0, 2.1);
+  std::string message;
+  const SolveStage stage =
+      SolveBuilt(&built, SolverOptions(FitOptions(), *built.problem), 0, &message);
+  EXPECT_TRUE(stage.converged) << message;
+  EXPECT_EQ(b, 2.0);
+  EXPECT_DOUBLE_EQ(a, 2.1);
+}
+
+}  // namespace
+}  // namespace pushid
