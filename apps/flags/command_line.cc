@@ -3,6 +3,7 @@
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
+#include <malloc.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -89,11 +90,21 @@ int CheckPrinted(int exit_code) {
   return exit_code == kDone ? failed : exit_code;
 }
 
+// A fit lays out the same tables again and again. What goes back to the system in between is asked
+// for and cleared anew each time, which takes 3 % of a fit of 32 recordings.
+void KeepFreedMemory() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#endif
+}
+
 }  // namespace
 
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
            std::vector<std::string>* words, const MovedFlags& moved) {
   SetBlasThreads(1);
+  KeepFreedMemory();
   SetProgramName(argv[0]);
   gflags::SetUsageMessage(usage);
   gflags::SetVersionString(Version());

@@ -22,10 +22,9 @@ constexpr const char* kInputs[] = {"recordings",  "model",  "physics",  "truth",
 
 // Through symbolic and hard links too. One file that exists is never another that does not.
 bool Same(const std::string& a, const std::string& b) {
-  std::error_code failed;
-  const bool exists = fs::exists(a, failed);
-  if (exists != fs::exists(b, failed)) return false;
-  if (exists) return fs::equivalent(a, b, failed);
+  std::error_code failed, unknown;
+  const bool same = fs::equivalent(a, b, failed);
+  if (!failed || fs::exists(a, unknown) || fs::exists(b, unknown)) return same;
   const auto whole = [](const std::string& path) {
     std::error_code ignored;
     std::string text = fs::weakly_canonical(fs::absolute(path), ignored).string();

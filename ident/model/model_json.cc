@@ -131,6 +131,7 @@ class ModelReader {
 nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
   Json json = {
       {"schema", kModelSchema}, {"format", "pushid model"}, {"format_version", kModelFormat}};
+  json.get_ref<Json::object_t&>().reserve(64);  // it would copy all of itself where it grows
   JsonWriter writer(&json);
   ModelFields(writer, const_cast<FittedModel&>(model), run);
   return json;

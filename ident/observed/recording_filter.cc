@@ -60,12 +60,13 @@ bool RecordingFilter::ok() const {
 }
 
 Vector3<double> RecordingFilter::Scaled(const Vector3<double>& error) const {
-  return (axes_.transpose() * error).cwiseQuotient(kAxisScale) / unit_;
+  return (axes_.transpose() * error).cwiseQuotient(unit_ * kAxisScale);
 }
 
 void RecordingFilter::Update(const Vector3<double>& error, const ErrorProcess::Gains& gains,
                              Axis3* state, double* misfit) const {
   const Vector3<double> scaled = Scaled(error);
+  double squares = 0.0;
   for (int i = 0; i < 3; ++i) {
     ErrorProcess::State& now = (*state)[i];
     now = process_[0].Predicted(now);
@@ -73,8 +74,9 @@ void RecordingFilter::Update(const Vector3<double>& error, const ErrorProcess::G
     const double innovation = scaled[i] - now.position;
     now.position += gains.position * innovation;
     now.velocity += gains.velocity * innovation;
-    if (misfit != nullptr) *misfit += innovation * innovation / gains.variance;
+    squares += innovation * innovation;
   }
+  if (misfit != nullptr && gains.variance > 0.0) *misfit += squares / gains.variance;
 }
 
 void RecordingFilter::Observe(const SeenHips& frame) {

@@ -1,6 +1,7 @@
 // ident: residuals of whole recordings before any weight.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "ident/problem/fit_problem.h"
@@ -14,5 +15,16 @@ using ResidualsByRecording = std::vector<std::vector<double>>;
 // it is not wanted (wanted: by recording; empty: all).
 ResidualsByRecording RawResiduals(const FitProblem& problem, const FitPoint& point,
                                   const std::vector<bool>& wanted = {});
+
+// A rollout and where it is evaluated; no problem: it is not wanted.
+struct RolloutAt {
+  std::shared_ptr<const RolloutProblem> problem;
+  std::vector<double*> blocks;
+};
+// The same of each of them.
+std::vector<std::vector<double>> ResidualsOf(const std::vector<RolloutAt>& rollouts);
+
+// Those of a problem without the robust loss.
+ResidualSigmas PlainSigmas(const FitProblem& problem);
 
 }  // namespace pushid

@@ -1,6 +1,8 @@
 // ident: correlations over time.
 #include "ident/problem/statistics.h"
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/SpecialFunctions>
 
@@ -14,17 +16,16 @@ std::vector<double> Centred(std::vector<double> series) {
   return series;
 }
 
-double Power(const std::vector<double>& series) {
-  double sum = 0.0;
-  for (double value : series) sum += value * value;
-  return sum;
+Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& series) {
+  return {series.data(), static_cast<Eigen::Index>(series.size())};
 }
 
-// sum over t of a_t b_{t-lag}.
-double Lagged(const std::vector<double>& a, const std::vector<double>& b, size_t lag) {
-  double sum = 0.0;
-  for (size_t t = lag; t < a.size(); ++t) sum += a[t] * b[t - lag];
-  return sum;
+double Power(const std::vector<double>& series) { return AsVector(series).squaredNorm(); }
+
+// sum over t of a_t b_{t-lag}, of as many.
+double Lagged(const std::vector<double>& a, const std::vector<double>& b, int lag) {
+  const Eigen::Index rest = std::max<Eigen::Index>(0, AsVector(a).size() - lag);
+  return AsVector(a).tail(rest).dot(AsVector(b).head(rest));
 }
 
 }  // namespace
@@ -78,13 +79,19 @@ double StudentTail(double t, double v) {
   return Eigen::numext::betainc(0.5 * v, 0.5, v / (v + t * t));
 }
 
+// By Newton's steps from the normal quantile: Student's tail is heavier there, and convex, so that
+// none of them goes too far.
 double StudentQuantile95(double v) {
-  double low = 0.0, high = 1000.0;
+  const double log_peak =
+      std::lgamma(0.5 * (v + 1.0)) - std::lgamma(0.5 * v) - 0.5 * std::log(M_PI * v);
+  double t = 1.959963984540054;
   for (int i = 0; i < 100; ++i) {
-    const double t = 0.5 * (low + high);
-    (StudentTail(t, v) > 0.05 ? low : high) = t;
+    const double density = std::exp(log_peak - 0.5 * (v + 1.0) * std::log1p(t * t / v));
+    const double step = (StudentTail(t, v) - 0.05) / (2.0 * density);
+    t += step;
+    if (std::abs(step) < 1e-12 * t) break;
   }
-  return 0.5 * (low + high);
+  return t;
 }
 
 }  // namespace pushid

@@ -9,13 +9,11 @@
 namespace pushid {
 namespace {
 
-// Calls f(recording, push) for every measured push.
+// Calls f(push) for every measured push.
 template <typename F>
-void ForMeasured(ChangedProblem* p, const F& f) {
-  for (PendulumRecording& r : p->recordings) {
-    for (ScenePush& push : r.scene.pushes) {
-      if (push.kind == PushKind::kExternal && !push.force.empty()) f(r, &push);
-    }
+void ForMeasured(PendulumRecording* r, const F& f) {
+  for (ScenePush& push : r->scene.pushes) {
+    if (push.kind == PushKind::kExternal && !push.force.empty()) f(&push);
   }
 }
 
@@ -23,16 +21,16 @@ void Renew(ScenePush* push) {
   *push = MakeScenePush(push->person, push->start_frame, push->kind, std::move(push->force));
 }
 
-void ScaleMeasured(double eta, ChangedProblem* p) {
-  ForMeasured(p, [eta](const PendulumRecording&, ScenePush* push) {
+void ScaleMeasured(double eta, PendulumRecording* r) {
+  ForMeasured(r, [eta](ScenePush* push) {
     for (Vector4<double>& row : push->force) row *= 1.0 + eta;
     Renew(push);
   });
 }
 
 // Later by eta frames, between rows by straight lines.
-void Lag(double eta, ChangedProblem* p) {
-  ForMeasured(p, [eta](const PendulumRecording&, ScenePush* push) {
+void Lag(double eta, PendulumRecording* r) {
+  ForMeasured(r, [eta](ScenePush* push) {
     const std::vector<Vector4<double>> old = push->force;
     const int n = static_cast<int>(old.size());
     const auto at = [&old, n](int i) -> Vector4<double> {
@@ -48,9 +46,9 @@ void Lag(double eta, ChangedProblem* p) {
 }
 
 // At the hands, eta metres higher.
-void Raise(double eta, ChangedProblem* p) {
-  ForMeasured(p, [eta](const PendulumRecording& r, ScenePush* push) {
-    const std::vector<PendulumState<double>>& states = r.states[push->person];
+void Raise(double eta, PendulumRecording* r) {
+  ForMeasured(r, [eta, r](ScenePush* push) {
+    const std::vector<PendulumState<double>>& states = r->states[push->person];
     for (size_t i = 0; i < push->force.size(); ++i) {
       const size_t frame = std::min(states.size() - 1, push->start_frame + i);
       const Angles<double> angles(states[frame].q);
@@ -66,8 +64,8 @@ void Raise(double eta, ChangedProblem* p) {
 }
 
 // The sensor reads eta newtons more, along the push and as high as it.
-void Shift(double eta, ChangedProblem* p) {
-  ForMeasured(p, [eta](const PendulumRecording&, ScenePush* push) {
+void Shift(double eta, PendulumRecording* r) {
+  ForMeasured(r, [eta](ScenePush* push) {
     const double mean = push->mean.head<2>().norm();
     if (mean <= 0.0) return;
     for (Vector4<double>& row : push->force) row += eta / mean * push->mean;
@@ -76,46 +74,41 @@ void Shift(double eta, ChangedProblem* p) {
 }
 
 // All people heavier by the share eta; pushes by inverse dynamics with them.
-void Weigh(double eta, ChangedProblem* p) {
-  for (PendulumRecording& r : p->recordings) {
-    for (ScenePerson& person : r.scene.people) person.body.mass *= 1.0 + eta;
-    for (ScenePush& push : r.scene.pushes) {
-      if (push.kind == PushKind::kExternal) continue;
-      for (Vector4<double>& row : push.force) row *= 1.0 + eta;
-      Renew(&push);
-    }
+void Weigh(double eta, PendulumRecording* r) {
+  for (ScenePerson& person : r->scene.people) person.body.mass *= 1.0 + eta;
+  for (ScenePush& push : r->scene.pushes) {
+    if (push.kind == PushKind::kExternal) continue;
+    for (Vector4<double>& row : push.force) row *= 1.0 + eta;
+    Renew(&push);
   }
 }
 
 // More frames a second by the share eta; forces by inverse dynamics are masses times second
 // differences.
-void Hasten(double eta, ChangedProblem* p) {
-  for (PendulumRecording& r : p->recordings) {
-    r.scene.dt /= 1.0 + eta;
-    for (ScenePerson& person : r.scene.people) person.start.qd *= 1.0 + eta;
-    for (ScenePush& push : r.scene.pushes) {
-      if (push.kind == PushKind::kExternal) continue;
-      for (Vector4<double>& row : push.force) row *= (1.0 + eta) * (1.0 + eta);
-      Renew(&push);
-    }
-    for (auto& states : r.states) {
-      for (PendulumState<double>& state : states) state.qd *= 1.0 + eta;
-    }
-    if (r.scene.ground.moves()) r.scene.ground = GroundThrough(r.scene.ground.poses, r.scene.dt);
+void Hasten(double eta, PendulumRecording* r) {
+  r->scene.dt /= 1.0 + eta;
+  for (ScenePerson& person : r->scene.people) person.start.qd *= 1.0 + eta;
+  for (ScenePush& push : r->scene.pushes) {
+    if (push.kind == PushKind::kExternal) continue;
+    for (Vector4<double>& row : push.force) row *= (1.0 + eta) * (1.0 + eta);
+    Renew(&push);
   }
+  for (auto& states : r->states) {
+    for (PendulumState<double>& state : states) state.qd *= 1.0 + eta;
+  }
+  GroundMotion& ground = r->scene.ground;
+  if (ground.moves()) ground = GroundThrough(ground.poses, r->scene.dt);
 }
 
 // What cameras see moves along the push, by eta metres over a recording.
-void DriftAlong(double eta, ChangedProblem* p) {
-  for (PendulumRecording& r : p->recordings) {
-    const Eigen::Vector2d along = eta * PushDirection(r);
-    const double last = std::max(1, r.num_frames() - 1);
-    for (int n = 0; n < r.num_people(); ++n) {
-      for (int t = 0; t < r.num_frames(); ++t) {
-        r.hip[n][t].head<2>() += t / last * along;
-        r.states[n][t].q.head<2>() += t / last * along;
-        if (t > 0) r.states[n][t].qd.head<2>() += along / (last * r.scene.dt);
-      }
+void DriftAlong(double eta, PendulumRecording* r) {
+  const Eigen::Vector2d along = eta * PushDirection(*r);
+  const double last = std::max(1, r->num_frames() - 1);
+  for (int n = 0; n < r->num_people(); ++n) {
+    for (int t = 0; t < r->num_frames(); ++t) {
+      r->hip[n][t].head<2>() += t / last * along;
+      r->states[n][t].q.head<2>() += t / last * along;
+      if (t > 0) r->states[n][t].qd.head<2>() += along / (last * r->scene.dt);
     }
   }
 }
@@ -127,9 +120,13 @@ Assumption Held(const ParameterSpec& spec) {
   const bool factor = spec.transform == Transform::kLog && spec.nominal > 0.0;
   const double stated = factor ? kFactorOfTwo : 0.0;
   const double step = factor ? kScaleStep : kScaleStep * spec.scale;
-  return {spec.name, factor ? "" : spec.unit, stated, step,
-          [id = spec.id, factor](double eta, ChangedProblem* p) {
-            double& value = p->options.table[id].nominal;
+  return {spec.name,
+          factor ? "" : spec.unit,
+          stated,
+          step,
+          nullptr,
+          [id = spec.id, factor](double eta, FitOptions* options) {
+            double& value = options->table[id].nominal;
             value = factor ? value * std::exp(eta) : value + eta;
           }};
 }
@@ -139,7 +136,7 @@ constexpr double kStatedDelay = 0.1, kTriedDelay = 0.12;  // s
 // Of who stands: what is fitted as damping is less by the delay times the stiffness.
 Assumption Delayed(const FitProblem& problem, const FitPoint& point) {
   const ParameterSet<double> values = problem.Parameters(point, "");
-  Assumption delay{kReactionDelayName, "s", kStatedDelay, kTriedDelay, {}};
+  Assumption delay{kReactionDelayName, "s", kStatedDelay, kTriedDelay, nullptr};
   for (const auto& [damping, stiffness] :
        {std::pair(kKdTheta, kKpTheta), std::pair(kKdPhi, kKpPhi)}) {
     for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
@@ -149,11 +146,10 @@ Assumption Delayed(const FitProblem& problem, const FitPoint& point) {
       delay.along.emplace_back(i, ToFitted(transform, more) - ToFitted(transform, values[damping]));
     }
   }
-  delay.change = [](double eta, ChangedProblem* p) {
-    p->options.model.delay = Delay::kOne;
-    p->options.table[kReactionDelay].nominal = eta;
-    for (Parameter share : {kPassiveStiffness, kPassiveDamping})
-      p->options.table[share].nominal = 0.0;
+  delay.of_options = [](double eta, FitOptions* options) {
+    options->model.delay = Delay::kOne;
+    options->table[kReactionDelay].nominal = eta;
+    for (Parameter share : {kPassiveStiffness, kPassiveDamping}) options->table[share].nominal = 0;
   };
   return delay;
 }
@@ -189,7 +185,7 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
     all.push_back({"zero of the pushes", "N", stated.push_zero_N, 1e-2, Shift});
   }
   all.push_back({"masses", "", stated.mass, 1e-4, Weigh});
-  all.push_back({"frame rate", "", stated.frame_rate, 1e-4, Hasten, {}, true});
+  all.push_back({"frame rate", "", stated.frame_rate, 1e-4, Hasten, nullptr, {}, true});
   all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, DriftAlong});
   const FitOptions& options = problem.options();
   if (options.model.stance == Stance::kFixed && options.model.delay == Delay::kNone) {

@@ -12,18 +12,14 @@
 
 namespace pushid {
 
-// What a fit sees, with something changed.
-struct ChangedProblem {
-  std::vector<PendulumRecording> recordings;
-  FitOptions options;
-};
-
 struct Assumption {
   std::string name;    // "scale of the pushes"; "Kd_theta"
   std::string unit;    // of eta; empty: a share, or a logarithm of a factor
   double sigma = 0.0;  // standard deviation that is stated of eta; 0: none, it is only tested
   double step = 0.0;   // of differences
-  std::function<void(double eta, ChangedProblem*)> change;
+  // What it changes: every recording, or the options of the fit. Null: it leaves them.
+  std::function<void(double eta, PendulumRecording*)> of_recording;
+  std::function<void(double eta, FitOptions*)> of_options = nullptr;
   // Besides: estimates that go with it, as a change of the first order would be theirs; and how far
   // each shared one does, on the fitted scale, at `step`. The difference is that to a problem which
   // is changed by `step` as a whole, in which they do.
@@ -51,24 +47,28 @@ inline constexpr double kScaleStep = 1e-4;
 // Those of a problem that can have an effect.
 std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint& point);
 
-// Residuals and Jacobian of a fit by its estimates and by what it takes as known
-// (assumptions.h), in parts of each recording. Those of jacobian_blocks.h know neither parts nor
-// anything but estimates.
+// Residuals and Jacobian of a fit by its estimates and by what it takes as known. Those of
+// jacobian_blocks.h know neither parts of recordings nor anything but estimates.
+
+// One person of a recording over some of its frames.
+struct DataPart {
+  int recording = 0, person = 0;
+  int part = 0;                 // the first horizon that holds them; as many as there are: none
+  Eigen::VectorXd score;        // J'r by the estimates
+  Eigen::MatrixXd information;  // J'J by them, with the robust loss's own Hessian
+};
 
 // Columns: the estimates in the order of FitPoint::Flat, then the assumptions. Rows: of each person
-// of a recording in each part, condensed (residuals/normal_equations.h), with the weight of the
-// robust loss, so that J'r is the gradient of the cost; then priors, demands and pooling; then what
-// is stated of each assumption.
+// of a recording, condensed (residuals/normal_equations.h), with the weight of the robust loss, so
+// that J'r is the gradient of the cost; then priors, demands and pooling; then what is stated of
+// each assumption.
 struct RowsByHorizon {
   JacobianBlocks rows;
-  // The first horizon that holds the row's frames; as many as there are horizons: none of them; -1
-  // of rows that are no data.
-  std::vector<int> part_of_row;
+  std::vector<DataPart> parts;
   int num_estimates = 0;  // 0: some rollout fails
 };
 
-// By forward differences: of rollouts without derivatives, one for each column and each recording
-// that it moves. horizons: frames from the first push on, ascending.
+// horizons: frames from the first push on, ascending.
 RowsByHorizon EvaluateByHorizon(const FitProblem& problem, const FitPoint& point,
                                 const std::vector<Assumption>& assumptions,
                                 const std::vector<int>& horizons);

@@ -30,13 +30,11 @@ std::string WhyNot(const FitOptions& options, size_t estimates) {
   return "";
 }
 
-// s_g, a column for each cluster, of the rows that are held.
-Eigen::MatrixXd Scores(const RowsByHorizon& by_horizon, const RowClusters& clusters,
-                       const std::vector<bool>& held) {
-  const JacobianBlocks& rows = by_horizon.rows;
+// s_g, a column for each cluster.
+Eigen::MatrixXd Scores(const JacobianBlocks& rows, const RowClusters& clusters) {
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(rows.jacobian.cols(), clusters.count);
   for (size_t i = 0; i < clusters.of_row.size(); ++i) {
-    if (clusters.of_row[i] < 0 || !held[i]) continue;
+    if (clusters.of_row[i] < 0) continue;
     const Eigen::Index row = static_cast<Eigen::Index>(i);
     scores.col(clusters.of_row[i]) += rows.residuals[row] * rows.jacobian.row(row).transpose();
   }
@@ -103,10 +101,10 @@ class ModelJudge {
     beside_ = InformationBeside(rows_.rows).topLeftCorner(n, n);
     const Eigen::MatrixXd hessian = own.transpose() * own + beside_;
     inverse_ = SolveSymmetric(hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
-    scores_ = Scores(rows_, clustering_.first, std::vector<bool>(rows_.part_of_row.size(), true));
+    scores_ = Scores(rows_.rows, clustering_.first);
     if (clusters_.count() >= kFewestClusters) {
       TestAssumptions(own);
-      TestParts(own);
+      TestParts();
       TestMotion();
       verdict_.of_pushes = OfMostPushes(problem_.recordings());
     } else {
@@ -120,10 +118,6 @@ class ModelJudge {
   }
 
  private:
-  const PendulumRecording& RecordingOf(size_t row) const {
-    return problem_.recordings()[static_cast<size_t>(rows_.rows.cluster_of_row[row])];
-  }
-
   double Slope(Eigen::Index i) const {
     return TransformSlope(columns_[i].transform, columns_[i].natural);
   }
@@ -160,36 +154,38 @@ class ModelJudge {
     verdict_.p_assumptions = Least(verdict_.assumptions, verdict_.NumTested());
   }
 
-  // The parts of the data that are asked, by the rows they hold.
-  void TestParts(const Eigen::MatrixXd& own) {
+  // The parts of the data that are asked.
+  void TestParts() {
     for (size_t h = 0; h < kHorizons.size(); ++h) {
-      TestPart("the first " + std::to_string(kHorizons[h]) + " frames from the push on", own,
-               [&](size_t row) { return rows_.part_of_row[row] <= static_cast<int>(h); });
+      TestPart("the first " + std::to_string(kHorizons[h]) + " frames from the push on",
+               [&](const DataPart& part) { return part.part <= static_cast<int>(h); });
     }
     // Only where sideways is as forwards must pushes from the side ask for the same.
     if (problem_.options().model.directions == Directions::kIsotropic) {
-      TestPart(kFromTheSide, own, [&](size_t row) { return FromTheSide(RecordingOf(row)); });
+      TestPart(kFromTheSide, [&](const DataPart& part) {
+        return FromTheSide(problem_.recordings()[part.recording]);
+      });
     }
     verdict_.p_parts = Least(verdict_.parts, verdict_.parts.size());
   }
 
   template <typename Holds>
-  void TestPart(const std::string& name, const Eigen::MatrixXd& own, const Holds& holds) {
+  void TestPart(const std::string& name, const Holds& holds) {
     const Eigen::Index n = rows_.num_estimates, shared = problem_.map().num_shared();
-    std::vector<int> rows;
-    std::set<int> inside, outside;  // clusters
-    std::vector<bool> held(rows_.part_of_row.size(), false);
-    for (size_t i = 0; i < held.size(); ++i) {
-      if (rows_.part_of_row[i] < 0 || clustering_.first.of_row[i] < 0) continue;
-      held[i] = holds(i);
-      (held[i] ? inside : outside).insert(clustering_.first.of_row[i]);
-      if (held[i]) rows.push_back(static_cast<int>(i));
+    Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
+    Eigen::MatrixXd some = Eigen::MatrixXd::Zero(n, clusters_.count());  // scores
+    std::set<int> inside, outside;                                       // clusters
+    for (const DataPart& part : rows_.parts) {
+      const int cluster = clusters_.of[part.recording][part.person];
+      const bool held = holds(part);
+      (held ? inside : outside).insert(cluster);
+      if (!held) continue;
+      information += part.information;
+      some.col(cluster) += part.score;
     }
     // Fewer know nothing of their own scatter.
     if (static_cast<int>(std::min(inside.size(), outside.size())) < kFewestClusters) return;
-    const Eigen::MatrixXd first = own(rows, Eigen::all);
-    const Eigen::MatrixXd share = first.transpose() * first * inverse_;
-    const Eigen::MatrixXd some = Scores(rows_, clustering_.first, held).topRows(n);
+    const Eigen::MatrixXd share = information * inverse_;
     const Eigen::MatrixXd parts = some - share * scores_.topRows(n);
     // What priors and demands pull at the optimum is balanced by all rows, and by their share of
     // these.

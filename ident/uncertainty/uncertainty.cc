@@ -185,10 +185,9 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
   return e;
 }
 
-Covariance CovarianceWithoutDemand(const FitProblem& problem, const FitPoint& free) {
-  FitOptions options = problem.options();
-  options.settling_weight = 0.0;
-  return CovarianceAt(FitProblem(problem.recordings(), options, problem.counts()), free);
+Covariance CovarianceWithoutDemand(FitProblem problem, const FitPoint& free) {
+  problem.set_settling_weight(0.0);
+  return CovarianceAt(problem, free);
 }
 
 }  // namespace

@@ -115,9 +115,8 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
     if (sums == LaneSums::kSquares || !results[lane].ok) continue;
     if (sums == LaneSums::kNone) {
       const int rows = problems_[lane]->num_motion_rows();
-      for (int k = 0; k < rows; ++k) {
-        results[lane].residuals.push_back(residuals[k * width + lane]);
-      }
+      results[lane].residuals.resize(rows);
+      for (int k = 0; k < rows; ++k) results[lane].residuals[k] = residuals[k * width + lane];
       continue;
     }
     if (sums == LaneSums::kGradient) {

@@ -45,10 +45,12 @@ int Count(const FitResult& result, EstimateStatus status) {
                     [status](const Estimate& e) { return e.status == status; }));
 }
 
-// Differences of raw residuals give the gradient that the solver's Jacobian gives.
-TEST(ModelVerdict, RowsByHorizonHaveTheGradientOfTheCost) {
-  const auto recordings = MakePendulums(TinyStudy());
-  FitOptions options = MakePreset("tail").value();
+// Derivatives of raw residuals give the gradient that the solver's Jacobian gives; the parts of
+// recordings sum up to them.
+void ExpectTheGradientOfTheCost(const SyntheticOptions& study, const char* preset,
+                                double tolerance) {
+  const auto recordings = MakePendulums(study);
+  FitOptions options = MakePreset(preset).value();
   ASSERT_FALSE(PrepareFit(recordings, &options));
   const FitProblem problem(recordings, options);
   FitPoint point = problem.NominalPoint();
@@ -60,8 +62,30 @@ TEST(ModelVerdict, RowsByHorizonHaveTheGradientOfTheCost) {
   const Eigen::VectorXd a = gradient(by_horizon.rows), b = gradient(condensed);
   ASSERT_EQ(a.size(), b.size());
   for (Eigen::Index i = 0; i < a.size(); ++i) {
-    EXPECT_NEAR(a[i], b[i], 1e-3 * (1e-3 + std::abs(b[i]))) << i;
+    EXPECT_NEAR(a[i], b[i], tolerance * (tolerance + std::abs(b[i]))) << i;
   }
+  Eigen::VectorXd score = Eigen::VectorXd::Zero(a.size());
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(a.size(), a.size());
+  for (const DataPart& part : by_horizon.parts) {
+    score += part.score;
+    information += part.information;
+  }
+  const auto is_data = [&](int row) { return by_horizon.rows.cluster_of_row[row] >= 0; };
+  Eigen::VectorXd of_data = by_horizon.rows.residuals;
+  for (int row = 0; row < of_data.size(); ++row) of_data[row] *= is_data(row);
+  const Eigen::MatrixXd& robust = by_horizon.rows.robust_jacobian;
+  EXPECT_TRUE(score.isApprox(by_horizon.rows.jacobian.transpose() * of_data, 1e-9));
+  EXPECT_TRUE(information.isApprox(robust.transpose() * robust, 1e-9));
+}
+
+TEST(ModelVerdict, RowsByHorizonHaveTheGradientOfTheCost) {
+  ExpectTheGradientOfTheCost(TinyStudy(), "tail", 1e-3);  // by differences
+}
+
+TEST(ModelVerdict, RowsOfPeopleWhoTouchHaveTheGradientOfTheCost) {
+  SyntheticOptions study = TinyStudy();
+  study.people_in_row = 2;
+  ExpectTheGradientOfTheCost(study, "group", 1e-8);  // by sensitivities
 }
 
 TEST(ModelVerdict, PassesWhatTheModelMade) {
