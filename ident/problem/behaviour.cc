@@ -11,67 +11,79 @@
 #include "models/learned_terms.h"
 #include "models/modal_stability.h"
 #include "models/reaction_delay.h"
-#include "models/rollout.h"
 #include "models/self_terms.h"
+#include "residuals/cost_functions/scene_rollouts.h"
 
 namespace pushid {
 namespace {
 
 constexpr double kOnTheSpot = 0.01;  // m
 
-SettlingSimulation SimulateSettling(const ModelOptions& options,
-                                    const ParameterSet<double>& parameters, double mass,
-                                    double impulse, int people) {
-  SettlingSimulation result;
-  result.people = people;
-  result.mass = mass;
-  result.impulse = impulse;
-  const Scene scene = SettlingScene(mass, impulse, people);
-  const int frames = scene.SettledFrame(options) + 1;
-  RolloutPath<double> path;
-  const RolloutStatus status =
-      Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path);
-  const int last = status.ok ? frames - 1 : status.frame - 1;
-  result.fell = !status.ok;
-  for (int n = 0; n < people; ++n) {
-    for (int t = 0; t <= last; ++t) {
-      const double lean = path.At(t, n).q.tail<2>().cwiseAbs().maxCoeff();
-      result.fell = result.fell || lean > kFallAngle;
-    }
-    const PendulumState<double>& end = path.At(last, n);
-    const Vector4<double> moved = end.q - scene.people[n].start.q;
-    result.speed = std::max(result.speed, end.qd.head<2>().norm());
-    result.lean = std::max(result.lean, end.q.tail<2>().cwiseAbs().maxCoeff());
-    result.distance += moved.head<2>().norm() / people;
-    result.advance += moved.x() / people;
-    if (n == 0) result.pushed_advance = moved.x();
-  }
-  result.settled = !result.fell && result.speed < kSettledSpeed && result.lean < kSettledLean;
-  return result;
+std::vector<double> ImpulsesFor(Stance stance, const double (&impulses)[3]) {
+  const int held_to = stance == Stance::kFixed ? 1 : 3;
+  return {impulses, impulses + held_to};
 }
 
-// How long after the push until everybody stands still and stays so; infinite as in
-// SettlingSeconds.
-double SecondsUntilStill(const Scene& scene, const ModelOptions& options,
+// Of so many people, of every mass after every impulse.
+std::vector<SettlingSimulation> Simulate(const ModelOptions& options,
+                                         const ParameterSet<double>& parameters,
+                                         const std::vector<double>& masses,
+                                         const std::vector<double>& impulses, int people) {
+  std::vector<SettlingSimulation> simulations;
+  std::vector<Scene> scenes;
+  for (double mass : masses) {
+    for (double impulse : impulses) {
+      simulations.push_back({"", people, mass, impulse});
+      scenes.push_back(SettlingScene(mass, impulse, people));
+    }
+  }
+  const int frames = scenes[0].SettledFrame(options) + 1;
+  SceneRollouts rollouts(scenes, options, 0, frames);
+  rollouts.Roll({parameters});
+  for (int scene = 0; scene < static_cast<int>(scenes.size()); ++scene) {
+    SettlingSimulation& result = simulations[scene];
+    result.fell = !rollouts.StaysInside(scene);
+    for (int n = 0; n < people; ++n) {
+      for (int t = 0; t < frames; ++t) {
+        const double lean = rollouts.At(scene, t, n).q.tail<2>().cwiseAbs().maxCoeff();
+        result.fell = result.fell || lean > kFallAngle;
+      }
+      const PendulumState<double> end = rollouts.At(scene, frames - 1, n);
+      const Vector4<double> moved = end.q - scenes[scene].people[n].start.q;
+      result.speed = std::max(result.speed, end.qd.head<2>().norm());
+      result.lean = std::max(result.lean, end.q.tail<2>().cwiseAbs().maxCoeff());
+      result.distance += moved.head<2>().norm() / people;
+      result.advance += moved.x() / people;
+      if (n == 0) result.pushed_advance = moved.x();
+    }
+    result.settled = !result.fell && result.speed < kSettledSpeed && result.lean < kSettledLean;
+  }
+  return simulations;
+}
+
+// How long after the push until everybody in all of these scenes stands still and stays so;
+// infinite as in SettlingSeconds.
+double SecondsUntilStill(const std::vector<Scene>& scenes, const ModelOptions& options,
                          const ParameterSet<double>& parameters) {
   constexpr double kLongest = 10.0;  // s
-  const int end = scene.LastPushEnd();
-  const int frames = end + static_cast<int>(std::lround(kLongest / scene.dt));
-  RolloutPath<double> path;
-  const RolloutStatus status =
-      Rollout<double>(scene, options, {parameters}, InitialVelocities(scene), frames, &path);
-  if (!status.ok) return std::numeric_limits<double>::infinity();
+  const double dt = scenes[0].dt;
+  const int end = scenes[0].LastPushEnd();
+  const int frames = end + static_cast<int>(std::lround(kLongest / dt));
+  SceneRollouts rollouts(scenes, options, end, frames);
+  if (!rollouts.Roll({parameters})) return std::numeric_limits<double>::infinity();
   int last_moving = end;
-  for (int t = end; t < frames; ++t) {
-    for (int n = 0; n < scene.num_people(); ++n) {
-      const PendulumState<double>& state = path.At(t, n);
-      const bool still = state.qd.head<2>().norm() < kSettledSpeed &&
-                         state.q.tail<2>().cwiseAbs().maxCoeff() < kSettledLean;
-      if (!still) last_moving = t + 1;
+  for (int scene = 0; scene < static_cast<int>(scenes.size()); ++scene) {
+    for (int n = 0; n < scenes[0].num_people(); ++n) {
+      for (int t = end; t < frames; ++t) {
+        const PendulumState<double> state = rollouts.At(scene, t, n);
+        const bool still = state.qd.head<2>().norm() < kSettledSpeed &&
+                           state.q.tail<2>().cwiseAbs().maxCoeff() < kSettledLean;
+        if (!still) last_moving = std::max(last_moving, t + 1);
+      }
     }
   }
   if (last_moving >= frames) return std::numeric_limits<double>::infinity();
-  return (last_moving - end) * scene.dt;
+  return (last_moving - end) * dt;
 }
 
 // The free state about rest: [theta, phi, qd], the cart's velocity one step earlier (of which the
@@ -212,21 +224,23 @@ double FastestGrowth(const ModelOptions& options, const ParameterSet<double>& pa
 
 }  // namespace
 
-std::vector<double> ImpulsesFor(Stance stance, const double (&impulses)[3]) {
-  const int held_to = stance == Stance::kFixed ? 1 : 3;
-  return {impulses, impulses + held_to};
+std::vector<std::vector<Scene>> SettlingScenes(const ModelOptions& options) {
+  std::vector<std::vector<Scene>> scenes(1);
+  for (double impulse : ImpulsesFor(options.stance, kSettlingImpulses)) {
+    scenes[0].push_back(SettlingScene(kSettlingMasses[0], impulse));
+  }
+  if (!options.interaction.Any()) return scenes;
+  scenes.emplace_back();
+  for (double impulse : ImpulsesFor(options.stance, kLineImpulses)) {
+    scenes.back().push_back(SettlingScene(kSettlingMass, impulse, kLinePeople));
+  }
+  return scenes;
 }
 
 double SettlingSeconds(const ModelOptions& options, const ParameterSet<double>& parameters) {
   double slowest = 0.0;
-  for (double impulse : ImpulsesFor(options.stance, kSettlingImpulses)) {
-    const Scene scene = SettlingScene(kSettlingMasses[0], impulse);
-    slowest = std::max(slowest, SecondsUntilStill(scene, options, parameters));
-  }
-  if (!options.interaction.Any()) return slowest;
-  for (double impulse : ImpulsesFor(options.stance, kLineImpulses)) {
-    const Scene scene = SettlingScene(kSettlingMass, impulse, kLinePeople);
-    slowest = std::max(slowest, SecondsUntilStill(scene, options, parameters));
+  for (const std::vector<Scene>& scenes : SettlingScenes(options)) {
+    slowest = std::max(slowest, SecondsUntilStill(scenes, options, parameters));
   }
   return slowest;
 }
@@ -254,22 +268,19 @@ void Behaviour::Add(const Behaviour& other, const std::string& setting) {
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters) {
   Behaviour behaviour;
   std::vector<SettlingSimulation>& all = behaviour.simulations;
-  for (double mass : kSettlingMasses) {
-    for (double impulse : ImpulsesFor(options.stance, kSettlingImpulses)) {
-      all.push_back(SimulateSettling(options, parameters, mass, impulse, 1));
-    }
-  }
+  all = Simulate(options, parameters, {kSettlingMasses, kSettlingMasses + 3},
+                 ImpulsesFor(options.stance, kSettlingImpulses), 1);
   if (options.interaction.Any()) {
-    const size_t first = all.size();
-    for (double impulse : ImpulsesFor(options.stance, kLineImpulses)) {
-      all.push_back(SimulateSettling(options, parameters, kSettlingMass, impulse, kLinePeople));
-    }
-    for (size_t i = first + 1; i < all.size(); ++i) {
+    const std::vector<SettlingSimulation> lines =
+        Simulate(options, parameters, {kSettlingMass}, ImpulsesFor(options.stance, kLineImpulses),
+                 kLinePeople);
+    for (size_t i = 1; i < lines.size(); ++i) {
       // Of people who stay where they are, none moves farther.
       const double least = options.stance == Stance::kSlide ? 0.0 : -kOnTheSpot;
       behaviour.harder_moves_farther =
-          behaviour.harder_moves_farther && all[i].advance - all[i - 1].advance > least;
+          behaviour.harder_moves_farther && lines[i].advance - lines[i - 1].advance > least;
     }
+    all.insert(all.end(), lines.begin(), lines.end());
   }
   behaviour.fastest_growth = FastestGrowth(options, parameters);
   behaviour.settles = true;

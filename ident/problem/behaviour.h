@@ -19,9 +19,9 @@ inline constexpr double kSettlingImpulses[] = {4.0, 25.0, 80.0};  // N s, on one
 inline constexpr int kLinePeople = 5;                             // in a line, where people touch
 inline constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};      // N s, on the first in a line
 
-// Those of them that people are held to; feet that hold, whatever happens, to the weakest: nobody
-// knows when they would have stepped.
-std::vector<double> ImpulsesFor(Stance stance, const double (&impulses)[3]);
+// Those of them that people are held to: of one person, and where people touch also of a line. Feet
+// that hold, whatever happens, are held to the weakest: nobody knows when they would have stepped.
+std::vector<std::vector<Scene>> SettlingScenes(const ModelOptions& options);
 
 inline constexpr double kBehind = 0.05;  // m behind the start that are worth a warning
 

@@ -111,24 +111,20 @@ void AddSettling(const Family& family, const Place& at) {
   const Options& o = at.problem.options();
   std::vector<double*> blocks = UnitBlocks(at);
   if (at.problem.map().num_weights > 0) blocks.push_back(at.point->weights.data());
-  const auto settle = [&](double mass, double impulse, int people) {
+  // Whether they can be rolled out here: Ceres cannot start from a block that fails.
+  const auto add = [&](const std::vector<Scene>& scenes) {
     auto residual = std::make_unique<SettlingResidual>(
-        MakeSettlingProblem(SettlingScene(mass, impulse, people), o.model, at.problem.map(),
-                            o.settling_weight, at.unit));
+        MakeSettlingProblem(scenes, o.model, at.problem.map(), o.settling_weight, at.unit));
     std::vector<double> values(residual->num_residuals());
-    if (!residual->Evaluate(blocks.data(), values.data(), nullptr)) {
-      ++at.built->rests_left_out;  // Ceres cannot start from a block that fails
-      return;
-    }
+    if (!residual->Evaluate(blocks.data(), values.data(), nullptr)) return false;
     at.built->AddRollout(std::move(residual), blocks, family.cluster);
+    return true;
   };
-  const Stance stance = o.model.stance;
-  for (double impulse : ImpulsesFor(stance, kSettlingImpulses)) {
-    settle(kSettlingMasses[0], impulse, 1);
-  }
-  if (!o.model.interaction.Any()) return;
-  for (double impulse : ImpulsesFor(stance, kLineImpulses)) {
-    settle(kSettlingMass, impulse, kLinePeople);
+  for (const std::vector<Scene>& scenes : SettlingScenes(o.model)) {
+    if (HasLanes(scenes[0], o.model) && add(scenes)) continue;
+    for (const Scene& scene : scenes) {
+      if (!add({scene})) ++at.built->rests_left_out;
+    }
   }
 }
 

@@ -6,8 +6,6 @@
 namespace pushid {
 namespace {
 
-bool ActsOnOneAlone(const ColumnEntry& entry) { return entry.parameter < kLaneParameters; }
-
 int MostFrames(const std::vector<const RolloutProblem*>& problems) {
   int most = 0;
   for (const RolloutProblem* problem : problems) most = std::max(most, problem->horizon);
@@ -42,7 +40,8 @@ bool HasLanes(const RolloutProblem& problem) {
 }
 
 LaneGroup::LaneGroup(std::vector<const RolloutProblem*> problems, const PersonLanes& lanes)
-    : problems_(std::move(problems)), tables_(lanes, MostFrames(problems_), MostTails(problems_)) {
+    : problems_(std::move(problems)),
+      tables_(lanes, MostFrames(problems_), MostTails(problems_), MostFrames(problems_)) {
   for (size_t i = 0; i < problems_.size(); ++i) {
     const RolloutProblem& problem = *problems_[i];
     const int lane = static_cast<int>(i);
@@ -60,13 +59,13 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
   const RolloutProblem& first = *problems_[0];
   const int columns = first.layout.num_acting();
   // A thread's own, used again.
-  thread_local std::vector<double> constants, parameters, slopes, failed, residuals, squares,
-      gradient, plain, robust, storage;
-  thread_local std::vector<LaneEntry> entries;
+  thread_local std::vector<double> constants, failed, residuals, squares, gradient, plain, robust,
+      storage;
+  thread_local LaneParameters parameters;
   constants = tables_.constants();
   const int width = tables_.width();
-  parameters.assign(kLaneParameters * width, 1.0);
-  entries.clear();
+  parameters.Clear(width);
+  const bool derivatives = sums != LaneSums::kSquares && sums != LaneSums::kNone;
   for (size_t lane = 0; lane < problems_.size(); ++lane) {
     const RolloutProblem& problem = *problems_[lane];
     const ScenePerson& person = problem.recording->scene.people[0];
@@ -76,27 +75,16 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
           free != nullptr ? free[i] : person.start.qd[i];
     }
     const ParameterSet<double> p = problem.layout.Parameters<double>(problem.map, blocks[lane])[0];
-    for (int i = 0; i < kLaneParameters; ++i) parameters[i * width + lane] = p[i];
-    if (sums == LaneSums::kSquares || sums == LaneSums::kNone) continue;
-    int k = 0;
-    for (const ColumnEntry& entry : problem.layout.Entries(problem.map, p, 0)) {
-      if (!ActsOnOneAlone(entry)) continue;
-      if (lane == 0) {
-        entries.push_back({entry.column, entry.parameter});
-        slopes.resize(entries.size() * width, 0.0);
-      }
-      slopes[k++ * width + lane] = entry.derivative;
-    }
+    parameters.Set(
+        static_cast<int>(lane), p,
+        derivatives ? problem.layout.Entries(problem.map, p, 0) : std::vector<ColumnEntry>());
   }
   LaneInputs in = tables_.Inputs();
   in.sigmas = first.sigmas;
   in.columns = columns;
   in.velocity_column = first.layout.VelocityColumn();
-  in.num_entries = static_cast<int>(entries.size());
-  in.entries = entries.data();
-  in.slopes = slopes.data();
+  parameters.In(&in);
   in.constants = constants.data();
-  in.parameters = parameters.data();
   const int size = (columns + 1) * (columns + 1) * width;
   failed.resize(width);
   squares.resize(width);

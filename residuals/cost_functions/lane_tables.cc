@@ -29,12 +29,42 @@ int NumTails(const Scene& scene, const ModelOptions& options) {
   return static_cast<int>(PushesWithTails(scene, options).size());
 }
 
-LaneTables::LaneTables(const PersonLanes& lanes, int frames, int num_tails)
+void LaneParameters::Clear(int width) {
+  width_ = width;
+  values_.assign(kLaneParameters * width, 1.0);  // of a lane that nobody is in
+  entries_.clear();
+}
+
+void LaneParameters::Set(int lane, const ParameterSet<double>& values,
+                         const std::vector<ColumnEntry>& entries) {
+  for (int i = 0; i < kLaneParameters; ++i) values_[i * width_ + lane] = values[i];
+  size_t k = 0;
+  for (const ColumnEntry& entry : entries) {
+    if (entry.parameter >= kLaneParameters) continue;  // acts on people who touch
+    if (k == entries_.size()) {
+      entries_.push_back({entry.column, entry.parameter});
+      slopes_.resize(entries_.size() * width_);
+    }
+    slopes_[k++ * width_ + lane] = entry.derivative;
+  }
+}
+
+void LaneParameters::In(LaneInputs* in) const {
+  in->parameters = values_.data();
+  in->slopes = slopes_.data();
+  in->entries = entries_.data();
+  in->num_entries = static_cast<int>(entries_.size());
+}
+
+int NumSteps(const Scene& scene, int frames) { return std::min(frames, scene.LastPushEnd() + 1); }
+
+LaneTables::LaneTables(const PersonLanes& lanes, int frames, int num_tails, int steps)
     : lanes_(&lanes),
       frames_(frames),
       num_tails_(num_tails),
+      num_steps_(steps),
       constants_(kLaneConstants * width(), 1.0),  // of a lane that nobody is in
-      steps_(frames * kLaneFields * width()),
+      steps_(steps * kLaneFields * width()),
       tails_(num_tails * kLaneTails * width()) {}
 
 void LaneTables::Set(int lane, const Scene& scene, const ModelOptions& options, int frames) {
@@ -63,7 +93,7 @@ void LaneTables::Set(int lane, const Scene& scene, const ModelOptions& options, 
 }
 
 void LaneTables::SetSteps(int lane, const Scene& scene, const ModelOptions& options, int frames) {
-  for (int t = 0; t < frames; ++t) {
+  for (int t = 0; t < std::min(frames, num_steps_); ++t) {
     double* const step = Step(lane, t);
     const ActiveForces active = ForcesAt(scene, options.push, 0, t);
     step[kLaneActs * width()] = active == ActiveForces::kAll ? 1.0 : 0.0;
@@ -111,6 +141,7 @@ LaneInputs LaneTables::Inputs() const {
   in.cart_derivative = cart_derivative_;
   in.friction_alone = friction_alone_;
   in.frames = frames_;
+  in.num_steps = num_steps_;
   in.num_tails = num_tails_;
   in.constants = constants_.data();
   in.tails = tails_.data();
@@ -123,17 +154,18 @@ std::vector<std::vector<Vector3<double>>> HipsSideBySide(
     const std::vector<ParameterSet<double>>& parameters, int frames) {
   const PersonLanes& lanes = BestPersonLanes();
   const size_t width = static_cast<size_t>(lanes.lanes);
-  LaneTables tables(lanes, frames, NumTails(scene, options));
+  const int steps = NumSteps(scene, frames);
+  LaneTables tables(lanes, frames, NumTails(scene, options), steps);
   const Vector3<double> nowhere = Vector3<double>::Zero();
   for (int lane = 0; lane < static_cast<int>(std::min(width, parameters.size())); ++lane) {
     tables.Set(lane, scene, options, frames);
-    for (int t = 1; t < frames; ++t) tables.SetMeasured(lane, t, nowhere, {}, 1.0);
+    for (int t = 0; t < steps; ++t) tables.SetMeasured(lane, t, nowhere, {}, 1.0);
   }
   LaneInputs in = tables.Inputs();
   in.sigmas.hip = 1.0;  // of what was not measured, the residual is the hip
-  std::vector<double> of_lanes(kLaneParameters * width, 1.0), failed(width), squares(width);
+  LaneParameters of_lanes(lanes.lanes);
+  std::vector<double> failed(width), squares(width);
   std::vector<double> residuals((frames - 1) * kFrameResiduals * width);
-  in.parameters = of_lanes.data();
   LaneOutputs out;
   out.failed = failed.data();
   out.squares = squares.data();
@@ -143,10 +175,9 @@ std::vector<std::vector<Vector3<double>>> HipsSideBySide(
   for (size_t first = 0; first < parameters.size(); first += width) {
     const size_t count = std::min(width, parameters.size() - first);
     for (size_t lane = 0; lane < count; ++lane) {
-      for (size_t i = 0; i < kLaneParameters; ++i) {
-        of_lanes[i * width + lane] = parameters[first + lane][i];
-      }
+      of_lanes.Set(static_cast<int>(lane), parameters[first + lane], {});
     }
+    of_lanes.In(&in);
     tables.Roll(in, LaneSums::kNone, out);
     for (size_t lane = 0; lane < count; ++lane) {
       if (failed[lane] != 0.0) continue;

@@ -8,6 +8,7 @@
 #include "models/parameters.h"
 #include "models/scene.h"
 #include "residuals/lanes/person_lanes.h"
+#include "residuals/parameter_map.h"
 
 namespace pushid {
 
@@ -15,10 +16,26 @@ namespace pushid {
 // or that a user brings.
 bool HasLanes(const Scene& scene, const ModelOptions& options);
 
+// The parameters of people in lanes, and what columns move of them.
+class LaneParameters {
+ public:
+  explicit LaneParameters(int width = 0) { Clear(width); }
+  void Clear(int width);
+  // entries: of the same columns and parameters in every lane; none without derivatives.
+  void Set(int lane, const ParameterSet<double>& values, const std::vector<ColumnEntry>& entries);
+  void In(LaneInputs* in) const;
+
+ private:
+  int width_ = 0;
+  std::vector<double> values_, slopes_;
+  std::vector<LaneEntry> entries_;
+};
+
 class LaneTables {
  public:
-  // frames, num_tails: the most that one of them has.
-  LaneTables(const PersonLanes& lanes, int frames, int num_tails);
+  // frames, num_tails: the most that one of them has. steps: those that differ, where frames after
+  // are as the last of them.
+  LaneTables(const PersonLanes& lanes, int frames, int num_tails, int steps);
 
   // Who is in a lane. Options are those of all but for the tail.
   void Set(int lane, const Scene& scene, const ModelOptions& options, int frames);
@@ -29,7 +46,6 @@ class LaneTables {
   LaneInputs Inputs() const;
   const std::vector<double>& constants() const { return constants_; }
   int width() const { return lanes_->lanes; }
-  int frames() const { return frames_; }
   void Roll(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) const {
     lanes_->roll(in, sums, out);
   }
@@ -41,12 +57,14 @@ class LaneTables {
   double& Constant(int id, int lane) { return constants_[id * width() + lane]; }
 
   const PersonLanes* lanes_;
-  int frames_, num_tails_;
+  int frames_, num_tails_, num_steps_;
   FrictionKind friction_ = FrictionKind::kIsotropic;
   bool cart_derivative_ = false, friction_alone_ = false;
   std::vector<double> constants_, steps_, tails_;
 };
 
+// Those that differ where nothing is measured: until all pushes have ended.
+int NumSteps(const Scene& scene, int frames);
 // Pushes on the person with a tail.
 int NumTails(const Scene& scene, const ModelOptions& options);
 

@@ -50,55 +50,58 @@ constexpr double kHinge = 0.01;  // eps
 
 }  // namespace
 
-SettlingProblem MakeSettlingProblem(const Scene& scene, const ModelOptions& options,
+SettlingProblem MakeSettlingProblem(const std::vector<Scene>& scenes, const ModelOptions& options,
                                     const ParameterMap& map, double weight,
                                     const std::string& unit) {
   SettlingProblem problem;
-  problem.scene = scene;
+  problem.scenes = scenes;
   problem.options = options;
   problem.map = map;
   // No particular person: only the shared block.
   if (unit.empty()) problem.map.num_deviations = 0;
-  const std::vector<std::string> units(scene.people.size(), unit);
+  const std::vector<std::string> units(scenes[0].people.size(), unit);
   problem.layout = BlockLayout(problem.map, units, false);
   problem.weight = weight;
-  problem.first_frame = scene.SettledFrame(options);
-  problem.last_frame = problem.first_frame + static_cast<int>(std::lround(kWatched / scene.dt));
+  problem.first_frame = scenes[0].SettledFrame(options);
+  problem.last_frame = problem.first_frame + static_cast<int>(std::lround(kWatched / scenes[0].dt));
   return problem;
 }
 
-SettlingResidual::SettlingResidual(SettlingProblem problem) : problem_(std::move(problem)) {
+SettlingResidual::SettlingResidual(SettlingProblem problem)
+    : problem_(std::move(problem)),
+      rollouts_(problem_.scenes, problem_.options, problem_.first_frame, problem_.last_frame) {
   for (int size : problem_.layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
-  set_num_residuals((problem_.last_frame - problem_.first_frame) * problem_.scene.num_people() *
+  set_num_residuals(static_cast<int>(problem_.scenes.size()) *
+                    (problem_.last_frame - problem_.first_frame) * problem_.scenes[0].num_people() *
                     kSettlingRows);
 }
 
 bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
   const SettlingProblem& p = problem_;
-  const SensitivityInputs inputs = RolloutInputs(p.scene, p.map, p.layout, blocks);
-  RolloutPath<double> path;
-  if (!Rollout<double>(p.scene, p.options, inputs.parameters, inputs.initial_velocity, p.last_frame,
-                       &path, nullptr, inputs.network_weights)
-           .ok) {
-    return false;
-  }
-  const std::vector<SelfForce> self = SelfForces(p.scene, p.options);
-  const double scale = p.weight / std::sqrt((p.last_frame - p.first_frame) * p.scene.num_people());
+  const SensitivityInputs inputs = RolloutInputs(p.scenes[0], p.map, p.layout, blocks);
+  const int people = p.scenes[0].num_people(), scenes = static_cast<int>(p.scenes.size());
+  if (!rollouts_.Roll(inputs.parameters, inputs.network_weights)) return false;
+  const double scale = p.weight / std::sqrt((p.last_frame - p.first_frame) * people);
   struct Slope {
-    int frame, person, row;
+    int scene, frame, person, row;
     SettlingRows by_state;
   };
-  std::vector<Slope> slopes;  // where there are any
+  std::vector<Slope> slopes;           // where there are any
+  std::vector<int> frames(scenes, 0);  // to which they are asked for
   SettlingRows by_state;
   int row = 0;
-  for (int t = p.first_frame; t < p.last_frame; ++t) {
-    for (int n = 0; n < p.scene.num_people(); ++n, row += kSettlingRows) {
-      SettlingOf(path.At(t, n), self[n], residuals + row,
-                 jacobians != nullptr ? &by_state : nullptr);
-      for (int k = 0; k < kSettlingRows; ++k) residuals[row + k] *= scale;
-      if (jacobians == nullptr || by_state.isZero(0.0)) continue;
-      slopes.push_back({t, n, row, by_state});
+  for (int scene = 0; scene < scenes; ++scene) {
+    const std::vector<SelfForce> self = SelfForces(p.scenes[scene], p.options);
+    for (int t = p.first_frame; t < p.last_frame; ++t) {
+      for (int n = 0; n < people; ++n, row += kSettlingRows) {
+        SettlingOf(rollouts_.At(scene, t, n), self[n], residuals + row,
+                   jacobians != nullptr ? &by_state : nullptr);
+        for (int k = 0; k < kSettlingRows; ++k) residuals[row + k] *= scale;
+        if (jacobians == nullptr || by_state.isZero(0.0)) continue;
+        slopes.push_back({scene, t, n, row, by_state});
+        frames[scene] = t + 1;
+      }
     }
   }
   if (jacobians == nullptr) return true;
@@ -107,16 +110,12 @@ bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
     std::fill_n(jacobians[b], num_residuals() * parameter_block_sizes()[b], 0.0);
   }
   if (slopes.empty()) return true;
-  RolloutSensitivities sensitivities;
-  if (!RolloutWithSensitivities(p.scene, p.options, inputs, slopes.back().frame + 1, &path,
-                                &sensitivities)
-           .ok) {
-    return false;
-  }
+  if (!rollouts_.Differentiate(inputs, p.layout.num_acting(), frames)) return false;
   const ActingColumns columns(p.layout);
-  RowMajorMatrix by_column;
+  RowMajorMatrix state, by_column;
   for (const Slope& slope : slopes) {
-    by_column = scale * slope.by_state * sensitivities.At(slope.frame, slope.person);
+    rollouts_.DerivativesAt(slope.scene, slope.frame, slope.person, &state);
+    by_column = scale * slope.by_state * state;
     columns.Scatter(by_column, slope.row, num_residuals(), jacobians);
   }
   return true;

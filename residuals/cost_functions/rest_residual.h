@@ -1,7 +1,7 @@
 // residuals: people must come to rest: within a time after a push, and from small deviations.
 //
-// Settling, for the people of the settling simulations (models/scene.h), from WaitSeconds after the
-// push for a second, n = frames times people:
+// Settling, for the people of settling simulations (models/scene.h), from WaitSeconds after the
+// push for a second, n = frames times people of one simulation:
 //   r = weight / sqrt(n) [ hinge(speed / a_v - 1)             1
 //                          hinge(|angles - rest| / a_q - 1)   2 ]     hinge(x) = max(0, x)
 // `rest` is the upright or initial posture that the balance aims at. a_v and a_q are nine tenths of
@@ -25,13 +25,13 @@
 #include <vector>
 
 #include "models/modal_stability.h"
+#include "residuals/cost_functions/scene_rollouts.h"
 #include "residuals/parameter_map.h"
-#include "residuals/sensitivities/rollout_sensitivities.h"
 
 namespace pushid {
 
 struct SettlingProblem {
-  Scene scene;
+  std::vector<Scene> scenes;  // of as many people and frames each
   ModelOptions options;
   ParameterMap map;
   BlockLayout layout;
@@ -39,9 +39,9 @@ struct SettlingProblem {
   int first_frame = 0, last_frame = 0;
 };
 
-// A settling simulation of people with the shared parameters, or with those of `unit` (whose
+// Settling simulations of people with the shared parameters, or with those of `unit` (whose
 // deviations are then the second block).
-SettlingProblem MakeSettlingProblem(const Scene& scene, const ModelOptions& options,
+SettlingProblem MakeSettlingProblem(const std::vector<Scene>& scenes, const ModelOptions& options,
                                     const ParameterMap& map, double weight,
                                     const std::string& unit = "");
 
@@ -52,6 +52,8 @@ class SettlingResidual : public ceres::CostFunction {
 
  private:
   const SettlingProblem problem_;
+  // Ceres evaluates a block from one thread at a time.
+  mutable SceneRollouts rollouts_;
 };
 
 class ModalStabilityResidual : public ceres::CostFunction {

@@ -27,6 +27,7 @@ struct Carried {
   Lanes* robust = nullptr;      // the same
   Lanes* path = nullptr;        // frames x 8: [q, qd], of the gradient alone
   double* residuals = nullptr;  // of LaneOutputs
+  double* states = nullptr;     // the same
 };
 
 // Lanes of which storage has room for, one after the other.

@@ -17,4 +17,11 @@ const std::vector<const PersonLanes*>& SupportedPersonLanes() {
 
 const PersonLanes& BestPersonLanes() { return *SupportedPersonLanes().back(); }
 
+const PersonLanes& PersonLanesFor(int people) {
+  for (const PersonLanes* lanes : SupportedPersonLanes()) {
+    if (lanes->lanes >= people) return *lanes;
+  }
+  return BestPersonLanes();
+}
+
 }  // namespace pushid

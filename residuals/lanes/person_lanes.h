@@ -54,6 +54,7 @@ struct LaneInputs {
   bool friction_alone = false;  // acts in some step without the other own forces
   ResidualSigmas sigmas;
   int frames = 0;            // of the longest rollout
+  int first_state = 0;       // the first frame of those that kStates hands out
   int columns = 0;           // P
   int velocity_column = -1;  // as in SensitivityInputs
   int num_entries = 0, num_tails = 0;
@@ -62,10 +63,12 @@ struct LaneInputs {
   const double* constants = nullptr;   // kLaneConstants
   const double* parameters = nullptr;  // kLaneParameters
   const double* tails = nullptr;       // num_tails x kLaneTails
-  const double* steps = nullptr;       // frames x kLaneFields
+  int num_steps = 0;                   // later frames are as the last of them
+  const double* steps = nullptr;       // num_steps x kLaneFields
 };
 
 enum class LaneSums {
+  kStates,    // no residuals: [q, qd] frame by frame, and its derivatives where there are columns
   kNone,      // r alone, frame by frame from frame 1 on, without the robust loss's weight
   kSquares,   // r'r alone
   kGradient,  // and J'r, by the adjoint: work that columns do not add to
@@ -81,6 +84,7 @@ struct LaneOutputs {
   double* plain = nullptr;      // (P + 1) x (P + 1), the upper triangle
   double* robust = nullptr;     // the same
   double* storage = nullptr;    // LaneStorage
+  double* states = nullptr;     // (frames - first_state) x (1 + P) x 8; the last within the domain
 };
 
 // Doubles that a rollout needs besides.
@@ -101,6 +105,8 @@ struct PersonLanes {
 // What this processor can run, the widest last; never empty.
 const std::vector<const PersonLanes*>& SupportedPersonLanes();
 const PersonLanes& BestPersonLanes();
+// The narrowest in which so many people have room; the widest where they do not.
+const PersonLanes& PersonLanesFor(int people);
 
 // One file each, compiled for its instructions; null where the compiler has none such.
 const PersonLanes* PersonLanes128();

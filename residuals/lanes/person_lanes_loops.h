@@ -26,7 +26,7 @@ class BackwardRoller : public Roller {
     for (Lanes& value : adjoint_) value = 0.0;
     for (int t = in_.frames - 1; t > 0; --t) {
       SetFrame(t);
-      AddResidualBack(in_.steps + t * kLaneFields * kWidth);
+      AddResidualBack(Step(t));
       AddOwed();
       SetFrame(t - 1);
       StepBack(t - 1, gradient);
@@ -77,7 +77,7 @@ class BackwardRoller : public Roller {
   }
 
   void StepBack(int t, Lanes* gradient) {
-    const double* const step = in_.steps + t * kLaneFields * kWidth;
+    const double* const step = Step(t);
     const Lanes dt = self_.dt;
     Force g, a;
     for (int i = 0; i < 4; ++i) {
@@ -119,8 +119,12 @@ void RollLanes(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) {
   const bool equations = sums == LaneSums::kPlain || sums == LaneSums::kRobust;
   Carried carried;
   carried.residuals = out.residuals;
+  carried.states = out.states;
   if (sums == LaneSums::kGradient) {
     carried.path = room.Take(8 * in.frames);
+  } else if (sums == LaneSums::kStates && columns > 0) {
+    carried.by_column = room.Take(8 * columns);
+    carried.before = room.Take(2 * columns);
   } else if (equations) {
     carried = {room.Take(8 * columns), room.Take(2 * columns),
                room.Take(kFrameResiduals * (columns + 1)), room.Take(size), room.Take(size)};

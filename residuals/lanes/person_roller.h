@@ -47,8 +47,12 @@ class Roller {
     Bits alive = Bits{} - 1;
     for (int t = 0; t < in_.frames; ++t) {
       angles_ = Angles<Lanes>(state_.q);
-      const double* const step = in_.steps + t * kLaneFields * kWidth;
-      if (t > 0) AddResidual(t, step);
+      const double* const step = Step(t);
+      if (sums_ == LaneSums::kStates) {
+        if (t >= in_.first_state) HandOut(t - in_.first_state);
+      } else if (t > 0) {
+        AddResidual(t, step);
+      }
       if (sums_ == LaneSums::kGradient) Remember(t);
       alive &= LoadLanes(step + kLaneGoesOn * kWidth) != Lanes(0.0);
       if (t + 1 < in_.frames) StepOn(t, step, &alive);
@@ -62,8 +66,21 @@ class Roller {
   using Matrix = Matrix4<Lanes>;
   using Force = Vector4<Lanes>;
 
+  const double* Step(int t) const {
+    return in_.steps + (t < in_.num_steps ? t : in_.num_steps - 1) * kLaneFields * kWidth;
+  }
+
   // Forwards: [J r]'[J r] is summed up on the way, the gradient alone on the way back.
-  bool CarriesColumns() const { return sums_ == LaneSums::kPlain || sums_ == LaneSums::kRobust; }
+  bool CarriesColumns() const { return carried_.by_column != nullptr; }
+
+  void HandOut(int index) {
+    double* const to = carried_.states + index * 8 * (1 + in_.columns) * kWidth;
+    for (int i = 0; i < 4; ++i) {
+      Store(state_.q[i], to + i * kWidth);
+      Store(state_.qd[i], to + (4 + i) * kWidth);
+    }
+    for (int i = 0; i < 8 * in_.columns; ++i) Store(carried_.by_column[i], to + (8 + i) * kWidth);
+  }
 
   void Remember(int t) {
     for (int i = 0; i < 4; ++i) {
@@ -83,7 +100,7 @@ class Roller {
       if (i < 2) carried_.before[2 * column + i] = 1.0;
     }
     const int size = (in_.columns + 1) * (in_.columns + 1);
-    for (int i = 0; i < size; ++i) carried_.plain[i] = 0.0;
+    for (int i = 0; carried_.plain != nullptr && i < size; ++i) carried_.plain[i] = 0.0;
     for (int i = 0; sums_ == LaneSums::kRobust && i < size; ++i) carried_.robust[i] = 0.0;
   }
 

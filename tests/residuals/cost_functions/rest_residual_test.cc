@@ -1,6 +1,7 @@
 // Settling: a person who was pushed settles.
 #include "residuals/cost_functions/rest_residual.h"
 
+#include "models/force_law.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {
@@ -35,7 +36,7 @@ TEST(Settling, JacobianAgainstNumericDifferentiation) {
       ModelOptions options;
       options.posture = posture;
       SettlingProblem problem =
-          MakeSettlingProblem(SettlingScene(60.0, impulse), options, map, 3.0);
+          MakeSettlingProblem({SettlingScene(60.0, impulse)}, options, map, 3.0);
       problem.first_frame = 20, problem.last_frame = 40;
       const SettlingResidual residual(problem);
       ASSERT_EQ(residual.parameter_block_sizes(), (std::vector<int>{kNumParameters}));
@@ -47,6 +48,39 @@ TEST(Settling, JacobianAgainstNumericDifferentiation) {
   }
 }
 
+// Does nothing, but has no lanes (lane_tables.h).
+struct NoForce : ForceLaw {
+  NoForce() : ForceLaw("none", {}) {}
+  Vector4<double> Force(const LawPerson&, const Inputs&, Jacobian* jacobian) const override {
+    if (jacobian != nullptr) jacobian->setZero();
+    return Vector4<double>::Zero();
+  }
+};
+
+// Where everybody is on the move, some have settled, and all.
+TEST(Settling, SimulationsSideBySideAreThoseOfEach) {
+  const ParameterMap map = EveryParameterMap({});
+  const std::vector<Scene> scenes = {SettlingScene(60.0, 15.0), SettlingScene(60.0, 25.0),
+                                     SettlingScene(60.0, 80.0)};
+  const ParameterBlocks blocks = {SharedBlock(map, SensibleGains())};
+  ModelOptions alone;
+  alone.own_laws = {std::make_shared<NoForce>()};
+  ASSERT_TRUE(HasLanes(scenes[0], {}));
+  ASSERT_FALSE(HasLanes(scenes[0], alone));
+  for (int first : {20, 70, 400}) {
+    SCOPED_TRACE(first);
+    SettlingProblem problem = MakeSettlingProblem(scenes, {}, map, 3.0);
+    problem.first_frame = first, problem.last_frame = first + 60;
+    const SettlingResidual in_lanes(problem);
+    problem.options = alone;
+    ExpectCorrectJacobian(in_lanes, SettlingResidual(problem), blocks, {1e-10, 1e-13, 1e-12});
+    const Eigen::VectorXd rows = EvaluateCost(in_lanes, blocks, {}).residuals;
+    ASSERT_EQ(rows.size(), 3 * 60 * 3);
+    EXPECT_EQ(rows.head(180).norm() > 0.0, first == 20);
+    EXPECT_EQ(rows.tail(180).norm() > 0.0, first != 400);
+  }
+}
+
 // A demand, no pull: exactly zero for people who settle, and not for one who keeps walking.
 TEST(Settling, IsZeroForPeopleWhoSettleInTime) {
   ParameterMap map = EveryParameterMap({});
@@ -55,7 +89,7 @@ TEST(Settling, IsZeroForPeopleWhoSettleInTime) {
     for (double impulse : {4.0, 25.0}) {
       SCOPED_TRACE(std::to_string(mass) + ", " + std::to_string(impulse));
       const SettlingProblem problem =
-          MakeSettlingProblem(SettlingScene(mass, impulse), {}, map, 1.0);
+          MakeSettlingProblem({SettlingScene(mass, impulse)}, {}, map, 1.0);
       const CostEvaluation settled =
           EvaluateCost(SettlingResidual(problem), {SharedBlock(map, SensibleGains())}, {true});
       ASSERT_TRUE(settled.ok);
@@ -74,7 +108,7 @@ TEST(Settling, IsZeroForPeopleWhoSettleInTime) {
 TEST(Settling, IsZeroForAPersonWhoIsNotPushed) {
   const ParameterMap map = EveryParameterMap({});
   const CostEvaluation evaluation =
-      EvaluateCost(SettlingResidual(MakeSettlingProblem(SettlingScene(80.0, 0.0), {}, map, 3)),
+      EvaluateCost(SettlingResidual(MakeSettlingProblem({SettlingScene(80.0, 0.0)}, {}, map, 3)),
                    {SharedBlock(map, SensibleGains())}, {true});
   ASSERT_TRUE(evaluation.ok);
   EXPECT_EQ(evaluation.residuals.norm(), 0.0);
@@ -85,7 +119,7 @@ TEST(Settling, IsZeroForAPersonWhoIsNotPushed) {
 TEST(Settling, WeightIsThatOfAMeanSquare) {
   const ParameterMap map = EveryParameterMap({});
   const ParameterBlocks blocks = {SharedBlock(map, SensibleGains())};
-  SettlingProblem problem = MakeSettlingProblem(SettlingScene(80.0, 25.0), {}, map, 1.0);
+  SettlingProblem problem = MakeSettlingProblem({SettlingScene(80.0, 25.0)}, {}, map, 1.0);
   problem.first_frame = 20, problem.last_frame = 90;  // soon after the push, on the move
   const double cost = Cost(problem, blocks);
   EXPECT_GT(cost, 0.0);
@@ -100,11 +134,13 @@ TEST(Settling, WeightIsThatOfAMeanSquare) {
   EXPECT_NEAR(0.5 * sum, cost, 1e-12 * cost);
 }
 
+// One of two is enough.
 TEST(Settling, FallingReturnsFalse) {
   ParameterMap map;
   map.values = SensibleGains();
   map.fitted = {{kKpTheta, Transform::kIdentity, -1}};
-  const SettlingResidual residual(MakeSettlingProblem(SettlingScene(80.0, 80.0), {}, map, 3.0));
+  const SettlingResidual residual(
+      MakeSettlingProblem({SettlingScene(80.0, 0.0), SettlingScene(80.0, 80.0)}, {}, map, 3.0));
   EXPECT_TRUE(EvaluateCost(residual, {{1560.0}}, {true}).ok);
   EXPECT_FALSE(EvaluateCost(residual, {{0.0}}, {true}).ok);
   EXPECT_FALSE(EvaluateCost(residual, {{0.0}}, {}).ok);

@@ -105,7 +105,7 @@ TEST(RodSensitivities, RestResiduals) {
     const ModelOptions options = With(learned, 0.4, &random);
     ParameterMap map = EveryParameterMap({});
     map.num_weights = options.learned->num_weights();
-    SettlingProblem problem = MakeSettlingProblem(SettlingScene(80.0, 25.0), options, map, 3.0);
+    SettlingProblem problem = MakeSettlingProblem({SettlingScene(80.0, 25.0)}, options, map, 3.0);
     problem.first_frame = 40, problem.last_frame = 44;
     const ParameterBlocks blocks = {SharedBlock(map, RecoveringParameters()),
                                     options.learned->weights};
