@@ -2,7 +2,6 @@
 #include <gflags/gflags.h>
 
 #include <cstdio>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -105,7 +104,7 @@ void ReadScheme(FoldScheme* scheme) {
   OrFail(ParseName("--scheme", FLAGS_scheme, scheme));
 }
 
-using Predictors = std::vector<std::unique_ptr<Predictor>>;
+using Predictors = std::vector<Predictor>;
 
 // Those that futures can be drawn from.
 Candidates NoisyModels(const Candidates& candidates) {
@@ -131,25 +130,23 @@ Candidates NoisyModels(const Candidates& candidates) {
 void AddBaselines(const FitOptions& options, Predictors* predictors) {
   const int observed = ObservedFrames();
   if (observed > 0) {
-    predictors->push_back(
-        std::make_unique<ModelPredictor>("re-anchored", options, observed, FramesUse::kReanchored));
+    predictors->push_back(ModelPredictor("re-anchored", options, observed, FramesUse::kReanchored));
   } else {
-    predictors->push_back(std::make_unique<RidgePredictor>("ridge"));
-    predictors->push_back(std::make_unique<TemplatePredictor>("template"));
+    predictors->push_back(RidgePredictor());
+    predictors->push_back(TemplatePredictor());
   }
   for (const Baseline& baseline : kBaselines) {
     if (baseline.needs_frames && observed == 0) continue;
-    predictors->push_back(
-        std::make_unique<BaselinePredictor>(baseline.name, baseline.predict, observed));
+    predictors->push_back(BaselinePredictor(baseline, observed));
   }
 }
 
 // Two of one name could not be told apart in the tables.
 void CheckNames(const Predictors& predictors) {
   std::set<std::string> names;
-  for (const auto& predictor : predictors) {
-    if (names.insert(predictor->name).second) continue;
-    throw Error{"--compare has more than one '" + predictor->name +
+  for (const Predictor& predictor : predictors) {
+    if (names.insert(predictor.name).second) continue;
+    throw Error{"--compare has more than one '" + predictor.name +
                 "'; give each configuration its own name"};
   }
 }
@@ -169,8 +166,8 @@ Predictors MakePredictors(const Candidates& candidates) {
                   "' has no push tail, which --observed estimates from the first frames; give it "
                   "--push_tail=exponential (the presets tail and group have it)"};
     }
-    predictors.push_back(std::make_unique<ModelPredictor>(name, candidate, observed,
-                                                          FramesUse::kForecast, ForecastUseFlag()));
+    predictors.push_back(
+        ModelPredictor(name, candidate, observed, FramesUse::kForecast, ForecastUseFlag()));
   }
   if (FLAGS_yardsticks) AddBaselines(candidates[0].second, &predictors);
   return predictors;
@@ -219,9 +216,9 @@ int Run() {
   std::vector<CrossValidation> validations;
   const RecordedBodies bodies = BodiesOfGroups(recordings);
   ProgressLine line;
-  for (const auto& predictor : predictors) {
-    validations.push_back(CrossValidate(pendulums, folds, *predictor, NumThreads(),
-                                        line.OfJobs(predictor->name + ": fold"), bodies,
+  for (const Predictor& predictor : predictors) {
+    validations.push_back(CrossValidate(pendulums, folds, predictor, NumThreads(),
+                                        line.OfJobs(predictor.name + ": fold"), bodies,
                                         ParseLabelKeys(FLAGS_group_by)));
   }
   std::vector<HeldOutFutures> futures;

@@ -57,12 +57,7 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
     throw Error{"--smoothing is longer than recording " + recording.id + ", which has " +
                 std::to_string(recording.num_frames()) + " frames"};
   }
-  PushWindow window = flags.window;
-  if (window.start < 0 || window.end < 0) {
-    const PushWindow found = OrFail(DetectPushWindow(recording, options));
-    if (window.start < 0) window.start = found.start;
-    if (window.end < 0) window.end = found.end;
-  }
+  const PushWindow window = OrFail(PushWindowFrom(flags.window, recording, options));
   const EstimatedPush push = OrFail(EstimatePush(recording, window, options));
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(flags.person, t) > 0.0) continue;

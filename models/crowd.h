@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "models/enum_names.h"
 #include "models/rollout.h"
 #include "models/scene.h"
 
@@ -62,6 +63,11 @@ enum class FormationShape {
   kDiamond,  // a square lattice turned on its corner: rows of 1, 3, 5, 3, 1 for 13 people
   kGrid      // near-square: as many rows as people in a row, or one fewer
 };
+constexpr EnumNames<FormationShape, 3> Names(FormationShape) {
+  return {{{"line", FormationShape::kLine},
+           {"diamond", FormationShape::kDiamond},
+           {"grid", FormationShape::kGrid}}};
+}
 
 // Cart positions (x, y), m. Neighbours stand `spacing` apart. A diamond is whole for 1, 5, 13, 25,
 // 41 ... people; in between its outermost ring is filled from the corners on the x axis outwards.

@@ -59,9 +59,7 @@ bool FromFile() {
 }
 
 FormationShape Shape() {
-  if (FLAGS_formation == "line") return FormationShape::kLine;
-  if (FLAGS_formation == "diamond") return FormationShape::kDiamond;
-  if (FLAGS_formation == "grid") return FormationShape::kGrid;
+  if (const auto shape = FromName<FormationShape>(FLAGS_formation)) return *shape;
   throw Error{"--formation is '" + FLAGS_formation +
               "'; it must be line, diamond or grid, or a trajectory file (.txt, .sqlite)"};
 }

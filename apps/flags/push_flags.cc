@@ -13,10 +13,6 @@
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
 
-namespace {
-constexpr char kAuto[] = "auto";
-}
-
 DEFINE_string(id, "", "the recording; or several by --ids");
 DEFINE_int32(person, pushid::PushFlags{}.person, "number of the pushed person, counted from 0");
 DEFINE_string(out, "", "write the push here (CSV); {id} is replaced by the recording's id");
@@ -31,7 +27,7 @@ DEFINE_int32(smoothing, pushid::PushFlags{}.smoothing,
              "inverse dynamics: Savitzky-Golay window in frames, odd, at least 5; 0: none (2 mm of "
              "noise then cause 600 N)");
 
-DEFINE_string(initial_velocity, kAuto,
+DEFINE_string(initial_velocity, "auto",
               "inverse dynamics: velocity of the person at the start of the window: zero, "
               "estimated, or auto (estimated where the hip moves faster than 0.1 m/s)");
 
@@ -206,13 +202,8 @@ PushFlags PushFlagsFromCommandLine() {
   flags.sensor = sensor;
   flags.window = {FLAGS_first_frame, FLAGS_end_frame};
   flags.smoothing = FLAGS_smoothing;
-  if (FLAGS_initial_velocity != kAuto) {
-    flags.initial_velocity = FromName<InitialVelocity>(FLAGS_initial_velocity);
-    if (!flags.initial_velocity || *flags.initial_velocity == InitialVelocity::kFree) {
-      throw Error{"--initial_velocity is '" + FLAGS_initial_velocity +
-                  "'; it must be zero, estimated or auto"};
-    }
-  }
+  OrFail(
+      ParseInitialVelocity("--initial_velocity", FLAGS_initial_velocity, &flags.initial_velocity));
   CheckRecordings(flags);
   return flags;
 }

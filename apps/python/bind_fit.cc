@@ -178,21 +178,19 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
   CheckRecordings(recordings);
   FoldScheme how = FoldScheme::kStratified;
   Check(ParseName("scheme", scheme, &how), Fault::kUsage);
-  std::vector<std::unique_ptr<Predictor>> predictors;
+  std::vector<Predictor> predictors;
   SkeletonMapping mapping = SkeletonMapping::kExact;
   for (const auto& [name, given] : candidates) {
     const FitSetup setup = Setup(given);
     mapping = setup.roughly().mapping;
     const auto pendulums = Pendulums(recordings, mapping);
-    predictors.push_back(
-        std::make_unique<ModelPredictor>(name, Unwrapped(setup.For(pendulums), Fault::kUsage),
-                                         observed, FramesUse::kForecast, ForecastFrom(forecast)));
+    predictors.push_back(ModelPredictor(name, Unwrapped(setup.For(pendulums), Fault::kUsage),
+                                        observed, FramesUse::kForecast, ForecastFrom(forecast)));
   }
   if (baselines) {
     for (const Baseline& baseline : kBaselines) {
       if (baseline.needs_frames && observed == 0) continue;
-      predictors.push_back(
-          std::make_unique<BaselinePredictor>(baseline.name, baseline.predict, observed));
+      predictors.push_back(BaselinePredictor(baseline, observed));
     }
   }
   const auto pendulums = Pendulums(recordings, mapping);
@@ -201,8 +199,8 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
   {
     const JobProgress told = JobsOf(progress);
     const py::gil_scoped_release no_gil;
-    for (const auto& predictor : predictors) {
-      json.push_back(ToJson(CrossValidate(pendulums, folds, *predictor, num_threads, told)));
+    for (const Predictor& predictor : predictors) {
+      json.push_back(ToJson(CrossValidate(pendulums, folds, predictor, num_threads, told)));
     }
   }
   return FromJson(json);

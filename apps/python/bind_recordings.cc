@@ -168,19 +168,10 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
   PushEstimationOptions options;
   options.person = person;
   options.smoothing_frames = smoothing;
-  if (initial_velocity != "auto") {
-    options.initial_velocity = FromName<InitialVelocity>(initial_velocity);
-    if (!options.initial_velocity || *options.initial_velocity == InitialVelocity::kFree) {
-      Raise(Fault::kUsage, Error{"initial_velocity is '" + initial_velocity +
-                                 "'; it must be zero, estimated or auto"});
-    }
-  }
-  PushWindow window{first_frame, end_frame};
-  if (window.start < 0 || window.end < 0) {
-    const PushWindow found = Unwrapped(DetectPushWindow(seen, options), Fault::kData);
-    if (window.start < 0) window.start = found.start;
-    if (window.end < 0) window.end = found.end;
-  }
+  Check(ParseInitialVelocity("initial_velocity", initial_velocity, &options.initial_velocity),
+        Fault::kUsage);
+  const PushWindow window =
+      Unwrapped(PushWindowFrom({first_frame, end_frame}, seen, options), Fault::kData);
   const EstimatedPush push = Unwrapped(EstimatePush(seen, window, options), Fault::kData);
   Array rows({static_cast<py::ssize_t>(push.push.force.size()), py::ssize_t{4}});
   auto cells = rows.mutable_unchecked<2>();

@@ -1,6 +1,6 @@
 // apps: people who stand, in Python: frequency responses and sway.
 #include "apps/python/bindings.h"
-#include "ident/prediction/standing_checks.h"
+#include "ident/prediction/visual_check.h"
 
 namespace pushid {
 namespace {

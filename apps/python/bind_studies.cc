@@ -1,6 +1,5 @@
 // apps: what more is asked of a fit in Python: profiles, bootstrap, refits under other priors,
 // pushes and horizons, which recording to make next; formations and most probable paths.
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/python/bindings.h"
@@ -159,20 +158,14 @@ struct FormationAsked {
 };
 
 Scene SceneOf(const FormationAsked& asked) {
-  const std::map<std::string, FormationShape> shapes = {{"line", FormationShape::kLine},
-                                                        {"diamond", FormationShape::kDiamond},
-                                                        {"grid", FormationShape::kGrid}};
-  const auto how = shapes.find(asked.shape);
-  if (how == shapes.end()) {
-    Raise(Fault::kUsage, Error{"shape is '" + asked.shape + "'; it must be line, diamond or grid"});
-  }
+  const auto shape = Named<FormationShape>("shape", asked.shape);
   if (asked.people < 1 || asked.people > 1000 || asked.pushed < 0 || asked.pushed >= asked.people ||
       !(asked.spacing > 0.0) || !(asked.mass > 0.0) || !(asked.rod > 0.0) ||
       !(asked.duration > 0.0) || !(asked.push_duration > 0.0) || !(asked.fps >= 1.0)) {
     Raise(Fault::kUsage, Error{"a formation has 1 to 1000 people, one of whom is pushed, and "
                                "spacing, mass, rod, durations and fps above 0"});
   }
-  Scene scene = FormationScene(FormationPositions(how->second, asked.people, asked.spacing),
+  Scene scene = FormationScene(FormationPositions(shape, asked.people, asked.spacing),
                                {asked.mass, asked.rod}, 1.0 / asked.fps);
   AddHipPush(asked.pushed,
              {asked.push, 0.0, asked.push_duration, asked.push_direction * M_PI / 180.0}, &scene);

@@ -4,6 +4,7 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/loading/motion_preparation.h"
+#include "datasets/sensors/sensor_choice.h"
 
 namespace pushid {
 namespace {
@@ -115,8 +116,6 @@ std::string FilledTracks::Warning(double max_gap_s) const {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 double TwoPassCorrection() { return std::pow(std::sqrt(2.0) - 1.0, 0.25); }
 
 // y_i = b (x_i + 2 x_{i-1} + x_{i-2}) - a1 y_{i-1} - a2 y_{i-2}
@@ -126,7 +125,7 @@ struct Biquad {
 
 // Of which two passes have lost 3 dB at the cut-off.
 Biquad Butterworth(double cutoff_hz, double rate_hz) {
-  const double k = std::tan(kPi * cutoff_hz / rate_hz) / TwoPassCorrection();
+  const double k = std::tan(M_PI * cutoff_hz / rate_hz) / TwoPassCorrection();
   const double q = std::sqrt(2.0) * k;
   const double norm = 1.0 / (1.0 + q + k * k);
   return {k * k * norm, 2.0 * (k * k - 1.0) * norm, (1.0 - q + k * k) * norm};
@@ -185,21 +184,9 @@ int ResampledFrames(int frames, double from_hz, double to_hz) {
 
 std::vector<Position> ResampleTrack(const std::vector<Position>& track, double from_hz,
                                     double to_hz) {
-  const int frames = static_cast<int>(track.size());
-  const int nodes = std::min(4, frames);
   std::vector<Position> result;
-  for (int i = 0; i < ResampledFrames(frames, from_hz, to_hz); ++i) {
-    const double at = OldFrame(i, from_hz, to_hz);
-    const int first = std::clamp(static_cast<int>(std::floor(at)) - 1, 0, frames - nodes);
-    Position sum = Position::Zero();
-    for (int j = 0; j < nodes; ++j) {
-      double share = 1.0;
-      for (int k = 0; k < nodes; ++k) {
-        if (k != j) share *= (at - first - k) / (j - k);
-      }
-      sum += share * track[first + j];
-    }
-    result.push_back(sum);
+  for (int i = 0; i < ResampledFrames(static_cast<int>(track.size()), from_hz, to_hz); ++i) {
+    result.push_back(ValueBetween(track, OldFrame(i, from_hz, to_hz)));
   }
   return result;
 }

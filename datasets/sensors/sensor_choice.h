@@ -81,7 +81,7 @@ struct RecordTimes {
 };
 MaybeError CheckLasts(const RecordTimes& times, const std::string& file, int line);
 
-// Values at even times: cubic through the four nearest samples (Lagrange), the nearest at the ends.
+// Values at even times: cubic through the four nearest samples (Lagrange; of fewer, through all).
 // at: in samples, from 0.
 Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at);
 

@@ -75,13 +75,14 @@ MaybeError CheckLasts(const RecordTimes& times, const std::string& file, int lin
 
 Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at) {
   const int last = static_cast<int>(track.size()) - 1;
-  if (at <= 0.0 || last < 3) return track[std::clamp(static_cast<int>(std::lround(at)), 0, last)];
+  if (at <= 0.0) return track[0];
   if (at >= last) return track[last];
-  const int first = std::clamp(static_cast<int>(at) - 1, 0, last - 3);
+  const int nodes = std::min(4, last + 1);
+  const int first = std::clamp(static_cast<int>(at) - 1, 0, last + 1 - nodes);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < nodes; ++i) {
     double weight = 1.0;
-    for (int k = 0; k < 4; ++k) {
+    for (int k = 0; k < nodes; ++k) {
       if (k != i) weight *= (at - first - k) / (i - k);
     }
     sum += weight * track[first + i];

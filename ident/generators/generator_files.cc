@@ -5,6 +5,7 @@
 
 #include "datasets/manifest/recording.h"
 #include "ident/bodies/tensor_folder.h"
+#include "ident/parameters/json_archive.h"
 
 namespace pushid {
 namespace {
@@ -18,62 +19,61 @@ constexpr int kMostParticles = 1000;
 
 bool IsKind(const std::string& name) { return FromName<GeneratorKind>(name).has_value(); }
 
-Json LayoutJson(const ParticleLayout& layout) {
-  Json particles = Json::array();
-  for (int i = 0; i < layout.num_particles(); ++i) {
-    Json particle = {{"name", layout.names[i]},
-                     {"mirrored", layout.mirrored[i]},
-                     {"parent", layout.parents[i]},
-                     {"weight", layout.weights[i]}};
-    if (layout.parents[i] == kFixedPoint) {
-      particle["fixed_m"] = {layout.fixed(0, i), layout.fixed(1, i), layout.fixed(2, i)};
-    }
-    particles.push_back(particle);
-  }
-  return {{"joints", layout.joints},
-          {"up_axis", layout.up_axis},
-          {"mirrored_axis", layout.mirrored_axis},
-          {"particles", particles}};
-}
-
-ParticleLayout LayoutFrom(const Json& json) {
-  ParticleLayout layout;
-  layout.joints = json.at("joints");
-  layout.up_axis = json.at("up_axis");
-  layout.mirrored_axis = json.at("mirrored_axis");
-  const Json& particles = json.at("particles");
-  const int count = static_cast<int>(particles.size());
+void CheckLayout(const ParticleLayout& layout) {
+  const int count = layout.num_particles();
   Demand(count > 0 && count <= kMostParticles, "there must be 1 to 1000 particles");
   Demand(layout.joints > 0 && layout.mirrored_axis >= 0 && layout.mirrored_axis < 3 &&
              layout.up_axis >= 0 && layout.up_axis < 3 && layout.up_axis != layout.mirrored_axis,
          "joints must be positive, up_axis and mirrored_axis two of 0, 1 and 2");
-  layout.fixed = Eigen::Matrix3Xf::Zero(3, count);
   for (int i = 0; i < count; ++i) {
-    const Json& particle = particles[i];
-    layout.names.push_back(particle.at("name"));
-    layout.mirrored.push_back(particle.at("mirrored"));
-    layout.parents.push_back(particle.at("parent"));
-    layout.weights.push_back(particle.at("weight"));
     Demand(layout.mirrored[i] >= 0 && layout.mirrored[i] < count && layout.parents[i] >= kNoBone &&
                layout.parents[i] < i,
            "particle " + std::to_string(i) + " names particles that do not exist");
-    if (layout.parents[i] != kFixedPoint) continue;
-    for (int k = 0; k < 3; ++k) layout.fixed(k, i) = particle.at("fixed_m").at(k);
   }
-  return layout;
 }
 
+}  // namespace
+
+template <class Archive>
+void Fields(Archive& a, ParticleLayout& layout) {
+  PUSHID_FIELDS(a, layout, joints, up_axis, mirrored_axis);
+  a.Rows("particles", std::tie(layout.names, layout.mirrored, layout.parents, layout.weights),
+         [&layout](auto& row, size_t i) {
+           if (Archive::kReads && i == 0) layout.fixed.setZero(3, layout.num_particles());
+           row("name", layout.names[i]);
+           row("mirrored", layout.mirrored[i]);
+           row("parent", layout.parents[i]);
+           row("weight", layout.weights[i]);
+           if (layout.parents[i] != kFixedPoint) return;
+           Eigen::Vector3f place = layout.fixed.col(i);
+           row("fixed_m", place);
+           layout.fixed.col(i) = place;
+         });
+}
+
+template <class Archive>
+void Fields(Archive& a, ForecastChoice& choice) {
+  PUSHID_FIELDS(a, choice, by, blend);
+  a.Check(choice.blend >= 0.0 && choice.blend <= 1.0, "blend must lie between 0 and 1");
+}
+
+template <class Archive>
+void Fields(Archive& a, GeneratorSettings& settings) {
+  PUSHID_FIELDS(a, settings, data, observed, predicted);
+  a("rate_hz", settings.rate);
+  a("layout", settings.layout);
+  a.Optional("choice", settings.choice);
+  a.Check(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
+          "observed, predicted and rate_hz must be positive");
+}
+
+namespace {
+
 Json SettingsJson(const TrainedNetworks& trained) {
-  const GeneratorSettings& settings = trained.settings;
-  Json json = {{"data", NameOf(settings.data)},
-               {"observed", settings.observed},
-               {"predicted", settings.predicted},
-               {"rate_hz", settings.rate},
-               {"layout", LayoutJson(settings.layout)}};
-  if (settings.choice) {
-    json["choice"] = {{"by", NameOf(settings.choice->by)}, {"blend", settings.choice->blend}};
+  Json json = JsonOf(trained.settings);
+  for (const PushKind kind : trained.settings.push_kinds) {
+    json["push_kinds"].push_back(NameOf(kind));
   }
-  for (const PushKind kind : settings.push_kinds) json["push_kinds"].push_back(NameOf(kind));
   json.update(trained.of_kind->Settings());
   return json;
 }
@@ -82,10 +82,8 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   const Json& json = *folder.settings;
   TrainedNetworks trained;
   GeneratorSettings& settings = trained.settings;
-  ParseSetting(json, "data", &settings.data);
-  settings.observed = json.at("observed");
-  settings.predicted = json.at("predicted");
-  settings.rate = json.at("rate_hz");
+  ReadJson(json, &settings);
+  CheckLayout(settings.layout);
   Demand(!json.value("pendulum", false),
          "it corrects physics (--pendulum_input), which is gone: blend it with them, and train it "
          "again");
@@ -94,17 +92,7 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
     Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is not a kind of push");
     settings.push_kinds.push_back(*kind);
   }
-  settings.layout = LayoutFrom(json.at("layout"));
-  if (json.contains("choice")) {
-    settings.choice.emplace();
-    ParseSetting(json["choice"], "by", &settings.choice->by);
-    settings.choice->blend = json["choice"].at("blend");
-    Demand(settings.choice->blend >= 0.0 && settings.choice->blend <= 1.0,
-           "blend must lie between 0 and 1");
-  }
   settings.training = folder.training;
-  Demand(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
-         "observed, predicted and rate_hz must be positive");
   GeneratorKind kind{};
   ParseName("kind", folder.kind, &kind);  // ReadTensorFolder has checked it
   trained.of_kind = RowOf(kind).read(json, settings, reader);

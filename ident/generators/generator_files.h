@@ -125,11 +125,6 @@ inline std::string KindsOfGroups() {
 inline void Demand(bool holds, const std::string& what) {
   if (!holds) throw std::runtime_error(what);
 }
-template <typename Json, typename Value>
-void ParseSetting(const Json& json, const char* key, Value* value) {
-  const MaybeError error = ParseName(key, json.at(key).template get<std::string>(), value);
-  if (error) throw std::runtime_error(error->message);
-}
 // How many networks a file has.
 int ReadMembers(const nlohmann::ordered_json& json);
 // What their tensors are called.

@@ -3,6 +3,7 @@
 
 #include "datasets/files/random.h"
 #include "ident/generators/generator_files.h"
+#include "ident/parameters/json_archive.h"
 
 namespace pushid {
 namespace {
@@ -38,21 +39,34 @@ double ReadShare(const Json& json, const char* key) {
 
 }  // namespace
 
+template <class Archive>
+void Fields(Archive& a, ParticleStructure& s) {
+  PUSHID_FIELDS(a, s, cell, skip, pose_operator, particles);
+  if (a.Has("poses")) a("poses", s.poses);  // this and those below: older files have none
+  a("controls", s.controls);
+  if (a.Has("correlated_noise")) a("correlated_noise", s.correlated_noise);
+  if (a.Has("corrected_frames")) a("corrected_frames", s.corrected_frames);
+  a.Check(s.particles || s.poses, "particles or poses must be true");
+  a.Check(s.controls >= 0 && s.controls <= kMostControls, "controls must be 0 to 1000");
+  a.Check(s.corrected_frames >= 0 && s.corrected_frames <= kMostCorrected,
+          "corrected_frames must be 0 to 100000");
+}
+
+template <class Archive>
+void Fields(Archive& a, DiffusionStructure& s) {
+  a("pooling", s.pooling);
+  a("pooling_at", s.join);
+  a("frame", s.frame);
+}
+
 Json TrainedParticles::Settings() const {
-  const ParticleStructure& structure = members.front().structure;
-  return {{"members", members.size()},
-          {"cell", NameOf(structure.cell)},
-          {"skip", structure.skip},
-          {"pose_operator", structure.pose_operator},
-          {"particles", structure.particles},
-          {"poses", structure.poses},
-          {"controls", structure.controls},
-          {"correlated_noise", structure.correlated_noise},
-          {"corrected_frames", structure.corrected_frames},
-          {"jitter", jitter},
-          {"ridge_share", ridge_share},
-          {"simlpe_share", simlpe_share},
-          {"simlpe", SimlpeSettings(partners.simlpe)}};
+  Json json = {{"members", members.size()}};
+  json.update(JsonOf(members.front().structure));
+  json.update(Json{{"jitter", jitter},
+                   {"ridge_share", ridge_share},
+                   {"simlpe_share", simlpe_share},
+                   {"simlpe", SimlpeSettings(partners.simlpe)}});
+  return json;
 }
 
 TensorList TrainedParticles::Tensors() const {
@@ -68,22 +82,11 @@ SharedNetworks ReadParticles(const Json& json, const GeneratorSettings& settings
   const auto networks = std::make_shared<TrainedParticles>();
   TrainedParticles& trained = *networks;
   ParticleStructure structure;
-  ParseSetting(json, "cell", &structure.cell);
-  structure.skip = json.at("skip");
-  structure.pose_operator = json.at("pose_operator");
-  structure.particles = json.at("particles");
-  structure.poses = json.value("poses", true);  // older files have none
-  Demand(structure.particles || structure.poses, "particles or poses must be true");
-  structure.controls = json.at("controls");
-  structure.corrected_frames = json.value("corrected_frames", 0);
-  structure.correlated_noise = json.value("correlated_noise", false);  // older files have none
+  structure.correlated_noise = false;  // as in files without that entry
+  ReadJson(json, &structure);
   trained.jitter = json.at("jitter");
   trained.ridge_share = ReadShare(json, "ridge_share");
   trained.simlpe_share = ReadShare(json, "simlpe_share");
-  Demand(structure.controls >= 0 && structure.controls <= kMostControls,
-         "controls must be 0 to 1000");
-  Demand(structure.corrected_frames >= 0 && structure.corrected_frames <= kMostCorrected,
-         "corrected_frames must be 0 to 100000");
   Demand(trained.jitter >= 0.0, "jitter must not be negative");
   const int members = ReadMembers(json), size = settings.layout.num_coordinates();
   for (int m = 0; m < members; ++m) {
@@ -136,21 +139,16 @@ std::unique_ptr<MotionGenerator> TrainedSimlpe::Make(const GeneratorSettings& se
 }
 
 nlohmann::ordered_json TrainedDiffusion::Settings() const {
-  const DiffusionStructure& structure = members.front().structure;
-  return {{"members", members.size()},
-          {"pooling", NameOf(structure.pooling)},
-          {"pooling_at", NameOf(structure.join)},
-          {"frame", NameOf(structure.frame)}};
+  Json json = {{"members", members.size()}};
+  json.update(JsonOf(members.front().structure));
+  return json;
 }
 
 SharedNetworks ReadDiffusion(const nlohmann::ordered_json& json, const GeneratorSettings& settings,
                              TensorReader* reader) {
   Demand(settings.layout.num_particles() == kBodyJoints, "diffusion needs bodies of 22 joints");
   const auto trained = std::make_shared<TrainedDiffusion>();
-  DiffusionStructure structure;
-  ParseSetting(json, "pooling", &structure.pooling);
-  ParseSetting(json, "pooling_at", &structure.join);
-  ParseSetting(json, "frame", &structure.frame);
+  const auto structure = FromJson<DiffusionStructure>(json);
   const int members = ReadMembers(json);
   for (int m = 0; m < members; ++m) {
     trained->members.push_back(TakeDiffusion(MemberName(m), structure, reader));

@@ -83,7 +83,6 @@ ceres::GradientProblemSolver::Options LbfgsOptions(const LargeNetworkOptions& op
   // Weights are all of one kind, and one factor for all of them saves most of the line searches.
   solver.use_approximate_eigenvalue_bfgs_scaling = true;
   solver.max_num_iterations = options.max_iterations;
-  solver.max_solver_time_in_seconds = options.max_seconds;
   solver.function_tolerance = options.function_tolerance;
   solver.gradient_tolerance = 1e-12;
   solver.parameter_tolerance = 1e-12;

@@ -7,7 +7,7 @@
 //   fit.shared = ..., fit.options.weight_sigma = ...;
 //   Result<LargeNetworkSolution> solution = FitLargeNetwork(fit);
 // Starts from the network that the model holds: random hidden weights and no output. The same start
-// (and, of Adam, the same seed) gives the same bits, unless the time limit ends it.
+// (and, of Adam, the same seed) gives the same bits.
 //
 // Early stopping: after every iteration the held-out recordings are judged, by those that fail
 // first, then by cost; the best point of all is kept. L-BFGS takes no step under which a training
@@ -34,7 +34,6 @@ struct LargeNetworkOptions {
   double weight_sigma = 1.0;  // of the prior that ties the weights to zero; 0: none
   bool fit_shared = false;    // the map's fitted parameters too, not only the weights
   int max_iterations = 500;
-  double max_seconds = 1e9;          // results depend on the machine where this ends it
   int patience = 30;                 // iterations without a better held-out cost
   int memory = 20;                   // steps that L-BFGS remembers
   double function_tolerance = 1e-7;  // relative change of the cost that ends it

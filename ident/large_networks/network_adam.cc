@@ -131,7 +131,7 @@ MaybeError SolveByAdam(const LargeNetworkFit& fit, const std::vector<AdjointReco
     solution->message = !goes_on        ? "ended early"
                         : pass < passes ? "out of time"
                                         : "all passes done";
-    if (!goes_on || solution->trace.back().seconds > fit.options.max_seconds) break;
+    if (!goes_on) break;
   }
   return std::nullopt;
 }

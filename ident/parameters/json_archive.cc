@@ -25,12 +25,6 @@ double NumberFrom(const Json& json) {
   throw std::runtime_error("'" + text + "' is not a number");
 }
 
-std::string ReasonOf(const std::exception& exception) {
-  const std::string text = exception.what();
-  const size_t end = text.rfind("[json.exception", 0) == 0 ? text.find("] ") : std::string::npos;
-  return end == std::string::npos ? text : text.substr(end + 2);
-}
-
 Json NumberOrNull(const std::optional<double>& value) {
   return value ? Json(*value) : Json(nullptr);
 }

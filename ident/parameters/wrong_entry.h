@@ -20,7 +20,11 @@ class WrongEntry : public std::runtime_error {
 };
 
 // What an exception says for people: without nlohmann's "[json.exception.type_error.302] ".
-std::string ReasonOf(const std::exception& exception);
+inline std::string ReasonOf(const std::exception& exception) {
+  const std::string text = exception.what();
+  const size_t end = text.rfind("[json.exception", 0) == 0 ? text.find("] ") : std::string::npos;
+  return end == std::string::npos ? text : text.substr(end + 2);
+}
 
 // What `read` gives; what it throws is said of that path.
 template <typename Read>

@@ -79,6 +79,23 @@ Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
   return window;
 }
 
+Result<PushWindow> PushWindowFrom(const PushWindow& given, const PendulumRecording& recording,
+                                  const PushEstimationOptions& options) {
+  if (given.start >= 0 && given.end >= 0) return given;
+  const Result<PushWindow> found = DetectPushWindow(recording, options);
+  if (!found.ok()) return found;
+  return PushWindow{given.start >= 0 ? given.start : found.value().start,
+                    given.end >= 0 ? given.end : found.value().end};
+}
+
+MaybeError ParseInitialVelocity(const std::string& what, const std::string& name,
+                                std::optional<InitialVelocity>* value) {
+  if (name == "auto") return std::nullopt;
+  *value = FromName<InitialVelocity>(name);
+  if (*value && **value != InitialVelocity::kFree) return std::nullopt;
+  return Error{what + " is '" + name + "'; it must be zero, estimated or auto"};
+}
+
 Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const PushWindow& window,
                                    const PushEstimationOptions& options) {
   if (MaybeError wrong = CheckEstimationOptions(recording, options)) return *std::move(wrong);

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "datasets/files/error.h"
@@ -59,6 +60,15 @@ struct EstimatedPush {
 // of its acceleration along the way it goes. Judged on the hip smoothed over 0.15 s.
 Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
                                     const PushEstimationOptions& options);
+
+// `given` where both of its ends are at least 0; a negative one is detected.
+Result<PushWindow> PushWindowFrom(const PushWindow& given, const PendulumRecording& recording,
+                                  const PushEstimationOptions& options);
+
+// What initial_velocity may be by name: zero, estimated or auto (not said). what:
+// --initial_velocity.
+MaybeError ParseInitialVelocity(const std::string& what, const std::string& name,
+                                std::optional<InitialVelocity>* value);
 
 // Errors: no such person, a window outside the recording or of no frames, an unsound smoothing
 // window, angles outside the model's domain (|angle| > 1.4 rad).

@@ -151,8 +151,8 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
   ParallelFor(
       static_cast<int>(folds.size()), num_threads,
       [&](int f) {
-        predictions[f] =
-            predictor.FitAndScore(recordings, Others(folds[f].held_out, total), folds[f].held_out);
+        predictions[f] = predictor.fit_and_score(recordings, Others(folds[f].held_out, total),
+                                                 folds[f].held_out);
       },
       progress);
   CrossValidation result;

@@ -5,6 +5,7 @@
 // not over folds.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,15 +24,13 @@ struct FoldPrediction {
   std::optional<Behaviour> behaviour;  // of the model fitted on the others, if one was
 };
 
-// Predicted hips of the held-out recordings after fitting on the others.
-class Predictor {
- public:
-  virtual ~Predictor() = default;
-  // train and test: indices into recordings.
-  virtual FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                     const std::vector<int>& train,
-                                     const std::vector<int>& test) const = 0;
+// Predicted hips of the held-out recordings after fitting on the others; train and test: indices
+// into recordings.
+struct Predictor {
   std::string name;
+  std::function<FoldPrediction(const std::vector<PendulumRecording>& recordings,
+                               const std::vector<int>& train, const std::vector<int>& test)>
+      fit_and_score;
   int observed = 0;    // frames that predictions see first; 0: none
   bool bands = false;  // whether they come with bands
 };
@@ -84,55 +83,20 @@ enum class FramesUse { kForecast, kReanchored };
 
 // Fits the pendulum model to the training recordings, and to them what first frames tell. observed:
 // as in ScoreModel.
-class ModelPredictor : public Predictor {
- public:
-  ModelPredictor(std::string label, FitOptions options, int observed = 0,
-                 FramesUse use = FramesUse::kForecast, ForecastUse forecast = ForecastUse::kStack);
-  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
-                             const std::vector<int>& train,
-                             const std::vector<int>& test) const override;
-
- private:
-  FitOptions options_;
-  FramesUse use_;
-  ForecastUse forecast_;
-};
+Predictor ModelPredictor(const std::string& name, FitOptions options, int observed = 0,
+                         FramesUse use = FramesUse::kForecast,
+                         ForecastUse forecast = ForecastUse::kStack);
 
 // One of kBaselines; nothing is fitted.
-class BaselinePredictor : public Predictor {
- public:
-  using Predict = HipPaths (*)(const PendulumRecording&, int observed);
-  BaselinePredictor(std::string label, Predict predict, int observed = 0);
-  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
-                             const std::vector<int>& train,
-                             const std::vector<int>& test) const override;
-
- private:
-  Predict predict_;
-};
+Predictor BaselinePredictor(const Baseline& baseline, int observed = 0);
 
 // The mean displacement of the pushed hip by condition and frame, along the push, across and
 // upwards: where a push takes people, however hard it is.
-class TemplatePredictor : public Predictor {
- public:
-  explicit TemplatePredictor(std::string label);
-  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
-                             const std::vector<int>& train,
-                             const std::vector<int>& test) const override;
-};
+Predictor TemplatePredictor();
 
 // Ridge regression from the pushed person's mass, rod length, x-impulse over mass and push frames
 // to the displacement of the hip at every frame (paths padded with their last value): no mechanics
 // at all.
-class RidgePredictor : public Predictor {
- public:
-  explicit RidgePredictor(std::string label, double strength = 1.0);
-  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
-                             const std::vector<int>& train,
-                             const std::vector<int>& test) const override;
-
- private:
-  double strength_;  // on standardized features
-};
+Predictor RidgePredictor();
 
 }  // namespace pushid

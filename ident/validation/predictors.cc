@@ -1,6 +1,7 @@
 // ident: the model, the baselines and the ridge baseline.
 #include <Eigen/Core>
 #include <algorithm>
+#include <vector>
 
 #include "ident/fit/fit.h"
 #include "ident/observed/recording_filter.h"
@@ -9,64 +10,12 @@
 
 namespace pushid {
 
-ModelPredictor::ModelPredictor(std::string label, FitOptions options, int seen, FramesUse use,
-                               ForecastUse forecast)
-    : options_(std::move(options)), use_(use), forecast_(forecast) {
-  name = std::move(label);
-  observed = seen;
-  bands = seen > 0 && use == FramesUse::kForecast;
-  options_.num_threads = 1;  // the folds run in parallel
-}
+namespace {
 
-FoldPrediction ModelPredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                           const std::vector<int>& train,
-                                           const std::vector<int>& test) const {
-  Result<IdentifiedModel> solved = SolveModel(Picked(recordings, train), options_, bands);
-  if (solved.ok() && bands && !solved.value().forecasts) {
-    solved = Error{"no recording stays in the model's domain"};
-  }
-  FoldPrediction prediction;
-  if (solved.ok()) prediction.behaviour = solved.value().behaviour;
-  for (int i : test) {
-    if (!solved.ok()) {
-      RecordingScore failed;
-      failed.id = recordings[i].id;
-      failed.frames = recordings[i].num_frames();
-      failed.failure = "no fit without it: " + solved.error().message;
-      prediction.scores.push_back(failed);
-      continue;
-    }
-    const IdentifiedModel& model = solved.value();
-    prediction.scores.push_back(use_ == FramesUse::kReanchored
-                                    ? ScoreReanchored(model, recordings[i], observed)
-                                    : ScoreModel(model, recordings[i], observed, forecast_));
-    prediction.scores.back().fell_harder = FallsWhenPushedHarder(model, recordings[i]);
-  }
-  return prediction;
-}
+constexpr double kRidgeStrength = 1.0;  // on standardized features
 
-BaselinePredictor::BaselinePredictor(std::string label, Predict predict, int seen)
-    : predict_(predict) {
-  name = std::move(label);
-  observed = seen;
-}
-
-FoldPrediction BaselinePredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                              const std::vector<int>&,
-                                              const std::vector<int>& test) const {
-  FoldPrediction prediction;
-  for (int i : test) {
-    prediction.scores.push_back(
-        ScoreHip(recordings[i], predict_(recordings[i], observed), observed));
-  }
-  return prediction;
-}
-
-TemplatePredictor::TemplatePredictor(std::string label) { name = std::move(label); }
-
-FoldPrediction TemplatePredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                              const std::vector<int>& train,
-                                              const std::vector<int>& test) const {
+FoldPrediction ScoreTemplate(const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train, const std::vector<int>& test) {
   // The mean over training recordings that last so long, of one condition or of all; whether any
   // do.
   const auto displacement = [&](const std::string* condition, int t, Eigen::Vector3d* mean) {
@@ -98,13 +47,8 @@ FoldPrediction TemplatePredictor::FitAndScore(const std::vector<PendulumRecordin
   return prediction;
 }
 
-RidgePredictor::RidgePredictor(std::string label, double strength) : strength_(strength) {
-  name = std::move(label);
-}
-
-FoldPrediction RidgePredictor::FitAndScore(const std::vector<PendulumRecording>& recordings,
-                                           const std::vector<int>& train,
-                                           const std::vector<int>& test) const {
+FoldPrediction ScoreRidge(const std::vector<PendulumRecording>& recordings,
+                          const std::vector<int>& train, const std::vector<int>& test) {
   int longest = 0;
   for (const PendulumRecording& r : recordings) longest = std::max(longest, r.num_frames());
   auto features = [](const PendulumRecording& r) {
@@ -134,7 +78,7 @@ FoldPrediction RidgePredictor::FitAndScore(const std::vector<PendulumRecording>&
   x.array().rowwise() /= spread.array();
   const Eigen::RowVectorXd level = targets.colwise().mean();
   targets.rowwise() -= level;
-  const Eigen::MatrixXd gram = x.transpose() * x + strength_ * Eigen::Matrix4d::Identity();
+  const Eigen::MatrixXd gram = x.transpose() * x + kRidgeStrength * Eigen::Matrix4d::Identity();
   const Eigen::MatrixXd weights = SolveSymmetric(gram, Eigen::MatrixXd(x.transpose() * targets));
 
   FoldPrediction prediction;
@@ -151,5 +95,57 @@ FoldPrediction RidgePredictor::FitAndScore(const std::vector<PendulumRecording>&
   }
   return prediction;
 }
+
+}  // namespace
+
+Predictor ModelPredictor(const std::string& name, FitOptions options, int observed, FramesUse use,
+                         ForecastUse forecast) {
+  const bool bands = observed > 0 && use == FramesUse::kForecast;
+  options.num_threads = 1;  // the folds run in parallel
+  const auto fit_and_score = [=](const std::vector<PendulumRecording>& recordings,
+                                 const std::vector<int>& train, const std::vector<int>& test) {
+    Result<IdentifiedModel> solved = SolveModel(Picked(recordings, train), options, bands);
+    if (solved.ok() && bands && !solved.value().forecasts) {
+      solved = Error{"no recording stays in the model's domain"};
+    }
+    FoldPrediction prediction;
+    if (solved.ok()) prediction.behaviour = solved.value().behaviour;
+    for (int i : test) {
+      if (!solved.ok()) {
+        RecordingScore failed;
+        failed.id = recordings[i].id;
+        failed.frames = recordings[i].num_frames();
+        failed.failure = "no fit without it: " + solved.error().message;
+        prediction.scores.push_back(failed);
+        continue;
+      }
+      const IdentifiedModel& model = solved.value();
+      prediction.scores.push_back(use == FramesUse::kReanchored
+                                      ? ScoreReanchored(model, recordings[i], observed)
+                                      : ScoreModel(model, recordings[i], observed, forecast));
+      prediction.scores.back().fell_harder = FallsWhenPushedHarder(model, recordings[i]);
+    }
+    return prediction;
+  };
+  return {name, fit_and_score, observed, bands};
+}
+
+Predictor BaselinePredictor(const Baseline& baseline, int observed) {
+  const auto score = [predict = baseline.predict, observed](
+                         const std::vector<PendulumRecording>& recordings, const std::vector<int>&,
+                         const std::vector<int>& test) {
+    FoldPrediction prediction;
+    for (int i : test) {
+      prediction.scores.push_back(
+          ScoreHip(recordings[i], predict(recordings[i], observed), observed));
+    }
+    return prediction;
+  };
+  return {baseline.name, score, observed};
+}
+
+Predictor TemplatePredictor() { return {"template", ScoreTemplate}; }
+
+Predictor RidgePredictor() { return {"ridge", ScoreRidge}; }
 
 }  // namespace pushid

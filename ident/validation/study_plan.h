@@ -46,7 +46,6 @@
 #include "ident/model/fitted_model.h"
 #include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/uncertainty.h"
-#include "ident/validation/laboratory_plan.h"
 
 namespace pushid {
 
@@ -59,6 +58,11 @@ struct StudySize {
   int people = 0;
   double pushes = 0.0;  // of each
   std::vector<double> standard_error;
+};
+
+struct EquipmentRow {
+  std::string equipment;            // "force platforms under the same recordings"
+  std::vector<double> error_ratio;  // of each of the parameters asked for: then over now
 };
 
 struct StudyPlan {
@@ -78,6 +82,11 @@ struct StudyPlan {
 // The errors of the shared parameters `known` (indices), in natural units.
 StudyPlan PlanStudies(const FitProblem& problem, const FitPoint& estimate, const ErrorParts& parts,
                       std::vector<int> known);
+
+// known: of the shared parameters, those that are asked for. Rows that a fall spoils, and equipment
+// that the recordings have, are left out.
+std::vector<EquipmentRow> PlanEquipment(const FitProblem& problem, const FitPoint& estimate,
+                                        const ErrorParts& parts, const std::vector<int>& known);
 
 // The standard error that `people` with `pushes` each would leave of a plan's parameter.
 double ExpectedError(const StudyPlan& plan, size_t parameter, double people, double pushes);

@@ -142,20 +142,6 @@ Rotation6d ToRotation6d(const Eigen::Matrix3d& rotation) {
   return numbers;
 }
 
-Eigen::Matrix3d FromRotation6d(const Rotation6d& numbers) {
-  const Eigen::Vector3d a = numbers.head<3>(), b = numbers.tail<3>();
-  const double length = a.norm();
-  if (!(length > kNoLength)) return Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d rotation;
-  rotation.col(0) = a / length;
-  const Eigen::Vector3d square = b - rotation.col(0).dot(b) * rotation.col(0);
-  const double rest = square.norm();
-  if (!(rest > kNoLength)) return Eigen::Matrix3d::Identity();
-  rotation.col(1) = square / rest;
-  rotation.col(2) = rotation.col(0).cross(rotation.col(1));
-  return rotation;
-}
-
 Eigen::Matrix3d SwingBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   if (!(from.norm() > kNoLength) || !(to.norm() > kNoLength)) return Eigen::Matrix3d::Identity();
   return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();

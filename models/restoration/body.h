@@ -79,10 +79,6 @@ inline Eigen::Matrix3d TurnAboutZ(double angle) {
 using Rotation6d = Eigen::Matrix<double, 6, 1>;
 Rotation6d ToRotation6d(const Eigen::Matrix3d& rotation);
 
-// Gram and Schmidt; any six numbers whose columns are not parallel are a rotation. Parallel or
-// vanishing columns give the identity.
-Eigen::Matrix3d FromRotation6d(const Rotation6d& numbers);
-
 // The smallest rotation that turns direction `from` into direction `to`; the identity where one of
 // them has no length. Opposite directions turn about any axis square to them.
 Eigen::Matrix3d SwingBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);

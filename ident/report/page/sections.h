@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "ident/bodies/animation.h"
-#include "ident/prediction/standing_checks.h"
 #include "ident/prediction/visual_check.h"
 #include "ident/report/page/build_report.h"
 
@@ -21,7 +20,7 @@ struct ReportSource {
   std::vector<RecordingView> views = {};  // of the recordings that are shown; may be none
   PropagationSummary propagation = {};    // of those
   VisualCheck check = {};                 // with those
-  // Of the recordings that are shown, on the ground that moves (prediction/standing_checks.h).
+  // Of the recordings that are shown, on the ground that moves (prediction/visual_check.h).
   std::vector<FrequencyResponse> frequency = {};
   std::vector<PersonSway> sway = {};
 };

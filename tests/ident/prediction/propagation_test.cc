@@ -203,7 +203,7 @@ TEST(Propagation, CrossValidationAveragesOverRepeats) {
   const auto folds = MakeFolds(recordings, FoldScheme::kStratified, 2, 3, 1);
   ASSERT_TRUE(folds.ok());
   const CrossValidation still =
-      CrossValidate(recordings, folds.value(), BaselinePredictor("static", StaticBaseline), 1);
+      CrossValidate(recordings, folds.value(), BaselinePredictor(kBaselines[0]), 1);
   EXPECT_DOUBLE_EQ(still.summary.propagation.movers, 8.0);  // not times three
   EXPECT_DOUBLE_EQ(still.summary.propagation.missed_movers, 8.0);
   EXPECT_DOUBLE_EQ(still.summary.propagation.bystanders, 4.0);

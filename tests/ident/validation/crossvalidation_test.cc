@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "ident/validation/scores_report.h"
@@ -167,9 +168,9 @@ TEST(CrossValidation, HeldOutPredictionsOfTheRightModelAreGood) {
   EXPECT_EQ(model.failures, 0);
   EXPECT_EQ(model.falls, 0);
   const CrossValidation still =
-      CrossValidate(recordings, folds, BaselinePredictor("static", StaticBaseline), 1);
+      CrossValidate(recordings, folds, BaselinePredictor(kBaselines[0]), 1);
   EXPECT_GT(still.summary.mean.hip_ade, 0.05);
-  const CrossValidation ridge = CrossValidate(recordings, folds, RidgePredictor("ridge"), 1);
+  const CrossValidation ridge = CrossValidate(recordings, folds, RidgePredictor(), 1);
   EXPECT_LT(ridge.summary.mean.hip_ade, still.summary.mean.hip_ade);
   EXPECT_GT(ridge.summary.mean.hip_ade, model.summary.mean.hip_ade);
 }
@@ -178,7 +179,7 @@ TEST(CrossValidation, ThreadsDoNotMatter) {
   const SyntheticOptions study = TinyStudy();
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
   const auto folds = SomeFolds(recordings);
-  const ModelPredictor predictor("tail", DefaultFit(study));
+  const Predictor predictor = ModelPredictor("tail", DefaultFit(study));
   int reported = 0;
   const CrossValidation one = CrossValidate(recordings, folds, predictor, 1);
   const CrossValidation two =
@@ -195,11 +196,10 @@ TEST(CrossValidation, ThreadsDoNotMatter) {
 }
 
 // Scores 1, 2, 3, ... by recording; 10 more when it is asked the second time. Fails on one.
-class Scripted : public Predictor {
- public:
-  FoldPrediction FitAndScore(const std::vector<PendulumRecording>& recordings,
-                             const std::vector<int>& train,
-                             const std::vector<int>& test) const override {
+Predictor Scripted(int fails = -1) {
+  const auto asked = std::make_shared<std::map<int, int>>();
+  const auto score_all = [=](const std::vector<PendulumRecording>& recordings,
+                             const std::vector<int>& train, const std::vector<int>& test) {
     EXPECT_EQ(train.size() + test.size(), recordings.size());
     FoldPrediction prediction;
     for (int i : test) {
@@ -207,25 +207,21 @@ class Scripted : public Predictor {
       RecordingScore score;
       score.id = recordings[i].id;
       score.frames = 5;
-      score.hip_ade = i + 1.0 + 10.0 * asked_[i]++;
+      score.hip_ade = i + 1.0 + 10.0 * (*asked)[i]++;
       score.hip_fde = 2.0 * score.hip_ade;
       if (i == fails) score.failure = "fell over";
       prediction.scores.push_back(score);
     }
     return prediction;
-  }
-  int fails = -1;
-
- private:
-  mutable std::map<int, int> asked_;
-};
+  };
+  return {"scripted", score_all};
+}
 
 TEST(CrossValidation, RepeatsAreAveragedBeforeTheMean) {
   std::vector<PendulumRecording> recordings = Labels();
   recordings.resize(4);
   const std::vector<Fold> folds = {{"a", {0, 1}}, {"b", {2}}, {"c", {0, 2}}};
-  Scripted scripted;
-  const CrossValidation result = CrossValidate(recordings, folds, scripted, 1);
+  const CrossValidation result = CrossValidate(recordings, folds, Scripted(), 1);
   ASSERT_EQ(result.summary.recordings.size(), 3u);  // recording 3 was never held out
   EXPECT_EQ(result.summary.recordings[0].hip_ade, (1.0 + 11.0) / 2.0);
   EXPECT_EQ(result.summary.recordings[1].hip_ade, 2.0);
@@ -238,10 +234,8 @@ TEST(CrossValidation, RepeatsAreAveragedBeforeTheMean) {
 TEST(CrossValidation, FailuresAreCountedAndInNoMean) {
   std::vector<PendulumRecording> recordings = Labels();
   recordings.resize(3);
-  Scripted scripted;
-  scripted.fails = 1;
   const CrossValidation result =
-      CrossValidate(recordings, {{"a", {0, 1}}, {"b", {2}}}, scripted, 1);
+      CrossValidate(recordings, {{"a", {0, 1}}, {"b", {2}}}, Scripted(1), 1);
   EXPECT_EQ(result.failures, 1);
   EXPECT_EQ(result.folds[0].failures, 1);
   EXPECT_EQ(result.folds[0].hip_ade, 1.0);

@@ -91,7 +91,7 @@ TEST(HipGroupMetricsTest, CrossValidationHasThem) {
   alone.subject_ids.resize(1);
   recordings.push_back(alone);
   const std::vector<Fold> folds = {{"a", {0, 3}}, {"b", {1, 2}}, {"c", {0}}};
-  const BaselinePredictor still("static", StaticBaseline);
+  const Predictor still = BaselinePredictor(kBaselines[0]);
   const CrossValidation hips = CrossValidate(recordings, folds, still, 1);
   const nlohmann::ordered_json json = ToJson(hips)["group_metrics"];
   EXPECT_EQ(json["recordings"], 4) << "one of them twice, and nobody alone";
