@@ -1,9 +1,11 @@
 // A problem's points.
 #include "ident/problem/fit_problem.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "ident/problem/raw_residuals.h"
+#include "residuals/cost_functions/rest_residual.h"
 #include "tests/ident/fit_samples.h"
 
 namespace pushid {
@@ -111,6 +113,30 @@ TEST(FitProblem, BlocksFollowTheTable) {
   if (!point.unit.empty()) expected.push_back(FitProblem::kPoolingCluster);
   expected.push_back(FitProblem::kSettlingCluster);
   EXPECT_EQ(clusters, expected);
+}
+
+// The harder the push, the sooner: of those that are rolled out side by side the others stay.
+TEST(FitProblem, LeavesOutTheSettlingSimulationsThatFall) {
+  const auto recordings = MakePendulums(TinyStudy());
+  const FitProblem problem(recordings, MakePreset("tail").value());
+  const auto& fitted = problem.map().fitted;
+  const auto balance = std::find_if(fitted.begin(), fitted.end(), [](const FittedParameter& f) {
+    return f.parameter == kKpTheta;
+  });
+  int left_out = 0;
+  for (double share : {1.0, 0.53, 0.52, 0.51}) {
+    FitPoint point = problem.NominalPoint();
+    point.shared[balance - fitted.begin()] += std::log(share);
+    const FitProblem::Built built = problem.Build(&point, 0);
+    EXPECT_EQ(built.rests_left_out, left_out);
+    int rows = 0;
+    for (const FitProblem::Built::Block& block : built.blocks) {
+      const auto* settling = dynamic_cast<const SettlingResidual*>(block.cost);
+      if (settling != nullptr) rows += settling->num_residuals();
+    }
+    EXPECT_EQ(rows, (3 - left_out) * 60 * 3);
+    ++left_out;
+  }
 }
 
 // Of everything that a preset puts into its cost, priors, demands and values that others follow
