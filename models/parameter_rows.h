@@ -168,10 +168,10 @@
     m.interaction.damping, m.interaction.damping, \
     "damping of contact", \
     "where people touch") \
-  X(kContactHeight, "contact_height", "s", "1", 0.5, 0.01, 0.99, 0.5, kLogit, \
+  X(kContactHeight, "contact_height", "s", "1", 0.5, 0.01, 1.6, 0.5, kIdentity, \
     m.interaction.Contact(), false, \
-    "height of contact, fraction of the rod", \
-    "never without a measurement: heights from the ankles to the chest fit alike") \
+    "height of contact over the ankles, in lengths of the rod (1: the hip)", \
+    "with many groups that touch; the group preset holds the height of the chest") \
   X(kPotentialStrength, "potential_strength", "u", "N m", 150, 0.1, 1e5, 150, kLog, \
     m.interaction.LdpPotential(), m.interaction.potential, \
     "strength of LDP's potential", \

@@ -3,7 +3,9 @@
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
+#ifdef __GLIBC__
 #include <malloc.h>
+#endif
 
 #include <cerrno>
 #include <cstdio>

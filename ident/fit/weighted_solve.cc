@@ -149,7 +149,8 @@ void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
   if (!settling.unmet) {
     settling.rise = std::max(0.0, 2.0 * (CostAt(without, held.to) - best.cost));
     settling.contradicted = Contradicted(settling.rise, without.SettlingUnits(best.to).size());
-    settling.unmet = !settling.contradicted && !problem->BehaviourAt(held.to).settles;
+    settling.unmet = !settling.contradicted &&
+                     SlowestSeconds(*problem, held.to) > WaitSeconds(problem->options().model);
   }
   if (!settling.holds()) {
     problem->set_settling_weight(0.0);

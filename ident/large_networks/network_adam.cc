@@ -128,9 +128,7 @@ MaybeError SolveByAdam(const LargeNetworkFit& fit, const std::vector<AdjointReco
                    " has a cost or a gradient that is not finite; lower --network_rate"};
     }
     const bool goes_on = (*judge)(summary) == ceres::SOLVER_CONTINUE;
-    solution->message = !goes_on        ? "ended early"
-                        : pass < passes ? "out of time"
-                                        : "all passes done";
+    solution->message = goes_on ? "all passes done" : "ended early";
     if (!goes_on) break;
   }
   return std::nullopt;

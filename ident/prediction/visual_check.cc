@@ -134,6 +134,15 @@ std::vector<double> PitsOf(const IdentifiedModel& model, const PendulumRecording
   return pits;
 }
 
+std::vector<std::vector<ParameterSet<double>>> OfEverybody(
+    const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings) {
+  std::vector<std::vector<ParameterSet<double>>> sets;
+  for (const PendulumRecording& recording : recordings) {
+    sets.push_back(PeoplesParameters(model, recording));
+  }
+  return sets;
+}
+
 }  // namespace
 
 double CheckedStratum::Inside() const {
@@ -207,19 +216,6 @@ VisualCheck CheckVisually(const IdentifiedModel& model,
   check.across = TestUniformity(across);
   return check;
 }
-
-namespace {
-
-std::vector<std::vector<ParameterSet<double>>> OfEverybody(
-    const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings) {
-  std::vector<std::vector<ParameterSet<double>>> sets;
-  for (const PendulumRecording& recording : recordings) {
-    sets.push_back(PeoplesParameters(model, recording));
-  }
-  return sets;
-}
-
-}  // namespace
 
 std::vector<FrequencyResponse> FrequencyResponses(
     const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings) {

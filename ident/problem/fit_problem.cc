@@ -204,7 +204,7 @@ std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording)
   std::vector<double*> blocks = {point->shared.data()};
   const BlockLayout layout = LayoutOf(recordings()[recording], map_, false);
   if (map_.num_deviations > 0) {
-    for (const std::string& unit : layout.units) blocks.push_back(point->unit[unit].data());
+    for (const std::string& unit : layout.units) blocks.push_back(point->unit.at(unit).data());
   }
   const auto velocity = point->velocity.find(recording);
   if (velocity != point->velocity.end()) blocks.push_back(velocity->second.data());

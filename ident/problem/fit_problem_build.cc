@@ -18,8 +18,8 @@ void FitProblem::Built::AddRollout(std::unique_ptr<ceres::CostFunction> cost,
   blocks.back().cost = inside;
 }
 
-// Parameters with bounds make Ceres search along every step: it asks for the same point three
-// times, twice with derivatives. Rollouts are evaluated once and remembered, whatever the threads.
+// A solver asks for the cost of a trial point, and for derivatives at an accepted one. Rollouts are
+// evaluated once and remembered, whatever the threads.
 void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const {
   built->evaluation = std::make_unique<ParallelEvaluation>(num_threads);
   ceres::Problem::Options problem;

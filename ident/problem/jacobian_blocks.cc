@@ -198,6 +198,11 @@ void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps,
   }
   score->curvature =
       0.5 * (hessian + hessian.transpose()) - score->jacobian.transpose() * score->jacobian;
+  for (Eigen::Index i = 0; i < size; ++i) {
+    if (steps[i] != 0.0) continue;
+    score->curvature.row(i).setZero();
+    score->curvature.col(i).setZero();
+  }
 }
 
 }  // namespace pushid

@@ -34,7 +34,7 @@ inline double Median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-// Two-sided 95 % quantile of Student's t.
+// Two-sided 95 % quantile of Student's t; at least one degree of freedom.
 double StudentQuantile95(double degrees_of_freedom);
 // Probability that |T| exceeds |t|.
 double StudentTail(double t, double degrees_of_freedom);

@@ -42,24 +42,41 @@ std::string HorizonName(int horizon) {
   return horizon == 0 ? "all frames" : std::to_string(horizon) + " frames";
 }
 
-// QR keeps weak directions accurate, and is twice the work of normal equations: up to so many
-// multiplications do not matter.
-constexpr double kQrWork = 2e7;
-// More columns than these are those of units (subjects, settings), of which a recording has few:
-// sparse normal equations cost a tenth then, and every unit's column has its prior.
+// More columns than these are those of units (subjects, settings), of which a recording has few, or
+// of a network's weights: no secants are learned then, and a unit's column has its prior.
 constexpr int kDenseColumns = 50;
 
-ceres::LinearSolverType LinearSolverFor(const ceres::Problem& problem, bool has_network) {
-  const double columns = problem.NumParameters(), rows = problem.NumResiduals();
-  if (columns > kDenseColumns && !has_network) return ceres::SPARSE_NORMAL_CHOLESKY;
-  return rows * columns * columns > kQrWork ? ceres::DENSE_NORMAL_CHOLESKY : ceres::DENSE_QR;
+ceres::LinearSolverType LinearSolverFor(int columns, bool has_network) {
+  if (columns <= kDenseColumns) return ceres::DENSE_QR;
+  return has_network ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
+}
+
+// By secants where there are few columns; early stopping looks at the problem's own blocks.
+ceres::Solver::Summary Minimize(FitProblem::Built* built, ceres::Solver::Options options,
+                                StructuredSecants secants) {
+  ceres::Solver::Summary summary;
+  auto summed = std::make_unique<SummedCost>(built, std::move(secants));
+  if (summed->parameter_block_sizes()[0] > kDenseColumns || options.update_state_every_iteration) {
+    ceres::Solve(options, built->problem.get(), &summary);
+    return summary;
+  }
+  options.linear_solver_type = ceres::DENSE_QR;
+  const SummedCost& cost = *summed;
+  std::vector<double> x = cost.Values();
+  ceres::Problem sum;
+  sum.AddResidualBlock(summed.release(), nullptr, x.data());
+  cost.SetBounds(&sum, x.data());
+  ceres::Solve(options, &sum, &summary);
+  cost.SetValues(x.data());
+  return summary;
 }
 
 }  // namespace
 
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem) {
   ceres::Solver::Options solver;
-  solver.linear_solver_type = LinearSolverFor(problem, options.model.learned != nullptr);
+  solver.linear_solver_type =
+      LinearSolverFor(problem.NumParameters(), options.model.learned != nullptr);
   solver.dense_linear_algebra_library_type = ceres::EIGEN;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = options.function_tolerance;
@@ -77,22 +94,9 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
 
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
                       std::string* message, const Eigen::MatrixXd& beyond) {
-  ceres::Solver::Summary summary;
   // Short stages are far from an optimum, where a step tells little of the next.
-  auto summed = std::make_unique<SummedCost>(built, StructuredSecants(horizon == 0, beyond));
-  if (summed->parameter_block_sizes()[0] > kDenseColumns || options.update_state_every_iteration) {
-    ceres::Solve(options, built->problem.get(), &summary);
-  } else {
-    ceres::Solver::Options dense = options;
-    dense.linear_solver_type = ceres::DENSE_QR;
-    const SummedCost& cost = *summed;
-    std::vector<double> x = cost.Values();
-    ceres::Problem sum;
-    sum.AddResidualBlock(summed.release(), nullptr, x.data());
-    cost.SetBounds(&sum, x.data());
-    ceres::Solve(dense, &sum, &summary);
-    cost.SetValues(x.data());
-  }
+  const ceres::Solver::Summary summary =
+      Minimize(built, options, StructuredSecants(horizon == 0, beyond));
   *message = summary.message;
   SolveStage stage;
   stage.horizon = horizon;

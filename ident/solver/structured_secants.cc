@@ -1,6 +1,8 @@
 // ident: updates of the curvature, and the rows that stand for it.
 #include "ident/solver/structured_secants.h"
 
+#include <glog/logging.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +29,7 @@ void StructuredSecants::Add(const VectorXd& x, double cost, const SecondOrder& c
                             const SecondOrder& linear) {
   if (x_.size() == 0) {
     if (beyond_.size() == 0) beyond_ = MatrixXd::Zero(x.size(), x.size());
-  } else if (learns_) {
+  } else if (learns_ && x != x_) {
     const VectorXd step = x - x_;
     Judge(step, cost_ - cost);
     Learn(step, curved, linear);
@@ -78,6 +80,7 @@ RowMajorMatrix StructuredSecants::Rows() const {
   if (root.size() == 0) {  // rounding
     scaled.diagonal().array() += std::sqrt(kLeastPivot);
     root = CholeskyFactor(scaled);
+    CHECK_GT(root.size(), 0);
   }
   const auto lower = root.triangularView<Eigen::Lower>();
   const VectorXd z = lower.solve(scale * gradient_);

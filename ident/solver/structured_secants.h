@@ -2,23 +2,23 @@
 //
 // Gauss-Newton takes J'J for the Hessian H of the cost. Where a model is wrong, as every model of
 // people is, the rest, S = H - J'J, is not small: J'J is up to seven times H for people alone, and
-// its steps leave a constant share of the way to the optimum each. S is learned from differences of
+// each of its steps leaves a constant share of the way. S is learned from differences of
 // gradients, y = g(x + s) - g(x):
 //   B = J'J + S,  S <- S + y y'/(y's) - (B s)(B s)'/(s'B s)        (BFGS, structured: Al-Baali and
 //                                                                 Fletcher 1985)
 // with S first a share of J'J, then shrunk where it says more than the last step shows (NL2SOL's
-// sizing: Dennis, Gay and Welsch 1981). Priors have no S: their rows are linear in what they hold.
-// Rejected: their update (DFP), which ends early for groups; rank one (SR1), half more steps for
-// people alone; BFGS of the whole Hessian, which stalls where contacts begin; never J'J alone
-// again, with which two more of NIST's sets do not converge from afar.
+// sizing: Dennis, Gay and Welsch 1981). Priors have no S: their rows are taken as linear.
+// Rejected: NL2SOL's own update (DFP), which ends early for groups; rank one (SR1), half more steps
+// for people alone; BFGS of the whole Hessian, which stalls where contacts begin; never going
+// back to J'J alone, with which two more of NIST's sets do not converge from afar.
 #pragma once
 
 #include <Eigen/Core>
 #include <utility>
 
-namespace pushid {
+#include "residuals/normal_equations.h"
 
-using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+namespace pushid {
 
 // J'J and J'r of some rows.
 struct SecondOrder {

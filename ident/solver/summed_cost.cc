@@ -70,17 +70,6 @@ void SummedCost::SetBounds(ceres::Problem* problem, double* x) const {
   }
 }
 
-bool SummedCost::Squares(double* sum) const {
-  VectorXd residuals;
-  *sum = 0.0;
-  for (const Part& part : parts_) {
-    residuals.resize(part.cost->num_residuals());
-    if (!part.cost->Evaluate(part.on.data(), residuals.data(), nullptr)) return false;
-    *sum += residuals.squaredNorm();
-  }
-  return std::isfinite(*sum);
-}
-
 bool SummedCost::AddPart(const Part& part, double* squares, SecondOrder* sum) const {
   const int rows = part.cost->num_residuals();
   const std::vector<int>& sizes = part.cost->parameter_block_sizes();
@@ -88,11 +77,14 @@ bool SummedCost::AddPart(const Part& part, double* squares, SecondOrder* sum) co
   std::vector<RowMajorMatrix> by_block(sizes.size());
   std::vector<double*> pointers(sizes.size(), nullptr);
   for (size_t b = 0; b < sizes.size(); ++b) {
-    if (part.columns[b] < 0) continue;
+    if (part.columns[b] < 0 || sum == nullptr) continue;
     by_block[b].resize(rows, sizes[b]);
     pointers[b] = by_block[b].data();
   }
-  if (!part.cost->Evaluate(part.on.data(), residuals.data(), pointers.data())) return false;
+  if (!part.cost->Evaluate(part.on.data(), residuals.data(),
+                           sum != nullptr ? pointers.data() : nullptr)) {
+    return false;
+  }
   *squares += residuals.squaredNorm();
   for (size_t b = 0; b < sizes.size(); ++b) {
     if (pointers[b] == nullptr) continue;
@@ -112,19 +104,22 @@ bool SummedCost::Evaluate(double const* const* x, double* residuals, double** ja
   const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
   SetValues(x[0]);
   if (built_.evaluation != nullptr) built_.evaluation->PrepareForEvaluation(derivatives, true);
-  Eigen::Map<VectorXd> values(residuals, columns + 1);
   double squares = 0.0;
+  SecondOrder curved(columns), linear(columns);
+  for (const Part& part : parts_) {
+    SecondOrder* const sum = !derivatives ? nullptr : part.curved ? &curved : &linear;
+    if (!AddPart(part, &squares, sum)) return false;
+  }
+  if (!std::isfinite(squares) || !curved.information.allFinite() ||
+      !linear.information.allFinite()) {
+    return false;
+  }
+  Eigen::Map<VectorXd> values(residuals, columns + 1);
   if (!derivatives) {
-    if (!Squares(&squares)) return false;
     values.setZero();
     values[columns] = std::sqrt(squares);
     return true;
   }
-  SecondOrder curved(columns), linear(columns);
-  for (const Part& part : parts_) {
-    if (!AddPart(part, &squares, part.curved ? &curved : &linear)) return false;
-  }
-  if (!std::isfinite(squares)) return false;
   secants_.Add(Eigen::Map<const VectorXd>(x[0], columns), 0.5 * squares, curved, linear);
   const RowMajorMatrix rows = secants_.Rows();
   values = rows.col(columns);

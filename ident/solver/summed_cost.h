@@ -13,7 +13,8 @@
 namespace pushid {
 
 // One block of all parameters that move, in the order of the problem's blocks; one row more than
-// there are. Ceres asks for derivatives only where it has accepted a step.
+// there are. Ceres asks for derivatives only where it has accepted a step. Loss
+// functions and manifolds of the problem are not looked at; it has none.
 class SummedCost : public ceres::CostFunction {
  public:
   SummedCost(FitProblem::Built* built, StructuredSecants secants);
@@ -35,7 +36,7 @@ class SummedCost : public ceres::CostFunction {
     std::vector<const double*> on;
     std::vector<int> columns;  // of each block; -1: it stays
   };
-  bool Squares(double* sum) const;
+  // sum: null without derivatives.
   bool AddPart(const Part& part, double* squares, SecondOrder* sum) const;
 
   FitProblem::Built& built_;

@@ -64,11 +64,9 @@ class WhitenedCost : public ceres::FirstOrderFunction {
         bounds_(BoundsOf(problem, origin_.size())) {
     problem_.set_fall_of_noise(kAnyFall);
     built_ = problem_.Build(&point_, 0);
-    built_.evaluation->set_gradients_only();
     double at_origin = 0.0;
     built_.problem->Evaluate({}, &at_origin, nullptr, nullptr, nullptr);
-    const bool of_squares = problem.options().likelihood == Likelihood::kTrajectory;
-    level_ = of_squares ? at_origin : kLevelOfRow * built_.problem->NumResiduals();
+    level_ = kLevelOfRow * built_.problem->NumResiduals();
     shift_ = level_ - at_origin;
   }
 
@@ -159,9 +157,7 @@ SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, 
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::BFGS;
   options.max_num_iterations = problem.options().max_iterations;
-  options.function_tolerance = problem.options().likelihood == Likelihood::kTrajectory
-                                   ? problem.options().function_tolerance
-                                   : kLeastChange / cost->level();
+  options.function_tolerance = kLeastChange / cost->level();
   options.logging_type = ceres::SILENT;
   std::vector<double> z(moving.size(), 0.0);
   ceres::GradientProblemSolver::Summary summary;

@@ -189,9 +189,11 @@ Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd&
     const Eigen::MatrixXd full =
         Eigen::MatrixXd(squared.asDiagonal()) + back.transpose() * score.curvature * back;
     c.full_hessian = IsPositiveDefinite(full);
-    if (c.full_hessian) hessian = full;
+    if (c.full_hessian) {
+      hessian = full;
+      c.curvature = score.curvature;
+    }
   }
-  c.curvature = score.curvature;
   c.inverse_hessian = back * SolveSymmetricTransposed(hessian, back);
   c.scatter = ClusteredScatter(score, clustering, back, hessian, c.inverse_hessian);
   if (clustering.recordings.count > 1) {

@@ -90,7 +90,7 @@ struct Covariance {
   int naive_freedom = 1;          // rows of data less the rank
   double sigma = 0.0;             // residual standard deviation
   Eigen::MatrixXd inverse_hessian;
-  Eigen::MatrixXd curvature;  // JacobianBlocks::curvature
+  Eigen::MatrixXd curvature;  // JacobianBlocks::curvature, where full_hessian
   bool full_hessian = false;  // with second derivatives; J'J alone where they leave no minimum
   Eigen::MatrixXd naive;
   // Clustered: recordings first, then priors, then pooled units. `these`: by recording, where

@@ -164,7 +164,6 @@ HeldFit Profiler::Hold(const ProfileTarget& target, const ProfileSearch& search,
   }
   built.problem->AddResidualBlock(holder, nullptr, point.shared.data());
   ceres::Solver::Options options = SolverOptions(problem_.options(), *built.problem);
-  options.num_threads = 1;
   if (cost_ > 0.0) {
     const HoldTolerance& enough = search.locate_crossing ? kToLocate : kToClassify;
     options.function_tolerance =

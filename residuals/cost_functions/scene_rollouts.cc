@@ -52,6 +52,7 @@ bool SceneRollouts::Differentiate(const SensitivityInputs& inputs, int columns,
   for (Group& group : groups_) {
     const auto asked = frames.begin() + group.first;
     const int most = *std::max_element(asked, asked + group.count);
+    if (most == 0) continue;
     if (!RollGroup(inputs.parameters[0], inputs.entries[0], columns, most, group,
                    &group.derivatives)) {
       return false;

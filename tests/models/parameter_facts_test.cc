@@ -27,7 +27,7 @@ TEST(ParameterFacts, TheFirstRow) {
   EXPECT_EQ(mu.meaning, "drag of the stepping feet (not floor friction)");
   EXPECT_FALSE(mu.when_to_free.empty());
   EXPECT_EQ(kParameterNames[kContactHeight], "contact_height");
-  EXPECT_EQ(AllParameterFacts()[kContactHeight].transform, Transform::kLogit);
+  EXPECT_EQ(AllParameterFacts()[kContactHeight].transform, Transform::kIdentity);
 }
 
 TEST(ParameterFacts, EveryRowIsSound) {

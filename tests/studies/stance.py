@@ -2,6 +2,7 @@
 
 single    errors on held-out recordings of single people, every scheme (models/README.md); 8 minutes
 groups    the same of groups, with who moves for nothing (models/README.md); 10 minutes
+heights   groups, by the height at which they touch (models/README.md); 10 minutes
 sways     75 kg pushed for 0.7 s: who steps, when, where the person ends, P(step) (models/README.md); seconds
 values    what the fit of single people says of the feet (models/README.md); seconds
 steps     who steps: AUC, Brier score, calibration, lift-off and first place, held out (ident/prediction/README.md);
@@ -20,6 +21,7 @@ SCHEMES = [("5 x 4 folds", "stratified", ("--repeats=5",)), ("a person left out"
            ("strong pushes left out", "strong", ())]
 GROUP_SCHEMES = [("5 folds", "stratified", ("--folds=5", "--repeats=1")), ("a setting left out", "setting", ()),
                  ("strong pushes left out", "strong", ())]
+HEIGHTS = [0.95, 1.05, 1.15, 1.25, 1.35]  # of contact, in lengths of the rod; the preset's is 1.15
 VELOCITIES = [0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8]  # m/s: impulse over mass
 
 
@@ -72,6 +74,16 @@ def groups():
                          with_error(onset["value"], onset["standard_error"])])
     return studies.table(["49 recordings of groups", "feet", "hipADE, m", "hipFDE, m", "settle", "hipADE - `slide`, m",
                           "false movers", "missed movers", "onset error, frames"], rows)
+
+
+def heights():
+    others = [f"--compare={h}: --fix=contact_height={h}" for h in HEIGHTS]
+    rows = []
+    for title, scheme, arguments in GROUP_SCHEMES:
+        scores = studies.on_recordings("pushid-crossvalidate", "groups", f"--scheme={scheme}", "--yardsticks=false",
+                                       *arguments, *others).json["predictors"][1:]
+        rows.append([title, *(f"{p['mean']['hipADE_m']:.4f} / {p['mean']['hipFDE_m']:.3f}" for p in scores)])
+    return studies.table(["held out: hipADE / hipFDE, m", *(f"contact at {h} rod lengths" for h in HEIGHTS)], rows)
 
 
 def sways():
@@ -163,5 +175,5 @@ def reliability_cell(tracks):
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"single": single, "groups": groups, "sways": sways, "values": values, "steps": steps,
-                            "reliability": reliability})
+    studies.main(__file__, {"single": single, "groups": groups, "heights": heights, "sways": sways,
+                            "values": values, "steps": steps, "reliability": reliability})

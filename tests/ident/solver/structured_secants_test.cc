@@ -75,6 +75,25 @@ TEST_F(Secants, StartFromWhatIsKnownNearby) {
   EXPECT_LT((After({{1.0, 0.5}}, true, h_ - g_).hessian - h_).norm(), 1e-9);
 }
 
+TEST_F(Secants, TheSamePointTwiceChangesNothing) {
+  const Model once = After({{1.0, 0.5}, {0.4, 0.1}}, true);
+  const Model twice = After({{1.0, 0.5}, {0.4, 0.1}, {0.4, 0.1}}, true);
+  EXPECT_LT((once.hessian - twice.hessian).norm(), 1e-12);
+}
+
+// What nothing depends on stays, and so does everything where nothing is left.
+TEST_F(Secants, ColumnsWithoutInformationAndCostsOfZeroHaveRows) {
+  StructuredSecants secants(true);
+  SecondOrder rows(2);
+  rows.information(0, 0) = 4.0;
+  secants.Add(Vector2d::Zero(), 0.0, rows, nothing_);
+  const Model model(secants.Rows());
+  EXPECT_EQ(model.cost, 0.0);
+  EXPECT_LT(model.gradient.norm(), 1e-12);
+  EXPECT_NEAR(model.hessian(0, 0), 4.0, 1e-9);
+  EXPECT_LT(std::abs(model.hessian(1, 1)), 1e-9);
+}
+
 // Priors are linear: what they say is known already, and only recordings differ from it.
 TEST_F(Secants, LinearRowsStayWhatTheyAre) {
   StructuredSecants secants(true);
@@ -149,6 +168,32 @@ TEST(SummedCost, BlocksStayAndBoundsHold) {
   EXPECT_TRUE(stage.converged) << message;
   EXPECT_EQ(b, 2.0);
   EXPECT_DOUBLE_EQ(a, 2.1);
+}
+
+// Away from zero alone.
+struct Logarithm {
+  template <typename T>
+  bool operator()(const T* x, T* residual) const {
+    residual[0] = log(x[0]) - T(0.5);
+    return true;
+  }
+};
+
+TEST(SummedCost, PointsThatCannotBeEvaluatedAreRefused) {
+  double x = -1.0;
+  FitProblem::Built built;
+  built.problem = std::make_unique<ceres::Problem>();
+  auto* cost = new ceres::AutoDiffCostFunction<Logarithm, 1, 1>(new Logarithm);
+  built.blocks.push_back({built.problem->AddResidualBlock(cost, nullptr, &x), 0, cost});
+  built.parameter_blocks = {&x};
+  const SummedCost summed(&built, StructuredSecants(true));
+  double residuals[2], jacobian[2];
+  double* const jacobians[] = {jacobian};
+  for (double at : {-1.0, 2.0}) {
+    const double* const blocks[] = {&at};
+    EXPECT_EQ(summed.Evaluate(blocks, residuals, nullptr), at > 0.0);
+    EXPECT_EQ(summed.Evaluate(blocks, residuals, jacobians), at > 0.0);
+  }
 }
 
 }  // namespace
