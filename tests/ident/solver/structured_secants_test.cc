@@ -188,7 +188,7 @@ TEST(SummedCost, PointsThatCannotBeEvaluatedAreRefused) {
   built.parameter_blocks = {&x};
   const SummedCost summed(&built, StructuredSecants(true));
   double residuals[2], jacobian[2];
-  double* const jacobians[] = {jacobian};
+  double* jacobians[] = {jacobian};
   for (double at : {-1.0, 2.0}) {
     const double* const blocks[] = {&at};
     EXPECT_EQ(summed.Evaluate(blocks, residuals, nullptr), at > 0.0);
