@@ -171,7 +171,7 @@
   X(kContactHeight, "contact_height", "s", "1", 0.5, 0.01, 1.6, 0.5, kIdentity, \
     m.interaction.Contact(), false, \
     "height of contact over the ankles, in lengths of the rod (1: the hip)", \
-    "with many groups that touch; the group preset holds the height of the chest") \
+    "with many groups that touch, whose check says so") \
   X(kPotentialStrength, "potential_strength", "u", "N m", 150, 0.1, 1e5, 150, kLog, \
     m.interaction.LdpPotential(), m.interaction.potential, \
     "strength of LDP's potential", \

@@ -160,14 +160,18 @@ void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
   best = std::move(held);
 }
 
-// The other starts, by the weights and demands of the best, so that their costs compare. Whether
-// one of them is better, which is then the best.
-bool SolveOthers(const FitProblem& problem, Solution* solution) {
+// The other starts, by the weights and demands of the best (held: where a demand binds it), so that
+// their costs compare. Whether one of them is better, which is then the best.
+bool SolveOthers(const FitProblem& problem, bool held, Solution* solution) {
   const int found = solution->best;
   for (int i = 0; i < static_cast<int>(solution->starts.size()); ++i) {
     SolveStart& start = solution->starts[i];
     if (i == found || !start.usable) continue;
-    SolveOn(problem, &start);
+    if (held) {
+      start = SolveHeld(problem, start);
+    } else {
+      SolveOn(problem, &start);
+    }
     start.failed = problem.Failures(start.to, 0);
     const SolveStart& best = solution->Best();
     const bool better = start.converged && start.failed.size() <= best.failed.size() &&
@@ -198,7 +202,7 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
     solved.work.Add("weights");
     Demand(weight, problem, &solved);
     solved.work.Add("settling");
-    again = SolveOthers(*problem, &solution);
+    again = SolveOthers(*problem, solved.settling.holds(), &solution);
     solved.work.Add("other starts");
   }
   if (again) solved.free.reset();  // that of another start

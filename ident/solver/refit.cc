@@ -39,7 +39,7 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
     FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads);
     ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
     if (network) solver.function_tolerance = std::max(kNetworkTolerance, solver.function_tolerance);
-    const SolveStage stage = SolveBuilt(&built, solver, 0, &start.message);
+    const SolveStage stage = SolveBuilt(&built, solver, 0, &start.message, StructuredSecants(true));
     start.failed = std::move(built.shortened);
     start.stages.push_back(stage);
     start.iterations += stage.iterations;

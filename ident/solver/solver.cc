@@ -93,10 +93,8 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
 }
 
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
-                      std::string* message, const Eigen::MatrixXd& beyond) {
-  // Short stages are far from an optimum, where a step tells little of the next.
-  const ceres::Solver::Summary summary =
-      Minimize(built, options, StructuredSecants(horizon == 0, beyond));
+                      std::string* message, StructuredSecants secants) {
+  const ceres::Solver::Summary summary = Minimize(built, options, std::move(secants));
   *message = summary.message;
   SolveStage stage;
   stage.horizon = horizon;
@@ -107,6 +105,7 @@ SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& op
   stage.cramped = !summary.iterations.empty() && summary.iterations.back().trust_region_radius <
                                                      options.initial_trust_region_radius;
   for (const ceres::IterationSummary& i : summary.iterations) {
+    if (i.cost == std::numeric_limits<double>::max()) continue;  // could not be evaluated
     stage.trace.push_back({horizon, i.iteration, i.cost - built->Offset(), i.gradient_max_norm});
   }
   return stage;
@@ -148,7 +147,7 @@ void TrainNetwork(const FitProblem& problem, const std::string& label,
     solver.callbacks.push_back(&stopping);
     solver.update_state_every_iteration = true;
   }
-  const SolveStage stage = SolveBuilt(&built, solver, 0, &start->message);
+  const SolveStage stage = SolveBuilt(&built, solver, 0, &start->message, StructuredSecants(false));
   if (stop_early) start->to = stopping.best();
   start->stages.push_back(stage);
   start->iterations += stage.iterations;
@@ -183,7 +182,8 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
       }
       ProgressCallback callback(progress, label + HorizonName(horizons[i]));
       if (progress) solver.callbacks.push_back(&callback);
-      const SolveStage stage = SolveBuilt(&built, solver, horizons[i], &start.message);
+      const SolveStage stage =
+          SolveBuilt(&built, solver, horizons[i], &start.message, StructuredSecants(false));
       start.stages.push_back(stage);
       start.iterations += stage.iterations;
       if (!last) break;

@@ -10,6 +10,7 @@
 
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/solution.h"
+#include "ident/solver/structured_secants.h"
 
 namespace pushid {
 
@@ -19,10 +20,10 @@ inline constexpr double kNetworkTolerance = 1e-6;
 // The solver's settings: those of every fit, refit and reference check.
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem);
 
-// Solves what was built, from where its point stands. beyond: what the Hessian has there beyond J'J
-// (JacobianBlocks::curvature), where it is known.
+// Solves what was built, from where its point stands. secants: far from an optimum, where a step
+// tells little of the next, they had better not learn.
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
-                      std::string* message, const Eigen::MatrixXd& beyond = {});
+                      std::string* message, StructuredSecants secants);
 
 // All frames, or the likelihood, from a point near the optimum (profiles, bootstrap, leaving
 // recordings out); in one thread where refits run in parallel. hold_network: its weights are

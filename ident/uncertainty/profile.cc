@@ -171,7 +171,8 @@ HeldFit Profiler::Hold(const ProfileTarget& target, const ProfileSearch& search,
                  std::min(enough.of_cost, enough.of_threshold * search.threshold / cost_));
   }
   std::string message;
-  const SolveStage stage = SolveBuilt(&built, options, 0, &message, covariance_.curvature);
+  const SolveStage stage =
+      SolveBuilt(&built, options, 0, &message, StructuredSecants(true, covariance_.curvature));
   held.value = Value(target, point);
   const double pull = (held.value - wanted) / sigma;
   held.cost = stage.final_cost - 0.5 * pull * pull;

@@ -21,7 +21,7 @@ SCHEMES = [("5 x 4 folds", "stratified", ("--repeats=5",)), ("a person left out"
            ("strong pushes left out", "strong", ())]
 GROUP_SCHEMES = [("5 folds", "stratified", ("--folds=5", "--repeats=1")), ("a setting left out", "setting", ()),
                  ("strong pushes left out", "strong", ())]
-HEIGHTS = [0.95, 1.05, 1.15, 1.25, 1.35]  # of contact, in lengths of the rod; the preset's is 1.15
+HEIGHTS = [0.95, 1.05, 1.15, 1.25, 1.35]  # of contact, in lengths of the rod; the preset's is 0.95
 VELOCITIES = [0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8]  # m/s: impulse over mass
 
 

@@ -52,7 +52,7 @@ constexpr double kBeside = 0.01;  // of the truth
 TEST(StanceFit, ExactRecordingsGiveTheTruthFromAnotherStart) {
   const SyntheticOptions study = StandingStudy(PushKind::kExternal, 0.0);
   FitOptions options = FreeStance(study);
-  for (Parameter id : kFree) options.table[id].nominal *= 1.25;
+  for (Parameter id : kFree) options.table[id].nominal *= 1.2;
   options.sigma_source = SigmaSource::kFixed;
   options.recording_weight = RecordingWeight::kFrame;
   options.function_tolerance = 1e-16;

@@ -74,7 +74,8 @@ Score RunSet(const NistSet& set, const std::vector<double>& start) {
   options.max_iterations = 5000;
   options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 1e-16;
   std::string message;
-  const SolveStage stage = SolveBuilt(&built, SolverOptions(options, *built.problem), 0, &message);
+  const SolveStage stage = SolveBuilt(&built, SolverOptions(options, *built.problem), 0, &message,
+                                      StructuredSecants(true));
 
   Eigen::VectorXd unit = Eigen::Map<const Eigen::VectorXd>(b.data(), b.size()).cwiseAbs();
   const Covariance covariance = ComputeCovariance(EvaluateJacobianBlocks(built), unit, {}, 1e-13);

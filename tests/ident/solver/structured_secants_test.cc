@@ -120,7 +120,7 @@ struct BrownDennis {
   }
 };
 
-SolveStage SolveBrownDennis(int horizon, std::vector<double>* x) {
+SolveStage SolveBrownDennis(bool learns, std::vector<double>* x) {
   FitProblem::Built built;
   built.problem = std::make_unique<ceres::Problem>();
   built.problem->AddParameterBlock(x->data(), 4);
@@ -133,13 +133,14 @@ SolveStage SolveBrownDennis(int horizon, std::vector<double>* x) {
   options.max_iterations = 1000;
   options.function_tolerance = 1e-12;
   std::string message;
-  return SolveBuilt(&built, SolverOptions(options, *built.problem), horizon, &message);
+  return SolveBuilt(&built, SolverOptions(options, *built.problem), 0, &message,
+                    StructuredSecants(learns));
 }
 
 TEST(SummedCost, FindsTheOptimumOfLargeResiduals) {
   std::vector<double> by_secants = {25.0, 5.0, -5.0, -1.0}, plain = by_secants;
-  const SolveStage with = SolveBrownDennis(0, &by_secants);
-  const SolveStage without = SolveBrownDennis(8, &plain);  // short stages do without
+  const SolveStage with = SolveBrownDennis(true, &by_secants);
+  const SolveStage without = SolveBrownDennis(false, &plain);
   EXPECT_NEAR(2.0 * with.final_cost, 85822.2, 0.05);
   EXPECT_GT(2.0 * without.final_cost, 1e5);  // as far as it comes in a thousand steps
 }
@@ -163,8 +164,8 @@ TEST(SummedCost, BlocksStayAndBoundsHold) {
   built.problem->SetParameterBlockConstant(&b);
   built.problem->SetParameterUpperBound(&a, 0, 2.1);
   std::string message;
-  const SolveStage stage =
-      SolveBuilt(&built, SolverOptions(FitOptions(), *built.problem), 0, &message);
+  const SolveStage stage = SolveBuilt(&built, SolverOptions(FitOptions(), *built.problem), 0,
+                                      &message, StructuredSecants(true));
   EXPECT_TRUE(stage.converged) << message;
   EXPECT_EQ(b, 2.0);
   EXPECT_DOUBLE_EQ(a, 2.1);
