@@ -56,7 +56,7 @@ TEST(Advice, ProposesNoTermThatIsZero) {
 TEST(Advice, ScoresFindAMissingTerm) {
   SyntheticOptions study = AdvisedStudy(3);
   study.subject_spread = 0.02;
-  study.parameters[kTx] = 1.5;
+  study.parameters[kTx] = 2.0;
   const FittedModel model = AdvisedFit(study, HoldDamping(MakePreset("tail").value()));
   const auto& tests = model.fit.verdict.assumptions;
   const auto least = std::find_if(tests.begin(), tests.end(),
