@@ -105,28 +105,6 @@ void NetworkJacobianByJets(benchmark::State& state, const char* self_force) {
   });
 }
 
-// Five iterations from where the physical parameters stand, the network just begun.
-void Iteration(benchmark::State& state, const char* self_force, ceres::LinearSolverType type) {
-  constexpr int kIterations = 5;
-  const FitOptions options = OptionsOf(self_force);
-  const FitProblem problem(SinglePeople().recordings, options);
-  int iterations = 0, columns = 0;
-  for (auto _ : state) {
-    FitPoint point = SomePoint(problem);
-    FitProblem::Built built = problem.Build(&point, 0);
-    ceres::Solver::Options solver = SolverOptions(options, *built.problem);
-    solver.linear_solver_type = type;
-    solver.max_num_iterations = kIterations;
-    solver.function_tolerance = 0.0;
-    std::string message;
-    iterations += SolveBuilt(&built, solver, 0, &message).iterations;
-    columns = built.problem->NumParameters();
-  }
-  state.counters["P"] = columns;
-  state.counters["s_per_iteration"] =
-      benchmark::Counter(iterations, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-}
-
 void NetworkSolve(benchmark::State& state, const char* self_force) {
   const FitOptions options = OptionsOf(self_force);
   const FitProblem problem(SinglePeople().recordings, options);
@@ -147,15 +125,6 @@ void RegisterAll() {
         ->Unit(benchmark::kMicrosecond);
     benchmark::RegisterBenchmark(("NetworkJacobian/" + name).c_str(), NetworkJacobian, self_force)
         ->Unit(benchmark::kMillisecond);
-    const std::pair<const char*, ceres::LinearSolverType> solvers[] = {
-        {"dense_normal", ceres::DENSE_NORMAL_CHOLESKY},
-        {"dense_qr", ceres::DENSE_QR},
-        {"sparse_normal", ceres::SPARSE_NORMAL_CHOLESKY}};
-    for (const auto& [solver, type] : solvers) {
-      benchmark::RegisterBenchmark(("Iteration/" + name + "/" + solver).c_str(), Iteration,
-                                   self_force, type)
-          ->Unit(benchmark::kMillisecond);
-    }
   }
   benchmark::RegisterBenchmark("NetworkJacobianByJets/4/gru:8", NetworkJacobianByJets<4>, "gru:8")
       ->Unit(benchmark::kMillisecond);
