@@ -1,7 +1,7 @@
 // models: contact between two people, a smooth reciprocal force between points along their rods.
 //
-// The points stand s rod lengths from the ankles (s = 0: between the carts; 1: the hips). With r = (dx, dy) from
-// j to n,
+// The points stand s rod lengths from the ankles (s = 0: between the carts; 1: the hips). With r =
+// (dx, dy) from j to n,
 //   d = sqrt(dx^2 + kappa^2 dy^2)     distance in which people are deeper than wide (kappa < 1)
 //   d* = softmin(d_contact, d_0)      who stood closer than d_contact stood there free of load
 //   load x = d* - d                   compression, m
