@@ -81,7 +81,6 @@ template <class Archive>
 void Fields(Archive& a, Work& w) {
   a("purpose", w.purpose);
   a("jacobians", w.evaluations.jacobians);
-  if (a.Has("gradients")) a("gradients", w.evaluations.gradients);
   a("costs", w.evaluations.costs);
   a("seconds", w.seconds);
 }

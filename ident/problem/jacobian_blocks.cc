@@ -152,7 +152,7 @@ class Gatherer {
 }  // namespace
 
 JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built, bool robust) {
-  CountEvaluations({1, 0, 0});
+  CountEvaluations({1, 0});
   JacobianBlocks score;
   Gatherer gatherer(built, robust, &score);
   const std::vector<std::optional<RolloutSums>> sums =
@@ -172,7 +172,6 @@ std::vector<int> JacobianBlocks::RowsOf(int cluster) const {
 
 void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps,
                   JacobianBlocks* score) {
-  built.evaluation->set_gradients_only();
   ceres::Problem::EvaluateOptions by_all;
   by_all.parameter_blocks = built.parameter_blocks;
   const Eigen::Index size = score->jacobian.cols();

@@ -32,8 +32,8 @@ struct JacobianBlocks {
 JacobianBlocks EvaluateJacobianBlocks(const BuiltProblem& built, bool robust = false);
 
 // Central differences of the gradient J'r, one column at a time, `steps` to either side (0: a
-// column that does not move, and has none). From then on `built` serves gradients alone. Leaves
-// the curvature empty where some residual cannot be evaluated beside the point.
+// column that does not move, and has none). Leaves the curvature empty where some residual cannot
+// be evaluated beside the point.
 void AddCurvature(const BuiltProblem& built, const Eigen::VectorXd& steps, JacobianBlocks* score);
 
 }  // namespace pushid

@@ -138,9 +138,8 @@ void ParallelEvaluation::SetTasks() {
 }
 
 void ParallelEvaluation::PrepareForEvaluation(bool evaluate_jacobians, bool) {
-  const LaneSums wanted = evaluate_jacobians ? with_jacobian_ : LaneSums::kSquares;
-  const bool gradient = wanted == LaneSums::kGradient, cost = wanted == LaneSums::kSquares;
-  CountEvaluations({!gradient && !cost, gradient, cost});
+  const LaneSums wanted = evaluate_jacobians ? LaneSums::kPlain : LaneSums::kSquares;
+  CountEvaluations({evaluate_jacobians, !evaluate_jacobians});
   if (tasks_.empty()) SetTasks();
   ParallelFor(static_cast<int>(tasks_.size()), num_threads_,
               [&](int i) { tasks_[i].Prepare(wanted, *problem_); });

@@ -26,9 +26,6 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   // What to add to the problem in place of `cost`, which acts on `blocks`.
   std::unique_ptr<ceres::CostFunction> Wrap(std::unique_ptr<ceres::CostFunction> cost,
                                             const std::vector<double*>& blocks);
-  // From now on Jacobians are right in J'r alone, which is less work for people side by side
-  // (lane_group.h): for callers that ask for gradients and nothing else.
-  void set_gradients_only() { with_jacobian_ = LaneSums::kGradient; }
   // Whose constant blocks need no derivatives.
   void set_problem(const ceres::Problem* problem) { problem_ = problem; }
 
@@ -40,7 +37,6 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   void SetTasks();
 
   int num_threads_;
-  LaneSums with_jacobian_ = LaneSums::kPlain;
   const ceres::Problem* problem_ = nullptr;
   std::vector<Prepared*> prepared_;  // owned by the problem
   std::vector<Task> tasks_;          // of all of them; from the first evaluation on

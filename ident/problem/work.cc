@@ -7,17 +7,16 @@
 namespace pushid {
 namespace {
 
-std::atomic<int> jacobians_so_far{0}, gradients_so_far{0}, costs_so_far{0};
+std::atomic<int> jacobians_so_far{0}, costs_so_far{0};
 
 }  // namespace
 
 void CountEvaluations(const Evaluations& more) {
   jacobians_so_far.fetch_add(more.jacobians, std::memory_order_relaxed);
-  gradients_so_far.fetch_add(more.gradients, std::memory_order_relaxed);
   costs_so_far.fetch_add(more.costs, std::memory_order_relaxed);
 }
 
-Evaluations EvaluationsSoFar() { return {jacobians_so_far, gradients_so_far, costs_so_far}; }
+Evaluations EvaluationsSoFar() { return {jacobians_so_far, costs_so_far}; }
 
 void WorkLog::Add(const std::string& purpose) {
   auto part = std::find_if(parts_.begin(), parts_.end(),
@@ -28,7 +27,6 @@ void WorkLog::Add(const std::string& purpose) {
   }
   const Evaluations now = EvaluationsSoFar();
   part->evaluations.jacobians += now.jacobians - from_.jacobians;
-  part->evaluations.gradients += now.gradients - from_.gradients;
   part->evaluations.costs += now.costs - from_.costs;
   from_ = now;
   const auto time = std::chrono::steady_clock::now();

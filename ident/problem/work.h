@@ -10,7 +10,6 @@ namespace pushid {
 // Of all residual blocks of a problem.
 struct Evaluations {
   int jacobians = 0;  // residuals and their Jacobian
-  int gradients = 0;  // the cost and its gradient
   int costs = 0;      // residuals alone
 };
 

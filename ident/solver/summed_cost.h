@@ -13,8 +13,8 @@
 namespace pushid {
 
 // One block of all parameters that move, in the order of the problem's blocks; one row more than
-// there are. Ceres asks for derivatives only where it has accepted a step. Loss
-// functions and manifolds of the problem are not looked at; it has none.
+// there are. Ceres asks for derivatives only where it has accepted a step. Loss functions and
+// manifolds of the problem are not looked at; it has none.
 class SummedCost : public ceres::CostFunction {
  public:
   SummedCost(FitProblem::Built* built, StructuredSecants secants);

@@ -30,8 +30,6 @@ bool CondensedRollout::Tell(const RolloutSums& sums, double* residuals, double**
   if (!sums.ok) return false;
   if (jacobians == nullptr) {
     TellSquares(sums.squares, residuals);
-  } else if (sums.gradient.size() > 0) {
-    TellGradient(sums.squares, sums.gradient, residuals, jacobians);
   } else {
     CondensedRows::Tell(sums.plain, residuals, jacobians);
   }
@@ -107,14 +105,6 @@ void CondensedRows::TellSquares(double squares, double* residuals) const {
   Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());
   values.setZero();
   values[values.size() - 1] = std::sqrt(squares);
-}
-
-void CondensedRows::TellGradient(double squares, const Eigen::VectorXd& gradient, double* residuals,
-                                 double** jacobians) const {
-  TellSquares(squares, residuals);
-  RowMajorMatrix condensed = RowMajorMatrix::Zero(num_residuals(), gradient.size());
-  if (squares > 0.0) condensed.bottomRows<1>() = gradient.transpose() / std::sqrt(squares);
-  columns_.Scatter(condensed, 0, num_residuals(), jacobians);
 }
 
 void CondensedRows::Tell(const NormalEquations& equations, double* residuals,

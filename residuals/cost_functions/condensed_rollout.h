@@ -58,9 +58,6 @@ class CondensedRows : public ceres::CostFunction {
   // What Evaluate tells of equations by `acting` columns, and of r'r where there are none.
   void Tell(const NormalEquations& equations, double* residuals, double** jacobians) const;
   void TellSquares(double squares, double* residuals) const;
-  // |r| alone, and its derivative J'r / |r|: the same cost and gradient.
-  void TellGradient(double squares, const Eigen::VectorXd& gradient, double* residuals,
-                    double** jacobians) const;
   // robust: null without.
   PersonRows RowsOf(const NormalEquations& plain, const NormalEquations* robust) const;
 

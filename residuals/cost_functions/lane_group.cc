@@ -59,8 +59,7 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
   const RolloutProblem& first = *problems_[0];
   const int columns = first.layout.num_acting();
   // A thread's own, used again.
-  thread_local std::vector<double> constants, failed, residuals, squares, gradient, plain, robust,
-      storage;
+  thread_local std::vector<double> constants, failed, residuals, squares, plain, robust, storage;
   thread_local LaneParameters parameters;
   constants = tables_.constants();
   const int width = tables_.width();
@@ -89,13 +88,12 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
   failed.resize(width);
   squares.resize(width);
   if (sums == LaneSums::kNone) residuals.resize((in.frames - 1) * kFrameResiduals * width);
-  gradient.resize(columns * width);
   plain.resize(size);
   robust.resize(size);
-  storage.resize(LaneStorage(width, columns, in.frames));
+  storage.resize(LaneStorage(width, columns));
   tables_.Roll(in, sums,
-               {failed.data(), residuals.data(), squares.data(), gradient.data(), plain.data(),
-                robust.data(), storage.data()});
+               {failed.data(), residuals.data(), squares.data(), plain.data(), robust.data(),
+                storage.data()});
   std::vector<RolloutSums> results(problems_.size());
   for (size_t lane = 0; lane < results.size(); ++lane) {
     results[lane].ok = failed[lane] == 0.0;
@@ -105,12 +103,6 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
       const int rows = problems_[lane]->num_motion_rows();
       results[lane].residuals.resize(rows);
       for (int k = 0; k < rows; ++k) results[lane].residuals[k] = residuals[k * width + lane];
-      continue;
-    }
-    if (sums == LaneSums::kGradient) {
-      using EveryLane = Eigen::InnerStride<Eigen::Dynamic>;
-      results[lane].gradient = Eigen::Map<const Eigen::VectorXd, 0, EveryLane>(
-          gradient.data() + lane, columns, EveryLane(width));
       continue;
     }
     results[lane].plain = NormalEquations(columns, plain.data() + lane, width);

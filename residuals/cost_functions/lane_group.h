@@ -19,7 +19,6 @@ bool HasLanes(const RolloutProblem& problem);
 struct RolloutSums {
   bool ok = false;                // stayed within the domain
   double squares = 0.0;           // r'r; all there is without derivatives
-  Eigen::VectorXd gradient;       // J'r, where it alone was asked for
   NormalEquations plain, robust;  // robust: with the robust loss's own Hessian, where asked for
   std::vector<double> residuals;  // where nothing was to be summed up
 };

@@ -88,7 +88,7 @@ bool SceneRollouts::RollGroup(const ParameterSet<double>& parameters,
   of_lanes.In(&in);
   failed.resize(width);
   squares.resize(width);
-  storage.resize(LaneStorage(width, columns, 0));
+  storage.resize(LaneStorage(width, columns));
   states->resize(std::max(0, end - begin_) * 8 * (1 + columns) * width);
   LaneOutputs out;
   out.failed = failed.data();

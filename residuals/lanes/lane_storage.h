@@ -25,7 +25,6 @@ struct Carried {
   Lanes* rows = nullptr;        // (P + 1) x kFrameResiduals: [J r] of one frame
   Lanes* plain = nullptr;       // (P + 1) x (P + 1)
   Lanes* robust = nullptr;      // the same
-  Lanes* path = nullptr;        // frames x 8: [q, qd], of the gradient alone
   double* residuals = nullptr;  // of LaneOutputs
   double* states = nullptr;     // the same
 };

@@ -68,19 +68,17 @@ struct LaneInputs {
 };
 
 enum class LaneSums {
-  kStates,    // no residuals: [q, qd] frame by frame, and its derivatives where there are columns
-  kNone,      // r alone, frame by frame from frame 1 on, without the robust loss's weight
-  kSquares,   // r'r alone
-  kGradient,  // and J'r, by the adjoint: work that columns do not add to
-  kPlain,     // [J r]'[J r]
-  kRobust     // and that with the robust loss's own Hessian (CorrectForRobustLoss)
+  kStates,   // no residuals: [q, qd] frame by frame, and its derivatives where there are columns
+  kNone,     // r alone, frame by frame from frame 1 on, without the robust loss's weight
+  kSquares,  // r'r alone
+  kPlain,    // [J r]'[J r]
+  kRobust    // and that with the robust loss's own Hessian (CorrectForRobustLoss)
 };
 
 struct LaneOutputs {
   double* failed = nullptr;     // 1 where a rollout left the domain
   double* residuals = nullptr;  // (frames - 1) x kFrameResiduals, where nothing is summed up
   double* squares = nullptr;    // r'r
-  double* gradient = nullptr;   // P
   double* plain = nullptr;      // (P + 1) x (P + 1), the upper triangle
   double* robust = nullptr;     // the same
   double* storage = nullptr;    // LaneStorage
@@ -88,11 +86,9 @@ struct LaneOutputs {
 };
 
 // Doubles that a rollout needs besides.
-constexpr int LaneStorage(int lanes, int columns, int frames) {
+constexpr int LaneStorage(int lanes, int columns) {
   const int size = columns + 1;
-  const int equations = 10 * columns + kFrameResiduals * size + 2 * size * size;
-  const int gradient = 8 * frames + columns;
-  return lanes * ((equations > gradient ? equations : gradient) + 1);
+  return lanes * (10 * columns + kFrameResiduals * size + 2 * size * size + 1);
 }
 
 struct PersonLanes {

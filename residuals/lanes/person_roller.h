@@ -53,7 +53,6 @@ class Roller {
       } else if (t > 0) {
         AddResidual(t, step);
       }
-      if (sums_ == LaneSums::kGradient) Remember(t);
       alive &= LoadLanes(step + kLaneGoesOn * kWidth) != Lanes(0.0);
       if (t + 1 < in_.frames) StepOn(t, step, &alive);
     }
@@ -62,7 +61,7 @@ class Roller {
   Lanes failed() const { return failed_; }
   Lanes squares() const { return squares_; }
 
- protected:
+ private:
   using Matrix = Matrix4<Lanes>;
   using Force = Vector4<Lanes>;
 
@@ -70,7 +69,6 @@ class Roller {
     return in_.steps + (t < in_.num_steps ? t : in_.num_steps - 1) * kLaneFields * kWidth;
   }
 
-  // Forwards: [J r]'[J r] is summed up on the way, the gradient alone on the way back.
   bool CarriesColumns() const { return carried_.by_column != nullptr; }
 
   void HandOut(int index) {
@@ -80,13 +78,6 @@ class Roller {
       Store(state_.qd[i], to + (4 + i) * kWidth);
     }
     for (int i = 0; i < 8 * in_.columns; ++i) Store(carried_.by_column[i], to + (8 + i) * kWidth);
-  }
-
-  void Remember(int t) {
-    for (int i = 0; i < 4; ++i) {
-      carried_.path[8 * t + i] = state_.q[i];
-      carried_.path[8 * t + 4 + i] = state_.qd[i];
-    }
   }
 
   void StartDerivatives() {

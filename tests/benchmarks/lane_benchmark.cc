@@ -1,4 +1,4 @@
-// benchmarks: costs, gradients and normal equations of the recordings of single people, side by
+// benchmarks: costs and normal equations of the recordings of single people, side by
 // side at every width of vectors, and how near that is to what the processor can do.
 //
 // The limit: sums and products, as one person's loops count them, at the rate that this core
@@ -97,10 +97,8 @@ void SumsSideBySide(benchmark::State& state) {
 }
 void CostsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kSquares>(state); }
 void EquationsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kPlain>(state); }
-void GradientsSideBySide(benchmark::State& state) { SumsSideBySide<LaneSums::kGradient>(state); }
 BENCHMARK(CostsSideBySide)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1}, {0, 1, 2}});
 BENCHMARK(EquationsSideBySide)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1}, {0, 1, 2}});
-BENCHMARK(GradientsSideBySide)->Unit(benchmark::kMillisecond)->ArgsProduct({{0, 1}, {0, 1, 2}});
 
 }  // namespace
 }  // namespace pushid

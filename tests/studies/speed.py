@@ -29,7 +29,6 @@ ROWS = [
      [f"JacobianBySensitivities/{p}" for p in (6, 12, 64)]),
     ("normal equations of the 32 recordings side by side, `tail` (8 columns): 256-bit / 128",
      [f"EquationsSideBySide/0/{w}" for w in (1, 0)]),
-    ("their gradient alone, by the adjoint: 256 / 128", [f"GradientsSideBySide/0/{w}" for w in (1, 0)]),
     ("Jacobian by Jets, stride 4", [f"JacobianByJets<4>/{p}" for p in (6, 12, 64)]),
     ("Jacobian by Jets, full width", ["JacobianByJets<6>/6", "JacobianByJets<12>/12", "JacobianByJets<28>/64"]),
     ("solve of the 32 recordings, `tail` / `ldp`", ["SolveOnly/tail", "SolveOnly/ldp"]),
@@ -192,8 +191,7 @@ def rivals():
 
 
 SOLVING = ("starts and horizons", "weights", "settling", "other starts")  # purposes of run.work
-LANES = {"cost of": "CostsSideBySide", "gradient by the adjoint, of": "GradientsSideBySide",
-         "normal equations of": "EquationsSideBySide"}
+LANES = {"cost of": "CostsSideBySide", "normal equations of": "EquationsSideBySide"}
 
 
 def limits():
@@ -215,18 +213,17 @@ def limits():
     for setting, title in (("single", "the 32 recordings"), ("groups", "the 49 recordings of groups")):
         fit = studies.on_recordings("pushid-fit", setting, "--quiet", out="model_out", keep=False).json
         work = [w for w in fit["run"]["work"] if w["purpose"] in SOLVING]
-        jacobians, gradients, costs = (sum(w[kind] for w in work) for kind in ("jacobians", "gradients", "costs"))
+        jacobians, costs = (sum(w[kind] for w in work) for kind in ("jacobians", "costs"))
         if setting == "single":
             operations = 1e6 * (jacobians * of["EquationsSideBySide"]["million_operations"] +
-                                gradients * of["GradientsSideBySide"]["million_operations"] +
                                 costs * of["CostsSideBySide"]["million_operations"])
         else:
             frames = sum(r["frames"] * r["people"] for r in fit["data"]["recordings"])
             columns = sum(p["status"] != "fixed" for p in fit["parameters"])
             operations = (frames * of["CostsSideBySide"]["operations_a_frame"] *
-                          (jacobians * (1 + columns) + gradients + costs))
-        add(f"a solve of {title}", f"{jacobians} / {gradients} / {costs}", operations, sum(w["seconds"] for w in work))
-    text = studies.table(["", "normal equations / gradients / costs", "sums and products", "limit", "measured", "ratio"],
+                          (jacobians * (1 + columns) + costs))
+        add(f"a solve of {title}", f"{jacobians} / {costs}", operations, sum(w["seconds"] for w in work))
+    text = studies.table(["", "normal equations / costs", "sums and products", "limit", "measured", "ratio"],
                          rows)
     return (f"{text}\n\nAt {number(peak / 1e9)} 10^9 sums and products a second, one core, "
             f"{of['CostsSideBySide']['label'].split(',')[0]}; {machine()}.")

@@ -1,6 +1,10 @@
 // Feet that hold and step: what made synthetic recordings is found again, and who steps is told.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
 #include "ident/fit/fit.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/fit/step_probability.h"
@@ -49,19 +53,23 @@ FitOptions FreeStance(const SyntheticOptions& study) {
 // may end beside it.
 constexpr double kBeside = 0.01;  // of the truth
 
-TEST(StanceFit, ExactRecordingsGiveTheTruthFromAnotherStart) {
+TEST(StanceFit, ExactRecordingsGiveTheTruthFromMostStarts) {
   const SyntheticOptions study = StandingStudy(PushKind::kExternal, 0.0);
-  FitOptions options = FreeStance(study);
-  for (Parameter id : kFree) options.table[id].nominal *= 1.2;
-  options.sigma_source = SigmaSource::kFixed;
-  options.recording_weight = RecordingWeight::kFrame;
-  options.function_tolerance = 1e-16;
-  const FitResult fit = Fit(MakePendulums(study), options);
-  ASSERT_TRUE(fit.ok()) << fit.message;
-  for (Parameter id : kFree) {
-    EXPECT_NEAR(fit.parameters[id], study.parameters[id], kBeside * study.parameters[id])
-        << options.table[id].name;
+  const std::vector<PendulumRecording> recordings = MakePendulums(study);
+  int found = 0;
+  for (double wrong : {0.75, 0.8, 0.85, 0.9, 1.1, 1.15, 1.2, 1.25, 1.3}) {
+    FitOptions options = FreeStance(study);
+    for (Parameter id : kFree) options.table[id].nominal *= wrong;
+    options.sigma_source = SigmaSource::kFixed;
+    options.recording_weight = RecordingWeight::kFrame;
+    options.function_tolerance = 1e-16;
+    const FitResult fit = Fit(recordings, options);
+    ASSERT_TRUE(fit.ok()) << wrong << ": " << fit.message;
+    found += std::all_of(std::begin(kFree), std::end(kFree), [&](Parameter id) {
+      return std::abs(fit.parameters[id] / study.parameters[id] - 1.0) < kBeside;
+    });
   }
+  EXPECT_GE(found, 6);
 }
 
 TEST(StanceFit, NoisyRecordingsHoldTheTruthWithinTheirErrors) {

@@ -81,25 +81,6 @@ TEST_F(AheadOfCeres, FailuresAreFailures) {
   EXPECT_FALSE(problem_->Evaluate({}, &cost, nullptr, nullptr, nullptr));
 }
 
-// Of people side by side, by the adjoint.
-TEST(ParallelEvaluation, GradientsAloneAreThoseOfTheJacobian) {
-  const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
-  const FitProblem problem(recordings, DefaultFit(TinyStudy()));
-  FitPoint point = WrongStart(problem, TinyStudy().parameters, 3);
-  for (double& value : point.shared) value += 0.01;
-  std::vector<double> gradients[2];
-  double costs[2];
-  for (bool alone : {false, true}) {
-    const FitProblem::Built built = problem.Build(&point, 0);
-    if (alone) built.evaluation->set_gradients_only();
-    ASSERT_TRUE(built.problem->Evaluate({}, &costs[alone], nullptr, &gradients[alone], nullptr));
-  }
-  EXPECT_NEAR(costs[1], costs[0], 1e-12 * costs[0]);
-  for (size_t i = 0; i < gradients[0].size(); ++i) {
-    EXPECT_NEAR(gradients[1][i], gradients[0][i], 1e-9 * std::abs(gradients[0][i]) + 1e-9) << i;
-  }
-}
-
 // People who touch, with a tolerance as loose as the preset's, where the end of a fit shows every
 // difference in its last digits.
 TEST(ParallelEvaluation, AnyNumberOfThreadsGivesTheSameBits) {
