@@ -23,8 +23,8 @@ constexpr double kRough = 1e-3;     // function tolerance on the way
 // The demand joins in three steps, each solved to its own optimum: all of it at once outweighs
 // everything else where people are far from settled, and the solver creeps along its edge. A
 // thirtieth moves the optimum near the edge, and from there along it by steps of ordinary length.
-constexpr double kDemandSteps[] = {0.03, 0.3, 1.0};
-constexpr double kLessExact = 10.0;  // function tolerances, of the steps before the last
+constexpr double kDemandSteps[] = {0.05, 0.3, 1.0};
+constexpr double kLessExact = 100.0;  // function tolerances, of the steps before the last
 
 double Change(double from, double to) {
   return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;

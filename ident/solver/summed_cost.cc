@@ -26,9 +26,7 @@ SummedCost::SummedCost(FitProblem::Built* built, StructuredSecants secants)
   set_num_residuals(columns + 1);
   std::set<ceres::ResidualBlockId> curved;
   for (const FitProblem::Built::Block& block : built_.blocks) {
-    if (block.cluster >= 0 || block.cluster == FitProblem::kSettlingCluster) {
-      curved.insert(block.id);
-    }
+    if (block.cluster >= 0) curved.insert(block.id);
   }
   std::vector<ceres::ResidualBlockId> all;
   problem.GetResidualBlocks(&all);

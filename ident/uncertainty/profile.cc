@@ -18,7 +18,7 @@ constexpr double kHold = 0.03;  // s_hold over the naive error
 struct HoldTolerance {
   double of_threshold, of_cost;
 };
-constexpr HoldTolerance kToLocate = {2e-5, 1e-6}, kToClassify = {1e-3, 1e-4};
+constexpr HoldTolerance kToLocate = {1e-4, 1e-5}, kToClassify = {1e-3, 1e-4};
 
 class Profiler {
  public:
