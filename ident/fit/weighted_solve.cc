@@ -30,8 +30,10 @@ double Change(double from, double to) {
   return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;
 }
 
-// What the problem's parts weigh by what is known at a point; the largest relative change.
-double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights) {
+// What the problem's parts weigh by what is known at a point, and the recordings' sums by these
+// weights; the largest relative change.
+double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights,
+               RecordingSums* recordings) {
   const FitOptions options = problem.options();
   double change = 0.0;
   if (options.sigma_source == SigmaSource::kEstimate) {
@@ -46,7 +48,7 @@ double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights) 
     problem.Weigh(*weights);  // the effective weight is that of residuals in these sigmas
   }
   if (options.recording_weight == RecordingWeight::kEffective) {
-    weights->effective_weight = EstimateEffectiveWeight(problem, point);
+    weights->effective_weight = EstimateEffectiveWeight(problem, point, recordings);
     change = std::max(change, Change(options.effective_weight, weights->effective_weight));
   }
   return std::max(change, UpdatePoolingSpread(problem, point, weights));
@@ -77,14 +79,22 @@ FitProblem OnTheWay(FitProblem problem) {
   return problem;
 }
 
+// Where recordings were summed up none of them fails.
+std::vector<FailedRollout> FailuresOf(const FitProblem& problem, const SolveStart& start) {
+  if (start.recordings.at.size() > 0) return {};
+  return problem.Failures(start.to, 0);
+}
+
 // From the optimum under other weights to that under these.
 void SolveOn(const FitProblem& problem, SolveStart* start) {
   const FitOptions& options = problem.options();
   const bool hold_network = options.early_stopping > 0.0;
-  SolveStart again = Refit(problem, start->to, hold_network, options.num_threads);
+  SolveStart again =
+      Refit(problem, start->to, hold_network, options.num_threads, std::move(start->recordings));
   start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
   start->iterations += again.iterations;
   start->to = std::move(again.to);
+  start->recordings = std::move(again.recordings);
   start->cost = again.cost;
   start->converged = again.converged;
   start->message = std::move(again.message);
@@ -96,10 +106,14 @@ bool Weigh(FitProblem* problem, SolveStart* start) {
   bool exact = false;
   for (int round = 0; round < kMostRounds; ++round) {
     CostWeights now = problem->weights();
-    const bool settled = Reweigh(*problem, start->to, &now) < kSettled;
+    RecordingSums recordings;
+    const bool settled = Reweigh(*problem, start->to, &now, &recordings) < kSettled;
     if (settled && exact) return true;
     exact = exact || settled;
-    if (!settled) problem->Weigh(now);
+    if (!settled) {
+      problem->Weigh(now);
+      start->recordings = std::move(recordings);
+    }
     SolveOn(exact ? *problem : Briefly(*problem), start);
   }
   if (!exact) SolveOn(*problem, start);
@@ -129,7 +143,7 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
       SolveOn(share < 1.0 ? OnTheWay(part) : part, &held);
     }
   }
-  held.failed = demanding.Failures(held.to, 0);
+  held.failed = FailuresOf(demanding, held);
   return held;
 }
 
@@ -167,12 +181,13 @@ bool SolveOthers(const FitProblem& problem, bool held, Solution* solution) {
   for (int i = 0; i < static_cast<int>(solution->starts.size()); ++i) {
     SolveStart& start = solution->starts[i];
     if (i == found || !start.usable) continue;
+    start.recordings = {};  // by other weights
     if (held) {
       start = SolveHeld(problem, start);
     } else {
       SolveOn(problem, &start);
     }
-    start.failed = problem.Failures(start.to, 0);
+    start.failed = FailuresOf(problem, start);
     const SolveStart& best = solution->Best();
     const bool better = start.converged && start.failed.size() <= best.failed.size() &&
                         start.cost < best.cost - kSameCost * std::abs(best.cost);
@@ -198,7 +213,7 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
     solved.free.reset();
     SolveStart& best = solution.starts[solution.best];
     solved.weights_settled = Weigh(problem, &best);
-    best.failed = problem->Failures(best.to, 0);
+    best.failed = FailuresOf(*problem, best);
     solved.work.Add("weights");
     Demand(weight, problem, &solved);
     solved.work.Add("settling");

@@ -155,7 +155,9 @@ class FitProblem {
 
   using Built = BuiltProblem;
   // hold_network: its weights are constant. num_threads: of the evaluations; the same bits for any.
-  Built Build(FitPoint* point, int horizon, bool hold_network = false, int num_threads = 1) const;
+  // all_inside: it is known already that no recording fails at the point.
+  Built Build(FitPoint* point, int horizon, bool hold_network = false, int num_threads = 1,
+              bool all_inside = false) const;
 
  private:
   void AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const;

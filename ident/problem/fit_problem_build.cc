@@ -57,11 +57,11 @@ std::shared_ptr<const RolloutProblem> FitProblem::StageRollout(int recording, in
 }
 
 FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_network,
-                                    int num_threads) const {
+                                    int num_threads, bool all_inside) const {
   Built built;
   AddParameterBlocks(point, num_threads, &built);
   const bool rolls = options_.likelihood == Likelihood::kTrajectory;
-  if (rolls) built.shortened = Failures(*point, horizon);
+  if (rolls && !all_inside) built.shortened = Failures(*point, horizon);
 
   FamilyPlace place{*this, point, &built};
   const auto add = [&](ResidualFamily::Per per) {

@@ -22,10 +22,11 @@ bool Contradicted(double rise, size_t units) {
 }
 
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network,
-                 int num_threads) {
+                 int num_threads, RecordingSums known) {
   SolveStart start;
   start.kind = "warm";
   start.from = start.to = from;
+  start.recordings = std::move(known);
   if (problem.options().likelihood != Likelihood::kTrajectory) {
     const SolveStage stage = SolveByBfgs(problem, {}, &start.to, &start.message);
     start.stages.push_back(stage);
@@ -36,10 +37,14 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
   }
   const bool network = !from.weights.empty() && !hold_network;
   const auto solve = [&] {
-    FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads);
+    const std::vector<double> at = start.to.Flat();
+    const bool all_inside = start.recordings.AreAt(
+        Eigen::Map<const Eigen::VectorXd>(at.data(), static_cast<Eigen::Index>(at.size())));
+    FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads, all_inside);
     ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
     if (network) solver.function_tolerance = std::max(kNetworkTolerance, solver.function_tolerance);
-    const SolveStage stage = SolveBuilt(&built, solver, 0, &start.message, StructuredSecants(true));
+    const SolveStage stage =
+        SolveBuilt(&built, solver, 0, &start.message, StructuredSecants(true), &start.recordings);
     start.failed = std::move(built.shortened);
     start.stages.push_back(stage);
     start.iterations += stage.iterations;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ident/problem/fit_point.h"
+#include "ident/solver/structured_secants.h"
 
 namespace pushid {
 
@@ -37,6 +38,7 @@ struct SolveStart {
   double cost = 0.0;
   int iterations = 0;
   FitPoint from, to;
+  RecordingSums recordings;  // at `to`, by the weights of the last solve
   std::vector<SolveStage> stages;
   std::vector<FailedRollout> failed;  // recordings that could not be rolled out to their end
   std::vector<std::string> notes;     // parameters whose start was moved off a bound

@@ -53,9 +53,13 @@ ceres::LinearSolverType LinearSolverFor(int columns, bool has_network) {
 
 // By secants where there are few columns; early stopping looks at the problem's own blocks.
 ceres::Solver::Summary Minimize(FitProblem::Built* built, ceres::Solver::Options options,
-                                StructuredSecants secants) {
+                                StructuredSecants secants, RecordingSums* recordings) {
   ceres::Solver::Summary summary;
-  auto summed = std::make_unique<SummedCost>(built, std::move(secants));
+  // Recordings that are cut short at one point are not at another.
+  const bool whole = recordings != nullptr && built->shortened.empty();
+  auto summed = std::make_unique<SummedCost>(built, std::move(secants),
+                                             whole ? *recordings : RecordingSums());
+  if (recordings != nullptr) *recordings = {};
   if (summed->parameter_block_sizes()[0] > kDenseColumns || options.update_state_every_iteration) {
     ceres::Solve(options, built->problem.get(), &summary);
     return summary;
@@ -68,6 +72,7 @@ ceres::Solver::Summary Minimize(FitProblem::Built* built, ceres::Solver::Options
   cost.SetBounds(&sum, x.data());
   ceres::Solve(options, &sum, &summary);
   cost.SetValues(x.data());
+  if (whole) *recordings = cost.recordings();
   return summary;
 }
 
@@ -93,8 +98,8 @@ ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Pro
 }
 
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
-                      std::string* message, StructuredSecants secants) {
-  const ceres::Solver::Summary summary = Minimize(built, options, std::move(secants));
+                      std::string* message, StructuredSecants secants, RecordingSums* recordings) {
+  const ceres::Solver::Summary summary = Minimize(built, options, std::move(secants), recordings);
   *message = summary.message;
   SolveStage stage;
   stage.horizon = horizon;

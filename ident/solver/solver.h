@@ -21,15 +21,17 @@ inline constexpr double kNetworkTolerance = 1e-6;
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem);
 
 // Solves what was built, from where its point stands. secants: far from an optimum, where a step
-// tells little of the next, they had better not learn.
+// tells little of the next, they had better not learn. recordings: what is known where it begins,
+// and on return where it ended.
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
-                      std::string* message, StructuredSecants secants);
+                      std::string* message, StructuredSecants secants,
+                      RecordingSums* recordings = nullptr);
 
 // All frames, or the likelihood, from a point near the optimum (profiles, bootstrap, leaving
 // recordings out); in one thread where refits run in parallel. hold_network: its weights are
-// constant.
+// constant. known: at `from`, by the weights of the problem.
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network = false,
-                 int num_threads = 1);
+                 int num_threads = 1, RecordingSums known = {});
 
 // Whether the recordings contradict a demand to settle: by how much it raises the cost of all else,
 // twice that, against the 95 % point of chi-squared with a degree of freedom for each of the units

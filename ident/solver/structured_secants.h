@@ -25,9 +25,18 @@ struct SecondOrder {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;
 
-  explicit SecondOrder(Eigen::Index columns)
-      : information(Eigen::MatrixXd::Zero(columns, columns)),
-        gradient(Eigen::VectorXd::Zero(columns)) {}
+  static SecondOrder Zero(Eigen::Index columns) {
+    return {Eigen::MatrixXd::Zero(columns, columns), Eigen::VectorXd::Zero(columns)};
+  }
+};
+
+// What the rows of all recordings sum to at a point, by the weights that they have there.
+struct RecordingSums {
+  Eigen::VectorXd at;  // of the columns; empty: nowhere
+  double squares = 0.0;
+  SecondOrder sums;
+
+  bool AreAt(const Eigen::VectorXd& x) const { return at.size() == x.size() && at == x; }
 };
 
 class StructuredSecants {

@@ -11,8 +11,8 @@ namespace pushid {
 
 using Eigen::VectorXd;
 
-SummedCost::SummedCost(FitProblem::Built* built, StructuredSecants secants)
-    : built_(*built), secants_(std::move(secants)) {
+SummedCost::SummedCost(FitProblem::Built* built, StructuredSecants secants, RecordingSums known)
+    : built_(*built), secants_(std::move(secants)), recordings_(std::move(known)) {
   const ceres::Problem& problem = *built_.problem;
   std::map<const double*, int> column_of;
   int columns = 0;
@@ -24,9 +24,9 @@ SummedCost::SummedCost(FitProblem::Built* built, StructuredSecants secants)
   }
   mutable_parameter_block_sizes()->push_back(columns);
   set_num_residuals(columns + 1);
-  std::set<ceres::ResidualBlockId> curved;
+  std::set<ceres::ResidualBlockId> of_recordings;
   for (const FitProblem::Built::Block& block : built_.blocks) {
-    if (block.cluster >= 0) curved.insert(block.id);
+    if (block.cluster >= 0) of_recordings.insert(block.id);
   }
   std::vector<ceres::ResidualBlockId> all;
   problem.GetResidualBlocks(&all);
@@ -34,7 +34,7 @@ SummedCost::SummedCost(FitProblem::Built* built, StructuredSecants secants)
     std::vector<double*> on;
     problem.GetParameterBlocksForResidualBlock(id, &on);
     Part part{problem.GetCostFunctionForResidualBlock(id),
-              curved.count(id) > 0,
+              of_recordings.count(id) > 0,
               {on.begin(), on.end()},
               {}};
     for (double* block : on) {
@@ -99,16 +99,25 @@ bool SummedCost::AddPart(const Part& part, double* squares, SecondOrder* sum) co
 
 bool SummedCost::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
   const int columns = parameter_block_sizes()[0];
+  const Eigen::Map<const VectorXd> at(x[0], columns);
   const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
+  const bool known = derivatives && recordings_.AreAt(at);
   SetValues(x[0]);
-  if (built_.evaluation != nullptr) built_.evaluation->PrepareForEvaluation(derivatives, true);
-  double squares = 0.0;
-  SecondOrder curved(columns), linear(columns);
-  for (const Part& part : parts_) {
-    SecondOrder* const sum = !derivatives ? nullptr : part.curved ? &curved : &linear;
-    if (!AddPart(part, &squares, sum)) return false;
+  if (built_.evaluation != nullptr && !known) {
+    built_.evaluation->PrepareForEvaluation(derivatives, true);
   }
-  if (!std::isfinite(squares) || !curved.information.allFinite() ||
+  RecordingSums here{at, 0.0, SecondOrder::Zero(columns)};
+  SecondOrder linear = SecondOrder::Zero(columns);
+  double squares = 0.0;  // beside the recordings
+  for (const Part& part : parts_) {
+    if (known && part.of_recording) continue;
+    double* const of = part.of_recording ? &here.squares : &squares;
+    SecondOrder* const sum = !derivatives ? nullptr : part.of_recording ? &here.sums : &linear;
+    if (!AddPart(part, of, sum)) return false;
+  }
+  if (known) here = recordings_;
+  squares += here.squares;
+  if (!std::isfinite(squares) || !here.sums.information.allFinite() ||
       !linear.information.allFinite()) {
     return false;
   }
@@ -118,7 +127,8 @@ bool SummedCost::Evaluate(double const* const* x, double* residuals, double** ja
     values[columns] = std::sqrt(squares);
     return true;
   }
-  secants_.Add(Eigen::Map<const VectorXd>(x[0], columns), 0.5 * squares, curved, linear);
+  recordings_ = std::move(here);
+  secants_.Add(at, 0.5 * squares, recordings_.sums, linear);
   const RowMajorMatrix rows = secants_.Rows();
   values = rows.col(columns);
   Eigen::Map<RowMajorMatrix>(jacobians[0], columns + 1, columns) = rows.leftCols(columns);

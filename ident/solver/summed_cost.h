@@ -17,13 +17,16 @@ namespace pushid {
 // manifolds of the problem are not looked at; it has none.
 class SummedCost : public ceres::CostFunction {
  public:
-  SummedCost(FitProblem::Built* built, StructuredSecants secants);
+  // known: where somebody has summed up the recordings already.
+  SummedCost(FitProblem::Built* built, StructuredSecants secants, RecordingSums known);
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override;
 
   // Of the problem's blocks.
   std::vector<double> Values() const;
   void SetValues(const double* x) const;
   void SetBounds(ceres::Problem* problem, double* x) const;
+  // Where derivatives were asked for last.
+  const RecordingSums& recordings() const { return recordings_; }
 
  private:
   struct Block {  // of parameters
@@ -32,7 +35,7 @@ class SummedCost : public ceres::CostFunction {
   };
   struct Part {
     const ceres::CostFunction* cost;
-    bool curved;  // rows of recordings and demands
+    bool of_recording;
     std::vector<const double*> on;
     std::vector<int> columns;  // of each block; -1: it stays
   };
@@ -43,6 +46,7 @@ class SummedCost : public ceres::CostFunction {
   std::vector<Block> moving_;
   std::vector<Part> parts_;
   mutable StructuredSecants secants_;
+  mutable RecordingSums recordings_;
 };
 
 }  // namespace pushid

@@ -22,6 +22,7 @@ namespace pushid {
 
 class FitProblem;
 struct FitPoint;
+struct RecordingSums;
 
 struct Clusters {
   ClusterBy by = ClusterBy::kRecording;  // kAuto decided
@@ -134,7 +135,8 @@ inline constexpr double kRateWeight = 0.3;
 ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point);
 
 // Independent frames a frame, for FitOptions::effective_weight. A single recording cannot tell: it
-// counts as one frame.
-double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point);
+// counts as one frame. recordings: their sums by that weight, where they are known.
+double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point,
+                               RecordingSums* recordings);
 
 }  // namespace pushid

@@ -5,9 +5,12 @@
 #include <cmath>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/jacobian_blocks.h"
 #include "ident/problem/raw_residuals.h"
+#include "ident/solver/structured_secants.h"
 #include "ident/uncertainty/clusters.h"
-#include "ident/uncertainty/uncertainty.h"
+#include "ident/uncertainty/covariance.h"
+#include "models/decompositions.h"
 #include "residuals/cost_functions/plate_residual.h"
 
 namespace pushid {
@@ -28,6 +31,8 @@ constexpr Kind kKinds[] = {{0, 3, 2.3660, 1.0},
 constexpr double kPlateMedian = 1.3863;
 constexpr double kLeastShear = 0.5, kLeastCentre = 2e-4;  // N, m: no platform is more exact
 
+constexpr double kNullEigenvalue = kNullSingularValue * kNullSingularValue;
+
 double Median(std::vector<double>* values) {
   const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
   std::nth_element(values->begin(), middle, values->end());
@@ -42,6 +47,47 @@ std::array<double, 4> Floors(const FitProblem& problem) {
   double dt = problem.recordings()[0].scene.dt;
   for (const PendulumRecording& r : problem.recordings()) dt = std::max(dt, r.scene.dt);
   return {noise, noise / dt, noise / kReferenceRod, noise / dt / kReferenceRod};
+}
+
+RecordingSums SumsOf(const JacobianBlocks& score, const FitPoint& point) {
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
+    if (score.cluster_of_row[row] >= 0) rows.push_back(row);
+  }
+  const Eigen::MatrixXd jacobian = score.jacobian(rows, Eigen::all);
+  const Eigen::VectorXd residuals = score.residuals(rows);
+  const std::vector<double> at = point.Flat();
+  return {Eigen::Map<const Eigen::VectorXd>(at.data(), jacobian.cols()),
+          residuals.squaredNorm(),
+          {jacobian.transpose() * jacobian, jacobian.transpose() * residuals}};
+}
+
+// lambda of clusters.h; 0 where it cannot be told. recordings: what they sum to there; empty where
+// one is cut short.
+double CompositeInflation(const FitProblem& problem, const FitPoint& point,
+                          RecordingSums* recordings) {
+  FitPoint copy = point;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  const JacobianBlocks score = EvaluateJacobianBlocks(built, true);
+  *recordings = built.shortened.empty() ? SumsOf(score, point) : RecordingSums();
+  const Eigen::MatrixXd unit = Units(FittedColumns(problem, point)).asDiagonal();
+  const ClusterScores own = GatherScores(score, ClusterByRecording(score), unit);
+  if (own.scores.cols() < 2) return 0.0;
+  Eigen::MatrixXd data = Eigen::MatrixXd::Zero(unit.rows(), unit.cols());
+  for (const Eigen::MatrixXd& factor : own.factors) data += factor.transpose() * factor;
+  const Eigen::MatrixXd all = data + unit * InformationBeside(score) * unit;
+  // On the subspace that the rows determine, by normal equations: exact enough for a trace.
+  const SymmetricEigen eigen = DecomposeSymmetric(all);
+  const Eigen::ArrayXd values = eigen.values;
+  const Eigen::Index rank = (values > kNullEigenvalue * values.maxCoeff()).count();
+  const Eigen::MatrixXd base =
+      eigen.vectors.rightCols(rank) * values.tail(rank).sqrt().inverse().matrix().asDiagonal();
+  ClusterScores inside{{}, base.transpose() * own.scores};
+  for (const Eigen::MatrixXd& factor : own.factors) inside.factors.push_back(factor * base);
+  // In this base H is the identity, and tr(H^-1 V_s) that of the covariance.
+  const ClusteredCovariance v =
+      Cr2(inside, Eigen::MatrixXd::Identity(rank, rank), Eigen::MatrixXd(0, rank));
+  return v.covariance.trace() / (base.transpose() * data * base).trace();
 }
 
 }  // namespace
@@ -88,7 +134,8 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) 
   return sigmas;
 }
 
-double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point) {
+double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point,
+                               RecordingSums* recordings) {
   int frames = 0, counted = 0;
   double now = 0.0;
   for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
@@ -100,11 +147,18 @@ double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point)
   }
   const double one_each = static_cast<double>(counted) / frames;
   if (counted < 2) return one_each;
-  const double lambda = CompositeInflation(problem, point);
+  const double lambda = CompositeInflation(problem, point, recordings);
+  // Without one before, recordings do not weigh alike.
+  const double before = problem.options().effective_weight;
+  if (!(lambda > 0.0) || !(before > 0.0)) *recordings = {};
   if (!(lambda > 0.0)) return one_each;
   // By its own sigmas no frame is worth more than one: that would undo the markers' noise.
   const bool own = problem.options().sigma_source == SigmaSource::kEstimate;
-  return own ? std::min(1.0, now / frames / lambda) : now / frames / lambda;
+  const double weight = own ? std::min(1.0, now / frames / lambda) : now / frames / lambda;
+  recordings->squares *= weight / before;
+  recordings->sums.information *= weight / before;
+  recordings->sums.gradient *= weight / before;
+  return weight;
 }
 
 }  // namespace pushid

@@ -19,7 +19,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Beyond that two gradients for each column take longer than the fit; of groups whose feet step (44
 // columns) they left no minimum, and J'J was taken all the same.
 constexpr Eigen::Index kMostColumnsWithCurvature = 40;
-constexpr double kNullEigenvalue = kNullSingularValue * kNullSingularValue;
 
 // Directions that the recordings say nothing about, whatever priors and settling simulations say: a
 // number that only its prior holds is not identified.
@@ -214,28 +213,6 @@ Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& poin
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   return {c.directions.Condition(),
           DescribeNullSpace(problem, point, DataNullSpace(score, scaled, columns), u)};
-}
-
-double CompositeInflation(const FitProblem& problem, const FitPoint& point) {
-  const Evaluated e = Evaluate(problem, point, false);
-  const Eigen::MatrixXd unit = e.unit.asDiagonal();
-  const ClusterScores own = GatherScores(e.score, ClusterByRecording(e.score), unit);
-  if (own.scores.cols() < 2) return 0.0;
-  Eigen::MatrixXd data = Eigen::MatrixXd::Zero(unit.rows(), unit.cols());
-  for (const Eigen::MatrixXd& factor : own.factors) data += factor.transpose() * factor;
-  const Eigen::MatrixXd all = data + unit * InformationBeside(e.score) * unit;
-  // On the subspace that the rows determine, by normal equations: exact enough for a trace.
-  const SymmetricEigen eigen = DecomposeSymmetric(all);
-  const Eigen::ArrayXd values = eigen.values;
-  const Eigen::Index rank = (values > kNullEigenvalue * values.maxCoeff()).count();
-  const Eigen::MatrixXd base =
-      eigen.vectors.rightCols(rank) * values.tail(rank).sqrt().inverse().matrix().asDiagonal();
-  ClusterScores inside{{}, base.transpose() * own.scores};
-  for (const Eigen::MatrixXd& factor : own.factors) inside.factors.push_back(factor * base);
-  // In this base H is the identity, and tr(H^-1 V_s) that of the covariance.
-  const ClusteredCovariance v =
-      Cr2(inside, Eigen::MatrixXd::Identity(rank, rank), Eigen::MatrixXd(0, rank));
-  return v.covariance.trace() / (base.transpose() * data * base).trace();
 }
 
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,

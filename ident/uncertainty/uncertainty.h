@@ -145,9 +145,6 @@ struct Uncertainty {
 // Fitted scale, in the order of FitPoint::Flat.
 Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point);
 
-// lambda of clusters.h; 0 where it cannot be told.
-double CompositeInflation(const FitProblem& problem, const FitPoint& point);
-
 // free: the optimum without the demand to settle, where that binds; null: one Newton step away,
 // (H - H_settling)^-1 g.
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,

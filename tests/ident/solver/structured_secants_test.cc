@@ -16,10 +16,7 @@ using Eigen::MatrixXd, Eigen::Vector2d, Eigen::VectorXd;
 
 // A quadratic cost 0.5 x'Hx + 10 whose rows say J'J = G.
 SecondOrder Quadratic(const MatrixXd& g, const MatrixXd& h, const VectorXd& x) {
-  SecondOrder rows(x.size());
-  rows.information = g;
-  rows.gradient = h * x;
-  return rows;
+  return {g, h * x};
 }
 double CostOf(const MatrixXd& h, const VectorXd& x) { return 0.5 * x.dot(h * x) + 10.0; }
 
@@ -40,7 +37,7 @@ class Secants : public ::testing::Test {
  protected:
   const MatrixXd g_ = (MatrixXd(2, 2) << 4.0, 1.0, 1.0, 3.0).finished();
   const MatrixXd h_ = (MatrixXd(2, 2) << 1.5, 0.2, 0.2, 2.0).finished();
-  const SecondOrder nothing_{2};
+  const SecondOrder nothing_ = SecondOrder::Zero(2);
 
   Model After(const std::vector<Vector2d>& points, bool learns, const MatrixXd& beyond = {}) const {
     StructuredSecants secants(learns, beyond);
@@ -84,7 +81,7 @@ TEST_F(Secants, TheSamePointTwiceChangesNothing) {
 // What nothing depends on stays, and so does everything where nothing is left.
 TEST_F(Secants, ColumnsWithoutInformationAndCostsOfZeroHaveRows) {
   StructuredSecants secants(true);
-  SecondOrder rows(2);
+  SecondOrder rows = SecondOrder::Zero(2);
   rows.information(0, 0) = 4.0;
   secants.Add(Vector2d::Zero(), 0.0, rows, nothing_);
   const Model model(secants.Rows());
@@ -97,7 +94,7 @@ TEST_F(Secants, ColumnsWithoutInformationAndCostsOfZeroHaveRows) {
 // Priors are linear: what they say is known already, and only recordings differ from it.
 TEST_F(Secants, LinearRowsStayWhatTheyAre) {
   StructuredSecants secants(true);
-  SecondOrder prior(2);
+  SecondOrder prior = SecondOrder::Zero(2);
   prior.information = MatrixXd::Identity(2, 2);
   for (const Vector2d& x : {Vector2d(1.0, 0.5), Vector2d(0.4, 0.1)}) {
     prior.gradient = x;
@@ -187,7 +184,7 @@ TEST(SummedCost, PointsThatCannotBeEvaluatedAreRefused) {
   auto* cost = new ceres::AutoDiffCostFunction<Logarithm, 1, 1>(new Logarithm);
   built.blocks.push_back({built.problem->AddResidualBlock(cost, nullptr, &x), 0, cost});
   built.parameter_blocks = {&x};
-  const SummedCost summed(&built, StructuredSecants(true));
+  const SummedCost summed(&built, StructuredSecants(true), {});
   double residuals[2], jacobian[2];
   double* jacobians[] = {jacobian};
   for (double at : {-1.0, 2.0}) {

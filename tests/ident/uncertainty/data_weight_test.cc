@@ -59,13 +59,48 @@ TEST(DataWeight, MakesUpForSigmas) {
   const Solution solution = SolveWeighted(&problem).solution;
   ASSERT_GE(solution.best, 0);
   const FitPoint& point = solution.Best().to;
-  const double weight = EstimateEffectiveWeight(problem, point);
+  RecordingSums sums;
+  const double weight = EstimateEffectiveWeight(problem, point, &sums);
   CostWeights weights = problem.weights();
   ResidualSigmas& sigmas = weights.sigmas;
   for (double* sigma : {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate}) *sigma *= 2.0;
   problem.Weigh(weights);
-  const double doubled = EstimateEffectiveWeight(problem, point);
+  const double doubled = EstimateEffectiveWeight(problem, point, &sums);
   EXPECT_NEAR(doubled / weight, 4.0, 1e-6);
+}
+
+// The recordings' sums that come with a weight are those of a problem so weighed.
+TEST(DataWeight, TellsTheSumsOfRecordings) {
+  const SyntheticOptions study = Noisy(0.003);
+  const auto recordings = MakePendulums(study);
+  FitOptions options = UnbiasedFit(study);
+  options.recording_weight = RecordingWeight::kEffective;
+  FitProblem problem(recordings, options);
+  FitPoint point = problem.NominalPoint();
+  RecordingSums sums;
+  CostWeights weights = problem.weights();
+  weights.effective_weight = 0.0;
+  problem.Weigh(weights);
+  weights.effective_weight = EstimateEffectiveWeight(problem, point, &sums);
+  EXPECT_EQ(sums.at.size(), 0) << "before they weighed alike";
+  weights.effective_weight *= 3.0;
+  problem.Weigh(weights);
+  weights.effective_weight = EstimateEffectiveWeight(problem, point, &sums);
+  problem.Weigh(weights);
+  const JacobianBlocks score = EvaluateJacobianBlocks(problem.Build(&point, 0));
+  SecondOrder all = SecondOrder::Zero(score.jacobian.cols());
+  double squares = 0.0;
+  for (int row = 0; row < score.residuals.size(); ++row) {
+    if (score.cluster_of_row[row] < 0) continue;
+    const Eigen::VectorXd by = score.jacobian.row(row);
+    all.information += by * by.transpose();
+    all.gradient += by * score.residuals[row];
+    squares += score.residuals[row] * score.residuals[row];
+  }
+  ASSERT_EQ(sums.at.size(), all.gradient.size());
+  EXPECT_LT((sums.sums.information - all.information).norm(), 1e-9 * all.information.norm());
+  EXPECT_LT((sums.sums.gradient - all.gradient).norm(), 1e-9 * all.gradient.norm());
+  EXPECT_NEAR(sums.squares, squares, 1e-9 * squares);
 }
 
 // One factor on all rows leaves an unpenalized optimum where it is.
