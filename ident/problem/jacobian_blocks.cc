@@ -170,28 +170,29 @@ std::vector<int> JacobianBlocks::RowsOf(int cluster) const {
   return rows;
 }
 
-void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps,
+void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps, bool both_sides,
                   JacobianBlocks* score) {
   ceres::Problem::EvaluateOptions by_all;
   by_all.parameter_blocks = built.parameter_blocks;
   const Eigen::Index size = score->jacobian.cols();
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
   Eigen::Index column = 0;
-  std::vector<double> above, below;
+  std::vector<double> above(size), below(size);  // without the other side: at the point
+  Eigen::VectorXd::Map(below.data(), size) = score->jacobian.transpose() * score->residuals;
+  const auto evaluate = [&](double* at, double value, std::vector<double>* gradient) {
+    std::swap(*at, value);
+    const bool evaluated = built.problem->Evaluate(by_all, nullptr, nullptr, gradient, nullptr);
+    *at = value;
+    return evaluated;
+  };
   for (double* block : built.parameter_blocks) {
     for (int k = 0; k < built.problem->ParameterBlockSize(block); ++k, ++column) {
       const double step = steps[column];
       if (step == 0.0) continue;
-      const double value = block[k];
-      double cost = 0.0;
-      block[k] = value + step;
-      bool evaluated = built.problem->Evaluate(by_all, &cost, nullptr, &above, nullptr);
-      block[k] = value - step;
-      evaluated = evaluated && built.problem->Evaluate(by_all, &cost, nullptr, &below, nullptr);
-      block[k] = value;
-      if (!evaluated) return;
+      if (!evaluate(block + k, block[k] + step, &above)) return;
+      if (both_sides && !evaluate(block + k, block[k] - step, &below)) return;
       for (Eigen::Index row = 0; row < size; ++row) {
-        hessian(row, column) = (above[row] - below[row]) / (2.0 * step);
+        hessian(row, column) = (above[row] - below[row]) / (both_sides ? 2.0 * step : step);
       }
     }
   }
