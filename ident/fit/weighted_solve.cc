@@ -80,7 +80,7 @@ FitProblem OnTheWay(FitProblem problem) {
 }
 
 // Where recordings were summed up none of them fails.
-std::vector<FailedRollout> FailuresOf(const FitProblem& problem, const SolveStart& start) {
+std::vector<FailedRollout> FailuresAfter(const FitProblem& problem, const SolveStart& start) {
   if (start.recordings.at.size() > 0) return {};
   return problem.Failures(start.to, 0);
 }
@@ -143,7 +143,7 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
       SolveOn(share < 1.0 ? OnTheWay(part) : part, &held);
     }
   }
-  held.failed = FailuresOf(demanding, held);
+  held.failed = FailuresAfter(demanding, held);
   return held;
 }
 
@@ -187,7 +187,7 @@ bool SolveOthers(const FitProblem& problem, bool held, Solution* solution) {
     } else {
       SolveOn(problem, &start);
     }
-    start.failed = FailuresOf(problem, start);
+    start.failed = FailuresAfter(problem, start);
     const SolveStart& best = solution->Best();
     const bool better = start.converged && start.failed.size() <= best.failed.size() &&
                         start.cost < best.cost - kSameCost * std::abs(best.cost);
@@ -213,7 +213,7 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
     solved.free.reset();
     SolveStart& best = solution.starts[solution.best];
     solved.weights_settled = Weigh(problem, &best);
-    best.failed = FailuresOf(*problem, best);
+    best.failed = FailuresAfter(*problem, best);
     solved.work.Add("weights");
     Demand(weight, problem, &solved);
     solved.work.Add("settling");

@@ -7,7 +7,6 @@
 
 #include "datasets/inspection/findings.h"
 #include "ident/problem/own_axes.h"
-#include "residuals/cost_functions/lane_group.h"
 
 namespace pushid {
 
@@ -149,50 +148,15 @@ double FitProblem::DataCost(const FitPoint& point) const {
   if (options_.likelihood != Likelihood::kTrajectory) return 0.5 * DevianceAt(point).value;
   FitPoint copy = point;
   double cost = 0.0;
-  for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
-    if (Count(i) == 0) continue;
-    const auto rollout =
-        MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas, Weight(i, 0), 0);
+  for (const auto& [rollout, blocks] : Rollouts(&copy, 0)) {
+    if (rollout == nullptr) continue;
     Eigen::VectorXd values(rollout->num_residuals());
-    if (!RolloutResiduals(*rollout, RecordingBlocks(&copy, i).data(), values.data())) {
+    if (!RolloutResiduals(*rollout, blocks.data(), values.data())) {
       return std::numeric_limits<double>::infinity();
     }
     cost += 0.5 * values.squaredNorm();
   }
   return cost;
-}
-
-std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horizon) const {
-  std::vector<FailedRollout> failures;
-  if (options_.likelihood != Likelihood::kTrajectory) return failures;  // rolls nothing out
-  FitPoint copy = point;
-  const int total = static_cast<int>(recordings().size());
-  std::vector<std::shared_ptr<const RolloutProblem>> problems(total);
-  std::vector<const RolloutProblem*> in_lanes(total, nullptr);
-  std::vector<std::vector<double*>> blocks(total);
-  for (int i = 0; i < total; ++i) {
-    if (Count(i) == 0) continue;
-    problems[i] = MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas, 1.0,
-                                     Frames(i, horizon));
-    blocks[i] = RecordingBlocks(&copy, i);
-    if (HasLanes(*problems[i])) in_lanes[i] = problems[i].get();
-  }
-  std::vector<bool> stays(total, false);  // within the domain, as far as is known
-  for (const SideBySide& group : PutSideBySide(in_lanes)) {
-    std::vector<double const* const*> at;
-    for (int i : group.members) at.push_back(blocks[i].data());
-    const std::vector<RolloutSums> sums = group.lanes.Evaluate(at, LaneSums::kSquares);
-    for (size_t k = 0; k < sums.size(); ++k) stays[group.members[k]] = sums[k].ok;
-  }
-  for (int i = 0; i < total; ++i) {
-    if (problems[i] == nullptr || stays[i]) continue;
-    SensitivityInputs inputs;
-    RolloutPath<double> path;
-    const RolloutStatus status =
-        RollOut(*problems[i], blocks[i].data(), Derivatives::kNone, &inputs, &path, nullptr);
-    if (!status.ok) failures.push_back({i, status});
-  }
-  return failures;
 }
 
 size_t FitProblem::NumMotionRows(int recording) const {

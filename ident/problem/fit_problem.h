@@ -48,7 +48,9 @@ struct BuiltProblem {
     const ceres::CostFunction* cost;
   };
   std::vector<Block> blocks;
-  std::vector<double*> parameter_blocks;  // in the order of FitPoint::Flat
+  std::vector<RolloutAt> rollouts;  // by recording; no problem where it has no such block
+  std::shared_ptr<const std::vector<SideBySide>> side_by_side;  // those of them
+  std::vector<double*> parameter_blocks;                        // in the order of FitPoint::Flat
   std::vector<FailedRollout> shortened;
   // By recording: its cost less this is its negative log likelihood, up to a constant that no
   // point changes (residuals/cost_functions/likelihood_residual.h): only so do costs of problems
@@ -161,8 +163,9 @@ class FitProblem {
 
  private:
   void AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const;
-  std::shared_ptr<const RolloutProblem> StageRollout(int recording, int horizon,
-                                                     const Built& built) const;
+  // By recording, over `horizon` frames; no problem where one does not count.
+  std::vector<RolloutAt> Rollouts(FitPoint* point, int horizon) const;
+  std::shared_ptr<const RolloutProblem> StageRollout(int recording, int horizon, int frames) const;
 
   std::shared_ptr<const std::vector<PendulumRecording>>
       turned_;  // null where the file's axes serve
@@ -212,8 +215,9 @@ struct FamilyPlace {
   FitProblem::Built* built;
   int recording = -1;     // of a family of recordings
   std::string unit = {};  // of a family of units; empty: the shared parameters
-  // The rollout of the recording, as long as it stays within the domain; null: not even one frame.
-  std::shared_ptr<const RolloutProblem> rollout = {};
+
+  // Of the recording, as long as it stays within the domain; no problem: not even one frame.
+  const RolloutAt& rollout() const { return built->rollouts[recording]; }
 };
 
 struct ResidualFamily {

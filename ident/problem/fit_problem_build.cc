@@ -44,24 +44,63 @@ void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* bui
   }
 }
 
-// Of a recording in a stage; null where it fails in its very first step: nothing left to compare.
 std::shared_ptr<const RolloutProblem> FitProblem::StageRollout(int recording, int horizon,
-                                                               const Built& built) const {
-  int frames = Frames(recording, horizon);
-  for (const FailedRollout& failed : built.shortened) {
-    if (failed.recording == recording) frames = failed.status.frame;
-  }
-  if (frames == 1) return nullptr;
+                                                               int frames) const {
   return MakeRolloutProblem(recordings()[recording], options_.model, map_, options_.sigmas,
                             Weight(recording, horizon), frames);
+}
+
+std::vector<RolloutAt> FitProblem::Rollouts(FitPoint* point, int horizon) const {
+  std::vector<RolloutAt> rollouts(recordings().size());
+  if (options_.likelihood != Likelihood::kTrajectory) return rollouts;  // rolls nothing out
+  for (int i = 0; i < static_cast<int>(rollouts.size()); ++i) {
+    if (Count(i) == 0) continue;
+    rollouts[i] = {StageRollout(i, horizon, Frames(i, horizon)), RecordingBlocks(point, i)};
+  }
+  return rollouts;
+}
+
+namespace {
+
+std::vector<FailedRollout> FailuresOf(const std::vector<RolloutAt>& rollouts,
+                                      const std::vector<SideBySide>& side_by_side) {
+  std::vector<FailedRollout> failures;
+  const std::vector<RolloutSums> sums = SumUp(side_by_side, rollouts, LaneSums::kSquares);
+  for (size_t i = 0; i < rollouts.size(); ++i) {
+    const auto& [problem, blocks] = rollouts[i];
+    if (problem == nullptr || sums[i].ok) continue;
+    SensitivityInputs inputs;
+    RolloutPath<double> path;
+    const RolloutStatus status =
+        RollOut(*problem, blocks.data(), Derivatives::kNone, &inputs, &path, nullptr);
+    if (!status.ok) failures.push_back({static_cast<int>(i), status});
+  }
+  return failures;
+}
+
+}  // namespace
+
+std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horizon) const {
+  FitPoint copy = point;
+  const std::vector<RolloutAt> rollouts = Rollouts(&copy, horizon);
+  return FailuresOf(rollouts, PutSideBySide(rollouts));
 }
 
 FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_network,
                                     int num_threads, bool all_inside) const {
   Built built;
   AddParameterBlocks(point, num_threads, &built);
-  const bool rolls = options_.likelihood == Likelihood::kTrajectory;
-  if (rolls && !all_inside) built.shortened = Failures(*point, horizon);
+  built.rollouts = Rollouts(point, horizon);
+  std::vector<SideBySide> side_by_side = PutSideBySide(built.rollouts);
+  if (!all_inside) built.shortened = FailuresOf(built.rollouts, side_by_side);
+  for (const auto& [recording, status] : built.shortened) {
+    // Of one that fails in its very first step nothing is left to compare.
+    built.rollouts[recording].problem =
+        status.frame == 1 ? nullptr : StageRollout(recording, horizon, status.frame);
+  }
+  if (!built.shortened.empty()) side_by_side = PutSideBySide(built.rollouts);
+  built.side_by_side = std::make_shared<std::vector<SideBySide>>(std::move(side_by_side));
+  built.evaluation->set_side_by_side(built.side_by_side);
 
   FamilyPlace place{*this, point, &built};
   const auto add = [&](ResidualFamily::Per per) {
@@ -72,7 +111,6 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
   for (int i = 0; i < static_cast<int>(recordings().size()); ++i) {
     if (Count(i) == 0) continue;
     place.recording = i;
-    if (rolls) place.rollout = StageRollout(i, horizon, built);
     add(ResidualFamily::kRecording);
   }
   add(ResidualFamily::kPoint);

@@ -2,7 +2,6 @@
 #include "ident/problem/jacobian_blocks.h"
 
 #include <map>
-#include <optional>
 #include <set>
 #include <utility>
 
@@ -39,33 +38,6 @@ bool EvaluateRows(const ceres::CostFunction& cost, const std::vector<const doubl
   return true;
 }
 
-std::vector<const double*> BlocksOf(const FitProblem::Built& built,
-                                    const FitProblem::Built::Block& block) {
-  std::vector<double*> on;
-  built.problem->GetParameterBlocksForResidualBlock(block.id, &on);
-  return {on.begin(), on.end()};
-}
-
-// Rollouts that go side by side, by the index of their block; the others are empty.
-std::vector<std::optional<RolloutSums>> SumsSideBySide(const FitProblem::Built& built,
-                                                       LaneSums wanted) {
-  std::vector<const RolloutProblem*> in_lanes;
-  for (const FitProblem::Built::Block& block : built.blocks) {
-    const auto* rollout = dynamic_cast<const CondensedRollout*>(block.cost);
-    in_lanes.push_back(rollout != nullptr ? rollout->in_lanes() : nullptr);
-  }
-  std::vector<std::optional<RolloutSums>> sums(in_lanes.size());
-  for (const SideBySide& group : PutSideBySide(in_lanes)) {
-    std::vector<std::vector<const double*>> at;
-    std::vector<double const* const*> blocks;
-    for (int i : group.members) at.push_back(BlocksOf(built, built.blocks[i]));
-    for (const std::vector<const double*>& of_one : at) blocks.push_back(of_one.data());
-    std::vector<RolloutSums> results = group.lanes.Evaluate(blocks, wanted);
-    for (size_t k = 0; k < results.size(); ++k) sums[group.members[k]] = std::move(results[k]);
-  }
-  return sums;
-}
-
 // Puts rows, and whose they are, under each other.
 class Gatherer {
  public:
@@ -77,18 +49,19 @@ class Gatherer {
     }
   }
 
-  // sums: of a rollout, where they are there.
-  void Add(const FitProblem::Built::Block& block, const std::optional<RolloutSums>& sums) {
+  // sums: of all rollouts that go side by side.
+  void Add(const FitProblem::Built::Block& block, const std::vector<RolloutSums>& sums) {
     std::vector<double*> on;
     built_.problem->GetParameterBlocksForResidualBlock(block.id, &on);
     const std::vector<const double*> at(on.begin(), on.end());
     const auto* rollout = dynamic_cast<const CondensedRows*>(block.cost);
+    const auto* recording = dynamic_cast<const CondensedRollout*>(block.cost);
     std::vector<PersonRows> people(1);
     // A block that cannot be evaluated here was left out by Build; skip it all the same.
-    const bool told =
-        sums ? static_cast<const CondensedRollout*>(block.cost)->TellPeople(*sums, robust_, &people)
-        : rollout != nullptr ? rollout->EvaluatePeople(at.data(), robust_, &people)
-                             : EvaluateRows(*block.cost, at, &people[0]);
+    const bool told = recording != nullptr && recording->in_lanes() != nullptr
+                          ? recording->TellPeople(sums[block.cluster], robust_, &people)
+                      : rollout != nullptr ? rollout->EvaluatePeople(at.data(), robust_, &people)
+                                           : EvaluateRows(*block.cost, at, &people[0]);
     if (!told) return;
     const bool data = block.cluster >= 0;
     const auto* steps = dynamic_cast<const LikelihoodResidual*>(block.cost);
@@ -155,9 +128,9 @@ JacobianBlocks EvaluateJacobianBlocks(const FitProblem::Built& built, bool robus
   CountEvaluations({1, 0});
   JacobianBlocks score;
   Gatherer gatherer(built, robust, &score);
-  const std::vector<std::optional<RolloutSums>> sums =
-      SumsSideBySide(built, robust ? LaneSums::kRobust : LaneSums::kPlain);
-  for (size_t i = 0; i < built.blocks.size(); ++i) gatherer.Add(built.blocks[i], sums[i]);
+  const std::vector<RolloutSums> sums =
+      SumUp(*built.side_by_side, built.rollouts, robust ? LaneSums::kRobust : LaneSums::kPlain);
+  for (const FitProblem::Built::Block& block : built.blocks) gatherer.Add(block, sums);
   gatherer.Finish();
   return score;
 }
@@ -170,28 +143,29 @@ std::vector<int> JacobianBlocks::RowsOf(int cluster) const {
   return rows;
 }
 
-void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps,
+void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps, bool both_sides,
                   JacobianBlocks* score) {
   ceres::Problem::EvaluateOptions by_all;
   by_all.parameter_blocks = built.parameter_blocks;
   const Eigen::Index size = score->jacobian.cols();
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
   Eigen::Index column = 0;
-  std::vector<double> above, below;
+  std::vector<double> above(size), below(size);  // without the other side: at the point
+  Eigen::VectorXd::Map(below.data(), size) = score->jacobian.transpose() * score->residuals;
+  const auto evaluate = [&](double* at, double value, std::vector<double>* gradient) {
+    std::swap(*at, value);
+    const bool evaluated = built.problem->Evaluate(by_all, nullptr, nullptr, gradient, nullptr);
+    *at = value;
+    return evaluated;
+  };
   for (double* block : built.parameter_blocks) {
     for (int k = 0; k < built.problem->ParameterBlockSize(block); ++k, ++column) {
       const double step = steps[column];
       if (step == 0.0) continue;
-      const double value = block[k];
-      double cost = 0.0;
-      block[k] = value + step;
-      bool evaluated = built.problem->Evaluate(by_all, &cost, nullptr, &above, nullptr);
-      block[k] = value - step;
-      evaluated = evaluated && built.problem->Evaluate(by_all, &cost, nullptr, &below, nullptr);
-      block[k] = value;
-      if (!evaluated) return;
+      if (!evaluate(block + k, block[k] + step, &above)) return;
+      if (both_sides && !evaluate(block + k, block[k] - step, &below)) return;
       for (Eigen::Index row = 0; row < size; ++row) {
-        hessian(row, column) = (above[row] - below[row]) / (2.0 * step);
+        hessian(row, column) = (above[row] - below[row]) / (both_sides ? 2.0 * step : step);
       }
     }
   }

@@ -31,9 +31,10 @@ struct JacobianBlocks {
 // robust: with robust_jacobian.
 JacobianBlocks EvaluateJacobianBlocks(const BuiltProblem& built, bool robust = false);
 
-// Central differences of the gradient J'r, one column at a time, `steps` to either side (0: a
-// column that does not move, and has none). Leaves the curvature empty where some residual cannot
-// be evaluated beside the point.
-void AddCurvature(const BuiltProblem& built, const Eigen::VectorXd& steps, JacobianBlocks* score);
+// Differences of the gradient J'r, one column at a time, `steps` ahead of the point or to both
+// sides of it (0: a column that does not move, and has none). Leaves the curvature empty where some
+// residual cannot be evaluated there.
+void AddCurvature(const BuiltProblem& built, const Eigen::VectorXd& steps, bool both_sides,
+                  JacobianBlocks* score);
 
 }  // namespace pushid

@@ -2,7 +2,7 @@
 #include "ident/problem/parallel_evaluation.h"
 
 #include <algorithm>
-#include <optional>
+#include <map>
 
 #include "ident/problem/parallel.h"
 #include "ident/problem/work.h"
@@ -101,11 +101,11 @@ std::unique_ptr<ceres::CostFunction> ParallelEvaluation::Wrap(
 // One cost function, or rollouts side by side.
 struct ParallelEvaluation::Task {
   std::vector<Prepared*> members;
-  std::optional<LaneGroup> lanes;
+  const LaneGroup* lanes;  // null: one cost function
 
   void Prepare(LaneSums wanted, const ceres::Problem& problem) {
     const bool with_jacobians = wanted != LaneSums::kSquares;
-    if (!lanes) return members[0]->Prepare(with_jacobians, problem);
+    if (lanes == nullptr) return members[0]->Prepare(with_jacobians, problem);
     std::vector<double const* const*> blocks;
     bool there = true;
     for (const Prepared* member : members) {
@@ -124,15 +124,21 @@ ParallelEvaluation::ParallelEvaluation(int num_threads) : num_threads_(num_threa
 ParallelEvaluation::~ParallelEvaluation() = default;
 
 void ParallelEvaluation::SetTasks() {
-  std::vector<const RolloutProblem*> in_lanes;
+  std::map<const RolloutProblem*, Prepared*> in_lanes;
   for (Prepared* prepared : prepared_) {
     const CondensedRollout* const rollout = prepared->rollout();
-    in_lanes.push_back(rollout != nullptr ? rollout->in_lanes() : nullptr);
-    if (in_lanes.back() == nullptr) tasks_.push_back({{prepared}, std::nullopt});
+    if (rollout != nullptr && rollout->in_lanes() != nullptr) {
+      in_lanes[rollout->in_lanes()] = prepared;
+    } else {
+      tasks_.push_back({{prepared}, nullptr});
+    }
   }
-  for (SideBySide& group : PutSideBySide(in_lanes)) {
-    Task task{{}, std::move(group.lanes)};
-    for (int i : group.members) task.members.push_back(prepared_[i]);
+  for (size_t g = 0; !in_lanes.empty() && g < side_by_side_->size(); ++g) {
+    const LaneGroup& lanes = (*side_by_side_)[g].lanes;
+    Task task{{}, &lanes};
+    for (const RolloutProblem* problem : lanes.problems()) {
+      task.members.push_back(in_lanes.at(problem));
+    }
     tasks_.push_back(std::move(task));
   }
 }

@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "residuals/lanes/person_lanes.h"
+#include "residuals/cost_functions/lane_group.h"
 
 namespace pushid {
 
@@ -28,6 +28,10 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
                                             const std::vector<double*>& blocks);
   // Whose constant blocks need no derivatives.
   void set_problem(const ceres::Problem* problem) { problem_ = problem; }
+  // Of rollouts that are wrapped.
+  void set_side_by_side(std::shared_ptr<const std::vector<SideBySide>> groups) {
+    side_by_side_ = std::move(groups);
+  }
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
@@ -38,6 +42,7 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
 
   int num_threads_;
   const ceres::Problem* problem_ = nullptr;
+  std::shared_ptr<const std::vector<SideBySide>> side_by_side_;
   std::vector<Prepared*> prepared_;  // owned by the problem
   std::vector<Task> tasks_;          // of all of them; from the first evaluation on
 };

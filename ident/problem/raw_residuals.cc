@@ -1,8 +1,6 @@
 // ident: residuals before any weight; of people alone side by side.
 #include "ident/problem/raw_residuals.h"
 
-#include "residuals/cost_functions/lane_group.h"
-
 namespace pushid {
 
 ResidualSigmas PlainSigmas(const FitProblem& problem) {
@@ -12,25 +10,14 @@ ResidualSigmas PlainSigmas(const FitProblem& problem) {
 }
 
 std::vector<std::vector<double>> ResidualsOf(const std::vector<RolloutAt>& rollouts) {
+  std::vector<RolloutSums> sums = SumUp(PutSideBySide(rollouts), rollouts, LaneSums::kNone);
   std::vector<std::vector<double>> raw(rollouts.size());
-  std::vector<const RolloutProblem*> in_lanes(rollouts.size(), nullptr);
   for (size_t i = 0; i < rollouts.size(); ++i) {
     const RolloutProblem* const problem = rollouts[i].problem.get();
-    if (problem == nullptr) continue;
-    if (HasLanes(*problem)) {
-      in_lanes[i] = problem;
-      continue;
-    }
+    raw[i] = std::move(sums[i].residuals);
+    if (problem == nullptr || HasLanes(*problem)) continue;
     raw[i].resize(problem->num_residuals());
     if (!RolloutResiduals(*problem, rollouts[i].blocks.data(), raw[i].data())) raw[i].clear();
-  }
-  for (const SideBySide& group : PutSideBySide(in_lanes)) {
-    std::vector<double const* const*> at;
-    for (int i : group.members) at.push_back(rollouts[i].blocks.data());
-    std::vector<RolloutSums> results = group.lanes.Evaluate(at, LaneSums::kNone);
-    for (size_t k = 0; k < results.size(); ++k) {
-      raw[group.members[k]] = std::move(results[k].residuals);
-    }
   }
   return raw;
 }

@@ -1,7 +1,6 @@
 // ident: residuals of whole recordings before any weight.
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "ident/problem/fit_problem.h"
@@ -16,12 +15,7 @@ using ResidualsByRecording = std::vector<std::vector<double>>;
 ResidualsByRecording RawResiduals(const FitProblem& problem, const FitPoint& point,
                                   const std::vector<bool>& wanted = {});
 
-// A rollout and where it is evaluated; no problem: it is not wanted.
-struct RolloutAt {
-  std::shared_ptr<const RolloutProblem> problem;
-  std::vector<double*> blocks;
-};
-// The same of each of them.
+// The same of each of these.
 std::vector<std::vector<double>> ResidualsOf(const std::vector<RolloutAt>& rollouts);
 
 // Those of a problem without the robust loss.

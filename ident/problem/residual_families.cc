@@ -21,9 +21,9 @@ using Options = FitOptions;
 bool Rolls(const Options& o) { return o.likelihood == Likelihood::kTrajectory; }
 
 void AddTrajectory(const Family&, const Place& at) {
-  if (at.rollout == nullptr) return;
-  at.built->AddRollout(std::make_unique<CondensedRollout>(at.rollout),
-                       at.problem.RecordingBlocks(at.point, at.recording), at.recording);
+  const auto& [problem, blocks] = at.rollout();
+  if (problem == nullptr) return;
+  at.built->AddRollout(std::make_unique<CondensedRollout>(problem), blocks, at.recording);
 }
 
 // Bodies join once the path is there: their joints follow the path before and after a frame. A fit
@@ -32,9 +32,10 @@ void AddTrajectory(const Family&, const Place& at) {
 void AddBodies(const Family&, const Place& at) {
   const Options& o = at.problem.options();
   const std::string& id = at.problem.recordings()[at.recording].id;
-  if (at.rollout == nullptr || o.body->motions.count(id) == 0) return;
-  at.built->AddRollout(std::make_unique<BodyResidual>(at.rollout, o.body, o.body_weight),
-                       at.problem.RecordingBlocks(at.point, at.recording), at.recording);
+  const auto& [problem, blocks] = at.rollout();
+  if (problem == nullptr || o.body->motions.count(id) == 0) return;
+  at.built->AddRollout(std::make_unique<BodyResidual>(problem, o.body, o.body_weight), blocks,
+                       at.recording);
 }
 
 void AddLikelihood(const Family&, const Place& at) {

@@ -18,8 +18,8 @@ std::string ValueText(double value, double error) {
 }
 
 // A row a parameter, a column a refit, and the fit itself last.
-TextTable SideBySide(const RefitTable& check, const std::string& refits, const std::string& fit,
-                     bool with_errors) {
+TextTable FitAndRefits(const RefitTable& check, const std::string& refits, const std::string& fit,
+                       bool with_errors) {
   std::vector<std::string> header = {refits};
   for (const RefitRow& row : check.rows) header.push_back(row.name);
   header.insert(header.end(), {fit, "unit"});
@@ -121,11 +121,11 @@ TextTable MovesTable(const RefitTable& check) {
 }
 
 TextTable HorizonTable(const RefitTable& check) {
-  return SideBySide(check, "from the push on", "all", true);
+  return FitAndRefits(check, "from the push on", "all", true);
 }
 
 TextTable PriorTable(const RefitTable& check) {
-  return SideBySide(check, "priors", "as fitted", false);
+  return FitAndRefits(check, "priors", "as fitted", false);
 }
 
 namespace {

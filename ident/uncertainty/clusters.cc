@@ -113,12 +113,15 @@ Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) { return (1.0 - leverage).ma
 
 // F of J base, with F'F that of all its rows.
 Eigen::MatrixXd FewRows(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& base) {
-  std::vector<Eigen::Index> used;
+  std::vector<Eigen::Index> used, filled;
   for (Eigen::Index column = 0; column < jacobian.cols(); ++column) {
     if (!jacobian.col(column).isZero(0.0)) used.push_back(column);
   }
-  if (used.empty()) return Eigen::MatrixXd(0, base.cols());
-  const Eigen::MatrixXd packed = jacobian(Eigen::all, used), own = base(used, Eigen::all);
+  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
+    if (!jacobian.row(row).isZero(0.0)) filled.push_back(row);
+  }
+  const Eigen::MatrixXd packed = jacobian(filled, used), own = base(used, Eigen::all);
+  if (filled.size() <= used.size()) return packed * own;  // condensed already
   const SymmetricEigen squares = DecomposeSymmetric(packed.transpose() * packed);
   return squares.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
          (squares.vectors.transpose() * own);

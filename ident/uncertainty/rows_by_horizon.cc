@@ -175,6 +175,7 @@ JacobianBlocks RowsBeside(const FitProblem& problem, FitPoint point) {
   built.blocks.erase(std::remove_if(built.blocks.begin(), built.blocks.end(),
                                     [](const auto& block) { return block.cluster >= 0; }),
                      built.blocks.end());
+  built.side_by_side = std::make_shared<std::vector<SideBySide>>();
   return EvaluateJacobianBlocks(built);
 }
 

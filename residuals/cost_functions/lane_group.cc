@@ -112,30 +112,43 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
   return results;
 }
 
-std::vector<SideBySide> PutSideBySide(const std::vector<const RolloutProblem*>& problems) {
+std::vector<SideBySide> PutSideBySide(const std::vector<RolloutAt>& rollouts) {
   std::vector<int> order;
-  for (int i = 0; i < static_cast<int>(problems.size()); ++i) {
-    if (problems[i] != nullptr) order.push_back(i);
+  for (int i = 0; i < static_cast<int>(rollouts.size()); ++i) {
+    if (rollouts[i].problem != nullptr && HasLanes(*rollouts[i].problem)) order.push_back(i);
   }
   // Neighbours are of about the same length: a group takes as long as its longest.
-  std::stable_sort(order.begin(), order.end(), [&problems](int i, int j) {
-    return problems[i]->horizon > problems[j]->horizon;
+  std::stable_sort(order.begin(), order.end(), [&rollouts](int i, int j) {
+    return rollouts[i].problem->horizon > rollouts[j].problem->horizon;
   });
   std::vector<SideBySide> groups;
   for (size_t first = 0; first < order.size();) {
-    const RolloutProblem& of_all = *problems[order[first]];
+    const RolloutProblem& of_all = *rollouts[order[first]].problem;
     std::vector<int> members;
     std::vector<const RolloutProblem*> together;
     for (size_t i = first; i < order.size(); ++i) {
+      const RolloutProblem* const next = rollouts[order[i]].problem.get();
       const bool full = static_cast<int>(members.size()) == BestPersonLanes().lanes;
-      if (full || !SameLanes(of_all, *problems[order[i]])) break;
+      if (full || !SameLanes(of_all, *next)) break;
       members.push_back(order[i]);
-      together.push_back(problems[order[i]]);
+      together.push_back(next);
     }
     first += members.size();
     groups.push_back({std::move(members), LaneGroup(std::move(together))});
   }
   return groups;
+}
+
+std::vector<RolloutSums> SumUp(const std::vector<SideBySide>& groups,
+                               const std::vector<RolloutAt>& rollouts, LaneSums sums) {
+  std::vector<RolloutSums> all(rollouts.size());
+  for (const SideBySide& group : groups) {
+    std::vector<double const* const*> at;
+    for (int i : group.members) at.push_back(rollouts[i].blocks.data());
+    std::vector<RolloutSums> some = group.lanes.Evaluate(at, sums);
+    for (size_t k = 0; k < some.size(); ++k) all[group.members[k]] = std::move(some[k]);
+  }
+  return all;
 }
 
 }  // namespace pushid

@@ -4,6 +4,7 @@
 // bit; other widths of vectors round otherwise (to 1e-12 of a sum).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "residuals/cost_functions/lane_tables.h"
@@ -32,17 +33,26 @@ class LaneGroup {
   // At the given blocks of each, by LaneSums.
   std::vector<RolloutSums> Evaluate(const std::vector<double const* const*>& blocks,
                                     LaneSums sums) const;
+  const std::vector<const RolloutProblem*>& problems() const { return problems_; }
 
  private:
   std::vector<const RolloutProblem*> problems_;
   LaneTables tables_;
 };
 
+// A rollout and where it is evaluated; no problem: it is not wanted.
+struct RolloutAt {
+  std::shared_ptr<const RolloutProblem> problem;
+  std::vector<double*> blocks;
+};
 struct SideBySide {
   std::vector<int> members;  // indices
   LaneGroup lanes;
 };
-// Puts problems that have lanes side by side, as many as fit; null: has none, and is in no group.
-std::vector<SideBySide> PutSideBySide(const std::vector<const RolloutProblem*>& problems);
+// Rollouts that have lanes, as many together as fit; the others are in no group.
+std::vector<SideBySide> PutSideBySide(const std::vector<RolloutAt>& rollouts);
+// By rollout, as they were put; not ok where one is in no group.
+std::vector<RolloutSums> SumUp(const std::vector<SideBySide>& groups,
+                               const std::vector<RolloutAt>& rollouts, LaneSums sums);
 
 }  // namespace pushid

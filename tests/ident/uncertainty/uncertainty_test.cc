@@ -99,6 +99,19 @@ TEST(Uncertainty, HessianIsThatOfTheCost) {
   ExpectRelativelyEqual(hessian, differences, 1e-3);
 }
 
+TEST(Uncertainty, CurvatureIsTheSameFromOneSideAndFromBoth) {
+  const auto s = SolveSmall(6, 0.5);
+  const Eigen::VectorXd unit = Units(FittedColumns(*s->problem, s->point));
+  FitPoint copy = s->point;
+  const FitProblem::Built built = s->problem->Build(&copy, 0);
+  JacobianBlocks ahead = EvaluateJacobianBlocks(built), both = ahead;
+  AddCurvature(built, 3e-7 * unit, false, &ahead);
+  AddCurvature(built, 1e-4 * unit, true, &both);
+  const Eigen::MatrixXd squares = both.jacobian.transpose() * both.jacobian;
+  EXPECT_GT(both.curvature.norm(), 1e-3 * squares.norm());
+  ExpectRelativelyEqual(squares + ahead.curvature, squares + both.curvature, 1e-5);
+}
+
 // Bell and McCaffrey's correction by its definition, on the rows of each recording.
 TEST(Uncertainty, ClusteredIsBiasReduced) {
   for (double prior : {0.0, 0.5}) {
