@@ -7,7 +7,6 @@
 
 #include "apps/completion.h"
 #include "apps/flags/command_line.h"
-#include "apps/flags/man_page.h"
 #include "apps/support/app_support.h"
 #include "apps/support/processes.h"
 #include "datasets/files/names.h"

@@ -14,7 +14,6 @@
 #include <list>
 #include <new>
 
-#include "apps/flags/man_page.h"
 #include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
 #include "datasets/files/names.h"

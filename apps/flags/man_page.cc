@@ -1,9 +1,8 @@
 // apps: pages of the manual.
-#include "apps/flags/man_page.h"
-
 #include <algorithm>
 #include <sstream>
 
+#include "apps/flags/command_line.h"
 #include "apps/support/app_support.h"
 
 namespace pushid {

@@ -106,12 +106,9 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
   Check(PrepareFit(pendulums, &options, &warnings), Fault::kUsage);
   warnings.insert(warnings.begin(), ignored.begin(), ignored.end());
   Warn(warnings);
+  const SolveProgress told = ProgressOf(progress);
   FittedModel fitted;
-  {
-    const SolveProgress told = ProgressOf(progress);
-    const py::gil_scoped_release no_gil;
-    fitted.fit = Fit(pendulums, options, told);
-  }
+  fitted.fit = WithoutGil([&] { return Fit(pendulums, options, told); });
   FitResult& fit = fitted.fit;
   if (!fit.ok()) Raise(Fault::kFit, Error{"the fit failed: " + fit.message});
   const Warnings of_files = WarningsOf(file_warnings);
@@ -162,12 +159,9 @@ py::object EvaluateOn(const Model& model, const std::vector<SharedRecording>& re
   const IdentifiedModel identified = IdentifiedOf(model);
   const auto pendulums = Pendulums(recordings, identified.mapping);
   if (observed > 0) Check(CheckObserved(pendulums, observed), Fault::kUsage);
-  nlohmann::ordered_json json;
-  {
-    const py::gil_scoped_release no_gil;
-    json = ToJson(Evaluate(identified, pendulums, observed, UsualGroups(), ForecastFrom(forecast)));
-  }
-  return FromJson(json);
+  const ForecastUse use = ForecastFrom(forecast);
+  return FromJson(WithoutGil(
+      [&] { return ToJson(Evaluate(identified, pendulums, observed, UsualGroups(), use)); }));
 }
 
 py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
@@ -195,15 +189,14 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
   }
   const auto pendulums = Pendulums(recordings, mapping);
   const auto folds = Unwrapped(MakeFolds(pendulums, how, num_folds, repeats, seed), Fault::kUsage);
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  {
-    const JobProgress told = JobsOf(progress);
-    const py::gil_scoped_release no_gil;
+  const JobProgress told = JobsOf(progress);
+  return FromJson(WithoutGil([&] {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const Predictor& predictor : predictors) {
       json.push_back(ToJson(CrossValidate(pendulums, folds, predictor, num_threads, told)));
     }
-  }
-  return FromJson(json);
+    return json;
+  }));
 }
 
 // name, help, default: what the keyword arguments are made from.

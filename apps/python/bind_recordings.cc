@@ -100,10 +100,7 @@ py::tuple Read(const std::string& manifest, const std::string& setting,
   }
   Check(CheckPreparation(options.preparation), Fault::kUsage);
   Warnings warnings;
-  Result<std::vector<Recording>> read = [&] {
-    const py::gil_scoped_release no_gil;
-    return LoadRecordings(manifest, options, &warnings);
-  }();
+  auto read = WithoutGil([&] { return LoadRecordings(manifest, options, &warnings); });
   std::vector<SharedRecording> recordings;
   std::vector<Finding> facing;
   for (Recording& one : Unwrapped(std::move(read), Fault::kData)) {

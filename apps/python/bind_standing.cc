@@ -38,11 +38,8 @@ py::dict ResponseDict(const FrequencyResponse& response) {
 
 py::dict ResponsesOf(const Model& model, const std::vector<SharedRecording>& recordings) {
   const IdentifiedModel identified = IdentifiedOf(model);
-  std::vector<FrequencyResponse> responses;
-  {
-    const py::gil_scoped_release no_gil;
-    responses = FrequencyResponses(identified, Pendulums(recordings, identified.mapping));
-  }
+  const auto responses = WithoutGil(
+      [&] { return FrequencyResponses(identified, Pendulums(recordings, identified.mapping)); });
   py::dict dict;
   for (const FrequencyResponse& response : responses) {
     // Recordings whose segments last differently long are apart.
@@ -57,11 +54,9 @@ py::dict SwayDict(const Model& model, const std::vector<SharedRecording>& record
                   uint64_t seed) {
   if (repeats < 0) Raise(Fault::kUsage, Error{"repeats must not be negative"});
   const IdentifiedModel identified = IdentifiedOf(model);
-  std::vector<PersonSway> people;
-  {
-    const py::gil_scoped_release no_gil;
-    people = SwayOfPeople(identified, Pendulums(recordings, identified.mapping), repeats, seed);
-  }
+  const auto people = WithoutGil([&] {
+    return SwayOfPeople(identified, Pendulums(recordings, identified.mapping), repeats, seed);
+  });
   py::dict dict;
   py::list names, of;
   for (const PersonSway& one : people) {
@@ -82,10 +77,6 @@ py::dict SwayDict(const Model& model, const std::vector<SharedRecording>& record
   return dict;
 }
 
-py::object OrNone(const std::optional<double>& value) {
-  return value ? py::object(py::float_(*value)) : py::object(py::none());
-}
-
 py::dict LoopDict(const Model& model, double mass, double rod) {
   if (!(mass > 0.0) || !(rod > 0.0)) Raise(Fault::kUsage, Error{"mass and rod must be above 0"});
   const IdentifiedModel identified = IdentifiedOf(model);
@@ -99,13 +90,13 @@ py::dict LoopDict(const Model& model, double mass, double rod) {
     loop["stiffness_ratio"] = n.stiffness_ratio;
     loop["stable"] = n.stable;
     loop["fastest_growth"] = n.fastest_growth;
-    loop["damping_ratio"] = OrNone(n.damping_ratio);
-    loop["natural_hz"] = OrNone(n.natural_hz);
-    loop["phase_margin"] = OrNone(n.phase_margin);
-    loop["delay_margin"] = OrNone(n.delay_margin);
-    loop["crossover_hz"] = OrNone(n.crossover_hz);
-    loop["gain_up"] = OrNone(n.gain_up);
-    loop["gain_down"] = OrNone(n.gain_down);
+    loop["damping_ratio"] = n.damping_ratio;
+    loop["natural_hz"] = n.natural_hz;
+    loop["phase_margin"] = n.phase_margin;
+    loop["delay_margin"] = n.delay_margin;
+    loop["crossover_hz"] = n.crossover_hz;
+    loop["gain_up"] = n.gain_up;
+    loop["gain_down"] = n.gain_down;
     dict[plane == 0 ? "theta" : "phi"] = loop;
   }
   return dict;

@@ -20,12 +20,11 @@ template <typename Add>
 void Extend(Model* model, Add add) {
   const std::shared_ptr<const FittedTo> to = DataOf(*model);
   FittedModel extended = *model->fitted;
-  MaybeError error;
-  {
-    const py::gil_scoped_release no_gil;
-    error = add(to->pendulums, &extended);
-    if (!error) extended.advice = Advise(extended);
-  }
+  const MaybeError error = WithoutGil([&] {
+    MaybeError failed = add(to->pendulums, &extended);
+    if (!failed) extended.advice = Advise(extended);
+    return failed;
+  });
   Check(error, Fault::kUsage);
   model->fitted = std::make_shared<const FittedModel>(std::move(extended));
 }
@@ -124,11 +123,8 @@ Json StudiesJson(const StudyPlan& plan) {
 py::object DesignOf(const Model& model, const std::string& parameter) {
   const std::shared_ptr<const FittedTo> to = DataOf(model);
   const std::shared_ptr<const FittedModel> fitted = model.fitted;
-  ExperimentDesign design;
-  {
-    const py::gil_scoped_release no_gil;
-    design = DesignExperiments(to->pendulums, fitted->fit);
-  }
+  const ExperimentDesign design =
+      WithoutGil([&] { return DesignExperiments(to->pendulums, fitted->fit); });
   Json json = {{"text", Unwrapped(DesignText(design, parameter), Fault::kUsage)},
                {"standard_error", ByName(design.parameters, design.standard_error)},
                {"pushes", PushesJson(design, parameter)},
@@ -172,10 +168,6 @@ Scene SceneOf(const FormationAsked& asked) {
   return scene;
 }
 
-py::object SecondsOr(bool known, double seconds) {
-  return known ? py::object(py::float_(seconds)) : py::object(py::none());
-}
-
 // What the picture of a wave shows, and the table beside it.
 void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dict) {
   Array speed({run.num_frames(), run.num_people()});
@@ -184,7 +176,9 @@ void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dic
   for (int n = 0; n < run.num_people(); ++n) {
     const PersonSummary& person = run.summaries[n];
     for (int t = 0; t < run.num_frames(); ++t) cells(t, n) = SignedHipSpeed(run, n, t);
-    onset.append(SecondsOr(person.onset_frame >= 0, run.Seconds(person.onset_frame)));
+    std::optional<double> onset_s;
+    if (person.onset_frame >= 0) onset_s = run.Seconds(person.onset_frame);
+    onset.append(onset_s);
     displacement.append(person.displacement);
     outcome.append(NameOf(person.outcome));
     if (waves.onsets.empty()) continue;
@@ -247,20 +241,16 @@ py::dict Between(const Model& model, const std::string& start, const std::string
     Raise(Fault::kUsage, Error{"mass, rod and fps must be above 0"});
   }
   const IdentifiedModel identified = IdentifiedOf(model);
-  Result<ProbablePath> path = [&] {
-    const py::gil_scoped_release no_gil;
+  auto path = WithoutGil([&] {
     return PathBetween(identified, {mass, rod, 0.0}, fps, from, to, frames);
-  }();
+  });
   return PathDict(Unwrapped(std::move(path), Fault::kUsage), 1);
 }
 
 py::dict Smooth(const Model& model, const SharedRecording& recording) {
   const IdentifiedModel identified = IdentifiedOf(model);
   const PendulumRecording seen = MakePendulumRecording(*recording, identified.mapping);
-  Result<ProbablePath> path = [&] {
-    const py::gil_scoped_release no_gil;
-    return SmoothPath(identified, seen);
-  }();
+  auto path = WithoutGil([&] { return SmoothPath(identified, seen); });
   return PathDict(Unwrapped(std::move(path), Fault::kUsage), seen.num_people());
 }
 

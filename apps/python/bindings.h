@@ -35,6 +35,13 @@ inline void Check(const MaybeError& error, Fault fault) {
   if (error) Raise(fault, *error);
 }
 
+// What `compute` returns, with the GIL released while it computes.
+template <typename Compute>
+auto WithoutGil(Compute compute) {
+  const py::gil_scoped_release no_gil;
+  return compute();
+}
+
 // A fit's progress: looks for signals, so that Ctrl-C ends it, and tells `callable` (phase,
 // iteration, cost). Called without the GIL.
 SolveProgress ProgressOf(const py::object& callable);

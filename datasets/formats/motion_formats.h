@@ -16,7 +16,6 @@
 #include "datasets/formats/motion_bids.h"
 #include "datasets/formats/point_motion.h"
 #include "datasets/formats/trajectories.h"
-#include "datasets/formats/trc.h"
 
 namespace pushid {
 

@@ -7,7 +7,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
-#include "datasets/formats/trc.h"
+#include "datasets/formats/point_motion.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {

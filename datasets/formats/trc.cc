@@ -1,6 +1,4 @@
 // datasets: TRC files.
-#include "datasets/formats/trc.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,6 +6,7 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
+#include "datasets/formats/point_motion.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {

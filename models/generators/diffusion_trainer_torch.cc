@@ -161,9 +161,7 @@ DiffusionTrainer::DiffusionTrainer(const std::vector<ObservedGroup>& learnt,
   t.mean = std::make_shared<DiffusionModule>(options.structure, options.dropout);
   CopyWeights(*t.module, t.mean.get());
   t.mean->eval();
-  t.optimizer = std::make_unique<torch::optim::AdamW>(
-      t.module->parameters(),
-      torch::optim::AdamWOptions(options.learning_rate).weight_decay(options.weight_decay));
+  t.optimizer = MakeOptimizer(t.module->parameters(), options.learning_rate, options.weight_decay);
 }
 
 DiffusionNetwork DiffusionTrainer::Network() const {

@@ -47,8 +47,7 @@ struct ParticleTrainer::Torch : WindowsRun<Run, Torch, ParticleTrainingOptions> 
   }
 
   std::unique_ptr<torch::optim::AdamW> Adam(const std::vector<torch::Tensor>& parameters) const {
-    return std::make_unique<torch::optim::AdamW>(
-        parameters, torch::optim::AdamWOptions(options.learning_rate).weight_decay(0.0));
+    return MakeOptimizer(parameters, options.learning_rate, 0.0);
   }
 
   torch::Tensor Jitter(const ParticleBatch& batch) const {

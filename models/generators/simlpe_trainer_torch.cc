@@ -109,9 +109,7 @@ SimlpeTrainer::SimlpeTrainer(const ParticleLayout& layout,
   Torch& t = As<Torch>();
   t.module = std::make_shared<SimlpeModule>(ParticleStatistics(layout, learnt, options),
                                             options.observed, options.blocks);
-  t.optimizer = std::make_unique<torch::optim::AdamW>(
-      t.module->parameters(),
-      torch::optim::AdamWOptions(options.learning_rate).weight_decay(options.weight_decay));
+  t.optimizer = MakeOptimizer(t.module->parameters(), options.learning_rate, options.weight_decay);
 }
 
 SimlpeNetwork SimlpeTrainer::Network() const { return As<Torch>().module->Network(); }

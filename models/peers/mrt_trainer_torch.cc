@@ -106,19 +106,18 @@ double DistanceAfter(const Peer& peer, const std::vector<MrtGroup>& groups) {
 bool HasWindow(const MrtGroup& group) { return NumFrames(group) >= kMrtGiven + kMrtFrames; }
 bool HasFrameAfter(const MrtGroup& group) { return NumFrames(group) > kMrtGiven; }
 
-struct MrtTrainer::Torch : KeptRun<Run, Torch> {
-  MrtOptions options;
+struct MrtTrainer::Torch : EpochsRun<Run, Torch, MrtModule, MrtOptions> {
   std::vector<MrtGroup> training, held;
   std::vector<Window> windows;
   MrtScalings scalings;
-  torch::Tensor mean, spread, to_ways;  // of the outputs
-  Epochs<MrtModule> epochs;
+  torch::Tensor mean, spread, to_ways;       // of the outputs
+  std::vector<std::vector<Window>> batches;  // of this epoch
 
   // Some windows by chance, in batches of groups of one size.
-  std::vector<std::vector<Window>> Drawn() const {
+  int64_t DrawBatches() override {
+    batches.clear();
     const torch::Tensor order = torch::randperm(static_cast<int64_t>(windows.size()));
     const int64_t count = std::min<int64_t>(options.windows, order.size(0));
-    std::vector<std::vector<Window>> batches;
     std::map<size_t, std::vector<Window>> open;  // by the number of people
     const torch::Tensor steps = torch::randint(kMrtSteps, {count});
     for (int64_t i = 0; i < count; ++i) {
@@ -134,40 +133,20 @@ struct MrtTrainer::Torch : KeptRun<Run, Torch> {
     for (auto& [people, batch] : open) {
       if (!batch.empty()) batches.push_back(std::move(batch));
     }
-    return batches;
+    return static_cast<int64_t>(batches.size());
   }
 
   torch::Tensor Ways(MrtModule* module, const MrtBatch& batch) const {
     return torch::matmul(to_ways, module->Forward(batch) * spread + mean);
   }
 
-  template <typename Fields>
-  void Keep(Fields* fields) {
-    epochs.Keep(fields);
+  torch::Tensor LossOf(int64_t b) override {
+    AskedBatch batch = Asked(training, batches[b], network->Weights(scalings));
+    AddNoise(options.input_noise, &batch.inputs);
+    return DistanceLoss(Ways(network.get(), batch.inputs), batch);
   }
 
-  bool Done() const override { return epochs.Done(options.epochs, options.patience); }
-
-  double ShareDone() const override { return static_cast<double>(epochs.epoch) / options.epochs; }
-
-  TrainingPoint RunRound() override {
-    const std::vector<std::vector<Window>> batches = Drawn();
-    double sum = 0.0;
-    epochs.network->train();
-    for (size_t b = 0; b < batches.size(); ++b) {
-      const double share = static_cast<double>(b) / static_cast<double>(batches.size());
-      const double done = (epochs.epoch + share) / options.epochs;
-      SetLearningRate(epochs.optimizer.get(), options.learning_rate * OneCycle(done));
-      AskedBatch batch = Asked(training, batches[b], epochs.network->Weights(scalings));
-      AddNoise(options.input_noise, &batch.inputs);
-      const torch::Tensor loss = DistanceLoss(Ways(epochs.network.get(), batch.inputs), batch);
-      Improve(epochs.optimizer.get(), loss);
-      sum += loss.item<double>();
-    }
-    ++epochs.epoch;
-    const double after = DistanceAfter(MrtPeer(epochs.network->Weights(scalings)), held);
-    return epochs.Judged(sum / static_cast<double>(batches.size()), after);
-  }
+  double HeldLoss() override { return DistanceAfter(MrtPeer(network->Weights(scalings)), held); }
 };
 
 MrtTrainer::MrtTrainer(std::vector<MrtGroup> training, std::vector<MrtGroup> held,
@@ -194,23 +173,20 @@ MrtTrainer::MrtTrainer(std::vector<MrtGroup> training, std::vector<MrtGroup> hel
   t.spread = ToTensor(t.scalings.outputs.spread).view({kMrtFrames, kMrtPoseRows});
   t.to_ways = ToTensor(MrtWaysMatrix());
   auto network = std::make_shared<MrtModule>(options.size, options.dropout);
-  t.epochs.Start(std::move(network), std::make_shared<MrtModule>(options.size, options.dropout),
-                 options.learning_rate, options.weight_decay);
+  t.Start(std::move(network), std::make_shared<MrtModule>(options.size, options.dropout));
 }
 
 MrtWeights MrtTrainer::Best() const {
   const Torch& t = As<Torch>();
-  return t.epochs.best->Weights(t.scalings);
+  return t.best->Weights(t.scalings);
 }
 
-int64_t MrtTrainer::NumParameters() const {
-  return NumNumbers(As<Torch>().epochs.network->parameters());
-}
+int64_t MrtTrainer::NumParameters() const { return NumNumbers(As<Torch>().network->parameters()); }
 
 Eigen::MatrixXf MrtTrainer::LibTorchWays(const MrtView& view) const {
   torch::NoGradGuard no_grad;
   const Torch& t = As<Torch>();
-  MrtModule* best = t.epochs.best.get();
+  MrtModule* best = t.best.get();
   best->eval();
   const MrtBatch batch = BatchOf({Scaled(t.scalings, view)});
   return ToMatrix(t.Ways(best, batch)[0]).transpose();

@@ -43,9 +43,7 @@ void CvaeStages::StartStage() {
     PredictLower(&held);
   }
   // Without weight decay AdamW is Adam.
-  optimizer = std::make_unique<torch::optim::AdamW>(
-      Trained(),
-      torch::optim::AdamWOptions(LearningRate(0.0)).weight_decay(Published() ? 0.0 : 1e-4));
+  optimizer = MakeOptimizer(Trained(), LearningRate(0.0), Published() ? 0.0 : 1e-4);
   step = 0;
   rollout_left = 0;
   best_loss = kWorstCvaeLoss;

@@ -42,45 +42,27 @@ torch::Tensor AbsoluteLoss(const torch::Tensor& output, const torch::Tensor& tar
 
 }  // namespace
 
-struct RegressionTrainer::Torch : KeptRun<Run, Torch> {
-  RegressionOptions options;
+struct RegressionTrainer::Torch : EpochsRun<Run, Torch, Network, RegressionOptions> {
   torch::Tensor inputs, targets, weights, held_inputs, held_targets, held_weights;
-  Epochs<Network> epochs;
+  torch::Tensor order;  // of the samples in this epoch
 
-  int64_t BatchesPerEpoch() const { return (inputs.size(0) + options.batch - 1) / options.batch; }
-
-  template <typename Fields>
-  void Keep(Fields* fields) {
-    epochs.Keep(fields);
+  int64_t DrawBatches() override {
+    order = torch::randperm(inputs.size(0));
+    return (inputs.size(0) + options.batch - 1) / options.batch;
   }
 
-  bool Done() const override { return epochs.Done(options.epochs, options.patience); }
+  torch::Tensor LossOf(int64_t b) override {
+    const torch::Tensor rows = order.slice(0, b * options.batch, (b + 1) * options.batch);
+    torch::Tensor x = inputs.index_select(0, rows);
+    x = x + options.input_noise * torch::randn_like(x);
+    return AbsoluteLoss(network->forward(x), targets.index_select(0, rows),
+                        weights.index_select(0, rows));
+  }
 
-  double ShareDone() const override { return static_cast<double>(epochs.epoch) / options.epochs; }
-
-  TrainingPoint RunRound() override {
-    const int64_t batches = BatchesPerEpoch();
-    const torch::Tensor order = torch::randperm(inputs.size(0));
-    double sum = 0.0;
-    epochs.network->train();
-    for (int64_t b = 0; b < batches; ++b) {
-      const double done = (epochs.epoch + static_cast<double>(b) / batches) / options.epochs;
-      SetLearningRate(epochs.optimizer.get(), options.learning_rate * OneCycle(done));
-      const torch::Tensor rows = order.slice(0, b * options.batch, (b + 1) * options.batch);
-      torch::Tensor x = inputs.index_select(0, rows);
-      x = x + options.input_noise * torch::randn_like(x);
-      const torch::Tensor loss = AbsoluteLoss(
-          epochs.network->forward(x), targets.index_select(0, rows), weights.index_select(0, rows));
-      Improve(epochs.optimizer.get(), loss);
-      sum += loss.item<double>();
-    }
-    ++epochs.epoch;
+  double HeldLoss() override {
     torch::NoGradGuard no_grad;
-    epochs.network->eval();
-    const double held =
-        AbsoluteLoss(epochs.network->forward(held_inputs), held_targets, held_weights)
-            .item<double>();
-    return epochs.Judged(sum / static_cast<double>(batches), held);
+    network->eval();
+    return AbsoluteLoss(network->forward(held_inputs), held_targets, held_weights).item<double>();
   }
 };
 
@@ -98,10 +80,9 @@ RegressionTrainer::RegressionTrainer(const RegressionSamples& training,
   const int in = static_cast<int>(training.inputs.rows());
   const int out = static_cast<int>(training.targets.rows());
   auto network = std::make_shared<Network>(in, out, options);
-  t.epochs.Start(std::move(network), std::make_shared<Network>(in, out, options),
-                 options.learning_rate, options.weight_decay);
+  t.Start(std::move(network), std::make_shared<Network>(in, out, options));
 }
 
-DenseNetwork RegressionTrainer::Best() const { return As<Torch>().epochs.best->Weights(); }
+DenseNetwork RegressionTrainer::Best() const { return As<Torch>().best->Weights(); }
 
 }  // namespace pushid

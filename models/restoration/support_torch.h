@@ -205,37 +205,58 @@ struct StepsRun : KeptRun<Run, Self> {
   }
 };
 
-// Training by epochs that keeps the best one: what the trainers of windows and of MRT share.
-// Network: a module; `best` has the weights of the epoch with the least held-out loss.
-template <typename Network>
-struct Epochs {
+// As LibTorch's AdamW has it.
+inline std::unique_ptr<torch::optim::AdamW> MakeOptimizer(
+    const std::vector<torch::Tensor>& parameters, double rate, double weight_decay) {
+  return std::make_unique<torch::optim::AdamW>(
+      parameters, torch::optim::AdamWOptions(rate).weight_decay(weight_decay));
+}
+
+// Training by epochs of batches that keeps the best epoch: what the trainers of windows and of MRT
+// share. Network: a module; `best` has the weights of the epoch with the least held-out loss.
+template <typename Run, typename Self, typename Network, typename Options>
+struct EpochsRun : KeptRun<Run, Self> {
+  Options options;
   std::shared_ptr<Network> network, best;
   std::unique_ptr<torch::optim::AdamW> optimizer;
   int epoch = 0, best_epoch = 0;
   double best_loss = 1e30;
 
+  virtual int64_t DrawBatches() = 0;  // of a new epoch; how many there are
+  virtual torch::Tensor LossOf(int64_t batch) = 0;
+  virtual double HeldLoss() = 0;
+
   // Both networks are of one shape.
-  void Start(std::shared_ptr<Network> to_train, std::shared_ptr<Network> to_keep, double rate,
-             double weight_decay) {
+  void Start(std::shared_ptr<Network> to_train, std::shared_ptr<Network> to_keep) {
     network = std::move(to_train), best = std::move(to_keep);
     CopyWeights(*network, best.get());
-    optimizer = std::make_unique<torch::optim::AdamW>(
-        network->parameters(), torch::optim::AdamWOptions(rate).weight_decay(weight_decay));
+    optimizer = MakeOptimizer(network->parameters(), options.learning_rate, options.weight_decay);
   }
 
-  // patience: epochs without a better one.
-  bool Done(int epochs, int patience) const {
-    return epoch >= epochs || epoch - best_epoch >= patience;
+  bool Done() const override {
+    return epoch >= options.epochs || epoch - best_epoch >= options.patience;
   }
+  double ShareDone() const override { return static_cast<double>(epoch) / options.epochs; }
 
-  // The epoch just trained, whose losses are these.
-  TrainingPoint Judged(double loss, double held_loss) {
+  TrainingPoint RunRound() override {
+    const int64_t batches = DrawBatches();
+    double sum = 0.0;
+    network->train();
+    for (int64_t b = 0; b < batches; ++b) {
+      const double done = (epoch + static_cast<double>(b) / batches) / options.epochs;
+      SetLearningRate(optimizer.get(), options.learning_rate * OneCycle(done));
+      const torch::Tensor loss = LossOf(b);
+      Improve(optimizer.get(), loss);
+      sum += loss.item<double>();
+    }
+    ++epoch;
+    const double held_loss = HeldLoss();
     if (held_loss < best_loss) {
       best_loss = held_loss;
       best_epoch = epoch;
       CopyWeights(*network, best.get());
     }
-    return {epoch, loss, held_loss};
+    return {epoch, sum / static_cast<double>(batches), held_loss};
   }
 
   template <typename Fields>

@@ -12,7 +12,7 @@
 #include "datasets/formats/force_csv.h"
 #include "datasets/formats/table_writers.h"
 #include "datasets/formats/trajectories.h"
-#include "datasets/formats/trc.h"
+#include "datasets/formats/point_motion.h"
 #include "datasets/manifest/manifest.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_samples.h"

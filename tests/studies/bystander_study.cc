@@ -13,6 +13,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "ident/generators/push_particles.h"
+#include "tests/studies/study.h"
 
 DEFINE_string(model, "", "folder of a generator of groups");
 DEFINE_string(recordings, "", "manifest.json of the recordings");
@@ -77,30 +78,21 @@ void Judge(const MotionGenerator& generator, const BodyRecording& recording, Pla
 }
 
 int Run() {
-  const Result<LoadedGenerator> loaded = LoadGenerator(FLAGS_model, {});
+  const LoadedGenerator loaded = OrExit(LoadGenerator(FLAGS_model, {}));
   LoadOptions options;
   options.keep_all_joints = true;
   options.setting = "groups";
   std::istringstream ids(FLAGS_ids);
   for (std::string id; std::getline(ids, id, ',');) options.ids.push_back(id);
-  const auto recordings = LoadRecordings(FLAGS_recordings, options);
-  if (!loaded.ok() || !recordings.ok()) {
-    const Error& error = loaded.ok() ? recordings.error() : loaded.error();
-    std::fprintf(stderr, "%s\n", error.ToString().c_str());
-    return 1;
-  }
-  const auto bodies = MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
-  if (!bodies.ok()) {
-    std::fprintf(stderr, "%s\n", bodies.error().ToString().c_str());
-    return 1;
-  }
+  const auto recordings = OrExit(LoadRecordings(FLAGS_recordings, options));
+  const auto bodies = OrExit(MakeBodyRecordings(recordings, SkeletonMapping::kExact));
   std::printf("where they stand, error of the recorded people m, way of the others m\n");
   for (const auto& [name, place] : {std::pair("nobody", Place::kNobody),
                                     {"ahead", Place::kInFront},
                                     {"aside", Place::kAtTheSide}}) {
     Sums sums;
-    for (const BodyRecording& recording : bodies.value()) {
-      Judge(*loaded.value().generator, recording, place, &sums);
+    for (const BodyRecording& recording : bodies) {
+      Judge(*loaded.generator, recording, place, &sums);
     }
     std::printf("%s, %.4f, %.4f\n", name, sums.error / sums.recordings,
                 sums.moved / sums.recordings);

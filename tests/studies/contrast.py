@@ -11,11 +11,9 @@ STUDY = ["--studies=40", "--num_threads=2"]
 
 
 def contrast():
-    text = studies.run("pushid-contrast-study", *STUDY, out=None).text
-    lines = text.splitlines()
-    rows = [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in lines[1:-1]]
-    rows = [[study, "**all**" if name == "all" else f"`{name}`", *cells] for study, name, *cells in rows]
-    return f"{studies.table(['study', 'parameter', 'intervals that hold the truth, %', 'p < 0.05, %'], rows)}\n\n{lines[-1]}."
+    found, told = studies.printed_table("pushid-contrast-study", *STUDY)
+    rows = [[study, "**all**" if name == "all" else f"`{name}`", *cells] for study, name, *cells in found]
+    return f"{studies.table(['study', 'parameter', 'intervals that hold the truth, %', 'p < 0.05, %'], rows)}\n\n{told}."
 
 
 if __name__ == "__main__":

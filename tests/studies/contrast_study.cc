@@ -23,6 +23,7 @@
 #include "ident/fit/fit.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/problem/parallel.h"
+#include "tests/studies/study.h"
 
 DEFINE_int32(studies, 200, "synthetic studies of each kind");
 DEFINE_int32(people, 8, "in each group; paired: in both");
@@ -123,25 +124,16 @@ struct Found {
   int studies = 0, failed = 0, false_families = 0, differing = 0, detected = 0;
 };
 
-GivenOptions Given() {
-  auto words = ParseOptionWords("--contrast=group " + FLAGS_options);
-  if (words.ok()) return words.value();
-  std::fprintf(stderr, "%s\n", words.error().ToString().c_str());
-  std::exit(1);
-}
+GivenOptions Given() { return OrExit(ParseOptionWords("--contrast=group " + FLAGS_options)); }
 
 void Judge(const Kind& kind, int index, std::mutex* mutex, Found* found) {
   for (int draw = 0; draw < kMostDraws; ++draw) {
     const uint64_t seed = (FLAGS_seed * 100000 + static_cast<uint64_t>(index)) * kMostDraws + draw;
     const auto recordings = Draw(kind, seed);
     if (!recordings.ok()) continue;
-    Result<FitOptions> options = MakeFitOptions(Given(), &recordings.value());
-    if (!options.ok()) {
-      std::fprintf(stderr, "%s\n", options.error().ToString().c_str());
-      std::exit(1);
-    }
-    const MaybeError unprepared = PrepareFit(recordings.value(), &options.value());
-    const FitResult result = unprepared ? FitResult() : Fit(recordings.value(), options.value());
+    FitOptions options = OrExit(MakeFitOptions(Given(), &recordings.value()));
+    const MaybeError unprepared = PrepareFit(recordings.value(), &options);
+    const FitResult result = unprepared ? FitResult() : Fit(recordings.value(), options);
     const std::lock_guard<std::mutex> lock(*mutex);
     if (!result.ok() || !result.contrast) break;
     ++found->studies;
@@ -163,12 +155,6 @@ void Judge(const Kind& kind, int index, std::mutex* mutex, Found* found) {
   }
   const std::lock_guard<std::mutex> lock(*mutex);
   ++found->failed;
-}
-
-std::string Percent(int count, int total) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.1f", total > 0 ? 100.0 * count / total : 0.0);
-  return text;
 }
 
 int Run() {

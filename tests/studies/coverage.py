@@ -10,18 +10,9 @@ import studies
 UNBIASED = ["--datasets=400", "--refined=20", "--num_threads=1"]
 
 
-def rows_of(arguments):
-    text = studies.run("pushid-coverage-study", *arguments, out=None).text
-    lines = text.splitlines()
-    rows = {line.split()[0]: line.split()[1:] for line in lines[1:-1]}
-    return rows, lines[-1]
-
-
 def coverage():
-    unbiased, told = rows_of(UNBIASED)
-    rows = []
-    for name, cells in unbiased.items():
-        rows.append([f"`{name}`", *cells[:4]])
+    unbiased, told = studies.printed_table("pushid-coverage-study", *UNBIASED)
+    rows = [[f"`{name}`", *cells[:4]] for name, *cells in unbiased]
     text = studies.table(["coverage of 95 % intervals, %", "clustered", "naive", "profile", "bootstrap"], rows)
     return f"{text}\n\n{told}"
 

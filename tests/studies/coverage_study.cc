@@ -20,6 +20,7 @@
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/profile.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/studies/study.h"
 
 DEFINE_int32(datasets, 1000, "data sets with clustered and naive intervals");
 DEFINE_int32(refined, 200, "data sets, the first ones, with profile and bootstrap intervals too");
@@ -91,12 +92,6 @@ void Judge(int dataset, std::mutex* mutex, std::vector<Tally>* tallies) {
     tally.profile += holds(profiles[p].lower95, profiles[p].upper95);
     tally.bootstrap += holds(bootstrap.lower95[p], bootstrap.upper95[p]);
   }
-}
-
-std::string Percent(int count, int total) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.1f", total > 0 ? 100.0 * count / total : 0.0);
-  return text;
 }
 
 int Run() {

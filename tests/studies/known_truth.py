@@ -11,13 +11,6 @@ STUDY = ["--studies=200", "--num_threads=2"]
 GROUPS = ["--groups", "--studies=12", "--num_threads=2"]
 
 
-def rows_of(arguments):
-    text = studies.run("pushid-known-truth-study", *arguments, out=None).text
-    lines = text.splitlines()
-    rows = [line.split("  ") for line in lines[1:-1]]
-    return [[cell.strip() for cell in row if cell.strip()] for row in rows], lines[-1]
-
-
 def truths():
     return table_of(STUDY)
 
@@ -27,7 +20,7 @@ def groups():
 
 
 def table_of(arguments):
-    spread, told = rows_of(arguments)
+    spread, told = studies.printed_table("pushid-known-truth-study", *arguments)
     header = ["how many, and % of the intervals that hold the truth", "identified", "weak", "prior-held",
               "unidentifiable", "at bound"]
     rows = [[f"`{row[0]}`" if row[0] != "all" else "**all**", *row[1:]] for row in spread]

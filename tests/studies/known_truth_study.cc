@@ -29,6 +29,7 @@
 #include "ident/fit/fit_setup.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"
+#include "tests/studies/study.h"
 
 DEFINE_int32(studies, 200, "synthetic studies");
 DEFINE_bool(groups, false, "rows of four people who touch and whose feet step");
@@ -102,10 +103,7 @@ struct Study {
 
 GivenOptions Given() {
   // Feet of synthetic people never leave the ground, so that nothing tells that they step.
-  const auto words = ParseOptionWords(FLAGS_options + (FLAGS_groups ? " --stance=steps" : ""));
-  if (words.ok()) return words.value();
-  std::fprintf(stderr, "%s\n", words.error().ToString().c_str());
-  std::exit(1);
+  return OrExit(ParseOptionWords(FLAGS_options + (FLAGS_groups ? " --stance=steps" : "")));
 }
 
 void Judge(int index, std::mutex* mutex, Study* all) {
@@ -116,13 +114,9 @@ void Judge(int index, std::mutex* mutex, Study* all) {
     if (!made.ok()) continue;
     const std::vector<PendulumRecording> recordings =
         MakePendulumRecordings(Recordings(made.value()), SkeletonMapping::kExact);
-    Result<FitOptions> options = MakeFitOptions(Given(), &recordings);
-    if (!options.ok()) {
-      std::fprintf(stderr, "%s\n", options.error().ToString().c_str());
-      std::exit(1);
-    }
-    const MaybeError unprepared = PrepareFit(recordings, &options.value());
-    const FitResult result = unprepared ? FitResult() : Fit(recordings, options.value());
+    FitOptions options = OrExit(MakeFitOptions(Given(), &recordings));
+    const MaybeError unprepared = PrepareFit(recordings, &options);
+    const FitResult result = unprepared ? FitResult() : Fit(recordings, options);
     const std::lock_guard<std::mutex> lock(*mutex);
     if (!result.ok()) {
       ++all->failed;

@@ -95,6 +95,13 @@ def on_recordings(program, setting, *arguments, **options):
     return run(program, f"--recordings={MANIFEST}", f"--setting={setting}", *arguments, **options)
 
 
+def printed_table(program, *arguments):
+    """The cells of a table that a study in C++ printed, without its header, and the line after it."""
+    lines = run(program, *arguments, out=None).text.splitlines()
+    rows = [[cell.strip() for cell in line.split("  ") if cell.strip()] for line in lines[1:-1]]
+    return rows, lines[-1]
+
+
 def fit(setting, *arguments):
     """A fit; `path` is the model, which --model of the other programs takes."""
     return on_recordings("pushid-fit", setting, *arguments, out="model_out")

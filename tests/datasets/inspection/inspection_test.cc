@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "datasets/formats/table_writers.h"
-#include "datasets/formats/trc.h"
+#include "datasets/formats/point_motion.h"
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
