@@ -20,6 +20,13 @@ struct HoldTolerance {
 };
 constexpr HoldTolerance kToLocate = {1e-4, 1e-5}, kToClassify = {1e-3, 1e-4};
 
+// At the optimum without a demand that moved the fit, where its errors are told (uncertainty.h): at
+// the edge of a demand H says how little room is left, not what frames err.
+Covariance CovarianceWithoutDemand(FitProblem problem, const FitPoint& near) {
+  problem.set_settling_weight(0.0);
+  return CovarianceAt(problem, Refit(problem, near).to);
+}
+
 class Profiler {
  public:
   Profiler(const FitProblem& problem, const FitPoint& estimate, const Uncertainty& uncertainty)
@@ -27,6 +34,9 @@ class Profiler {
         estimate_(estimate),
         uncertainty_(uncertainty),
         covariance_(CovarianceAt(problem, estimate)),
+        by_frames_(uncertainty.settling.holds()
+                       ? CovarianceWithoutDemand(problem, estimate).inverse_hessian
+                       : covariance_.inverse_hessian),
         cost_(Refit(problem, estimate).cost) {}
 
   // In the target's own scale.
@@ -43,16 +53,19 @@ class Profiler {
     return target.index >= 0 &&
            uncertainty_.estimates[target.index].status == EstimateStatus::kUnidentifiable;
   }
+  const ParameterSpec& SpecOf(int index) const {
+    return problem_.options().table[problem_.map().fitted[index].parameter];
+  }
   double Value(const ProfileTarget& target, const FitPoint& point) const;
   Eigen::VectorXd Gradient(const ProfileTarget& target) const;
   double MeanRatio() const;
-  double Quantile(const ProfileTarget& target) const;
   ProfilePoint Describe(const ProfileTarget& target, const HeldFit& fit) const;
 
   const FitProblem& problem_;
   const FitPoint& estimate_;
   const Uncertainty& uncertainty_;
   const Covariance covariance_;
+  const Eigen::MatrixXd by_frames_;
   const double cost_;
 };
 
@@ -86,23 +99,12 @@ double Profiler::MeanRatio() const {
   double sum = 0.0;
   int count = 0;
   for (int i = 0; i < problem_.map().num_shared(); ++i) {
-    const double naive = covariance_.inverse_hessian(i, i);
+    const double naive = by_frames_(i, i);
     if (naive <= 0.0) continue;
     sum += uncertainty_.covariance(i, i) / naive;
     ++count;
   }
   return count > 0 ? sum / count : covariance_.sigma * covariance_.sigma;
-}
-
-// Of a combination: that of the parameter in it which is known least.
-double Profiler::Quantile(const ProfileTarget& target) const {
-  const std::vector<Estimate>& estimates = uncertainty_.estimates;
-  if (target.index >= 0) return estimates[target.index].quantile;
-  double quantile = 0.0;
-  for (size_t i = 0; i < target.coefficients.size(); ++i) {
-    if (target.coefficients[i] != 0.0) quantile = std::max(quantile, estimates[i].quantile);
-  }
-  return quantile;
 }
 
 ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorXd& gradient) const {
@@ -122,17 +124,16 @@ ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorX
     search.direction.assign(direction.data(), direction.data() + direction.size());
     search.naive_error = std::sqrt(naive);
   } else if (target.index >= 0) {
-    const ParameterSpec& spec =
-        problem_.options().table[problem_.map().fitted[target.index].parameter];
+    const ParameterSpec& spec = SpecOf(target.index);
     search.direction[target.index] = 1.0;
     search.naive_error =
         0.1 * (spec.transform == Transform::kIdentity ? spec.scale : 1.0);  // a careful first step
   }
-  const double t = Quantile(target);
-  search.threshold = 0.5 * t * t * (known ? clustered / naive : MeanRatio());
+  const double t = target.Quantile(uncertainty_);
+  const double by_frames = gradient.dot(by_frames_ * gradient);
+  search.threshold = 0.5 * t * t * (known && by_frames > 0.0 ? clustered / by_frames : MeanRatio());
   if (target.index >= 0) {
-    const ParameterSpec& spec =
-        problem_.options().table[problem_.map().fitted[target.index].parameter];
+    const ParameterSpec& spec = SpecOf(target.index);
     search.lower = ToFitted(spec.transform, spec.lower);
     search.upper = ToFitted(spec.transform, spec.upper);
   }
@@ -187,19 +188,16 @@ ProfilePoint Profiler::Describe(const ProfileTarget& target, const HeldFit& fit)
   point.cost = fit.cost;
   for (int i = 0; i < problem_.map().num_shared(); ++i) {
     if (i == target.index) continue;
-    const FittedParameter& f = problem_.map().fitted[i];
-    point.others[problem_.options().table[f.parameter].name] = ToNatural(f.transform, fit.point[i]);
+    const ParameterSpec& spec = SpecOf(i);
+    point.others[spec.name] = ToNatural(spec.transform, fit.point[i]);
   }
   return point;
 }
 
-bool Crosses(const ProfileSide& side) { return std::isfinite(side.crossing); }
-bool IsFlat(const ProfileSide& side) { return side.end == "flat"; }
-
 ProfileClass ClassOf(const ProfileSide& below, const ProfileSide& above) {
-  if (IsFlat(below) && IsFlat(above)) return ProfileClass::kStructurallyNot;
-  return Crosses(below) && Crosses(above) ? ProfileClass::kIdentifiable
-                                          : ProfileClass::kPracticallyNot;
+  if (below.IsFlat() && above.IsFlat()) return ProfileClass::kStructurallyNot;
+  return below.Crosses() && above.Crosses() ? ProfileClass::kIdentifiable
+                                            : ProfileClass::kPracticallyNot;
 }
 
 Profile Profiler::Run(const ProfileTarget& target) const {
@@ -237,7 +235,7 @@ ProfileClass Profiler::Classify(const ProfileTarget& target) const {
   ProfileSearch search = Search(target, Gradient(target));
   search.locate_crossing = false;
   const ProfileSide below = Trace(target, search, -1);
-  if (!Crosses(below) && !IsFlat(below)) return ProfileClass::kPracticallyNot;
+  if (!below.Crosses() && !below.IsFlat()) return ProfileClass::kPracticallyNot;
   return ClassOf(below, Trace(target, search, +1));
 }
 

@@ -16,6 +16,7 @@
 // 25:1923).
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -106,6 +107,9 @@ struct ProfileSide {
   double crossing = 0.0;
   std::string end;  // as in Profile
   std::vector<HeldFit> points;
+
+  bool Crosses() const { return std::isfinite(crossing); }
+  bool IsFlat() const { return end == "flat"; }
 };
 
 // sign: +1 upwards, -1 downwards.
@@ -124,6 +128,9 @@ struct ProfileTarget {
   int index = -1;                      // of the parameter; -1 for a combination
   std::vector<double> coefficients{};  // of a combination, by fitted parameter
   double constant = 0.0;               // what fixed parameters contribute
+
+  // Of the number; of a combination, that of the parameter in it which is known least.
+  double Quantile(const Uncertainty& uncertainty) const;
 };
 
 // A profile to report: a target's, or a linear function of it in natural values; factors are

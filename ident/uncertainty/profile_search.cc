@@ -137,6 +137,16 @@ ProfileTarget CombinationTarget(const FitProblem& problem, const CombinationSpec
 
 }  // namespace
 
+double ProfileTarget::Quantile(const Uncertainty& uncertainty) const {
+  const std::vector<Estimate>& estimates = uncertainty.estimates;
+  if (index >= 0) return estimates[index].quantile;
+  double quantile = 0.0;
+  for (size_t i = 0; i < coefficients.size(); ++i) {
+    if (coefficients[i] != 0.0) quantile = std::max(quantile, estimates[i].quantile);
+  }
+  return quantile;
+}
+
 ProfilePlan::ProfilePlan(const FitProblem& problem) {
   const auto& fitted = problem.map().fitted;
   for (size_t i = 0; i < fitted.size(); ++i) {

@@ -220,6 +220,34 @@ TEST(Profiles, AreTheClusteredIntervalsWhereTheCostIsQuadratic) {
   }
 }
 
+// What a demand to settle says by its weight is no knowledge of how frames err.
+TEST(Profiles, ThresholdsDoNotKnowHowHardADemandIsPressed) {
+  SyntheticOptions study = SmallStudy();
+  study.push_kind = PushKind::kExternal;
+  study.parameters[kMu] = 25.0;
+  study.parameters[kKpTheta] = 1800.0;
+  study.parameters[kAx] = -9.0;
+  study.subjects = 3;
+  study.recordings_per_subject = 1;
+  study.frames = 20;
+  study.joint_noise_m = 0.03;
+  const auto recordings = MakePendulums(study);
+  std::vector<double> thresholds;
+  for (double weight : {30.0, 90.0}) {
+    FitOptions options = MakePreset("tail").value();
+    options.settling_weight = weight;
+    ASSERT_FALSE(PrepareFit(recordings, &options));
+    const FitResult result = Fit(recordings, options);
+    ASSERT_TRUE(result.uncertainty.settling.holds());
+    const FitProblem problem(recordings, result.options);
+    const auto profiles = ComputeProfiles(problem, result.starts[result.best_start].to,
+                                          result.uncertainty, {"mu", "Kp_theta"}, 1);
+    for (const Profile& profile : profiles.value()) thresholds.push_back(profile.threshold);
+  }
+  EXPECT_NEAR(thresholds[2] / thresholds[0], 1.0, 0.05);
+  EXPECT_NEAR(thresholds[3] / thresholds[1], 1.0, 0.05);
+}
+
 TEST(Profiles, OfSumsAreProfilesOfTheirFreePart) {
   const Profiled profiled(TinyStudy(), "");
   const std::vector<Profile> two = profiled.Profiles({"mu", "c_x"}, 1).value();
