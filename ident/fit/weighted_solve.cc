@@ -137,7 +137,7 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
   SolveStart held = free;
   for (double share : kDemandSteps) {
     part.set_settling_weight(share * demanding.options().settling_weight);
-    if (share == kDemandSteps[0] && std::isinf(CostAt(part, free.to))) {
+    if (share == kDemandSteps[0] && std::isinf(CostAt(part.WithoutRecordings(), free.to))) {
       held = SolveFrom(Roughly(part), part.NominalPoint(), "nominal", "", nullptr);
     } else {
       SolveOn(share < 1.0 ? OnTheWay(part) : part, &held);
@@ -152,14 +152,15 @@ void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
   SolveStart& best = solved->solution.starts[solved->solution.best];
   const FitProblem without = *problem;
   problem->set_settling_weight(weight);
-  if (CostAt(*problem, best.to) == CostAt(without, best.to)) return;
+  const FitProblem demands = problem->WithoutRecordings();
+  if (CostAt(demands, best.to) == CostAt(without.WithoutRecordings(), best.to)) return;
   SolveStart held = SolveHeld(*problem, best);
 
   SettlingDemand& settling = solved->settling;
   settling.binds = true;
   settling.free_seconds = SlowestSeconds(without, best.to);
   settling.unmet = !held.converged || held.failed.size() > best.failed.size() ||
-                   !std::isfinite(CostAt(*problem, held.to));
+                   std::isinf(CostAt(demands, held.to));
   if (!settling.unmet) {
     settling.rise = std::max(0.0, 2.0 * (CostAt(without, held.to) - best.cost));
     settling.contradicted = Contradicted(settling.rise, without.SettlingUnits(best.to).size());

@@ -29,6 +29,12 @@ FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, FitOpti
   }
 }
 
+FitProblem FitProblem::WithoutRecordings() const {
+  FitProblem problem = *this;
+  problem.counts_.assign(recordings().size(), 0);
+  return problem;
+}
+
 CostWeights FitProblem::weights() const {
   CostWeights weights{options_.sigmas, options_.effective_weight, options_.settling_weight, {}};
   for (const ParameterSpec& spec : options_.table.specs) {

@@ -81,6 +81,9 @@ class FitProblem {
   FitProblem(const std::vector<PendulumRecording>& recordings, FitOptions options,
              std::vector<int> counts = {});
 
+  // Its priors and demands alone.
+  FitProblem WithoutRecordings() const;
+
   CostWeights weights() const;
   // Points of the problem stay points of it.
   void Weigh(const CostWeights& weights);

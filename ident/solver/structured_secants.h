@@ -7,7 +7,8 @@
 //   B = J'J + S,  S <- S + y y'/(y's) - (B s)(B s)'/(s'B s)        (BFGS, structured: Al-Baali and
 //                                                                 Fletcher 1985)
 // with S first a share of J'J, then shrunk where it says more than the last step shows (NL2SOL's
-// sizing: Dennis, Gay and Welsch 1981). Priors have no S: their rows are taken as linear.
+// sizing: Dennis, Gay and Welsch 1981). Priors have no S, being linear, nor have demands: a hinge
+// bends where it begins, and what a step across that tells is wrong on either side.
 // Rejected: NL2SOL's own update (DFP), which ends early for groups; rank one (SR1), half more steps
 // for people alone; BFGS of the whole Hessian, which stalls where contacts begin; never going
 // back to J'J alone, with which two more of NIST's sets do not converge from afar.
@@ -45,7 +46,7 @@ class StructuredSecants {
   explicit StructuredSecants(bool learns, Eigen::MatrixXd beyond = {})
       : learns_(learns), beyond_(std::move(beyond)), use_(beyond_.size() > 0) {}
 
-  // At the next accepted point. curved: rows that have an S; linear: all others.
+  // At the next accepted point. curved: rows that have an S; linear: those taken as linear.
   void Add(const Eigen::VectorXd& x, double cost, const SecondOrder& curved,
            const SecondOrder& linear);
 

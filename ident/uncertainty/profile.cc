@@ -34,9 +34,8 @@ class Profiler {
         estimate_(estimate),
         uncertainty_(uncertainty),
         covariance_(CovarianceAt(problem, estimate)),
-        by_frames_(uncertainty.settling.holds()
-                       ? CovarianceWithoutDemand(problem, estimate).inverse_hessian
-                       : covariance_.inverse_hessian),
+        free_(uncertainty.settling.holds() ? CovarianceWithoutDemand(problem, estimate)
+                                           : covariance_),
         cost_(Refit(problem, estimate).cost) {}
 
   // In the target's own scale.
@@ -65,7 +64,7 @@ class Profiler {
   const FitPoint& estimate_;
   const Uncertainty& uncertainty_;
   const Covariance covariance_;
-  const Eigen::MatrixXd by_frames_;
+  const Covariance free_;
   const double cost_;
 };
 
@@ -99,7 +98,7 @@ double Profiler::MeanRatio() const {
   double sum = 0.0;
   int count = 0;
   for (int i = 0; i < problem_.map().num_shared(); ++i) {
-    const double naive = by_frames_(i, i);
+    const double naive = free_.inverse_hessian(i, i);
     if (naive <= 0.0) continue;
     sum += uncertainty_.covariance(i, i) / naive;
     ++count;
@@ -130,7 +129,7 @@ ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorX
         0.1 * (spec.transform == Transform::kIdentity ? spec.scale : 1.0);  // a careful first step
   }
   const double t = target.Quantile(uncertainty_);
-  const double by_frames = gradient.dot(by_frames_ * gradient);
+  const double by_frames = gradient.dot(free_.inverse_hessian * gradient);
   search.threshold = 0.5 * t * t * (known && by_frames > 0.0 ? clustered / by_frames : MeanRatio());
   if (target.index >= 0) {
     const ParameterSpec& spec = SpecOf(target.index);
@@ -173,7 +172,7 @@ HeldFit Profiler::Hold(const ProfileTarget& target, const ProfileSearch& search,
   }
   std::string message;
   const SolveStage stage =
-      SolveBuilt(&built, options, 0, &message, StructuredSecants(true, covariance_.curvature));
+      SolveBuilt(&built, options, 0, &message, StructuredSecants(true, free_.curvature));
   held.value = Value(target, point);
   const double pull = (held.value - wanted) / sigma;
   held.cost = stage.final_cost - 0.5 * pull * pull;
