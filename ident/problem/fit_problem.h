@@ -168,7 +168,6 @@ class FitProblem {
   void AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const;
   // By recording, over `horizon` frames; no problem where one does not count.
   std::vector<RolloutAt> Rollouts(FitPoint* point, int horizon) const;
-  std::shared_ptr<const RolloutProblem> StageRollout(int recording, int horizon, int frames) const;
 
   std::shared_ptr<const std::vector<PendulumRecording>>
       turned_;  // null where the file's axes serve

@@ -44,18 +44,14 @@ void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* bui
   }
 }
 
-std::shared_ptr<const RolloutProblem> FitProblem::StageRollout(int recording, int horizon,
-                                                               int frames) const {
-  return MakeRolloutProblem(recordings()[recording], options_.model, map_, options_.sigmas,
-                            Weight(recording, horizon), frames);
-}
-
 std::vector<RolloutAt> FitProblem::Rollouts(FitPoint* point, int horizon) const {
   std::vector<RolloutAt> rollouts(recordings().size());
   if (options_.likelihood != Likelihood::kTrajectory) return rollouts;  // rolls nothing out
   for (int i = 0; i < static_cast<int>(rollouts.size()); ++i) {
     if (Count(i) == 0) continue;
-    rollouts[i] = {StageRollout(i, horizon, Frames(i, horizon)), RecordingBlocks(point, i)};
+    rollouts[i] = {MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas,
+                                      Weight(i, horizon), Frames(i, horizon)),
+                   RecordingBlocks(point, i)};
   }
   return rollouts;
 }
@@ -94,9 +90,10 @@ FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_netw
   std::vector<SideBySide> side_by_side = PutSideBySide(built.rollouts);
   if (!all_inside) built.shortened = FailuresOf(built.rollouts, side_by_side);
   for (const auto& [recording, status] : built.shortened) {
-    // Of one that fails in its very first step nothing is left to compare.
-    built.rollouts[recording].problem =
-        status.frame == 1 ? nullptr : StageRollout(recording, horizon, status.frame);
+    std::shared_ptr<const RolloutProblem>& rollout = built.rollouts[recording].problem;
+    auto shorter = std::make_shared<RolloutProblem>(*rollout);
+    shorter->horizon = status.frame;
+    rollout = status.frame == 1 ? nullptr : std::move(shorter);  // nothing is left to compare
   }
   if (!built.shortened.empty()) side_by_side = PutSideBySide(built.rollouts);
   built.side_by_side = std::make_shared<std::vector<SideBySide>>(std::move(side_by_side));

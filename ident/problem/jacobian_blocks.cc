@@ -152,18 +152,16 @@ void AddCurvature(const FitProblem::Built& built, const Eigen::VectorXd& steps, 
   Eigen::Index column = 0;
   std::vector<double> above(size), below(size);  // without the other side: at the point
   Eigen::VectorXd::Map(below.data(), size) = score->jacobian.transpose() * score->residuals;
-  const auto evaluate = [&](double* at, double value, std::vector<double>* gradient) {
-    std::swap(*at, value);
-    const bool evaluated = built.problem->Evaluate(by_all, nullptr, nullptr, gradient, nullptr);
-    *at = value;
-    return evaluated;
-  };
   for (double* block : built.parameter_blocks) {
     for (int k = 0; k < built.problem->ParameterBlockSize(block); ++k, ++column) {
-      const double step = steps[column];
+      const double step = steps[column], value = block[k];
       if (step == 0.0) continue;
-      if (!evaluate(block + k, block[k] + step, &above)) return;
-      if (both_sides && !evaluate(block + k, block[k] - step, &below)) return;
+      block[k] = value + step;
+      bool told = built.problem->Evaluate(by_all, nullptr, nullptr, &above, nullptr);
+      block[k] = value - step;
+      if (both_sides) told &= built.problem->Evaluate(by_all, nullptr, nullptr, &below, nullptr);
+      block[k] = value;
+      if (!told) return;
       for (Eigen::Index row = 0; row < size; ++row) {
         hessian(row, column) = (above[row] - below[row]) / (both_sides ? 2.0 * step : step);
       }

@@ -169,12 +169,6 @@ struct Evaluated {
 // rounding a small step would magnify.
 constexpr double kCurvatureStep = 3e-7, kCurvatureStepOfLikelihood = 1e-3;
 
-// Where feet step the gradient jumps: differences across a jump left no minimum, and those of a
-// shorter step know nothing of it.
-bool HasCurvature(const FitProblem& problem, Eigen::Index columns) {
-  return columns <= kMostColumnsWithCurvature && problem.options().model.stance != Stance::kSteps;
-}
-
 Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
@@ -182,7 +176,10 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
   e.unit = Units(e.columns);
   e.clusters = MakeClusters(problem.recordings(), problem.options().cluster, problem.counts());
   e.clustering = ClusterRows(problem, e.clusters, e.score);
-  if (curvature && HasCurvature(problem, e.unit.size())) {
+  // Where feet step the gradient jumps: differences across a jump left no minimum, and those of a
+  // shorter step know nothing of it.
+  const bool steps = problem.options().model.stance == Stance::kSteps;
+  if (curvature && !steps && e.unit.size() <= kMostColumnsWithCurvature) {
     const bool rolls = problem.options().likelihood == Likelihood::kTrajectory;
     const double step = rolls ? kCurvatureStep : kCurvatureStepOfLikelihood;
     AddCurvature(built, step * e.unit, !rolls, &e.score);
