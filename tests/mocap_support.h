@@ -4,22 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <string>
+
+#include "tests/test_support.h"
 
 namespace pushid {
 
-// The folder of the real clips: PUSHID_MOCAP, or ../shared/cmu_mocap beside the source; "" when
-// there are none, in which case a test skips itself.
+// The folder of the real clips; "" when there are none, in which case a test skips itself.
 inline std::string MocapRoot() {
-  const char* named = std::getenv("PUSHID_MOCAP");
-  const std::filesystem::path root =
-      named != nullptr && *named != '\0'
-          ? std::filesystem::path(named)
-          : std::filesystem::path(PUSHID_SOURCE_DIR) / ".." / "shared" / "cmu_mocap";
-  std::error_code ignored;
-  return std::filesystem::exists(root / "skeleton.json", ignored) ? root.string() : "";
+  return SharedFolder("PUSHID_MOCAP", "cmu_mocap", "skeleton.json");
 }
 
 constexpr char kNoMocap[] = "the real clips are not here; name their folder by PUSHID_MOCAP";

@@ -1,4 +1,5 @@
-// What tests of several rooms share: a folder of their own, small files, the real recordings.
+// What tests of several rooms share: results without their errors, a folder of their own, small
+// files, the real recordings.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,9 +9,29 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <string>
+#include <utility>
+
+#include "datasets/files/error.h"
 
 namespace pushid {
+
+// The value; an error ends the test, which shows it.
+template <typename T>
+T Unwrapped(Result<T> result) {
+  if (!result.ok()) throw std::runtime_error(result.error().ToString());
+  return std::move(result).value();
+}
+
+// What is wrong with it, as a user is told; "no error" where there is none.
+template <typename T>
+std::string ProblemOf(const Result<T>& result) {
+  return result.ok() ? "no error" : result.error().ToString();
+}
+inline std::string ProblemOf(const MaybeError& error) {
+  return error ? error->ToString() : "no error";
+}
 
 // A fixture with an empty folder that goes away after the test.
 class TempDirTest : public ::testing::Test {
@@ -54,18 +75,24 @@ inline std::string ReadText(const std::string& path) {
   return text.str();
 }
 
-// The folder of the real recordings: PUSHID_RECORDINGS, or ../shared/fzj_push beside the source; ""
-// when there are none, in which case a test skips itself:
-//
-//   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
-inline std::string RecordingsRoot() {
-  const char* named = std::getenv("PUSHID_RECORDINGS");
+// A folder of real data, which has a file of this name in it: the one that the variable names, or
+// ../shared/FOLDER beside the source; "" when there is none.
+inline std::string SharedFolder(const char* variable, const std::string& folder,
+                                const std::string& file) {
+  const char* named = std::getenv(variable);
   const std::filesystem::path root =
       named != nullptr && *named != '\0'
           ? std::filesystem::path(named)
-          : std::filesystem::path(PUSHID_SOURCE_DIR) / ".." / "shared" / "fzj_push";
+          : std::filesystem::path(PUSHID_SOURCE_DIR) / ".." / "shared" / folder;
   std::error_code ignored;
-  return std::filesystem::exists(root / "manifest.json", ignored) ? root.string() : "";
+  return std::filesystem::exists(root / file, ignored) ? root.string() : "";
+}
+
+// The folder of the real recordings; "" when there are none, in which case a test skips itself:
+//
+//   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
+inline std::string RecordingsRoot() {
+  return SharedFolder("PUSHID_RECORDINGS", "fzj_push", "manifest.json");
 }
 
 constexpr char kNoRecordings[] =

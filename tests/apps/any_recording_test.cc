@@ -6,8 +6,8 @@
 
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/table_writers.h"
 #include "datasets/formats/point_motion.h"
+#include "datasets/formats/table_writers.h"
 #include "datasets/loading/load_recordings.h"
 #include "tests/apps/app_fixture.h"
 #include "tests/datasets/c3d_samples.h"
@@ -21,13 +21,12 @@ class AnyRecordingTest : public AppTest {
   // The recordings of the folder again as `format`, with markers of their own names in mm; returns
   // --recordings=... of the manifest.
   std::string As(MotionFormat format, const std::string& ending) {
-    const auto loaded = LoadRecordings(manifest_);
-    EXPECT_TRUE(loaded.ok());
+    const auto loaded = Unwrapped(LoadRecordings(manifest_));
     nlohmann::ordered_json json = Json(manifest_);
     json.erase("units");
     json.erase("length_unit");
-    for (std::size_t i = 0; i < loaded.value().size(); ++i) {
-      const Recording& recording = loaded.value()[i];
+    for (std::size_t i = 0; i < loaded.size(); ++i) {
+      const Recording& recording = loaded[i];
       const std::string file = recording.id + ending;
       Write(recording, format, Path(file));
       auto& entry = json["recordings"][i];
@@ -99,10 +98,9 @@ TEST_F(AnyRecordingTest, TheFitIsThatOfTheBvhFiles) {
        {Case{MotionFormat::kTrc, ".trc", 1e-6}, Case{MotionFormat::kCsv, ".csv", 1e-6},
         Case{MotionFormat::kC3d, ".c3d", 1e-3}}) {
     SCOPED_TRACE(one.ending);
-    const AppRun run = RunApp(
-        "pushid-fit", {As(one.format, one.ending), "--model_out=" + Path("other_model.json")});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
-    EXPECT_EQ(run.err.find("warning"), std::string::npos) << run.err;
+    const AppRun run = Succeeded(RunApp(
+        "pushid-fit", {As(one.format, one.ending), "--model_out=" + Path("other_model.json")}));
+    EXPECT_FALSE(Contains(run.err, "warning")) << run.err;
     const std::vector<double> values = Values(Path("other_model.json"));
     ASSERT_EQ(values.size(), bvh.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -116,28 +114,24 @@ TEST_F(AnyRecordingTest, TheFitIsThatOfTheBvhFiles) {
 TEST_F(AnyRecordingTest, PendulumsAloneAreShown) {
   const std::string model = "--model=" + FitModel();
   const std::vector<std::string> arguments = {model, As(MotionFormat::kTrc, ".trc"), "--id=" + id_};
-  const auto with = [&arguments](std::vector<std::string> more) {
-    more.insert(more.begin(), arguments.begin(), arguments.end());
-    return more;
-  };
-  const AppRun shown = RunApp("pushid-animate", with({"--out=" + Path("m.html")}));
-  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  const AppRun shown =
+      Succeeded(RunApp("pushid-animate", With(arguments, {"--out=" + Path("m.html")})));
   EXPECT_TRUE(Contains(shown.err, "right_knee")) << shown.err;
   EXPECT_TRUE(Contains(shown.err, "only pendulums are shown"));
   EXPECT_TRUE(Contains(ReadText(Path("m.html")), "<html"));
-  EXPECT_TRUE(
-      Refused(RunApp("pushid-animate", with({"--restoration=rigid", "--out=" + Path("n.html")})),
-              {"right_knee", "\"joints\""}));
-  EXPECT_TRUE(
-      Refused(RunApp("pushid-predict", with({"--restoration=rigid", "--out=" + Path("m.glb")})),
-              {"right_knee", "WL, WR, AL, AR"}));
-  EXPECT_EQ(RunApp("pushid-predict", with({"--out=" + Path("m.csv")})).exit_code, 0);
+  EXPECT_TRUE(Refused(
+      RunApp("pushid-animate", With(arguments, {"--restoration=rigid", "--out=" + Path("n.html")})),
+      {"right_knee", "\"joints\""}));
+  EXPECT_TRUE(Refused(
+      RunApp("pushid-predict", With(arguments, {"--restoration=rigid", "--out=" + Path("m.glb")})),
+      {"right_knee", "WL, WR, AL, AR"}));
+  Succeeded(RunApp("pushid-predict", With(arguments, {"--out=" + Path("m.csv")})));
 }
 
 TEST_F(AnyRecordingTest, FilterAndRateAreSaid) {
-  const AppRun run = RunApp("pushid-fit", {Recordings(), "--lowpass_hz=10", "--resample_fps=30",
-                                           "--model_out=" + Path("m.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run =
+      Succeeded(RunApp("pushid-fit", {Recordings(), "--lowpass_hz=10", "--resample_fps=30",
+                                      "--model_out=" + Path("m.json")}));
   EXPECT_TRUE(Contains(run.out,
                        "motion: low-pass at 10 Hz (zero-phase Butterworth), resampled to 30 frames "
                        "per second\n"));
@@ -151,14 +145,14 @@ TEST_F(AnyRecordingTest, FilterAndRateAreSaid) {
 
 TEST_F(AnyRecordingTest, Inspect) {
   ASSERT_FALSE(WriteC3d(Path("a.c3d"), SampleC3d()));
-  AppRun run = RunApp("pushid-inspect", {Path("a.c3d"), "--svg_out=" + Path("a.svg"), "--quiet"});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  AppRun run =
+      Succeeded(RunApp("pushid-inspect", {Path("a.c3d"), "--svg_out=" + Path("a.svg"), "--quiet"}));
   EXPECT_TRUE(Contains(run.out, Path("a.c3d") + ": C3D, Intel, floats\n"));
   const std::string svg = ReadText(Path("a.svg"));
   EXPECT_EQ(svg.rfind("<svg", 0), 0u);
   EXPECT_TRUE(Contains(svg, "Anna:RANK hidden, frames 3 to 4"));
   EXPECT_TRUE(Contains(svg, ", N</text>"));
-  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_FALSE(Contains(svg, "nan"));
   // One bad file among good ones.
   const AppRun twice = RunApp("pushid-inspect", {manifest_ + "," + manifest_});
   EXPECT_TRUE(Refused(twice, {"this id is in"}));
@@ -180,21 +174,17 @@ TEST_F(AnyRecordingTest, Inspect) {
 TEST_F(AnyRecordingTest, Manifest) {
   const std::string pattern = "--pattern=bvh/{subject}_{take}.bvh";
   const std::string push = "--push_pattern=push/{subject}_{take}.csv";
-  AppRun run = RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
-                                          "--mass_kg=80", "--push_kind=net", "--length_unit=mm",
-                                          "--length_scale=0", "--out=" + Path("made.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  AppRun run =
+      Succeeded(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
+                                           "--mass_kg=80", "--push_kind=net", "--length_unit=mm",
+                                           "--length_scale=0", "--out=" + Path("made.json")}));
   EXPECT_TRUE(Contains(run.out, "12 recordings from 12 files"));
-  run = RunApp("pushid-fit", {"--recordings=" + Path("made.json")});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  run = Succeeded(RunApp("pushid-fit", {"--recordings=" + Path("made.json")}));
   // Measured pushes, the default, have no tail to fit.
-  ASSERT_EQ(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
-                                       "--mass_kg=80", "--out=" + Path("measured.json")})
-                .exit_code,
-            0);
+  Succeeded(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
+                                       "--mass_kg=80", "--out=" + Path("measured.json")}));
   const std::string measured = "--recordings=" + Path("measured.json");
-  run = RunApp("pushid-fit", {measured});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  run = Succeeded(RunApp("pushid-fit", {measured}));
   EXPECT_TRUE(Contains(run.out, "warning: every push is external"));
   run = RunApp("pushid-fit", {measured, "--fix=mu,Kp_theta,Kd_theta,a_x"});
   EXPECT_TRUE(Refused(run, {"every parameter that acts on these recordings is fixed"}));
@@ -222,7 +212,7 @@ TEST_F(AnyRecordingTest, ManifestsAreUpdatedOrKept) {
   const std::vector<std::string> flags = {"--folder=" + folder_.string(), "--mass_kg=80",
                                           "--pattern=bvh/{subject}_{take}.bvh",
                                           "--out=" + Path("made.json")};
-  ASSERT_EQ(RunApp("pushid-manifest", flags).exit_code, 0);
+  Succeeded(RunApp("pushid-manifest", flags));
   nlohmann::ordered_json json = Json(Path("made.json"));
   const std::string missing = json["recordings"][3]["id"];
   json["recordings"].erase(3);
@@ -235,8 +225,7 @@ TEST_F(AnyRecordingTest, ManifestsAreUpdatedOrKept) {
   EXPECT_EQ(ReadText(Path("made.json")), edited);
   std::vector<std::string> update = flags;
   update.push_back("--update");
-  const AppRun run = RunApp("pushid-manifest", update);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(RunApp("pushid-manifest", update));
   EXPECT_TRUE(Contains(run.out, "11 recordings kept as they were, 2 added"));
   EXPECT_TRUE(Contains(run.out, missing));
   EXPECT_TRUE(Contains(run.out, "do not match the pattern: renamed"));
@@ -244,15 +233,15 @@ TEST_F(AnyRecordingTest, ManifestsAreUpdatedOrKept) {
   ASSERT_EQ(after.size(), 13u);
   for (int i = 0; i < 11; ++i) EXPECT_EQ(after[i], json["recordings"][i]);
   update.back() = "--overwrite";
-  ASSERT_EQ(RunApp("pushid-manifest", update).exit_code, 0);
+  Succeeded(RunApp("pushid-manifest", update));
   EXPECT_EQ(Json(Path("made.json"))["recordings"].size(), 12u);
 }
 
 // Found before a fit: kilonewtons, the wrong axes, a hip that is none.
 TEST_F(AnyRecordingTest, InspectDoubtsWhatNobodyCanBe) {
   AppRun run = RunApp("pushid-inspect", {manifest_});
-  EXPECT_EQ(run.out.find(" in 1 case"), std::string::npos) << run.out;
-  EXPECT_EQ(run.out.find(" cases ("), std::string::npos) << run.out;
+  EXPECT_FALSE(Contains(run.out, " in 1 case")) << run.out;
+  EXPECT_FALSE(Contains(run.out, " cases (")) << run.out;
   std::string rows = "frame,fx,fy,ftheta,fphi\n";
   for (int t = 0; t < 5; ++t) rows += std::to_string(t) + (t == 0 ? ",1500" : ",20") + ",0,0,0\n";
   WriteText("push/strong.csv", rows);
@@ -281,23 +270,21 @@ TEST_F(AnyRecordingTest, ASensorInTheFileOfTheMotion) {
   nlohmann::ordered_json json = Json(Path("other.json"));
   nlohmann::ordered_json& entry = json["recordings"][0];
   const std::string file = Path(entry["c3d"][0].get<std::string>());
-  Result<C3dFile> c3d = ReadC3d(file);
-  ASSERT_TRUE(c3d.ok()) << c3d.error().ToString();
-  const int frames = static_cast<int>(c3d.value().points[0].size());
-  c3d.value().analog_rate_hz = 20.0 * c3d.value().point_rate_hz;
-  c3d.value().analog = {{"rod", "N", {}}};
+  C3dFile c3d = Unwrapped(ReadC3d(file));
+  const int frames = static_cast<int>(c3d.points[0].size());
+  c3d.analog_rate_hz = 20.0 * c3d.point_rate_hz;
+  c3d.analog = {{"rod", "N", {}}};
   for (int i = 0; i < 20 * frames; ++i) {
-    c3d.value().analog[0].samples.push_back(i / 20 >= 25 && i / 20 < 30 ? 100.0 : 0.0);
+    c3d.analog[0].samples.push_back(i / 20 >= 25 && i / 20 < 30 ? 100.0 : 0.0);
   }
-  ASSERT_FALSE(WriteC3d(file, c3d.value()));
+  ASSERT_FALSE(WriteC3d(file, c3d));
   entry.erase("push_csv");
   entry.erase("frames");
   entry["first_frame"] = 10;
   WriteText("other.json", json.dump(1));
-  const AppRun run = RunApp(
+  const AppRun run = Succeeded(RunApp(
       "pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(), "--sensor=" + file,
-                      "--sensor_column=rod", "--idle_force=5", "--out=" + Path("p.csv")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+                      "--sensor_column=rod", "--idle_force=5", "--out=" + Path("p.csv")}));
   // Five frames long, from one frame to another: half of it is in the rows of each.
   EXPECT_TRUE(Contains(run.out, "6 rows from frame 15")) << run.out;
   EXPECT_TRUE(Contains(run.out, "its clock at frame 0 is 0.1667 s")) << run.out;
@@ -305,14 +292,14 @@ TEST_F(AnyRecordingTest, ASensorInTheFileOfTheMotion) {
   // The same in a file of its own that began with the motion's, with a load cell that reads 2.3 N.
   std::string text = "time,force\n";
   for (int i = 0; i < 20 * frames; ++i) {
-    const double force = c3d.value().analog[0].samples[i] + 2.3;
-    text += std::to_string(i / c3d.value().analog_rate_hz) + "," + std::to_string(force) + "\n";
+    const double force = c3d.analog[0].samples[i] + 2.3;
+    text += std::to_string(i / c3d.analog_rate_hz) + "," + std::to_string(force) + "\n";
   }
   WriteText("force.csv", text);
-  const AppRun beside = RunApp(
-      "pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(), "--overwrite",
-                      "--sensor=" + Path("force.csv"), "--idle_force=5", "--out=" + Path("p.csv")});
-  ASSERT_EQ(beside.exit_code, 0) << beside.err;
+  const AppRun beside =
+      Succeeded(RunApp("pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(),
+                                       "--overwrite", "--sensor=" + Path("force.csv"),
+                                       "--idle_force=5", "--out=" + Path("p.csv")}));
   EXPECT_TRUE(Contains(beside.out, "6 rows from frame 15")) << beside.out;
   EXPECT_TRUE(Contains(beside.out, "by the motion's times, its clock at frame 0 is 0.1667 s"));
   EXPECT_TRUE(Contains(beside.out, "2.3 N before the pull subtracted")) << beside.out;

@@ -84,8 +84,8 @@ class AnySkeletonTest : public AppTest {
   }
 
   std::string Model() {
-    fit_ = RunApp("pushid-fit", {recordings_, kScale, "--model_out=" + Path("model.json")});
-    EXPECT_EQ(fit_.exit_code, 0) << fit_.err;
+    fit_ =
+        Succeeded(RunApp("pushid-fit", {recordings_, kScale, "--model_out=" + Path("model.json")}));
     return "--model=" + Path("model.json");
   }
 

@@ -16,8 +16,7 @@ TEST_F(AnySkeletonTest, PredictedBodiesComeInTheHierarchyThatWentIn) {
         {model, recordings_, kScale, "--id=" + id_, "--restoration=rigid", "--out=" + Path(out),
          "--joints_out=" + Path("joints.csv"), "--json_out=" + Path("joints.json")});
   };
-  const AppRun run = predict("motion.bvh");
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(predict("motion.bvh"));
   EXPECT_EQ(run.err, "") << "nothing had to be filled";
   const auto source = ReadBvh(source_), out = ReadBvh(Path("motion.bvh"));
   ASSERT_TRUE(out.ok()) << out.error().ToString();
@@ -42,14 +41,11 @@ TEST_F(AnySkeletonTest, PredictedBodiesComeInTheHierarchyThatWentIn) {
 
 TEST_F(AnySkeletonTest, BodiesAreJudgedAndShown) {
   const std::string model = Model();
-  const AppRun evaluated = RunApp(
-      "pushid-evaluate",
-      {model, recordings_, kScale, "--restoration=rigid", "--json_out=" + Path("scores.json")});
-  ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  Succeeded(RunApp("pushid-evaluate", {model, recordings_, kScale, "--restoration=rigid",
+                                       "--json_out=" + Path("scores.json")}));
   EXPECT_TRUE(Contains(ReadText(Path("scores.json")), "MPJPE"));
-  const AppRun shown = RunApp(
-      "pushid-animate", {model, recordings_, kScale, "--id=" + id_, "--out=" + Path("m.html")});
-  ASSERT_EQ(shown.exit_code, 0) << shown.err;
+  const AppRun shown = Succeeded(RunApp(
+      "pushid-animate", {model, recordings_, kScale, "--id=" + id_, "--out=" + Path("m.html")}));
   EXPECT_EQ(shown.err, "");
 }
 

@@ -25,11 +25,9 @@ class AppTest : public TempDirTest {
     options.recordings_per_subject = 6;
     options.frames = 45;
     options.joint_noise_m = 0.002;
-    const auto made = MakeSyntheticRecordings(options);
-    ASSERT_TRUE(made.ok()) << made.error().ToString();
-    const MaybeError failed = WriteSyntheticRecordings(folder_.string(), options, made.value());
-    ASSERT_FALSE(failed) << failed->ToString();
-    id_ = made.value()[0].recording.id;
+    const auto made = Unwrapped(MakeSyntheticRecordings(options));
+    ASSERT_EQ(ProblemOf(WriteSyntheticRecordings(folder_.string(), options, made)), "no error");
+    id_ = made[0].recording.id;
     manifest_ = Path("manifest.json");
   }
 
@@ -38,17 +36,12 @@ class AppTest : public TempDirTest {
   // pushid-fit on the recordings, with the model in `name`; returns the model's path.
   std::string FitModel(const std::string& name = "model.json",
                        const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {Recordings(), "--model_out=" + Path(name)};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    fit_ = RunApp("pushid-fit", arguments);
-    EXPECT_EQ(fit_.exit_code, 0) << fit_.err;
+    fit_ = Succeeded(RunApp("pushid-fit", With({Recordings(), "--model_out=" + Path(name)}, more)));
     return Path(name);
   }
 
   static nlohmann::ordered_json Json(const std::string& path) {
-    const auto document = ReadJsonDocument(path);
-    EXPECT_TRUE(document.ok()) << document.error().ToString();
-    return document.ok() ? document.value().content : nlohmann::ordered_json::object();
+    return Unwrapped(ReadJsonDocument(path)).content;
   }
 
   // The manifest with something changed, under its own name; returns --recordings=... for it.

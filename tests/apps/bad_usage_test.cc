@@ -85,9 +85,10 @@ TEST_F(BadUsageTest, FitFlags) {
   const int files = CountFiles();
   for (const UsageCase& one : cases) {
     SCOPED_TRACE(one.flags[0]);
-    std::vector<std::string> flags = {Recordings(), "--model_out=" + Path("out.json")};
-    flags.insert(flags.end(), one.flags.begin(), one.flags.end());
-    EXPECT_TRUE(Refused(RunApp("pushid-fit", flags, 30), one.says));
+    EXPECT_TRUE(
+        Refused(RunApp("pushid-fit",
+                       With({Recordings(), "--model_out=" + Path("out.json")}, one.flags), 30),
+                one.says));
   }
   EXPECT_EQ(CountFiles(), files) << "something was written";
 }
@@ -153,28 +154,24 @@ TEST_F(BadUsageTest, OutputsNeverReplaceInputs) {
   };
   const std::vector<std::string> predict = {Recordings(), "--id=" + id_, "--model=" + model};
   const std::vector<std::string> push = {Recordings(), "--id=" + id_, "--overwrite"};
-  const auto with = [](std::vector<std::string> flags, const std::vector<std::string>& more) {
-    flags.insert(flags.end(), more.begin(), more.end());
-    return flags;
-  };
   const std::vector<Use> uses = {
       {"pushid-inspect", bvh, {bvh, "--svg_out=" + bvh}},
-      {"pushid-push", force, with(push, {"--sensor=" + force, "--out=" + force})},
-      {"pushid-push", force, with(push, {"--sensors=" + sensors, "--out=" + force})},
-      {"pushid-push", sensors, with(push, {"--sensors=" + sensors, "--out=" + sensors})},
-      {"pushid-push", manifest_, with(push, {"--out=" + manifest_})},
-      {"pushid-manifest", masses, with(make, {"--masses=" + masses, "--out=" + masses})},
-      {"pushid-manifest", mapping, with(make, {"--mapping=" + mapping, "--out=" + mapping})},
-      {"pushid-push", other, with(push, {"--out=" + other})},
-      {"pushid-manifest", bvh, with(found, {"--out=" + bvh})},
+      {"pushid-push", force, With(push, {"--sensor=" + force, "--out=" + force})},
+      {"pushid-push", force, With(push, {"--sensors=" + sensors, "--out=" + force})},
+      {"pushid-push", sensors, With(push, {"--sensors=" + sensors, "--out=" + sensors})},
+      {"pushid-push", manifest_, With(push, {"--out=" + manifest_})},
+      {"pushid-manifest", masses, With(make, {"--masses=" + masses, "--out=" + masses})},
+      {"pushid-manifest", mapping, With(make, {"--mapping=" + mapping, "--out=" + mapping})},
+      {"pushid-push", other, With(push, {"--out=" + other})},
+      {"pushid-manifest", bvh, With(found, {"--out=" + bvh})},
       {"pushid-manifest", pushed,
-       with(found, {"--push_pattern=push/{take}.csv", "--out=" + pushed})},
+       With(found, {"--push_pattern=push/{take}.csv", "--out=" + pushed})},
       {"pushid-evaluate", model, {Recordings(), "--model=" + model, "--json_out=" + model}},
       {"pushid-report", model, {"--model=" + model, "--html_out=" + model}},
       {"pushid-report", model, {"--model=" + Path("link.json"), "--html_out=" + model}},
-      {"pushid-predict", model, with(predict, {"--out=" + folder_.string() + "/./model.json"})},
+      {"pushid-predict", model, With(predict, {"--out=" + folder_.string() + "/./model.json"})},
       {"pushid-evaluate", bvh, {Recordings(), "--model=" + model, "--json_out=" + bvh}},
-      {"pushid-animate", model, with(predict, {"--out=" + model})},
+      {"pushid-animate", model, With(predict, {"--out=" + model})},
       {"pushid-fit", model, {Recordings(), "--self_from=" + model, "--model_out=" + model}},
   };
   for (const Use& use : uses) {
@@ -261,9 +258,9 @@ TEST_F(BadUsageTest, WhatIfsAndIds) {
   };
   for (const UsageCase& one : cases) {
     SCOPED_TRACE(one.flags[0]);
-    std::vector<std::string> flags = {model, Recordings(), "--id=" + id_, out};
-    flags.insert(flags.end(), one.flags.begin(), one.flags.end());
-    EXPECT_TRUE(Refused(RunApp("pushid-predict", flags, 30), one.says));
+    EXPECT_TRUE(Refused(
+        RunApp("pushid-predict", With({model, Recordings(), "--id=" + id_, out}, one.flags), 30),
+        one.says));
     EXPECT_FALSE(std::filesystem::exists(Path("out.csv")));
   }
 }
@@ -301,9 +298,10 @@ TEST_F(BadUsageTest, PushFlags) {
   };
   for (const UsageCase& one : cases) {
     SCOPED_TRACE(one.flags[0]);
-    std::vector<std::string> flags = {Recordings(), "--id=" + id_, "--out=" + Path("push.csv")};
-    flags.insert(flags.end(), one.flags.begin(), one.flags.end());
-    EXPECT_TRUE(Refused(RunApp("pushid-push", flags, 30), one.says));
+    EXPECT_TRUE(Refused(
+        RunApp("pushid-push",
+               With({Recordings(), "--id=" + id_, "--out=" + Path("push.csv")}, one.flags), 30),
+        one.says));
     EXPECT_FALSE(std::filesystem::exists(Path("push.csv")));
   }
 }

@@ -31,8 +31,7 @@ TEST_F(BatchFaultTest, LimitsEndAJobAndSaySo) {
   EXPECT_TRUE(Contains(big.out, "1 failed"));
   EXPECT_TRUE(Contains(big.out, "out of memory (limit 16 MB")) << big.out;
   // 0 on the command line lifts the plan's limit.
-  EXPECT_EQ(
-      Batch(Plan("memory_limit_mb = 16", {{"big", ""}}, "big"), {"--memory_limit=0"}).exit_code, 0);
+  Succeeded(Batch(Plan("memory_limit_mb = 16", {{"big", ""}}, "big"), {"--memory_limit=0"}));
 }
 
 TEST_F(BatchFaultTest, OneFolderThatCannotBeUsedCostsItsOwnJob) {
@@ -72,7 +71,7 @@ TEST_F(BatchFaultTest, LongListsOfRecordingsReachTheFit) {
 // What is listed as failed is done by the next run; nothing but the job it stands for is lost.
 TEST_F(BatchFaultTest, DamagedResultsCostTheirOwnJobsOnly) {
   const std::string plan = Plan("group_by = \"subject\"\nfolds = 2", {{"a", ""}});
-  ASSERT_EQ(Batch(plan, {"--jobs=2"}).exit_code, 0);
+  Succeeded(Batch(plan, {"--jobs=2"}));
   const std::vector<std::string> rows = Table("out");
   ASSERT_EQ(rows.size(), 1u + 4u);
   const auto folder = [&rows](int job) { return "out/jobs/" + rows[job].substr(0, 32); };
@@ -80,15 +79,14 @@ TEST_F(BatchFaultTest, DamagedResultsCostTheirOwnJobsOnly) {
   WriteText(folder(1) + "/model.json", model.substr(0, model.size() / 2));
   fs::remove(Path(folder(2) + "/scores.json"));
   WriteText(folder(3) + "/status.json", "");
-  EXPECT_EQ(Batch(plan, {"--gather"}).exit_code, 0);
+  Succeeded(Batch(plan, {"--gather"}));
   EXPECT_TRUE(Contains(Table("out")[1], ",failed,"));
   EXPECT_TRUE(Contains(Table("out")[3], ",failed,"));
   EXPECT_TRUE(Contains(Table("out")[1], "model.json:"));
   EXPECT_TRUE(Contains(Table("out")[2], "scores.json: there is no such file"));
   EXPECT_TRUE(Contains(Table("out")[3], "status.json: the file is empty"));
   EXPECT_EQ(Lines(Batch(plan, {"--dry_run"}).out).size(), 2u * 3u);
-  const AppRun again = Batch(plan);
-  EXPECT_EQ(again.exit_code, 0) << again.err;
+  const AppRun again = Succeeded(Batch(plan));
   EXPECT_TRUE(Contains(again.out, "3 done, 0 failed, 1 done before")) << again.out;
   EXPECT_EQ(Table("out"), rows);
 }
@@ -110,8 +108,7 @@ TEST_F(BatchFaultTest, AJobThatAnotherProcessHoldsIsLeftToIt) {
   fs::create_directories(Path("out/jobs/" + id));
   const int held = open(Path("out/jobs/" + id).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   ASSERT_EQ(flock(held, LOCK_EX), 0);
-  const AppRun run = Batch(plan);
-  EXPECT_EQ(run.exit_code, 0);
+  const AppRun run = Succeeded(Batch(plan));
   EXPECT_TRUE(Contains(run.out, "1 done, 0 failed, 0 done before"));
   EXPECT_TRUE(Contains(run.err, "left to another pushid-batch that is running them: 1 job;"));
   close(held);
@@ -125,7 +122,7 @@ TEST_F(BatchFaultTest, KillsCostNothing) {
   const int kills = wanted != nullptr ? std::atoi(wanted) : 5;
   const std::string jobs = "group_by = \"recording\"";
   const std::vector<std::pair<std::string, std::string>> variants = {{"a", ""}};
-  ASSERT_EQ(Batch(Plan(jobs, variants, "whole", "whole.toml")).exit_code, 0);
+  Succeeded(Batch(Plan(jobs, variants, "whole", "whole.toml")));
   const std::string plan = Plan(jobs, variants, "broken", "broken.toml");
   std::mt19937 random(1);
   std::uniform_real_distribution<double> moment(0.01, 0.3);
@@ -134,8 +131,7 @@ TEST_F(BatchFaultTest, KillsCostNothing) {
     RunApp("pushid-batch", {plan, "--jobs=2", "--quiet"}, moment(random));
     if (k % 10 == 9) fs::remove_all(Path("broken"));  // so that there is something left to break
   }
-  const AppRun last = Batch(plan, {"--jobs=2"});
-  ASSERT_EQ(last.exit_code, 0) << last.err;
+  Succeeded(Batch(plan, {"--jobs=2"}));
   EXPECT_EQ(Table("broken"), Table("whole"));
 }
 
@@ -150,11 +146,9 @@ TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
   EXPECT_TRUE(Contains(run.out, " done, 0 failed, 0 done before"));
   EXPECT_TRUE(fs::exists(Path("out/summary.csv")));
   const int done = std::atoi(run.out.c_str() + run.out.rfind('\n', run.out.size() - 2) + 1);
-  const AppRun rest = Batch(plan, {"--jobs=2"});
-  EXPECT_EQ(rest.exit_code, 0) << rest.err;
+  const AppRun rest = Succeeded(Batch(plan, {"--jobs=2"}));
   EXPECT_TRUE(Contains(rest.out, std::to_string(done) + " done before")) << run.out << rest.out;
-  ASSERT_EQ(
-      Batch(Plan("bootstrap = 30", {{"a", ""}}, "whole", "whole.toml"), {"--jobs=2"}).exit_code, 0);
+  Succeeded(Batch(Plan("bootstrap = 30", {{"a", ""}}, "whole", "whole.toml"), {"--jobs=2"}));
   EXPECT_EQ(Table("out"), Table("whole"));
 }
 

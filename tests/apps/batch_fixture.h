@@ -32,10 +32,8 @@ class BatchFixture : public AppTest {
     return "--plan=" + WriteText(name, text + "[output]\ndir = \"" + dir + "\"\n");
   }
 
-  AppRun Batch(const std::string& plan, std::vector<std::string> more = {}) const {
-    more.insert(more.begin(), plan);
-    more.push_back("--quiet");
-    return RunApp("pushid-batch", more);
+  AppRun Batch(const std::string& plan, const std::vector<std::string>& more = {}) const {
+    return RunApp("pushid-batch", With({plan, "--quiet"}, more));
   }
 
   // Of the jobs in what --list prints.

@@ -72,8 +72,7 @@ TEST_F(BatchTest, ReplicasAreThoseOfTheBootstrap) {
 
 // Replicas are spread of the estimate they belong to, and no estimates of their own.
 TEST_F(BatchTest, TheSpreadOverReplicasIsOfEachGroup) {
-  ASSERT_EQ(
-      Batch(Plan("group_by = \"subject\"\nbootstrap = 3", {{"a", ""}}), {"--jobs=2"}).exit_code, 0);
+  Succeeded(Batch(Plan("group_by = \"subject\"\nbootstrap = 3", {{"a", ""}}), {"--jobs=2"}));
   const nlohmann::ordered_json summary = Json(Path("out/summary.json"));
   std::map<std::string, std::vector<double>> mu;
   for (const auto& job : summary["jobs"]) {
@@ -98,8 +97,7 @@ TEST_F(BatchTest, TheSpreadOverReplicasIsOfEachGroup) {
 }
 
 TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
-  const AppRun run = Batch(Plan("folds = 3", {{"physics", ""}}), {"--jobs=2"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(Batch(Plan("folds = 3", {{"physics", ""}}), {"--jobs=2"}));
   const nlohmann::ordered_json jobs = Json(Path("out/summary.json"))["jobs"];
   ASSERT_EQ(jobs.size(), 3u);
   for (const auto& job : jobs) {
@@ -130,7 +128,7 @@ TEST_F(BatchTest, FoldsAreScoredOnWhatTheyHoldOut) {
 TEST_F(BatchTest, FoldsAreComparedInPairs) {
   const std::string plan =
       Plan("folds = 3", {{"physics", ""}, {"linear", "\"--self_force=linear\""}});
-  ASSERT_EQ(Batch(plan, {"--jobs=2"}).exit_code, 0);
+  Succeeded(Batch(plan, {"--jobs=2"}));
   const auto jobs = Json(Path("out/summary.json"))["jobs"];
   std::map<std::string, std::vector<double>> ade;
   for (const auto& job : jobs) {
@@ -150,7 +148,7 @@ TEST_F(BatchTest, FoldsAreComparedInPairs) {
 TEST_F(BatchTest, FoldsAreReadAlike) {
   const std::string plan = Plan(
       "folds = 2", {{"slow", "\"--lowpass_hz=6\", \"--resample_fps=30\", \"--length_unit=mm\""}});
-  ASSERT_EQ(Batch(plan).exit_code, 0);
+  Succeeded(Batch(plan));
   const std::string folder = Path("out/jobs/" + *Ids(Batch(plan, {"--list"}).out).begin());
   const nlohmann::ordered_json fitted = Json(folder + "/model.json")["configuration"];
   const nlohmann::ordered_json scored = Json(folder + "/scores.json")["configuration"];
@@ -232,12 +230,10 @@ TEST_F(BatchTest, ListedFoldersAreTheJobsAndGatheringRunsNothing) {
   const std::string id = list[1].substr(0, 32);
   EXPECT_EQ(list[1], id + ",\"a, b\",S01,0,6,0," + Path("out/jobs/" + id));
   EXPECT_TRUE(Refused(Batch(plan, {"--gather"}), {"out"}));  // nothing there yet
-  const AppRun one = Batch(plan, {"--job=" + id, "--summary=false"});
-  EXPECT_EQ(one.exit_code, 0) << one.err;
+  Succeeded(Batch(plan, {"--job=" + id, "--summary=false"}));
   EXPECT_TRUE(fs::exists(Path("out/jobs/" + id + "/status.json")));
   EXPECT_FALSE(fs::exists(Path("out/summary.csv")));
-  const AppRun gathered = Batch(plan, {"--gather"});
-  EXPECT_EQ(gathered.exit_code, 0) << gathered.err;
+  Succeeded(Batch(plan, {"--gather"}));
   const std::vector<std::string> rows = Table("out");
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_TRUE(Contains(rows[1], ",done,"));
@@ -249,7 +245,7 @@ TEST_F(BatchTest, ADryRunIsWhatAShellTakes) {
   const std::string command = Batch(plan, {"--dry_run"}).out;
   const std::string id = *Ids(Batch(plan, {"--list"}).out).begin();
   fs::create_directories(Path("it's out/jobs/" + id));
-  EXPECT_EQ(RunProgram("/bin/sh", {"-c", command}).exit_code, 0) << command;
+  Succeeded(RunProgram("/bin/sh", {"-c", command}));
   EXPECT_TRUE(fs::exists(Path("it's out/jobs/" + id + "/model.json")));
 }
 
@@ -273,7 +269,7 @@ TEST_F(BatchTest, WarningsOfAFitAreInTheTable) {
   nlohmann::ordered_json json = Json(manifest_);
   json["recordings"][0]["fps"] = 61;
   WriteText("manifest.json", json.dump(1));
-  ASSERT_EQ(Batch(Plan("group_by = \"subject\"", {{"a", ""}})).exit_code, 0);
+  Succeeded(Batch(Plan("group_by = \"subject\"", {{"a", ""}})));
   EXPECT_TRUE(Contains(Table("out")[1], "has a frame time of"));
   EXPECT_FALSE(Contains(Table("out")[2], "has a frame time of"));
   EXPECT_TRUE(Contains(ReadText(Path("out/summary.html")), "has a frame time of"));

@@ -13,9 +13,8 @@ namespace {
 
 class CheckTest : public AppTest {
  protected:
-  AppRun Check(const std::string& model, std::vector<std::string> flags) {
-    flags.insert(flags.begin(), {"--model=" + model, Recordings()});
-    return RunApp("pushid-check", flags);
+  AppRun Check(const std::string& model, const std::vector<std::string>& flags) {
+    return RunApp("pushid-check", With({"--model=" + model, Recordings()}, flags));
   }
 
   // Without what changes from run to run, and without the order of flags.
@@ -45,15 +44,12 @@ TEST_F(CheckTest, AFileIsCheckedLikeAFitThatHasJustEnded) {
       {{"--replica=2", "--bootstrap_by=recording"}, few}};
   for (const auto& [fit, checks] : cases) {
     SCOPED_TRACE(fit.empty() ? "default" : fit[0]);
-    std::vector<std::string> both = fit;
-    both.insert(both.end(), checks.begin(), checks.end());
-    const std::string old = FitModel("old.json", both);
+    const std::string old = FitModel("old.json", With(fit, checks));
     EXPECT_TRUE(
         Contains(fit_.err, "pushid-fit: note: " + checks[0].substr(0, checks[0].find('='))));
     const std::string plain = FitModel("plain.json", fit);
-    EXPECT_EQ(fit_.err.find("note"), std::string::npos);
-    const AppRun run = Check(plain, checks);
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_FALSE(Contains(fit_.err, "note"));
+    const AppRun run = Succeeded(Check(plain, checks));
     EXPECT_TRUE(Contains(run.out, "model with the checks written to " + plain));
     EXPECT_EQ(Lasting(plain).dump(1), Lasting(old).dump(1));
   }
@@ -62,14 +58,12 @@ TEST_F(CheckTest, AFileIsCheckedLikeAFitThatHasJustEnded) {
 TEST_F(CheckTest, TheModelStaysWhereAnotherIsNamedOrNothingIsAdded) {
   const std::string model = FitModel();
   const std::string before = ReadText(model);
-  const AppRun run = Check(model, {"--prior_check", "--model_out=" + Path("checked.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(Check(model, {"--prior_check", "--model_out=" + Path("checked.json")}));
   EXPECT_TRUE(Json(Path("checked.json")).contains("prior_check"));
-  const AppRun printed = Check(model, {"--design=mu", "--population"});
-  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  const AppRun printed = Succeeded(Check(model, {"--design=mu", "--population"}));
   EXPECT_TRUE(Contains(printed.out, "error of mu"));
   EXPECT_TRUE(Contains(printed.out, "on the push tail, b ~ N(0, w^2)"));
-  EXPECT_EQ(printed.out.find("--design="), std::string::npos) << "advised where it was done";
+  EXPECT_FALSE(Contains(printed.out, "--design=")) << "advised where it was done";
   EXPECT_EQ(ReadText(model), before);
   // Checks add up.
   ASSERT_EQ(Check(model, {"--prior_check", "--model_out=" + model}).exit_code, 0);
@@ -95,7 +89,7 @@ TEST_F(CheckTest, AdviceNamesTheFileOfTheModel) {
     return "pushid-check --model=" + file + " --recordings=" + manifest_ + " ";
   };
   EXPECT_TRUE(Contains(fit_.out, asks("'" + model + "'")));
-  EXPECT_EQ(fit_.out.find("FILE"), std::string::npos);
+  EXPECT_FALSE(Contains(fit_.out, "FILE"));
   const AppRun run = Check(model, {"--prior_check", "--model_out=" + moved});
   EXPECT_TRUE(Contains(run.out, asks(moved)));
   std::filesystem::rename(moved, Path("again.json"));

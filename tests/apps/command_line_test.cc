@@ -31,7 +31,7 @@ TEST_F(CommandLineTest, HelpNamesTheFlagsAndIsNoError) {
     EXPECT_TRUE(Contains(run.out, app.flag));
     EXPECT_TRUE(Contains(run.out, "--flagfile"));
     EXPECT_TRUE(Contains(run.out, "--version"));
-    EXPECT_EQ(run.out.find("minloglevel"), std::string::npos) << "flags of other libraries";
+    EXPECT_FALSE(Contains(run.out, "minloglevel")) << "flags of other libraries";
     EXPECT_EQ(run.err, "");
     EXPECT_EQ(RunApp(app.name, {"-h"}).out, run.out);
   }
@@ -39,8 +39,7 @@ TEST_F(CommandLineTest, HelpNamesTheFlagsAndIsNoError) {
 
 TEST_F(CommandLineTest, VersionIsTheProgramAndANumber) {
   for (const App& app : kApps) {
-    const AppRun run = RunApp(app.name, {"--version"});
-    EXPECT_EQ(run.exit_code, 0);
+    const AppRun run = Succeeded(RunApp(app.name, {"--version"}));
     EXPECT_TRUE(Contains(run.out, std::string(app.name) + " 0.")) << run.err;
   }
 }
@@ -91,7 +90,7 @@ TEST_F(CommandLineTest, RepeatedCandidatesAreAllCompared) {
   for (const char* name : {"one", "two", "three", "\nsubject S01 ", "\nsubject S02 "}) {
     EXPECT_TRUE(Contains(run.out, name));
   }
-  EXPECT_EQ(run.out.find("\nstrength "), std::string::npos);
+  EXPECT_FALSE(Contains(run.out, "\nstrength "));
   for (const char* by : {"subject,,setting", "subject,subject", "shoes"}) {
     EXPECT_TRUE(
         Refused(RunApp("pushid-crossvalidate", {Recordings(), std::string("--group_by=") + by}),
@@ -104,7 +103,7 @@ TEST_F(CommandLineTest, AMisspeltFlagIsGuessed) {
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recording=m.json"}), {"mean --recordings?"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--modl_out=m.json"}), {"mean --model_out?"}));
   const AppRun far = RunApp("pushid-fit", {"--no_such_flag=1"});
-  EXPECT_EQ(far.err.find("mean"), std::string::npos) << far.err;
+  EXPECT_FALSE(Contains(far.err, "mean")) << far.err;
 }
 
 TEST_F(CommandLineTest, AValueThatIsNoneIsAnOrdinaryError) {
@@ -138,8 +137,7 @@ TEST_F(CommandLineTest, WhatIsMissingIsNamed) {
 TEST_F(CommandLineTest, AFlagFileCountsLikeFlags) {
   const std::string flags =
       WriteText("fit.flags", Recordings() + "\n--fix=mu=33\n--model_out=" + Path("m.json") + "\n");
-  const AppRun run = RunApp("pushid-fit", {"--flagfile=" + flags});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-fit", {"--flagfile=" + flags}));
   EXPECT_EQ(Json(Path("m.json"))["values"]["mu"], 33.0);
 }
 
@@ -148,7 +146,7 @@ TEST_F(CommandLineTest, ProgressIsPlainLinesOnStderrAndCanBeSilenced) {
   EXPECT_TRUE(Contains(fit_.err, "fitting "));
   EXPECT_EQ(fit_.err.find('\r'), std::string::npos) << "no terminal: nothing to redraw";
   EXPECT_EQ(fit_.err.back(), '\n');
-  EXPECT_EQ(fit_.out.find("fitting "), std::string::npos);
+  EXPECT_FALSE(Contains(fit_.out, "fitting "));
   FitModel("quiet.json", {"--quiet"});
   EXPECT_EQ(fit_.err, "");
 }

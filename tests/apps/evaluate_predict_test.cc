@@ -46,9 +46,8 @@ void ExpectScore(const nlohmann::ordered_json& json, const char* what) {
 
 TEST_F(EvaluateAppTest, ScoresStandUnderTheAgreedKeys) {
   const std::string model = "--model=" + FitModel();
-  const AppRun run =
-      RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + Path("scores.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(
+      RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + Path("scores.json")}));
   const nlohmann::ordered_json json = Json(Path("scores.json"));
   ASSERT_EQ(json["recordings"].size(), 12u);
   double sum = 0.0, frames = 0.0, weighted = 0.0;
@@ -81,20 +80,17 @@ TEST_F(EvaluateAppTest, ScoresStandUnderTheAgreedKeys) {
 TEST_F(EvaluateAppTest, AWhatIfChangesTheScores) {
   const std::string model = "--model=" + FitModel();
   const std::string out = Path("scores.json");
-  ASSERT_EQ(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + out}).exit_code, 0);
+  Succeeded(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + out}));
   const double before = Json(out)["mean"]["hipADE_m"];
-  ASSERT_EQ(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + out, "--set=mu=200"})
-                .exit_code,
-            0);
+  Succeeded(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + out, "--set=mu=200"}));
   EXPECT_GT(Json(out)["mean"]["hipADE_m"].get<double>(), before);
 }
 
 TEST_F(EvaluateAppTest, ARolloutThatFailsIsNamedAndTheOthersGoOn) {
   const std::string model = "--model=" + FitModel();
   const AppRun run =
-      RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + Path("scores.json"),
-                                 "--set=Kp_theta=1,tail_torque=0.8"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+      Succeeded(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + Path("scores.json"),
+                                           "--set=Kp_theta=1,tail_torque=0.8"}));
   const nlohmann::ordered_json json = Json(Path("scores.json"));
   size_t failed = 0;
   for (const auto& row : json["recordings"]) {
@@ -112,8 +108,8 @@ TEST_F(EvaluateAppTest, ARolloutThatFailsIsNamedAndTheOthersGoOn) {
 TEST_F(PredictAppTest, WritesOneRowPerFrameWithNothingButNumbers) {
   const std::string model = "--model=" + FitModel();
   const std::string out = Path("trajectory.csv");
-  const AppRun run = RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + out});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run =
+      Succeeded(RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + out}));
   EXPECT_TRUE(Contains(run.out, "45 frames"));
   EXPECT_TRUE(Contains(run.out, "hipADE"));
   const auto rows = ReadCsv(out);
@@ -135,9 +131,8 @@ TEST_F(PredictAppTest, ASlipperyFloorCarriesFurtherAndFramesMayGoOn) {
   const char* sets[] = {"--set=mu=20", "--set=mu=200"};
   for (int i : {0, 1}) {
     const std::string out = Path("trajectory.csv");
-    const AppRun run = RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + out,
-                                                 "--frames=120", sets[i]});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    Succeeded(RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + out,
+                                        "--frames=120", sets[i]}));
     EXPECT_EQ(ReadCsv(out).size(), 121u);
     last[i] = LastNumber(out, "hip_x_m");
   }
@@ -153,8 +148,7 @@ TEST_F(PredictAppTest, HarderPushesAndRepeatedOnes) {
   };
   ASSERT_EQ(predict({"--frames=120"}).exit_code, 0);
   const double once = LastNumber(out, "hip_x_m");
-  AppRun run = predict({"--push_scale=1.2"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  AppRun run = Succeeded(predict({"--push_scale=1.2"}));
   EXPECT_TRUE(Contains(run.out, "1.2 times the recorded push; no recorded motion to compare"));
   EXPECT_FALSE(Contains(run.out, "hipADE"));
   EXPECT_EQ(ReadCsv(out).size(), 46u);
@@ -173,9 +167,7 @@ TEST_F(PredictAppTest, HarderPushesAndRepeatedOnes) {
       {{"--push_again=80"}, "frame 80 is too late for the 45 frames that are predicted"},
       {{"--push_again=40", "--observed=12"}, "--push_again for another push than made it"}};
   for (const auto& [flags, message] : bad) {
-    run = predict(flags);
-    EXPECT_EQ(run.exit_code, 1) << message;
-    EXPECT_TRUE(Contains(run.err, message)) << run.err;
+    EXPECT_TRUE(Refused(predict(flags), {message}));
   }
 }
 
@@ -209,8 +201,7 @@ TEST_F(CrossValidateAppTest, EverySchemeScoresAndCompares) {
 TEST_F(CrossValidateAppTest, RepeatsItself) {
   const std::vector<std::string> arguments = {Recordings(), "--folds=3", "--repeats=1",
                                               "--yardsticks=false"};
-  const AppRun first = RunApp("pushid-crossvalidate", arguments);
-  EXPECT_EQ(first.exit_code, 0) << first.err;
+  const AppRun first = Succeeded(RunApp("pushid-crossvalidate", arguments));
   EXPECT_EQ(RunApp("pushid-crossvalidate", arguments).out, first.out);
 }
 

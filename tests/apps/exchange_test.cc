@@ -15,16 +15,14 @@ using ExchangeTest = AppTest;
 TEST_F(ExchangeTest, TheFitOfTheDatasetIsThatOfTheRecordings) {
   const std::string model = FitModel();
   const std::string bids = Path("bids");
-  const AppRun run = RunApp("pushid-export", {Recordings(), "--out=" + bids});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(RunApp("pushid-export", {Recordings(), "--out=" + bids}));
   EXPECT_TRUE(Contains(run.out, "12 recordings written to " + bids));
   for (const char* file : {"dataset_description.json", "participants.tsv", "README"}) {
     EXPECT_TRUE(std::filesystem::exists(bids + "/" + file)) << file;
   }
-  const AppRun fit = RunApp("pushid-fit", {"--recordings=" + bids + "/manifest.json",
-                                           "--model_out=" + Path("again.json")});
-  ASSERT_EQ(fit.exit_code, 0) << fit.err;
-  EXPECT_EQ(fit.err.find("warning"), std::string::npos) << fit.err;
+  const AppRun fit = Succeeded(RunApp("pushid-fit", {"--recordings=" + bids + "/manifest.json",
+                                                     "--model_out=" + Path("again.json")}));
+  EXPECT_FALSE(Contains(fit.err, "warning")) << fit.err;
   const auto first = Json(model), again = Json(Path("again.json"));
   for (const auto& [name, value] : first.at("values").items()) {
     EXPECT_NEAR(again.at("values").at(name).get<double>(), value.get<double>(),
@@ -33,26 +31,24 @@ TEST_F(ExchangeTest, TheFitOfTheDatasetIsThatOfTheRecordings) {
   }
   EXPECT_TRUE(Refused(RunApp("pushid-export", {Recordings(), "--out=" + bids}),
                       {"already exists", "--overwrite"}));
-  EXPECT_EQ(RunApp("pushid-export", {Recordings(), "--out=" + bids, "--overwrite"}).exit_code, 0);
+  Succeeded(RunApp("pushid-export", {Recordings(), "--out=" + bids, "--overwrite"}));
 }
 
 // A newcomer's own way to it: inspect a file, then a manifest by pattern and participants.
 TEST_F(ExchangeTest, ADatasetWithoutManifest) {
   const std::string bids = Path("bids");
-  ASSERT_EQ(RunApp("pushid-export", {Recordings(), "--out=" + bids}).exit_code, 0);
+  Succeeded(RunApp("pushid-export", {Recordings(), "--out=" + bids}));
   std::filesystem::remove(bids + "/manifest.json");
-  const AppRun made = RunApp(
+  Succeeded(RunApp(
       "pushid-manifest",
       {"--folder=" + bids, "--masses=" + bids + "/participants.tsv", "--out=" + bids + "/m.json",
        "--pattern=sub-{subject}/motion/sub-{subject}_task-push_tracksys-body_acq-{take}_motion.tsv",
-       "--magnitude=weak", "--setting=single"});
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+       "--magnitude=weak", "--setting=single"}));
   const auto json = Json(bids + "/m.json");
   EXPECT_EQ(json.at("recordings").size(), 12u);
   const std::string file = json.at("recordings")[0].at("tsv")[0];
   EXPECT_EQ(json.at("recordings")[0].at("pushes")[0].at("csv"), file) << "the push it holds";
-  const AppRun seen = RunApp("pushid-inspect", {bids + "/" + file});
-  ASSERT_EQ(seen.exit_code, 0) << seen.err;
+  const AppRun seen = Succeeded(RunApp("pushid-inspect", {bids + "/" + file}));
   EXPECT_TRUE(Contains(seen.out, "Motion-BIDS"));
   EXPECT_TRUE(Contains(seen.out, "push_fx"));
   EXPECT_TRUE(Contains(seen.out, "impulse"));
@@ -61,7 +57,7 @@ TEST_F(ExchangeTest, ADatasetWithoutManifest) {
 // A load cell in a channel of its own.
 TEST_F(ExchangeTest, ASensorInADataset) {
   const std::string bids = Path("bids");
-  ASSERT_EQ(RunApp("pushid-export", {Recordings(), "--out=" + bids}).exit_code, 0);
+  Succeeded(RunApp("pushid-export", {Recordings(), "--out=" + bids}));
   const auto entry = Json(bids + "/manifest.json").at("recordings")[0];
   const std::string file = bids + "/" + entry.at("tsv")[0].get<std::string>();
   const std::string channels = file.substr(0, file.size() - 10) + "channels.tsv";
@@ -82,19 +78,15 @@ TEST_F(ExchangeTest, ASensorInADataset) {
   EXPECT_TRUE(Refused(RunApp("pushid-push", arguments), {"--sensor_column", "cell"}));
   std::vector<std::string> with = arguments;
   with.push_back("--sensor_column=cell");
-  const AppRun run = RunApp("pushid-push", with);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-push", with));
   EXPECT_TRUE(Contains(ReadText(Path("push.csv")), "frame,fx,fy,ftheta,fphi"));
 }
 
 TEST_F(ExchangeTest, TrajectoriesOfRecordings) {
-  const AppRun run =
-      RunApp("pushid-export", {Recordings(), "--format=txt", "--out=" + Path("crowd")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-export", {Recordings(), "--format=txt", "--out=" + Path("crowd")}));
   const std::string file = Path("crowd") + "/" + id_ + ".txt";
   EXPECT_TRUE(Contains(ReadText(file), "# framerate: 60\n"));
-  const AppRun seen = RunApp("pushid-inspect", {file});
-  EXPECT_EQ(seen.exit_code, 0) << seen.err;
+  const AppRun seen = Succeeded(RunApp("pushid-inspect", {file}));
   EXPECT_TRUE(Contains(seen.out, "45 at 60 per second"));
   EXPECT_TRUE(
       Refused(RunApp("pushid-export", {Recordings(), "--format=txt", "--out=" + Path("crowd")}),
@@ -130,24 +122,19 @@ TEST_F(ExchangeTest, ACrowdIsAFormation) {
   const std::string crowd = WriteText("crowd.txt",
                                       "# framerate: 10\n# id frame x/m y/m\n21 0 0 0\n21 1 0 0\n"
                                       "30 1 0.5 0.02\n44 1 1.0 -0.01\n");
-  const AppRun run = RunApp("pushid-formation",
-                            {model, "--formation=" + crowd, "--formation_frame=1", "--pushed=1",
-                             "--push=20", "--duration=2", "--trajectories_out=" + Path("out.txt")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(RunApp(
+      "pushid-formation", {model, "--formation=" + crowd, "--formation_frame=1", "--pushed=1",
+                           "--push=20", "--duration=2", "--trajectories_out=" + Path("out.txt")}));
   EXPECT_TRUE(Contains(run.out, "3 people of " + crowd + ", frame 1"));
   const std::string out = ReadText(Path("out.txt"));
   EXPECT_TRUE(Contains(out, "\n30\t0\t0.5\t0.02\t"));
-  EXPECT_EQ(out.find("person"), std::string::npos) << "ids are the file's own";
+  EXPECT_FALSE(Contains(out, "person")) << "ids are the file's own";
   // The result is itself a crowd.
-  EXPECT_EQ(RunApp("pushid-formation",
+  Succeeded(RunApp("pushid-formation",
                    {model, "--formation=" + Path("out.txt"), "--push=20", "--formation_frame=60",
-                    "--trajectories_out=" + Path("out.sqlite")})
-                .exit_code,
-            0);
+                    "--trajectories_out=" + Path("out.sqlite")}));
   const auto refused = [&](const std::vector<std::string>& more, const std::string& says) {
-    std::vector<std::string> flags = {model, "--formation=" + crowd};
-    flags.insert(flags.end(), more.begin(), more.end());
-    return Refused(RunApp("pushid-formation", flags), {says});
+    return Refused(RunApp("pushid-formation", With({model, "--formation=" + crowd}, more)), {says});
   };
   EXPECT_TRUE(refused({"--formation_frame=7"}, "there is no frame 7"));
   EXPECT_TRUE(refused({"--people=3"}, "--people is for line, diamond and grid"));

@@ -35,10 +35,9 @@ class ExploreTest : public AppTest {
     std::ostringstream kilograms;
     kilograms.precision(17);
     kilograms << mass;
-    const AppRun run = RunApp(
-        "pushid-formation", {"--model=" + model, "--formation=line", "--people=1", "--push=" + push,
-                             "--mass=" + kilograms.str(), "--csv_out=" + Path("p.csv")});
-    EXPECT_EQ(run.exit_code, 0) << run.err;
+    Succeeded(RunApp("pushid-formation",
+                     {"--model=" + model, "--formation=line", "--people=1", "--push=" + push,
+                      "--mass=" + kilograms.str(), "--csv_out=" + Path("p.csv")}));
     std::istringstream lines(ReadText(Path("p.csv")));
     std::string line, cell;
     for (int frame = -1; frame < 360; ++frame) std::getline(lines, line);
@@ -57,14 +56,13 @@ TEST_F(ExploreTest, MovesAsAFormationOfOne) {
        "--fix=contact_stiffness,contact_distance,contact_kappa,contact_damping"}};
   for (const std::vector<std::string>& flags : models) {
     const std::string model = FitModel(flags.empty() ? "alone.json" : "rows.json", flags);
-    const AppRun run = RunApp("pushid-report", {"--model=" + model, "--html_out=" + Path("r.html"),
-                                                "--explore", "--overwrite"});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    Succeeded(RunApp("pushid-report", {"--model=" + model, "--html_out=" + Path("r.html"),
+                                       "--explore", "--overwrite"}));
     std::string page = ReadText(Path("r.html"));
     if (!Contains(page, "exp-wasm")) GTEST_SKIP() << "built without emscripten";
     page.replace(page.find("</body>"), 7, kProbe);
     const AppRun seen = Browse(Path("browser"), WriteText("probed.html", page), 5000);
-    EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
+    EXPECT_FALSE(Contains(seen.err, "CONSOLE")) << seen.err;
     std::istringstream said(WhatItSaid(seen));
     double mass = 0.0, whole = 0.0, less = 0.0;
     std::string back;
@@ -79,9 +77,8 @@ TEST_F(ExploreTest, MovesAsAFormationOfOne) {
 }
 
 TEST_F(ExploreTest, IsLeftOutWhereAskedTo) {
-  const AppRun run = RunApp("pushid-report", {"--model=" + FitModel(), "--explore=false",
-                                              "--html_out=" + Path("r.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-report",
+                   {"--model=" + FitModel(), "--explore=false", "--html_out=" + Path("r.html")}));
   EXPECT_FALSE(Contains(ReadText(Path("r.html")), "exp-wasm"));
 }
 

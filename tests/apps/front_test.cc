@@ -17,16 +17,15 @@ using FrontTest = AppTest;
 TEST_F(FrontTest, ACommandIsTheProgramWithItsExitCode) {
   EXPECT_EQ(RunApp("pushid", {"report", "--help"}).out, RunApp("pushid-report", {"--help"}).out);
   EXPECT_EQ(RunApp("pushid", {"help", "report"}).out, RunApp("pushid-report", {"--help"}).out);
-  const AppRun fit = RunApp("pushid", {"fit", Recordings(), "--model_out=" + Path("model.json")});
-  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  const AppRun fit =
+      Succeeded(RunApp("pushid", {"fit", Recordings(), "--model_out=" + Path("model.json")}));
   EXPECT_TRUE(Contains(fit.out, "model written to"));
   EXPECT_TRUE(Refused(RunApp("pushid", {"fit"}), {"pushid-fit: error: --recordings is missing"}));
   EXPECT_TRUE(Contains(RunApp("pushid", {"--version"}).out, "pushid 0."));
   EXPECT_EQ(RunApp("pushid", {"pushid-fit", "--version"}).out,
             RunApp("pushid-fit", {"--version"}).out);
   EXPECT_EQ(RunApp("pushid", {"help", "help"}).out, RunApp("pushid", {"help"}).out);
-  const AppRun shells = RunApp("pushid", {"help", "completion"});
-  EXPECT_EQ(shells.exit_code, 0);
+  const AppRun shells = Succeeded(RunApp("pushid", {"help", "completion"}));
   EXPECT_TRUE(Contains(shells.out, "in ~/.bashrc: source <(pushid completion bash)"));
 }
 
@@ -55,11 +54,10 @@ TEST_F(FrontTest, ShellsCompleteFlagsAndTheirWords) {
   std::map<std::string, std::string> scripts;
   for (const char* shell : {"bash", "zsh", "fish"}) {
     SCOPED_TRACE(shell);
-    const AppRun run = RunApp("pushid", {"completion", shell});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const AppRun run = Succeeded(RunApp("pushid", {"completion", shell}));
     EXPECT_TRUE(Contains(run.out, "settling_weight"));
     EXPECT_TRUE(Contains(run.out, "slide steps"));  // --stance
-    EXPECT_EQ(run.out.find("minloglevel"), std::string::npos);
+    EXPECT_FALSE(Contains(run.out, "minloglevel"));
     scripts[shell] = run.out;
   }
   EXPECT_TRUE(Contains(scripts["zsh"], "'check:question a fitted model\\: profiles, bootstrap, "));
@@ -94,21 +92,18 @@ TEST_F(FrontTest, PagesOfTheManual) {
     SCOPED_TRACE(name);
     const std::vector<std::string> asked =
         name == "pushid" ? std::vector<std::string>{"man"} : std::vector<std::string>{"man", name};
-    const AppRun run = RunApp("pushid", asked);
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const AppRun run = Succeeded(RunApp("pushid", asked));
     const std::string page = WriteText(name + ".1", run.out);
     EXPECT_TRUE(Contains(
         run.out, ".SH NAME\n" + std::regex_replace(name, std::regex("-"), "\\-") + " \\- "));
     if (groff) {
-      const AppRun read =
-          RunProgram("/bin/sh", {"-c", "groff -man -ww -Tutf8 '" + page + "' >/dev/null"});
-      EXPECT_EQ(read.exit_code, 0);
+      const AppRun read = Succeeded(
+          RunProgram("/bin/sh", {"-c", "groff -man -ww -Tutf8 '" + page + "' >/dev/null"}));
       EXPECT_EQ(read.err, "");
     }
     if (!man || name == "pushid") continue;
     const AppRun read =
-        RunProgram("/bin/sh", {"-c", "MANWIDTH=100 man --warnings -l '" + page + "'"});
-    EXPECT_EQ(read.exit_code, 0);
+        Succeeded(RunProgram("/bin/sh", {"-c", "MANWIDTH=100 man --warnings -l '" + page + "'"}));
     EXPECT_EQ(read.err, "");
     EXPECT_TRUE(Contains(read.out, "--flagfile=FILE"));
   }

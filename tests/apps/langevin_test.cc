@@ -35,8 +35,7 @@ TEST_F(LangevinAppTest, AFitBySingleStepsSaysHowLikely) {
   const auto& score = json.at("likelihood");
   EXPECT_NEAR(score.at("aic").get<double>(),
               score.at("deviance").get<double>() + 2.0 * score.at("parameters").get<int>(), 1e-6);
-  const AppRun report = RunApp("pushid-report", {"--model=" + model});
-  EXPECT_EQ(report.exit_code, 0) << report.err;
+  const AppRun report = Succeeded(RunApp("pushid-report", {"--model=" + model}));
   EXPECT_TRUE(Contains(report.out, "-2 log L"));
 }
 
@@ -44,9 +43,7 @@ TEST_F(LangevinAppTest, AFitBySingleStepsSaysHowLikely) {
 TEST_F(LangevinAppTest, NoiseChangesNoRollout) {
   const auto mean = [&](const std::string& model) {
     const std::string out = Path("scores.json");
-    EXPECT_EQ(RunApp("pushid-evaluate", {"--model=" + model, Recordings(), "--json_out=" + out})
-                  .exit_code,
-              0);
+    Succeeded(RunApp("pushid-evaluate", {"--model=" + model, Recordings(), "--json_out=" + out}));
     return Json(out).at("mean").at("hipADE_m").get<double>();
   };
   EXPECT_EQ(mean(noisy_), mean(plain_));
@@ -55,35 +52,31 @@ TEST_F(LangevinAppTest, NoiseChangesNoRollout) {
 TEST_F(LangevinAppTest, FuturesAreDrawnScoredAndWritten) {
   std::vector<std::string> predict = Predict(noisy_);
   predict.insert(predict.end(), {"--samples=20", "--samples_out=" + Path("futures.csv")});
-  const AppRun drawn = RunApp("pushid-predict", predict);
-  ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
+  const AppRun drawn = Succeeded(RunApp("pushid-predict", predict));
   EXPECT_TRUE(Contains(drawn.out, "20 drawn futures"));
   EXPECT_EQ(CountLines(ReadText(Path("futures.csv"))), 1u + 20u * 45u);
   const std::string first = ReadText(Path("futures.csv"));
-  ASSERT_EQ(RunApp("pushid-predict", predict).exit_code, 0);
+  Succeeded(RunApp("pushid-predict", predict));
   EXPECT_EQ(ReadText(Path("futures.csv")), first) << "the same seed, the same futures";
 
   const std::string scores = Path("scores.json");
-  const AppRun evaluated = RunApp("pushid-evaluate", {"--model=" + noisy_, Recordings(),
-                                                      "--samples=20", "--json_out=" + scores});
-  ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  Succeeded(RunApp("pushid-evaluate",
+                   {"--model=" + noisy_, Recordings(), "--samples=20", "--json_out=" + scores}));
   const nlohmann::ordered_json mean = Json(scores).at("futures").at("mean");
   for (const char* key :
        {"inside90_x_1", "crps_x_m", "energy_m", "deviance_1", "energy_standard_error_m"}) {
     EXPECT_TRUE(mean.contains(key)) << key;
   }
 
-  const AppRun held_out =
+  const AppRun held_out = Succeeded(
       RunApp("pushid-crossvalidate",
              {Recordings(), "--process_noise=diagonal", "--folds=2", "--repeats=1", "--samples=10",
-              "--compare=full: --process_noise=full", "--json_out=" + scores, "--quiet"});
-  ASSERT_EQ(held_out.exit_code, 0) << held_out.err;
+              "--compare=full: --process_noise=full", "--json_out=" + scores, "--quiet"}));
   EXPECT_EQ(Json(scores).at("futures").size(), 2u);
   EXPECT_TRUE(Contains(held_out.out, "full less tail"));
 
-  const AppRun line = RunApp(
-      "pushid-formation", {"--model=" + noisy_, "--formation=line", "--people=1", "--samples=10"});
-  EXPECT_EQ(line.exit_code, 0) << line.err;
+  const AppRun line = Succeeded(RunApp(
+      "pushid-formation", {"--model=" + noisy_, "--formation=line", "--people=1", "--samples=10"}));
   EXPECT_TRUE(Contains(line.out, "10 drawn futures"));
 }
 
@@ -99,9 +92,8 @@ TEST_F(LangevinAppTest, TheMostProbablePathAndItsEnds) {
   EXPECT_LT(json.at("paths")[0].at("action").get<double>(),
             json.at("paths")[1].at("action").get<double>());
 
-  const AppRun smoothed =
-      RunApp("pushid-path", {model, Recordings(), "--id=" + id_, "--out=" + Path("states.csv")});
-  ASSERT_EQ(smoothed.exit_code, 0) << smoothed.err;
+  Succeeded(
+      RunApp("pushid-path", {model, Recordings(), "--id=" + id_, "--out=" + Path("states.csv")}));
   EXPECT_EQ(CountLines(ReadText(Path("states.csv"))), 46u);
 }
 

@@ -25,13 +25,13 @@ class LayoutTest : public AppTest {
   void ExpectGoodLayout(std::vector<std::string> pages, const std::set<size_t>& labelled) {
     for (std::string& page : pages) page = Probed(page, kLayoutProbe);
     const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Framed(pages)));
-    EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
+    EXPECT_FALSE(Contains(seen.err, "CONSOLE")) << seen.err;
     int frame = 0;
     for (size_t i = 0; i < pages.size(); ++i) {
       for (const int width : kWidths) {
         SCOPED_TRACE("page " + std::to_string(i) + ", width " + std::to_string(width));
         const std::string said = WhatItSaid(seen, frame++);
-        EXPECT_EQ(said.find("; "), std::string::npos) << said;
+        EXPECT_FALSE(Contains(said, "; ")) << said;
         EXPECT_TRUE(Contains(said, " labels in " + std::to_string(width) + " pixels"));
         EXPECT_EQ(said.rfind("0 labels", 0) == 0, labelled.count(i) == 0) << said;
       }
@@ -55,26 +55,23 @@ std::string Opened(std::string page) {
 
 TEST_F(LayoutTest, AReportOfAFewParameters) {
   const std::string model = FitModel("model.json", {"--profile=mu", "--bootstrap=9"});
-  const AppRun run = RunApp(
-      "pushid-report", {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-report",
+                   {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")}));
   ExpectGoodLayout({Opened(ReadText(Path("report.html")))}, {0});
 }
 
 TEST_F(LayoutTest, AReportOfManyParameters) {
   const std::string model = FitModel("model.json", {"--self_force=linear", "--free=Kd_theta"});
-  const AppRun run = RunApp(
-      "pushid-report", {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-report",
+                   {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")}));
   ExpectGoodLayout({Opened(ReadText(Path("report.html")))}, {0});
 }
 
 // In a journal's column.
 TEST_F(LayoutTest, FiguresForPapers) {
   const std::string model = FitModel("model.json", {"--profile=mu", "--bootstrap=9"});
-  const AppRun run = RunApp("pushid-report",
-                            {"--model=" + model, Recordings(), "--figures_out=" + Path("figures")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-report",
+                   {"--model=" + model, Recordings(), "--figures_out=" + Path("figures")}));
   std::string figures;
   for (const auto& entry : std::filesystem::directory_iterator(Path("figures"))) {
     if (entry.path().extension() != ".svg") continue;
@@ -87,28 +84,24 @@ TEST_F(LayoutTest, FiguresForPapers) {
 
 TEST_F(LayoutTest, PicturesOfAFormation) {
   const std::string model = FitModel();
-  const AppRun run =
-      RunApp("pushid-formation",
-             {"--model=" + model, "--formation=line", "--people=5", "--svg_out=" + Path("wave.svg"),
-              "--forces_svg_out=" + Path("forces.svg"), "--strip_out=" + Path("strip.svg"),
-              "--html_out=" + Path("wave.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-formation",
+                   {"--model=" + model, "--formation=line", "--people=5",
+                    "--svg_out=" + Path("wave.svg"), "--forces_svg_out=" + Path("forces.svg"),
+                    "--strip_out=" + Path("strip.svg"), "--html_out=" + Path("wave.html")}));
   const std::string page = ReadText(Path("wave.html"));
   std::vector<std::string> pages = {page};
   for (const char* svg : {"wave.svg", "forces.svg", "strip.svg"}) {
     pages.push_back(PageOf(ReadText(Path(svg))));
   }
   ExpectGoodLayout(pages, {1, 2, 3});
-  EXPECT_EQ(page.find("id=\"recorded\""), std::string::npos) << "nothing was recorded";
+  EXPECT_FALSE(Contains(page, "id=\"recorded\"")) << "nothing was recorded";
 }
 
 TEST_F(LayoutTest, AnAnimationOfSeveralWhatIfs) {
   const std::string model = FitModel();
-  const AppRun run =
-      RunApp("pushid-animate",
-             {"--model=" + model, Recordings(), "--id=" + id_, "--set=mu=10", "--set=mu=60,a_x=-8",
-              "--out=" + Path("a.html"), "--strip_out=" + Path("a.svg")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-animate", {"--model=" + model, Recordings(), "--id=" + id_,
+                                      "--set=mu=10", "--set=mu=60,a_x=-8",
+                                      "--out=" + Path("a.html"), "--strip_out=" + Path("a.svg")}));
   for (const std::string& file : {ReadText(Path("a.html")), ReadText(Path("a.svg"))}) {
     for (const char* entry : {"recorded", "as fitted", "mu=10", "mu=60,a_x=-8"}) {
       EXPECT_TRUE(Contains(file, entry));
@@ -124,9 +117,8 @@ TEST_F(LayoutTest, AnAnimationOfSeveralWhatIfs) {
 // Draws a frame in which the push acts: the script of the page runs through.
 TEST_F(LayoutTest, TheMovingFigureMoves) {
   const std::string model = FitModel();
-  const AppRun run = RunApp("pushid-animate", {"--model=" + model, Recordings(), "--id=" + id_,
-                                               "--out=" + Path("a.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-animate",
+                   {"--model=" + model, Recordings(), "--id=" + id_, "--out=" + Path("a.html")}));
   const AppRun seen =
       Browse(Path("browser"), WriteText("probed.html", Probed(ReadText(Path("a.html")), R"js(
   const time = document.getElementById('time'), canvas = document.getElementById('view');
@@ -136,7 +128,7 @@ TEST_F(LayoutTest, TheMovingFigureMoves) {
   said.push(canvas.toDataURL() === before ? 'stands' : 'moves');
   said.push(document.getElementById('clock').textContent);
 )js")));
-  EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
+  EXPECT_FALSE(Contains(seen.err, "CONSOLE")) << seen.err;
   EXPECT_EQ(WhatItSaid(seen), "moves; 0.05 s, frame 3");
 }
 
@@ -147,8 +139,7 @@ TEST_F(LayoutTest, ForcesAreToldBesideTheMotion) {
   std::vector<std::string> told = flags, wrong = flags;
   told.push_back("--explain=auto");
   wrong.push_back("--explain=nobody");
-  const AppRun run = RunApp("pushid-animate", told);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(RunApp("pushid-animate", told));
   EXPECT_TRUE(Contains(run.out, ": 0 s pushed, up to "));
   const std::string page = ReadText(Path("a.html"));
   ExpectGoodLayout({page}, {});

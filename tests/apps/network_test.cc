@@ -21,44 +21,34 @@ std::vector<std::string> CellsOf(std::istream* table) {
 }
 
 TEST_F(NetworkAppTest, EveryProgramTakesANetwork) {
-  const std::string model = FitModel("model.json", {"--self_force=mlp:2", "--network_prior=1"});
-  EXPECT_EQ(Json(model).at("self_network").at("weights").size(), 24u);
-  for (const auto& [app, arguments] : std::vector<std::pair<std::string, std::vector<std::string>>>{
-           {"pushid-report", {Recordings(), "--html_out=" + Path("report.html")}},
-           {"pushid-evaluate", {Recordings(), "--json_out=" + Path("scores.json")}},
-           {"pushid-predict", {Recordings(), "--id=" + id_, "--out=" + Path("path.csv")}}}) {
-    std::vector<std::string> all = {"--model=" + model};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const auto run = RunApp(app, all);
-    EXPECT_EQ(run.exit_code, 0) << app << ": " << run.err;
-  }
+  const std::string model =
+      "--model=" + FitModel("model.json", {"--self_force=mlp:2", "--network_prior=1"});
+  EXPECT_EQ(Json(Path("model.json")).at("self_network").at("weights").size(), 24u);
+  Succeeded(RunApp("pushid-report", {model, Recordings(), "--html_out=" + Path("report.html")}));
+  Succeeded(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + Path("scores.json")}));
+  Succeeded(
+      RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + Path("path.csv")}));
 }
 
 TEST_F(NetworkAppTest, ARodThatMovesGoesThroughEveryProgram) {
-  const std::string model = FitModel("model.json", {"--self_force=mlp:2", "--rod=linear"});
-  EXPECT_EQ(Json(model).at("self_network").at("rod").at("kind"), "linear");
-  EXPECT_EQ(Json(model).at("self_network").at("weights").size(), 24u + 11u);
-  for (const auto& [app, arguments] : std::vector<std::pair<std::string, std::vector<std::string>>>{
-           {"pushid-report", {Recordings(), "--html_out=" + Path("report.html")}},
-           {"pushid-evaluate", {Recordings()}},
-           {"pushid-predict", {Recordings(), "--id=" + id_, "--out=" + Path("path.csv")}}}) {
-    std::vector<std::string> all = {"--model=" + model};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const auto run = RunApp(app, all);
-    EXPECT_EQ(run.exit_code, 0) << app << ": " << run.err;
-  }
-  EXPECT_NE(ReadText(Path("report.html")).find("network mlp:2 and rod linear"), std::string::npos);
-  EXPECT_NE(ReadText(Path("path.csv")).find(",rod_length_m,cart_height_m"), std::string::npos);
+  const std::string model =
+      "--model=" + FitModel("model.json", {"--self_force=mlp:2", "--rod=linear"});
+  EXPECT_EQ(Json(Path("model.json")).at("self_network").at("rod").at("kind"), "linear");
+  EXPECT_EQ(Json(Path("model.json")).at("self_network").at("weights").size(), 24u + 11u);
+  Succeeded(RunApp("pushid-report", {model, Recordings(), "--html_out=" + Path("report.html")}));
+  Succeeded(RunApp("pushid-evaluate", {model, Recordings()}));
+  Succeeded(
+      RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--out=" + Path("path.csv")}));
+  EXPECT_TRUE(Contains(ReadText(Path("report.html")), "network mlp:2 and rod linear"));
+  EXPECT_TRUE(Contains(ReadText(Path("path.csv")), ",rod_length_m,cart_height_m"));
 }
 
 // The hip of a restored body is the tip of the rod as it is in that frame.
 TEST_F(NetworkAppTest, BodiesFollowARodThatMoves) {
   const std::string model = "--model=" + FitModel("model.json", {"--rod=linear"});
-  const auto bodies =
-      RunApp("pushid-predict",
-             {model, Recordings(), "--id=" + id_, "--restoration=rigid", "--postprocess=none",
-              "--out=" + Path("path.csv"), "--json_out=" + Path("b.json")});
-  ASSERT_EQ(bodies.exit_code, 0) << bodies.err;
+  Succeeded(RunApp("pushid-predict",
+                   {model, Recordings(), "--id=" + id_, "--restoration=rigid", "--postprocess=none",
+                    "--out=" + Path("path.csv"), "--json_out=" + Path("b.json")}));
   std::istringstream table(ReadText(Path("path.csv")));
   const auto names = CellsOf(&table);
   const auto column = [&](const std::string& name) {
@@ -76,17 +66,12 @@ TEST_F(NetworkAppTest, BodiesFollowARodThatMoves) {
     longest = std::max(longest, std::stod(row[column("rod_length_m")]));
   }
   EXPECT_GT(longest - shortest, 1e-5) << "the rod does move";
-  for (const auto& [app, arguments] : std::vector<std::pair<std::string, std::vector<std::string>>>{
-           {"pushid-evaluate", {Recordings(), "--restoration=rigid"}},
-           {"pushid-animate", {Recordings(), "--id=" + id_, "--out=" + Path("a.html")}},
-           {"pushid-formation",
-            {"--formation=line", "--people=3", "--duration=1", "--restoration=rigid",
-             "--people_from=" + manifest_, "--bodies_out=" + Path("f.bvh")}}}) {
-    std::vector<std::string> all = {model};
-    all.insert(all.end(), arguments.begin(), arguments.end());
-    const auto run = RunApp(app, all);
-    EXPECT_EQ(run.exit_code, 0) << app << ": " << run.err;
-  }
+  Succeeded(RunApp("pushid-evaluate", {model, Recordings(), "--restoration=rigid"}));
+  Succeeded(
+      RunApp("pushid-animate", {model, Recordings(), "--id=" + id_, "--out=" + Path("a.html")}));
+  Succeeded(RunApp("pushid-formation",
+                   {model, "--formation=line", "--people=3", "--duration=1", "--restoration=rigid",
+                    "--people_from=" + manifest_, "--bodies_out=" + Path("f.bvh")}));
 }
 
 TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {
@@ -99,11 +84,8 @@ TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {
             "--profile and --bootstrap need the minimum of the cost"},
            {{"--self_from=" + Path("gru.json")},
             "has learned gru:2, which --self_from cannot take over"}}) {
-    std::vector<std::string> all = {Recordings(), "--model_out=" + Path("m.json")};
-    all.insert(all.end(), flags.begin(), flags.end());
-    const auto run = RunApp("pushid-fit", all);
-    EXPECT_EQ(run.exit_code, 1);
-    EXPECT_NE(run.err.find(complaint), std::string::npos) << run.err;
+    const auto all = With({Recordings(), "--model_out=" + Path("m.json")}, flags);
+    EXPECT_TRUE(Refused(RunApp("pushid-fit", all), {complaint}));
   }
 }
 

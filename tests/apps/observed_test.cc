@@ -19,9 +19,8 @@ class ObservedTest : public AppTest {
     options.frames = 45;
     options.joint_noise_m = 0.0005;
     options.recording_spread = 0.4;
-    const auto made = MakeSyntheticRecordings(options);
-    ASSERT_TRUE(made.ok()) << made.error().ToString();
-    ASSERT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made.value()));
+    const auto made = Unwrapped(MakeSyntheticRecordings(options));
+    ASSERT_FALSE(WriteSyntheticRecordings(folder_.string(), options, made));
   }
 };
 
@@ -31,8 +30,7 @@ TEST_F(ObservedTest, OneFrameIsWhatThereIsWithoutTheFlag) {
     std::vector<std::string> more = {model, Recordings(),
                                      "--json_out=" + Path(asked ? "one.json" : "none.json")};
     if (asked) more.push_back("--observed=1");
-    const AppRun run = RunApp("pushid-evaluate", more);
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    Succeeded(RunApp("pushid-evaluate", more));
   }
   const auto none = Json(Path("none.json")), one = Json(Path("one.json"));
   for (const char* key : {"hipADE_m", "hipFDE_m", "hipADE_standard_error_m"}) {
@@ -46,10 +44,9 @@ TEST_F(ObservedTest, FramesThatAreSeenHelp) {
   const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
   double before = 1e9;
   for (const int k : {1, 10, 25}) {
-    const AppRun run = RunApp(
-        "pushid-evaluate",
-        {model, Recordings(), "--json_out=" + Path("s.json"), "--observed=" + std::to_string(k)});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const AppRun run =
+        Succeeded(RunApp("pushid-evaluate", {model, Recordings(), "--json_out=" + Path("s.json"),
+                                             "--observed=" + std::to_string(k)}));
     const auto json = Json(Path("s.json"));
     EXPECT_EQ(json["observed"], k);
     EXPECT_LT(json["mean"]["hipADE_m"].get<double>(), before);
@@ -59,28 +56,25 @@ TEST_F(ObservedTest, FramesThatAreSeenHelp) {
          {"static", "constant_velocity", "velocity_of_8", "kinematic", "reanchored"}) {
       EXPECT_TRUE(json["baselines"][baseline]["mean"].contains("after_hipADE_m")) << baseline;
     }
-    EXPECT_NE(run.out.find("90 % bands hold"), std::string::npos);
-    EXPECT_NE(run.out.find("re-anchored"), std::string::npos);
+    EXPECT_TRUE(Contains(run.out, "90 % bands hold"));
+    EXPECT_TRUE(Contains(run.out, "re-anchored"));
   }
 }
 
 TEST_F(ObservedTest, PredictWritesBandsBehindWhatWasSeen) {
   const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
-  const AppRun run = RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--observed=12",
-                                               "--out=" + Path("t.csv")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("after hipADE"), std::string::npos) << run.out;
-  EXPECT_NE(run.out.find("from 12 frames"), std::string::npos) << run.out;
+  const AppRun run =
+      Succeeded(RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--observed=12",
+                                          "--out=" + Path("t.csv")}));
+  EXPECT_TRUE(Contains(run.out, "after hipADE"));
+  EXPECT_TRUE(Contains(run.out, "from 12 frames"));
   const std::string csv = ReadText(Path("t.csv"));
-  EXPECT_NE(csv.substr(0, csv.find('\n')).find("hip_x_lower90_m,hip_x_upper90_m"),
-            std::string::npos);
+  EXPECT_TRUE(Contains(csv.substr(0, csv.find('\n')), "hip_x_lower90_m,hip_x_upper90_m"));
 }
 
 TEST_F(ObservedTest, HeldOutRecordingsAreScoredBehindTheirFirstFrames) {
-  const AppRun run = RunApp(
-      "pushid-crossvalidate",
-      {Recordings(), "--folds=3", "--repeats=1", "--observed=12", "--json_out=" + Path("cv.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-crossvalidate", {Recordings(), "--folds=3", "--repeats=1",
+                                            "--observed=12", "--json_out=" + Path("cv.json")}));
   const auto json = Json(Path("cv.json"));
   ASSERT_EQ(json["predictors"].size(), 7u);
   EXPECT_EQ(json["predictors"][1]["name"], "re-anchored");
@@ -128,9 +122,8 @@ TEST_F(ObservedTest, WhatCannotBeIsRefused) {
 
 TEST_F(ObservedTest, PopulationIsPrintedAndKept) {
   const std::string model = FitModel("model.json", {"--population", "--learn_forecasts"});
-  EXPECT_NE(fit_.out.find("Recordings differ by a factor exp(b) on the push tail"),
-            std::string::npos);
-  EXPECT_NE(fit_.out.find("alone"), std::string::npos);
+  EXPECT_TRUE(Contains(fit_.out, "Recordings differ by a factor exp(b) on the push tail"));
+  EXPECT_TRUE(Contains(fit_.out, "alone"));
   const auto effect = Json(model)["recording_effect"];
   EXPECT_EQ(effect["recordings"].size(), 12u);
   EXPECT_GT(effect["error_scale_m"].get<double>(), 0.0);

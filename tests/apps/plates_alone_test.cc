@@ -34,9 +34,8 @@ class PlatesAloneApp : public AppTest {
   }
   double RodOf(const std::string& id) {
     if (rods_.empty()) {
-      const auto loaded = LoadRecordings(Path("swaying/manifest.json"));
-      EXPECT_TRUE(loaded.ok());
-      for (const Recording& r : loaded.value()) {
+      const auto loaded = Unwrapped(LoadRecordings(Path("swaying/manifest.json")));
+      for (const Recording& r : loaded) {
         const RecordedPerson& p = r.people[0];
         rods_[r.id] = (p.hip[0] - 0.5 * (p.left_ankle[0] + p.right_ankle[0])).norm();
       }
@@ -49,9 +48,9 @@ class PlatesAloneApp : public AppTest {
 
 TEST_F(PlatesAloneApp, AreFittedWhereFeetStand) {
   const std::string recordings = Simulated();
-  const AppRun fit = RunApp("pushid-fit", {recordings, "--stance=fixed", "--fix=Kp_phi,Kd_phi",
-                                           "--model_out=" + Path("plates_fit.json")});
-  ASSERT_EQ(fit.exit_code, 0) << fit.err << fit.out;
+  const AppRun fit =
+      Succeeded(RunApp("pushid-fit", {recordings, "--stance=fixed", "--fix=Kp_phi,Kd_phi",
+                                      "--model_out=" + Path("plates_fit.json")}));
   EXPECT_FALSE(Contains(fit.out, "nan"));
   EXPECT_FALSE(Contains(fit.out, "The model does not fit"));
   EXPECT_FALSE(Contains(fit.out, "lag-1"));
@@ -64,9 +63,8 @@ TEST_F(PlatesAloneApp, AreFittedWhereFeetStand) {
 
 TEST_F(PlatesAloneApp, AreRefusedElsewhere) {
   const std::string recordings = Simulated();
-  const auto told = [&](const std::string& program, std::vector<std::string> flags) {
-    flags.insert(flags.begin(), recordings);
-    const AppRun run = RunApp(program, flags);
+  const auto told = [&](const std::string& program, const std::vector<std::string>& flags) {
+    const AppRun run = RunApp(program, With({recordings}, flags));
     EXPECT_EQ(run.exit_code, 1) << program;
     return run.err;
   };

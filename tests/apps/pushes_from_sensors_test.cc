@@ -25,10 +25,9 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   options.direction_sigma_rad = 0.0;
   options.min_height = options.max_height = 1.0;
   options.model.push_tail = PushTail::kNone;
-  const auto made = MakeSyntheticRecordings(options);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  ASSERT_FALSE(WriteSyntheticRecordings(Path("external"), options, made.value()));
-  const Recording& recording = made.value()[0].recording;
+  const auto made = Unwrapped(MakeSyntheticRecordings(options));
+  ASSERT_FALSE(WriteSyntheticRecordings(Path("external"), options, made));
+  const Recording& recording = made[0].recording;
   const Push& push = recording.pushes[0];
   C3dFile c3d;
   c3d.point_rate_hz = 60.0;
@@ -46,12 +45,10 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
                                            "--id=" + recording.id, "--out=" + Path("p.csv"),
                                            "--overwrite"};
   const auto with = [&common](std::vector<std::string> flags) {
-    flags.insert(flags.end(), common.begin(), common.end());
-    return RunApp("pushid-push", flags);
+    return RunApp("pushid-push", With(flags, common));
   };
   const std::string c3d_flag = "--sensor=" + Path("rod.c3d");
-  AppRun run = with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  AppRun run = Succeeded(with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50"}));
   double impulse = 0.0;
   for (const Eigen::Vector4d& row : push.force) impulse += row.x() / 60.0;
   char said[64];
@@ -89,10 +86,9 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   samples.resize(20 * (push.start_frame + push.force.size() / 2));
   c3d.points[0].resize(samples.size() / 20);
   ASSERT_FALSE(WriteC3d(Path(recording.id + ".c3d"), c3d));
-  run = RunApp("pushid-push",
-               {common[0], "--ids=" + recording.id, "--sensor_column=rod", "--sensor_gain=-50",
-                "--sensor=" + Path("{id}.c3d"), "--out=" + Path("made/{id}.csv")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  run = Succeeded(RunApp("pushid-push", {common[0], "--ids=" + recording.id, "--sensor_column=rod",
+                                         "--sensor_gain=-50", "--sensor=" + Path("{id}.c3d"),
+                                         "--out=" + Path("made/{id}.csv")}));
   EXPECT_TRUE(std::filesystem::exists(Path("made/" + recording.id + ".csv")));
   EXPECT_TRUE(Contains(run.err, "part of the push is missing"));
 

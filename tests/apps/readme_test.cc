@@ -140,8 +140,7 @@ TEST(ReadmeTest, EveryBlockOfNumbersHasItsStudy) {
 TEST(ReadmeTest, TheGlossaryIsThatOfTheProgram) {
   setenv("PUSHID_BIN", PUSHID_BIN_DIR, 1);
   const std::string script = kSource / "tests/studies/glossary.sh";
-  const AppRun run = RunProgram("/bin/bash", {script, "--print"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(RunProgram("/bin/bash", {script, "--print"}));
   const std::vector<std::string> blocks =
       Blocks(ReadFile(kSource / "ident/README.md"), "parameters");
   ASSERT_EQ(blocks.size(), 1u) << "ident/README.md: one line <!-- parameters -->";

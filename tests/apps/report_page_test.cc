@@ -42,15 +42,14 @@ class ReportPage : public AppTest {};
 TEST_F(ReportPage, WorksInABrowser) {
   if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
   const std::string model = FitModel("model.json", {"--profile=mu", "--bootstrap=9"});
-  const AppRun run = RunApp(
-      "pushid-report", {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-report",
+                   {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")}));
   std::string page = ReadText(Path("report.html"));
   EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org/2000/svg")) << "opens from disk";
-  EXPECT_EQ(page.find("https://"), std::string::npos);
-  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Probed(page, kProbe)));
-  ASSERT_EQ(seen.exit_code, 0) << seen.err;
-  EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
+  EXPECT_FALSE(Contains(page, "https://"));
+  const AppRun seen =
+      Succeeded(Browse(Path("browser"), WriteText("probed.html", Probed(page, kProbe))));
+  EXPECT_FALSE(Contains(seen.err, "CONSOLE")) << seen.err;
   for (const char* section :
        {"summary", "parameters", "identifiability", "profiles", "bootstrap", "behaviour", "figure",
         "motion", "recordings", "leverage", "residuals", "solve", "design", "provenance"}) {
@@ -69,11 +68,10 @@ TEST_F(ReportPage, WorksInABrowser) {
 // On a desk and on a telephone; folded tables count as well.
 TEST_F(ReportPage, LeadsWithPictures) {
   if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
-  const AppRun run = RunApp("pushid-report", {"--model=" + FitModel(), Recordings(),
-                                              "--html_out=" + Path("report.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-report",
+                   {"--model=" + FitModel(), Recordings(), "--html_out=" + Path("report.html")}));
   const std::string page = ReadText(Path("report.html"));
-  ASSERT_NE(page.find("<figure>"), std::string::npos);
+  ASSERT_TRUE(Contains(page, "<figure>"));
   EXPECT_LT(page.find("<figure>"), page.find("<table>"));
   EXPECT_LT(page.find("<figure>"), page.find("<nav"));
   const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Framed({Probed(page, R"js(
@@ -87,8 +85,7 @@ TEST_F(ReportPage, FiguresAndTablesForPapers) {
   const std::string model = FitModel("model.json", {"--profile=mu"});
   const std::vector<std::string> flags = {"--model=" + model, Recordings(), "--text",
                                           "--figures_out=" + Path("figures")};
-  const AppRun run = RunApp("pushid-report", flags);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(RunApp("pushid-report", flags));
   for (const char* heading : {"What was fitted\n===============", "Profile likelihood",
                               "What to record next", "Measured and predicted motion"}) {
     EXPECT_TRUE(Contains(run.out, heading));
@@ -110,7 +107,7 @@ TEST_F(ReportPage, FiguresAndTablesForPapers) {
         << "rows of different lengths";
     const std::string svg = ReadText(Path("figures/" + name + ".svg"));
     EXPECT_TRUE(Contains(svg, "width=\"85mm\""));
-    EXPECT_EQ(svg.find("prefers-color-scheme"), std::string::npos) << "paper is light";
+    EXPECT_FALSE(Contains(svg, "prefers-color-scheme")) << "paper is light";
     const size_t from = captions.find("**" + name + "** ");
     ASSERT_NE(from, std::string::npos);
     const size_t begin = from + name.size() + 5;
@@ -131,9 +128,7 @@ TEST_F(ReportPage, FiguresReplaceFiguresAlone) {
   const std::string model = FitModel();
   const std::string out = "--figures_out=" + Path("figures");
   const auto write = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> flags = {"--model=" + model, out};
-    flags.insert(flags.end(), more.begin(), more.end());
-    return RunApp("pushid-report", flags);
+    return RunApp("pushid-report", With({"--model=" + model, out}, more));
   };
   ASSERT_EQ(write({}).exit_code, 0);
   EXPECT_TRUE(Refused(write({}), {"captions.md", "already exists", "--overwrite"}));
@@ -160,26 +155,25 @@ TEST_F(ReportPage, FiguresReplaceFiguresAlone) {
     EXPECT_TRUE(std::filesystem::exists(Path("figures/forest.csv")));
   }
   for (const auto& entry : std::filesystem::directory_iterator(Path(""))) {
-    EXPECT_EQ(entry.path().string().find(".tmp."), std::string::npos) << entry.path();
+    EXPECT_FALSE(Contains(entry.path().string(), ".tmp.")) << entry.path();
   }
 }
 
 TEST_F(ReportPage, WithoutRecordingsTheRestStands) {
-  const AppRun run =
-      RunApp("pushid-report", {"--model=" + FitModel(), "--html_out=" + Path("report.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(
+      RunApp("pushid-report", {"--model=" + FitModel(), "--html_out=" + Path("report.html")}));
   EXPECT_TRUE(Contains(run.err, "without --recordings"));
   const std::string page = ReadText(Path("report.html"));
   EXPECT_TRUE(Contains(page, "<section id=\"parameters\">"));
-  EXPECT_EQ(page.find("<section id=\"figure\">"), std::string::npos);
+  EXPECT_FALSE(Contains(page, "<section id=\"figure\">"));
 }
 
 TEST_F(ReportPage, RecordingsThatChangedAreNamed) {
   const std::string model = FitModel();
   const std::string push = Json(manifest_)["recordings"][0]["push_csv"];
   WriteText(push, ReadText(Path(push)) + "\n");
-  const AppRun run = RunApp("pushid-report", {"--model=" + model, Recordings(), "--text"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run =
+      Succeeded(RunApp("pushid-report", {"--model=" + model, Recordings(), "--text"}));
   EXPECT_TRUE(Contains(run.out, id_));
   EXPECT_TRUE(Contains(run.out, "changed since the fit"));
 }

@@ -1,7 +1,6 @@
 // Runs a built executable as a user does: its own process, its exit code, what it prints.
 //
-//   const AppRun run = RunApp("pushid-fit", {"--recordings=" + manifest});
-//   EXPECT_EQ(run.exit_code, 0) << run.err;
+//   const AppRun run = Succeeded(RunApp("pushid-fit", {"--recordings=" + manifest}));
 #pragma once
 
 #include <fcntl.h>
@@ -12,6 +11,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -27,12 +27,25 @@ inline constexpr double kSlowdown = 10.0;
 inline constexpr double kSlowdown = 1.0;
 #endif
 
+// Words of a command line, and more of them.
+inline std::vector<std::string> With(std::vector<std::string> words,
+                                     const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 struct AppRun {
   int exit_code = -1;  // -1: killed by a signal, out of time, or never started
   int signal = 0;
   bool timed_out = false;
   std::string out, err;
 };
+
+// One that failed ends the test, which shows what it said.
+inline AppRun Succeeded(AppRun run) {
+  if (run.exit_code == 0) return run;
+  throw std::runtime_error("exit code " + std::to_string(run.exit_code) + ": " + run.err);
+}
 
 inline std::string ReadFromStart(std::FILE* file) {
   std::string text;

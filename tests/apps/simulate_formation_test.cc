@@ -26,9 +26,8 @@ class SimulateFormationTest : public AppTest {
     model_ = "--model=" + WriteText("touching.json", json.dump(1));
   }
 
-  AppRun Simulate(std::vector<std::string> flags) {
-    flags.insert(flags.begin(), model_);
-    return RunApp("pushid-formation", flags, 60);
+  AppRun Simulate(const std::vector<std::string>& flags) {
+    return RunApp("pushid-formation", With({model_}, flags), 60);
   }
 
   std::string alone_;  // path
@@ -54,17 +53,15 @@ std::vector<std::string> Onsets(const std::string& out) {
 // out stands beside them.
 TEST_F(SimulateFormationTest, TheShippedModelIsOfSyntheticPeople) {
   const AppRun run =
-      RunApp("pushid-formation",
-             {"--model=pushid:synthetic_group", "--formation=line", "--set=mu=60", "--people=4",
-              "--spacing=0.42", "--trajectories_out=" + Path("line.txt")},
-             60);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+      Succeeded(RunApp("pushid-formation",
+                       {"--model=pushid:synthetic_group", "--formation=line", "--set=mu=60",
+                        "--people=4", "--spacing=0.42", "--trajectories_out=" + Path("line.txt")},
+                       60));
   EXPECT_TRUE(Contains(run.err, "was fitted to synthetic people"));
   EXPECT_TRUE(Contains(run.out, "not in these intervals: "));
   EXPECT_TRUE(Contains(run.out, "contact_height = 0.5"));
   EXPECT_TRUE(Contains(run.out, "mu = 60 (--set)"));
-  const AppRun wave = RunApp("pushid-inspect", {"--wave", Path("line.txt")});
-  EXPECT_EQ(wave.exit_code, 0) << wave.err;
+  const AppRun wave = Succeeded(RunApp("pushid-inspect", {"--wave", Path("line.txt")}));
   EXPECT_TRUE(Contains(wave.out, "speed of the onset: "));
   EXPECT_TRUE(Refused(RunApp("pushid-formation", {"--model=pushid:none", "--formation=line"}),
                       {"pushid:none", "pushid:synthetic_group"}));
@@ -72,11 +69,10 @@ TEST_F(SimulateFormationTest, TheShippedModelIsOfSyntheticPeople) {
 
 TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   const AppRun run =
-      Simulate({"--formation=line", "--people=4", "--spacing=0.42", "--duration=3",
-                "--csv_out=" + Path("line.csv"), "--forces_out=" + Path("forces.csv"),
-                "--bvh_out=" + Path("line"), "--svg_out=" + Path("wave.svg"),
-                "--forces_svg_out=" + Path("forces.svg")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+      Succeeded(Simulate({"--formation=line", "--people=4", "--spacing=0.42", "--duration=3",
+                          "--csv_out=" + Path("line.csv"), "--forces_out=" + Path("forces.csv"),
+                          "--bvh_out=" + Path("line"), "--svg_out=" + Path("wave.svg"),
+                          "--forces_svg_out=" + Path("forces.svg")}));
   EXPECT_EQ(run.err, "");
   const std::vector<std::string> onsets = Onsets(run.out);
   ASSERT_EQ(onsets.size(), 4u) << run.out;
@@ -87,19 +83,18 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
 
   const std::string csv = ReadText(Path("line.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 4 * 181);
-  EXPECT_NE(ReadText(Path("forces.csv")).find(",interaction,"), std::string::npos);
+  EXPECT_TRUE(Contains(ReadText(Path("forces.csv")), ",interaction,"));
   for (const char* svg : {"wave.svg", "forces.svg"}) {
     const std::string text = ReadText(Path(svg));
     EXPECT_EQ(text.find("<svg"), 0u);
     const std::string title = "4 people in a line, 0.42 m apart; 80 N s at 0 s on person 0";
-    EXPECT_NE(text.find(title), std::string::npos);
+    EXPECT_TRUE(Contains(text, title));
     EXPECT_EQ(text.substr(text.size() - 7), "</svg>\n");
   }
   // What was written is a recording that the model predicts exactly.
-  const AppRun scores = RunApp(
-      "pushid-evaluate",
-      {model_, "--recordings=" + Path("line/manifest.json"), "--json_out=" + Path("scores.json")});
-  ASSERT_EQ(scores.exit_code, 0) << scores.err;
+  const AppRun scores =
+      Succeeded(RunApp("pushid-evaluate", {model_, "--recordings=" + Path("line/manifest.json"),
+                                           "--json_out=" + Path("scores.json")}));
   EXPECT_TRUE(Refused(RunApp("pushid-report", {model_, "--truth=" + Path("line/manifest.json")}),
                       {"a formation of pushid-formation", "the model"}));
   EXPECT_LT(Json(Path("scores.json"))["mean"]["hipADE_m"].get<double>(), 1e-9) << scores.out;
@@ -132,8 +127,7 @@ TEST_F(SimulateFormationTest, APushToTheLeftAndWhatTheFeetDo) {
 }
 
 TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {
-  const AppRun run = Simulate({"--formation=diamond", "--people=13", "--pushed=0,1,3"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(Simulate({"--formation=diamond", "--people=13", "--pushed=0,1,3"}));
   EXPECT_TRUE(Contains(run.out, "13 people in a diamond"));
   EXPECT_EQ(Onsets(run.out).size(), 13u);
   EXPECT_TRUE(Contains(run.out, "no speed: several people are pushed"));
@@ -141,9 +135,9 @@ TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {
 
 // The two people of the fixture in turn, and not the formation's own.
 TEST_F(SimulateFormationTest, TenRecordedPeopleInALine) {
-  const AppRun run = Simulate({"--formation=line", "--people=10", "--people_from=" + manifest_,
-                               "--bvh_out=" + Path("line"), "--duration=1"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run =
+      Succeeded(Simulate({"--formation=line", "--people=10", "--people_from=" + manifest_,
+                          "--bvh_out=" + Path("line"), "--duration=1"}));
   EXPECT_TRUE(Contains(run.out, "10 recorded people in a line"));
   std::vector<double> masses;
   const nlohmann::ordered_json recorded = Json(manifest_);
@@ -168,9 +162,9 @@ TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
   json["warnings_of_recordings"] = {
       {{"warning", 1}, {"recording", "a"}, {"of_many", "the file has gaps"}},
       {{"warning", 2}, {"recording", "b"}, {"of_many", "the file has gaps"}}};
-  const AppRun run = RunApp("pushid-formation", {"--model=" + WriteText("warned.json", json.dump()),
-                                                 "--formation=line", "--people=1"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run =
+      Succeeded(RunApp("pushid-formation", {"--model=" + WriteText("warned.json", json.dump()),
+                                            "--formation=line", "--people=1"}));
   EXPECT_TRUE(Contains(run.out,
                        "\nwarning of the fit: ends behind the start\n"
                        "warning of the fit: in 2 recordings (a, b): the file has gaps\n"));
@@ -183,16 +177,14 @@ TEST_F(SimulateFormationTest, AnIntervalWithoutWidthIsNone) {
     for (auto& entry : row) entry = 1e-14 * entry.get<double>();
   }
   model_ = "--model=" + WriteText("known.json", json.dump(1));
-  const AppRun run = Simulate({"--formation=line", "--people=3"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(Simulate({"--formation=line", "--people=3"}));
   EXPECT_TRUE(Contains(run.out, "parameters: less than a frame of the onsets, from the waves of "));
 }
 
 TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
   const AppRun run =
-      Simulate({"--formation=line", "--people=3", "--push=40, 40@1,56@2.5", "--fps=120",
-                "--forces_own_scale=false", "--bvh_out=" + Path("three")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+      Succeeded(Simulate({"--formation=line", "--people=3", "--push=40, 40@1,56@2.5", "--fps=120",
+                          "--forces_own_scale=false", "--bvh_out=" + Path("three")}));
   EXPECT_TRUE(Contains(run.out, "no speed: there are several pushes"));
   const auto pushes = Json(Path("three/manifest.json"))["recordings"][0]["pushes"];
   ASSERT_EQ(pushes.size(), 3u);
@@ -201,15 +193,15 @@ TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
   // Its own output may be replaced when told, recordings may not.
   const std::vector<std::string> again = {"--formation=line", "--bvh_out=" + Path("three")};
   EXPECT_TRUE(Refused(Simulate(again), {Path("three/manifest.json"), "--overwrite"}));
-  EXPECT_EQ(Simulate({again[0], again[1], "--overwrite"}).exit_code, 0);
+  Succeeded(Simulate({again[0], again[1], "--overwrite"}));
   WriteText("real/manifest.json", R"({"recordings": []})");
   EXPECT_TRUE(Refused(Simulate({"--formation=line", "--bvh_out=" + Path("real"), "--overwrite"}),
                       {Path("real/manifest.json"), "--bvh_out"}));
 }
 
 TEST_F(SimulateFormationTest, AModelWithoutInteractionIsWarnedAbout) {
-  const AppRun run = RunApp("pushid-formation", {"--model=" + alone_, "--formation=line"});
-  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run =
+      Succeeded(RunApp("pushid-formation", {"--model=" + alone_, "--formation=line"}));
   EXPECT_TRUE(Contains(run.err, "people will not affect each other"));
   EXPECT_TRUE(Contains(run.out, "1 of 4 people moved"));
   const AppRun one =
@@ -284,8 +276,8 @@ TEST_F(SimulateFormationTest, BadUsage) {
 
 TEST_F(SimulateFormationTest, TheOldSpellingRunsTheSameProgram) {
   const std::vector<std::string> flags = {model_, "--formation=line", "--people=2"};
-  const AppRun old = RunApp("pushid-simulate", flags), now = RunApp("pushid-formation", flags);
-  ASSERT_EQ(old.exit_code, 0) << old.err;
+  const AppRun old = Succeeded(RunApp("pushid-simulate", flags));
+  const AppRun now = RunApp("pushid-formation", flags);
   EXPECT_EQ(old.out, now.out);
   EXPECT_EQ(old.err,
             "pushid-simulate: note: --formation moved to pushid-formation; this spelling works "

@@ -13,10 +13,8 @@ namespace {
 class SimulateAppTest : public AppTest {
  protected:
   // pushid-simulate into `name`; returns the manifest's path.
-  std::string Simulate(const std::string& name, std::vector<std::string> flags) {
-    flags.push_back("--out=" + Path(name));
-    run_ = RunApp("pushid-simulate", flags);
-    EXPECT_EQ(run_.exit_code, 0) << run_.err;
+  std::string Simulate(const std::string& name, const std::vector<std::string>& flags) {
+    run_ = Succeeded(RunApp("pushid-simulate", With(flags, {"--out=" + Path(name)})));
     return Path(name + "/manifest.json");
   }
 
@@ -28,10 +26,8 @@ TEST_F(SimulateAppTest, TheDefaultFitFindsItsTruth) {
   const nlohmann::ordered_json truth = Json(manifest)["synthetic"]["truth"];
   EXPECT_EQ(truth["mu"], 60.0);
   EXPECT_TRUE(Contains(run_.out, "1800"));
-  const AppRun fit =
-      RunApp("pushid-fit", {"--recordings=" + manifest, "--preset_priors=false",
-                            "--settling_weight=0", "--model_out=" + Path("model.json")});
-  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  Succeeded(RunApp("pushid-fit", {"--recordings=" + manifest, "--preset_priors=false",
+                                  "--settling_weight=0", "--model_out=" + Path("model.json")}));
   const auto model = Json(Path("model.json"));  // lives longer than a temporary in the loop's head
   for (const auto& [name, value] : model.at("values").items()) {
     if (name == "mu_y") continue;         // does not act: friction is isotropic
@@ -52,12 +48,10 @@ TEST_F(SimulateAppTest, TheTruthOfGroupsIsFound) {
       Simulate("made", {"--people=6", "--group_size=3", "--recordings_per_person=3", "--noise=0"});
   EXPECT_TRUE(Contains(run_.out, "18 recordings of 6 people in rows of 3"));
   EXPECT_TRUE(Contains(run_.out, "contact_stiffness"));
-  const AppRun fit =
-      RunApp("pushid-fit",
-             {"--recordings=" + manifest, "--setting=groups", "--preset=group", "--pool=none",
-              "--preset_priors=false", "--settling_weight=0", "--mode_weight=0",
-              "--function_tolerance=1e-12", "--model_out=" + Path("model.json")});
-  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  Succeeded(RunApp("pushid-fit",
+                   {"--recordings=" + manifest, "--setting=groups", "--preset=group", "--pool=none",
+                    "--preset_priors=false", "--settling_weight=0", "--mode_weight=0",
+                    "--function_tolerance=1e-12", "--model_out=" + Path("model.json")}));
   const nlohmann::ordered_json truth = Json(manifest)["synthetic"]["truth"];
   const auto model = Json(Path("model.json"));
   for (const char* name : {"mu", "Kp_theta", "contact_stiffness", "contact_distance",
@@ -68,9 +62,8 @@ TEST_F(SimulateAppTest, TheTruthOfGroupsIsFound) {
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--out=" + Path("no"), "--group_size=9"}),
                       {"--group_size is 9", "between 1 and 4"}));
   // A model of people alone does not make people touch.
-  const AppRun alone = RunApp(
-      "pushid-simulate", {"--model=" + FitModel(), "--group_size=2", "--out=" + Path("apart")});
-  EXPECT_EQ(alone.exit_code, 0);
+  const AppRun alone = Succeeded(RunApp(
+      "pushid-simulate", {"--model=" + FitModel(), "--group_size=2", "--out=" + Path("apart")}));
   EXPECT_TRUE(Contains(alone.err, "do not act on each other"));
 }
 
@@ -78,9 +71,8 @@ TEST_F(SimulateAppTest, TheTruthOfGroupsIsFound) {
 TEST_F(SimulateAppTest, TheTruthMayStand) {
   const std::string manifest = Simulate("made", {"--truth_stance=steps", "--people=5"});
   EXPECT_EQ(Json(manifest)["synthetic"]["stance"], "steps");
-  const AppRun fit = RunApp("pushid-fit", {"--recordings=" + manifest, "--stance=steps",
-                                           "--model_out=" + Path("model.json")});
-  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  Succeeded(RunApp("pushid-fit", {"--recordings=" + manifest, "--stance=steps",
+                                  "--model_out=" + Path("model.json")}));
   const AppRun report =
       RunApp("pushid-report", {"--model=" + Path("model.json"), "--truth=" + manifest});
   const size_t covered = report.out.find(" of 12 intervals cover the truth");
@@ -145,17 +137,14 @@ class PushAppTest : public AppTest {
 };
 
 TEST_F(PushAppTest, InverseDynamicsGivesLinesForTheManifest) {
-  const AppRun made = MakePush({});
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const AppRun made = Succeeded(MakePush({}));
   EXPECT_TRUE(Contains(made.out, "smoothed over 9 frames"));
   EXPECT_TRUE(Contains(made.out, "\"net\""));
-  const AppRun fit = FitWithPrintedLines(made);
-  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  Succeeded(FitWithPrintedLines(made));
 }
 
 TEST_F(PushAppTest, TheWindowMayBeNamed) {
-  const AppRun made = MakePush({"--first_frame=2", "--end_frame=9", "--smoothing=0"});
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const AppRun made = Succeeded(MakePush({"--first_frame=2", "--end_frame=9", "--smoothing=0"}));
   EXPECT_TRUE(Contains(made.out, "7 rows from frame 2"));
   EXPECT_TRUE(Contains(made.out, "unsmoothed"));
   EXPECT_TRUE(Contains(made.out, "\"start_frame\": 2"));
@@ -172,13 +161,11 @@ TEST_F(PushAppTest, ASensorsForceGivesLinesForTheManifest) {
   const std::string sensor =
       "--sensor=" + WriteText("force.csv", "time,force\n0.1,0\n0.2,200\n0.3,0\n");
   // Along x + y, so half the square of its 20 N s goes each way.
-  const AppRun made = MakePush({sensor, "--direction=1,1,0", "--height=0.9"});
-  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const AppRun made = Succeeded(MakePush({sensor, "--direction=1,1,0", "--height=0.9"}));
   EXPECT_TRUE(Contains(made.out, "impulse 14.1 N s forwards, 14.1 N s to the left"));
   EXPECT_TRUE(Contains(made.out, "\"external\""));
   EXPECT_TRUE(Contains(made.out, "\"csv\": \"made/push.csv\""));
-  const AppRun fit = FitWithPrintedLines(made);
-  EXPECT_EQ(fit.exit_code, 0) << fit.err;
+  Succeeded(FitWithPrintedLines(made));
   // The sensor's clock: the same push at frame 0.
   EXPECT_TRUE(
       Contains(MakePush({sensor, "--sensor_start=0.1", "--overwrite"}).out, "\"start_frame\": 0"));
@@ -206,13 +193,11 @@ TEST_F(PushAppTest, APushIsNotReplacedUnasked) {
 
 // Inside a motion: who is taken to be at rest there needs a blow.
 TEST_F(PushAppTest, AWindowInsideAMotionStartsWithItsVelocity) {
-  const AppRun usual = MakePush({"--first_frame=15", "--end_frame=30"});
-  ASSERT_EQ(usual.exit_code, 0) << usual.err;
+  const AppRun usual = Succeeded(MakePush({"--first_frame=15", "--end_frame=30"}));
   EXPECT_TRUE(Contains(usual.out, "m/s at its start"));
-  EXPECT_EQ(usual.err.find("stands out"), std::string::npos) << usual.err;
-  const AppRun at_rest =
-      MakePush({"--first_frame=15", "--end_frame=30", "--initial_velocity=zero", "--overwrite"});
-  ASSERT_EQ(at_rest.exit_code, 0) << at_rest.err;
+  EXPECT_FALSE(Contains(usual.err, "stands out")) << usual.err;
+  const AppRun at_rest = Succeeded(
+      MakePush({"--first_frame=15", "--end_frame=30", "--initial_velocity=zero", "--overwrite"}));
   EXPECT_TRUE(Contains(at_rest.err, "the first row"));
   EXPECT_TRUE(Contains(at_rest.err, "stands out"));
   EXPECT_TRUE(
@@ -231,8 +216,7 @@ TEST_F(PushAppTest, EntriesOfSeveralRecordings) {
   EXPECT_FALSE(std::filesystem::exists(Path("made/" + id_ + ".csv")));
   std::vector<std::string> told = flags;
   told.push_back("--overwrite");
-  const AppRun run = RunApp("pushid-push", told);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(RunApp("pushid-push", told));
   EXPECT_TRUE(Contains(run.out, "2 entries written to"));
   const auto after = Json(manifest_)["recordings"];
   for (int i : {0, 1}) {
@@ -241,7 +225,7 @@ TEST_F(PushAppTest, EntriesOfSeveralRecordings) {
     EXPECT_EQ(after[i]["pushes"][0]["csv"], "made/" + after[i]["id"].get<std::string>() + ".csv");
   }
   EXPECT_EQ(after[2], before[2]);
-  EXPECT_EQ(RunApp("pushid-fit", {Recordings()}).exit_code, 0);
+  Succeeded(RunApp("pushid-fit", {Recordings()}));
   EXPECT_TRUE(
       Refused(RunApp("pushid-push", {Recordings(), "--ids=" + ids, "--out=" + Path("x.csv")}),
               {"--out", "{id}"}));
@@ -262,9 +246,8 @@ TEST_F(PushAppTest, ManifestsMerge) {
   };
   const std::string a = split("one/a.json", 0, 6), b = split("two/b.json", 6, 6);
   const AppRun whole = RunApp("pushid-fit", {Recordings(), "--model_out=" + Path("whole.json")});
-  const AppRun merged =
-      RunApp("pushid-fit", {"--recordings=" + a + "," + b, "--model_out=" + Path("merged.json")});
-  ASSERT_EQ(merged.exit_code, 0) << merged.err;
+  Succeeded(
+      RunApp("pushid-fit", {"--recordings=" + a + "," + b, "--model_out=" + Path("merged.json")}));
   EXPECT_EQ(Json(Path("merged.json"))["values"], Json(Path("whole.json"))["values"]);
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--recordings=" + a + "," + manifest_}),
                       {"manifest.json:", id_, "this id is in " + a}));

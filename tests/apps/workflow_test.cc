@@ -66,8 +66,7 @@ TEST_F(WorkflowTest, LocallyTheSameTable) {
       {"a", ""}, {"same jobs", ""}, {"bad", "\"--lowpass_hz=1000\""}};
   ASSERT_EQ(Batch(Plan(jobs, variants, "whole", "whole.toml"), {"--jobs=2"}).exit_code, 2);
   const std::string plan = Plan(jobs, variants, "flow");
-  const AppRun run = Shell(Snakemake(plan, "-j2"));
-  ASSERT_EQ(run.exit_code, 0) << run.out << run.err;
+  Succeeded(Shell(Snakemake(plan, "-j2")));
   EXPECT_EQ(Table("flow"), Table("whole"));
   EXPECT_EQ(Table("flow").size(), 1u + 6u);
   // Its jobs are pushid-batch's: nothing that is done is done again.
@@ -142,9 +141,8 @@ TEST_F(SlurmTest, AKilledJobIsDoneWhenResumed) {
   EXPECT_FALSE(fs::exists(Path("flow/summary.csv")));
   EXPECT_EQ(Finished("flow"), 1);  // the other did not suffer
 
-  const AppRun resumed = Shell(run_all);
-  ASSERT_EQ(resumed.exit_code, 0) << resumed.out << resumed.err;
-  ASSERT_EQ(Batch(Plan("", variants, "whole", "whole.toml"), {"--jobs=2"}).exit_code, 0);
+  Succeeded(Shell(run_all));
+  Succeeded(Batch(Plan("", variants, "whole", "whole.toml"), {"--jobs=2"}));
   EXPECT_EQ(Table("flow"), Table("whole"));
 }
 

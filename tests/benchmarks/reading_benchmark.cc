@@ -12,8 +12,8 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/motion_formats.h"
-#include "datasets/formats/table_writers.h"
 #include "datasets/formats/point_motion.h"
+#include "datasets/formats/table_writers.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "tests/datasets/c3d_writer.h"
 

@@ -1,9 +1,7 @@
-// A small C3D file for tests, and where the real ones are.
+// A small C3D file for tests.
 #pragma once
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <limits>
 #include <string>
 
@@ -53,20 +51,5 @@ inline C3dFile SampleC3d() {
   file.events = {{0.5, "Foot Strike", "Left"}, {61.25, "Foot Off", "Right"}};
   return file;
 }
-
-// The folder of the real C3D files: PUSHID_C3D_SAMPLES, or ../shared/c3d_samples beside the source;
-// "" when there are none.
-inline std::string C3dSamplesRoot() {
-  const char* named = std::getenv("PUSHID_C3D_SAMPLES");
-  const std::filesystem::path root =
-      named != nullptr && *named != '\0'
-          ? std::filesystem::path(named)
-          : std::filesystem::path(PUSHID_SOURCE_DIR) / ".." / "shared" / "c3d_samples";
-  std::error_code ignored;
-  return std::filesystem::exists(root / "Vicon.c3d", ignored) ? root.string() : "";
-}
-
-constexpr char kNoC3dSamples[] =
-    "the real C3D files are not here; name their folder by PUSHID_C3D_SAMPLES";
 
 }  // namespace pushid

@@ -9,10 +9,11 @@
 
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/table_writers.h"
 #include "datasets/formats/point_motion.h"
+#include "datasets/formats/table_writers.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 
@@ -75,10 +76,9 @@ class PointsFolderTest : public RecordingFolderTest {
   }
 
   void ExpectTheWalker() {
-    const auto loaded = Load();
-    ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+    const auto loaded = Unwrapped(Load());
     EXPECT_TRUE(warnings_.empty()) << warnings_[0].text;
-    const RecordedPerson& person = loaded.value()[0].people[0];
+    const RecordedPerson& person = loaded[0].people[0];
     ASSERT_EQ(person.hip.size(), 20u);
     EXPECT_LT((person.hip[7] - Eigen::Vector3d(0.07, 0.0, 0.95)).norm(), 1e-5);
     EXPECT_LT((person.left_ankle[7] - Eigen::Vector3d(0.0, 0.1, 0.08)).norm(), 1e-5);

@@ -57,8 +57,7 @@ class RecordingFolderTest : public TempDirTest {
 
   void WriteBvhFile(const std::string& name, const BvhMotion& motion,
                     LengthUnit unit = LengthUnit::kMillimetre) const {
-    const MaybeError failed = WriteBvh(Path(name), motion, unit);
-    ASSERT_FALSE(failed) << failed->ToString();
+    ASSERT_EQ(ProblemOf(WriteBvh(Path(name), motion, unit)), "no error");
   }
 
   void WritePush(const std::string& name, int rows) const {
@@ -74,10 +73,7 @@ class RecordingFolderTest : public TempDirTest {
   }
 
   // The message of the error that loading gives.
-  std::string Message(const LoadOptions& options = {}) {
-    const auto loaded = Load(options);
-    return loaded.ok() ? "no error" : loaded.error().ToString();
-  }
+  std::string Message(const LoadOptions& options = {}) { return ProblemOf(Load(options)); }
 
   ManifestRecording& entry() { return manifest_.recordings[0]; }
 

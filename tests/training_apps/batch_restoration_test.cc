@@ -30,8 +30,7 @@ constexpr char kBodies[] =
     "\"--postprocess=bones\"]\n";
 
 TEST_F(BatchRestorationTest, FoldsAreScoredOnRestoredBodies) {
-  const AppRun run = Batch(Plan(std::string(kPhysics) + kBodies), {"--jobs=2"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(Batch(Plan(std::string(kPhysics) + kBodies), {"--jobs=2"}));
   const nlohmann::ordered_json jobs = Json(Path("out/summary.json"))["jobs"];
   ASSERT_EQ(jobs.size(), 4u);
   for (const auto& job : jobs) {

@@ -25,19 +25,15 @@ class CvaeAppTest : public AppTest {
 };
 
 TEST_F(CvaeAppTest, TheCvaeTrainsAndIsUsed) {
-  const AppRun run = Train("v", {"--kind=cvae", "--effort=0.001"});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  const AppRun evaluate =
-      RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v")});
-  EXPECT_EQ(evaluate.exit_code, 0) << evaluate.err;
+  Succeeded(Train("v", {"--kind=cvae", "--effort=0.001"}));
+  Succeeded(RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v")}));
 }
 
 // As published: sizes are said beside the paper's, and z is drawn where that is asked for.
 TEST_F(CvaeAppTest, ThePublishedCvaeSaysItsSizesAndDraws) {
   const std::vector<std::string> flags = {"--kind=cvae", "--effort=0.001", "--training=published",
                                           "--coordinates=ldp"};
-  const AppRun run = Train("v", flags);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(Train("v", flags));
   EXPECT_TRUE(Contains(run.err,
                        "lower autoencoder: 865536 parameters (published: 865536)\n"
                        "lower sampler: 136960 parameters\n"
@@ -46,15 +42,10 @@ TEST_F(CvaeAppTest, ThePublishedCvaeSaysItsSizesAndDraws) {
   EXPECT_EQ(json["settings"]["training"], "published");
   EXPECT_EQ(json["training"]["parameters"]["upper autoencoder"], 1097904);
   const auto joints = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> all = {model_,
-                                    Recordings(),
-                                    "--restoration=" + Path("v"),
-                                    "--id=" + id_,
-                                    "--out=" + Path("m.bvh"),
-                                    "--joints_out=" + Path("j.csv")};
-    all.insert(all.end(), more.begin(), more.end());
-    const AppRun predict = RunApp("pushid-predict", all);
-    EXPECT_EQ(predict.exit_code, 0) << predict.err;
+    Succeeded(RunApp("pushid-predict",
+                     With({model_, Recordings(), "--restoration=" + Path("v"), "--id=" + id_,
+                           "--out=" + Path("m.bvh"), "--joints_out=" + Path("j.csv")},
+                          more)));
     return ReadText(Path("j.csv"));
   };
   const std::string mean = joints({}), drawn = joints({"--latent=draw"});
@@ -64,11 +55,10 @@ TEST_F(CvaeAppTest, ThePublishedCvaeSaysItsSizesAndDraws) {
 }
 
 TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
-  const AppRun run =
+  const AppRun run = Succeeded(
       RunApp("pushid-train-restoration",
              {Recordings(), model_, "--crossvalidate=2", "--kind=cvae", "--effort=0.001",
-              "--predicted_pendulums=false", "--quiet", "--json_out=" + Path("cv.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+              "--predicted_pendulums=false", "--quiet", "--json_out=" + Path("cv.json")}));
   EXPECT_TRUE(Contains(run.out, "restoration drawn"));
   const auto json = Json(Path("cv.json"));
   const double mean = json["mean"]["MPJPE_m"], drawn = json["restoration_drawn"]["mean"]["MPJPE_m"];
@@ -81,17 +71,14 @@ TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
 TEST_F(CvaeAppTest, IsTrainedAsAWholeOnRodsThatMove) {
   const std::string model = "--model=" + FitModel("rod.json", {"--rod=linear", "--max_iterations=2",
                                                                "--fix=Kd_theta=70"});
-  ASSERT_EQ(RunApp("pushid-simulate", {"--out=" + Path("short"), "--people=2", "--frames=16",
-                                       "--recordings_per_person=2", "--quiet"})
-                .exit_code,
-            0);
+  Succeeded(RunApp("pushid-simulate", {"--out=" + Path("short"), "--people=2", "--frames=16",
+                                       "--recordings_per_person=2", "--quiet"}));
   const std::string few = "--recordings=" + Path("short/manifest.json");
-  const AppRun run = RunApp(
+  Succeeded(RunApp(
       "pushid-train-restoration",
       {few, model, "--crossvalidate=2", "--kind=cvae", "--effort=0.001", "--body_weight=1",
        "--rounds=1", "--predicted_pendulums=false", "--quiet", "--json_out=" + Path("cv.json")},
-      400);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+      400));
   EXPECT_EQ(Json(Path("cv.json"))["run"]["rounds"], (std::vector<int>{1, 1}));
 }
 

@@ -25,21 +25,18 @@ class DiffusionAppTest : public AppTest {
 };
 
 TEST_F(DiffusionAppTest, TrainsForecastsAndShows) {
-  const AppRun train = Train({"--out=" + Path("g")});
-  ASSERT_EQ(train.exit_code, 0) << train.err;
+  Succeeded(Train({"--out=" + Path("g")}));
   EXPECT_TRUE(Contains(ReadText(Path("g/curve.svg")), "<svg"));
-  const AppRun run = Generate({"--id=" + id_, "--frames=90", "--page_out=" + Path("p.html"),
-                               "--poses_out=" + Path("p.csv"), "--strip_out=" + Path("s.svg"),
-                               "--json_out=" + Path("e.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(Generate({"--id=" + id_, "--frames=90", "--page_out=" + Path("p.html"),
+                      "--poses_out=" + Path("p.csv"), "--strip_out=" + Path("s.svg"),
+                      "--json_out=" + Path("e.json")}));
   const auto json = Json(Path("e.json"));
   EXPECT_GT(json["mean"]["MPJPE_m"].get<double>(), 0.0);
   EXPECT_LT(json["mean"]["MBLE_m"].get<double>(), 5e-3);
   EXPECT_GT(json["run"]["seconds_per_recording"].get<double>(), 0.0);
   EXPECT_TRUE(Contains(ReadText(Path("p.html")), id_ + ", diffusion"));
   EXPECT_TRUE(Contains(ReadText(Path("p.csv")), "\n89,")) << "past the recording's end";
-  ASSERT_EQ(Generate({"--observed=20", "--samples=19", "--json_out=" + Path("e.json")}).exit_code,
-            0);
+  Succeeded(Generate({"--observed=20", "--samples=19", "--json_out=" + Path("e.json")}));
   const auto spread = Json(Path("e.json"))["spread"];
   EXPECT_GE(spread["hip_x_inside"].get<double>(), 0.0);
   EXPECT_LE(spread["hip_x_inside"].get<double>(), 1.0);
@@ -47,25 +44,21 @@ TEST_F(DiffusionAppTest, TrainsForecastsAndShows) {
 }
 
 TEST_F(DiffusionAppTest, CrossValidatesBesidePhysics) {
-  const AppRun fit = RunApp("pushid-fit", {Recordings(), "--model_out=" + Path("m.json")});
-  ASSERT_EQ(fit.exit_code, 0) << fit.err;
-  const AppRun run =
-      Train({"--crossvalidate=2", "--scheme=interleaved", "--physics=" + Path("m.json"),
-             "--blend=0.5", "--json_out=" + Path("e.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-fit", {Recordings(), "--model_out=" + Path("m.json")}));
+  Succeeded(Train({"--crossvalidate=2", "--scheme=interleaved", "--physics=" + Path("m.json"),
+                   "--blend=0.5", "--json_out=" + Path("e.json")}));
   const auto json = Json(Path("e.json"));
   for (const char* name : {"generator_unblended", "generator_shown_20", "rigid", "static"}) {
     EXPECT_TRUE(json["baselines"][name]["mean"].contains("MPJPE_m")) << name;
   }
   EXPECT_NE(json["mean"]["hipADE_m"], json["baselines"]["generator_unblended"]["mean"]["hipADE_m"]);
-  ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
-  EXPECT_EQ(Generate({"--physics=" + Path("m.json"), "--blend=0.3"}).exit_code, 0);
+  Succeeded(Train({"--out=" + Path("g")}));
+  Succeeded(Generate({"--physics=" + Path("m.json"), "--blend=0.3"}));
 }
 
 // Everything that may forecast is compared and written, and what won is used without being asked.
 TEST_F(DiffusionAppTest, TheBestForecastIsChosenAndUsed) {
-  const AppRun train = Train({"--out=" + Path("g"), "--accuracy=best"});
-  ASSERT_EQ(train.exit_code, 0) << train.err;
+  const AppRun train = Succeeded(Train({"--out=" + Path("g"), "--accuracy=best"}));
   EXPECT_TRUE(Contains(train.out, "chosen: "));
   const auto candidates = Json(Path("g/candidates.json"))["candidates"];
   ASSERT_EQ(candidates.size(), 5u);
@@ -75,21 +68,18 @@ TEST_F(DiffusionAppTest, TheBestForecastIsChosenAndUsed) {
   const auto choice = Json(Path("g/generator.json"))["settings"]["choice"];
   EXPECT_EQ(choice["by"], candidates[0]["by"]);
   EXPECT_EQ(choice["blend"], candidates[0]["blend"]);
-  const AppRun chosen = Generate({"--json_out=" + Path("e.json")});
-  ASSERT_EQ(chosen.exit_code, 0) << chosen.err;
+  const AppRun chosen = Succeeded(Generate({"--json_out=" + Path("e.json")}));
   EXPECT_TRUE(Contains(chosen.out, "selected by cross-validation: "));
   // Hardly trained, diffusion loses to the synthetic people's own physics.
-  const AppRun asked = Generate(
-      {"--physics=" + Path("g/physics.json"), "--blend=0", "--json_out=" + Path("a.json")});
-  ASSERT_EQ(asked.exit_code, 0) << asked.err;
+  const AppRun asked = Succeeded(Generate(
+      {"--physics=" + Path("g/physics.json"), "--blend=0", "--json_out=" + Path("a.json")}));
   EXPECT_FALSE(Contains(asked.out, "selected by cross-validation"));
   EXPECT_LT(Json(Path("e.json"))["mean"]["MPJPE_m"], Json(Path("a.json"))["mean"]["MPJPE_m"]);
 }
 
 TEST_F(DiffusionAppTest, LongForecastsAreToldBySecond) {
-  ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
-  const AppRun run = Generate({"--frames=241", "--json_out=" + Path("e.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(Train({"--out=" + Path("g")}));
+  const AppRun run = Succeeded(Generate({"--frames=241", "--json_out=" + Path("e.json")}));
   EXPECT_TRUE(Contains(run.out, "generator, second"));
   const auto seconds = Json(Path("e.json"))["seconds"]["generator"];
   ASSERT_EQ(seconds.size(), 4u);
@@ -98,21 +88,18 @@ TEST_F(DiffusionAppTest, LongForecastsAreToldBySecond) {
 
 // Nobody is pushed; who speaks is annotated.
 TEST_F(DiffusionAppTest, GroupsWithoutAPushAreForecastAndTheirStatesCompared) {
-  ASSERT_EQ(RunApp("pushid-simulate", {"--turns=4", "--frames=90", "--out=" + Path("t")}).exit_code,
-            0);
+  Succeeded(RunApp("pushid-simulate", {"--turns=4", "--frames=90", "--out=" + Path("t")}));
   const std::string turns = "--recordings=" + Path("t/manifest.json");
-  const AppRun train = RunApp("pushid-train-generator",
-                              {"--published=sdm", turns, "--steps=5", "--batch=2", "--quiet",
-                               "--held_out=0", "--observed=20", "--out=" + Path("g")});
-  ASSERT_EQ(train.exit_code, 0) << train.err;
+  Succeeded(RunApp("pushid-train-generator",
+                   {"--published=sdm", turns, "--steps=5", "--batch=2", "--quiet", "--held_out=0",
+                    "--observed=20", "--out=" + Path("g")}));
   const auto generate = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--model=" + Path("g"), turns, "--averaged=1", "--sampling_steps=2",
                              "--quiet", "--json_out=" + Path("e.json")});
     return RunApp("pushid-generate", more);
   };
-  const AppRun run = generate(
-      {"--states=" + Path("t/states.csv"), "--id=turns_01", "--page_out=" + Path("p.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(generate(
+      {"--states=" + Path("t/states.csv"), "--id=turns_01", "--page_out=" + Path("p.html")}));
   EXPECT_TRUE(Contains(run.out, "root 1 s"));
   EXPECT_TRUE(Contains(run.out, "found by a classifier"));
   auto json = Json(Path("e.json"));
@@ -142,16 +129,15 @@ TEST_F(DiffusionAppTest, GroupsWithoutAPushAreForecastAndTheirStatesCompared) {
 }
 
 TEST_F(DiffusionAppTest, AsSdmIsPublished) {
-  ASSERT_EQ(Train({"--out=" + Path("g"), "--published=sdm"}).exit_code, 0);
+  Succeeded(Train({"--out=" + Path("g"), "--published=sdm"}));
   const auto settings = Json(Path("g/generator.json"))["settings"];
   EXPECT_EQ(settings["pooling"], "mean_all");
   EXPECT_EQ(settings["pooling_at"], "bottleneck");
   EXPECT_EQ(settings["frame"], "own");
-  const AppRun run =
-      Generate({"--settle=none", "--sampler=ddpm", "--frames=241", "--json_out=" + Path("e.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(Generate(
+      {"--settle=none", "--sampler=ddpm", "--frames=241", "--json_out=" + Path("e.json")}));
   EXPECT_EQ(Json(Path("e.json"))["seconds"]["generator"].size(), 4u);
-  ASSERT_EQ(Train({"--out=" + Path("h"), "--published=sdm", "--pooling=heads"}).exit_code, 0);
+  Succeeded(Train({"--out=" + Path("h"), "--published=sdm", "--pooling=heads"}));
   EXPECT_EQ(Json(Path("h/generator.json"))["settings"]["pooling"], "heads")
       << "flags change the preset";
   EXPECT_TRUE(Refused(Train({"--out=" + Path("i"), "--published=sdm", "--joint_weight=2"}),
@@ -176,7 +162,7 @@ TEST_F(DiffusionAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train({"--crossvalidate=2", "--blend=0.3"}), {"--blend needs --physics"}));
   EXPECT_TRUE(
       Refused(Train({"--out=" + Path("g"), "--physics=" + Path("m.json")}), {"--accuracy=best"}));
-  ASSERT_EQ(Train({"--out=" + Path("g")}).exit_code, 0);
+  Succeeded(Train({"--out=" + Path("g")}));
   EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"needs --physics"}));
   EXPECT_TRUE(Refused(Generate({"--noise_memory=0.2"}), {"--noise_memory", "of diffusion"}));
   EXPECT_TRUE(Refused(Generate({"--simlpe_share=1"}), {"--simlpe_share", "of diffusion"}));

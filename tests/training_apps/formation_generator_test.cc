@@ -20,10 +20,10 @@ class FormationGeneratorTest : public AppTest {
   }
   // Flags that are given later win.
   AppRun Simulate(const std::vector<std::string>& more) const {
-    std::vector<std::string> flags = {"--model=" + Path("model.json"), "--formation=diamond",
-                                      "--people=5", "--duration=1", "--generator=" + Path("g")};
-    flags.insert(flags.end(), more.begin(), more.end());
-    return RunApp("pushid-formation", flags);
+    return RunApp("pushid-formation",
+                  With({"--model=" + Path("model.json"), "--formation=diamond", "--people=5",
+                        "--duration=1", "--generator=" + Path("g")},
+                       more));
   }
 };
 
@@ -31,13 +31,12 @@ const std::vector<std::string> kQuick = {"--averaged=1", "--sampling_steps=2"};
 
 TEST_F(FormationGeneratorTest, GivesTheFormationBodies) {
   FitModel();
-  ASSERT_EQ(Train({"--kind=diffusion", "--out=" + Path("g")}).exit_code, 0);
+  Succeeded(Train({"--kind=diffusion", "--out=" + Path("g")}));
   std::vector<std::string> flags = kQuick;
   flags.insert(flags.end(), {"--blend=0.5", "--people_from=" + manifest_,
                              "--html_out=" + Path("p.html"), "--strip_out=" + Path("s.svg"),
                              "--joints_out=" + Path("j.csv"), "--bodies_out=" + Path("b.bvh")});
-  const AppRun run = Simulate(flags);
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(Simulate(flags));
   EXPECT_TRUE(Contains(run.err, "of kind net and is applied to pushes of kind external"));
   EXPECT_TRUE(Contains(run.out, "5 recorded people in a diamond"));
   const std::string page = ReadText(Path("p.html"));
@@ -48,16 +47,16 @@ TEST_F(FormationGeneratorTest, GivesTheFormationBodies) {
   // Another share of physics moves the bodies, and nothing else does.
   const std::string blended = ReadText(Path("j.csv"));
   flags.push_back("--blend=0.9");
-  ASSERT_EQ(Simulate(flags).exit_code, 0);
+  Succeeded(Simulate(flags));
   EXPECT_NE(ReadText(Path("j.csv")), blended);
   flags.back() = "--blend=0.5";
-  ASSERT_EQ(Simulate(flags).exit_code, 0);
+  Succeeded(Simulate(flags));
   EXPECT_EQ(ReadText(Path("j.csv")), blended);
 }
 
 // Of recordings too: it learned from net pushes, and that is told once.
 TEST_F(FormationGeneratorTest, PushesOfAnotherKindAreToldOf) {
-  ASSERT_EQ(Train({"--kind=diffusion", "--out=" + Path("g")}).exit_code, 0);
+  Succeeded(Train({"--kind=diffusion", "--out=" + Path("g")}));
   const auto generate = [&](const std::string& recordings) {
     return RunApp("pushid-generate", {"--model=" + Path("g"), recordings, "--averaged=1",
                                       "--sampling_steps=2", "--quiet"});
@@ -74,8 +73,8 @@ TEST_F(FormationGeneratorTest, PushesOfAnotherKindAreToldOf) {
 
 TEST_F(FormationGeneratorTest, MistakesAreNamed) {
   FitModel();
-  ASSERT_EQ(Train({"--kind=diffusion", "--out=" + Path("g")}).exit_code, 0);
-  ASSERT_EQ(Train({"--noise_steps=5", "--out=" + Path("particles")}).exit_code, 0);
+  Succeeded(Train({"--kind=diffusion", "--out=" + Path("g")}));
+  Succeeded(Train({"--noise_steps=5", "--out=" + Path("particles")}));
   EXPECT_TRUE(Refused(Simulate({"--restoration=rigid"}), {"--restoration and --generator"}));
   EXPECT_TRUE(Refused(Simulate({"--postprocess=none"}), {"--postprocess needs --restoration"}));
   EXPECT_TRUE(Refused(Simulate({"--generator=", "--blend=0.5"}), {"--blend needs --generator"}));

@@ -29,11 +29,9 @@ class GeneratorAppTest : public TempDirTest {
   // Flags that are given later win.
   std::vector<std::string> Quick(const std::string& out,
                                  const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> flags = {
-        "--folder=" + Path("clips"), "--out=" + Path(out), "--seeds=2", "--steps=20",
-        "--noise_steps=10",          "--simlpe_steps=10",  "--batch=8", "--quiet"};
-    flags.insert(flags.end(), more.begin(), more.end());
-    return flags;
+    return With({"--folder=" + Path("clips"), "--out=" + Path(out), "--seeds=2", "--steps=20",
+                 "--noise_steps=10", "--simlpe_steps=10", "--batch=8", "--quiet"},
+                more);
   }
   AppRun Train(const std::string& out, const std::vector<std::string>& more = {}) const {
     return RunApp("pushid-train-generator", Quick(out, more));
@@ -48,14 +46,13 @@ class GeneratorAppTest : public TempDirTest {
 };
 
 TEST_F(GeneratorAppTest, TrainsForecastsSamplesAndShows) {
-  const AppRun train = Train("g");
-  ASSERT_EQ(train.exit_code, 0) << train.err;
+  Succeeded(Train("g"));
   EXPECT_TRUE(Contains(ReadText(Path("g/curve.svg")), "<svg"));
   EXPECT_FALSE(std::filesystem::exists(Path("g/checkpoint.bin.1")));
-  const AppRun run = Generate({"--samples=19", "--json_out=" + Path("e.json"), "--action=sway",
-                               "--window=1", "--poses_out=" + Path("p.csv"),
-                               "--strip_out=" + Path("s.svg"), "--page_out=" + Path("p.html")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run =
+      Succeeded(Generate({"--samples=19", "--json_out=" + Path("e.json"), "--action=sway",
+                          "--window=1", "--poses_out=" + Path("p.csv"),
+                          "--strip_out=" + Path("s.svg"), "--page_out=" + Path("p.html")}));
   EXPECT_TRUE(Contains(run.out, "mean of actions"));
   const auto json = Json("e.json");
   for (const char* horizon : {"80", "160", "320", "400", "1000"}) {
@@ -71,22 +68,18 @@ TEST_F(GeneratorAppTest, TrainsForecastsSamplesAndShows) {
 
 // Clips that pushid-simulate makes, SDE's settings, and the windows of the tables.
 TEST_F(GeneratorAppTest, SdeAsPublishedOnSyntheticClips) {
-  ASSERT_EQ(
-      RunApp("pushid-simulate", {"--clips=2", "--frames=220", "--out=" + Path("made")}).exit_code,
-      0);
+  Succeeded(RunApp("pushid-simulate", {"--clips=2", "--frames=220", "--out=" + Path("made")}));
   for (const char* reading : {"--noise_loss=drawn", "--noise_loss=likelihood"}) {
-    const AppRun train =
+    Succeeded(
         RunApp("pushid-train-generator", {"--published=sde", "--folder=" + Path("made"), reading,
-                                          "--out=" + Path(reading + 2), "--steps=10", "--quiet"});
-    ASSERT_EQ(train.exit_code, 0) << train.err;
+                                          "--out=" + Path(reading + 2), "--steps=10", "--quiet"}));
     const auto json = Json(std::string(reading + 2) + "/generator.json");
     EXPECT_EQ(json["training"]["configuration"]["batch"], "32");
     EXPECT_EQ(json["training"]["configuration"]["together"], "true");
     EXPECT_EQ(json["training"]["configuration"]["critic_weight"], "0.001");
-    const AppRun run =
-        RunApp("pushid-generate", {"--published=sde", "--folder=" + Path("made"),
-                                   "--model=" + Path(reading + 2), "--json_out=" + Path("e.json")});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+    Succeeded(RunApp("pushid-generate",
+                     {"--published=sde", "--folder=" + Path("made"), "--model=" + Path(reading + 2),
+                      "--json_out=" + Path("e.json")}));
     const auto errors = Json("e.json");
     EXPECT_EQ(errors["configuration"]["protocol"], "test");
     EXPECT_EQ(errors["actions"].size(), 4u);
@@ -102,11 +95,9 @@ TEST_F(GeneratorAppTest, SimlpeOnTheSameWindows) {
   const std::vector<std::string> simlpe = {"--kind=simlpe",      "--folder=" + Path("clips"),
                                            "--out=" + Path("g"), "--steps=20",
                                            "--blocks=2",         "--quiet"};
-  const AppRun train = RunApp("pushid-train-generator", simlpe);
-  ASSERT_EQ(train.exit_code, 0) << train.err;
+  Succeeded(RunApp("pushid-train-generator", simlpe));
   EXPECT_EQ(Json("g/generator.json")["settings"]["blocks"], 2);
-  const AppRun run = Generate({"--json_out=" + Path("e.json"), "--strip_out=" + Path("s.svg")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(Generate({"--json_out=" + Path("e.json"), "--strip_out=" + Path("s.svg")}));
   EXPECT_GT(Json("e.json")["mean"]["MPJPE_mm"]["1000"].get<double>(), 0.0);
   EXPECT_TRUE(
       Refused(Generate({"--samples=19"}), {"--samples has no effect on a generator of simlpe"}));
@@ -116,18 +107,16 @@ TEST_F(GeneratorAppTest, SimlpeOnTheSameWindows) {
 
 // Particles hold siMLPe beside them, of the same bits as one that is trained by itself.
 TEST_F(GeneratorAppTest, SimlpeIsBlendedWith) {
-  ASSERT_EQ(Train("g").exit_code, 0);
+  Succeeded(Train("g"));
   const auto settings = Json("g/generator.json")["settings"];
   EXPECT_EQ(settings["simlpe"]["members"], 1);
   const auto errors = [&](const std::vector<std::string>& flags) {
-    std::vector<std::string> all = {"--json_out=" + Path("e.json")};
-    all.insert(all.end(), flags.begin(), flags.end());
-    EXPECT_EQ(Generate(all).exit_code, 0);
+    Succeeded(Generate(With({"--json_out=" + Path("e.json")}, flags)));
     return Json("e.json")["mean"]["MPJPE_mm"];
   };
   const auto without = errors({"--simlpe_share=0"});
   EXPECT_NE(errors({}), without);
-  ASSERT_EQ(Train("g", {"--simlpe_share=0"}).exit_code, 0);
+  Succeeded(Train("g", {"--simlpe_share=0"}));
   EXPECT_EQ(errors({}), without) << "particles are trained alike";
   EXPECT_TRUE(Refused(Generate({"--simlpe_share=0.5"}), {"trained without siMLPe"}));
   EXPECT_TRUE(Refused(Generate({"--simlpe_share=2"}), {"--simlpe_share is 2"}));
@@ -135,11 +124,11 @@ TEST_F(GeneratorAppTest, SimlpeIsBlendedWith) {
 }
 
 TEST_F(GeneratorAppTest, TheSameSeedGivesTheSameBits) {
-  ASSERT_EQ(Train("g").exit_code, 0);
-  ASSERT_EQ(Train("h").exit_code, 0);
+  Succeeded(Train("g"));
+  Succeeded(Train("h"));
   EXPECT_EQ(ReadText(Path("g/weights.npy")), ReadText(Path("h/weights.npy")));
-  ASSERT_EQ(Generate({"--samples=19", "--json_out=" + Path("a.json")}).exit_code, 0);
-  ASSERT_EQ(Generate({"--samples=19", "--json_out=" + Path("b.json")}).exit_code, 0);
+  Succeeded(Generate({"--samples=19", "--json_out=" + Path("a.json")}));
+  Succeeded(Generate({"--samples=19", "--json_out=" + Path("b.json")}));
   auto a = Json("a.json"), b = Json("b.json");
   a.erase("run"), b.erase("run");
   EXPECT_EQ(a, b);
@@ -160,13 +149,13 @@ constexpr char kProbe[] = R"js(  const picture = () => document.getElementById('
 
 TEST_F(GeneratorAppTest, ThePageWorksInABrowser) {
   if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
-  ASSERT_EQ(Train("g").exit_code, 0);
-  ASSERT_EQ(Generate({"--samples=19", "--page_out=" + Path("fan.html")}).exit_code, 0);
+  Succeeded(Train("g"));
+  Succeeded(Generate({"--samples=19", "--page_out=" + Path("fan.html")}));
   std::string page = ReadText(Path("fan.html"));
-  EXPECT_EQ(page.find("http"), std::string::npos) << "opens from disk";
-  const AppRun seen = Browse(Path("browser"), WriteText("probed.html", Probed(page, kProbe)));
-  ASSERT_EQ(seen.exit_code, 0) << seen.err;
-  EXPECT_EQ(seen.err.find("CONSOLE"), std::string::npos) << seen.err;
+  EXPECT_FALSE(Contains(page, "http")) << "opens from disk";
+  const AppRun seen =
+      Succeeded(Browse(Path("browser"), WriteText("probed.html", Probed(page, kProbe))));
+  EXPECT_FALSE(Contains(seen.err, "CONSOLE")) << seen.err;
   for (const char* expected : {"time moves", "futures go", "0.64 s, forecast", "wide false"}) {
     EXPECT_TRUE(Contains(seen.out, expected));
   }
@@ -176,27 +165,25 @@ TEST_F(GeneratorAppTest, ThePageWorksInABrowser) {
 TEST_F(GeneratorAppTest, GoesOnWhereItWasKilled) {
   // The first checkpoint comes after 50 steps: time enough between it and the end.
   const std::vector<std::string> longer = {"--steps=80", "--seeds=1", "--checkpoint_seconds=0"};
-  ASSERT_EQ(Train("whole", longer).exit_code, 0);
+  Succeeded(Train("whole", longer));
   const AppRun killed = RunApp("pushid-train-generator", Quick("broken", longer), 120,
                                Path("broken/checkpoint.bin.1"));
   ASSERT_TRUE(killed.timed_out) << "the training was done before it had a checkpoint";
-  const AppRun resumed = Train("broken", longer);
-  ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+  const AppRun resumed = Succeeded(Train("broken", longer));
   EXPECT_TRUE(Contains(resumed.out, "resumed from a checkpoint"));
   EXPECT_EQ(ReadText(Path("whole/weights.npy")), ReadText(Path("broken/weights.npy")));
 }
 
 TEST_F(GeneratorAppTest, SearchesAPathToAPose) {
-  ASSERT_EQ(Train("g").exit_code, 0);
-  const AppRun run = Generate({"--samples=50", "--target_window=3", "--target_distance=10",
-                               "--json_out=" + Path("e.json"), "--poses_out=" + Path("p.bvh")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(Train("g"));
+  Succeeded(Generate({"--samples=50", "--target_window=3", "--target_distance=10",
+                      "--json_out=" + Path("e.json"), "--poses_out=" + Path("p.bvh")}));
   EXPECT_EQ(Json("e.json")["path"]["near"], 50);
   const AppRun far = Generate({"--samples=50", "--target_window=3", "--target_distance=0"});
   EXPECT_EQ(far.exit_code, 1);
   EXPECT_TRUE(Contains(far.err, "raise --samples or --target_distance"));
-  const AppRun least = Generate({"--target_window=3", "--json_out=" + Path("least.json")});
-  ASSERT_EQ(least.exit_code, 0) << least.err;
+  const AppRun least =
+      Succeeded(Generate({"--target_window=3", "--json_out=" + Path("least.json")}));
   EXPECT_TRUE(Contains(least.out, "most probable path to the end of window 3"));
   EXPECT_GT(Json("least.json")["path"]["iterations"], 0);
 }
@@ -220,7 +207,7 @@ TEST_F(GeneratorAppTest, MistakesAreNamed) {
 }
 
 TEST_F(GeneratorAppTest, AnotherSkeletonIsRefused) {
-  ASSERT_EQ(Train("g").exit_code, 0);
+  Succeeded(Train("g"));
   std::string skeleton = kSmallSkeleton;
   const std::string used = "\"used\": [1, 2, 3, 4]";
   WriteText("clips/skeleton.json",
@@ -239,13 +226,11 @@ class PushGeneratorAppTest : public AppTest {
 
 TEST_F(PushGeneratorAppTest, ForecastsPushes) {
   for (const char* observed : {"20", "1"}) {
-    const AppRun train = Train({"--out=" + Path("g"), std::string("--observed=") + observed});
-    ASSERT_EQ(train.exit_code, 0) << train.err;
-    const AppRun run =
+    Succeeded(Train({"--out=" + Path("g"), std::string("--observed=") + observed}));
+    Succeeded(
         RunApp("pushid-generate",
                {"--model=" + Path("g"), "--dataset=pushes", Recordings(), "--id=" + id_,
-                "--samples=19", "--page_out=" + Path("p.html"), "--json_out=" + Path("e.json")});
-    ASSERT_EQ(run.exit_code, 0) << run.err;
+                "--samples=19", "--page_out=" + Path("p.html"), "--json_out=" + Path("e.json")}));
     const auto json = Json(Path("e.json"));
     for (const char* key : {"MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm"}) {
       EXPECT_TRUE(json["mean"].contains(key)) << key;
@@ -260,23 +245,20 @@ TEST_F(PushGeneratorAppTest, SimlpeForecastsPushesFromTwelveFrames) {
                                            "--steps=20",    "--blocks=2", "--quiet"};
   std::vector<std::string> train = simlpe, validate = simlpe;
   train.push_back("--out=" + Path("g"));
-  const AppRun trained = RunApp("pushid-train-generator", train);
-  ASSERT_EQ(trained.exit_code, 0) << trained.err;
+  Succeeded(RunApp("pushid-train-generator", train));
   EXPECT_EQ(Json(Path("g/generator.json"))["settings"]["observed"], 12);
-  const AppRun run = RunApp("pushid-generate",
-                            {"--model=" + Path("g"), Recordings(), "--json_out=" + Path("e.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  Succeeded(RunApp("pushid-generate",
+                   {"--model=" + Path("g"), Recordings(), "--json_out=" + Path("e.json")}));
   EXPECT_GT(Json(Path("e.json"))["mean"]["MPJPE_m"].get<double>(), 0.0);
   validate.insert(validate.end(), {"--crossvalidate=2", "--json_out=" + Path("v.json")});
-  ASSERT_EQ(RunApp("pushid-train-generator", validate).exit_code, 0);
+  Succeeded(RunApp("pushid-train-generator", validate));
   EXPECT_EQ(Json(Path("v.json"))["recordings"].size(), 12u);
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--simlpe_share=0.5"}),
                       {"--simlpe_share needs --dataset=cmu"}));
 }
 
 TEST_F(PushGeneratorAppTest, CrossValidates) {
-  const AppRun run = Train({"--crossvalidate=2", "--json_out=" + Path("e.json")});
-  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const AppRun run = Succeeded(Train({"--crossvalidate=2", "--json_out=" + Path("e.json")}));
   EXPECT_TRUE(Contains(run.out, "generator all frames"));
   const auto json = Json(Path("e.json"));
   EXPECT_EQ(json["recordings"].size(), 12u);
@@ -288,7 +270,7 @@ TEST_F(PushGeneratorAppTest, CrossValidates) {
 TEST_F(PushGeneratorAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(Train({}), {"--out"}));
   EXPECT_TRUE(Refused(Train({"--crossvalidate=1"}), {"at least 2 folds"}));
-  ASSERT_EQ(Train({"--out=" + Path("g"), "--observed=30"}).exit_code, 0);
+  Succeeded(Train({"--out=" + Path("g"), "--observed=30"}));
   const std::string model = "--model=" + Path("g");
   EXPECT_TRUE(Refused(RunApp("pushid-generate", {model, "--folder=" + Path("x")}),
                       {"forecasts pushes; give --dataset=pushes"}));

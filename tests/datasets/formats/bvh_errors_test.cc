@@ -157,35 +157,31 @@ TEST_F(BvhErrorsTest, NumbersInEveryForm) {
               " { OFFSET 0 0 0 CHANNELS 1 Xrotation ";
     ends += " }";
   }
-  const Result<BvhMotion> read =
+  const BvhMotion read = Unwrapped(
       ReadBvh(WriteText("forms.bvh", "HIERARCHY\n" + joints + "End Site { OFFSET 0 0 0 }" + ends +
-                                         "\nMOTION\nFrames: 1\nFrame Time: 1\n" + row + "\n"));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  ASSERT_EQ(read.value().values.size(), tokens.size());
+                                         "\nMOTION\nFrames: 1\nFrame Time: 1\n" + row + "\n")));
+  ASSERT_EQ(read.values.size(), tokens.size());
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     const double expected = std::strtod(tokens[i].c_str(), nullptr);
-    EXPECT_EQ(read.value().values[i], expected) << tokens[i];
-    EXPECT_EQ(std::signbit(read.value().values[i]), std::signbit(expected)) << tokens[i];
+    EXPECT_EQ(read.values[i], expected) << tokens[i];
+    EXPECT_EQ(std::signbit(read.values[i]), std::signbit(expected)) << tokens[i];
   }
 }
 
 TEST_F(BvhErrorsTest, FilesThatAreNone) {
-  const Result<BvhMotion> missing = ReadBvh(Path("missing.bvh"));
-  ASSERT_FALSE(missing.ok());
-  EXPECT_EQ(missing.error().ToString(), Path("missing.bvh") + ": there is no such file");
-  const Result<BvhMotion> folder = ReadBvh(Path(""));
-  ASSERT_FALSE(folder.ok());
-  EXPECT_TRUE(Contains(folder.error().ToString(), "this is a folder"));
+  EXPECT_EQ(ProblemOf(ReadBvh(Path("missing.bvh"))),
+            Path("missing.bvh") + ": there is no such file");
+  EXPECT_TRUE(Contains(ProblemOf(ReadBvh(Path(""))), "this is a folder"));
   EXPECT_FALSE(ReadBvh("").ok());
   EXPECT_FALSE(ReadBvh(WriteText("empty.bvh", "")).ok());
   EXPECT_FALSE(ReadBvh(WriteText("zeros.bvh", std::string(100000, '\0'))).ok());
 }
 
 TEST_F(BvhErrorsTest, NoChannelsAtAll) {
-  const Result<BvhMotion> read = ReadBvh(WriteText(
-      "a.bvh", "HIERARCHY\nROOT a { OFFSET 0 0 0 }\nMOTION\nFrames: 1\nFrame Time: 1\n\n"));
-  ASSERT_FALSE(read.ok());
-  EXPECT_TRUE(Contains(read.error().ToString(), "a.bvh:3: no joint has any channels"));
+  EXPECT_TRUE(Contains(
+      ProblemOf(ReadBvh(WriteText(
+          "a.bvh", "HIERARCHY\nROOT a { OFFSET 0 0 0 }\nMOTION\nFrames: 1\nFrame Time: 1\n\n"))),
+      "a.bvh:3: no joint has any channels"));
 }
 
 }  // namespace

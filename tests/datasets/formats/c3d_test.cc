@@ -17,14 +17,19 @@
 namespace pushid {
 namespace {
 
+// The folder of the real C3D files; "" when there are none.
+std::string C3dSamplesRoot() {
+  return SharedFolder("PUSHID_C3D_SAMPLES", "c3d_samples", "Vicon.c3d");
+}
+
+constexpr char kNoC3dSamples[] =
+    "the real C3D files are not here; name their folder by PUSHID_C3D_SAMPLES";
+
 class C3dTest : public TempDirTest {
  protected:
   C3dFile Reread(const C3dFile& file) {
-    const MaybeError failed = WriteC3d(Path("a.c3d"), file);
-    EXPECT_FALSE(failed) << failed->ToString();
-    Result<C3dFile> read = ReadC3d(Path("a.c3d"));
-    EXPECT_TRUE(read.ok()) << read.error().ToString();
-    return read.ok() ? read.value() : C3dFile{};
+    EXPECT_EQ(ProblemOf(WriteC3d(Path("a.c3d"), file)), "no error");
+    return Unwrapped(ReadC3d(Path("a.c3d")));
   }
 
   // The message for the sample with bytes changed.
@@ -33,8 +38,7 @@ class C3dTest : public TempDirTest {
     std::string text = ReadText(Path("a.c3d"));
     text.replace(at, bytes.size(), bytes);
     WriteText("b.c3d", text);
-    const Result<C3dFile> read = ReadC3d(Path("b.c3d"));
-    return read.ok() ? "no error" : read.error().ToString();
+    return ProblemOf(ReadC3d(Path("b.c3d")));
   }
 };
 
@@ -201,9 +205,7 @@ TEST_F(C3dTest, WhatCannotBeWritten) {
 
 TEST(C3dSamples, Vicon) {
   if (C3dSamplesRoot().empty()) GTEST_SKIP() << kNoC3dSamples;
-  const Result<C3dFile> read = ReadC3d(C3dSamplesRoot() + "/Vicon.c3d");
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  const C3dFile& file = read.value();
+  const C3dFile file = Unwrapped(ReadC3d(C3dSamplesRoot() + "/Vicon.c3d"));
   EXPECT_EQ(file.num_frames(), 580);
   EXPECT_EQ(file.points.size(), 51u);
   EXPECT_EQ(file.point_rate_hz, 100.0);
@@ -228,17 +230,13 @@ TEST(C3dSamples, OptotrakIsCutShort) {
   const std::string path = C3dSamplesRoot() + "/Optotrak.c3d";
   C3dReadOptions options;
   options.accept_truncated = true;
-  const Result<C3dFile> read = ReadC3d(path, options);
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  const C3dFile& file = read.value();
+  const C3dFile file = Unwrapped(ReadC3d(path, options));
   EXPECT_EQ(file.points.size(), 54u);
   EXPECT_EQ(file.announced_frames, 1149);
   EXPECT_EQ(file.point_rate_hz, 30.0);
   if (file.num_frames() == file.announced_frames) return;  // another copy, a whole one
-  const Result<C3dFile> strict = ReadC3d(path);
-  ASSERT_FALSE(strict.ok());
   EXPECT_TRUE(
-      Contains(strict.error().ToString(),
+      Contains(ProblemOf(ReadC3d(path)),
                "the file ends after " + std::to_string(file.num_frames()) + " of 1149 frames"));
 }
 

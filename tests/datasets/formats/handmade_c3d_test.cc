@@ -17,13 +17,10 @@ constexpr C3dProcessor kProcessors[] = {C3dProcessor::kIntel, C3dProcessor::kDec
 class HandmadeC3dTest : public TempDirTest {
  protected:
   C3dFile Read(const HandmadeC3d& file) {
-    const Result<C3dFile> read = ReadC3d(WriteText("a.c3d", file.Bytes()));
-    EXPECT_TRUE(read.ok()) << read.error().ToString();
-    return read.ok() ? read.value() : C3dFile{};
+    return Unwrapped(ReadC3d(WriteText("a.c3d", file.Bytes())));
   }
   std::string Problem(const HandmadeC3d& file) {
-    const Result<C3dFile> read = ReadC3d(WriteText("a.c3d", file.Bytes()));
-    return read.ok() ? "no error" : read.error().ToString();
+    return ProblemOf(ReadC3d(WriteText("a.c3d", file.Bytes())));
   }
   // A file of three channels, 100 raw each, with whatever `add` says of them.
   template <typename Add>
@@ -108,9 +105,8 @@ TEST_F(HandmadeC3dTest, EventsOfTheHeader) {
   HandmadeC3d none = HeaderEventsC3d();
   std::string bytes = none.Bytes();
   bytes[298] = 0;
-  const Result<C3dFile> read = ReadC3d(WriteText("b.c3d", bytes));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_TRUE(read.value().events.empty());
+  const C3dFile read = Unwrapped(ReadC3d(WriteText("b.c3d", bytes)));
+  EXPECT_TRUE(read.events.empty());
 }
 
 TEST_F(HandmadeC3dTest, EventsOfTheGroupComeBeforeThoseOfTheHeader) {

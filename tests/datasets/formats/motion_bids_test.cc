@@ -36,16 +36,11 @@ class MotionBidsTest : public TempDirTest {
     return WriteText(kStem + end, text);
   }
   std::string Motion() const { return Path(std::string(kStem) + "_motion.tsv"); }
-  std::string Message() const {
-    const Result<PointMotion> read = ReadMotionBids(Motion());
-    return read.ok() ? "no error" : read.error().ToString();
-  }
+  std::string Message() const { return ProblemOf(ReadMotionBids(Motion())); }
 };
 
 TEST_F(MotionBidsTest, PointsByTheirChannels) {
-  const Result<PointMotion> read = ReadMotionBids(Motion());
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  const PointMotion& motion = read.value();
+  const PointMotion motion = Unwrapped(ReadMotionBids(Motion()));
   EXPECT_EQ(motion.names, std::vector<std::string>{"Hips"});  // the toe lacks y and z
   EXPECT_EQ(motion.rate_hz, 60.0);
   EXPECT_EQ(motion.unit, LengthUnit::kCentimetre);
@@ -115,29 +110,26 @@ TEST_F(MotionBidsTest, ThereAndBack) {
       {4, {Eigen::Vector4d(-1e-9, 1.0 / 3.0, 0, 700)}}};
   const std::string stem = Path("sub-x_task-push_tracksys-body");
   ASSERT_FALSE(WriteMotionBids(stem, "push", motion, pushes));
-  const Result<PointMotion> read = ReadMotionBids(stem + "_motion.tsv");
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().names, motion.names);
-  EXPECT_EQ(read.value().rate_hz, 59.94);
-  EXPECT_EQ(read.value().unit, LengthUnit::kMetre);
-  EXPECT_EQ(read.value().up, "+z");
-  EXPECT_EQ(read.value().positions[0], motion.positions[0]);
-  EXPECT_FALSE(read.value().positions[1][2].allFinite());
-  const Result<std::vector<TimedForce>> back = ReadBidsPushes(stem + "_motion.tsv");
-  ASSERT_TRUE(back.ok()) << back.error().ToString();
-  ASSERT_EQ(back.value().size(), 2u);
+  const PointMotion read = Unwrapped(ReadMotionBids(stem + "_motion.tsv"));
+  EXPECT_EQ(read.names, motion.names);
+  EXPECT_EQ(read.rate_hz, 59.94);
+  EXPECT_EQ(read.unit, LengthUnit::kMetre);
+  EXPECT_EQ(read.up, "+z");
+  EXPECT_EQ(read.positions[0], motion.positions[0]);
+  EXPECT_FALSE(read.positions[1][2].allFinite());
+  const std::vector<TimedForce> back = Unwrapped(ReadBidsPushes(stem + "_motion.tsv"));
+  ASSERT_EQ(back.size(), 2u);
   for (int i = 0; i < 2; ++i) {
-    EXPECT_EQ(back.value()[i].start_frame, pushes[i].start_frame);
-    EXPECT_EQ(back.value()[i].force, pushes[i].force);
+    EXPECT_EQ(back[i].start_frame, pushes[i].start_frame);
+    EXPECT_EQ(back[i].force, pushes[i].force);
   }
 }
 
 TEST_F(MotionBidsTest, PushesThatCannotBeHeldOrRead) {
   const std::string stem = Path("sub-x_task-push_tracksys-body");
   const std::vector<Eigen::Vector4d> two(2, Eigen::Vector4d::Ones());
-  MaybeError failed = WriteMotionBids(stem, "push", TwoPoints(), {{0, two}, {1, two}});
-  ASSERT_TRUE(failed);
-  EXPECT_TRUE(Contains(failed->message, "two pushes on one person overlap"));
+  EXPECT_TRUE(Contains(ProblemOf(WriteMotionBids(stem, "push", TwoPoints(), {{0, two}, {1, two}})),
+                       "two pushes on one person overlap"));
   EXPECT_TRUE(Contains(ReadBidsPushes(Motion()).error().ToString(),
                        "needs the channels push_fx, push_fy, push_ftheta and push_fphi"));
   ASSERT_FALSE(WriteMotionBids(stem, "push", TwoPoints(), {{0, two}}));

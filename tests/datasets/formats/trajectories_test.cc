@@ -14,8 +14,7 @@ namespace {
 class TrajectoriesTest : public TempDirTest {
  protected:
   std::string TextMessage(const std::string& text) {
-    const Result<PointMotion> read = ReadTrajectoryText(WriteText("crowd.txt", text));
-    return read.ok() ? "no error" : read.error().ToString();
+    return ProblemOf(ReadTrajectoryText(WriteText("crowd.txt", text)));
   }
   std::string Sqlite(const std::string& name, const std::string& sql) {
     sqlite3* database = nullptr;
@@ -33,9 +32,7 @@ TEST_F(TrajectoriesTest, Text) {
                                      "# description: corridor\n# framerate: 16.00 fps\n"
                                      "# id frame x/cm y/cm z/cm\n"
                                      "7 100 10 20 170\n7 101 11 20 170 99\n12 101 0 -5 1.6e2\n");
-  const Result<PointMotion> read = ReadTrajectoryText(path);
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  const PointMotion& motion = read.value();
+  const PointMotion motion = Unwrapped(ReadTrajectoryText(path));
   EXPECT_EQ(motion.names, (std::vector<std::string>{"7", "12"}));
   EXPECT_EQ(motion.unit, LengthUnit::kCentimetre);
   EXPECT_EQ(motion.rate_hz, 16.0);
@@ -52,10 +49,9 @@ TEST_F(TrajectoriesTest, Text) {
 
 // Of vertical tabs and form feeds too; such a line once ended the program.
 TEST_F(TrajectoriesTest, BlankLines) {
-  const Result<PointMotion> read = ReadTrajectoryText(
-      WriteText("crowd.txt", "# framerate: 8\n\v\v\n1 0 1 2\n\f\n \t\r\n1 1 1 3\n\v"));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().num_frames(), 2);
+  const PointMotion read = Unwrapped(ReadTrajectoryText(
+      WriteText("crowd.txt", "# framerate: 8\n\v\v\n1 0 1 2\n\f\n \t\r\n1 1 1 3\n\v")));
+  EXPECT_EQ(read.num_frames(), 2);
 }
 
 TEST_F(TrajectoriesTest, UnitsAsPeopleWriteThem) {
@@ -68,12 +64,11 @@ TEST_F(TrajectoriesTest, UnitsAsPeopleWriteThem) {
 
 // Somebody may stand at the origin, and planes have no height.
 TEST_F(TrajectoriesTest, Planes) {
-  const Result<PointMotion> read =
-      ReadTrajectoryText(WriteText("plane.txt", "#framerate: 8\n1 0 0 0\n1 1 2 3\n"));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().unit, LengthUnit::kMetre);
-  EXPECT_EQ(read.value().positions[0][0], Eigen::Vector3d::Zero());
-  EXPECT_EQ(read.value().positions[0][1], Eigen::Vector3d(2, 3, 0));
+  const PointMotion read =
+      Unwrapped(ReadTrajectoryText(WriteText("plane.txt", "#framerate: 8\n1 0 0 0\n1 1 2 3\n")));
+  EXPECT_EQ(read.unit, LengthUnit::kMetre);
+  EXPECT_EQ(read.positions[0][0], Eigen::Vector3d::Zero());
+  EXPECT_EQ(read.positions[0][1], Eigen::Vector3d(2, 3, 0));
 }
 
 TEST_F(TrajectoriesTest, BadText) {
@@ -145,17 +140,15 @@ TEST_F(TrajectoriesTest, SqliteOfJuPedSim) {
       "ori_y REAL); CREATE TABLE metadata (key TEXT, value TEXT); CREATE TABLE geometry (wkt TEXT);"
       "INSERT INTO metadata VALUES ('version', '1'), ('fps', '10.0');"
       "INSERT INTO trajectory_data VALUES (0, 4, 1.5, 2, 1, 0), (1, 4, 1.6, 2, 1, 0);");
-  const Result<PointMotion> read = ReadTrajectorySqlite(path);
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().rate_hz, 10.0);
-  EXPECT_EQ(read.value().names, std::vector<std::string>{"4"});
-  EXPECT_EQ(read.value().positions[0][1], Eigen::Vector3d(1.6, 2, 0));
+  const PointMotion read = Unwrapped(ReadTrajectorySqlite(path));
+  EXPECT_EQ(read.rate_hz, 10.0);
+  EXPECT_EQ(read.names, std::vector<std::string>{"4"});
+  EXPECT_EQ(read.positions[0][1], Eigen::Vector3d(1.6, 2, 0));
 }
 
 TEST_F(TrajectoriesTest, BadSqlite) {
   const auto message = [](const std::string& path) {
-    const Result<PointMotion> read = ReadTrajectorySqlite(path);
-    return read.ok() ? "no error" : read.error().ToString();
+    return ProblemOf(ReadTrajectorySqlite(path));
   };
   EXPECT_TRUE(Contains(message(Path("none.sqlite")), "none.sqlite: "));
   EXPECT_TRUE(Contains(message(WriteText("text.sqlite", "id,frame\n1,2\n, and more of it")),

@@ -8,6 +8,7 @@
 #include "tests/datasets/c3d_samples.h"
 #include "tests/datasets/c3d_writer.h"
 #include "tests/datasets/recording_folder.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -67,10 +68,7 @@ class ManifestMakerTest : public RecordingFolderTest {
     options_.mass_kg = 80.0;
     std::filesystem::create_directories(folder_ / "m");
   }
-  std::string MakingMessage() {
-    const Result<MadeManifest> made = MakeManifest(options_);
-    return made.ok() ? "no error" : made.error().ToString();
-  }
+  std::string MakingMessage() { return ProblemOf(MakeManifest(options_)); }
 
   ManifestOptions options_;
 };
@@ -83,16 +81,14 @@ TEST_F(ManifestMakerTest, TrajectoriesAreNoRecordings) {
 }
 
 TEST_F(ManifestMakerTest, WhatIsMadeCanBeLoaded) {
-  const Result<MadeManifest> made = MakeManifest(options_);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  EXPECT_EQ(made.value().files, 3);
-  EXPECT_EQ(made.value().others, 3);
-  EXPECT_EQ(made.value().without_push, std::vector<std::string>{"anna_weak_10"});
-  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.value().manifest));
-  const auto loaded = LoadRecordings(options_.manifest_path);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  ASSERT_EQ(loaded.value().size(), 3u);
-  const Recording& second = loaded.value()[1];
+  const MadeManifest made = Unwrapped(MakeManifest(options_));
+  EXPECT_EQ(made.files, 3);
+  EXPECT_EQ(made.others, 3);
+  EXPECT_EQ(made.without_push, std::vector<std::string>{"anna_weak_10"});
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.manifest));
+  const auto loaded = Unwrapped(LoadRecordings(options_.manifest_path));
+  ASSERT_EQ(loaded.size(), 3u);
+  const Recording& second = loaded[1];
   EXPECT_EQ(second.id, "anna_weak_2");
   EXPECT_EQ(second.people[0].subject_id, "anna");
   EXPECT_EQ(second.people[0].mass_kg, 62.0);
@@ -100,31 +96,28 @@ TEST_F(ManifestMakerTest, WhatIsMadeCanBeLoaded) {
   EXPECT_EQ(second.labels.setting(), "single");
   EXPECT_EQ(second.fps, 60.0);  // 0.016667 s
   EXPECT_EQ(second.pushes.size(), 1u);
-  EXPECT_EQ(loaded.value()[2].people[0].mass_kg, 80.0);
+  EXPECT_EQ(loaded[2].people[0].mass_kg, 80.0);
 }
 
 // A manifest without the rates that were written means the same.
 TEST_F(ManifestMakerTest, WritesTheRatesThatLoadingTakes) {
-  Result<MadeManifest> made = MakeManifest(options_);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  for (ManifestRecording& recording : made.value().manifest.recordings) {
+  MadeManifest made = Unwrapped(MakeManifest(options_));
+  for (ManifestRecording& recording : made.manifest.recordings) {
     EXPECT_EQ(recording.fps, 60.0);
     recording.fps = 0.0;
   }
-  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.value().manifest));
-  const auto loaded = LoadRecordings(options_.manifest_path);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  for (const Recording& recording : loaded.value()) EXPECT_EQ(recording.fps, 60.0);
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.manifest));
+  const auto loaded = Unwrapped(LoadRecordings(options_.manifest_path));
+  for (const Recording& recording : loaded) EXPECT_EQ(recording.fps, 60.0);
 }
 
 TEST_F(ManifestMakerTest, FilesThatCannotBeReadAreLeftOut) {
   WriteText("data/anna_weak_2.bvh", "no motion");
   options_.masses.clear();  // no mass is asked for of a person left out
-  const Result<MadeManifest> made = MakeManifest(options_);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  EXPECT_EQ(made.value().manifest.recordings.size(), 2u);
-  ASSERT_EQ(made.value().unreadable.size(), 1u);
-  EXPECT_TRUE(Contains(made.value().unreadable[0].ToString(), "data/anna_weak_2.bvh:1"));
+  const MadeManifest made = Unwrapped(MakeManifest(options_));
+  EXPECT_EQ(made.manifest.recordings.size(), 2u);
+  ASSERT_EQ(made.unreadable.size(), 1u);
+  EXPECT_TRUE(Contains(made.unreadable[0].ToString(), "data/anna_weak_2.bvh:1"));
   for (const char* name : {"ben_strong_1", "anna_weak_10"}) {
     WriteText(std::string("data/") + name + ".bvh", "no motion");
   }
@@ -142,22 +135,20 @@ TEST_F(ManifestMakerTest, PushPatternsNameOneFileEach) {
 TEST_F(ManifestMakerTest, MisspeltNamesAreToldOf) {
   options_.push_pattern = "";
   options_.pattern = "{subjct}_{magnitude}_{take}.bvh";
-  const Result<MadeManifest> made = MakeManifest(options_);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  ASSERT_EQ(made.value().warnings.size(), 2u) << "the masses are of nobody then";
-  EXPECT_TRUE(Contains(made.value().warnings[0],
-                       "{subjct}, which only tells recordings apart; is {subject}"));
+  const MadeManifest made = Unwrapped(MakeManifest(options_));
+  ASSERT_EQ(made.warnings.size(), 2u) << "the masses are of nobody then";
+  EXPECT_TRUE(
+      Contains(made.warnings[0], "{subjct}, which only tells recordings apart; is {subject}"));
 }
 
 TEST_F(ManifestMakerTest, PushesThatAreNoneAndMassesOfNobodyAreToldOf) {
   WriteText("data/push/ben_1.csv", "time,force\n0,1\n0.1,90\n");
   options_.masses["bem"] = 81.0;
-  const Result<MadeManifest> made = MakeManifest(options_);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  ASSERT_EQ(made.value().warnings.size(), 2u);
-  EXPECT_TRUE(Contains(made.value().warnings[0], "push/ben_1.csv:1"));
-  EXPECT_TRUE(Contains(made.value().warnings[0], "pushid-push --sensor"));
-  EXPECT_TRUE(Contains(made.value().warnings[1], "the masses list bem, who is in no recording"));
+  const MadeManifest made = Unwrapped(MakeManifest(options_));
+  ASSERT_EQ(made.warnings.size(), 2u);
+  EXPECT_TRUE(Contains(made.warnings[0], "push/ben_1.csv:1"));
+  EXPECT_TRUE(Contains(made.warnings[0], "pushid-push --sensor"));
+  EXPECT_TRUE(Contains(made.warnings[1], "the masses list bem, who is in no recording"));
 }
 
 TEST_F(ManifestMakerTest, MappingsAndIdsAreCheckedAtOnce) {
@@ -176,10 +167,9 @@ TEST_F(ManifestMakerTest, PeopleOfOneRecording) {
   options_.folder = Path("rows");
   options_.pattern = "{take}_p{person}_{subject}.bvh";
   options_.push_pattern = "";
-  const Result<MadeManifest> made = MakeManifest(options_);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  ASSERT_EQ(made.value().manifest.recordings.size(), 2u);
-  const ManifestRecording& r1 = made.value().manifest.recordings[0];
+  const MadeManifest made = Unwrapped(MakeManifest(options_));
+  ASSERT_EQ(made.manifest.recordings.size(), 2u);
+  const ManifestRecording& r1 = made.manifest.recordings[0];
   EXPECT_EQ(r1.id, "r1");
   ASSERT_EQ(r1.subjects.size(), 2u);
   EXPECT_EQ(r1.subjects[0].id, "y") << "person 2 before person 10";
@@ -213,12 +203,10 @@ TEST_F(ManifestMakerTest, AxesGivenWinOverAMapping) {
   options_.mapping = Path("map.json");
   options_.up = "z";
   options_.forward = "x";
-  const Result<MadeManifest> made = MakeManifest(options_);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.value().manifest));
-  const auto loaded = LoadRecordings(options_.manifest_path);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value()[0].people[0].file_up, "z");
+  const MadeManifest made = Unwrapped(MakeManifest(options_));
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.manifest));
+  const auto loaded = Unwrapped(LoadRecordings(options_.manifest_path));
+  EXPECT_EQ(loaded[0].people[0].file_up, "z");
 }
 
 TEST_F(ManifestMakerTest, RateOfC3d) {
@@ -229,13 +217,12 @@ TEST_F(ManifestMakerTest, RateOfC3d) {
   options_.up = "z";
   options_.mapping = Path("map.json");
   WriteText("map.json", "{\"joints\": {\"hip\": \"HIP\"}}");
-  const Result<MadeManifest> made = MakeManifest(options_);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  const ManifestRecording& recording = made.value().manifest.recordings[0];
+  const MadeManifest made = Unwrapped(MakeManifest(options_));
+  const ManifestRecording& recording = made.manifest.recordings[0];
   EXPECT_EQ(recording.fps, 100.0);
   EXPECT_EQ(recording.motion_format, MotionFormat::kC3d);
   EXPECT_EQ(recording.mapping, "../map.json");
-  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.value().manifest));
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, made.manifest));
   EXPECT_TRUE(LoadRecordings(options_.manifest_path).ok());
 }
 
@@ -263,9 +250,9 @@ TEST_F(ManifestMakerTest, WhatCannotBeMade) {
 }
 
 TEST_F(ManifestMakerTest, Masses) {
-  const auto masses = ReadMasses(WriteText("m.csv", "id,mass_kg\nanna,62\n ben , 80.5\n"));
-  ASSERT_TRUE(masses.ok()) << masses.error().ToString();
-  EXPECT_EQ(masses.value().at("ben"), 80.5);
+  const auto masses =
+      Unwrapped(ReadMasses(WriteText("m.csv", "id,mass_kg\nanna,62\n ben , 80.5\n")));
+  EXPECT_EQ(masses.at("ben"), 80.5);
   for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
            {"anna,62\n", ":1: the first line must be id,mass_kg"},
            {"id,mass_kg\nanna\n", ":2: mass_kg: a number is missing"},

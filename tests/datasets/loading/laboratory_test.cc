@@ -58,9 +58,8 @@ class LaboratoryTest : public TempDirTest {
 
 TEST_F(LaboratoryTest, WhatWasRolledOutComesBack) {
   SyntheticOptions options = OnPlatform(GroundKind::kStep);
-  const auto loaded = Load(options);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const PendulumRecording seen = MakePendulumRecording(loaded.value()[0], SkeletonMapping::kExact);
+  const auto loaded = Unwrapped(Load(options));
+  const PendulumRecording seen = MakePendulumRecording(loaded[0], SkeletonMapping::kExact);
   ASSERT_TRUE(seen.scene.ground.moves());
   ASSERT_TRUE(seen.HasPlates());
   double shear = 0.0;
@@ -77,9 +76,8 @@ TEST_F(LaboratoryTest, WhatWasRolledOutComesBack) {
 // Who steps onto the platform when it moves already has no rest there: centres count from their
 // mean.
 TEST_F(LaboratoryTest, CentresOfWhoPressedNothingBeforeCountFromTheirMean) {
-  const auto loaded = Load(OnPlatform(GroundKind::kStep));
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  Recording recording = loaded.value()[0];
+  const auto loaded = Unwrapped(Load(OnPlatform(GroundKind::kStep)));
+  Recording recording = loaded[0];
   std::vector<PlateSample>& plates = recording.people[0].plates;
   for (size_t t = 0; t < plates.size(); ++t) {
     plates[t].centre.x() += 7.0;
@@ -255,11 +253,9 @@ TEST_F(LaboratoryTest, CentresFarFromTheFeetAreRefused) {
 
 // Exported without its ground, a trial would be another.
 TEST_F(LaboratoryTest, IsNotLostInExports) {
-  const auto loaded = Load(OnPlatform(GroundKind::kStep));
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const MaybeError refused = WriteBidsDataset(Path("bids"), loaded.value(), "0");
-  ASSERT_TRUE(refused);
-  EXPECT_TRUE(Contains(refused->ToString(), "ground that moves"));
+  const auto loaded = Unwrapped(Load(OnPlatform(GroundKind::kStep)));
+  EXPECT_TRUE(
+      Contains(ProblemOf(WriteBidsDataset(Path("bids"), loaded, "0")), "ground that moves"));
 }
 
 // Two platforms, one foot each, are one.

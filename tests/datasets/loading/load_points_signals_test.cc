@@ -3,6 +3,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "tests/datasets/points_folder.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -44,9 +45,8 @@ TEST_F(LoadPointSignalsTest, ShortGapsAreFilledLongOnesLeftOut) {
   for (int t : {4, 5}) motion_.positions[0][t] = kHidden;
   for (int t = 9; t < 17; ++t) motion_.positions[4][t] = kHidden;
   Use("a.c3d", MotionFormat::kC3d);
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const RecordedPerson& person = loaded.value()[0].people[0];
+  const auto loaded = Unwrapped(Load());
+  const RecordedPerson& person = loaded[0].people[0];
   ASSERT_EQ(person.weight.size(), 20u);
   for (int t = 0; t < 20; ++t) {
     // Two of the twelve that are left are interpolated: more than a tenth.
@@ -59,9 +59,8 @@ TEST_F(LoadPointSignalsTest, ShortGapsAreFilledLongOnesLeftOut) {
   EXPECT_TRUE(Contains(warnings_[0].text, "8 of 20 frames are left out"));
   LoadOptions options;
   options.preparation.max_gap_s = 0.2;
-  const auto patient = Load(options);
-  ASSERT_TRUE(patient.ok());
-  for (double weight : patient.value()[0].people[0].weight) EXPECT_GT(weight, 0.0);
+  const auto patient = Unwrapped(Load(options));
+  for (double weight : patient[0].people[0].weight) EXPECT_GT(weight, 0.0);
 }
 
 TEST_F(LoadPointSignalsTest, TheFirstFrameMustBeSeen) {
@@ -72,10 +71,9 @@ TEST_F(LoadPointSignalsTest, TheFirstFrameMustBeSeen) {
                        "first_frame to 3 or later"));
   entry().first_frame = 3;
   entry().end_frame = 18;
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value()[0].num_frames(), 15);
-  EXPECT_NEAR(loaded.value()[0].people[0].hip[0].x(), 0.03, 1e-9);
+  const auto loaded = Unwrapped(Load());
+  EXPECT_EQ(loaded[0].num_frames(), 15);
+  EXPECT_NEAR(loaded[0].people[0].hip[0].x(), 0.03, 1e-9);
   entry().end_frame = 21;
   EXPECT_TRUE(
       Contains(Message(), "the file has 20 frames, too few for first_frame 3 and end_frame 21"));
@@ -95,11 +93,7 @@ TEST_F(LoadPointSignalsTest, RatesThatDiffer) {
 // From TRC and C3D heads, a column of times, a mapping; without all of those there is none.
 TEST_F(LoadPointSignalsTest, TheFileSaysTheRateWhereTheManifestDoesNot) {
   entry().fps = 0.0;
-  const auto rate = [this] {
-    const auto loaded = Load();
-    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
-    return loaded.ok() ? loaded.value()[0].fps : -1.0;
-  };
+  const auto rate = [this] { return Unwrapped(Load())[0].fps; };
   for (double fps : {60.0, 59.94}) {
     motion_.rate_hz = fps;
     Use("a.trc", MotionFormat::kTrc);
@@ -124,11 +118,10 @@ TEST_F(LoadPointSignalsTest, FilterAndResampling) {
   LoadOptions options;
   options.preparation.lowpass_hz = 10.0;
   options.preparation.resample_fps = 30.0;
-  const auto loaded = Load(options);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value()[0].fps, 30.0);
-  EXPECT_EQ(loaded.value()[0].num_frames(), 10);
-  EXPECT_EQ(loaded.value()[0].pushes[0].force.size(), 3u);  // five rows at 60 are 2.5 at 30
+  const auto loaded = Unwrapped(Load(options));
+  EXPECT_EQ(loaded[0].fps, 30.0);
+  EXPECT_EQ(loaded[0].num_frames(), 10);
+  EXPECT_EQ(loaded[0].pushes[0].force.size(), 3u);  // five rows at 60 are 2.5 at 30
   options.preparation.lowpass_hz = 0.0;
   EXPECT_TRUE(Contains(Message(options), "recording 'a': --resample_fps=30 is below its 60"));
 }

@@ -7,6 +7,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "datasets/manifest/joint_choice.h"
 #include "tests/datasets/points_folder.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -25,11 +26,7 @@ TEST_F(LoadPointsTest, EveryFormatWithDefaultMarkers) {
 
 // For forces recorded in the same file.
 TEST_F(LoadPointsTest, TheFilesClockAtFrameZero) {
-  const auto clock = [this] {
-    const auto loaded = Load();
-    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
-    return loaded.ok() ? loaded.value()[0].people[0].file_clock_s : -1.0;
-  };
+  const auto clock = [this] { return Unwrapped(Load())[0].people[0].file_clock_s; };
   Use("a.c3d", MotionFormat::kC3d);
   entry().first_frame = 6;
   entry().end_frame = 20;
@@ -45,9 +42,8 @@ TEST_F(LoadPointsTest, ManifestRoundTrip) {
   entry().first_frame = 2;
   entry().end_frame = 9;
   ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest_));
-  const Result<Manifest> read = ReadManifest(Path("manifest.json"));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  const ManifestRecording& again = read.value().recordings[0];
+  const Manifest read = Unwrapped(ReadManifest(Path("manifest.json")));
+  const ManifestRecording& again = read.recordings[0];
   EXPECT_EQ(again.motion_format, MotionFormat::kTrc);
   EXPECT_EQ(again.motion, std::vector<std::string>{"a.trc"});
   ASSERT_EQ(again.joints.hip->mean_of.size(), 2u);
@@ -64,8 +60,7 @@ TEST_F(LoadPointsTest, BadManifestsOfPoints) {
     EXPECT_FALSE(WriteManifest(Path("manifest.json"), manifest_));
     std::string text = ReadText(Path("manifest.json"));
     text.replace(text.find(from), from.size(), to);
-    const Result<Manifest> read = ReadManifest(WriteText("bad.json", text));
-    return read.ok() ? std::string("no error") : read.error().ToString();
+    return ProblemOf(ReadManifest(WriteText("bad.json", text)));
   };
   EXPECT_TRUE(Contains(message("\"trc\":", "\"bvh\": [\"a.bvh\"], \"trc\":"),
                        "trc is given together with bvh"));
@@ -78,9 +73,8 @@ TEST_F(LoadPointsTest, BadManifestsOfPoints) {
 
 TEST_F(LoadPointsTest, MarkersByName) {
   entry().joints.hip = JointReference{"", -1, {{"S1:LASI"}, {"RASI"}}};
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_LT((loaded.value()[0].people[0].hip[0] - Eigen::Vector3d(0.08, 0.0, 0.95)).norm(), 1e-9);
+  const auto loaded = Unwrapped(Load());
+  EXPECT_LT((loaded[0].people[0].hip[0] - Eigen::Vector3d(0.08, 0.0, 0.95)).norm(), 1e-9);
   entry().joints.hip = JointReference{"", -1, {{"LASI"}, {"SACR"}}};
   EXPECT_TRUE(
       Contains(Message(), "joints: hip: there is no point 'SACR'; it has S1:LASI, S1:RASI"));
@@ -107,10 +101,9 @@ TEST_F(LoadPointsTest, SeveralPeopleInOneFile) {
     entry().subjects[n].joints = {JointReference{"", -1, {{prefix + "LASI"}, {prefix + "RPSI"}}},
                                   JointReference{prefix + "LANK"}, JointReference{prefix + "RANK"}};
   }
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_NEAR(loaded.value()[0].people[1].left_ankle[0].y(), 0.6, 1e-9);
-  EXPECT_NEAR(loaded.value()[0].people[0].left_ankle[0].y(), 0.1, 1e-9);
+  const auto loaded = Unwrapped(Load());
+  EXPECT_NEAR(loaded[0].people[1].left_ankle[0].y(), 0.6, 1e-9);
+  EXPECT_NEAR(loaded[0].people[0].left_ankle[0].y(), 0.1, 1e-9);
 }
 
 TEST_F(LoadPointsTest, ToesAndHeelsWhereThereAreSome) {
@@ -154,10 +147,9 @@ TEST_F(LoadPointsTest, AnklesOfTheCommonMarkerSets) {
       {{"pelvis", "l_foot", "r_foot"}, {1}},
   };
   for (const auto& [names, left] : sets) {
-    const auto chosen = ChoosePendulumPoints("x", names, {});
-    ASSERT_TRUE(chosen.ok()) << chosen.error().ToString();
-    EXPECT_EQ(chosen.value().left_ankle, left) << names[1];
-    EXPECT_EQ(chosen.value().right_ankle.size(), left.size()) << names[1];
+    const auto chosen = Unwrapped(ChoosePendulumPoints("x", names, {}));
+    EXPECT_EQ(chosen.left_ankle, left) << names[1];
+    EXPECT_EQ(chosen.right_ankle.size(), left.size()) << names[1];
   }
 }
 
@@ -169,16 +161,14 @@ TEST_F(LoadPointsTest, ToesOfSeveralPeople) {
   of_b.hip = JointReference{"B:Hips"};
   of_b.left_ankle = JointReference{"B:LANK"};
   of_b.right_ankle = JointReference{"B:RANK"};
-  const auto b = ChoosePendulumPoints("x", names, of_b);
-  ASSERT_TRUE(b.ok()) << b.error().ToString();
-  EXPECT_EQ(b.value().left_toe, std::vector<int>{7});
-  EXPECT_EQ(b.value().right_toe, std::vector<int>{9});
-  EXPECT_TRUE(b.value().left_heel.empty());
-  const auto smpl = ChoosePendulumPoints(
-      "x", {"Pelvis", "L_Ankle", "R_Ankle", "L_Foot", "R_Foot", "L_Heel", "R_Heel"}, {});
-  ASSERT_TRUE(smpl.ok()) << smpl.error().ToString();
-  EXPECT_EQ(smpl.value().left_toe, std::vector<int>{3});
-  EXPECT_EQ(smpl.value().right_heel, std::vector<int>{6});
+  const auto b = Unwrapped(ChoosePendulumPoints("x", names, of_b));
+  EXPECT_EQ(b.left_toe, std::vector<int>{7});
+  EXPECT_EQ(b.right_toe, std::vector<int>{9});
+  EXPECT_TRUE(b.left_heel.empty());
+  const auto smpl = Unwrapped(ChoosePendulumPoints(
+      "x", {"Pelvis", "L_Ankle", "R_Ankle", "L_Foot", "R_Foot", "L_Heel", "R_Heel"}, {}));
+  EXPECT_EQ(smpl.left_toe, std::vector<int>{3});
+  EXPECT_EQ(smpl.right_heel, std::vector<int>{6});
   const auto foot = ChoosePendulumPoints("x", {"Hips", "LeftFoot", "RightFoot", "LeftToeBase"}, {});
   EXPECT_EQ(foot.value().left_ankle, std::vector<int>{1});
   EXPECT_EQ(foot.value().left_toe, std::vector<int>{3});

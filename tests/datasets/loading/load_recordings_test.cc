@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/datasets/recording_folder.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -15,10 +16,9 @@ TEST_F(LoadRecordingsTest, EverythingInSiUnits) {
   entry().push_kind = PushKind::kNet;
   entry().initial_velocity = InitialVelocity::kEstimated;
   entry().frames = 20;
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  ASSERT_EQ(loaded.value().size(), 1u);
-  const Recording& recording = loaded.value()[0];
+  const auto loaded = Unwrapped(Load());
+  ASSERT_EQ(loaded.size(), 1u);
+  const Recording& recording = loaded[0];
   EXPECT_EQ(recording.id, "a");
   EXPECT_EQ(recording.labels.setting(), "single");
   EXPECT_EQ(recording.labels.magnitude(), "weak");
@@ -47,9 +47,8 @@ TEST_F(LoadRecordingsTest, EverythingInSiUnits) {
 TEST_F(LoadRecordingsTest, AllJointsWhenAsked) {
   LoadOptions options;
   options.keep_all_joints = true;
-  const auto loaded = Load(options);
-  ASSERT_TRUE(loaded.ok());
-  const RecordedPerson& person = loaded.value()[0].people[0];
+  const auto loaded = Unwrapped(Load(options));
+  const RecordedPerson& person = loaded[0].people[0];
   ASSERT_EQ(person.joints.size(), 20u);
   EXPECT_EQ(person.joint_names,
             (std::vector<std::string>{"Pelvis", "rig:Left_Foot", "rig:Right_Foot"}));
@@ -148,11 +147,9 @@ TEST_F(LoadRecordingsTest, AxesAreTurned) {
   EXPECT_TRUE(Contains(Message(), "set \"up\" and \"forward\""));
   entry().up = "y";
   entry().forward = "+z";
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_LT((loaded.value()[0].people[0].hip[7] - Eigen::Vector3d(0.07, 0, 0.95)).norm(), 1e-12);
-  EXPECT_LT((loaded.value()[0].people[0].left_ankle[7] - Eigen::Vector3d(0, 0.1, 0.08)).norm(),
-            1e-12);
+  const auto loaded = Unwrapped(Load());
+  EXPECT_LT((loaded[0].people[0].hip[7] - Eigen::Vector3d(0.07, 0, 0.95)).norm(), 1e-12);
+  EXPECT_LT((loaded[0].people[0].left_ankle[7] - Eigen::Vector3d(0, 0.1, 0.08)).norm(), 1e-12);
 }
 
 // Metres in one of the file's lengths, where that is no unit; the nearest that is said wins, be it
@@ -220,10 +217,9 @@ TEST_F(LoadRecordingsTest, TwentyTwoJoints) {
   }
   motion.values.assign(20 * motion.skeleton.num_channels(), 0.0);
   WriteBvhFile("a.bvh", motion);
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_GT(loaded.value()[0].people[0].left_ankle[0].y(), 0.0);
-  EXPECT_LT(loaded.value()[0].people[0].right_ankle[0].y(), 0.0);
+  const auto loaded = Unwrapped(Load());
+  EXPECT_GT(loaded[0].people[0].left_ankle[0].y(), 0.0);
+  EXPECT_LT(loaded[0].people[0].right_ankle[0].y(), 0.0);
   motion.skeleton.joints[21].parent = 19;
   WriteBvhFile("a.bvh", motion);
   EXPECT_TRUE(Contains(Message(), "no joint could be recognised as left_ankle"));
@@ -245,9 +241,8 @@ TEST_F(LoadRecordingsTest, FrameTimes) {
 // 0.016667 s is 1/60 s, rounded.
 TEST_F(LoadRecordingsTest, TheFileSaysTheRateWhereTheManifestDoesNot) {
   entry().fps = 0.0;
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value()[0].fps, 60.0);
+  const auto loaded = Unwrapped(Load());
+  EXPECT_EQ(loaded[0].fps, 60.0);
   EXPECT_TRUE(warnings_.empty());
   EXPECT_FALSE(Contains(ReadText(Path("manifest.json")), "fps"));
 
@@ -291,11 +286,10 @@ TEST_F(LoadRecordingsTest, PushesAndTheMotion) {
   WritePush("a.csv", 5);
   WritePush("late.csv", 4);
   entry().pushes = {{0, "late.csv", 16}};
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  ASSERT_EQ(loaded.value()[0].pushes.size(), 2u);
-  EXPECT_EQ(loaded.value()[0].pushes[1].start_frame, 16);
-  EXPECT_EQ(loaded.value()[0].pushes[1].EndFrame(), 20);
+  const auto loaded = Unwrapped(Load());
+  ASSERT_EQ(loaded[0].pushes.size(), 2u);
+  EXPECT_EQ(loaded[0].pushes[1].start_frame, 16);
+  EXPECT_EQ(loaded[0].pushes[1].EndFrame(), 20);
   entry().pushes[0].start_frame = 17;
   EXPECT_TRUE(Contains(Message(), "longer than the motion: it has 4 rows from frame 17"));
   entry().pushes[0].start_frame = 19;

@@ -17,15 +17,10 @@ class MocapFolderTest : public TempDirTest {
       WriteText("train/sway/sway_" + std::to_string(i) + ".txt", SmallClip(120 + i, 0.3, i));
     }
   }
-  MocapFolder Read(const std::string& folder) {
-    Result<MocapFolder> read = ReadMocapFolder(folder);
-    EXPECT_TRUE(read.ok()) << (read.ok() ? "" : read.error().ToString());
-    return read.ok() ? read.value() : MocapFolder{};
-  }
+  MocapFolder Read(const std::string& folder) { return Unwrapped(ReadMocapFolder(folder)); }
   std::string Complaint(const std::string& clip) {
     WriteText("train/sway/sway_1.txt", clip);
-    const Result<MocapFolder> read = ReadMocapFolder(Path(""));
-    return read.ok() ? "no error" : read.error().ToString();
+    return ProblemOf(ReadMocapFolder(Path("")));
   }
 };
 
@@ -84,8 +79,7 @@ TEST_F(MocapFolderTest, SkeletonsThatDoNotHangTogetherAreRefused) {
   const auto complaint = [&](const std::string& from, const std::string& to) {
     std::string text = kSmallSkeleton;
     text.replace(text.find(from), from.size(), to);
-    const Result<MocapSkeleton> read = ReadMocapSkeleton(WriteText("skeleton.json", text));
-    return read.ok() ? "no error" : read.error().ToString();
+    return ProblemOf(ReadMocapSkeleton(WriteText("skeleton.json", text)));
   };
   EXPECT_TRUE(Contains(complaint("[-1, 0, 1", "[-1, 2, 1"), "an earlier joint"));
   EXPECT_TRUE(Contains(complaint("[1, 2, 3, 4]", "[1, 2, 3, 9]"), "holds '9'"));
@@ -97,13 +91,9 @@ TEST_F(MocapFolderTest, SkeletonsThatDoNotHangTogetherAreRefused) {
 }
 
 TEST_F(MocapFolderTest, NothingThereIsSaid) {
-  const Result<MocapFolder> none = ReadMocapFolder(Path("nowhere"));
-  ASSERT_FALSE(none.ok());
-  EXPECT_TRUE(Contains(none.error().ToString(), "skeleton.json"));
+  EXPECT_TRUE(Contains(ProblemOf(ReadMocapFolder(Path("nowhere"))), "skeleton.json"));
   WriteText("empty/skeleton.json", kSmallSkeleton);
-  const Result<MocapFolder> empty = ReadMocapFolder(Path("empty"));
-  ASSERT_FALSE(empty.ok());
-  EXPECT_TRUE(Contains(empty.error().ToString(), "no clips"));
+  EXPECT_TRUE(Contains(ProblemOf(ReadMocapFolder(Path("empty"))), "no clips"));
 }
 
 TEST(ForecastWindowsTest, TestWindowsStartWhereTheLiteratureDoes) {
@@ -164,9 +154,7 @@ TEST_F(MocapFolderTest, Human36mIsReadByItsSubjects) {
   }
   EXPECT_TRUE(PairedWindowStarts(200, 166).empty());
   WriteText("h36m/S5/walking_2.txt", "1,2,3\n");
-  const Result<MocapFolder> read = ReadMocapFolder(Path("h36m"));
-  ASSERT_FALSE(read.ok());
-  EXPECT_TRUE(Contains(read.error().ToString(), "a line has 99 numbers"));
+  EXPECT_TRUE(Contains(ProblemOf(ReadMocapFolder(Path("h36m"))), "a line has 99 numbers"));
 }
 
 // Written and read back: four actions, in which bones keep their length and a seed its figures.
@@ -194,12 +182,11 @@ TEST_F(MocapFolderTest, SyntheticClipsWalk) {
 
 TEST(RealMocapTest, TheValidationSplitHasTheWindowsOfTheProtocol) {
   if (MocapRoot().empty()) GTEST_SKIP() << kNoMocap;
-  const Result<MocapFolder> mocap = ReadMocapFolder(MocapRoot());
-  ASSERT_TRUE(mocap.ok()) << mocap.error().ToString();
-  EXPECT_EQ(mocap.value().skeleton.layout.num_particles(), 25);
+  const MocapFolder mocap = Unwrapped(ReadMocapFolder(MocapRoot()));
+  EXPECT_EQ(mocap.skeleton.layout.num_particles(), 25);
   std::map<std::string, int> windows;
   for (const ForecastWindow& window :
-       MakeForecastWindows(mocap.value(), ForecastProtocol::kValidation, 1)) {
+       MakeForecastWindows(mocap, ForecastProtocol::kValidation, 1)) {
     ++windows[window.action];
   }
   EXPECT_EQ(windows, (std::map<std::string, int>{{"basketball", 153},

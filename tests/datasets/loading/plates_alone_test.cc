@@ -56,15 +56,13 @@ class PlatesAlone : public TempDirTest {
     return LoadRecordings(Path("manifest.json"), options);
   }
   std::string Problem(const std::function<void(Json*)>& change, bool allowed = true) {
-    const auto loaded = Load(change, allowed);
-    return loaded.ok() ? "no error" : loaded.error().ToString();
+    return ProblemOf(Load(change, allowed));
   }
 };
 
 TEST_F(PlatesAlone, StandForAsLongAsTheyMeasuredAndHaveNoWeight) {
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const Recording& recording = loaded.value()[0];
+  const auto loaded = Unwrapped(Load());
+  const Recording& recording = loaded[0];
   EXPECT_DOUBLE_EQ(recording.fps, kRate);
   ASSERT_EQ(recording.num_frames(), kRows);
   const PendulumRecording seen = MakePendulumRecording(recording, SkeletonMapping::kExact);
@@ -118,13 +116,11 @@ TEST_F(PlatesAlone, AreRefusedWhereTheyAreNotUnderstood) {
 
 TEST_F(PlatesAlone, AreWrittenAgain) {
   ASSERT_TRUE(Load().ok());
-  const Result<Manifest> manifest = ReadManifest(Path("manifest.json"));
-  ASSERT_TRUE(manifest.ok());
-  ASSERT_FALSE(WriteManifest(Path("again.json"), manifest.value()));
-  const Result<Manifest> again = ReadManifest(Path("again.json"));
-  ASSERT_TRUE(again.ok()) << again.error().ToString();
-  EXPECT_TRUE(again.value().recordings[0].plates_alone);
-  EXPECT_DOUBLE_EQ(again.value().recordings[0].subjects[0].rod_m, 0.9);
+  const Manifest manifest = Unwrapped(ReadManifest(Path("manifest.json")));
+  ASSERT_FALSE(WriteManifest(Path("again.json"), manifest));
+  const Manifest again = Unwrapped(ReadManifest(Path("again.json")));
+  EXPECT_TRUE(again.recordings[0].plates_alone);
+  EXPECT_DOUBLE_EQ(again.recordings[0].subjects[0].rod_m, 0.9);
 }
 
 // Moments about a point below the surface, of the force on the person or on the platform.
@@ -149,9 +145,8 @@ TEST_P(Moments, GiveTheCentreOfPressure) {
       if (with_origin) (*entry)["force_plates"]["origin"] = {0.2, -0.1, -0.04};
     };
   };
-  const auto loaded = Load(named(true));
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const std::vector<PlateSample>& plates = loaded.value()[0].people[0].plates;
+  const auto loaded = Unwrapped(Load(named(true)));
+  const std::vector<PlateSample>& plates = loaded[0].people[0].plates;
   for (int t = 10; t + 10 < kRows; ++t) {
     EXPECT_LT((plates[t].force - At(t).force).norm(), 0.05) << t;
     EXPECT_LT((plates[t].centre.head<2>() - At(t).centre).norm(), 1e-4) << t;
@@ -195,10 +190,9 @@ class PlatesOfPeople : public TempDirTest {
 };
 
 TEST_F(PlatesOfPeople, GoToWhoStandsOnThem) {
-  const auto loaded = Load();
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const auto loaded = Unwrapped(Load());
   for (size_t n = 0; n < 2; ++n) {
-    const RecordedPerson& person = loaded.value()[0].people[n];
+    const RecordedPerson& person = loaded[0].people[n];
     ASSERT_FALSE(person.plates.empty());
     const PlateSample& truth = made_[0].recording.people[n].plates[0];
     EXPECT_LT((person.plates[0].centre - truth.centre).norm(), 1e-3);
@@ -238,19 +232,18 @@ TEST_F(PlatesOfPeople, OfSyntheticPeopleCarryTheirWeight) {
 
 TEST_F(PlatesOfPeople, AreInspected) {
   ASSERT_TRUE(Load().ok());
-  const Result<Inspection> found = Inspect(Path("manifest.json"));
-  ASSERT_TRUE(found.ok()) << found.error().ToString();
-  ASSERT_FALSE(found.value().grounds.empty());
-  EXPECT_EQ(found.value().grounds[0].kind, "displacement");
-  EXPECT_NEAR(found.value().grounds[0].rate_hz, 60.0, 1e-6);
-  EXPECT_NEAR(found.value().grounds[0].farthest_m, 0.03, 1e-6);
-  ASSERT_GE(found.value().plates.size(), 2u);
-  EXPECT_NEAR(found.value().plates[1].weight_ratio, 1.0, 5e-3);
-  EXPECT_EQ(found.value().plates[1].platforms, 1);
-  const std::string text = InspectionText(found.value());
+  const Inspection found = Unwrapped(Inspect(Path("manifest.json")));
+  ASSERT_FALSE(found.grounds.empty());
+  EXPECT_EQ(found.grounds[0].kind, "displacement");
+  EXPECT_NEAR(found.grounds[0].rate_hz, 60.0, 1e-6);
+  EXPECT_NEAR(found.grounds[0].farthest_m, 0.03, 1e-6);
+  ASSERT_GE(found.plates.size(), 2u);
+  EXPECT_NEAR(found.plates[1].weight_ratio, 1.0, 5e-3);
+  EXPECT_EQ(found.plates[1].platforms, 1);
+  const std::string text = InspectionText(found);
   EXPECT_TRUE(Contains(text, "displacement at 60 per second, up to 30 mm"));
   EXPECT_TRUE(Contains(text, "1 at 60 per second, measured: mean vertical force"));
-  const Json json = InspectionJson(found.value());
+  const Json json = InspectionJson(found);
   EXPECT_EQ(json["ground"][0]["kind"], "displacement");
   EXPECT_EQ(json["plates"][1]["use"], "measure");
 }

@@ -14,12 +14,11 @@ namespace {
 TEST(RealRecordings, AllOfThemLoad) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
   Warnings warnings;
-  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", {}, &warnings);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value().size(), 81u);
+  const auto loaded = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", {}, &warnings));
+  EXPECT_EQ(loaded.size(), 81u);
   EXPECT_TRUE(warnings.empty()) << warnings[0].text;
   int people = 0;
-  for (const Recording& recording : loaded.value()) {
+  for (const Recording& recording : loaded) {
     people += static_cast<int>(recording.people.size());
     EXPECT_EQ(recording.pushes.size(), 1u);
     for (const RecordedPerson& person : recording.people) {
@@ -39,12 +38,11 @@ TEST(RealRecordings, SettingSingle) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
   LoadOptions options;
   options.setting = "single";
-  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", options);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value().size(), 32u);
-  EXPECT_EQ(loaded.value()[0].id, "single_X05_00");
-  EXPECT_EQ(loaded.value()[0].num_frames(), 103);
-  EXPECT_EQ(loaded.value()[0].pushes[0].force[1][0], 13.962787);
+  const auto loaded = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", options));
+  EXPECT_EQ(loaded.size(), 32u);
+  EXPECT_EQ(loaded[0].id, "single_X05_00");
+  EXPECT_EQ(loaded[0].num_frames(), 103);
+  EXPECT_EQ(loaded[0].pushes[0].force[1][0], 13.962787);
 }
 
 // A body is those joints themselves, to the last bit, and nothing of it is filled.
@@ -54,10 +52,10 @@ TEST(RealRecordings, TheirJointsAreTheBodys) {
   options.keep_all_joints = true;
   options.setting = "single,row_1";
   Warnings warnings;
-  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", options, &warnings);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const auto loaded =
+      Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", options, &warnings));
   EXPECT_TRUE(warnings.empty()) << warnings[0].text;
-  for (const Recording& recording : loaded.value()) {
+  for (const Recording& recording : loaded) {
     for (const RecordedPerson& person : recording.people) {
       EXPECT_TRUE(UnfilledRoles(person.roles).empty() && FilledRoles(person.roles).empty());
       for (const std::vector<Eigen::Vector3d>& joints : person.joints) {
@@ -74,26 +72,21 @@ class RealRoundTrip : public TempDirTest {};
 
 TEST_F(RealRoundTrip, Bvh) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
-  const Result<Manifest> manifest = ReadManifest(RecordingsRoot() + "/manifest.json");
-  ASSERT_TRUE(manifest.ok()) << manifest.error().ToString();
-  const std::string path =
-      ResolvePath(manifest.value().path, manifest.value().recordings.back().motion.back());
-  const Result<BvhMotion> original = ReadBvh(path);
-  ASSERT_TRUE(original.ok()) << original.error().ToString();
-  ASSERT_FALSE(WriteBvh(Path("a.bvh"), original.value(), original.value().length_unit));
-  const Result<BvhMotion> copy = ReadBvh(Path("a.bvh"));
-  ASSERT_TRUE(copy.ok()) << copy.error().ToString();
-  EXPECT_EQ(copy.value().values, original.value().values);
-  EXPECT_EQ(copy.value().skeleton.joints.size(), 22u);
+  const Manifest manifest = Unwrapped(ReadManifest(RecordingsRoot() + "/manifest.json"));
+  const std::string path = ResolvePath(manifest.path, manifest.recordings.back().motion.back());
+  const BvhMotion original = Unwrapped(ReadBvh(path));
+  ASSERT_FALSE(WriteBvh(Path("a.bvh"), original, original.length_unit));
+  const BvhMotion copy = Unwrapped(ReadBvh(Path("a.bvh")));
+  EXPECT_EQ(copy.values, original.values);
+  EXPECT_EQ(copy.skeleton.joints.size(), 22u);
 }
 
 TEST_F(RealRoundTrip, Manifest) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
-  const Result<Manifest> manifest = ReadManifest(RecordingsRoot() + "/manifest.json");
-  ASSERT_TRUE(manifest.ok());
-  ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest.value()));
+  const Manifest manifest = Unwrapped(ReadManifest(RecordingsRoot() + "/manifest.json"));
+  ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest));
   EXPECT_EQ(nlohmann::json::parse(ReadText(Path("manifest.json"))),
-            nlohmann::json::parse(ReadText(manifest.value().path)));
+            nlohmann::json::parse(ReadText(manifest.path)));
 }
 
 }  // namespace

@@ -33,17 +33,16 @@ TEST(RecordingFromTracks, GapsAreFilledAndLongOnesDoNotCount) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (int t = 10; t < 13; ++t) tracks.people[0].hip[t].setConstant(kNaN);
   for (int t = 30; t < 50; ++t) tracks.people[0].left_ankle[t].setConstant(kNaN);
-  const Result<Recording> made = RecordingFromTracks(tracks);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  const RecordedPerson& person = made.value().people[0];
+  const Recording made = Unwrapped(RecordingFromTracks(tracks));
+  const RecordedPerson& person = made.people[0];
   EXPECT_NEAR(person.hip[11].x(), 0.011, 1e-12);
   ASSERT_EQ(person.weight.size(), 60u);
   EXPECT_EQ(person.weight[11], 1.0);
   EXPECT_EQ(person.weight[40], 0.0);
-  EXPECT_EQ(made.value().pushes[0].EndFrame(), 5);
+  EXPECT_EQ(made.pushes[0].EndFrame(), 5);
   // The same tracks have the same hash, others another.
-  EXPECT_EQ(RecordingFromTracks(tracks).value().content_hash, made.value().content_hash);
-  EXPECT_NE(RecordingFromTracks(Standing(60)).value().content_hash, made.value().content_hash);
+  EXPECT_EQ(RecordingFromTracks(tracks).value().content_hash, made.content_hash);
+  EXPECT_NE(RecordingFromTracks(Standing(60)).value().content_hash, made.content_hash);
 }
 
 TEST(RecordingFromTracks, GroundAndPlatformsShareItsFrames) {
@@ -58,15 +57,13 @@ TEST(RecordingFromTracks, GroundAndPlatformsShareItsFrames) {
     if (change) change(&tracks);
     return RecordingFromTracks(tracks);
   };
-  const Result<Recording> both = made(nullptr);
-  ASSERT_TRUE(both.ok()) << both.error().ToString();
-  EXPECT_EQ(both.value().ground[0], GroundPose(GroundPose::Zero()));
-  EXPECT_NEAR(both.value().ground[50][0], 0.025, 1e-12);
-  EXPECT_EQ(both.value().people[0].plates[7].centre.x(), 0.01);
-  EXPECT_NE(both.value().content_hash, RecordingFromTracks(Standing(60)).value().content_hash);
+  const Recording both = Unwrapped(made(nullptr));
+  EXPECT_EQ(both.ground[0], GroundPose(GroundPose::Zero()));
+  EXPECT_NEAR(both.ground[50][0], 0.025, 1e-12);
+  EXPECT_EQ(both.people[0].plates[7].centre.x(), 0.01);
+  EXPECT_NE(both.content_hash, RecordingFromTracks(Standing(60)).value().content_hash);
   const auto told = [&](const std::function<void(TrackedRecording*)>& change) {
-    const Result<Recording> one = made(change);
-    return one.ok() ? "no error" : one.error().ToString();
+    return ProblemOf(made(change));
   };
   EXPECT_TRUE(Contains(told([](auto* t) { t->ground.pop_back(); }), "59 rows, the motion 60"));
   EXPECT_TRUE(Contains(told([](auto* t) { t->people[0].plates.pop_back(); }), "59 rows"));
@@ -112,8 +109,7 @@ TEST(RecordingFromTracks, WhatIsWrongIsTold) {
   const auto problem = [](auto change) {
     TrackedRecording tracks = Standing(20);
     change(&tracks);
-    const Result<Recording> made = RecordingFromTracks(tracks);
-    return made.ok() ? std::string("no error") : made.error().ToString();
+    return ProblemOf(RecordingFromTracks(tracks));
   };
   using Tracks = TrackedRecording*;
   EXPECT_TRUE(Contains(problem([](Tracks t) { t->fps = 0.0; }), "recording 'trial': fps"));

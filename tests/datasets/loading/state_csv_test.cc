@@ -30,16 +30,14 @@ TEST_F(StateCsvTest, ASymbolHoldsUntilTheNext) {
                                                        "talk,3,anna,listen\ntalk,0,anna,speak\n\n"
                                                        "talk,0,ben, rest \ntalk,0,,turn\n"
                                                        "talk,1,group,pause\n");
-  const Result<StateTable> table = ReadStates(path);
-  ASSERT_TRUE(table.ok()) << table.error().ToString();
-  const auto states = StatesOf(table.value(), "talk", kTwo, 5);
-  ASSERT_TRUE(states.ok()) << states.error().ToString();
+  const StateTable table = Unwrapped(ReadStates(path));
+  const auto states = Unwrapped(StatesOf(table, "talk", kTwo, 5));
   using Names = std::vector<std::string>;
-  EXPECT_EQ(states.value().people[0], (Names{"speak", "speak", "speak", "listen", "listen"}));
-  EXPECT_EQ(states.value().people[1], Names(5, "rest"));
-  EXPECT_EQ(states.value().group, (Names{"turn", "pause", "pause", "pause", "pause"}));
-  EXPECT_TRUE(StatesOf(table.value(), "other", kTwo, 5).value().people.empty());
-  ASSERT_FALSE(WriteStates(Path("again.csv"), {states.value()}));
+  EXPECT_EQ(states.people[0], (Names{"speak", "speak", "speak", "listen", "listen"}));
+  EXPECT_EQ(states.people[1], Names(5, "rest"));
+  EXPECT_EQ(states.group, (Names{"turn", "pause", "pause", "pause", "pause"}));
+  EXPECT_TRUE(StatesOf(table, "other", kTwo, 5).value().people.empty());
+  ASSERT_FALSE(WriteStates(Path("again.csv"), {states}));
   EXPECT_EQ(ReadText(Path("again.csv")), std::string(kHead) +
                                              "talk,0,anna,speak\ntalk,3,anna,listen\n"
                                              "talk,0,ben,rest\ntalk,0,group,turn\n"

@@ -107,11 +107,10 @@ TEST(StepLabels, FoundAsLabelled) {
   for (const Label& label : ReadLabels()) labels[label.recording][label.person].push_back(label);
   LoadOptions options;
   for (const auto& [id, people] : labels) options.ids.push_back(id);
-  const auto recordings = LoadRecordings(RecordingsRoot() + "/manifest.json", options);
-  ASSERT_TRUE(recordings.ok()) << recordings.error().ToString();
-  ASSERT_EQ(recordings.value().size(), 20u);
+  const auto recordings = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", options));
+  ASSERT_EQ(recordings.size(), 20u);
   Agreement first, last, first_ankles, last_ankles;
-  for (const Recording& recording : recordings.value()) {
+  for (const Recording& recording : recordings) {
     const auto& people = labels[recording.id];
     ASSERT_EQ(people.size(), recording.people.size()) << recording.id << ": label everybody";
     for (const auto& [person, steps] : people) {
@@ -138,10 +137,9 @@ TEST(StepLabels, FoundAsLabelled) {
 // Who steps, by steps and by the plain rule that an ankle goes 5 cm from its first place.
 TEST(StepLabels, WhoSteps) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
-  const auto recordings = LoadRecordings(RecordingsRoot() + "/manifest.json", {});
-  ASSERT_TRUE(recordings.ok()) << recordings.error().ToString();
+  const auto recordings = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", {}));
   int people = 0, step = 0, differ = 0;
-  for (const Recording& recording : recordings.value()) {
+  for (const Recording& recording : recordings) {
     for (const RecordedPerson& person : recording.people) {
       double farthest = 0.0;
       for (const auto* ankle : {&person.left_ankle, &person.right_ankle}) {

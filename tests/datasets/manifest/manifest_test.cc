@@ -57,9 +57,8 @@ TEST_F(ManifestTest, StatedErrors) {
   json["stated_errors"] = {{"mass", 0.01}, {"push_zero_N", 0.5}};
   json["recordings"][0]["stated_errors"] = {{"mass", 0.02}};
   const auto read = [&] { return ReadManifest(WriteText("stated.json", json.dump(1))); };
-  const Result<Manifest> manifest = read();
-  ASSERT_TRUE(manifest.ok()) << manifest.error().ToString();
-  const StatedErrors& own = manifest.value().recordings[0].stated_errors;
+  const Manifest manifest = Unwrapped(read());
+  const StatedErrors& own = manifest.recordings[0].stated_errors;
   EXPECT_EQ(own.mass, 0.02);
   EXPECT_EQ(own.push_zero_N, 0.5);
   EXPECT_EQ(own.push_scale, StatedErrors().push_scale);
@@ -74,11 +73,10 @@ TEST_F(ManifestTest, StatedErrors) {
 }
 
 TEST_F(ManifestTest, ReadsEverything) {
-  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGoodManifest));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().length_unit, LengthUnit::kCentimetre);
-  ASSERT_EQ(read.value().recordings.size(), 2u);
-  const ManifestRecording& a = read.value().recordings[0];
+  const Manifest read = Unwrapped(ReadManifest(WriteText("manifest.json", kGoodManifest)));
+  EXPECT_EQ(read.length_unit, LengthUnit::kCentimetre);
+  ASSERT_EQ(read.recordings.size(), 2u);
+  const ManifestRecording& a = read.recordings[0];
   EXPECT_EQ(a.id, "a");
   EXPECT_EQ(a.labels.setting(), "single");
   EXPECT_EQ(a.fps, 60.0);
@@ -94,7 +92,7 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_FALSE(a.length_unit || a.frames || a.joints.hip);
   EXPECT_EQ(a.line, 5);
 
-  const ManifestRecording& b = read.value().recordings[1];
+  const ManifestRecording& b = read.recordings[1];
   EXPECT_EQ(b.line, 17);
   EXPECT_EQ(b.pushed_person, 1);
   EXPECT_EQ(b.push_csv, "");
@@ -121,9 +119,8 @@ TEST_F(ManifestTest, ReadsEverything) {
 }
 
 TEST_F(ManifestTest, RewritingLosesNothing) {
-  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGoodManifest));
-  ASSERT_TRUE(read.ok());
-  ASSERT_FALSE(WriteManifest(Path("again.json"), read.value()));
+  const Manifest read = Unwrapped(ReadManifest(WriteText("manifest.json", kGoodManifest)));
+  ASSERT_FALSE(WriteManifest(Path("again.json"), read));
   auto expected = nlohmann::json::parse(kGoodManifest);
   expected["recordings"][1]["push_kind"] = "external";  // said, not left to the default
   // But for the old name of a key.
@@ -133,9 +130,7 @@ TEST_F(ManifestTest, RewritingLosesNothing) {
 }
 
 TEST_F(ManifestTest, ChangesAreWritten) {
-  Result<Manifest> read = ReadManifest(WriteText("manifest.json", kGoodManifest));
-  ASSERT_TRUE(read.ok());
-  Manifest& manifest = read.value();
+  Manifest manifest = Unwrapped(ReadManifest(WriteText("manifest.json", kGoodManifest)));
   manifest.length_unit = LengthUnit::kMillimetre;
   manifest.recordings[0].push_csv = "";
   manifest.recordings[0].initial_velocity = InitialVelocity::kEstimated;
@@ -156,18 +151,17 @@ TEST_F(ManifestTest, ChangesAreWritten) {
   EXPECT_EQ(json["recordings"][1]["pushes"][0]["sensor"], "F1");
   EXPECT_EQ(json["recordings"][1]["condition"], "p");
   EXPECT_FALSE(json["recordings"][1].contains("condition_code"));
-  const Result<Manifest> again = ReadManifest(Path("manifest.json"));
-  ASSERT_TRUE(again.ok()) << again.error().ToString();
-  EXPECT_EQ(again.value().recordings[0].initial_velocity, InitialVelocity::kEstimated);
-  EXPECT_EQ(again.value().recordings[0].joints.hip->name, "Root");
+  const Manifest again = Unwrapped(ReadManifest(Path("manifest.json")));
+  EXPECT_EQ(again.recordings[0].initial_velocity, InitialVelocity::kEstimated);
+  EXPECT_EQ(again.recordings[0].joints.hip->name, "Root");
   EXPECT_EQ(json["recordings"][0]["joints"]["left_knee"], "LKneeJC");
-  EXPECT_EQ(again.value().recordings[0].joints.Of(kLeftKnee)->name, "LKneeJC");
-  EXPECT_FALSE(again.value().recordings[0].joints.Of(kRightKnee));
-  EXPECT_EQ(again.value().recordings[0].length_scale, 0.0564);
-  EXPECT_FALSE(again.value().recordings[1].joints.hip);
-  EXPECT_EQ(again.value().recordings[1].up, "z");
-  EXPECT_EQ(again.value().recordings[1].pushes[0].start_frame, 13);
-  EXPECT_FALSE(again.value().recordings[1].frames);
+  EXPECT_EQ(again.recordings[0].joints.Of(kLeftKnee)->name, "LKneeJC");
+  EXPECT_FALSE(again.recordings[0].joints.Of(kRightKnee));
+  EXPECT_EQ(again.recordings[0].length_scale, 0.0564);
+  EXPECT_FALSE(again.recordings[1].joints.hip);
+  EXPECT_EQ(again.recordings[1].up, "z");
+  EXPECT_EQ(again.recordings[1].pushes[0].start_frame, 13);
+  EXPECT_FALSE(again.recordings[1].frames);
 }
 
 TEST_F(ManifestTest, WrittenFromScratch) {
@@ -183,11 +177,10 @@ TEST_F(ManifestTest, WrittenFromScratch) {
   recording.pushes = {{0, "x.csv", 4}};
   manifest.recordings.push_back(recording);
   ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest));
-  const Result<Manifest> read = ReadManifest(Path("manifest.json"));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().length_unit, LengthUnit::kMetre);
-  EXPECT_EQ(read.value().recordings[0].fps, 120.5);
-  EXPECT_EQ(read.value().recordings[0].pushes[0].csv, "x.csv");
+  const Manifest read = Unwrapped(ReadManifest(Path("manifest.json")));
+  EXPECT_EQ(read.length_unit, LengthUnit::kMetre);
+  EXPECT_EQ(read.recordings[0].fps, 120.5);
+  EXPECT_EQ(read.recordings[0].pushes[0].csv, "x.csv");
 }
 
 TEST_F(ManifestTest, EveryDamageIsNamedWithItsLine) {
@@ -269,17 +262,15 @@ TEST_F(ManifestTest, EveryDamageIsNamedWithItsLine) {
     ASSERT_NE(at, std::string::npos);
     text.replace(at, std::string(damage.from).size(), damage.to);
     const std::string path = WriteText("manifest.json", text);
-    const Result<Manifest> read = ReadManifest(path);
-    ASSERT_FALSE(read.ok());
-    EXPECT_TRUE(Contains(read.error().ToString(), path + damage.place));
-    EXPECT_TRUE(Contains(read.error().ToString(), damage.says));
+    const std::string read = ProblemOf(ReadManifest(path));
+    EXPECT_TRUE(Contains(read, path + damage.place));
+    EXPECT_TRUE(Contains(read, damage.says));
   }
 }
 
 TEST_F(ManifestTest, NothingInIt) {
   const auto message = [&](const char* text) {
-    const Result<Manifest> read = ReadManifest(WriteText("manifest.json", text));
-    return read.ok() ? std::string("no error") : read.error().ToString();
+    return ProblemOf(ReadManifest(WriteText("manifest.json", text)));
   };
   EXPECT_TRUE(Contains(message(""), "manifest.json: the file is empty"));
   EXPECT_TRUE(Contains(message("{}"), "recordings is missing"));
@@ -298,9 +289,8 @@ TEST_F(ManifestTest, NothingInIt) {
 // A manifest written from memory: everything that is missing is told of at once.
 TEST_F(ManifestTest, AllMissingKeysInOneError) {
   const auto message = [&](const std::string& recordings) {
-    const Result<Manifest> read =
-        ReadManifest(WriteText("manifest.json", "{\"recordings\": [" + recordings + "]}"));
-    return read.ok() ? std::string("no error") : read.error().ToString();
+    return ProblemOf(
+        ReadManifest(WriteText("manifest.json", "{\"recordings\": [" + recordings + "]}")));
   };
   EXPECT_EQ(message("{\"id\": \"a\", \"setting\": \"single\", \"pushed_person\": 0,\n"
                     "\"subjects\": [{\"id\": \"s\"}], \"bvh\": [\"a.bvh\"]},\n"
@@ -325,10 +315,9 @@ TEST_F(ManifestTest, AllMissingKeysInOneError) {
 TEST_F(ManifestTest, TheRateMayBeLeftOut) {
   std::string text = kGoodManifest;
   text.replace(text.find("\"fps\": 60,"), 10, "");
-  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", text));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().recordings[0].fps, 0.0);
-  ASSERT_FALSE(WriteManifest(Path("again.json"), read.value()));
+  const Manifest read = Unwrapped(ReadManifest(WriteText("manifest.json", text)));
+  EXPECT_EQ(read.recordings[0].fps, 0.0);
+  ASSERT_FALSE(WriteManifest(Path("again.json"), read));
   EXPECT_FALSE(
       nlohmann::json::parse(ReadText(Path("again.json")))["recordings"][0].contains("fps"));
 }
@@ -341,10 +330,9 @@ TEST_F(ManifestTest, ManyRecordings) {
     recording["id"] = std::to_string(i);
     manifest["recordings"].push_back(recording);
   }
-  const Result<Manifest> read = ReadManifest(WriteText("manifest.json", manifest.dump(1)));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().recordings.size(), 5000u);
-  EXPECT_GT(read.value().recordings[4999].line, read.value().recordings[4998].line);
+  const Manifest read = Unwrapped(ReadManifest(WriteText("manifest.json", manifest.dump(1))));
+  EXPECT_EQ(read.recordings.size(), 5000u);
+  EXPECT_GT(read.recordings[4999].line, read.recordings[4998].line);
 }
 
 }  // namespace

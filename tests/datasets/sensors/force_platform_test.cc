@@ -44,19 +44,16 @@ C3dFile WithChannels(const C3dPlatform& platform, const std::vector<double>& val
 // The sample's platform lies at x 0 to 0.6, y -0.2 to 0.2 with its +x along the world's and its +y
 // against it: centre (0.3, 0, 0). The force on the person is the reaction.
 void ExpectLoad(const C3dFile& file, const Load& load) {
-  const Result<PlatformRecord> record = EvaluatePlatform(file, 0, LengthUnit::kMillimetre);
-  ASSERT_TRUE(record.ok()) << record.error().ToString();
-  ASSERT_EQ(record.value().force.size(), 100u);
+  const PlatformRecord record = Unwrapped(EvaluatePlatform(file, 0, LengthUnit::kMillimetre));
+  ASSERT_EQ(record.force.size(), 100u);
   const Vector3d reaction(-load.force.x(), load.force.y(), load.force.z());
-  EXPECT_LT((record.value().force[7] - reaction).norm(), 1e-9)
-      << record.value().force[7].transpose();
+  EXPECT_LT((record.force[7] - reaction).norm(), 1e-9) << record.force[7].transpose();
   const Vector3d centre(0.3 + load.x, -load.y, 0.0);
-  EXPECT_LT((record.value().centre[7] - centre).norm(), 1e-9)
-      << record.value().centre[7].transpose();
+  EXPECT_LT((record.centre[7] - centre).norm(), 1e-9) << record.centre[7].transpose();
   // On the platform +2 N m about z, which points down: on the person the opposite about down, that
   // is the same about up.
-  EXPECT_NEAR(record.value().free_moment[7], load.free_moment, 1e-9);
-  EXPECT_LT((record.value().normal - Vector3d::UnitZ()).norm(), 1e-12);
+  EXPECT_NEAR(record.free_moment[7], load.free_moment, 1e-9);
+  EXPECT_LT((record.normal - Vector3d::UnitZ()).norm(), 1e-12);
 }
 
 TEST(ForcePlatformTest, Type1) {
@@ -143,11 +140,10 @@ TEST(ForcePlatformTest, OnAWall) {
   wall.corners << 0.0, 0.0, 0.0, 0.0,  // in the plane x = 0
       200.0, -200.0, -200.0, 200.0,    // +x of the platform is the world's y
       1300.0, 1300.0, 700.0, 700.0;    // +y of it is the world's z: its z is the world's x
-  const Result<PlatformRecord> record = EvaluatePlatform(file, 0, LengthUnit::kMillimetre);
-  ASSERT_TRUE(record.ok());
-  EXPECT_LT((record.value().normal + Vector3d::UnitX()).norm(), 1e-12);
-  EXPECT_LT((record.value().force[0] - Vector3d(-700.0, 20.0, -10.0)).norm(), 1e-9)
-      << record.value().force[0].transpose();
+  const PlatformRecord record = Unwrapped(EvaluatePlatform(file, 0, LengthUnit::kMillimetre));
+  EXPECT_LT((record.normal + Vector3d::UnitX()).norm(), 1e-12);
+  EXPECT_LT((record.force[0] - Vector3d(-700.0, 20.0, -10.0)).norm(), 1e-9)
+      << record.force[0].transpose();
 }
 
 TEST(ForcePlatformTest, Errors) {

@@ -29,21 +29,17 @@ class SensorChoiceTest : public TempDirTest {
     choice.column = column;
     return choice;
   }
-  std::string Message(const SensorChoice& choice) {
-    const Result<SensorRecord> record = ReadSensor(choice);
-    return record.ok() ? "no error" : record.error().ToString();
-  }
+  std::string Message(const SensorChoice& choice) { return ProblemOf(ReadSensor(choice)); }
 };
 
 TEST_F(SensorChoiceTest, AnalogChannel) {
   SensorChoice choice = Choice("a.c3d", "rod");
   choice.gain = -2.0;
-  const Result<SensorRecord> record = ReadSensor(choice);
-  ASSERT_TRUE(record.ok()) << record.error().ToString();
-  EXPECT_FALSE(record.value().is_vector);
-  EXPECT_EQ(record.value().num_samples(), 100);
-  EXPECT_NEAR(record.value().time_s[10], 0.01, 1e-12);
-  EXPECT_NEAR(record.value().force[10].x(), -2.0 * 40.0 * std::sin(0.5), 1e-4);
+  const SensorRecord record = Unwrapped(ReadSensor(choice));
+  EXPECT_FALSE(record.is_vector);
+  EXPECT_EQ(record.num_samples(), 100);
+  EXPECT_NEAR(record.time_s[10], 0.01, 1e-12);
+  EXPECT_NEAR(record.force[10].x(), -2.0 * 40.0 * std::sin(0.5), 1e-4);
   EXPECT_TRUE(
       Contains(Message(Choice("a.c3d", "Rod")), "there is no analog channel 'Rod'; it has Fx1"));
   EXPECT_TRUE(Contains(Message(Choice("a.c3d", "")), "by --sensor_column"));
@@ -53,12 +49,11 @@ TEST_F(SensorChoiceTest, AnalogChannel) {
 
 TEST_F(SensorChoiceTest, Platform) {
   SensorChoice choice = Choice("a.c3d", "platform:1");
-  const Result<SensorRecord> record = ReadSensor(choice);
-  ASSERT_TRUE(record.ok()) << record.error().ToString();
-  EXPECT_TRUE(record.value().is_vector);
-  EXPECT_NEAR(record.value().force[0].z(), 700.0, 1e-3);
-  ASSERT_TRUE(record.value().height_m);
-  EXPECT_NEAR(*record.value().height_m, 0.0, 1e-6);  // it lies on the floor
+  const SensorRecord record = Unwrapped(ReadSensor(choice));
+  EXPECT_TRUE(record.is_vector);
+  EXPECT_NEAR(record.force[0].z(), 700.0, 1e-3);
+  ASSERT_TRUE(record.height_m);
+  EXPECT_NEAR(*record.height_m, 0.0, 1e-6);  // it lies on the floor
   // In a file whose y is up, the same numbers point elsewhere.
   choice.up = "y";
   choice.forward = "z";
@@ -69,17 +64,15 @@ TEST_F(SensorChoiceTest, Platform) {
 }
 
 TEST_F(SensorChoiceTest, ColumnsOfTables) {
-  const Result<SensorRecord> vectors = ReadSensor(Choice("a.mot", "ground_force_v"));
-  ASSERT_TRUE(vectors.ok()) << vectors.error().ToString();
-  EXPECT_TRUE(vectors.value().is_vector);
-  EXPECT_EQ(vectors.value().force[1], Eigen::Vector3d(4, 5, 6));
+  const SensorRecord vectors = Unwrapped(ReadSensor(Choice("a.mot", "ground_force_v")));
+  EXPECT_TRUE(vectors.is_vector);
+  EXPECT_EQ(vectors.force[1], Eigen::Vector3d(4, 5, 6));
   EXPECT_TRUE(Contains(Message(Choice("a.mot", "load")), "a.mot:8: load is missing"));
   EXPECT_TRUE(Contains(Message(Choice("a.mot", "")), "--sensor_column"));
   EXPECT_TRUE(Contains(Message(Choice("a.mot", "")), "it has time, ground_force_vx"));
   EXPECT_TRUE(Contains(Message(Choice("a.mot", "lode")), "there is no column 'lode'; it has time"));
-  const Result<SensorRecord> csv = ReadSensor(Choice("a.csv", "force"));
-  ASSERT_TRUE(csv.ok());
-  EXPECT_EQ(csv.value().force[1].x(), 5.0);
+  const SensorRecord csv = Unwrapped(ReadSensor(Choice("a.csv", "force")));
+  EXPECT_EQ(csv.force[1].x(), 5.0);
   EXPECT_EQ(ReadSensor(Choice("a.csv", "")).value().force[1].x(), 5.0);
   // 30 N at rest come off after the gain; of a vector nothing can.
   SensorChoice resting = Choice("a.csv", "");
@@ -117,20 +110,19 @@ TEST_F(SensorChoiceTest, FilledFromTheMotion) {
 }
 
 TEST_F(SensorChoiceTest, Lists) {
-  const Result<std::vector<SensorChoice>> list = ReadSensorList(WriteText(
+  const std::vector<SensorChoice> list = Unwrapped(ReadSensorList(WriteText(
       "s.json",
       "[{\"file\": \"a.csv\", \"height\": 0.8, \"start\": -0.5},\n"
       " {\"file\": \"/b.c3d\", \"column\": \"rod\", \"gain\": -2, \"direction\": [0, 1, 0], "
-      "\"height_m\": 1.1, \"idle_force\": 3, \"up\": \"y\", \"forward\": \"z\"}]"));
-  ASSERT_TRUE(list.ok()) << list.error().ToString();
-  ASSERT_EQ(list.value().size(), 2u);
-  EXPECT_EQ(list.value()[0].file, Path("a.csv"));
-  EXPECT_EQ(list.value()[0].height_fraction, 0.8);
-  EXPECT_EQ(list.value()[0].start_s, -0.5);
-  EXPECT_EQ(list.value()[1].file, "/b.c3d");
-  EXPECT_EQ(list.value()[1].direction, Eigen::Vector3d::UnitY());
-  EXPECT_EQ(list.value()[1].height_m, 1.1);
-  EXPECT_EQ(list.value()[1].idle_force, 3.0);
+      "\"height_m\": 1.1, \"idle_force\": 3, \"up\": \"y\", \"forward\": \"z\"}]")));
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0].file, Path("a.csv"));
+  EXPECT_EQ(list[0].height_fraction, 0.8);
+  EXPECT_EQ(list[0].start_s, -0.5);
+  EXPECT_EQ(list[1].file, "/b.c3d");
+  EXPECT_EQ(list[1].direction, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(list[1].height_m, 1.1);
+  EXPECT_EQ(list[1].idle_force, 3.0);
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"{}", "a list of sensors is expected"},
       {"[]", "a list of sensors is expected"},
@@ -143,9 +135,7 @@ TEST_F(SensorChoiceTest, Lists) {
       {"[{\"file\": \"a\", \"idle_force\": -1}]", "at least 0 N"},
   };
   for (const auto& [text, says] : bad) {
-    const auto read = ReadSensorList(WriteText("s.json", text));
-    ASSERT_FALSE(read.ok()) << text;
-    EXPECT_TRUE(Contains(read.error().ToString(), says));
+    EXPECT_TRUE(Contains(ProblemOf(ReadSensorList(WriteText("s.json", text))), says));
   }
 }
 

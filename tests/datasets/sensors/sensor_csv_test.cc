@@ -8,26 +8,23 @@ namespace {
 class SensorCsv : public TempDirTest {
  protected:
   std::string Problem(const std::string& text) {
-    const Result<SensorRecord> record = ReadSensorCsv(WriteText("sensor.csv", text));
-    return record.ok() ? "no error" : record.error().ToString();
+    return ProblemOf(ReadSensorCsv(WriteText("sensor.csv", text)));
   }
 };
 
 TEST_F(SensorCsv, ReadsForcesAlongAnAxis) {
-  const auto record =
-      ReadSensorCsv(WriteText("s.csv", "time,force\r\n-0.01,0\r\n0,1.5e2\r\n\r\n0.01,-2\r\n"));
-  ASSERT_TRUE(record.ok()) << record.error().ToString();
-  EXPECT_FALSE(record.value().is_vector);
-  EXPECT_EQ(record.value().time_s, (std::vector<double>{-0.01, 0.0, 0.01}));
-  EXPECT_EQ(record.value().force[1], Eigen::Vector3d(150.0, 0.0, 0.0));
+  const auto record = Unwrapped(
+      ReadSensorCsv(WriteText("s.csv", "time,force\r\n-0.01,0\r\n0,1.5e2\r\n\r\n0.01,-2\r\n")));
+  EXPECT_FALSE(record.is_vector);
+  EXPECT_EQ(record.time_s, (std::vector<double>{-0.01, 0.0, 0.01}));
+  EXPECT_EQ(record.force[1], Eigen::Vector3d(150.0, 0.0, 0.0));
 }
 
 TEST_F(SensorCsv, ReadsVectors) {
-  const auto record =
-      ReadSensorCsv(WriteText("s.csv", "time, fx, fy, fz\n0,1,2,3\n0.01,4,5,6\n0.02,7,8,9"));
-  ASSERT_TRUE(record.ok()) << record.error().ToString();
-  EXPECT_TRUE(record.value().is_vector);
-  EXPECT_EQ(record.value().force[2], Eigen::Vector3d(7.0, 8.0, 9.0));
+  const auto record = Unwrapped(
+      ReadSensorCsv(WriteText("s.csv", "time, fx, fy, fz\n0,1,2,3\n0.01,4,5,6\n0.02,7,8,9")));
+  EXPECT_TRUE(record.is_vector);
+  EXPECT_EQ(record.force[2], Eigen::Vector3d(7.0, 8.0, 9.0));
 }
 
 TEST_F(SensorCsv, ErrorsNameFileAndLine) {

@@ -27,10 +27,7 @@ LaboratoryPush APush(const LaboratoryPerson& person, double speed) {
 
 LaboratoryTrial Trial(double speed, double sway = 0.0, int substeps = 2) {
   const LaboratoryPerson person = APerson();
-  Result<LaboratoryTrial> trial =
-      SimulateLaboratoryTrial(person, APush(person, speed), 3.0, sway, 1, substeps);
-  EXPECT_TRUE(trial.ok()) << trial.error().ToString();
-  return trial.ok() ? trial.value() : LaboratoryTrial();
+  return Unwrapped(SimulateLaboratoryTrial(person, APush(person, speed), 3.0, sway, 1, substeps));
 }
 
 // Of legs and trunk, by Winter's table, m; foot: of the middle of the ankles.
@@ -101,12 +98,11 @@ TEST_F(LaboratoryFiles, AreReadWithoutAWarningAndSayWhatHappened) {
   options.people = 1;
   ASSERT_FALSE(WriteLaboratoryStudy(folder_.string(), options));
   Warnings warnings;
-  const auto loaded = LoadRecordings(Path("manifest.json"), {}, &warnings);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const auto loaded = Unwrapped(LoadRecordings(Path("manifest.json"), {}, &warnings));
   for (const Warning& warning : warnings) ADD_FAILURE() << warning.text;
-  ASSERT_EQ(loaded.value().size(), static_cast<size_t>(options.standing + options.stepping));
+  ASSERT_EQ(loaded.size(), static_cast<size_t>(options.standing + options.stepping));
   const LaboratoryPerson person = APerson();
-  for (const Recording& r : loaded.value()) {
+  for (const Recording& r : loaded) {
     const RecordedPerson& p = r.people[0];
     EXPECT_NEAR((p.hip[0] - 0.5 * (p.left_ankle[0] + p.right_ankle[0])).norm(), person.RodLength(),
                 0.005);

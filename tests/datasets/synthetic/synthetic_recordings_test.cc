@@ -19,20 +19,16 @@ namespace fs = std::filesystem;
 class SyntheticRecordings : public TempDirTest {
  protected:
   std::vector<SyntheticRecording> Make(const SyntheticOptions& options) {
-    Result<std::vector<SyntheticRecording>> made = MakeSyntheticRecordings(options);
-    EXPECT_TRUE(made.ok()) << made.error().ToString();
-    return made.ok() ? made.value() : std::vector<SyntheticRecording>();
+    return Unwrapped(MakeSyntheticRecordings(options));
   }
 
   std::vector<Recording> WriteAndLoad(const SyntheticOptions& options,
                                       const std::vector<SyntheticRecording>& made) {
-    const MaybeError failed = WriteSyntheticRecordings(folder_.string(), options, made);
-    EXPECT_FALSE(failed) << failed->ToString();
+    EXPECT_EQ(ProblemOf(WriteSyntheticRecordings(folder_.string(), options, made)), "no error");
     Warnings warnings;
-    Result<std::vector<Recording>> loaded = LoadRecordings(Path("manifest.json"), {}, &warnings);
-    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
+    std::vector<Recording> loaded = Unwrapped(LoadRecordings(Path("manifest.json"), {}, &warnings));
     for (const Warning& warning : warnings) ADD_FAILURE() << warning.text;
-    return loaded.ok() ? loaded.value() : std::vector<Recording>();
+    return loaded;
   }
 
   // Every file's name and contents.
@@ -253,30 +249,29 @@ TEST_F(SyntheticRecordings, UnsoundOptionsAndFallsAreErrors) {
   };
   SyntheticOptions options;
   options.min_mass_kg = NAN;
-  EXPECT_NE(message(options).find("mass_kg"), std::string::npos);
+  EXPECT_TRUE(Contains(message(options), "mass_kg"));
   options = {};
   options.frames = 2;
-  EXPECT_NE(message(options).find("frames"), std::string::npos);
+  EXPECT_TRUE(Contains(message(options), "frames"));
   options = {};
   options.push_start_frame = 89;
-  EXPECT_NE(message(options).find("push_start_frame"), std::string::npos);
+  EXPECT_TRUE(Contains(message(options), "push_start_frame"));
   options = {};
   options.strengths = {{"a/b", 1.0}};
-  EXPECT_NE(message(options).find("a/b"), std::string::npos);
+  EXPECT_TRUE(Contains(message(options), "a/b"));
   options = {};
   options.push_kind = PushKind::kExternal;
   options.min_push_s = options.max_push_s = 0.8;
   options.strengths = {{"hurricane", 90.0}};
   const std::string fall = message(options);
-  EXPECT_NE(fall.find("S01_00_hurricane"), std::string::npos) << fall;
-  EXPECT_NE(fall.find("theta"), std::string::npos) << fall;
+  EXPECT_TRUE(Contains(fall, "S01_00_hurricane"));
+  EXPECT_TRUE(Contains(fall, "theta"));
 }
 
 TEST_F(SyntheticRecordings, UnwritableFolderIsAnError) {
   WriteText("file", "x");
-  const MaybeError failed = WriteSyntheticRecordings(Path("file"), {}, Make({}));
-  ASSERT_TRUE(failed);
-  EXPECT_NE(failed->ToString().find(folder_.string()), std::string::npos);
+  EXPECT_TRUE(
+      Contains(ProblemOf(WriteSyntheticRecordings(Path("file"), {}, Make({}))), folder_.string()));
 }
 
 }  // namespace

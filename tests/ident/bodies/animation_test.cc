@@ -37,10 +37,10 @@ Animation AnimatedPair() {
 
 TEST(AnimationTest, ThePageStandsAloneAndItsDataParse) {
   const std::string html = AnimationHtml({AnimatedPair()});
-  EXPECT_EQ(html.find("http"), std::string::npos);
+  EXPECT_FALSE(Contains(html, "http"));
   const size_t begin = html.find("const all=") + 10, end = html.find(";\nlet data=");
   ASSERT_NE(end, std::string::npos);
-  EXPECT_EQ(html.substr(begin, end - begin).find("</"), std::string::npos);
+  EXPECT_FALSE(Contains(html.substr(begin, end - begin), "</"));
   const auto data = nlohmann::json::parse(html.substr(begin, end - begin))[0];
   EXPECT_EQ(data["frames"], 5);
   EXPECT_EQ(data["people"][0]["recorded"], true);
@@ -125,8 +125,8 @@ TEST(AnimationTest, ALongRowHasAColourForEverybody) {
 
 TEST(AnimationTest, NothingRecordedNothingCalledSo) {
   const Animation animation = Moving({0, 1});
-  EXPECT_EQ(PoseStrip(animation, 2).ToString().find("recorded"), std::string::npos);
-  EXPECT_EQ(AnimationHtml({animation}).find("> recorded<"), std::string::npos);
+  EXPECT_FALSE(Contains(PoseStrip(animation, 2).ToString(), "recorded"));
+  EXPECT_FALSE(Contains(AnimationHtml({animation}), "> recorded<"));
   EXPECT_TRUE(Contains(AnimationHtml({AnimatedPair()}), "> recorded<"));
 }
 

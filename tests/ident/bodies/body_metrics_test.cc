@@ -6,6 +6,7 @@
 
 #include "ident/bodies/body_evaluation.h"
 #include "tests/models/body_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -122,8 +123,8 @@ TEST(BodyMetricsTest, ErrorsAtFixedTimes) {
   EXPECT_NEAR(summary.at[0].mean.pose, 0.01, 1e-12);
   EXPECT_EQ(summary.at[1].recordings, 0);
   const std::string text = TimedErrorsText({{"generator", summary}});
-  EXPECT_NE(text.find("0.060"), std::string::npos) << text;
-  EXPECT_NE(text.find("none"), std::string::npos) << text;
+  EXPECT_TRUE(Contains(text, "0.060"));
+  EXPECT_TRUE(Contains(text, "none"));
 }
 
 TEST(BodyMetricsTest, BothMeansAndTheirErrors) {
@@ -203,10 +204,10 @@ TEST(BodyReportTest, GroupsHaveMetricsOfTheirOwn) {
   // Of 22 words of 19 steps, 45 steps of one person and all 209 of the other rest, and count half.
   EXPECT_NEAR(recorded["ndms"].get<double>(), 1.0 - 0.5 * 254.0 / 418.0, 1e-9);
   EXPECT_EQ(json["baselines"]["static"]["group_metrics"]["missed_movers"], 1);
-  EXPECT_NE(BodyText(evaluation).find("pushed named"), std::string::npos);
+  EXPECT_TRUE(Contains(BodyText(evaluation), "pushed named"));
   const BodyEvaluation of_one = SummarizeAll({alone}, {{"static", {scores["static"][1]}}});
   EXPECT_FALSE(of_one.at("static").groups.has_value());
-  EXPECT_EQ(BodyText(of_one).find("pushed named"), std::string::npos);
+  EXPECT_FALSE(Contains(BodyText(of_one), "pushed named"));
 }
 
 }  // namespace

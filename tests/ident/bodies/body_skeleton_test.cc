@@ -12,6 +12,7 @@
 #include "tests/datasets/named_skeletons.h"
 #include "tests/datasets/recording_folder.h"
 #include "tests/models/body_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -35,14 +36,11 @@ class BodySkeletonTest : public RecordingFolderTest {
     entry().length_scale = kScale;
     LoadOptions options;
     options.keep_all_joints = true;
-    const auto loaded = Load(options);
-    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
-    recorded_ = loaded.value()[0].people[0];
-    Recording recording = loaded.value()[0];
+    const auto loaded = Unwrapped(Load(options));
+    recorded_ = loaded[0].people[0];
+    Recording recording = loaded[0];
     recording.ground = ground;
-    const auto made = MakeBodyRecording(recording, SkeletonMapping::kExact);
-    EXPECT_TRUE(made.ok()) << made.error().ToString();
-    return made.value();
+    return Unwrapped(MakeBodyRecording(recording, SkeletonMapping::kExact));
   }
 
   // Joints of a file that was written in the source's own axes and lengths, m, world.
@@ -50,9 +48,7 @@ class BodySkeletonTest : public RecordingFolderTest {
     entry().motion = {name};
     LoadOptions options;
     options.keep_all_joints = true;
-    const auto loaded = Load(options);
-    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
-    return loaded.value()[0].people[0].joints;
+    return Unwrapped(Load(options))[0].people[0].joints;
   }
 
   RecordedPerson recorded_;
@@ -202,15 +198,13 @@ TEST_F(BodySkeletonTest, TheFilledIsSaidAndTheUnknownIsAnError) {
   WritePush("a.csv", 3);
   LoadOptions options;
   options.keep_all_joints = true;
-  const auto loaded = Load(options);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const auto loaded = Unwrapped(Load(options));
   EXPECT_TRUE(warnings_.empty()) << "there is no body to fill";
-  const auto made = MakeBodyRecording(loaded.value()[0], SkeletonMapping::kExact);
-  ASSERT_FALSE(made.ok());
-  EXPECT_TRUE(Contains(made.error().ToString(), Path("a.bvh") + ": recording a"));
-  EXPECT_TRUE(Contains(made.error().ToString(), "not recognised: left_knee; name them"));
-  EXPECT_TRUE(Contains(made.error().ToString(), "\"joints\": {\"left_knee\": ...}"));
-  EXPECT_TRUE(Contains(made.error().ToString(), "rig:left middle"));
+  const std::string made = ProblemOf(MakeBodyRecording(loaded[0], SkeletonMapping::kExact));
+  EXPECT_TRUE(Contains(made, Path("a.bvh") + ": recording a"));
+  EXPECT_TRUE(Contains(made, "not recognised: left_knee; name them"));
+  EXPECT_TRUE(Contains(made, "\"joints\": {\"left_knee\": ...}"));
+  EXPECT_TRUE(Contains(made, "rig:left middle"));
 }
 
 // A knee of one axis gets the other two behind it, a joint without any role keeps its angles.
@@ -229,11 +223,9 @@ TEST_F(BodySkeletonTest, HingesGetTheAxesThatTheyLack) {
   entry().length_scale = kScale;
   LoadOptions options;
   options.keep_all_joints = true;
-  const auto loaded = Load(options);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const auto made = MakeBodyRecording(loaded.value()[0], SkeletonMapping::kExact);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
-  const BvhMotion out = ToBvh(made.value().skeletons[0], made.value().bodies[0], 1.0 / 60.0);
+  const auto loaded = Unwrapped(Load(options));
+  const auto made = Unwrapped(MakeBodyRecording(loaded[0], SkeletonMapping::kExact));
+  const BvhMotion out = ToBvh(made.skeletons[0], made.bodies[0], 1.0 / 60.0);
   EXPECT_EQ(out.skeleton.joints[11].channels,
             (std::vector<BvhChannel>{BvhChannel::kXrotation, BvhChannel::kZrotation,
                                      BvhChannel::kYrotation}));

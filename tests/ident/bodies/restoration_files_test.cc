@@ -22,14 +22,10 @@ class RestorationFilesTest : public TempDirTest {
     const WindowWeights weights = RandomWindow();
     AddTensors("inputs", weights.inputs, &file.tensors);
     AddTensors("network", weights.network, &file.tensors);
-    const MaybeError failed = WriteRestorationFile(Path("r"), file);
-    EXPECT_FALSE(failed) << failed->ToString();
+    EXPECT_EQ(ProblemOf(WriteRestorationFile(Path("r"), file)), "no error");
     return Path("r");
   }
-  std::string ErrorOf(const std::string& folder) {
-    const auto loaded = LoadRestoration(folder);
-    return loaded.ok() ? "no error" : loaded.error().ToString();
-  }
+  std::string ErrorOf(const std::string& folder) { return ProblemOf(LoadRestoration(folder)); }
   void Replace(const std::string& from, const std::string& to) {
     std::string text = ReadText(Path("r/restoration.json"));
     const size_t at = text.find(from);
@@ -42,9 +38,8 @@ class RestorationFilesTest : public TempDirTest {
 TEST_F(RestorationFilesTest, AWindowComesBackToTheLastBit) {
   const RestorationInput person = MovingPerson(StandingPose(), 80, 30);
   const BodyMotion before = WindowRestoration(RandomWindow()).Restore({person})[0];
-  const auto loaded = LoadRestoration(WriteWindow());
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const BodyMotion after = loaded.value()->Restore({person})[0];
+  const auto loaded = Unwrapped(LoadRestoration(WriteWindow()));
+  const BodyMotion after = loaded->Restore({person})[0];
   for (int t = 0; t < 30; ++t) EXPECT_EQ(before[t], after[t]);
 }
 
@@ -54,12 +49,11 @@ TEST_F(RestorationFilesTest, ACvaeComesBackToTheLastBit) {
   (*file.settings)["coordinates"] = "ldp";
   file.tensors = ToTensors(RandomCvae());
   ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
-  const auto loaded = LoadRestoration(Path("c"));
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const auto loaded = Unwrapped(LoadRestoration(Path("c")));
   const RestorationInput person = MovingPerson(StandingPose(), 80, 20);
   const BodyMotion before =
       CvaeRestoration(RandomCvae(1, {CvaeCoordinates::kLdp})).Restore({person})[0];
-  const BodyMotion after = loaded.value()->Restore({person})[0];
+  const BodyMotion after = loaded->Restore({person})[0];
   for (int t = 0; t < 20; ++t) EXPECT_EQ(before[t], after[t]);
 }
 
@@ -74,9 +68,7 @@ TEST_F(RestorationFilesTest, TheLatentVariableIsDrawnWhereSigmaWasKept) {
     if (sigma) (*file.settings)["sigma"] = true;
     file.tensors = ToTensors(RandomCvae(1, layout));
     EXPECT_FALSE(WriteRestorationFile(Path("c"), file));
-    auto loaded = LoadRestoration(Path("c"));
-    EXPECT_TRUE(loaded.ok()) << loaded.error().ToString();
-    return std::move(loaded.value());
+    return Unwrapped(LoadRestoration(Path("c")));
   };
   const auto with = load(true), before = load(false);
   const Pose mean = with->Restore({person})[0][19];
@@ -88,9 +80,8 @@ TEST_F(RestorationFilesTest, TheLatentVariableIsDrawnWhereSigmaWasKept) {
   ASSERT_FALSE(ChooseLatent({CvaeLatent::kDraw, 8}, with.get()));
   EXPECT_NE(drawn, with->Restore({person})[0][19]);
   EXPECT_FALSE(ChooseLatent({}, before.get()));
-  const MaybeError refused = ChooseLatent({CvaeLatent::kDraw, 7}, before.get());
-  ASSERT_TRUE(refused);
-  EXPECT_TRUE(Contains(refused->message, "train again"));
+  EXPECT_TRUE(
+      Contains(ProblemOf(ChooseLatent({CvaeLatent::kDraw, 7}, before.get())), "train again"));
   const auto rigid = LoadRestoration("rigid");
   EXPECT_TRUE(ChooseLatent({CvaeLatent::kDraw, 7}, rigid.value().get()));
 }
@@ -108,29 +99,24 @@ TEST_F(RestorationFilesTest, ViewsAndLayoutsComeBack) {
     AddTensors("inputs", weights.inputs, &file.tensors);
     AddTensors("network", weights.network, &file.tensors);
     ASSERT_FALSE(WriteRestorationFile(Path("v"), file));
-    const auto loaded = LoadRestoration(Path("v"));
-    ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-    EXPECT_EQ(loaded.value()->Restore(people)[1][19],
-              WindowRestoration(weights).Restore(people)[1][19]);
+    const auto loaded = Unwrapped(LoadRestoration(Path("v")));
+    EXPECT_EQ(loaded->Restore(people)[1][19], WindowRestoration(weights).Restore(people)[1][19]);
   }
   RestorationFile file;
   file.kind = RestorationKind::kCvae;
   *file.settings = {{"sees", "pose"}, {"coordinates", "tip"}, {"halves", false}};
   file.tensors = ToTensors(RandomCvae(1, {CvaeCoordinates::kTip, false, false}));
   ASSERT_FALSE(WriteRestorationFile(Path("c"), file));
-  const auto loaded = LoadRestoration(Path("c"));
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value()->Restore(people)[1][19], loaded.value()->Restore(people)[1][19])
-      << "draws repeat";
+  const auto loaded = Unwrapped(LoadRestoration(Path("c")));
+  EXPECT_EQ(loaded->Restore(people)[1][19], loaded->Restore(people)[1][19]) << "draws repeat";
   WriteWindow();
   Replace("\"settings\": {", "\"settings\": {\"sees\": \"people\"");
   EXPECT_TRUE(Contains(ErrorOf(Path("r")), "must be pendulum, neighbours or pose"));
 }
 
 TEST_F(RestorationFilesTest, RigidNeedsNoFolder) {
-  const auto loaded = LoadRestoration("rigid");
-  ASSERT_TRUE(loaded.ok());
-  EXPECT_EQ(loaded.value()->kind(), "rigid");
+  const auto loaded = Unwrapped(LoadRestoration("rigid"));
+  EXPECT_EQ(loaded->kind(), "rigid");
 }
 
 TEST_F(RestorationFilesTest, WhatIsWrongIsNamed) {
@@ -186,9 +172,8 @@ using NpyTest = TempDirTest;
 TEST_F(NpyTest, ThereAndBack) {
   const std::vector<float> values = {1.5f, -0.25f, 3e-30f, 7.0f};
   ASSERT_FALSE(WriteNpy(Path("a.npy"), values));
-  const auto read = ReadNpy(Path("a.npy"));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value(), values);
+  const auto read = Unwrapped(ReadNpy(Path("a.npy")));
+  EXPECT_EQ(read, values);
   const std::string bytes = ReadText(Path("a.npy"));
   EXPECT_EQ((bytes.size() - 4 * sizeof(float)) % 64, 0u) << "numpy aligns the numbers";
   EXPECT_TRUE(Contains(bytes, "'shape': (4,)"));
@@ -209,16 +194,14 @@ TEST_F(BodyFilesTest, BvhHoldsTheMotion) {
   scene.id = "x";
   scene.subject_ids = {"s"};
   scene.bodies = {motion};
-  const auto files = WriteBodyBvh(Path("m.bvh"), scene);
-  ASSERT_TRUE(files.ok()) << files.error().ToString();
-  EXPECT_EQ(files.value(), std::vector<std::string>{Path("m.bvh")});
-  const auto read = ReadBvhPositions(Path("m.bvh"), {LengthUnit::kMillimetre, {}, {}});
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  ASSERT_EQ(read.value().num_frames(), 12);
+  const auto files = Unwrapped(WriteBodyBvh(Path("m.bvh"), scene));
+  EXPECT_EQ(files, std::vector<std::string>{Path("m.bvh")});
+  const auto read = Unwrapped(ReadBvhPositions(Path("m.bvh"), {LengthUnit::kMillimetre, {}, {}}));
+  ASSERT_EQ(read.num_frames(), 12);
   for (int t = 0; t < 12; ++t) {
     const Pose carried = FitSkeleton(motion[0], motion[t]).positions;
     for (int j = 0; j < kBodyJoints; ++j) {
-      EXPECT_LT((read.value().positions[j][t] - carried.col(j)).norm(), 1e-9) << t << " " << j;
+      EXPECT_LT((read.positions[j][t] - carried.col(j)).norm(), 1e-9) << t << " " << j;
     }
   }
 }
@@ -229,9 +212,8 @@ TEST_F(BodyFilesTest, AFilePerPersonAndRowsAndJson) {
   scene.subject_ids = {"s", "t/u"};
   scene.bodies = {BodyMotion(3, StandingPose()),
                   BodyMotion(3, Placed(StandingPose(), 1.0, {1, 0, 0}))};
-  const auto files = WriteBodyBvh(Path("m.bvh"), scene);
-  ASSERT_TRUE(files.ok());
-  EXPECT_EQ(files.value(), (std::vector<std::string>{Path("m_0_s.bvh"), Path("m_1_t_u.bvh")}));
+  const auto files = Unwrapped(WriteBodyBvh(Path("m.bvh"), scene));
+  EXPECT_EQ(files, (std::vector<std::string>{Path("m_0_s.bvh"), Path("m_1_t_u.bvh")}));
   ASSERT_FALSE(WriteJointsCsv(Path("j.csv"), scene));
   const std::string csv = ReadText(Path("j.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 2 * 22);

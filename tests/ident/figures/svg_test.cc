@@ -30,7 +30,7 @@ TEST(Svg, NegativeNumbersHaveAMinusSign) {
 TEST(Svg, AnEmptyTextIsNoElement) {
   SvgPicture svg(100, 50, "");
   svg.Text(1, 2, "");
-  EXPECT_EQ(svg.ToInline().find("<text"), std::string::npos);
+  EXPECT_FALSE(Contains(svg.ToInline(), "<text"));
 }
 
 // One element, from point to point in tenths of a pixel; a minus parts numbers by itself.
@@ -40,7 +40,7 @@ TEST(Svg, LinesOfOneLookAreOnePath) {
   svg.Lines({}, "grid");
   const std::string text = svg.ToInline();
   EXPECT_TRUE(Contains(text, "<path class=\"axis\" d=\"M52 10l0 4M0 0l-.5 20.3\"/>"));
-  EXPECT_EQ(text.find("grid"), std::string::npos);
+  EXPECT_FALSE(Contains(text, "grid"));
 }
 
 TEST(Svg, NumbersAreShort) {

@@ -12,6 +12,7 @@
 #include "ident/model/model_rollout.h"
 #include "ident/report/report_text.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -89,11 +90,10 @@ TEST(Covariates, SlopesOfExactDataAreFound) {
   FittedModel fitted;
   fitted.fit = result;
   const auto json = ToJson(fitted, {});
-  const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(ToJson(read.value(), {}).dump(), json.dump());
-  EXPECT_EQ(PeoplesParameters(ModelOf(read.value().fit), recordings.front())[0], own[0]);
-  EXPECT_EQ(ContrastText(read.value().fit), ContrastText(result));
+  const FittedModel read = Unwrapped(FittedModelFromJson(json, "model.json"));
+  EXPECT_EQ(ToJson(read, {}).dump(), json.dump());
+  EXPECT_EQ(PeoplesParameters(ModelOf(read.fit), recordings.front())[0], own[0]);
+  EXPECT_EQ(ContrastText(read.fit), ContrastText(result));
 }
 
 // The same people before and after: paired, by a label of the recordings.
@@ -110,7 +110,7 @@ TEST(Covariates, PeopleInBothAreNamed) {
   ASSERT_TRUE(result.contrast);
   EXPECT_EQ(result.contrast->both.size(), 2u);
   const std::string text = ContrastText(result);
-  EXPECT_NE(text.find("2 people in both (S01, S02)"), std::string::npos) << text;
+  EXPECT_TRUE(Contains(text, "2 people in both (S01, S02)"));
   for (const ContrastRow& row : result.contrast->rows) {
     EXPECT_GE(row.p_holm, row.p);
     EXPECT_LE(row.p_holm, 1.0);
@@ -169,7 +169,7 @@ TEST(Covariates, BadInputIsNamed) {
     FitOptions options = WithCovariates(DefaultFit(study), one.contrast, one.covariates);
     const MaybeError error = PrepareFit(recordings, &options);
     ASSERT_TRUE(error) << one.contrast << one.covariates;
-    EXPECT_NE(error->message.find(one.message), std::string::npos) << error->message;
+    EXPECT_TRUE(Contains(error->message, one.message));
   }
   // What is always known.
   FitOptions by_mass = WithCovariates(DefaultFit(study), "", "Kp_theta ~ mass + rod");
@@ -193,8 +193,7 @@ TEST(Covariates, ThereIsRoomForSoMany) {
   FitOptions options = WithCovariates(DefaultFit(study), "", all);
   const MaybeError error = PrepareFit(recordings, &options);
   ASSERT_TRUE(error);
-  EXPECT_NE(error->message.find("there is no room for the slope"), std::string::npos)
-      << error->message;
+  EXPECT_TRUE(Contains(error->message, "there is no room for the slope"));
 }
 
 }  // namespace

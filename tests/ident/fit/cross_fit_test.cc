@@ -10,6 +10,7 @@
 #include "ident/prediction/prediction.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -117,16 +118,13 @@ TEST(SolveFolds, RefitsToWhatASolveWithoutThemFinds) {
   const SyntheticOptions study = DifferingPeople();
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
   const FitOptions options = UnbiasedFit(study);
-  const Result<FoldedModels> folded = SolveFolds(recordings, options, {{0, 1, 2, 3}});
-  ASSERT_TRUE(folded.ok());
-  ASSERT_TRUE(folded.value().without[0].has_value());
-  const Result<IdentifiedModel> anew =
-      SolveModel({recordings.begin() + 4, recordings.end()}, options);
-  ASSERT_TRUE(anew.ok());
+  const FoldedModels folded = Unwrapped(SolveFolds(recordings, options, {{0, 1, 2, 3}}));
+  ASSERT_TRUE(folded.without[0].has_value());
+  const IdentifiedModel anew =
+      Unwrapped(SolveModel({recordings.begin() + 4, recordings.end()}, options));
   for (int i = 0; i < 4; ++i) {
-    const double of_whole = FarthestHips(folded.value().whole, anew.value(), recordings[i]);
-    EXPECT_LT(FarthestHips(*folded.value().without[0], anew.value(), recordings[i]), 0.5 * of_whole)
-        << of_whole;
+    const double of_whole = FarthestHips(folded.whole, anew, recordings[i]);
+    EXPECT_LT(FarthestHips(*folded.without[0], anew, recordings[i]), 0.5 * of_whole) << of_whole;
   }
 }
 

@@ -7,6 +7,7 @@
 #include "ident/prediction/prediction.h"
 #include "models/turn.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -24,9 +25,7 @@ SyntheticOptions People() {
 }
 
 std::vector<Recording> MakeRecordings(const SyntheticOptions& study) {
-  const auto made = MakeSyntheticRecordings(study);
-  EXPECT_TRUE(made.ok()) << made.error().ToString();
-  return Recordings(made.value());
+  return Recordings(Unwrapped(MakeSyntheticRecordings(study)));
 }
 
 Vector3<double> TurnedBy(double angle, const Vector3<double>& p) {

@@ -70,18 +70,16 @@ TEST(FitSetup, ThePresetPoolsWhatItCan) {
   EXPECT_EQ(tail.pooling_sigma, 0.5);
   for (const GivenOptions& given :
        {GivenOptions{{"fix", "tail_base"}}, GivenOptions{{"push_tail", "none"}}}) {
-    const Result<FitOptions> made = MakeFitOptions(Merged(given, {{"preset", "tail"}}));
-    ASSERT_TRUE(made.ok()) << made.error().ToString();
-    EXPECT_FALSE(AnyPooled(made.value().table)) << given[0].first;
+    const FitOptions made = Unwrapped(MakeFitOptions(Merged(given, {{"preset", "tail"}})));
+    EXPECT_FALSE(AnyPooled(made.table)) << given[0].first;
   }
   // A large network is trained beside what units differ in.
   for (const auto& [preset, option, value] :
        {std::tuple("tail", "self_force", "lstm:64"),
         {"group", "interaction", "spring,damping,network:64-64"}}) {
-    const Result<FitOptions> made = MakeFitOptions({{"preset", preset}, {option, value}});
-    ASSERT_TRUE(made.ok()) << made.error().ToString();
-    EXPECT_TRUE(NeedsGradientTraining(made.value()));
-    EXPECT_TRUE(AnyPooled(made.value().table)) << preset;
+    const FitOptions made = Unwrapped(MakeFitOptions({{"preset", preset}, {option, value}}));
+    EXPECT_TRUE(NeedsGradientTraining(made));
+    EXPECT_TRUE(AnyPooled(made.table)) << preset;
   }
   EXPECT_TRUE(Contains(Complaint({{"fix", "tail_time"}, {"pool", "tail_time"}}), "which is fixed"));
 }
@@ -142,11 +140,10 @@ TEST(FitSetup, AutoLooksAtTheRecordings) {
   groups.insert(groups.end(), single.begin(), single.end());
   EXPECT_EQ(MakeFitOptions({{"preset", "auto"}}, &groups).value().preset, "group");
   EXPECT_EQ(MakeFitOptions({{"preset", "tail"}}, &groups).value().preset, "tail");  // told so
-  const Result<FitSetup> setup = FitSetup::Make({{"fix", "mu=40"}});
-  ASSERT_TRUE(setup.ok());
+  const FitSetup setup = Unwrapped(FitSetup::Make({{"fix", "mu=40"}}));
   for (const auto& recordings : {single, groups}) {
     const FitOptions made = MakeFitOptions({{"fix", "mu=40"}}, &recordings).value();
-    EXPECT_EQ(SettingsJson(setup.value().For(recordings).value()), SettingsJson(made));
+    EXPECT_EQ(SettingsJson(setup.For(recordings).value()), SettingsJson(made));
   }
 }
 
@@ -281,9 +278,7 @@ TEST(PrepareFit, HoldsWhatHasNoEffectAndSaysWhatIsLeft) {
   ASSERT_FALSE(PrepareFit(recordings, &options, &warnings));
   EXPECT_FALSE(options.table[kTailTime].free);
   for (Parameter id : {kMu, kKpTheta, kKdTheta, kAx}) options.table[id].free = false;
-  const MaybeError error = PrepareFit(recordings, &options);
-  ASSERT_TRUE(error);
-  EXPECT_TRUE(Contains(error->ToString(), "every parameter is fixed"));
+  EXPECT_TRUE(Contains(ProblemOf(PrepareFit(recordings, &options)), "every parameter is fixed"));
 }
 
 // By content or by motion; a replica's copies go by one id and are meant.

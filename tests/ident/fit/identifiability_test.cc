@@ -23,8 +23,7 @@ NameSet Unidentifiable(const FitResult& result) {
 
 FitResult FitEdited(const SyntheticOptions& study, const TableEdits& edits) {
   FitOptions options = UnbiasedFit(study);
-  const MaybeError error = EditTable(edits, &options.table);
-  EXPECT_FALSE(error) << error->ToString();
+  EXPECT_EQ(ProblemOf(EditTable(edits, &options.table)), "no error");
   FitResult result = Fit(MakePendulums(study), options);
   EXPECT_TRUE(result.ok());
   return result;

@@ -8,6 +8,7 @@
 #include "ident/model/model_json.h"
 #include "models/parameters.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -163,9 +164,8 @@ TEST(InnovationFit, ComesBackFromJson) {
   FittedModel model;
   model.fit = Fit(recordings, options);
   ASSERT_TRUE(model.fit.ok());
-  const auto back = FittedModelFromJson(ToJson(model, {}), "model.json");
-  ASSERT_TRUE(back.ok()) << back.error().ToString();
-  const FitResult& fit = back.value().fit;
+  const auto back = Unwrapped(FittedModelFromJson(ToJson(model, {}), "model.json"));
+  const FitResult& fit = back.fit;
   EXPECT_EQ(fit.parameters, model.fit.parameters);
   EXPECT_EQ(fit.options.likelihood, Likelihood::kInnovation);
   EXPECT_TRUE(fit.options.model.process_noise.diagonal);
@@ -180,11 +180,9 @@ TEST(Likelihoods, ModelsWithAMemoryAreRefused) {
   const auto refused = [&](const GivenOptions& more, const std::string& says) {
     GivenOptions given = {{"preset", "tail"}, {"likelihood", "innovation"}};
     given.insert(given.end(), more.begin(), more.end());
-    Result<FitOptions> options = MakeFitOptions(given);
-    ASSERT_TRUE(options.ok()) << options.error().ToString();
-    const MaybeError error = PrepareFit(recordings, &options.value());
-    ASSERT_TRUE(error) << says;
-    EXPECT_NE(error->ToString().find(says), std::string::npos) << error->ToString();
+    FitOptions options = Unwrapped(MakeFitOptions(given));
+    const std::string error = ProblemOf(PrepareFit(recordings, &options));
+    EXPECT_TRUE(Contains(error, says));
   };
   refused({{"stance", "steps"}}, "--stance=steps");
   refused({{"self_force", "mlp:4"}}, "a network");

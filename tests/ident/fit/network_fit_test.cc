@@ -13,6 +13,7 @@
 #include "ident/report/report_text.h"
 #include "ident/solver/network_training.h"
 #include "tests/ident/network_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -105,12 +106,11 @@ TEST(EarlyStopping, KeepsTheBestPointAndStopsInTime) {
 TEST(EarlyStopping, HoldsOutAStratifiedShare) {
   const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
   const FitProblem problem(study.training, study.options);
-  const auto split = SplitForEarlyStopping(problem, 0.25, 1);
-  ASSERT_TRUE(split.ok());
+  const auto split = Unwrapped(SplitForEarlyStopping(problem, 0.25, 1));
   int held_out = 0;
   for (size_t i = 0; i < study.training.size(); ++i) {
-    EXPECT_EQ(split.value().training[i] + split.value().held_out[i], 1);
-    held_out += split.value().held_out[i];
+    EXPECT_EQ(split.training[i] + split.held_out[i], 1);
+    held_out += split.held_out[i];
   }
   EXPECT_NEAR(held_out, 0.25 * static_cast<double>(study.training.size()), 1.0);
   EXPECT_FALSE(SplitForEarlyStopping(problem, 0.01, 1).ok());
@@ -124,7 +124,7 @@ TEST(EarlyStopping, AShareThatCannotBeHeldOutIsAFailure) {
   options.early_stopping = 0.02;
   const FitResult result = Fit(MakePendulums(synthetic), options);
   EXPECT_FALSE(result.ok());
-  EXPECT_NE(result.message.find("--early_stopping"), std::string::npos) << result.message;
+  EXPECT_TRUE(Contains(result.message, "--early_stopping"));
 }
 
 TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
@@ -133,15 +133,14 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   const FittedModel model{FitWith(study, {NetworkKind::kGru, 2}), {}, {}, {}, {}};
   const FitResult& result = model.fit;
   const nlohmann::ordered_json json = ToJson(model, RunInfo{});
-  const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(ToJson(read.value(), RunInfo{}).dump(), json.dump());
-  EXPECT_EQ(read.value().fit.options.model.learned->weights, result.options.model.learned->weights);
-  EXPECT_EQ(HeldOutAde(study, read.value().fit), HeldOutAde(study, result));
-  EXPECT_NE(ReportText(read.value()).find("self force gru:2"), std::string::npos);
+  const FittedModel read = Unwrapped(FittedModelFromJson(json, "model.json"));
+  EXPECT_EQ(ToJson(read, RunInfo{}).dump(), json.dump());
+  EXPECT_EQ(read.fit.options.model.learned->weights, result.options.model.learned->weights);
+  EXPECT_EQ(HeldOutAde(study, read.fit), HeldOutAde(study, result));
+  EXPECT_TRUE(Contains(ReportText(read), "self force gru:2"));
   // Weights are not in the table.
-  for (const Estimate& e : read.value().fit.nuisance) {
-    EXPECT_EQ(e.name.find("weight"), std::string::npos);
+  for (const Estimate& e : read.fit.nuisance) {
+    EXPECT_FALSE(Contains(e.name, "weight"));
   }
 }
 
@@ -184,7 +183,7 @@ TEST(NetworkFit, FilesThatContradictThemselvesAreNamed) {
   EXPECT_EQ(complaint(good), "");
   nlohmann::ordered_json without = good;
   without.erase("self_network");
-  EXPECT_NE(complaint(without).find("self_force is mlp:2"), std::string::npos);
+  EXPECT_TRUE(Contains(complaint(without), "self_force is mlp:2"));
 }
 
 }  // namespace

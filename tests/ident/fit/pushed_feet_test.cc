@@ -27,9 +27,7 @@ std::vector<PendulumRecording> WhereMoved(int moved) { return WhereMoved(moved, 
 TEST(FitSetup, FeetTellTheStance) {
   const auto stance = [](int moved, const GivenOptions& given) {
     const std::vector<PendulumRecording> recordings = WhereMoved(moved);
-    const Result<FitOptions> made = MakeFitOptions(given, &recordings, given);
-    EXPECT_TRUE(made.ok()) << made.error().ToString();
-    return made.value().model.stance;
+    return Unwrapped(MakeFitOptions(given, &recordings, given)).model.stance;
   };
   EXPECT_EQ(stance(0, {}), Stance::kFixed);
   EXPECT_EQ(stance(3, {}), Stance::kSteps);

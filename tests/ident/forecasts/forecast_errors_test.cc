@@ -56,9 +56,8 @@ class RealForecastTest : public ::testing::Test {
  protected:
   void SetUp() override {
     if (MocapRoot().empty()) GTEST_SKIP() << kNoMocap;
-    Result<MocapFolder> read = ReadMocapFolder(MocapRoot());
-    ASSERT_TRUE(read.ok()) << read.error().ToString();
-    mocap_ = std::move(read.value());
+    MocapFolder read = Unwrapped(ReadMocapFolder(MocapRoot()));
+    mocap_ = std::move(read);
     windows_ = MakeForecastWindows(mocap_, ForecastProtocol::kValidation, 1);
   }
   void Expect(const ActionErrors& errors, const HorizonErrors& expected_mm, double tolerance_mm) {

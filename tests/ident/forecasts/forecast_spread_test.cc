@@ -94,15 +94,14 @@ TEST_F(SpreadTest, StandsBesideTheErrors) {
 TEST(PathSearchTest, TakesTheMostProbableThatEndsThere) {
   const Trajectories there = Trajectories::Zero(12, 5), away = Trajectories::Ones(12, 5);
   const std::vector<SampledFuture> futures = {{there, -9.0}, {there, -4.0}, {away, -1.0}};
-  const auto path = MostProbablePath(futures, Eigen::VectorXf::Zero(12), 0.1, FourParticles());
-  ASSERT_TRUE(path.ok());
-  EXPECT_EQ(path.value().future, 1);
-  EXPECT_EQ(path.value().near, 2);
-  EXPECT_EQ(path.value().log_likelihood, -4.0);
-  const auto none =
-      MostProbablePath(futures, Eigen::VectorXf::Constant(12, 5.0f), 0.1, FourParticles());
-  ASSERT_FALSE(none.ok());
-  EXPECT_TRUE(Contains(none.error().message, "raise --samples or --target_distance"));
+  const auto path =
+      Unwrapped(MostProbablePath(futures, Eigen::VectorXf::Zero(12), 0.1, FourParticles()));
+  EXPECT_EQ(path.future, 1);
+  EXPECT_EQ(path.near, 2);
+  EXPECT_EQ(path.log_likelihood, -4.0);
+  EXPECT_TRUE(Contains(ProblemOf(MostProbablePath(futures, Eigen::VectorXf::Constant(12, 5.0f), 0.1,
+                                                  FourParticles())),
+                       "raise --samples or --target_distance"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "ident/forecasts/group_forecasts.h"
 #include "tests/models/body_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -30,7 +31,7 @@ TEST(LongForecastTest, SecondsByHand) {
   EXPECT_LT(*seconds[0].standing, 0.1);
   EXPECT_EQ(*seconds[2].standing, 1.0);
   EXPECT_EQ(ToJson(seconds)[2]["second"], 3);
-  EXPECT_NE(SecondsText("generator", seconds).find("generator, second"), std::string::npos);
+  EXPECT_TRUE(Contains(SecondsText("generator", seconds), "generator, second"));
 }
 
 TEST(LongForecastTest, NothingMakesNoSeconds) {
@@ -79,7 +80,7 @@ TEST(GroupSpreadTest, InsideAndWidthByHand) {
   EXPECT_EQ(spread.Inside(), 0.5);
   EXPECT_NEAR(spread.Width(), 0.3, 1e-6);
   EXPECT_EQ(ToJson(spread)["hip_x_inside"], 0.5);
-  EXPECT_NE(SpreadText(spread).find("33.3 % if their spread"), std::string::npos);
+  EXPECT_TRUE(Contains(SpreadText(spread), "33.3 % if their spread"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "models/rollout.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -43,18 +44,17 @@ TEST(PathBetween, WhereTheModelGoesIsMostProbable) {
   for (double further : {0.0, 0.2, 0.4}) {
     PathEnd end = to;
     end.state.q[0] += further;
-    const auto found = PathBetween(model, body, 60.0, from, end, kFrames);
-    ASSERT_TRUE(found.ok()) << found.error().ToString();
+    const auto found = Unwrapped(PathBetween(model, body, 60.0, from, end, kFrames));
     if (further == 0.0) {
-      EXPECT_LT(found.value().noise_action, 1.0);
+      EXPECT_LT(found.noise_action, 1.0);
     }
     if (further == 0.4) {
-      EXPECT_GT(found.value().noise_action, 1.0);
+      EXPECT_GT(found.noise_action, 1.0);
     }
-    EXPECT_GT(found.value().action(), before);
-    before = found.value().action();
-    EXPECT_EQ(found.value().states.At(0, 0).q, from.state.q);
-    EXPECT_EQ(found.value().states.At(kFrames - 1, 0).q, end.state.q);
+    EXPECT_GT(found.action(), before);
+    before = found.action();
+    EXPECT_EQ(found.states.At(0, 0).q, from.state.q);
+    EXPECT_EQ(found.states.At(kFrames - 1, 0).q, end.state.q);
   }
 }
 
@@ -77,11 +77,9 @@ TEST(SmoothPath, FillsGapsAndTakesNoiseAway) {
   SyntheticOptions study = TinyStudy();
   study.joint_noise_m = 0.004;
   study.noise_at_first_frame = false;
-  const auto made = MakeSyntheticRecordings(study);
-  ASSERT_TRUE(made.ok());
-  PendulumRecording recording =
-      MakePendulumRecording(made.value()[0].recording, SkeletonMapping::kExact);
-  const RolloutPath<double>& truth = made.value()[0].path;
+  const auto made = Unwrapped(MakeSyntheticRecordings(study));
+  PendulumRecording recording = MakePendulumRecording(made[0].recording, SkeletonMapping::kExact);
+  const RolloutPath<double>& truth = made[0].path;
   constexpr int kFirst = 18, kLast = 30;
   recording.weight = {std::vector<double>(recording.num_frames(), 1.0)};
   for (int t = kFirst; t < kLast; ++t) recording.weight[0][t] = 0.0;
@@ -91,13 +89,12 @@ TEST(SmoothPath, FillsGapsAndTakesNoiseAway) {
   model.options = study.model;
   model.options.process_noise.diagonal = true;
   model.parameters[kMeasuredCart] = 0.003, model.parameters[kMeasuredHip] = 0.004;
-  const auto smoothed = SmoothPath(model, recording);
-  ASSERT_TRUE(smoothed.ok()) << smoothed.error().ToString();
+  const auto smoothed = Unwrapped(SmoothPath(model, recording));
   double found = 0.0, line = 0.0, kept = 0.0, measured = 0.0;
   const Vector4<double>& a = recording.states[0][kFirst - 1].q;
   const Vector4<double>& b = recording.states[0][kLast].q;
   for (int t = 1; t < recording.num_frames(); ++t) {
-    const Vector4<double> apart = smoothed.value().states.At(t, 0).q - truth.At(t, 0).q;
+    const Vector4<double> apart = smoothed.states.At(t, 0).q - truth.At(t, 0).q;
     if (recording.Weight(0, t) > 0.0) {
       kept += apart.squaredNorm();
       measured += (recording.states[0][t].q - truth.At(t, 0).q).squaredNorm();
@@ -116,9 +113,8 @@ TEST(PathBetween, BadEndsAndModels) {
   const Body body{80.0, 0.95, 0.0};
   const auto says = [&](const IdentifiedModel& m, const PathEnd& to, int frames,
                         const std::string& what) {
-    const auto path = PathBetween(m, body, 60.0, EndAt(""), to, frames);
-    ASSERT_FALSE(path.ok()) << what;
-    EXPECT_NE(path.error().ToString().find(what), std::string::npos) << path.error().ToString();
+    const std::string path = ProblemOf(PathBetween(m, body, 60.0, EndAt(""), to, frames));
+    EXPECT_TRUE(Contains(path, what));
   };
   says(model, EndAt("theta=1.5"), 30, "theta");
   says(model, EndAt("x=0.1"), 4, "--frames");

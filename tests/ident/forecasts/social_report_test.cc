@@ -8,6 +8,7 @@
 
 #include "tests/ident/turn_samples.h"
 #include "tests/models/body_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -66,9 +67,8 @@ TEST_F(SocialReportTest, StatesFollowTheKnownChain) {
     const std::string id = "turns_" + std::string(i < 9 ? "0" : "") + std::to_string(i + 1);
     std::vector<std::string> subjects;
     for (int n = 1; n <= 3; ++n) subjects.push_back("T" + std::to_string(3 * i + n));
-    const auto states = StatesOf(truth, id, subjects, options.frames);
-    ASSERT_TRUE(states.ok()) << states.error().ToString();
-    for (const auto& person : states.value().people) {
+    const auto states = Unwrapped(StatesOf(truth, id, subjects, options.frames));
+    for (const auto& person : states.people) {
       people.emplace_back();
       for (const std::string& name : person) {
         people.back().push_back(static_cast<int>(*FromName<TurnState>(name)));
@@ -92,21 +92,19 @@ TEST_F(SocialReportTest, StatesFollowTheKnownChain) {
 TEST_F(SocialReportTest, AClassifierFindsWhoSpeaks) {
   const auto recordings = MakeTurns(Many(12));
   ASSERT_EQ(recordings.size(), 12u);
-  const auto cues = SocialCuesOf(Truth(), IdsOf(recordings), recordings);
-  ASSERT_TRUE(cues.ok()) << cues.error().ToString();
-  EXPECT_EQ(cues.value().states.names, (std::vector<std::string>{"listen", "rest", "speak"}));
-  EXPECT_GT(*cues.value().share_found, 0.8);
-  EXPECT_LT(*cues.value().share_of_most_frequent, 0.6);
+  const auto cues = Unwrapped(SocialCuesOf(Truth(), IdsOf(recordings), recordings));
+  EXPECT_EQ(cues.states.names, (std::vector<std::string>{"listen", "rest", "speak"}));
+  EXPECT_GT(*cues.share_found, 0.8);
+  EXPECT_LT(*cues.share_of_most_frequent, 0.6);
 }
 
 // One person's transitions are the same with others beside them; those of groups are not.
 TEST_F(SocialReportTest, WholeGroupsTellWhetherPeopleAreCoupled) {
   const auto recordings = MakeTurns(Many(16));
-  const auto cues = SocialCuesOf(Truth(), IdsOf(recordings), recordings);
-  ASSERT_TRUE(cues.ok()) << cues.error().ToString();
-  const StateFunction& states = cues.value().states;
-  const auto first = GroupsOf(recordings, cues.value(), 0, 8);
-  const auto second = GroupsOf(recordings, cues.value(), 8, 16);
+  const auto cues = Unwrapped(SocialCuesOf(Truth(), IdsOf(recordings), recordings));
+  const StateFunction& states = cues.states;
+  const auto first = GroupsOf(recordings, cues, 0, 8);
+  const auto second = GroupsOf(recordings, cues, 8, 16);
   const double coupled = GroupDistance(first, second, states);
   const double uncoupled = GroupDistance(first, Shuffled(second), states);
   EXPECT_LT(coupled, 0.2);
@@ -137,13 +135,12 @@ BodyEvaluation Slowed(const std::vector<BodyRecording>& recordings) {
 TEST_F(SocialReportTest, BuiltInStatesFromAFileAreTheBuiltInOnes) {
   const auto recordings = MakeTurns(Many(3));
   ASSERT_FALSE(WriteStates(Path("states.csv"), StatesInUse(recordings, {})));
-  const auto read =
-      SocialCuesOf(ReadStates(Path("states.csv")).value(), IdsOf(recordings), recordings);
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_FALSE(read.value().share_found) << "the rules are known";
+  const auto read = Unwrapped(
+      SocialCuesOf(ReadStates(Path("states.csv")).value(), IdsOf(recordings), recordings));
+  EXPECT_FALSE(read.share_found) << "the rules are known";
   BodyEvaluation built_in = Slowed(recordings), from_file = built_in;
   auto json = ToJson(*CompareSocially(recordings, {}, &built_in));
-  auto again = ToJson(*CompareSocially(recordings, read.value(), &from_file));
+  auto again = ToJson(*CompareSocially(recordings, read, &from_file));
   EXPECT_NE(json["states"], again["states"]);
   json.erase("states"), again.erase("states");
   EXPECT_EQ(json.dump(), again.dump());

@@ -40,9 +40,7 @@ class GeneratedBodiesTest : public ::testing::Test {
   }
   std::vector<BodyMotion> Bodies(LoadedGenerator loaded) const {
     EXPECT_FALSE(PrepareForFormation(scene_, "generator", &loaded));
-    const auto bodies = GeneratedBodies(run_, first_poses_, loaded);
-    EXPECT_TRUE(bodies.ok()) << bodies.error().ToString();
-    return bodies.value();
+    return Unwrapped(GeneratedBodies(run_, first_poses_, loaded));
   }
   // Of the hips, from those of the pendulums.
   double FarthestHip(const std::vector<BodyMotion>& bodies) const {
@@ -101,15 +99,13 @@ TEST_F(GeneratedBodiesTest, SeeTheFirstPosesAndThePushAlone) {
 TEST_F(GeneratedBodiesTest, AGeneratorThatDoesNotFitIsRefused) {
   LoadedGenerator loaded = RandomGenerator(0.0);
   loaded.settings.rate = 50.0;
-  const MaybeError rate = PrepareForFormation(scene_, "generator", &loaded);
-  ASSERT_TRUE(rate);
-  EXPECT_TRUE(Contains(rate->message, "--generator names a generator that was trained at 50"));
-  EXPECT_TRUE(Contains(rate->message, "--fps=50"));
+  const std::string rate = ProblemOf(PrepareForFormation(scene_, "generator", &loaded));
+  EXPECT_TRUE(Contains(rate, "--generator names a generator that was trained at 50"));
+  EXPECT_TRUE(Contains(rate, "--fps=50"));
   loaded.settings.rate = 60.0;
   loaded.kind = GeneratorKind::kParticles;
-  const MaybeError kind = PrepareForFormation(scene_, "generator", &loaded);
-  ASSERT_TRUE(kind);
-  EXPECT_TRUE(Contains(kind->message, "--kind=diffusion"));
+  EXPECT_TRUE(
+      Contains(ProblemOf(PrepareForFormation(scene_, "generator", &loaded)), "--kind=diffusion"));
 }
 
 TEST_F(GeneratedBodiesTest, PushesOfAnotherKindAreNamed) {

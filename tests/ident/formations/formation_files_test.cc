@@ -29,13 +29,10 @@ class FormationFilesTest : public TempDirTest {
 };
 
 TEST_F(FormationFilesTest, TheManifestsPendulumsAreThoseRolledOut) {
-  const MaybeError failed = WriteFormationRecording(Path("out"), run_);
-  ASSERT_FALSE(failed) << failed->ToString();
+  ASSERT_EQ(ProblemOf(WriteFormationRecording(Path("out"), run_)), "no error");
   EXPECT_EQ(CountFiles(), 13 + 6 + 1);
-  const auto loaded = LoadRecordings(Path("out/manifest.json"));
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const PendulumRecording read =
-      MakePendulumRecording(loaded.value().front(), SkeletonMapping::kExact);
+  const auto loaded = Unwrapped(LoadRecordings(Path("out/manifest.json")));
+  const PendulumRecording read = MakePendulumRecording(loaded.front(), SkeletonMapping::kExact);
   ASSERT_EQ(read.num_people(), 13);
   ASSERT_EQ(read.num_frames(), 150);
   EXPECT_EQ(read.scene.pushes.size(), 6u);
@@ -78,8 +75,7 @@ TEST_F(FormationFilesTest, FeetFromAbove) {
 }
 
 TEST_F(FormationFilesTest, PartsAddUpToTheNetForce) {
-  const MaybeError failed = WriteForcesCsv(Path("forces.csv"), run_);
-  ASSERT_FALSE(failed) << failed->ToString();
+  ASSERT_EQ(ProblemOf(WriteForcesCsv(Path("forces.csv"), run_)), "no error");
   std::istringstream lines(ReadText(Path("forces.csv")));
   std::string line;
   std::getline(lines, line);

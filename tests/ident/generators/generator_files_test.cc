@@ -29,8 +29,7 @@ class GeneratorFilesTest : public TempDirTest {
     particles.jitter = 0.7;
   }
   std::string ErrorOf(const std::string& folder, const GeneratorChanges& changes = {}) {
-    const auto loaded = LoadGenerator(folder, changes);
-    return loaded.ok() ? "no error" : loaded.error().ToString();
+    return ProblemOf(LoadGenerator(folder, changes));
   }
   std::string ErrorAfter(const std::string& from, const std::string& to) {
     EXPECT_FALSE(WriteGenerator(Path("g"), trained_));
@@ -49,11 +48,10 @@ class GeneratorFilesTest : public TempDirTest {
 
 TEST_F(GeneratorFilesTest, ComeBackToTheLastBit) {
   ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
-  const auto loaded = LoadGenerator(Path("g"));
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  EXPECT_EQ(loaded.value().generator->Forecast(people_, 6)[0],
+  const auto loaded = Unwrapped(LoadGenerator(Path("g")));
+  EXPECT_EQ(loaded.generator->Forecast(people_, 6)[0],
             MakeGenerator(trained_)->Forecast(people_, 6)[0]);
-  const GeneratorSettings& settings = loaded.value().settings;
+  const GeneratorSettings& settings = loaded.settings;
   EXPECT_EQ(settings.observed, 12);
   EXPECT_EQ(settings.layout.names, FourParticles().names);
   EXPECT_EQ(settings.layout.parents, FourParticles().parents);
@@ -68,13 +66,12 @@ TEST_F(GeneratorFilesTest, WhatMayChangeChanges) {
   changes.ridge_share = 1.0;
   changes.simlpe_share = 0.2;
   changes.particles.project_bones = false;
-  const auto loaded = LoadGenerator(Path("g"), changes);
-  ASSERT_TRUE(loaded.ok());
+  const auto loaded = Unwrapped(LoadGenerator(Path("g"), changes));
   ParticleGeneratorOptions options;
   options.ridge_share = 1.0, options.simlpe_share = 0.2, options.project_bones = false;
   const ParticleGenerator expected(FourParticles(), Particles().members, Particles().partners,
                                    options);
-  EXPECT_EQ(loaded.value().generator->Forecast(people_, 6)[0], expected.Forecast(people_, 6)[0]);
+  EXPECT_EQ(loaded.generator->Forecast(people_, 6)[0], expected.Forecast(people_, 6)[0]);
   Particles().ridge_share = 0.0;
   ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
   EXPECT_TRUE(Contains(ErrorOf(Path("g"), changes), "trained without a ridge"));

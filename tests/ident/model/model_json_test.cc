@@ -35,9 +35,7 @@ FittedModel SampleModel(const TableEdits& edits = {}, int num_threads = 1) {
 const RunInfo kRun = {"2024-01-01", "here", "model.json", 1.5, 1};
 
 Json RoundTrip(const Json& json) {
-  const Result<FittedModel> read = FittedModelFromJson(json, "model.json");
-  EXPECT_TRUE(read.ok()) << read.error().ToString();
-  return ToJson(read.value(), kRun);
+  return ToJson(Unwrapped(FittedModelFromJson(json, "model.json")), kRun);
 }
 
 TEST(ResultJson, RoundTripIsExact) {
@@ -159,11 +157,10 @@ TEST(ResultJson, WarningsKeepTheirRecordings) {
   const Json json = ToJson(model, kRun);
   EXPECT_EQ(json["warnings"][2], "recording b: the mass is 7; is mass_kg in kg?");
   EXPECT_EQ(json["warnings_of_recordings"][1]["recording"], "b");
-  const Result<FittedModel> read = FittedModelFromJson(json, "some.json");
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
+  const FittedModel read = Unwrapped(FittedModelFromJson(json, "some.json"));
   const std::vector<std::string> once = {
       "mu is at its bound", "in 2 recordings (a, b): the mass is 7; is mass_kg in kg?"};
-  EXPECT_EQ(GroupedWarnings(read.value().fit.warnings), once);
+  EXPECT_EQ(GroupedWarnings(read.fit.warnings), once);
   Json damaged = json;
   damaged["warnings_of_recordings"][1]["warning"] = 3;
   EXPECT_FALSE(FittedModelFromJson(damaged, "some.json").ok());
@@ -255,22 +252,17 @@ TEST(ResultJson, WhatIsGoneMustHaveBeenOff) {
   before["model"]["mode_margin_per_s"] = 0.2;
   before["table"].push_back({{"name", "drive_gain"}, {"nominal", 0.5}});
   before["values"]["drive_gain"] = 0.5;
-  const Result<FittedModel> read = FittedModelFromJson(before, "some.json");
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(ToJson(read.value(), kRun)["table"], now["table"]);
+  const FittedModel read = Unwrapped(FittedModelFromJson(before, "some.json"));
+  EXPECT_EQ(ToJson(read, kRun)["table"], now["table"]);
   for (const char* option :
        {"stability_weight", "takeover_weight", "ensemble", "mode_margin_per_s"}) {
     Json used = before;
     used["model"][option] = 2;
-    const Result<FittedModel> refused = FittedModelFromJson(used, "some.json");
-    ASSERT_FALSE(refused.ok());
-    EXPECT_TRUE(Contains(refused.error().ToString(), option));
+    EXPECT_TRUE(Contains(ProblemOf(FittedModelFromJson(used, "some.json")), option));
   }
   for (const std::string term : {"drive", "network"}) {
     before["model"]["interaction"] = "spring,damping," + term;
-    const Result<FittedModel> acting = FittedModelFromJson(before, "some.json");
-    ASSERT_FALSE(acting.ok());
-    EXPECT_TRUE(Contains(acting.error().ToString(), "'" + term + "'"));
+    EXPECT_TRUE(Contains(ProblemOf(FittedModelFromJson(before, "some.json")), "'" + term + "'"));
   }
 }
 
@@ -279,19 +271,14 @@ using ResultFile = TempDirTest;
 TEST_F(ResultFile, ReadsWhatWasWritten) {
   const Json json = ToJson(SampleModel(), kRun);
   ASSERT_FALSE(WriteJson(Path("model.json"), json));
-  const Result<FittedModel> read = ReadFittedModel(Path("model.json"));
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(ToJson(read.value(), kRun).dump(), json.dump());
+  const FittedModel read = Unwrapped(ReadFittedModel(Path("model.json")));
+  EXPECT_EQ(ToJson(read, kRun).dump(), json.dump());
 }
 
 TEST_F(ResultFile, BadFilesAreNamed) {
   const std::string cut = WriteText("cut.json", "{\"format\": \"pushid model\",\n \"values\": {");
-  const Result<FittedModel> read = ReadFittedModel(cut);
-  ASSERT_FALSE(read.ok());
-  EXPECT_TRUE(Contains(read.error().ToString(), "cut.json:2"));
-  const Result<FittedModel> missing = ReadFittedModel(Path("missing.json"));
-  ASSERT_FALSE(missing.ok());
-  EXPECT_TRUE(Contains(missing.error().ToString(), "missing.json"));
+  EXPECT_TRUE(Contains(ProblemOf(ReadFittedModel(cut)), "cut.json:2"));
+  EXPECT_TRUE(Contains(ProblemOf(ReadFittedModel(Path("missing.json"))), "missing.json"));
 }
 
 // A damaged verdict that moves more estimates than there are.

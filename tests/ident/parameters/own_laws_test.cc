@@ -80,9 +80,8 @@ TEST(OwnLaws, RefusalsSayWhatToDoAndAddNothing) {
   ASSERT_FALSE(given.Add(BrakeLaw()));
   const auto refused = [&given](std::shared_ptr<const ForceLaw> law, const std::string& why) {
     const size_t rows = given.table.specs.size();
-    const MaybeError error = given.Add(std::move(law));
-    ASSERT_TRUE(error.has_value());
-    EXPECT_TRUE(Contains(error->ToString(), why)) << error->ToString();
+    const std::string error = ProblemOf(given.Add(std::move(law)));
+    EXPECT_TRUE(Contains(error, why)) << error;
     EXPECT_EQ(given.table.specs.size(), rows);
     EXPECT_EQ(given.model.own_laws.size(), 1u);
   };
@@ -151,15 +150,12 @@ TEST_F(FittedLaw, RecoversWhatWasPlanted) {
 TEST_F(FittedLaw, StandsInTheFileByNameAndIsAskedForThere) {
   const auto json = ToJson(model_, {});
   EXPECT_EQ(json.at("force_laws").dump(), "[\"brake\"]");
-  const Result<FittedModel> stranger = FittedModelFromJson(json, "model.json");
-  ASSERT_FALSE(stranger.ok());
-  EXPECT_EQ(stranger.error().ToString(),
+  EXPECT_EQ(ProblemOf(FittedModelFromJson(json, "model.json")),
             "model.json: the model was fitted with the force law 'brake', which is not part of "
             "pushid; read it with a program that has that law and gives it to ReadFittedModel");
-  const Result<FittedModel> read = FittedModelFromJson(json, "model.json", {BrakeLaw()});
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().fit.parameters[brake_], model_.fit.parameters[brake_]);
-  EXPECT_EQ(ToJson(read.value(), {}).dump(), json.dump());
+  const FittedModel read = Unwrapped(FittedModelFromJson(json, "model.json", {BrakeLaw()}));
+  EXPECT_EQ(read.fit.parameters[brake_], model_.fit.parameters[brake_]);
+  EXPECT_EQ(ToJson(read, {}).dump(), json.dump());
 }
 
 TEST_F(FittedLaw, IsAColumnOfTheTrajectories) {

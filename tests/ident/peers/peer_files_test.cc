@@ -90,19 +90,16 @@ TEST_F(PeerFilesTest, MrtComesBackToTheLastBit) {
   (*file.settings)[kMrtSizeKey] = "small";
   AddTensors(RandomMrt(), &file.tensors);
   ASSERT_FALSE(WriteRestorationFile(Path("m"), file));
-  const auto peer = LoadPeer(Path("m"));
-  ASSERT_TRUE(peer.ok()) << peer.error().ToString();
-  EXPECT_EQ(peer.value()->name(), "mrt");
+  const auto peer = Unwrapped(LoadPeer(Path("m")));
+  EXPECT_EQ(peer->name(), "mrt");
   const std::vector<BodyMotion> group = WalkingGroup(2, 20);
-  EXPECT_EQ(peer.value()->Continue(group, 50)[1][49],
-            MrtPeer(RandomMrt()).Continue(group, 50)[1][49]);
+  EXPECT_EQ(peer->Continue(group, 50)[1][49], MrtPeer(RandomMrt()).Continue(group, 50)[1][49]);
 }
 
 TEST_F(PeerFilesTest, WhatIsWrongIsNamed) {
   const auto error = [this](const RestorationFile& file) {
     EXPECT_FALSE(WriteRestorationFile(Path("p"), file));
-    const auto peer = LoadPeer(Path("p"));
-    return peer.ok() ? "no error" : peer.error().ToString();
+    return ProblemOf(LoadPeer(Path("p")));
   };
   RestorationFile file;
   EXPECT_TRUE(Contains(error(file),
@@ -115,9 +112,7 @@ TEST_F(PeerFilesTest, WhatIsWrongIsNamed) {
   EXPECT_TRUE(Contains(error(file), "size is 'large'; it must be small or published"));
   (*file.settings)[kMrtSizeKey] = "published";
   EXPECT_TRUE(Contains(error(file), "local_token.weights is 64 x 66, not 128 x 66"));
-  const auto nowhere = LoadPeer(Path("nowhere"));
-  ASSERT_FALSE(nowhere.ok());
-  EXPECT_TRUE(Contains(nowhere.error().ToString(), "--peer"));
+  EXPECT_TRUE(Contains(ProblemOf(LoadPeer(Path("nowhere"))), "--peer"));
 }
 
 }  // namespace

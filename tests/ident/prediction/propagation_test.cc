@@ -200,10 +200,9 @@ TEST(Propagation, CrossValidationAveragesOverRepeats) {
     recordings.push_back(Row({0.0, 0.5, 1.0}, {5, 20 + i, -1}, 60));
     recordings.back().id = "row " + std::to_string(i);
   }
-  const auto folds = MakeFolds(recordings, FoldScheme::kStratified, 2, 3, 1);
-  ASSERT_TRUE(folds.ok());
+  const auto folds = Unwrapped(MakeFolds(recordings, FoldScheme::kStratified, 2, 3, 1));
   const CrossValidation still =
-      CrossValidate(recordings, folds.value(), BaselinePredictor(kBaselines[0]), 1);
+      CrossValidate(recordings, folds, BaselinePredictor(kBaselines[0]), 1);
   EXPECT_DOUBLE_EQ(still.summary.propagation.movers, 8.0);  // not times three
   EXPECT_DOUBLE_EQ(still.summary.propagation.missed_movers, 8.0);
   EXPECT_DOUBLE_EQ(still.summary.propagation.bystanders, 4.0);
@@ -239,9 +238,8 @@ TEST(Propagation, RealRecordings) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
   LoadOptions load;
   load.setting = "groups";
-  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", load);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  std::vector<PendulumRecording> recordings = AsPendulums(loaded.value());
+  const auto loaded = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", load));
+  std::vector<PendulumRecording> recordings = AsPendulums(loaded);
   std::vector<RecordingScore> scores;
   for (const PendulumRecording& r : recordings) scores.push_back(ScoreHip(r, r.hip));
   const PropagationSummary summary = Summarize(recordings, scores).propagation;

@@ -283,10 +283,9 @@ TEST(Behaviour, AFitThatIsNotHeldToSettleSaysSo) {
   SyntheticOptions study;
   study.parameters[kMu] = -50.0;
   study.frames = 50;
-  const auto made = MakeSyntheticRecordings(study);
-  ASSERT_TRUE(made.ok()) << made.error().ToString();
+  const auto made = Unwrapped(MakeSyntheticRecordings(study));
   std::vector<PendulumRecording> recordings;
-  for (const Recording& r : Recordings(made.value())) {
+  for (const Recording& r : Recordings(made)) {
     recordings.push_back(MakePendulumRecording(r, SkeletonMapping::kExact));
   }
   FitOptions options;
@@ -311,8 +310,7 @@ TEST(Behaviour, PlainPdOnRealRecordingsIsSelfPropelling) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
   LoadOptions load;
   load.setting = "single";
-  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", load);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
+  const auto loaded = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", load));
   const FitOptions preset = MakePreset("ldp").value();
   FitOptions options;
   options.model = preset.model;
@@ -320,7 +318,7 @@ TEST(Behaviour, PlainPdOnRealRecordingsIsSelfPropelling) {
   options.model.gain_scaling = GainScaling::kMass;
   options.table = preset.table;
   options.table[kMuY].free = true;
-  const FitResult result = Fit(AsPendulums(loaded.value()), options);
+  const FitResult result = Fit(AsPendulums(loaded), options);
   ASSERT_TRUE(result.ok());
   EXPECT_TRUE(result.behaviour.self_propelling);
   EXPECT_LT(result.derived[0].value, 0.0) << result.derived[0].name;

@@ -20,13 +20,12 @@ class FoldFileTest : public TempDirTest {
 };
 
 TEST_F(FoldFileTest, HoldsOutWhatItSays) {
-  const auto folds = Read(
-      R"({"folds": [{"name": "x", "held_out": ["c", "a", "c"]}, {"name": "y", "held_out": ["c"]}]})");
-  ASSERT_TRUE(folds.ok()) << folds.error().ToString();
-  ASSERT_EQ(folds.value().size(), 2u);
-  EXPECT_EQ(folds.value()[0].name, "x");
-  EXPECT_EQ(folds.value()[0].held_out, (std::vector<int>{0, 2}));
-  EXPECT_EQ(folds.value()[1].held_out, std::vector<int>{2});
+  const auto folds = Unwrapped(Read(
+      R"({"folds": [{"name": "x", "held_out": ["c", "a", "c"]}, {"name": "y", "held_out": ["c"]}]})"));
+  ASSERT_EQ(folds.size(), 2u);
+  EXPECT_EQ(folds[0].name, "x");
+  EXPECT_EQ(folds[0].held_out, (std::vector<int>{0, 2}));
+  EXPECT_EQ(folds[1].held_out, std::vector<int>{2});
 }
 
 TEST_F(FoldFileTest, SaysWhatIsNoFold) {
@@ -49,9 +48,7 @@ TEST_F(FoldFileTest, SaysWhatIsNoFold) {
        "folds.json:2:1: there is a fold 'x' before"},
   };
   for (const Case& one : cases) {
-    const auto folds = Read(one.text);
-    ASSERT_FALSE(folds.ok()) << one.text;
-    EXPECT_TRUE(Contains(folds.error().ToString(), one.says));
+    EXPECT_TRUE(Contains(ProblemOf(Read(one.text)), one.says));
   }
 }
 

@@ -55,16 +55,15 @@ TEST(PushFromSensor, KeepsTheImpulseAtAnySamplingRate) {
     const SensorRecord record = HalfSine(step);
     SensorPushOptions options;
     options.direction = {3.0, -4.0, 0.0};
-    const Result<Push> push = PushFromSensor(record, recording, options);
-    ASSERT_TRUE(push.ok()) << push.error().ToString();
+    const Push push = Unwrapped(PushFromSensor(record, recording, options));
     const double expected = TrapezoidImpulse(record).x();
-    const Vector4<double> impulse = Impulse(push.value(), recording.scene.dt);
+    const Vector4<double> impulse = Impulse(push, recording.scene.dt);
     EXPECT_NEAR(impulse[0], 0.6 * expected, 1e-11);
     EXPECT_NEAR(impulse[1], -0.8 * expected, 1e-11);
     if (step < 0.01) {
       EXPECT_NEAR(expected, 300.0 * 0.11 * 2.0 / M_PI, 0.05);
-      EXPECT_EQ(push.value().start_frame, 13);  // 0.213 s, nearest to its 12.8
-      EXPECT_EQ(push.value().EndFrame(), 20);   // 0.323 s
+      EXPECT_EQ(push.start_frame, 13);  // 0.213 s, nearest to its 12.8
+      EXPECT_EQ(push.EndFrame(), 20);   // 0.323 s
     }
   }
 }
@@ -86,14 +85,13 @@ TEST(PushFromSensor, PositionsAreOfSecondOrder) {
           MakeSyntheticRecordings(options).value()[0].recording, SkeletonMapping::kExact);
       SensorPushOptions given;
       given.frame_zero_time_s = -0.005 * shift;
-      const Result<Push> push = PushFromSensor(record, recording, given);
-      ASSERT_TRUE(push.ok()) << push.error().ToString();
+      const Push push = Unwrapped(PushFromSensor(record, recording, given));
       const double dt = recording.scene.dt;
       double x = 0.0, v = 0.0;
       for (int t = 0; t + 1 < recording.num_frames(); ++t) {
-        const int row = t - push.value().start_frame;
-        const bool pushed = row >= 0 && row < static_cast<int>(push.value().force.size());
-        v += pushed ? dt * push.value().force[row][0] / kMass : 0.0;
+        const int row = t - push.start_frame;
+        const bool pushed = row >= 0 && row < static_cast<int>(push.force.size());
+        v += pushed ? dt * push.force[row][0] / kMass : 0.0;
         x += dt * v;
       }
       const double end = (recording.num_frames() - 1) * dt;
@@ -121,13 +119,12 @@ TEST(PushFromSensor, RowsAreTheForceAtItsPoint) {
           body.cart_height + 1.25 * (HipPosition(body, start).z() - body.cart_height);
       options.height_fraction = 0.0;
     }
-    const Result<Push> push = PushFromSensor(record, recording, options);
-    ASSERT_TRUE(push.ok()) << push.error().ToString();
-    for (int i = 0; i < static_cast<int>(push.value().force.size()); ++i) {
-      const Vector4<double>& row = push.value().force[i];
+    const Push push = Unwrapped(PushFromSensor(record, recording, options));
+    for (int i = 0; i < static_cast<int>(push.force.size()); ++i) {
+      const Vector4<double>& row = push.force[i];
       const double size = row[0] / 0.6;
       const Vector4<double> expected =
-          GeneralizedForce<double>(body, recording.states[0][push.value().start_frame + i].q,
+          GeneralizedForce<double>(body, recording.states[0][push.start_frame + i].q,
                                    {0.6 * size, -0.3 * size, 0.2 * size}, 1.25);
       EXPECT_LT((row - expected).norm(), 1e-9) << i;
     }
@@ -142,12 +139,11 @@ TEST(PushFromSensor, ClockAndIdlingAreHonoured) {
   options.frame_zero_time_s = 1000.1;
   for (int i = 0; i < record.num_samples(); ++i) record.force[i].x() += i % 2 ? 4.0 : -2.0;
   options.idle_force = 5.0;
-  const Result<Push> push = PushFromSensor(record, recording, options);
-  ASSERT_TRUE(push.ok()) << push.error().ToString();
+  const Push push = Unwrapped(PushFromSensor(record, recording, options));
   // 0.113 s, nearest to frame 7.
-  EXPECT_EQ(push.value().start_frame, 7);
-  EXPECT_EQ(push.value().EndFrame(), 14);
-  EXPECT_EQ(push.value().file, "sensor.csv");
+  EXPECT_EQ(push.start_frame, 7);
+  EXPECT_EQ(push.EndFrame(), 14);
+  EXPECT_EQ(push.file, "sensor.csv");
 }
 
 // Noise before and after it is no push, whose end what follows (constant velocity, tail) begins at.
@@ -156,18 +152,16 @@ TEST(PushFromSensor, NoiseIsNoPush) {
   SensorRecord record = HalfSine(1e-3);
   const Result<Push> clean = PushFromSensor(record, recording, {});
   for (int i = 0; i < record.num_samples(); ++i) record.force[i].x() += 0.5 * std::sin(0.7 * i * i);
-  const Result<Push> noisy = PushFromSensor(record, recording, {});
-  ASSERT_TRUE(noisy.ok()) << noisy.error().ToString();
-  EXPECT_NEAR(noisy.value().start_frame, clean.value().start_frame, 1);
-  EXPECT_NEAR(noisy.value().EndFrame(), clean.value().EndFrame(), 1);
+  const Push noisy = Unwrapped(PushFromSensor(record, recording, {}));
+  EXPECT_NEAR(noisy.start_frame, clean.value().start_frame, 1);
+  EXPECT_NEAR(noisy.EndFrame(), clean.value().EndFrame(), 1);
 }
 
 TEST(PushFromSensor, UnsoundInputsAreErrors) {
   const PendulumRecording recording = StandingPerson();
   const SensorRecord record = HalfSine(1e-3);
   const auto problem = [&](const SensorRecord& r, const SensorPushOptions& options) {
-    const Result<Push> push = PushFromSensor(r, recording, options);
-    return push.ok() ? "no error" : push.error().ToString();
+    return ProblemOf(PushFromSensor(r, recording, options));
   };
   SensorPushOptions options;
   EXPECT_EQ(problem(record, options), "no error");

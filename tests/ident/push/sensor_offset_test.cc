@@ -29,9 +29,8 @@ PushedRecording MakePushed(double shift_s, double noise_m, uint64_t seed) {
   options.direction_sigma_rad = 0.0;
   options.seed = 4;
   options.noise_seed = seed;
-  const auto made = MakeSyntheticRecordings(options);
-  EXPECT_TRUE(made.ok()) << made.error().ToString();
-  const Recording& recording = made.value()[0].recording;
+  const auto made = Unwrapped(MakeSyntheticRecordings(options));
+  const Recording& recording = made[0].recording;
   PushedRecording pushed;
   pushed.recording = MakePendulumRecording(recording, SkeletonMapping::kExact);
   const Push& push = recording.pushes[0];
@@ -52,11 +51,10 @@ PushedRecording MakePushed(double shift_s, double noise_m, uint64_t seed) {
 TEST(SensorOffsetTest, FoundWithoutNoise) {
   for (double shift : {0.0, 0.1234, -0.2}) {
     const PushedRecording pushed = MakePushed(shift, 0.0, 1);
-    const auto offset = EstimateSensorOffset({pushed.force}, pushed.recording, 0, 0.5);
-    ASSERT_TRUE(offset.ok()) << offset.error().ToString();
+    const auto offset = Unwrapped(EstimateSensorOffset({pushed.force}, pushed.recording, 0, 0.5));
     // Half a frame is what semi-implicit steps leave open.
-    EXPECT_NEAR(offset.value().offset_s, shift, 0.6 / 60.0);
-    EXPECT_LT(offset.value().rms_m, 2e-3);
+    EXPECT_NEAR(offset.offset_s, shift, 0.6 / 60.0);
+    EXPECT_LT(offset.rms_m, 2e-3);
   }
 }
 
@@ -81,10 +79,9 @@ TEST(SensorOffsetTest, TheErrorIsThatOfTheNoise) {
   constexpr int kSeeds = 60;
   for (int seed = 1; seed <= kSeeds; ++seed) {
     const PushedRecording pushed = MakePushed(0.1, 0.002, seed);
-    const auto offset = EstimateSensorOffset({pushed.force}, pushed.recording, 0, 0.5);
-    ASSERT_TRUE(offset.ok()) << offset.error().ToString();
-    square += std::pow(offset.value().offset_s - clean, 2) / kSeeds;
-    stated += offset.value().standard_error_s / kSeeds;
+    const auto offset = Unwrapped(EstimateSensorOffset({pushed.force}, pushed.recording, 0, 0.5));
+    square += std::pow(offset.offset_s - clean, 2) / kSeeds;
+    stated += offset.standard_error_s / kSeeds;
   }
   EXPECT_LT(std::sqrt(square), 0.01);
   EXPECT_GT(stated, 0.5 * std::sqrt(square));
@@ -103,8 +100,7 @@ TEST(SensorOffsetTest, TwoSensorsShareTheClock) {
 TEST(SensorOffsetTest, Errors) {
   PushedRecording pushed = MakePushed(0.3, 0.0, 1);
   const auto message = [&](int person, double range) {
-    const auto offset = EstimateSensorOffset({pushed.force}, pushed.recording, person, range);
-    return offset.ok() ? std::string("no error") : offset.error().ToString();
+    return ProblemOf(EstimateSensorOffset({pushed.force}, pushed.recording, person, range));
   };
   EXPECT_TRUE(Contains(message(0, 0.1), "do not fit together within 0.1 s"));
   EXPECT_TRUE(Contains(message(1, 0.5), "there is no person 1"));

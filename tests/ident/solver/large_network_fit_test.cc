@@ -9,6 +9,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/solver/network_training.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -55,10 +56,8 @@ struct Planted {
 
 double CostOf(const LargeNetworkFit& fit, const std::vector<AdjointRecording>& recordings,
               const std::vector<double>& weights) {
-  auto adjoint = AdjointGradient::Create(recordings, fit.model, fit.map, fit.sigmas);
-  EXPECT_TRUE(adjoint.ok());
-  const AdjointCost cost =
-      adjoint.value().Evaluate(fit.shared.data(), weights.data(), nullptr, nullptr);
+  auto adjoint = Unwrapped(AdjointGradient::Create(recordings, fit.model, fit.map, fit.sigmas));
+  const AdjointCost cost = adjoint.Evaluate(fit.shared.data(), weights.data(), nullptr, nullptr);
   EXPECT_TRUE(cost.ok());
   return cost.cost;
 }
@@ -70,9 +69,7 @@ TEST(LargeNetworkFit, RecoversWhatAPlantedNetworkDoes) {
   fit.held_out = planted.Some(4, 5);
   fit.options.weight_sigma = 100.0;
   fit.options.max_iterations = 300;
-  const auto solution = FitLargeNetwork(fit);
-  ASSERT_TRUE(solution.ok()) << solution.error().ToString();
-  const LargeNetworkSolution& s = solution.value();
+  const LargeNetworkSolution s = Unwrapped(FitLargeNetwork(fit));
   const std::vector<AdjointRecording> unseen = planted.Some(5, 6);
   const double without = CostOf(fit, unseen, fit.model.learned->weights);
   const double with = CostOf(fit, unseen, s.weights);
@@ -127,9 +124,7 @@ TEST(LargeNetworkFit, AdamRecoversWhatAPlantedNetworkDoes) {
   fit.options.optimizer = NetworkOptimizer::kAdam;
   fit.options.rate = 1e-2;
   fit.options.max_iterations = 150;
-  const auto solution = FitLargeNetwork(fit);
-  ASSERT_TRUE(solution.ok()) << solution.error().ToString();
-  const LargeNetworkSolution& s = solution.value();
+  const LargeNetworkSolution s = Unwrapped(FitLargeNetwork(fit));
   EXPECT_EQ(s.trace.size(), 151u);
   EXPECT_EQ(s.gradients, 151 * 3) << "twenty recordings, eight at a time";
   EXPECT_NEAR(s.trace.front().training_cost, CostOf(fit, fit.training, fit.model.learned->weights),
@@ -182,9 +177,7 @@ TEST(LargeNetworkFit, FitsSharedParametersToo) {
   fit.options.fit_shared = true;
   fit.options.max_iterations = 300;
   fit.options.function_tolerance = 1e-10;
-  const auto solution = FitLargeNetwork(fit);
-  ASSERT_TRUE(solution.ok()) << solution.error().ToString();
-  const LargeNetworkSolution& s = solution.value();
+  const LargeNetworkSolution s = Unwrapped(FitLargeNetwork(fit));
   EXPECT_LT(s.final_cost, 1e-3 * s.initial_cost);
   EXPECT_NEAR(s.shared[0], std::log(mu), 0.3 * std::log(2.0));
   EXPECT_NEAR(s.shared[1], ax, 0.3 * std::abs(ax));
@@ -220,12 +213,11 @@ TEST(LargeNetworkFit, HoldsAFallToTheFramesBefore) {
   LargeNetworkFit fit = planted.Fit(1);
   fit.training = planted.Some(0, 1);
   fit.options.max_iterations = 10;
-  const auto solution = FitLargeNetwork(fit);
-  ASSERT_TRUE(solution.ok()) << solution.error().ToString();
-  ASSERT_EQ(solution.value().shortened.size(), 1u);
-  EXPECT_EQ(solution.value().shortened[0].training, 1);
-  EXPECT_GT(solution.value().shortened[0].status.frame, 1);
-  EXPECT_LT(solution.value().final_cost, solution.value().initial_cost);
+  const auto solution = Unwrapped(FitLargeNetwork(fit));
+  ASSERT_EQ(solution.shortened.size(), 1u);
+  EXPECT_EQ(solution.shortened[0].training, 1);
+  EXPECT_GT(solution.shortened[0].status.frame, 1);
+  EXPECT_LT(solution.final_cost, solution.initial_cost);
 }
 
 TEST(LargeNetworkFit, SaysWhatIsMissing) {
@@ -235,16 +227,16 @@ TEST(LargeNetworkFit, SaysWhatIsMissing) {
     const auto solution = FitLargeNetwork(fit);
     return solution.ok() ? "" : solution.error().ToString();
   };
-  EXPECT_NE(complaint().find("no recordings"), std::string::npos);
+  EXPECT_TRUE(Contains(complaint(), "no recordings"));
   fit.training = planted.Some(0, 1);
   fit.map.fitted = {{kMu, Transform::kLog}};
-  EXPECT_NE(complaint().find("each of 1 shared"), std::string::npos);
+  EXPECT_TRUE(Contains(complaint(), "each of 1 shared"));
   fit.map.fitted.clear();
   fit.model.learned =
       std::make_shared<const LearnedTerms>(LearnedTerms{kShape, std::vector<double>(3)});
-  EXPECT_NE(complaint().find("but 3 are given"), std::string::npos);
+  EXPECT_TRUE(Contains(complaint(), "but 3 are given"));
   fit.model.learned = nullptr;
-  EXPECT_NE(complaint().find("no network"), std::string::npos);
+  EXPECT_TRUE(Contains(complaint(), "no network"));
 }
 
 // The core calls what a program links, and says so where it links nothing.
@@ -255,7 +247,7 @@ TEST(LargeNetworkFit, IsLinkedByProgramsThatNeedIt) {
   const auto without = TrainLargeNetwork({}, {}, {}, nullptr);
   hook = linked;
   ASSERT_FALSE(without.ok());
-  EXPECT_NE(without.error().ToString().find("pushid_large_networks"), std::string::npos);
+  EXPECT_TRUE(Contains(without.error().ToString(), "pushid_large_networks"));
 }
 
 }  // namespace

@@ -66,9 +66,8 @@ TEST(Starts, RealRecordingsOneOptimum) {
   if (RecordingsRoot().empty()) GTEST_SKIP() << kNoRecordings;
   LoadOptions load;
   load.setting = "single";
-  const auto loaded = LoadRecordings(RecordingsRoot() + "/manifest.json", load);
-  ASSERT_TRUE(loaded.ok()) << loaded.error().ToString();
-  const std::vector<PendulumRecording> recordings = AsPendulums(loaded.value());
+  const auto loaded = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", load));
+  const std::vector<PendulumRecording> recordings = AsPendulums(loaded);
   const FitOptions preset = HoldDamping(MakePreset("tail").value());
   FitOptions options;
   options.model = preset.model;

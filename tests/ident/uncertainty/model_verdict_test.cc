@@ -9,6 +9,7 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/assumptions.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -206,7 +207,7 @@ TEST(ModelVerdict, SaysWhyNothingWasChecked) {
   SyntheticOptions study = TinyStudy();
   const FitResult result = FitOf(MakePendulums(study));  // two people
   EXPECT_FALSE(result.verdict.checked());
-  EXPECT_NE(result.verdict.not_checked.find("2 people cannot tell"), std::string::npos);
+  EXPECT_TRUE(Contains(result.verdict.not_checked, "2 people cannot tell"));
 }
 
 }  // namespace

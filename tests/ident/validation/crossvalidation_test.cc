@@ -40,16 +40,15 @@ TEST(Folds, StratifiedHoldOutEachOncePerRepeat) {
   const std::vector<PendulumRecording> recordings = Labels();
   const int total = static_cast<int>(recordings.size());
   constexpr int kFolds = 4, kRepeats = 5;
-  const auto folds = MakeFolds(recordings, FoldScheme::kStratified, kFolds, kRepeats, 3);
-  ASSERT_TRUE(folds.ok());
-  ASSERT_EQ(folds.value().size(), static_cast<size_t>(kFolds * kRepeats));
+  const auto folds = Unwrapped(MakeFolds(recordings, FoldScheme::kStratified, kFolds, kRepeats, 3));
+  ASSERT_EQ(folds.size(), static_cast<size_t>(kFolds * kRepeats));
   std::map<std::pair<std::string, std::string>, int> strata;
   for (const PendulumRecording& r : recordings) ++strata[{r.subject_ids[0], r.labels.magnitude()}];
   std::set<std::vector<int>> distinct;
   for (int repeat = 0; repeat < kRepeats; ++repeat) {
     std::vector<int> held(total, 0);
     for (int f = 0; f < kFolds; ++f) {
-      const Fold& fold = folds.value()[repeat * kFolds + f];
+      const Fold& fold = folds[repeat * kFolds + f];
       distinct.insert(fold.held_out);
       EXPECT_EQ(fold.name,
                 "repeat " + std::to_string(repeat + 1) + " fold " + std::to_string(f + 1));
@@ -88,9 +87,8 @@ TEST(Folds, SeedDecides) {
 TEST(Folds, CopiesAreHeldOutTogether) {
   std::vector<PendulumRecording> recordings = Labels();
   recordings[3].content_hash = recordings[8].content_hash = "same";
-  const auto folds = MakeFolds(recordings, FoldScheme::kStratified, 4, 2, 1);
-  ASSERT_TRUE(folds.ok());
-  for (const Fold& fold : folds.value()) {
+  const auto folds = Unwrapped(MakeFolds(recordings, FoldScheme::kStratified, 4, 2, 1));
+  for (const Fold& fold : folds) {
     const auto holds = [&fold](int i) {
       return std::binary_search(fold.held_out.begin(), fold.held_out.end(), i);
     };
@@ -105,30 +103,26 @@ TEST(Folds, InterleavedCountWithinTheSetting) {
   for (size_t i = 0; i < recordings.size(); ++i) {
     recordings[i].labels.Set(kSettingLabel, i % 2 == 0 ? "row" : "group");
   }
-  const auto folds = MakeFolds(recordings, FoldScheme::kInterleaved, 3, 1, 1);
-  ASSERT_TRUE(folds.ok());
-  ASSERT_EQ(folds.value().size(), 3u);
-  EXPECT_EQ(folds.value()[0].held_out, (std::vector<int>{0, 1, 6, 7}));
-  EXPECT_EQ(folds.value()[1].held_out, (std::vector<int>{2, 3, 8}));
-  EXPECT_EQ(folds.value()[2].held_out, (std::vector<int>{4, 5}));
+  const auto folds = Unwrapped(MakeFolds(recordings, FoldScheme::kInterleaved, 3, 1, 1));
+  ASSERT_EQ(folds.size(), 3u);
+  EXPECT_EQ(folds[0].held_out, (std::vector<int>{0, 1, 6, 7}));
+  EXPECT_EQ(folds[1].held_out, (std::vector<int>{2, 3, 8}));
+  EXPECT_EQ(folds[2].held_out, (std::vector<int>{4, 5}));
   recordings.resize(2);
-  const auto none = MakeFolds(recordings, FoldScheme::kInterleaved, 2, 1, 1);
-  ASSERT_FALSE(none.ok());
-  EXPECT_NE(none.error().message.find("no setting has two"), std::string::npos);
+  EXPECT_TRUE(Contains(ProblemOf(MakeFolds(recordings, FoldScheme::kInterleaved, 2, 1, 1)),
+                       "no setting has two"));
 }
 
 TEST(Folds, SubjectsAndStrongPushes) {
   const std::vector<PendulumRecording> recordings = Labels();
-  const auto subjects = MakeFolds(recordings, FoldScheme::kSubject, 0, 0, 0);
-  ASSERT_TRUE(subjects.ok());
-  ASSERT_EQ(subjects.value().size(), 3u);
-  EXPECT_EQ(subjects.value()[0].name, "without S0");
-  EXPECT_EQ(subjects.value()[0].held_out.size(), 12u);
-  const auto strong = MakeFolds(recordings, FoldScheme::kStrong, 0, 0, 0);
-  ASSERT_TRUE(strong.ok());
-  ASSERT_EQ(strong.value().size(), 1u);
-  EXPECT_EQ(strong.value()[0].held_out.size(), 7u);
-  for (int i : strong.value()[0].held_out) EXPECT_EQ(recordings[i].labels.magnitude(), "strong");
+  const auto subjects = Unwrapped(MakeFolds(recordings, FoldScheme::kSubject, 0, 0, 0));
+  ASSERT_EQ(subjects.size(), 3u);
+  EXPECT_EQ(subjects[0].name, "without S0");
+  EXPECT_EQ(subjects[0].held_out.size(), 12u);
+  const auto strong = Unwrapped(MakeFolds(recordings, FoldScheme::kStrong, 0, 0, 0));
+  ASSERT_EQ(strong.size(), 1u);
+  EXPECT_EQ(strong[0].held_out.size(), 7u);
+  for (int i : strong[0].held_out) EXPECT_EQ(recordings[i].labels.magnitude(), "strong");
 }
 
 TEST(Folds, ErrorsSayWhatIsMissing) {

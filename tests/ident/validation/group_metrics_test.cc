@@ -143,14 +143,12 @@ class RealGroupsTest : public ::testing::Test {
     LoadOptions load;
     load.setting = "groups";
     load.keep_all_joints = true;
-    const auto recordings = LoadRecordings(RecordingsRoot() + "/manifest.json", load);
-    ASSERT_TRUE(recordings.ok()) << recordings.error().ToString();
+    const auto recordings = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", load));
     std::map<std::string, int> position;
-    for (const Recording& recording : recordings.value()) {
-      const auto body = MakeBodyRecording(recording, SkeletonMapping::kExact);
-      ASSERT_TRUE(body.ok()) << body.error().ToString();
+    for (const Recording& recording : recordings) {
+      const auto body = Unwrapped(MakeBodyRecording(recording, SkeletonMapping::kExact));
       const bool in_first = position[recording.labels.setting()]++ % 4 == 0;
-      (in_first ? first_ : others_).push_back({body.value().bodies});
+      (in_first ? first_ : others_).push_back({body.bodies});
     }
     ASSERT_EQ(first_.size(), 14u);
     ASSERT_EQ(others_.size(), 35u);

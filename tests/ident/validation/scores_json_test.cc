@@ -43,14 +43,13 @@ ScoreSummary SampleScores() {
 
 TEST(ScoresJsonTest, ThereAndBack) {
   const nlohmann::ordered_json json = ToJson(SampleScores(), true);
-  const Result<ScoreSummary> read = ScoresFromJson(json, "scores.json");
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(ToJson(read.value(), true), json);
-  EXPECT_EQ(read.value().mean.hip_fde, 1.0 / 7.0);
-  EXPECT_EQ(read.value().mean.error.hip_ade, 0.1);
-  EXPECT_EQ(read.value().recordings[2].failure, SampleScores().recordings[2].failure);
-  EXPECT_EQ(read.value().propagation.figures[kOnsetError].error, 0.5);
-  EXPECT_FALSE(read.value().propagation.figures[kOnsetBias].known());
+  const ScoreSummary read = Unwrapped(ScoresFromJson(json, "scores.json"));
+  EXPECT_EQ(ToJson(read, true), json);
+  EXPECT_EQ(read.mean.hip_fde, 1.0 / 7.0);
+  EXPECT_EQ(read.mean.error.hip_ade, 0.1);
+  EXPECT_EQ(read.recordings[2].failure, SampleScores().recordings[2].failure);
+  EXPECT_EQ(read.propagation.figures[kOnsetError].error, 0.5);
+  EXPECT_FALSE(read.propagation.figures[kOnsetBias].known());
   EXPECT_EQ(json["without_label"]["setting"], 1);
 }
 
@@ -72,9 +71,8 @@ TEST(ScoresJsonTest, WhenPeopleStep) {
   EXPECT_TRUE(people[1]["lift_off_s"].is_null());
   EXPECT_FALSE(people[2].contains("lift_off_s"));  // a model without step states
   EXPECT_EQ(json["who_steps"]["lift_off"]["median_error_s"], 0.25);
-  const Result<ScoreSummary> read = ScoresFromJson(json, "scores.json");
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(ToJson(read.value(), false)["who_steps"], json["who_steps"]);
+  const ScoreSummary read = Unwrapped(ScoresFromJson(json, "scores.json"));
+  EXPECT_EQ(ToJson(read, false)["who_steps"], json["who_steps"]);
 }
 
 // A row in the table of metrics is all that files need.
@@ -104,11 +102,10 @@ TEST(ScoresJsonTest, FirstFramesComeBack) {
   EXPECT_EQ(json["mean"]["after_hipADE_m"], 0.12);
   EXPECT_EQ(json["mean"]["inside90_x_standard_error_share"], 0.04);
   EXPECT_EQ(json["recordings"][0]["effect"], 0.3);
-  const Result<ScoreSummary> read = ScoresFromJson(json, "scores.json");
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(ToJson(read.value(), false), ToJson(scores, false));
-  EXPECT_EQ(read.value().recordings[0].after_hip_ade, 0.12);
-  EXPECT_EQ(read.value().recordings[0].effect.error, 0.1);
+  const ScoreSummary read = Unwrapped(ScoresFromJson(json, "scores.json"));
+  EXPECT_EQ(ToJson(read, false), ToJson(scores, false));
+  EXPECT_EQ(read.recordings[0].after_hip_ade, 0.12);
+  EXPECT_EQ(read.recordings[0].effect.error, 0.1);
   EXPECT_EQ(MetricsText(scores.recordings[0], 2, 12),
             "hipADE 0.1 m, hipFDE 0.33 m, after hipADE 0.12 m");
 }
@@ -118,8 +115,7 @@ TEST(ScoresJsonTest, DamageIsNamed) {
     nlohmann::ordered_json json = ToJson(SampleScores(), true);
     json["mean"][key] = value;
     if (value.is_null()) json["mean"].erase(key);
-    const Result<ScoreSummary> read = ScoresFromJson(json, "scores.json");
-    return read.ok() ? std::string("no error") : read.error().ToString();
+    return ProblemOf(ScoresFromJson(json, "scores.json"));
   };
   EXPECT_TRUE(Contains(message("hipADE_m", nullptr), "scores.json: "));
   EXPECT_TRUE(Contains(message("hipADE_m", nullptr), "hipADE_m"));

@@ -3,6 +3,7 @@
 
 #include "models/peers/mrt_network.h"
 #include "tests/models/mrt_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -109,7 +110,7 @@ TEST(MrtTest, TensorsComeBackToTheLastBit) {
   EXPECT_EQ(MrtPeer(weights).Continue(group, 40)[0][39], MrtPeer(again).Continue(group, 40)[0][39]);
   TensorReader other(tensors);
   TakeMrt(MrtSize::kPublished, &other);
-  EXPECT_NE(other.problem().find("not 128 x 66"), std::string::npos) << other.problem();
+  EXPECT_TRUE(Contains(other.problem(), "not 128 x 66"));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "residuals/autodiff_force_law.h"
 #include "tests/residuals/adjoint/gradients.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -101,15 +102,14 @@ TEST_P(AdjointTwins, GradientEqualsForwardSensitivities) {
         const double tolerance = learned.mlp() ? regime.mlp : 1e-10;
         for (const VectorKernels* kernels : SupportedVectorKernels()) {
           SCOPED_TRACE(kernels->name);
-          auto adjoint = AdjointGradient::Create(recordings, options, map, {}, *kernels);
-          ASSERT_TRUE(adjoint.ok()) << adjoint.error().ToString();
-          const Gradient actual = ByAdjoint(&adjoint.value(), shared, weights);
+          auto adjoint = Unwrapped(AdjointGradient::Create(recordings, options, map, {}, *kernels));
+          const Gradient actual = ByAdjoint(&adjoint, shared, weights);
           // The kernels' exp and tanh differ from the library's in their last bits, and a rollout
           // carries that along: up to 4e-12 of the cost here.
           EXPECT_NEAR(actual.cost, expected.cost, 1e-11 * expected.cost);
           ExpectSameVector(actual.shared, expected.shared, tolerance, "parameter");
           ExpectSameVector(actual.weights, expected.weights, tolerance, "weight");
-          const Gradient again = ByAdjoint(&adjoint.value(), shared, weights);
+          const Gradient again = ByAdjoint(&adjoint, shared, weights);
           EXPECT_EQ(again.cost, actual.cost);
           EXPECT_EQ(again.shared, actual.shared);
           EXPECT_EQ(again.weights, actual.weights);
@@ -156,11 +156,10 @@ TEST(AdjointGradient, CountsTheFramesBeforeAFailure) {
     ASSERT_FALSE(expected[1].ok || expected[2].ok);
     ASSERT_TRUE(expected[0].ok && expected[3].ok);
     ASSERT_GT(expected[1].frame, 9);
-    auto adjoint = AdjointGradient::Create(recordings, options, map, {});
-    ASSERT_TRUE(adjoint.ok());
+    auto adjoint = Unwrapped(AdjointGradient::Create(recordings, options, map, {}));
     Gradient actual{0.0, std::vector<double>(shared.size()), std::vector<double>(weights.size())};
-    const AdjointCost cost = adjoint.value().Evaluate(shared.data(), weights.data(),
-                                                      actual.shared.data(), actual.weights.data());
+    const AdjointCost cost = adjoint.Evaluate(shared.data(), weights.data(), actual.shared.data(),
+                                              actual.weights.data());
     EXPECT_FALSE(cost.ok());
     for (size_t i = 0; i < made.size(); ++i) {
       EXPECT_EQ(cost.status[i].ok, expected[i].ok) << i;
@@ -219,13 +218,12 @@ TEST(AdjointGradient, KeepsHeldValues) {
   map.num_weights = options.learned->num_weights();
   std::vector<AdjointRecording> recordings = {{&made[0]}, {&made[1]}};
   for (AdjointRecording& r : recordings) r.held = {RecoveringParameters()};
-  auto adjoint = AdjointGradient::Create(recordings, options, map, {});
-  ASSERT_TRUE(adjoint.ok());
+  auto adjoint = Unwrapped(AdjointGradient::Create(recordings, options, map, {}));
   const double* weights = options.learned->weights.data();
-  const double cost = adjoint.value().Evaluate(nullptr, weights, nullptr, nullptr).cost;
+  const double cost = adjoint.Evaluate(nullptr, weights, nullptr, nullptr).cost;
   for (AdjointRecording& r : recordings) r.held[0].fill(NAN);
   recordings.clear();
-  EXPECT_EQ(adjoint.value().Evaluate(nullptr, weights, nullptr, nullptr).cost, cost);
+  EXPECT_EQ(adjoint.Evaluate(nullptr, weights, nullptr, nullptr).cost, cost);
 }
 
 // F_x = -M b tanh(xd / 0.2 m/s): a law of a user's own.
@@ -254,9 +252,8 @@ TEST(AdjointGradient, KnowsAUsersOwnLaw) {
   p[kFirstOwnParameter] = 0.3;
   const std::vector<double> shared = SharedBlock(map, p), weights = options.learned->weights;
   const Gradient expected = ByForwardSensitivities(recordings, options, map, shared, weights);
-  auto adjoint = AdjointGradient::Create(recordings, options, map, {});
-  ASSERT_TRUE(adjoint.ok()) << adjoint.error().ToString();
-  const Gradient actual = ByAdjoint(&adjoint.value(), shared, weights);
+  auto adjoint = Unwrapped(AdjointGradient::Create(recordings, options, map, {}));
+  const Gradient actual = ByAdjoint(&adjoint, shared, weights);
   EXPECT_NE(expected.shared[kFirstOwnParameter], 0.0);
   ExpectSameVector(actual.shared, expected.shared, 1e-10, "parameter");
   ExpectSameVector(actual.weights, expected.weights, 1e-10, "weight");
@@ -274,14 +271,13 @@ TEST(AdjointGradient, RefusesWhatItDoesNotKnow) {
     return created.ok() ? "" : created.error().ToString();
   };
   EXPECT_EQ(complaint(options, map), "");
-  EXPECT_NE(complaint({}, map).find("needs a network"), std::string::npos);
+  EXPECT_TRUE(Contains(complaint({}, map), "needs a network"));
   ModelOptions standing = options;
   standing.stance = Stance::kSteps;
-  EXPECT_NE(complaint(standing, map).find("feet that slide"), std::string::npos);
-  EXPECT_NE(complaint(options, EveryParameterMap({kMu})).find("deviations"), std::string::npos);
+  EXPECT_TRUE(Contains(complaint(standing, map), "feet that slide"));
+  EXPECT_TRUE(Contains(complaint(options, EveryParameterMap({kMu})), "deviations"));
   made[0].initial_velocity = InitialVelocity::kFree;
-  EXPECT_NE(complaint(options, map).find("'freely' has a free initial velocity"),
-            std::string::npos);
+  EXPECT_TRUE(Contains(complaint(options, map), "'freely' has a free initial velocity"));
 }
 
 }  // namespace
