@@ -22,7 +22,7 @@ constexpr HoldTolerance kToLocate = {1e-4, 1e-5}, kToClassify = {1e-3, 1e-4};
 
 // At the optimum without a demand that moved the fit, where its errors are told (uncertainty.h): at
 // the edge of a demand H says how little room is left, not what frames err.
-Covariance CovarianceWithoutDemand(FitProblem problem, const FitPoint& near) {
+Covariance CovarianceAtFreeOptimum(FitProblem problem, const FitPoint& near) {
   problem.set_settling_weight(0.0);
   return CovarianceAt(problem, Refit(problem, near).to);
 }
@@ -34,7 +34,7 @@ class Profiler {
         estimate_(estimate),
         uncertainty_(uncertainty),
         covariance_(CovarianceAt(problem, estimate)),
-        free_(uncertainty.settling.holds() ? CovarianceWithoutDemand(problem, estimate)
+        free_(uncertainty.settling.holds() ? CovarianceAtFreeOptimum(problem, estimate)
                                            : covariance_),
         cost_(Refit(problem, estimate).cost) {}
 
