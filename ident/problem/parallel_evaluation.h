@@ -23,9 +23,10 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   explicit ParallelEvaluation(int num_threads);
   ~ParallelEvaluation() override;
 
-  // What to add to the problem in place of `cost`, which acts on `blocks`.
+  // What to add to the problem in place of `cost`, which acts on `blocks`. of_recording: false for
+  // demands.
   std::unique_ptr<ceres::CostFunction> Wrap(std::unique_ptr<ceres::CostFunction> cost,
-                                            const std::vector<double*>& blocks);
+                                            const std::vector<double*>& blocks, bool of_recording);
   // Whose constant blocks need no derivatives.
   void set_problem(const ceres::Problem* problem) { problem_ = problem; }
   // Of rollouts that are wrapped.
@@ -34,6 +35,8 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   }
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
+  // Costs of demands alone: a trial that they refuse needs no recordings.
+  void PrepareDemands();
 
  private:
   class Prepared;
@@ -44,6 +47,7 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   const ceres::Problem* problem_ = nullptr;
   std::shared_ptr<const std::vector<SideBySide>> side_by_side_;
   std::vector<Prepared*> prepared_;  // owned by the problem
+  std::vector<Prepared*> demands_;   // those of no recording
   std::vector<Task> tasks_;          // of all of them; from the first evaluation on
 };
 
