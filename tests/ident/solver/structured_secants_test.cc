@@ -194,5 +194,73 @@ TEST(SummedCost, PointsThatCannotBeEvaluatedAreRefused) {
   }
 }
 
+// r = factor max(0, x - from), counting how often it is asked.
+class CountedHinge : public ceres::SizedCostFunction<1, 1> {
+ public:
+  CountedHinge(double from, double factor, int* asked)
+      : from_(from), factor_(factor), asked_(*asked) {}
+  bool Evaluate(double const* const* x, double* residual, double** jacobian) const override {
+    ++asked_;
+    const bool beyond = x[0][0] > from_;
+    *residual = beyond ? factor_ * (x[0][0] - from_) : 0.0;
+    if (jacobian != nullptr && jacobian[0] != nullptr) jacobian[0][0] = beyond ? factor_ : 0.0;
+    return true;
+  }
+
+ private:
+  const double from_, factor_;
+  int& asked_;
+};
+
+class SummedCostOfADemand : public ::testing::Test {
+ protected:
+  SummedCostOfADemand() {
+    built_.evaluation = std::make_unique<ParallelEvaluation>(1);
+    built_.problem = std::make_unique<ceres::Problem>();
+    built_.evaluation->set_problem(built_.problem.get());
+    built_.problem->AddParameterBlock(&x_, 1);
+    built_.parameter_blocks = {&x_};
+    built_.AddRollout(std::make_unique<CountedHinge>(-1.0, 1.0, &of_recording_), {&x_}, 0);
+    built_.AddRollout(std::make_unique<CountedHinge>(2.0, 100.0, &of_demand_), {&x_},
+                      FitProblem::kSettlingCluster);
+  }
+  // Twice the cost.
+  double Squares(const SummedCost& summed, double x, bool derivatives) const {
+    double residuals[2], jacobian[2];
+    double* jacobians[] = {jacobian};
+    const double* const blocks[] = {&x};
+    EXPECT_TRUE(summed.Evaluate(blocks, residuals, derivatives ? jacobians : nullptr));
+    return residuals[0] * residuals[0] + residuals[1] * residuals[1];
+  }
+
+  double x_ = 1.0;
+  int of_recording_ = 0, of_demand_ = 0;
+  FitProblem::Built built_;
+};
+
+TEST_F(SummedCostOfADemand, TrialsThatItRefusesAskNoRecording) {
+  const SummedCost summed(&built_, StructuredSecants(true), {});
+  EXPECT_DOUBLE_EQ(Squares(summed, 1.0, true), 4.0);
+  EXPECT_EQ(of_recording_, 1);
+  EXPECT_DOUBLE_EQ(Squares(summed, 3.0, false), 1e4) << "that of the demand alone";
+  EXPECT_EQ(of_recording_, 1);
+  EXPECT_DOUBLE_EQ(Squares(summed, 0.5, false), 2.25);
+  EXPECT_EQ(of_recording_, 2);
+  EXPECT_EQ(of_demand_, 3) << "once a point";
+}
+
+TEST_F(SummedCostOfADemand, SumsThatAreKnownAskNoRecording) {
+  const RecordingSums known{Eigen::VectorXd::Constant(1, 1.0),
+                            4.0,
+                            {MatrixXd::Constant(1, 1, 1.0), VectorXd::Constant(1, 2.0)}};
+  const SummedCost summed(&built_, StructuredSecants(true), known);
+  EXPECT_DOUBLE_EQ(Squares(summed, 1.0, true), 4.0);
+  EXPECT_EQ(of_recording_, 0);
+  EXPECT_DOUBLE_EQ(Squares(summed, 2.5, true), 3.5 * 3.5 + 50.0 * 50.0);
+  EXPECT_EQ(of_recording_, 1);
+  EXPECT_EQ(summed.recordings().at[0], 2.5);
+  EXPECT_DOUBLE_EQ(summed.recordings().squares, 3.5 * 3.5);
+}
+
 }  // namespace
 }  // namespace pushid
