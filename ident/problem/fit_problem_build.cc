@@ -14,7 +14,7 @@ void FitProblem::Built::Add(std::unique_ptr<ceres::CostFunction> cost,
 void FitProblem::Built::AddRollout(std::unique_ptr<ceres::CostFunction> cost,
                                    const std::vector<double*>& on, int cluster) {
   const ceres::CostFunction* const inside = cost.get();
-  Add(evaluation->Wrap(std::move(cost), on, cluster >= 0), on, cluster);
+  Add(evaluation->Wrap(std::move(cost), on), on, cluster);
   blocks.back().cost = inside;
 }
 

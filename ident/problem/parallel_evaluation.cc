@@ -92,11 +92,9 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
 };
 
 std::unique_ptr<ceres::CostFunction> ParallelEvaluation::Wrap(
-    std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& blocks,
-    bool of_recording) {
+    std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& blocks) {
   auto prepared = std::make_unique<Prepared>(std::move(cost), blocks);
   prepared_.push_back(prepared.get());
-  if (!of_recording) demands_.push_back(prepared.get());
   return prepared;
 }
 
@@ -143,11 +141,6 @@ void ParallelEvaluation::SetTasks() {
     }
     tasks_.push_back(std::move(task));
   }
-}
-
-void ParallelEvaluation::PrepareDemands() {
-  ParallelFor(static_cast<int>(demands_.size()), num_threads_,
-              [&](int i) { demands_[i]->Prepare(false, *problem_); });
 }
 
 void ParallelEvaluation::PrepareForEvaluation(bool evaluate_jacobians, bool) {

@@ -23,10 +23,9 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   explicit ParallelEvaluation(int num_threads);
   ~ParallelEvaluation() override;
 
-  // What to add to the problem in place of `cost`, which acts on `blocks`. of_recording: false for
-  // demands.
+  // What to add to the problem in place of `cost`, which acts on `blocks`.
   std::unique_ptr<ceres::CostFunction> Wrap(std::unique_ptr<ceres::CostFunction> cost,
-                                            const std::vector<double*>& blocks, bool of_recording);
+                                            const std::vector<double*>& blocks);
   // Whose constant blocks need no derivatives.
   void set_problem(const ceres::Problem* problem) { problem_ = problem; }
   // Of rollouts that are wrapped.
@@ -35,8 +34,6 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   }
 
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
-  // Costs of demands alone: a trial that they refuse needs no recordings.
-  void PrepareDemands();
 
  private:
   class Prepared;
@@ -47,7 +44,6 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   const ceres::Problem* problem_ = nullptr;
   std::shared_ptr<const std::vector<SideBySide>> side_by_side_;
   std::vector<Prepared*> prepared_;  // owned by the problem
-  std::vector<Prepared*> demands_;   // those of no recording
   std::vector<Task> tasks_;          // of all of them; from the first evaluation on
 };
 

@@ -103,30 +103,25 @@ bool SummedCost::AddParts(bool of_recordings, double* squares, SecondOrder* sum)
   });
 }
 
-bool SummedCost::EvaluateCost(const double* x, double* squares) const {
-  SetValues(x);
-  *squares = 0.0;
-  if (built_.evaluation != nullptr) built_.evaluation->PrepareDemands();
-  if (!AddParts(false, squares, nullptr)) return false;
-  if (*squares > accepted_squares_) return true;
-  if (built_.evaluation != nullptr) built_.evaluation->PrepareForEvaluation(false, true);
-  return AddParts(true, squares, nullptr) && std::isfinite(*squares);
-}
-
 bool SummedCost::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
   const int columns = parameter_block_sizes()[0];
   Eigen::Map<VectorXd> values(residuals, columns + 1);
-  if (jacobians == nullptr || jacobians[0] == nullptr) {
-    double squares;
-    if (!EvaluateCost(x[0], &squares)) return false;
+  const Eigen::Map<const VectorXd> at(x[0], columns);
+  const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
+  const bool known = derivatives && recordings_.AreAt(at);
+  SetValues(x[0]);
+  if (built_.evaluation != nullptr && !known) {
+    built_.evaluation->PrepareForEvaluation(derivatives, true);
+  }
+  if (!derivatives) {
+    double squares = 0.0;
+    if (!AddParts(true, &squares, nullptr) || !AddParts(false, &squares, nullptr)) return false;
+    if (!std::isfinite(squares)) return false;
     values.setZero();
     values[columns] = std::sqrt(squares);
     return true;
   }
-  SetValues(x[0]);
-  const Eigen::Map<const VectorXd> at(x[0], columns);
-  if (!recordings_.AreAt(at)) {
-    if (built_.evaluation != nullptr) built_.evaluation->PrepareForEvaluation(true, true);
+  if (!known) {
     RecordingSums here{at, 0.0, SecondOrder::Zero(columns)};
     if (!AddParts(true, &here.squares, &here.sums)) return false;
     if (!here.sums.information.allFinite()) return false;
@@ -136,7 +131,6 @@ bool SummedCost::Evaluate(double const* const* x, double* residuals, double** ja
   double squares = recordings_.squares;
   if (!AddParts(false, &squares, &linear)) return false;
   if (!std::isfinite(squares) || !linear.information.allFinite()) return false;
-  accepted_squares_ = squares;
   secants_.Add(at, 0.5 * squares, recordings_.sums, linear);
   const RowMajorMatrix rows = secants_.Rows();
   values = rows.col(columns);

@@ -5,7 +5,6 @@
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 
-#include <limits>
 #include <vector>
 
 #include "ident/problem/fit_problem.h"
@@ -43,15 +42,12 @@ class SummedCost : public ceres::CostFunction {
   // sum: null without derivatives.
   bool AddPart(const Part& part, double* squares, SecondOrder* sum) const;
   bool AddParts(bool of_recordings, double* squares, SecondOrder* sum) const;
-  // Of demands and priors alone where these cost more than all did at the last accepted point.
-  bool EvaluateCost(const double* x, double* squares) const;
 
   FitProblem::Built& built_;
   std::vector<Block> moving_;
   std::vector<Part> parts_;
   mutable StructuredSecants secants_;
   mutable RecordingSums recordings_;
-  mutable double accepted_squares_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace pushid

@@ -1,6 +1,7 @@
 // residuals: people side by side for what every processor of 64 bits has.
 #define PUSHID_VECTOR_DOUBLES 2
 #include "residuals/lanes/person_lanes_loops.h"
+#include "residuals/lanes/stance_jet_loops.h"
 
 namespace pushid {
 

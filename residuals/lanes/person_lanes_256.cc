@@ -4,6 +4,7 @@
 #if defined(__AVX2__) && defined(__FMA__)
 #define PUSHID_VECTOR_DOUBLES 4
 #include "residuals/lanes/person_lanes_loops.h"
+#include "residuals/lanes/stance_jet_loops.h"
 
 namespace pushid {
 

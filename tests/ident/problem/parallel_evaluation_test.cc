@@ -41,7 +41,7 @@ class AheadOfCeres : public ::testing::Test {
     evaluation_.set_problem(problem_.get());
     const std::vector<double*> blocks = {&a_, &x_};
     problem_->AddResidualBlock(
-        evaluation_.Wrap(std::make_unique<CountedLine>(&asked_), blocks, true).release(), nullptr,
+        evaluation_.Wrap(std::make_unique<CountedLine>(&asked_), blocks).release(), nullptr,
         blocks);
   }
   double a_ = 2.0, x_ = 1.0;

@@ -212,9 +212,9 @@ class CountedHinge : public ceres::SizedCostFunction<1, 1> {
   int& asked_;
 };
 
-class SummedCostOfADemand : public ::testing::Test {
+class SumsOfRecordings : public ::testing::Test {
  protected:
-  SummedCostOfADemand() {
+  SumsOfRecordings() {
     built_.evaluation = std::make_unique<ParallelEvaluation>(1);
     built_.problem = std::make_unique<ceres::Problem>();
     built_.evaluation->set_problem(built_.problem.get());
@@ -238,24 +238,14 @@ class SummedCostOfADemand : public ::testing::Test {
   FitProblem::Built built_;
 };
 
-TEST_F(SummedCostOfADemand, TrialsThatItRefusesAskNoRecording) {
-  const SummedCost summed(&built_, StructuredSecants(true), {});
-  EXPECT_DOUBLE_EQ(Squares(summed, 1.0, true), 4.0);
-  EXPECT_EQ(of_recording_, 1);
-  EXPECT_DOUBLE_EQ(Squares(summed, 3.0, false), 1e4) << "that of the demand alone";
-  EXPECT_EQ(of_recording_, 1);
-  EXPECT_DOUBLE_EQ(Squares(summed, 0.5, false), 2.25);
-  EXPECT_EQ(of_recording_, 2);
-  EXPECT_EQ(of_demand_, 3) << "once a point";
-}
-
-TEST_F(SummedCostOfADemand, SumsThatAreKnownAskNoRecording) {
+TEST_F(SumsOfRecordings, ThatAreKnownAreNotAskedForAgain) {
   const RecordingSums known{Eigen::VectorXd::Constant(1, 1.0),
                             4.0,
                             {MatrixXd::Constant(1, 1, 1.0), VectorXd::Constant(1, 2.0)}};
   const SummedCost summed(&built_, StructuredSecants(true), known);
   EXPECT_DOUBLE_EQ(Squares(summed, 1.0, true), 4.0);
   EXPECT_EQ(of_recording_, 0);
+  EXPECT_EQ(of_demand_, 1);
   EXPECT_DOUBLE_EQ(Squares(summed, 2.5, true), 3.5 * 3.5 + 50.0 * 50.0);
   EXPECT_EQ(of_recording_, 1);
   EXPECT_EQ(summed.recordings().at[0], 2.5);
