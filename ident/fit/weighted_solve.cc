@@ -22,7 +22,7 @@ constexpr double kSameCost = 1e-6;  // relative: another start at the same optim
 constexpr double kRough = 1e-3;     // function tolerance on the way
 // The demand joins in three steps, each solved to its own optimum: all of it at once outweighs
 // everything else where people are far from settled, and the solver creeps along its edge. A
-// thirtieth moves the optimum near the edge, and from there along it by steps of ordinary length.
+// twentieth moves the optimum near the edge, and from there along it by steps of ordinary length.
 constexpr double kDemandSteps[] = {0.05, 0.3, 1.0};
 constexpr double kLessExact = 100.0;  // function tolerances, of the steps before the last
 
