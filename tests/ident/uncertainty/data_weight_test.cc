@@ -1,4 +1,5 @@
 // What the data weigh comes from the data.
+#include "ident/fit/fit.h"
 #include "ident/fit/weighted_solve.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/clusters.h"
