@@ -200,7 +200,8 @@ void ClassifyByDataAlone(const FitProblem& with, const FitPoint& estimate,
                          const JobProgress& progress, std::vector<Profile>* profiles) {
   const FitOptions options = OfDataAlone(with.options());
   const FitProblem alone(with.recordings(), options);
-  if (CostAt(alone, estimate) == CostAt(with, estimate)) return;  // nothing was put in
+  const double put_in = CostAt(with.WithoutRecordings(), estimate);
+  if (CostAt(alone.WithoutRecordings(), estimate) == put_in) return;
   const SolveStart refit = Refit(alone, estimate);
   if (!refit.usable) return;
   const auto found = ClassifyProfiles(alone, refit.to, ComputeUncertainty(alone, refit.to), names,

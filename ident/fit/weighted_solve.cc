@@ -187,8 +187,8 @@ bool SolveOthers(const FitProblem& problem, bool held, Solution* solution) {
       start = SolveHeld(problem, start);
     } else {
       SolveOn(problem, &start);
+      start.failed = FailuresAfter(problem, start);
     }
-    start.failed = FailuresAfter(problem, start);
     const SolveStart& best = solution->Best();
     const bool better = start.converged && start.failed.size() <= best.failed.size() &&
                         start.cost < best.cost - kSameCost * std::abs(best.cost);
@@ -222,6 +222,7 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
     solved.work.Add("other starts");
   }
   if (again) solved.free.reset();  // that of another start
+  for (SolveStart& start : solution.starts) start.recordings = {};
   if (solution.best < 0) problem->set_settling_weight(weight);
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

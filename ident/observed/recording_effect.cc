@@ -123,7 +123,7 @@ std::vector<double> EffectWeights(const std::vector<double>& misfit, double spre
   }
   const double most = *std::max_element(weights.begin(), weights.end());
   double sum = 0.0;
-  constexpr double kNothing = -40.0;  // beside 1, in the last bit; most nodes are that far
+  constexpr double kNothing = -40.0;  // its exponential is below the rounding of 1
   for (double& weight : weights) {
     sum += weight = weight - most > kNothing ? std::exp(weight - most) : 0.0;
   }

@@ -1,4 +1,4 @@
-// ident: what a problem knows of a point, and its parameter blocks and residual blocks.
+// ident: what a problem knows of a point.
 #include "ident/problem/fit_problem.h"
 
 #include <algorithm>

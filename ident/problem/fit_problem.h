@@ -48,9 +48,11 @@ struct BuiltProblem {
     const ceres::CostFunction* cost;
   };
   std::vector<Block> blocks;
-  std::vector<RolloutAt> rollouts;  // by recording; no problem where it has no such block
-  std::shared_ptr<const std::vector<SideBySide>> side_by_side;  // those of them
-  std::vector<double*> parameter_blocks;                        // in the order of FitPoint::Flat
+  // By recording; no problem where it does not count, or fails in its first step.
+  std::vector<RolloutAt> rollouts;
+  std::shared_ptr<const std::vector<SideBySide>> side_by_side =
+      std::make_shared<const std::vector<SideBySide>>();  // of these, those with lanes
+  std::vector<double*> parameter_blocks;                  // in the order of FitPoint::Flat
   std::vector<FailedRollout> shortened;
   // By recording: its cost less this is its negative log likelihood, up to a constant that no
   // point changes (residuals/cost_functions/likelihood_residual.h): only so do costs of problems

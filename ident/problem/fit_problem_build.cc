@@ -1,4 +1,4 @@
-// ident: a problem's blocks, put together for Ceres stage by stage.
+// ident: a problem's blocks, put together for Ceres stage by stage; recordings that fail.
 #include <ceres/problem.h>
 
 #include "ident/problem/fit_problem.h"

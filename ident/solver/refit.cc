@@ -26,7 +26,6 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
   SolveStart start;
   start.kind = "warm";
   start.from = start.to = from;
-  start.recordings = std::move(known);
   if (problem.options().likelihood != Likelihood::kTrajectory) {
     const SolveStage stage = SolveByBfgs(problem, {}, &start.to, &start.message);
     start.stages.push_back(stage);
@@ -35,6 +34,7 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
     start.converged = start.usable = stage.converged;
     return start;
   }
+  start.recordings = std::move(known);
   const bool network = !from.weights.empty() && !hold_network;
   const auto solve = [&] {
     const std::vector<double> at = start.to.Flat();

@@ -38,7 +38,7 @@ struct SolveStart {
   double cost = 0.0;
   int iterations = 0;
   FitPoint from, to;
-  RecordingSums recordings;  // at `to`, by the weights of the last solve
+  RecordingSums recordings;  // at `to`, by the weights of the last solve; while one follows another
   std::vector<SolveStage> stages;
   std::vector<FailedRollout> failed;  // recordings that could not be rolled out to their end
   std::vector<std::string> notes;     // parameters whose start was moved off a bound

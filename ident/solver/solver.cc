@@ -42,10 +42,6 @@ std::string HorizonName(int horizon) {
   return horizon == 0 ? "all frames" : std::to_string(horizon) + " frames";
 }
 
-// More columns than these are those of units (subjects, settings), of which a recording has few, or
-// of a network's weights: no secants are learned then, and a unit's column has its prior.
-constexpr int kDenseColumns = 50;
-
 ceres::LinearSolverType LinearSolverFor(int columns, bool has_network) {
   if (columns <= kDenseColumns) return ceres::DENSE_QR;
   return has_network ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;

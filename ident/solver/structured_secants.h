@@ -40,6 +40,10 @@ struct RecordingSums {
   bool AreAt(const Eigen::VectorXd& x) const { return at.size() == x.size() && at == x; }
 };
 
+// Problems of more columns are solved without: these are of units (subjects, settings), of which a
+// recording has few, or of a network's weights, and a unit's column has its prior.
+inline constexpr int kDenseColumns = 50;
+
 class StructuredSecants {
  public:
   // learns: or S stays as it is. beyond: S at a point nearby; empty: unknown.

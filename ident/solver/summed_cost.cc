@@ -110,6 +110,7 @@ bool SummedCost::Evaluate(double const* const* x, double* residuals, double** ja
   const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
   const bool known = derivatives && recordings_.AreAt(at);
   SetValues(x[0]);
+  // Demands alone are few: they go without threads, and count as no evaluation.
   if (built_.evaluation != nullptr && !known) {
     built_.evaluation->PrepareForEvaluation(derivatives, true);
   }

@@ -17,7 +17,7 @@ namespace pushid {
 // manifolds of the problem are not looked at; it has none.
 class SummedCost : public ceres::CostFunction {
  public:
-  // known: where somebody has summed up the recordings already.
+  // known: sums of the recordings at a point; empty: none.
   SummedCost(FitProblem::Built* built, StructuredSecants secants, RecordingSums known);
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override;
 

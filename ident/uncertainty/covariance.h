@@ -91,7 +91,9 @@ struct Covariance {
   double sigma = 0.0;             // residual standard deviation
   Eigen::MatrixXd inverse_hessian;
   Eigen::MatrixXd curvature;  // JacobianBlocks::curvature, where full_hessian
-  bool full_hessian = false;  // with second derivatives; J'J alone where they leave no minimum
+  // With second derivatives; J'J alone where they leave no minimum, and where feet step or columns
+  // are many, of which they are not computed.
+  bool full_hessian = false;
   Eigen::MatrixXd naive;
   // Clustered: recordings first, then priors, then pooled units. `these`: by recording, where
   // people are the clusters. Empty with fewer than two clusters.

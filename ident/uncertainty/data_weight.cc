@@ -69,7 +69,8 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point,
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
   const JacobianBlocks score = EvaluateJacobianBlocks(built, true);
-  *recordings = built.shortened.empty() ? SumsOf(score, point) : RecordingSums();
+  const bool whole = built.shortened.empty() && score.jacobian.cols() <= kDenseColumns;
+  *recordings = whole ? SumsOf(score, point) : RecordingSums();
   const Eigen::MatrixXd unit = Units(FittedColumns(problem, point)).asDiagonal();
   const ClusterScores own = GatherScores(score, ClusterByRecording(score), unit);
   if (own.scores.cols() < 2) return 0.0;
@@ -148,13 +149,18 @@ double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point,
   const double one_each = static_cast<double>(counted) / frames;
   if (counted < 2) return one_each;
   const double lambda = CompositeInflation(problem, point, recordings);
-  // Without one before, recordings do not weigh alike.
-  const double before = problem.options().effective_weight;
-  if (!(lambda > 0.0) || !(before > 0.0)) *recordings = {};
-  if (!(lambda > 0.0)) return one_each;
+  if (!(lambda > 0.0)) {
+    *recordings = {};
+    return one_each;
+  }
   // By its own sigmas no frame is worth more than one: that would undo the markers' noise.
   const bool own = problem.options().sigma_source == SigmaSource::kEstimate;
   const double weight = own ? std::min(1.0, now / frames / lambda) : now / frames / lambda;
+  const double before = problem.options().effective_weight;
+  if (!(before > 0.0)) {  // recordings did not weigh alike
+    *recordings = {};
+    return weight;
+  }
   recordings->squares *= weight / before;
   recordings->sums.information *= weight / before;
   recordings->sums.gradient *= weight / before;

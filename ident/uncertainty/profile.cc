@@ -22,9 +22,11 @@ constexpr HoldTolerance kToLocate = {1e-4, 1e-5}, kToClassify = {1e-3, 1e-4};
 
 // At the optimum without a demand that moved the fit, where its errors are told (uncertainty.h): at
 // the edge of a demand H says how little room is left, not what frames err.
-Covariance CovarianceAtFreeOptimum(FitProblem problem, const FitPoint& near) {
+Covariance CovarianceAtFreeOptimum(FitProblem problem, const FitPoint& near,
+                                   const Covariance& otherwise) {
   problem.set_settling_weight(0.0);
-  return CovarianceAt(problem, Refit(problem, near).to);
+  const SolveStart free = Refit(problem, near);
+  return free.usable ? CovarianceAt(problem, free.to) : otherwise;
 }
 
 class Profiler {
@@ -34,7 +36,7 @@ class Profiler {
         estimate_(estimate),
         uncertainty_(uncertainty),
         covariance_(CovarianceAt(problem, estimate)),
-        free_(uncertainty.settling.holds() ? CovarianceAtFreeOptimum(problem, estimate)
+        free_(uncertainty.settling.holds() ? CovarianceAtFreeOptimum(problem, estimate, covariance_)
                                            : covariance_),
         cost_(Refit(problem, estimate).cost) {}
 
@@ -103,7 +105,7 @@ double Profiler::MeanRatio() const {
     sum += uncertainty_.covariance(i, i) / naive;
     ++count;
   }
-  return count > 0 ? sum / count : covariance_.sigma * covariance_.sigma;
+  return count > 0 ? sum / count : free_.sigma * free_.sigma;
 }
 
 ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorXd& gradient) const {

@@ -12,8 +12,9 @@
 //   threshold = t(G - 1)^2 V_clustered / (H^-1)  =  t^2 sigma^2 V_clustered / V_naive
 //
 // With a quadratic cost the interval is the clustered one to the last digit; what a profile adds is
-// the cost's true shape away from the optimum. Classes after Raue et al. 2009 (Bioinformatics
-// 25:1923).
+// the cost's true shape away from the optimum. Where a demand to settle moved the fit, V and H are
+// those without it, as the errors are, and the profile adds what the demand leaves room for.
+// Classes after Raue et al. 2009 (Bioinformatics 25:1923).
 #pragma once
 
 #include <cmath>

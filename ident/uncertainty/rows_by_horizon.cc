@@ -171,12 +171,7 @@ class RowStack {
 
 // Priors, demands and pooling.
 JacobianBlocks RowsBeside(const FitProblem& problem, FitPoint point) {
-  FitProblem::Built built = problem.Build(&point, 0);
-  built.blocks.erase(std::remove_if(built.blocks.begin(), built.blocks.end(),
-                                    [](const auto& block) { return block.cluster >= 0; }),
-                     built.blocks.end());
-  built.side_by_side = std::make_shared<std::vector<SideBySide>>();
-  return EvaluateJacobianBlocks(built);
+  return EvaluateJacobianBlocks(problem.WithoutRecordings().Build(&point, 0));
 }
 
 }  // namespace

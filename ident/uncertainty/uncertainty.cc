@@ -164,8 +164,8 @@ struct Evaluated {
   Clustering clustering;
 };
 
-// Of the gradient's differences, of a column's unit: standard errors are within 3e-5 of those by
-// central differences. A likelihood's rows have Jacobians that are differences themselves, whose
+// Steps of the gradient's differences, in a column's unit: standard errors are within 3e-5 of those
+// by central differences. A likelihood's rows have Jacobians that are differences themselves, whose
 // rounding a small step would magnify.
 constexpr double kCurvatureStep = 3e-7, kCurvatureStepOfLikelihood = 1e-3;
 

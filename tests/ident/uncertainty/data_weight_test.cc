@@ -1,4 +1,5 @@
 // What the data weigh comes from the data.
+#include "ident/fit/fit.h"
 #include "ident/fit/weighted_solve.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/clusters.h"
@@ -101,6 +102,29 @@ TEST(DataWeight, TellsTheSumsOfRecordings) {
   EXPECT_LT((sums.sums.information - all.information).norm(), 1e-9 * all.information.norm());
   EXPECT_LT((sums.sums.gradient - all.gradient).norm(), 1e-9 * all.gradient.norm());
   EXPECT_NEAR(sums.squares, squares, 1e-9 * squares);
+
+  // Who knows them takes the same way.
+  const SolveStart plain = Refit(problem, point), knowing = Refit(problem, point, false, 1, sums);
+  EXPECT_EQ(knowing.iterations, plain.iterations);
+  EXPECT_NEAR(knowing.cost, plain.cost, 1e-9 * plain.cost);
+  const std::vector<double> end = knowing.to.Flat(), same = plain.to.Flat();
+  for (size_t i = 0; i < end.size(); ++i) {
+    EXPECT_NEAR(end[i], same[i], 1e-6 * std::abs(same[i])) << i;
+    EXPECT_EQ(knowing.recordings.at[static_cast<Eigen::Index>(i)], end[i]) << i;
+  }
+}
+
+TEST(DataWeight, WithoutRecordingsTheRestOfTheCostIsLeft) {
+  const SyntheticOptions study = Noisy(0.003);
+  const auto recordings = MakePendulums(study);
+  FitOptions options = MakePreset("tail").value();
+  ASSERT_FALSE(PrepareFit(recordings, &options));
+  const FitProblem problem(recordings, options);
+  FitPoint point = problem.NominalPoint();
+  for (double& value : point.shared) value *= 1.1;
+  const double all = CostAt(problem, point), data = problem.DataCost(point);
+  EXPECT_GT(data, 0.0);
+  EXPECT_NEAR(CostAt(problem.WithoutRecordings(), point), all - data, 1e-9 * all);
 }
 
 // One factor on all rows leaves an unpenalized optimum where it is.
