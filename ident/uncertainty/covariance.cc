@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/solver/structured_secants.h"
 #include "models/decompositions.h"
 
 namespace pushid {
@@ -137,6 +138,14 @@ Eigen::MatrixXd InformationBeside(const JacobianBlocks& score) {
     if (score.cluster_of_row[row] < 0) rows.push_back(row);
   }
   return Information(score, rows);
+}
+
+RecordingSums SumRecordings(const JacobianBlocks& score, const FitPoint& point) {
+  const std::vector<double> at = point.Flat();
+  const std::vector<int> rows = RowsWhere(score, true, 0);
+  return {Eigen::VectorXd::Map(at.data(), score.jacobian.cols()),
+          score.residuals(rows).squaredNorm(),
+          {Information(score, rows), Gradient(score, rows)}};
 }
 
 double SingularDirections::Condition() const {

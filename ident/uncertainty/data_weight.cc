@@ -49,19 +49,6 @@ std::array<double, 4> Floors(const FitProblem& problem) {
   return {noise, noise / dt, noise / kReferenceRod, noise / dt / kReferenceRod};
 }
 
-RecordingSums SumsOf(const JacobianBlocks& score, const FitPoint& point) {
-  std::vector<int> rows;
-  for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
-    if (score.cluster_of_row[row] >= 0) rows.push_back(row);
-  }
-  const Eigen::MatrixXd jacobian = score.jacobian(rows, Eigen::all);
-  const Eigen::VectorXd residuals = score.residuals(rows);
-  const std::vector<double> at = point.Flat();
-  return {Eigen::Map<const Eigen::VectorXd>(at.data(), jacobian.cols()),
-          residuals.squaredNorm(),
-          {jacobian.transpose() * jacobian, jacobian.transpose() * residuals}};
-}
-
 // lambda of clusters.h; 0 where it cannot be told. recordings: what they sum to there; empty where
 // one is cut short.
 double CompositeInflation(const FitProblem& problem, const FitPoint& point,
@@ -70,7 +57,7 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point,
   const FitProblem::Built built = problem.Build(&copy, 0);
   const JacobianBlocks score = EvaluateJacobianBlocks(built, true);
   const bool whole = built.shortened.empty() && score.jacobian.cols() <= kDenseColumns;
-  *recordings = whole ? SumsOf(score, point) : RecordingSums();
+  *recordings = whole ? SumRecordings(score, point) : RecordingSums();
   const Eigen::MatrixXd unit = Units(FittedColumns(problem, point)).asDiagonal();
   const ClusterScores own = GatherScores(score, ClusterByRecording(score), unit);
   if (own.scores.cols() < 2) return 0.0;

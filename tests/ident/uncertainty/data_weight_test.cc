@@ -49,14 +49,17 @@ TEST(DataWeight, NoResidualIsMoreExactThanAMarker) {
   EXPECT_DOUBLE_EQ(problem.options().sigmas.velocity, 0.003 * study.fps / kRateWeight);
 }
 
+FitProblem EffectivelyWeighed(const std::vector<PendulumRecording>& recordings) {
+  FitOptions options = UnbiasedFit(Noisy(0.003));
+  options.recording_weight = RecordingWeight::kEffective;
+  return FitProblem(recordings, options);
+}
+
 // What counts is weight over sigma squared: told that errors are twice as large, a frame counts
 // four times as much.
 TEST(DataWeight, MakesUpForSigmas) {
-  const SyntheticOptions study = Noisy(0.003);
-  const auto recordings = MakePendulums(study);
-  FitOptions options = UnbiasedFit(study);
-  options.recording_weight = RecordingWeight::kEffective;
-  FitProblem problem(recordings, options);
+  const auto recordings = MakePendulums(Noisy(0.003));
+  FitProblem problem = EffectivelyWeighed(recordings);
   const Solution solution = SolveWeighted(&problem).solution;
   ASSERT_GE(solution.best, 0);
   const FitPoint& point = solution.Best().to;
@@ -72,36 +75,25 @@ TEST(DataWeight, MakesUpForSigmas) {
 
 // The recordings' sums that come with a weight are those of a problem so weighed.
 TEST(DataWeight, TellsTheSumsOfRecordings) {
-  const SyntheticOptions study = Noisy(0.003);
-  const auto recordings = MakePendulums(study);
-  FitOptions options = UnbiasedFit(study);
-  options.recording_weight = RecordingWeight::kEffective;
-  FitProblem problem(recordings, options);
+  const auto recordings = MakePendulums(Noisy(0.003));
+  FitProblem problem = EffectivelyWeighed(recordings);
   FitPoint point = problem.NominalPoint();
   RecordingSums sums;
   CostWeights weights = problem.weights();
   weights.effective_weight = 0.0;
   problem.Weigh(weights);
   weights.effective_weight = EstimateEffectiveWeight(problem, point, &sums);
-  EXPECT_EQ(sums.at.size(), 0) << "before they weighed alike";
+  EXPECT_EQ(sums.at.size(), 0) << "where recordings do not weigh alike";
   weights.effective_weight *= 3.0;
   problem.Weigh(weights);
   weights.effective_weight = EstimateEffectiveWeight(problem, point, &sums);
   problem.Weigh(weights);
-  const JacobianBlocks score = EvaluateJacobianBlocks(problem.Build(&point, 0));
-  SecondOrder all = SecondOrder::Zero(score.jacobian.cols());
-  double squares = 0.0;
-  for (int row = 0; row < score.residuals.size(); ++row) {
-    if (score.cluster_of_row[row] < 0) continue;
-    const Eigen::VectorXd by = score.jacobian.row(row);
-    all.information += by * by.transpose();
-    all.gradient += by * score.residuals[row];
-    squares += score.residuals[row] * score.residuals[row];
-  }
-  ASSERT_EQ(sums.at.size(), all.gradient.size());
-  EXPECT_LT((sums.sums.information - all.information).norm(), 1e-9 * all.information.norm());
-  EXPECT_LT((sums.sums.gradient - all.gradient).norm(), 1e-9 * all.gradient.norm());
-  EXPECT_NEAR(sums.squares, squares, 1e-9 * squares);
+  const RecordingSums anew = SumRecordings(EvaluateJacobianBlocks(problem.Build(&point, 0)), point);
+  ASSERT_EQ(sums.at, anew.at);
+  const auto& [information, gradient] = anew.sums;
+  EXPECT_LT((sums.sums.information - information).norm(), 1e-9 * information.norm());
+  EXPECT_LT((sums.sums.gradient - gradient).norm(), 1e-9 * gradient.norm());
+  EXPECT_NEAR(sums.squares, anew.squares, 1e-9 * anew.squares);
 
   // Who knows them takes the same way.
   const SolveStart plain = Refit(problem, point), knowing = Refit(problem, point, false, 1, sums);
