@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kSettled = 0.01;  // relative change
 constexpr int kMostRounds = 20;
-constexpr int kFewIterations = 4;   // of a rough round: by weights that will change
+constexpr int kFewIterations = 4;   // of a stage by weights that will change
 constexpr int kMostChanges = 2;     // of which start is the best
 constexpr double kSameCost = 1e-6;  // relative: another start at the same optimum
 constexpr double kRough = 1e-3;     // function tolerance on the way
@@ -63,7 +63,7 @@ FitProblem Roughly(FitProblem problem) {
   return problem;
 }
 
-// Between two estimates of the weights.
+// Before the weights are estimated again.
 FitProblem Briefly(const FitProblem& problem) {
   FitProblem rough = Roughly(problem);
   const FitOptions& options = problem.options();
@@ -205,7 +205,7 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
   problem->set_settling_weight(0.0);
   WeightedSolution solved;
   Solution& solution = solved.solution;
-  solution = Solve(Roughly(*problem), progress);
+  solution = Solve(Briefly(*problem), progress);
   solved.work.Add("starts and horizons");
   bool again = solution.best >= 0;
   for (int change = 0; again && change <= kMostChanges; ++change) {

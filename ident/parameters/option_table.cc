@@ -33,7 +33,8 @@ MaybeError ReadHorizons(const std::string& text, FitOptions* o) {
 Row HorizonsRow() {
   Row row =
       WordsRow("horizons", OptionStage::kModel,
-               "frames of the stages before all frames, from the first push on, comma-separated",
+               "frames of the stages before all frames, from the first push on, comma-separated; "
+               "a start begins at the longest that none of its rollouts fails within",
                ReadHorizons);
   row.text = [](const FitOptions& o) {
     std::string text;
