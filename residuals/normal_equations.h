@@ -25,12 +25,12 @@ class NormalEquations {
   // G's upper triangle by rows, its numbers `stride` apart.
   NormalEquations(int columns, const double* upper, int stride);
 
-  // Doubles in a row that Add takes: those of J, then r, then zeros.
+  // Doubles in a row of J that Add takes: its columns, then zeros.
   static int PaddedSize(int columns);
 
-  // rows: `count` of PaddedSize(columns).
-  void Add(int count, const double* rows);
-  void Add(const NormalEquations& other) { gram_ += other.gram_; }
+  // rows: `count` of PaddedSize(columns); residuals: as many.
+  void Add(int count, const double* rows, const double* residuals);
+  void Add(const NormalEquations& other);
 
   int columns() const { return columns_; }
   // F: columns + 1 rows, the last of which is [0 rho].
@@ -38,7 +38,9 @@ class NormalEquations {
 
  private:
   int columns_ = 0;
-  RowMajorMatrix gram_;  // padded; left of the diagonal's blocks nothing
+  double squares_ = 0.0;         // r'r
+  Eigen::VectorXd by_residual_;  // J'r, padded as gram_
+  RowMajorMatrix gram_;          // J'J, padded; left of the diagonal's blocks nothing
 };
 
 }  // namespace pushid

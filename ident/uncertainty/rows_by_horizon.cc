@@ -44,15 +44,15 @@ class Condenser {
     const double scale = weight_ / std::sqrt(c);
     auto by_column = frame_.topLeftCorner(count, columns_);
     by_column = scale * rows_.by_column.middleRows(next_, count);
-    frame_.col(columns_).head(count) = scale * r;
-    to->plain.Add(static_cast<int>(count), frame_.data());
+    residuals_ = scale * r;
+    to->plain.Add(static_cast<int>(count), frame_.data(), residuals_.data());
     if (squared > 0.0) {
       along_.noalias() = r.transpose() * by_column;
       to->scores[part] += scale * along_.transpose();
       along_ *= (1.0 / c - 1.0) / squared;
       for (Index i = 0; i < count; ++i) by_column.row(i) += r[i] * along_;
     }
-    to->robust_parts[part].Add(static_cast<int>(count), frame_.data());
+    to->robust_parts[part].Add(static_cast<int>(count), frame_.data(), residuals_.data());
     next_ += count;
   }
 
@@ -63,7 +63,8 @@ class Condenser {
   double weight_, loss_;
   const RecordingRows& rows_;
   Index next_ = 0;
-  RowMajorMatrix frame_;  // [J r], padded
+  RowMajorMatrix frame_;  // J, padded
+  Eigen::VectorXd residuals_;
   Eigen::RowVectorXd along_;
   std::vector<PersonSums> people_;
 };

@@ -61,14 +61,6 @@ RolloutStatus CondensedRollout::Visit(double const* const* blocks, Derivatives d
 namespace {
 
 using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-using RowsOfFrame =
-    Eigen::Map<RowMajorMatrix, Eigen::Unaligned, Eigen::OuterStride<Eigen::Dynamic>>;
-
-// Rows of [J r]: `columns` of J, padded.
-RowsOfFrame Mapped(double* rows, int count, int columns) {
-  return {rows, count, columns + 1,
-          Eigen::OuterStride<Eigen::Dynamic>(NormalEquations::PaddedSize(columns))};
-}
 
 }  // namespace
 
@@ -86,11 +78,11 @@ bool CondensedRows::Evaluate(double const* const* blocks, double* residuals,
   NormalEquations equations(wanted == Derivatives::kNone ? 0 : acting);
   double squares = 0.0;
   const RolloutStatus status = Visit(blocks, wanted, [&](const Rows& rows) {
-    const ConstVector r(rows.residuals, rows.count);
-    squares += r.squaredNorm();
-    if (wanted == Derivatives::kNone) return;
-    Mapped(rows.by_column, rows.count, acting).col(acting) = r;
-    equations.Add(rows.count, rows.by_column);
+    if (wanted == Derivatives::kNone) {
+      squares += ConstVector(rows.residuals, rows.count).squaredNorm();
+    } else {
+      equations.Add(rows.count, rows.by_column, rows.residuals);
+    }
   });
   if (!status.ok) return false;
   if (wanted == Derivatives::kNone) {
@@ -137,13 +129,13 @@ bool CondensedRows::EvaluatePeople(double const* const* blocks, bool robust,
   std::vector<NormalEquations> plain(num_people(), NormalEquations(acting));
   std::vector<NormalEquations> corrected(robust ? num_people() : 0, NormalEquations(acting));
   const RolloutStatus status = Visit(blocks, Derivatives::kAll, [&](const Rows& rows) {
-    const ConstVector r(rows.residuals, rows.count);
-    RowsOfFrame by_column = Mapped(rows.by_column, rows.count, acting);
-    by_column.col(acting) = r;
-    plain[rows.person].Add(rows.count, rows.by_column);
+    plain[rows.person].Add(rows.count, rows.by_column, rows.residuals);
     if (!robust) return;
-    CorrectForRobustLoss(r, rows.weight, problem_->sigmas.OfFrames(), by_column.leftCols(acting));
-    corrected[rows.person].Add(rows.count, rows.by_column);
+    CorrectForRobustLoss(ConstVector(rows.residuals, rows.count), rows.weight,
+                         problem_->sigmas.OfFrames(),
+                         Eigen::Map<RowMajorMatrix>(rows.by_column, rows.count,
+                                                    NormalEquations::PaddedSize(acting)));
+    corrected[rows.person].Add(rows.count, rows.by_column, rows.residuals);
   });
   if (!status.ok) return false;
   people->clear();

@@ -46,8 +46,7 @@ class CondensedRows : public ceres::CostFunction {
     double weight = 1.0;  // on all of them, which the robust loss does not see
     int count = 0;
     const double* residuals = nullptr;
-    double* by_column =
-        nullptr;  // count x PaddedSize of the acting columns; the last for residuals
+    double* by_column = nullptr;  // count x PaddedSize of the acting columns
   };
   using RowsVisitor = std::function<void(const Rows&)>;
   // All rows, in any order. Those of kHeldWeights have no columns of weights.

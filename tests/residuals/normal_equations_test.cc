@@ -14,9 +14,10 @@ namespace {
 NormalEquations Of(const RowMajorMatrix& rows) {
   const int columns = static_cast<int>(rows.cols()) - 1;
   RowMajorMatrix padded = RowMajorMatrix::Zero(rows.rows(), NormalEquations::PaddedSize(columns));
-  padded.leftCols(rows.cols()) = rows;
+  padded.leftCols(columns) = rows.leftCols(columns);
+  const Eigen::VectorXd residuals = rows.col(columns);
   NormalEquations equations(columns);
-  equations.Add(static_cast<int>(rows.rows()), padded.data());
+  equations.Add(static_cast<int>(rows.rows()), padded.data(), residuals.data());
   return equations;
 }
 
