@@ -13,19 +13,18 @@ namespace {
 template <int kInputs>
 struct VectorJet {
   static constexpr int kWidth = PUSHID_VECTOR_DOUBLES;
-  static constexpr int kVectors = (kInputs + kWidth - 1) / kWidth;
-  double a;            // the value
-  Vector v[kVectors];  // its derivatives
+  static constexpr int kVectors = kInputs / kWidth;  // a whole number
+  double a;                                          // the value
+  Vector v[kVectors];                                // its derivatives
 
   VectorJet() = default;
   VectorJet(double constant) : a(constant) {  // NOLINT: has no derivatives
     for (Vector& part : v) part = Vector{};
   }
-  // Input number k, or what has this slope by it.
-  VectorJet(double value, int k, double slope = 1.0) : VectorJet(value) {
-    v[k / kWidth][k % kWidth] = slope;
+  VectorJet(double value, const double* slopes) : a(value) {
+    for (int i = 0; i < kVectors; ++i) v[i] = Load(slopes + i * kWidth);
   }
-  double Slope(int k) const { return v[k / kWidth][k % kWidth]; }
+  void StoreSlopes(double* to) const { __builtin_memcpy(to, v, sizeof(v)); }
 
   VectorJet& operator+=(const VectorJet& y) { return *this = *this + y; }
   VectorJet& operator-=(const VectorJet& y) { return *this = *this - y; }

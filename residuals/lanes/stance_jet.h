@@ -1,6 +1,9 @@
-// residuals: derivatives of one step of one person whose feet stand and step (models/stance.h), by
-// jets in the vectors of a processor: once for each width, in the files of person_lanes.h.
+// residuals: what one step of a person whose feet stand and step (models/stance.h) passes on of
+// derivatives, by jets in the vectors of a processor: once for each width, in the files of
+// person_lanes.h.
 #pragma once
+
+#include <cstddef>
 
 #include "models/support.h"
 
@@ -12,28 +15,27 @@ struct PerceivedHip {
   double qd[4];
 };
 
+inline constexpr int kFeetStates = 4;  // apart, clock, swing_time
+inline constexpr int kHipInputs = 6;   // two angles, four rates
+
 struct StanceJetInputs {
   StanceBody body;
-  double feet[4];  // apart, clock, swing_time
+  double feet[kFeetStates];
   signed char swings, landed;
   bool fresh;
   PerceivedHip ankle, step;
-  bool late;  // ankles and steps perceive different states
   double parameters[StanceParameters<double>::kCount];
+  // Derivatives of all that by the columns of a fit, a multiple of kGramBlock: a row for each of
+  // the feet's, of the angles and rates that ankles and steps perceive, and of the parameters.
+  std::ptrdiff_t columns;
+  const double* by_feet;
+  const double* by_ankle;
+  const double* by_step;  // null where steps perceive what ankles do
+  const double* by_parameter;
 };
 
-// Inputs, in this order: the feet; the angles and the rates that ankles perceive; where late, those
-// that steps perceive; the parameters.
-inline constexpr int kFeetInputs = 4, kHipInputs = 6;
-constexpr int StanceJetSize(bool late) {
-  return kFeetInputs + (late ? 2 : 1) * kHipInputs + StanceParameters<double>::kCount;
-}
-inline constexpr int kMostStanceJets = StanceJetSize(true);
-
-// Outputs: the cart's velocity (2), the torques (2), and the feet after the step (4).
-inline constexpr int kStanceOutputs = 8;
-
-// by_input: [input][output].
-using StanceJetFunction = void (*)(const StanceJetInputs& in, double* by_input);
+// Derivatives by the same columns. of_forces: rows of the cart's velocity (2) and the torques (2);
+// of_feet: of the feet after the step.
+using StanceJetFunction = void (*)(const StanceJetInputs& in, double* of_forces, double* of_feet);
 
 }  // namespace pushid

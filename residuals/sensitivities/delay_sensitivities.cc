@@ -26,16 +26,21 @@ void DelayedBlock(const RolloutSensitivities& sensitivities, int now, int person
 }  // namespace
 
 PerceivedSensitivities::PerceivedSensitivities(int num_columns)
-    : ankle_(8, num_columns), step_(8, num_columns) {}
+    : ankle_(8, num_columns), step_(RolloutSensitivities::Block::Zero(8, num_columns)) {}
 
 void PerceivedSensitivities::Update(const ModelOptions& options, const ParameterSet<double>& p,
+                                    const std::vector<ColumnEntry>& entries,
                                     const DelayedPlaces<double>& delayed,
                                     const RolloutPath<double>& path,
                                     const RolloutSensitivities& sensitivities, int frame,
                                     int person) {
+  using State = Eigen::Matrix<double, 8, 1>;
+  const auto add = [&entries](Parameter id, const State& by, RolloutSensitivities::Block* to) {
+    for (const ColumnEntry& entry : entries) {
+      if (entry.parameter == id) to->col(entry.column) += entry.derivative * by;
+    }
+  };
   const PendulumState<double>& now = path.At(frame, person);
-  step_delay_ = StepDelayOf(options.delay);
-  steps_ = options.stance != Stance::kFixed;
   const DelayedState<double> then(path, frame, person, delayed.ankle);
   DelayedBlock(sensitivities, frame, person, delayed.ankle, &ankle_);
   const double stiffness = p[kPassiveStiffness], damping = p[kPassiveDamping];
@@ -48,33 +53,20 @@ void PerceivedSensitivities::Update(const ModelOptions& options, const Parameter
     ankle_.bottomRows<2>() +=
         damping * (1.0 - kRateAhead) * sensitivities.At(frame - 1, person).bottomRows<2>();
   }
-  ankle_by_delay_ << then.q_by_delay, then.qd_by_delay;
-  by_stiffness_share_.setZero();
-  by_damping_share_.setZero();
-  ankle_by_delay_.segment<2>(2) *= 1.0 - stiffness;
-  ankle_by_delay_.tail<2>() *= 1.0 - damping;
-  by_stiffness_share_.segment<2>(2) = now.q.tail<2>() - then.q.tail<2>();
-  by_damping_share_.tail<2>() = (PresentRate(path, frame, person) - then.qd).tail<2>();
-  if (!steps_) return;
+  State by_delay, by_stiffness = State::Zero(), by_damping = State::Zero();
+  by_delay << then.q_by_delay, then.qd_by_delay;
+  by_delay.segment<2>(2) *= 1.0 - stiffness;
+  by_delay.tail<2>() *= 1.0 - damping;
+  by_stiffness.segment<2>(2) = now.q.tail<2>() - then.q.tail<2>();
+  by_damping.tail<2>() = (PresentRate(path, frame, person) - then.qd).tail<2>();
+  add(kReactionDelay, by_delay, &ankle_);
+  add(kPassiveStiffness, by_stiffness, &ankle_);
+  add(kPassiveDamping, by_damping, &ankle_);
+  if (options.stance == Stance::kFixed) return;
   const DelayedState<double> then_step(path, frame, person, delayed.step);
   DelayedBlock(sensitivities, frame, person, delayed.step, &step_);
-  step_by_delay_ << then_step.q_by_delay, then_step.qd_by_delay;
-}
-
-void PerceivedSensitivities::AddTo(
-    const Eigen::Matrix<double, 4, 8>& by_ankle, const Eigen::Matrix<double, 4, 8>& by_step,
-    Eigen::Ref<Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>> by_column) const {
-  by_column.noalias() += by_ankle * ankle_;
-  if (steps_) by_column.noalias() += by_step * step_;
-}
-
-void PerceivedSensitivities::AddParameters(
-    const Eigen::Matrix<double, 4, 8>& by_ankle, const Eigen::Matrix<double, 4, 8>& by_step,
-    Eigen::Matrix<double, 4, kNumParameters>* by_parameter) const {
-  by_parameter->col(kReactionDelay) += by_ankle * ankle_by_delay_;
-  if (steps_) by_parameter->col(step_delay_) += by_step * step_by_delay_;
-  by_parameter->col(kPassiveStiffness) += by_ankle * by_stiffness_share_;
-  by_parameter->col(kPassiveDamping) += by_ankle * by_damping_share_;
+  by_delay << then_step.q_by_delay, then_step.qd_by_delay;
+  add(StepDelayOf(options.delay), by_delay, &step_);
 }
 
 }  // namespace pushid

@@ -10,8 +10,6 @@
 
 namespace pushid {
 
-using ForceColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
-
 // A force's derivative by a parameter, onto the column that depends on it: most parameters act on
 // one row or two.
 template <typename Vector>

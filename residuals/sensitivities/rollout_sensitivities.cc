@@ -61,7 +61,6 @@ class SensitivityRollout {
         inputs_(inputs),
         path_(*path),
         sensitivities_(*sensitivities),
-        stands_(options.stance == Stance::kSteps),
         late_(options.delay != Delay::kNone),
         forces_(scene, options, inputs.parameters, inputs.network_weights),
         received_(scene, options, inputs),
@@ -69,13 +68,14 @@ class SensitivityRollout {
         own_entries_(WithoutPairs(inputs.entries)),
         perceived_(late_ ? inputs.num_columns : 0),
         by_column_(4, inputs.num_columns) {
+    if (options.stance == Stance::kSteps) stance_.emplace(inputs.entries, inputs.num_columns);
     if (RodMoves(options)) {
       rod_.emplace(*options.learned, LearnedWeights(options, inputs), inputs.num_columns,
                    inputs.weight_column);
     }
     path_ = RolloutPath<double>(num_frames, scene.num_people());
     sensitivities_.Resize(num_frames, scene.num_people(), inputs.num_columns, rod_.has_value(),
-                          stands_);
+                          stance_.has_value());
     for (int n = 0; n < scene.num_people(); ++n) Start(n);
   }
 
@@ -137,8 +137,7 @@ class SensitivityRollout {
     const Perceived<double>* perceived = forces_.perceived(n);
     switch (options_.stance) {
       case Stance::kSteps:
-        NetForceJacobianOfStance(scene_, options_, self, p, n, t, state, &jacobian_, &stance_,
-                                 perceived, &by_perceived_);
+        NetForceJacobianOfStance(scene_, options_, self, p, n, t, state, &jacobian_);
         break;
       case Stance::kFixed:
         NetForceJacobianOfStanding(scene_, options_, self, p, n, t, state, &jacobian_, perceived,
@@ -184,10 +183,14 @@ class SensitivityRollout {
       SetNarrowProduct(jacobian_.by_state, now, by_column_);
     }
     if (late_) {
-      perceived_.Update(options_, step.p, forces_.delayed(n), path_, sensitivities_, t, n);
-      perceived_.AddTo(by_perceived_.by_ankle, by_perceived_.by_step, by_column_);
-      perceived_.AddParameters(by_perceived_.by_ankle, by_perceived_.by_step,
-                               &jacobian_.by_parameter);
+      perceived_.Update(options_, step.p, own_entries_[n], forces_.delayed(n), path_,
+                        sensitivities_, t, n);
+    }
+    if (stance_) {
+      AdvanceFeet(step);
+    } else if (late_) {
+      AddNarrowProduct(by_perceived_.by_ankle, perceived_.ankle(), by_column_);
+      AddNarrowProduct(by_perceived_.by_step, perceived_.step(), by_column_);
     }
     if (step.self.cart_derivative) {
       by_column_.topRows<2>() += jacobian_.by_previous.asDiagonal() *
@@ -196,7 +199,6 @@ class SensitivityRollout {
     for (const ColumnEntry& entry : own_entries_[n]) {
       AddWhereAny(entry, jacobian_.by_parameter.col(entry.parameter), &by_column_);
     }
-    if (stands_) AdvanceFeet(t, n);
     if (rod_) by_column_.noalias() += by_rod_ * sensitivities_.Rod(t, n);
     if (!networks_.empty()) networks_[n].Advance(forces_.network(n), now);
     if (ForcesAt(scene_, options_.push, n, t) != ActiveForces::kAll) return;
@@ -204,22 +206,17 @@ class SensitivityRollout {
     if (!networks_.empty()) networks_[n].AddTo(&by_column_);
   }
 
-  void AdvanceFeet(int t, int n) {
-    const auto now = sensitivities_.Feet(t, n);
-    auto next = sensitivities_.Feet(t + 1, n);
-    // The place, which comes first, is not among what feet know.
-    SetNarrowProduct(stance_.next_by_state.rightCols<6>(), sensitivities_.At(t, n).bottomRows<6>(),
-                     next);
-    AddNarrowProduct(stance_.next_by_feet, now, next);
+  void AdvanceFeet(const PersonStep& step) {
+    const int t = step.frame, n = step.person;
+    StanceSensitivities::Hip ankle(step.state, sensitivities_.At(t, n).data()), foot = ankle;
     if (late_) {
-      perceived_.AddTo(stance_.next_by_ankle, stance_.next_by_foot, next);
-      perceived_.AddParameters(stance_.next_by_ankle, stance_.next_by_foot,
-                               &stance_.next_by_parameter);
+      ankle = {forces_.perceived(n)->ankle, perceived_.ankle().data()};
+      foot = {forces_.perceived(n)->step, perceived_.step().data()};
     }
-    for (const ColumnEntry& entry : own_entries_[n]) {
-      next.col(entry.column) += entry.derivative * stance_.next_by_parameter.col(entry.parameter);
-    }
-    AddNarrowProduct(stance_.by_feet, now, by_column_);
+    stance_->Advance(step.self, step.p, n, ankle, foot, step.state.feet,
+                     sensitivities_.Feet(t, n).data(),
+                     ForcesAt(scene_, options_.push, n, t) == ActiveForces::kAll,
+                     sensitivities_.Feet(t + 1, n).data(), &by_column_);
   }
 
   void AdvanceRod(const PersonStep& step) {
@@ -255,15 +252,15 @@ class SensitivityRollout {
   const SensitivityInputs& inputs_;
   RolloutPath<double>& path_;
   RolloutSensitivities& sensitivities_;
-  const bool stands_, late_;
+  const bool late_;
   SceneForces<double> forces_;
   ReceivedSensitivities received_;
   std::vector<NetworkSensitivities> networks_;
   std::optional<RodSensitivities> rod_;
   const std::vector<std::vector<ColumnEntry>> own_entries_;
   PerceivedSensitivities perceived_;
+  std::optional<StanceSensitivities> stance_;
   SelfForce::Jacobian jacobian_;
-  StanceJacobian stance_;
   PerceivedJacobian by_perceived_;
   Vector4<double> by_rod_;
   ForceColumns by_column_;

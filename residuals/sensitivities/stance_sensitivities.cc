@@ -4,61 +4,12 @@
 #include <ceres/jet.h>
 
 #include "residuals/lanes/person_lanes.h"
+#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 namespace {
 
 using Ids = StanceParameters<double>;
-
-PerceivedHip HipOf(const PosedPendulum<double>& state) {
-  const Angles<double>& angles = state.angles;
-  return {angles.s_th,
-          angles.c_th,
-          angles.s_ph,
-          angles.c_ph,
-          {state.qd[0], state.qd[1], state.qd[2], state.qd[3]}};
-}
-
-// by_ankle, by_foot: of the force; where nothing is late, by_ankle is by the state.
-void StanceColumns(const SelfForce& self, const ParameterSet<double>& p,
-                   const PosedPendulum<double>& state, const Perceived<double>* late, bool acts,
-                   Eigen::Matrix<double, 4, 8>* by_ankle, Eigen::Matrix<double, 4, 8>* by_foot,
-                   SelfForce::Jacobian* jacobian, StanceJacobian* stance) {
-  StanceJetInputs in;
-  in.body = self.standing;
-  const FeetState<double>& feet = state.feet;
-  in.feet[0] = feet.apart[0], in.feet[1] = feet.apart[1];
-  in.feet[2] = feet.clock, in.feet[3] = feet.swing_time;
-  in.swings = feet.swings;
-  in.landed = feet.landed;
-  in.fresh = feet.fresh;
-  in.late = late != nullptr;
-  in.ankle = in.late ? HipOf(late->ankle) : HipOf(state);
-  in.step = in.late ? HipOf(late->step) : in.ankle;
-  for (int i = 0; i < Ids::kCount; ++i) in.parameters[i] = p[Ids::kIds[i]];
-  double by_input[kMostStanceJets * kStanceOutputs];
-  BestPersonLanes().stance_jet(in, by_input);
-
-  // Of the force, at fixed acceleration, and of the feet after the step.
-  const double ground = kHeldFast * self.body.mass;
-  const Vector4<double> scale(ground, ground, 1.0, 1.0);
-  int input = 0;
-  const auto set = [&](auto&& of_force, auto&& of_feet) {
-    const double* const from = by_input + kStanceOutputs * input++;
-    if (acts) of_force = scale.cwiseProduct(Eigen::Map<const Vector4<double>>(from));
-    of_feet = Eigen::Map<const Vector4<double>>(from + 4);
-  };
-  for (int i = 0; i < kFeetInputs; ++i) set(stance->by_feet.col(i), stance->next_by_feet.col(i));
-  auto& next_by_ankle = in.late ? stance->next_by_ankle : stance->next_by_state;
-  for (int i = 0; i < kHipInputs; ++i) set(by_ankle->col(2 + i), next_by_ankle.col(2 + i));
-  for (int i = 0; in.late && i < kHipInputs; ++i) {
-    set(by_foot->col(2 + i), stance->next_by_foot.col(2 + i));
-  }
-  for (Parameter id : Ids::kIds) {
-    set(jacobian->by_parameter.col(id), stance->next_by_parameter.col(id));
-  }
-  for (int i = 0; acts && i < 2; ++i) jacobian->by_state(i, 4 + i) -= ground;
-}
 
 // StandingTorque's derivatives, and the order of its parameters.
 using StandingIds = StandingParameters<double>;
@@ -133,6 +84,53 @@ void AddPublishedFriction(SelfForce::Jacobian* jacobian) {
 
 }  // namespace
 
+StanceSensitivities::Hip::Hip(const PosedPendulum<double>& state, const double* rows)
+    : at{state.angles.s_th,
+         state.angles.c_th,
+         state.angles.s_ph,
+         state.angles.c_ph,
+         {state.qd[0], state.qd[1], state.qd[2], state.qd[3]}},
+      by_column(rows) {}
+
+StanceSensitivities::StanceSensitivities(const std::vector<std::vector<ColumnEntry>>& entries,
+                                         int num_columns)
+    : of_forces_(4, num_columns) {
+  for (const std::vector<ColumnEntry>& of_person : entries) {
+    RowMajorMatrix& rows =
+        by_parameter_.emplace_back(RowMajorMatrix::Zero(Ids::kCount, num_columns));
+    for (const ColumnEntry& entry : of_person) {
+      for (int i = 0; i < Ids::kCount; ++i) {
+        if (entry.parameter == Ids::kIds[i]) rows(i, entry.column) += entry.derivative;
+      }
+    }
+  }
+}
+
+void StanceSensitivities::Advance(const SelfForce& self, const ParameterSet<double>& p, int person,
+                                  const Hip& ankle, const Hip& step, const FeetState<double>& feet,
+                                  const double* by_feet, bool acts, double* next_by_feet,
+                                  ForceColumns* by_column) {
+  StanceJetInputs in;
+  in.body = self.standing;
+  in.feet[0] = feet.apart[0], in.feet[1] = feet.apart[1];
+  in.feet[2] = feet.clock, in.feet[3] = feet.swing_time;
+  in.swings = feet.swings;
+  in.landed = feet.landed;
+  in.fresh = feet.fresh;
+  in.ankle = ankle.at;
+  in.step = step.at;
+  for (int i = 0; i < Ids::kCount; ++i) in.parameters[i] = p[Ids::kIds[i]];
+  in.columns = of_forces_.cols();
+  in.by_feet = by_feet;
+  in.by_ankle = ankle.by_column + 2 * in.columns;
+  in.by_step = step.by_column != ankle.by_column ? step.by_column + 2 * in.columns : nullptr;
+  in.by_parameter = by_parameter_[static_cast<size_t>(person)].data();
+  BestPersonLanes().stance_jet(in, of_forces_.data(), next_by_feet);
+  if (!acts) return;
+  by_column->topRows<2>() += (kHeldFast * self.body.mass) * of_forces_.topRows<2>();
+  by_column->bottomRows<2>() += of_forces_.bottomRows<2>();
+}
+
 void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
                                 const SelfForce& self, const ParameterSet<double>& p, int person,
                                 int frame, const PendulumState<double>& state,
@@ -161,20 +159,13 @@ void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
                               int frame, const PosedPendulum<double>& state,
-                              SelfForce::Jacobian* jacobian, StanceJacobian* stance,
-                              const Perceived<double>* late, PerceivedJacobian* by_perceived) {
-  if (by_perceived != nullptr) by_perceived->SetZero();
-  stance->SetZero();
-  jacobian->by_state.setZero();
-  jacobian->by_previous.setZero();
-  jacobian->by_parameter.setZero();
+                              SelfForce::Jacobian* jacobian) {
+  jacobian->SetZero();
+  for (Parameter id : kBodyParameters) jacobian->by_parameter.col(id).setZero();
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
-  const bool acts = active == ActiveForces::kAll;
-  StanceColumns(self, p, state, late, acts,
-                late != nullptr ? &by_perceived->by_ankle : &jacobian->by_state,
-                late != nullptr ? &by_perceived->by_step : nullptr, jacobian, stance);
   if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(jacobian);
-  if (!acts) return;
+  if (active != ActiveForces::kAll) return;
+  for (int i = 0; i < 2; ++i) jacobian->by_state(i, 4 + i) = -kHeldFast * self.body.mass;
   self.AddOwnJacobian(p, state, jacobian);
   if (options.push_tail == PushTail::kNone) return;
   for (const ScenePush& push : scene.pushes) {

@@ -4,45 +4,59 @@
 // With v' = v + dt a the cart's velocity after a step, u that of the feet and D the ground's
 // resistance, which is constant,
 //   (M + dt D E) da = d(F - C - G) at fixed a - D (dv - du),   E = diag(1, 1, 0, 0).
-// The torques, u and the feet after the step depend on few numbers: jets over these
-// (residuals/lanes/stance_jet.h). Which foot steps has no derivative (models/stance.h).
+// The torques, u and the feet after the step are a long formula of few numbers: jets over the
+// columns themselves (residuals/lanes/stance_jet.h). Which foot steps has no derivative
+// (models/stance.h). Rejected: jets over the numbers, and products with their derivatives, which
+// take half as long again.
 #pragma once
 
-#include "residuals/sensitivities/net_force_jacobian.h"
+#include <Eigen/Core>
+#include <vector>
+
+#include "models/net_force.h"
+#include "residuals/lanes/stance_jet.h"
+#include "residuals/normal_equations.h"
+#include "residuals/parameter_map.h"
 
 namespace pushid {
 
-inline constexpr int kFeetStates = 4;  // apart, clock, swing_time
+struct PerceivedJacobian;
+using ForceColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Derivatives of one step of one person, the parts that depend on the feet.
-struct StanceJacobian {
-  Eigen::Matrix<double, 4, kFeetStates> by_feet;  // of F + D u at fixed a
-  // Of the feet after the step: by [q, qd], by what is perceived, where late, and by the feet.
-  Eigen::Matrix<double, kFeetStates, 8> next_by_state, next_by_ankle, next_by_foot;
-  Eigen::Matrix<double, kFeetStates, kFeetStates> next_by_feet;
-  Eigen::Matrix<double, kFeetStates, kNumParameters> next_by_parameter;
+// The feet of everybody in a scene.
+class StanceSensitivities {
+ public:
+  // entries: by person; columns: a multiple of kGramBlock.
+  StanceSensitivities(const std::vector<std::vector<ColumnEntry>>& entries, int num_columns);
 
-  void SetZero() {
-    by_feet.setZero();
-    next_by_state.setZero();
-    next_by_ankle.setZero();
-    next_by_foot.setZero();
-    next_by_parameter.setZero();
-  }
+  // The hip as it is perceived, and rows of its [q, qd] by the columns.
+  struct Hip {
+    Hip(const PosedPendulum<double>& state, const double* rows);
+    PerceivedHip at;
+    const double* by_column;
+  };
+  // One step of a person. by_feet: kFeetStates rows by the columns, next_by_feet those after the
+  // step. by_column: of the force, where own forces act: what D u and the torques change by is
+  // added.
+  void Advance(const SelfForce& self, const ParameterSet<double>& p, int person, const Hip& ankle,
+               const Hip& step, const FeetState<double>& feet, const double* by_feet, bool acts,
+               double* next_by_feet, ForceColumns* by_column);
+
+ private:
+  std::vector<RowMajorMatrix> by_parameter_;  // of StanceParameters, by person
+  ForceColumns of_forces_;
 };
 
-// The analytic twin of NetForceAt where feet stand and step, without what others do: jacobian: of
-// F - D (v' - u) at fixed acceleration a. All but by_previous (zero) and the stance's are
-// overwritten. perceived, by_perceived: as NetForceJacobian has them.
+// Of F - D v' at fixed acceleration a, without the torques and what others do. All but by_previous
+// (zero) is overwritten.
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
                               int frame, const PosedPendulum<double>& state,
-                              SelfForce::Jacobian* jacobian, StanceJacobian* stance,
-                              const Perceived<double>* perceived = nullptr,
-                              PerceivedJacobian* by_perceived = nullptr);
+                              SelfForce::Jacobian* jacobian);
 
-// The same where feet hold, whatever happens; jacobian: of what the ankles and the ground do,
+// Of feet that hold, whatever happens; jacobian: of what the ankles and the ground do,
 // without what the height of the centre of mass changes of M a + C + G (net_force_jacobian.h).
+// perceived, by_perceived: as NetForceJacobian has them.
 void NetForceJacobianOfStanding(const Scene& scene, const ModelOptions& options,
                                 const SelfForce& self, const ParameterSet<double>& p, int person,
                                 int frame, const PendulumState<double>& state,

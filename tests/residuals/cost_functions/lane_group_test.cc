@@ -93,11 +93,10 @@ RolloutSums OfRows(const RolloutProblem& problem, double const* const* blocks) {
       VisitFrames(problem, blocks, Derivatives::kAll,
                   [&](int t, int person, const FrameVector<double>& r, FrameRows* rows) {
                     sums.squares += r.squaredNorm();
-                    rows->col(columns) = r;
-                    sums.plain.Add(kFrameResiduals, rows->data());
+                    sums.plain.Add(kFrameResiduals, rows->data(), r.data());
                     CorrectForRobustLoss(r, problem.weight * problem.recording->Weight(person, t),
-                                         problem.sigmas.OfFrames(), rows->leftCols(columns));
-                    sums.robust.Add(kFrameResiduals, rows->data());
+                                         problem.sigmas.OfFrames(), *rows);
+                    sums.robust.Add(kFrameResiduals, rows->data(), r.data());
                   });
   sums.ok = status.ok;
   return sums;

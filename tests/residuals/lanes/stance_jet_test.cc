@@ -6,17 +6,23 @@
 
 #include "models/stance.h"
 #include "residuals/lanes/person_lanes.h"
+#include "residuals/normal_equations.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {
 namespace {
 
-using Jet = ceres::Jet<double, kMostStanceJets>;
+// Inputs: the feet, the hip as ankles and as steps perceive it, the parameters; a column each.
+constexpr int kOfStep = kFeetStates + kHipInputs, kOfParameters = kOfStep + kHipInputs;
+constexpr int kInputs = kOfParameters + StanceParameters<double>::kCount;
+constexpr int kColumns = 40;  // more than inputs, and no whole number of the widest jets
+static_assert(kInputs <= kColumns && kColumns % 16 == 8);
+using Jet = ceres::Jet<double, kColumns>;
 
 // Of one step: the inputs, and what Jets say.
 struct Step {
   StanceJetInputs in;
-  std::vector<double> expected;
+  RowMajorMatrix expected = RowMajorMatrix(8, kColumns);
 };
 
 PosedPendulum<Jet> HipOf(const PendulumState<double>& state, int first) {
@@ -34,6 +40,8 @@ PerceivedHip NumbersOf(const PendulumState<double>& state) {
 
 Step StepOf(const StanceBody& body, const ParameterSet<double>& p,
             const PendulumState<double>& ankle, const PendulumState<double>& step, bool late) {
+  static const RowMajorMatrix identity = RowMajorMatrix::Identity(kColumns, kColumns);
+  const auto rows = [](int first) { return identity.row(first).data(); };
   const FeetState<double>& feet = ankle.feet;
   Step made;
   StanceJetInputs& in = made.in;
@@ -42,25 +50,25 @@ Step StepOf(const StanceBody& body, const ParameterSet<double>& p,
   in.feet[2] = feet.clock, in.feet[3] = feet.swing_time;
   in.swings = feet.swings, in.landed = feet.landed, in.fresh = feet.fresh;
   in.ankle = NumbersOf(ankle), in.step = NumbersOf(step);
-  in.late = late;
+  in.columns = kColumns;
+  in.by_feet = rows(0), in.by_ankle = rows(kFeetStates);
+  in.by_step = late ? rows(kOfStep) : nullptr;
+  in.by_parameter = rows(kOfParameters);
   FeetState<Jet> jets;
   jets.apart = {Jet(in.feet[0], 0), Jet(in.feet[1], 1)};
   jets.clock = Jet(in.feet[2], 2), jets.swing_time = Jet(in.feet[3], 3);
   jets.swings = feet.swings, jets.landed = feet.landed, jets.fresh = feet.fresh;
-  const PosedPendulum<Jet> of_ankle = HipOf(ankle, kFeetInputs);
-  const PosedPendulum<Jet> of_step = late ? HipOf(step, kFeetInputs + kHipInputs) : of_ankle;
-  const int size = StanceJetSize(late), first = size - StanceParameters<double>::kCount;
+  const PosedPendulum<Jet> of_ankle = HipOf(ankle, kFeetStates);
+  const PosedPendulum<Jet> of_step = late ? HipOf(step, kOfStep) : of_ankle;
   int k = 0;
   const StanceParameters<Jet> parameters([&](Parameter id) {
     in.parameters[k] = p[id];
-    return Jet(p[id], first + k++);
+    return Jet(p[id], kOfParameters + k++);
   });
   const StanceForces<Jet> out = StanceAt(body, parameters, jets, of_ankle, of_step);
   const Jet outputs[] = {out.velocity[0],   out.velocity[1],   out.torque[0],  out.torque[1],
                          out.next.apart[0], out.next.apart[1], out.next.clock, out.next.swing_time};
-  for (int i = 0; i < size; ++i) {
-    for (const Jet& output : outputs) made.expected.push_back(output.v[i]);
-  }
+  for (int i = 0; i < 8; ++i) made.expected.row(i) = outputs[i].v.transpose();
   return made;
 }
 
@@ -104,12 +112,13 @@ TEST(StanceJet, EqualsJetsAtEveryWidth) {
       lifts += now.feet.swings == 0 && next.swings != 0;
       lands += now.feet.swings != 0 && next.swings == 0;
       for (const PersonLanes* lanes : SupportedPersonLanes()) {
-        std::vector<double> found(step.expected.size());
-        lanes->stance_jet(step.in, found.data());
-        for (size_t i = 0; i < found.size(); ++i) {
-          ASSERT_NEAR(found[i], step.expected[i], 1e-9 * (1.0 + std::abs(step.expected[i])))
-              << lanes->name << ", trial " << trial << ", input " << i / kStanceOutputs
-              << ", output " << i % kStanceOutputs;
+        RowMajorMatrix found(8, kColumns);
+        lanes->stance_jet(step.in, found.data(), found.row(4).data());
+        for (int i = 0; i < found.size(); ++i) {
+          const double expected = step.expected.data()[i];
+          ASSERT_NEAR(found.data()[i], expected, 1e-9 * (1.0 + std::abs(expected)))
+              << lanes->name << ", trial " << trial << ", input " << i % kColumns << ", output "
+              << i / kColumns;
         }
       }
     }

@@ -159,22 +159,28 @@ TEST(StanceSensitivities, EqualJetsWhereFeetHold) {
 TEST(StanceSensitivities, AreFiniteAtTheEdges) {
   const ModelOptions options = Steps();
   const Body body{80.0, 0.95, 0.1};
-  Scene scene;
-  scene.people.push_back({body, {}});
-  const SelfForce self(options, body, Vector4<double>::Zero(), scene.dt);
+  const SelfForce self(options, body, Vector4<double>::Zero(), 1.0 / 60);
+  constexpr int kColumns = 16;
+  std::vector<ColumnEntry> entries;
+  for (Parameter id : {kKpTheta, kKdPhi, kSupportFront, kSupportBack, kFootFront, kStepSwing}) {
+    entries.push_back({static_cast<int>(entries.size()), id, 1.0});
+  }
+  StanceSensitivities stance({entries}, kColumns);
+  const RowMajorMatrix by_state = RowMajorMatrix::Identity(8, kColumns);
+  const RowMajorMatrix by_feet = RowMajorMatrix::Ones(kFeetStates, kColumns);
   for (double lean : {0.0, 1e-300, 1e-9, -1e-9, 0.1, -0.1}) {
     for (int swings : {0, 1}) {
       PendulumState<double> state;
       state.q[2] = lean;
       state.feet.swings = static_cast<signed char>(swings);
       state.feet.swing_time = 0.3;
-      SelfForce::Jacobian jacobian;
-      StanceJacobian stance;
-      NetForceJacobianOfStance(scene, options, self, SteppingParameters(), 0, 0, state, &jacobian,
-                               &stance);
-      EXPECT_TRUE(jacobian.by_state.allFinite() && jacobian.by_parameter.allFinite());
-      EXPECT_TRUE(stance.by_feet.allFinite() && stance.next_by_state.allFinite());
-      EXPECT_TRUE(stance.next_by_parameter.allFinite() && stance.next_by_feet.allFinite());
+      const StanceSensitivities::Hip hip(state, by_state.data());
+      RowMajorMatrix next = RowMajorMatrix::Zero(kFeetStates, kColumns);
+      ForceColumns by_column = ForceColumns::Zero(4, kColumns);
+      stance.Advance(self, SteppingParameters(), 0, hip, hip, state.feet, by_feet.data(), true,
+                     next.data(), &by_column);
+      EXPECT_TRUE(by_column.allFinite() && next.allFinite());
+      EXPECT_FALSE(by_column.isZero());
     }
   }
 }
