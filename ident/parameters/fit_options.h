@@ -131,8 +131,8 @@ struct FitOptions {
   double body_weight = 0.0;
   std::shared_ptr<const BodyData> body;
 
-  // Frames rolled out in each stage; 0 means all. Short horizons keep the path from wandering off
-  // while the gains are wrong: a start begins at the longest but all at which no rollout fails.
+  // Frames rolled out in each stage; 0 means all. Short horizons first keep the path from wandering
+  // off while the gains are still wrong.
   std::vector<int> horizons = {8, 16, 32, 64, 0};
   int num_starts = 1;         // the best of so many: from the nominal values, the others random
   double start_spread = 5.0;  // random starts multiply every free gain by up to this, either way

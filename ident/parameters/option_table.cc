@@ -33,8 +33,7 @@ MaybeError ReadHorizons(const std::string& text, FitOptions* o) {
 Row HorizonsRow() {
   Row row =
       WordsRow("horizons", OptionStage::kModel,
-               "frames of the stages before all frames, from the first push on, comma-separated; "
-               "a start begins at the longest that none of its rollouts fails within",
+               "frames of the stages before all frames, from the first push on, comma-separated",
                ReadHorizons);
   row.text = [](const FitOptions& o) {
     std::string text;

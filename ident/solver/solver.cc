@@ -159,21 +159,6 @@ void TrainNetwork(const FitProblem& problem, const std::string& label,
   start->usable = start->converged || stage.final_cost < stage.initial_cost;
 }
 
-namespace {
-
-// Those from the longest on at which every recording stays within the model's domain: shorter ones
-// are for a start from which rollouts wander. The last is of all frames. whole: whether it does.
-std::vector<int> HorizonsFrom(const FitProblem& problem, const FitPoint& point, bool* whole) {
-  std::vector<int> horizons = problem.options().horizons;
-  if (horizons.empty() || horizons.back() != 0) horizons.push_back(0);
-  auto first = horizons.end() - std::min<std::ptrdiff_t>(2, horizons.end() - horizons.begin());
-  while (!(*whole = problem.Failures(point, *first).empty()) && first != horizons.begin()) --first;
-  horizons.erase(horizons.begin(), first);
-  return horizons;
-}
-
-}  // namespace
-
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,
                      const std::string& label, const SolveProgress& progress) {
   const FitOptions& options = problem.options();
@@ -182,8 +167,8 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
   start.from = from;
   start.notes = MoveOffBounds(problem, &start.from);
   start.to = start.from;
-  bool whole = false;
-  const std::vector<int> horizons = HorizonsFrom(problem, start.to, &whole);
+  std::vector<int> horizons = options.horizons;
+  if (horizons.empty() || horizons.back() != 0) horizons.push_back(0);
 
   for (size_t i = 0; i < horizons.size(); ++i) {
     const bool last = i + 1 == horizons.size();
@@ -191,9 +176,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
     // A recording that could not be rolled out to its end at the stage's start may well be after
     // it: the last stage is repeated, each time with more of it, until nothing changes.
     for (int attempt = 0; attempt < (last ? 5 : 1); ++attempt) {
-      FitProblem::Built built =
-          problem.Build(&start.to, horizons[i], true, options.num_threads, whole);
-      whole = false;  // of where this stage begins
+      FitProblem::Built built = problem.Build(&start.to, horizons[i], true, options.num_threads);
       ceres::Solver::Options solver = SolverOptions(options, *built.problem);
       if (!last) {
         solver.function_tolerance = std::max(kOnTheWay, kLessExact * options.function_tolerance);
