@@ -20,8 +20,7 @@ constexpr int kMostRounds = 20;
 constexpr int kFewIterations = 4;   // of a rough round: by weights that will change
 constexpr int kMostChanges = 2;     // of which start is the best
 constexpr double kSameCost = 1e-6;  // relative: another start at the same optimum
-// Function tolerances on the way: before the weights are known, and while they are not final.
-constexpr double kFirstRough = 1e-2, kRough = 1e-3;
+constexpr double kRough = 1e-3;     // function tolerance on the way
 // The demand joins in three steps, each solved to its own optimum: all of it at once outweighs
 // everything else where people are far from settled, and the solver creeps along its edge. A
 // twentieth moves the optimum near the edge, and from there along it by steps of ordinary length.
@@ -58,16 +57,16 @@ double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights,
 
 // On the way an optimum need not be exact; a network that stops learning in time must not be
 // stopped before.
-FitProblem Roughly(FitProblem problem, double tolerance) {
+FitProblem Roughly(FitProblem problem) {
   const FitOptions& options = problem.options();
   if (options.early_stopping > 0.0 && !options.hold_network) return problem;
-  problem.set_function_tolerance(std::max(tolerance, options.function_tolerance));
+  problem.set_function_tolerance(std::max(kRough, options.function_tolerance));
   return problem;
 }
 
 // Between two estimates of the weights.
 FitProblem Briefly(const FitProblem& problem) {
-  FitProblem rough = Roughly(problem, kRough);
+  FitProblem rough = Roughly(problem);
   const FitOptions& options = problem.options();
   if (options.model.learned == nullptr) {
     rough.set_max_iterations(std::min(kFewIterations, options.max_iterations));
@@ -141,7 +140,7 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
   for (double share : kDemandSteps) {
     part.set_settling_weight(share * demanding.options().settling_weight);
     if (share == kDemandSteps[0] && std::isinf(CostAt(part.WithoutRecordings(), free.to))) {
-      held = SolveFrom(Roughly(part, kRough), part.NominalPoint(), "nominal", "", nullptr);
+      held = SolveFrom(Roughly(part), part.NominalPoint(), "nominal", "", nullptr);
     } else {
       SolveOn(share < 1.0 ? OnTheWay(part) : part, &held);
     }
@@ -208,7 +207,7 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
   problem->set_settling_weight(0.0);
   WeightedSolution solved;
   Solution& solution = solved.solution;
-  solution = Solve(Roughly(*problem, kFirstRough), progress);
+  solution = Solve(Roughly(*problem), progress);
   solved.work.Add("starts and horizons");
   bool again = solution.best >= 0;
   for (int change = 0; again && change <= kMostChanges; ++change) {
