@@ -81,7 +81,15 @@ bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
   const SettlingProblem& p = problem_;
   const SensitivityInputs inputs = RolloutInputs(p.scenes[0], p.map, p.layout, blocks);
   const int people = p.scenes[0].num_people(), scenes = static_cast<int>(p.scenes.size());
-  if (!rollouts_.Roll(inputs.parameters, inputs.network_weights)) return false;
+  std::vector<double> at;
+  for (size_t b = 0; b < parameter_block_sizes().size(); ++b) {
+    at.insert(at.end(), blocks[b], blocks[b] + parameter_block_sizes()[b]);
+  }
+  if (at != rolled_at_) {
+    rolled_at_.clear();
+    if (!rollouts_.Roll(inputs.parameters, inputs.network_weights)) return false;
+    rolled_at_ = std::move(at);
+  }
   const double scale = p.weight / std::sqrt((p.last_frame - p.first_frame) * people);
   struct Slope {
     int scene, frame, person, row;
@@ -110,6 +118,7 @@ bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
     std::fill_n(jacobians[b], num_residuals() * parameter_block_sizes()[b], 0.0);
   }
   if (slopes.empty()) return true;
+  rolled_at_.clear();  // simulations with derivatives end where these do
   if (!rollouts_.Differentiate(inputs, p.layout.num_acting(), frames)) return false;
   const ActingColumns columns(p.layout);
   RowMajorMatrix state, by_column;

@@ -52,8 +52,10 @@ class SettlingResidual : public ceres::CostFunction {
 
  private:
   const SettlingProblem problem_;
-  // Ceres evaluates a block from one thread at a time.
+  // Ceres evaluates a block from one thread at a time. It asks for derivatives where it has asked
+  // for residuals just before: the simulations are those of the blocks in rolled_at_.
   mutable SceneRollouts rollouts_;
+  mutable std::vector<double> rolled_at_;
 };
 
 class ModalStabilityResidual : public ceres::CostFunction {

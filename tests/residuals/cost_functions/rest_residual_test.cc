@@ -135,6 +135,32 @@ TEST(Settling, WeightIsThatOfAMeanSquare) {
 }
 
 // One of two is enough.
+// Simulations are kept for derivatives at the same point, and for no other.
+TEST(Settling, ValuesAreThoseOfThePointWhateverWasAskedBefore) {
+  const ParameterMap map = EveryParameterMap({});
+  ModelOptions alone;
+  alone.own_laws = {std::make_shared<NoForce>()};
+  for (const ModelOptions& options : {ModelOptions(), alone}) {
+    SettlingProblem problem = MakeSettlingProblem({SettlingScene(80.0, 80.0)}, options, map, 3.0);
+    problem.first_frame = 20, problem.last_frame = 90;
+    const SettlingResidual asked(problem);
+    std::vector<double> here = SharedBlock(map, SensibleGains()), there = here;
+    there[kKpTheta] += 0.1;
+    const std::vector<std::pair<std::vector<double>, std::vector<bool>>> questions = {
+        {here, {}}, {here, {true}}, {here, {}}, {there, {true}}, {there, {true}}, {here, {true}}};
+    for (const auto& [at, derivatives] : questions) {
+      const CostEvaluation got = EvaluateCost(asked, {at}, derivatives);
+      const CostEvaluation fresh = EvaluateCost(SettlingResidual(problem), {at}, derivatives);
+      ASSERT_TRUE(got.ok);
+      EXPECT_GT(fresh.residuals.norm(), 0.0);
+      EXPECT_EQ(got.residuals, fresh.residuals);
+      if (!derivatives.empty()) {
+        EXPECT_EQ(got.jacobians[0], fresh.jacobians[0]);
+      }
+    }
+  }
+}
+
 TEST(Settling, FallingReturnsFalse) {
   ParameterMap map;
   map.values = SensibleGains();
