@@ -11,6 +11,7 @@
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/bootstrap_file.h"
 #include "ident/uncertainty/clusters.h"
+#include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
@@ -18,6 +19,9 @@ namespace {
 
 // Of the cost: what more would bring is a hundredth of what replicas differ by.
 constexpr double kReplicaTolerance = 1e-6;
+// Function tolerances, where the fit's own is larger: there feet step, the cost has kinks, and half
+// of a replica's steps bring so little. What is left by them: README.md.
+constexpr double kSlow = 20.0;
 
 // The combinations that move with a free parameter.
 std::vector<CombinationSpec> MovingCombinations(const FitProblem& problem) {
@@ -44,14 +48,43 @@ ReplicaValues ValuesAt(const FitProblem& problem, const FitPoint& point,
   return values;
 }
 
+// What each recording's rows sum to at the estimate, so that no replica need evaluate them there;
+// empty where replicas are not solved by such sums.
+std::vector<RecordingSums> SumEach(const FitProblem& problem, FitPoint estimate) {
+  if (problem.options().likelihood != Likelihood::kTrajectory) return {};
+  const FitProblem::Built built = problem.Build(&estimate, 0);
+  if (!built.shortened.empty()) return {};
+  const JacobianBlocks score = EvaluateJacobianBlocks(built);
+  if (score.jacobian.cols() > kDenseColumns) return {};
+  std::vector<RecordingSums> each;
+  for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
+    each.push_back(SumRecordings(score, estimate, i));
+  }
+  return each;
+}
+
+// Of the recordings as a replica counts them. Those that the fit leaves out no replica counts.
+RecordingSums SumsOf(const std::vector<RecordingSums>& each, const FitProblem& drawn) {
+  if (each.empty()) return {};
+  RecordingSums all{each[0].at, 0.0, SecondOrder::Zero(each[0].at.size())};
+  for (size_t i = 0; i < each.size(); ++i) {
+    const int count = drawn.Count(static_cast<int>(i));
+    all.squares += count * each[i].squares;
+    all.sums.information += count * each[i].sums.information;
+    all.sums.gradient += count * each[i].sums.gradient;
+  }
+  return all;
+}
+
 ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
-                         const std::vector<int>& counts,
+                         const std::vector<RecordingSums>& each, const std::vector<int>& counts,
                          const std::vector<CombinationSpec>& combinations) {
   FitOptions options = problem.options();
   options.num_threads = 1;
   options.function_tolerance = std::max(kReplicaTolerance, options.function_tolerance);
+  const double slow = options.function_tolerance > kReplicaTolerance ? kSlow : 0.0;
   const FitProblem drawn(problem.recordings(), options, counts);
-  SolveStart fit = Refit(drawn, estimate);
+  SolveStart fit = Refit(drawn, estimate, false, 1, SumsOf(each, drawn), slow);
   if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", "", nullptr);
   if (!fit.converged || !fit.failed.empty()) return {};
   return ValuesAt(drawn, fit.to, combinations);
@@ -170,6 +203,7 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
   if (MaybeError error = file.Open(problem, options, bootstrap)) return *error;
   std::vector<ReplicaValues> replicas(options.replicas);
   const std::vector<Draw> draws = DistinctDraws(from, options);
+  const std::vector<RecordingSums> each = SumEach(problem, estimate);
   std::mutex writing;
   std::atomic<bool> stopped{false};
   MaybeError failed;
@@ -179,9 +213,10 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
         if (stopped) return;
         const Draw& draw = draws[i];
         const auto kept = file.finished().find(draw.replicas.front());
-        const ReplicaValues values = kept != file.finished().end()
-                                         ? kept->second
-                                         : FitReplica(problem, estimate, draw.counts, combinations);
+        const ReplicaValues values =
+            kept != file.finished().end()
+                ? kept->second
+                : FitReplica(problem, estimate, each, draw.counts, combinations);
         const std::lock_guard<std::mutex> lock(writing);
         for (int k : draw.replicas) {
           replicas[k] = values;

@@ -140,9 +140,9 @@ Eigen::MatrixXd InformationBeside(const JacobianBlocks& score) {
   return Information(score, rows);
 }
 
-RecordingSums SumRecordings(const JacobianBlocks& score, const FitPoint& point) {
+RecordingSums SumRecordings(const JacobianBlocks& score, const FitPoint& point, int recording) {
   const std::vector<double> at = point.Flat();
-  const std::vector<int> rows = RowsWhere(score, true, 0);
+  const std::vector<int> rows = RowsWhere(score, recording == kAllRecordings, recording);
   return {Eigen::VectorXd::Map(at.data(), score.jacobian.cols()),
           score.residuals(rows).squaredNorm(),
           {Information(score, rows), Gradient(score, rows)}};
