@@ -79,25 +79,30 @@ struct TailOf {
   L log_duration;    // LogTailDuration of the push
   L elapsed;         // s, since the push ended
 
-  // What is left of it.
+  // 1 / tau, which stays the same, and what is left at that rate.
   template <typename T>
-  T Decay(const ParameterSet<T>& p) const {
+  T Rate(const ParameterSet<T>& p) const {
+    return 1.0 / TailDecayTime(p, log_duration);
+  }
+  template <typename T>
+  T Decay(const T& rate) const {
     using std::exp;
-    return exp(-elapsed / TailDecayTime(p, log_duration));
+    return exp(-elapsed * rate);
   }
   // s above.
   template <typename T>
-  T BaseShare(const ParameterSet<T>& p) const {
-    return p[kTailBase] * mass_per_force / TailDecayTime(p, log_duration);
+  T BaseShare(const ParameterSet<T>& p, const T& rate) const {
+    return p[kTailBase] * mass_per_force * rate;
   }
   // What is left over the mean of the rows' horizontal force.
   template <typename T>
   T Gain(const ParameterSet<T>& p) const {
-    return (p[kTailGain] + BaseShare(p)) * Decay(p);
+    const T rate = Rate(p);
+    return (p[kTailGain] + BaseShare(p, rate)) * Decay(rate);
   }
   template <typename T>
-  Vector4<T> Force(const ParameterSet<T>& p) const {
-    const T decay = Decay(p), share = BaseShare(p);
+  Vector4<T> Force(const ParameterSet<T>& p, const T& rate, const T& decay) const {
+    const T share = BaseShare(p, rate);
     const T gain = (p[kTailGain] + share) * decay;
     const T torque = p[kTailTorque] * (1.0 + share) * decay;
     return {gain * mean[0], gain * mean[1], torque * mean[2], torque * mean[3]};
@@ -105,11 +110,13 @@ struct TailOf {
   // Adds the derivatives of Force to a 4 x kNumParameters matrix; written out: 2.5 times as fast
   // as Jets (tests/benchmarks, Jacobian_OfTail).
   template <typename T, typename Matrix>
-  void AddJacobian(const ParameterSet<T>& p, Matrix* by_parameter) const {
-    const T tau = TailDecayTime(p, log_duration), decay = Decay(p), share = BaseShare(p);
-    const T by_base = mass_per_force / tau;  // of the share
+  void AddJacobian(const ParameterSet<T>& p, const T& rate, const T& decay,
+                   Matrix* by_parameter) const {
+    const T share = BaseShare(p, rate);
+    const T by_base = mass_per_force * rate;  // of the share
+    const T per_time = 1.0 / p[kTailTime];
     // d decay / d log tau = decay elapsed / tau, d share / d log tau = -share.
-    const T decay_by_tau = decay * elapsed / tau;
+    const T decay_by_tau = decay * elapsed * rate;
     const T gain_by_tau = (p[kTailGain] + share) * decay_by_tau - share * decay;
     const T torque_by_tau = p[kTailTorque] * ((1.0 + share) * decay_by_tau - share * decay);
     for (int row = 0; row < 4; ++row) {
@@ -121,7 +128,7 @@ struct TailOf {
         (*by_parameter)(row, kTailTorque) += decay * (1.0 + share) * mean[row];
         (*by_parameter)(row, kTailBase) += p[kTailTorque] * decay * by_base * mean[row];
       }
-      (*by_parameter)(row, kTailTime) += by_tau / p[kTailTime];
+      (*by_parameter)(row, kTailTime) += by_tau * per_time;
       (*by_parameter)(row, kTailExponent) += by_tau * log_duration;
     }
   }
@@ -139,7 +146,10 @@ inline TailOf<double> TailAt(const ScenePush& push, double mass, int frame, doub
 inline void AddTailJacobian(const ScenePush& push, double mass, const ParameterSet<double>& p,
                             int frame, double dt,
                             Eigen::Matrix<double, 4, kNumParameters>* by_parameter) {
-  if (TailActs(push, frame)) TailAt(push, mass, frame, dt).AddJacobian(p, by_parameter);
+  if (!TailActs(push, frame)) return;
+  const TailOf<double> tail = TailAt(push, mass, frame, dt);
+  const double rate = tail.Rate(p);
+  tail.AddJacobian(p, rate, tail.Decay(rate), by_parameter);
 }
 
 // The tail's force at `frame`; zero where it does not act.
@@ -147,7 +157,9 @@ template <typename T>
 Vector4<T> TailForce(const ScenePush& push, double mass, const ParameterSet<T>& p, int frame,
                      double dt) {
   if (!TailActs(push, frame)) return Vector4<T>::Zero();
-  return TailAt(push, mass, frame, dt).Force(p);
+  const TailOf<double> tail = TailAt(push, mass, frame, dt);
+  const T rate = tail.Rate(p);
+  return tail.Force(p, rate, tail.Decay(rate));
 }
 
 // Makes the tail's force so many times as large, and its torque at least (the base's torque is a

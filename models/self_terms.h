@@ -181,6 +181,29 @@ struct SelfTerms {
   template <typename Set, typename T>
   void FrictionJacobian(const Set& p, const Vector4<T>& qd, SelfJacobian<T>* jacobian) const {
     jacobian->SetZero();
+    AddFrictionJacobian(p, qd, jacobian);
+  }
+
+  // Of Balance and Linear alone.
+  template <typename Set, typename T>
+  void ControlJacobian(const Set& p, const PendulumState<T>& state, const Vector4<T>& qd_previous,
+                       SelfJacobian<T>* jacobian) const {
+    jacobian->SetZero();
+    AddControlJacobian(p, state, qd_previous, jacobian);
+  }
+
+  template <typename Set, typename T>
+  void MotionJacobian(const Set& p, const PendulumState<T>& state, const Vector4<T>& qd_previous,
+                      SelfJacobian<T>* jacobian) const {
+    FrictionJacobian(p, state.qd, jacobian);
+    AddControlJacobian(p, state, qd_previous, jacobian);
+  }
+
+  // Parts of the same: they add to by_state, and always write the same entries of by_parameter.
+  // Flattened, so that dual numbers stay in registers.
+  template <typename Set, typename T>
+  [[gnu::flatten]] void AddFrictionJacobian(const Set& p, const Vector4<T>& qd,
+                                            SelfJacobian<T>* jacobian) const {
     // By the cart's velocity and by friction's own parameters.
     constexpr int kParameters = kKpX - kMu;
     using FrictionDual = Dual<T, 2 + kParameters>;
@@ -195,26 +218,16 @@ struct SelfTerms {
     }
     const Vector4<FrictionDual> force = Friction(parameters, velocity);
     for (int row = 0; row < 2; ++row) {
-      jacobian->by_state.row(row).template segment<2>(4) =
+      jacobian->by_state.row(row).template segment<2>(4) +=
           force[row].v.template head<2>().transpose();
       jacobian->by_parameter.row(row).template segment<kParameters>(kMu) =
           force[row].v.template tail<kParameters>().transpose();
     }
   }
 
-  // Of Balance and Linear alone.
   template <typename Set, typename T>
-  void ControlJacobian(const Set& p, const PendulumState<T>& state, const Vector4<T>& qd_previous,
-                       SelfJacobian<T>* jacobian) const {
-    jacobian->SetZero();
-    AddBalanceJacobian(p, state, qd_previous, jacobian);
-    AddLinearJacobian(p, state, jacobian);
-  }
-
-  template <typename Set, typename T>
-  void MotionJacobian(const Set& p, const PendulumState<T>& state, const Vector4<T>& qd_previous,
-                      SelfJacobian<T>* jacobian) const {
-    FrictionJacobian(p, state.qd, jacobian);
+  void AddControlJacobian(const Set& p, const PendulumState<T>& state,
+                          const Vector4<T>& qd_previous, SelfJacobian<T>* jacobian) const {
     AddBalanceJacobian(p, state, qd_previous, jacobian);
     AddLinearJacobian(p, state, jacobian);
   }
@@ -271,10 +284,11 @@ struct SelfTerms {
     by_parameter(3, kTy) = -mass * yd;
 
     const T speed = SmoothNorm(xd, yd);
-    by_state(0, 4) -= mass * p[kCq] * (speed + xd * xd / speed);
-    by_state(0, 5) -= mass * p[kCq] * xd * yd / speed;
-    by_state(1, 4) -= mass * p[kCq] * xd * yd / speed;
-    by_state(1, 5) -= mass * p[kCq] * (speed + yd * yd / speed);
+    const T drag = mass * p[kCq], over_speed = drag / speed;
+    by_state(0, 4) -= drag * speed + over_speed * xd * xd;
+    by_state(0, 5) -= over_speed * xd * yd;
+    by_state(1, 4) -= over_speed * xd * yd;
+    by_state(1, 5) -= drag * speed + over_speed * yd * yd;
     by_parameter(0, kCq) = -mass * speed * xd;
     by_parameter(1, kCq) = -mass * speed * yd;
     const T rate_th = SmoothNorm(thd, T(0.0)), rate_ph = SmoothNorm(phd, T(0.0));

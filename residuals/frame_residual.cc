@@ -28,6 +28,7 @@ FrameVector<double> WithJacobian(const Body& body, double lift, const PosedPendu
                                  FrameJacobian<kColumns>* jacobian) {
   const FrameVector<double> r =
       RawFrameResidual<double>(body, state, state.angles, measured, sigmas);
+  jacobian->setZero();
   RawFrameJacobian<kColumns, double>(body, lift, state, state.angles, sigmas, jacobian);
   if (sigmas.loss == FrameLoss::kLdp)
     return RobustRows(r, measured.weight, sigmas.robust, jacobian);

@@ -78,26 +78,27 @@ FrameVector<T> RawFrameResidual(const BodyOf<L>& body, const PendulumState<T>& s
     for (int i = 0; i < 2; ++i) r[i] = (state.q[i] - measured.state.q[i]) / sigmas.hip;
     r[2] = kLdpRateWeight * state.qd[3] / sigmas.rate;
   } else {
-    r.template head<3>() = (HipPosition(body, angles, state.q) - measured.hip) / T(sigmas.hip);
+    r.template head<3>() =
+        (HipPosition(body, angles, state.q) - measured.hip) * T(1.0 / sigmas.hip);
   }
   for (int i = 0; i < 2; ++i) {
-    r[3 + i] = (state.qd[i] - measured.state.qd[i]) / sigmas.velocity;
-    r[5 + i] = (state.q[2 + i] - measured.state.q[2 + i]) / sigmas.angle;
-    r[7 + i] = (state.qd[2 + i] - measured.state.qd[2 + i]) / sigmas.rate;
+    r[3 + i] = (state.qd[i] - measured.state.qd[i]) * (1.0 / sigmas.velocity);
+    r[5 + i] = (state.q[2 + i] - measured.state.q[2 + i]) * (1.0 / sigmas.angle);
+    r[7 + i] = (state.qd[2 + i] - measured.state.qd[2 + i]) * (1.0 / sigmas.rate);
   }
   if (sigmas.loss == FrameLoss::kLdp) r[8] = (state.rod - measured.rod) / sigmas.hip;
   return r;
 }
 
 // Its derivative by [q, qd], and by [rod, lift] where there are so many columns, with the lift.
+// Writes what is not always zero.
 template <int kColumns, typename T, typename L>
 void RawFrameJacobian(const BodyOf<L>& body, const L& lift, const PendulumState<T>& state,
                       const Angles<T>& angles, const ResidualSigmas& sigmas,
                       FrameJacobian<kColumns, T>* jacobian) {
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
-  const L l = body.rod_length;
+  const L l = body.rod_length * (1.0 / sigmas.hip);
   FrameJacobian<kColumns, T>& j = *jacobian;
-  j.setZero();
   j(0, 0) = j(1, 1) = T(1.0 / sigmas.hip);
   j(3, 4) = j(4, 5) = T(1.0 / sigmas.velocity);
   j(5, 2) = j(6, 3) = T(1.0 / sigmas.angle);
@@ -108,11 +109,11 @@ void RawFrameJacobian(const BodyOf<L>& body, const L& lift, const PendulumState<
     if constexpr (kColumns == 10) j(8, 8) = T(1.0 / sigmas.hip);
     return;
   }
-  j(0, 2) = l * c_th / sigmas.hip;
-  j(1, 2) = l * s_th * s_ph / sigmas.hip;
-  j(1, 3) = -l * c_th * c_ph / sigmas.hip;
-  j(2, 2) = -l * s_th * c_ph / sigmas.hip;
-  j(2, 3) = -l * c_th * s_ph / sigmas.hip;
+  j(0, 2) = l * c_th;
+  j(1, 2) = l * s_th * s_ph;
+  j(1, 3) = -l * c_th * c_ph;
+  j(2, 2) = -l * s_th * c_ph;
+  j(2, 3) = -l * c_th * s_ph;
   if constexpr (kColumns == 10) {
     j(0, 8) = s_th / sigmas.hip;
     j(1, 8) = -c_th * s_ph / sigmas.hip;
@@ -129,19 +130,20 @@ T RobustWeight(const T& squared_norm, double robust) {
   return sqrt(2.0 / (1.0 + sqrt(1.0 + squared_norm / (robust * robust))));
 }
 
-// Of residuals that share one w: w, and twice dw/ds of
-//   d(w r) = w dr + r (2 dw/ds) r' dr, with c = sqrt(1 + s/d^2), w^2 = 2 / (1 + c)
+// Of residuals that share one w: w, twice dw/ds, and that over w, of
+//   d(w r) = w dr + r (2 dw/ds) r' dr, with c = sqrt(1 + s/d^2), w^2 = 2 / (1 + c) = 2 u
 template <typename T>
 struct RobustSlope {
-  T w = T(1.0), twice = T(0.0);
+  T w = T(1.0), twice = T(0.0), over_w = T(0.0);
 
   RobustSlope(const T& squared_norm, double robust) {
     using std::sqrt;
     if (robust <= 0.0) return;
-    const double squared_scale = robust * robust;
-    const T c = sqrt(1.0 + squared_norm / squared_scale);
-    w = sqrt(2.0 / (1.0 + c));
-    twice = -1.0 / (w * squared_scale * c * (1.0 + c) * (1.0 + c));
+    const double by_scale = 1.0 / (robust * robust);
+    const T c = sqrt(1.0 + squared_norm * by_scale), u = 1.0 / (1.0 + c);
+    w = sqrt(2.0 * u);
+    over_w = -0.5 * by_scale * u / c;
+    twice = w * over_w;
   }
 };
 

@@ -46,9 +46,13 @@ LaneGroup::LaneGroup(std::vector<const RolloutProblem*> problems, const PersonLa
     const RolloutProblem& problem = *problems_[i];
     const int lane = static_cast<int>(i);
     tables_.Set(lane, problem.recording->scene, problem.options, problem.horizon);
-    const PendulumRecording& recording = *problem.recording;
-    for (int t = 0; t < problem.horizon; ++t) {
-      tables_.SetMeasured(lane, t, recording.hip[0][t], recording.states[0][t],
+  }
+  for (int t = 0; t < MostFrames(problems_); ++t) {  // frame by frame, as they lie in memory
+    for (size_t i = 0; i < problems_.size(); ++i) {
+      const RolloutProblem& problem = *problems_[i];
+      if (t >= problem.horizon) continue;
+      const PendulumRecording& recording = *problem.recording;
+      tables_.SetMeasured(static_cast<int>(i), t, recording.hip[0][t], recording.states[0][t],
                           problem.weight * recording.Weight(0, t));
     }
   }
@@ -59,7 +63,7 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
   const RolloutProblem& first = *problems_[0];
   const int columns = first.layout.num_acting();
   // A thread's own, used again.
-  thread_local std::vector<double> constants, failed, residuals, squares, plain, robust, storage;
+  thread_local std::vector<double> constants, failed, residuals, squares, plain, robust;
   thread_local LaneParameters parameters;
   constants = tables_.constants();
   const int width = tables_.width();
@@ -90,10 +94,8 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
   if (sums == LaneSums::kNone) residuals.resize((in.frames - 1) * kFrameResiduals * width);
   plain.resize(size);
   robust.resize(size);
-  storage.resize(LaneStorage(width, columns));
   tables_.Roll(in, sums,
-               {failed.data(), residuals.data(), squares.data(), plain.data(), robust.data(),
-                storage.data()});
+               {failed.data(), residuals.data(), squares.data(), plain.data(), robust.data()});
   std::vector<RolloutSums> results(problems_.size());
   for (size_t lane = 0; lane < results.size(); ++lane) {
     results[lane].ok = failed[lane] == 0.0;

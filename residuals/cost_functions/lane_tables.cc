@@ -98,7 +98,6 @@ void LaneTables::SetSteps(int lane, const Scene& scene, const ModelOptions& opti
     const ActiveForces active = ForcesAt(scene, options.push, 0, t);
     step[kLaneActs * width()] = active == ActiveForces::kAll ? 1.0 : 0.0;
     step[kLaneSlides * width()] = active == ActiveForces::kPushOnly ? 0.0 : 1.0;
-    friction_alone_ = friction_alone_ || active == ActiveForces::kPushAndFriction;
     step[kLaneGoesOn * width()] = t + 1 < frames ? 1.0 : 0.0;
   }
   for (const ScenePush& push : scene.pushes) {
@@ -139,7 +138,6 @@ LaneInputs LaneTables::Inputs() const {
   LaneInputs in;
   in.friction = friction_;
   in.cart_derivative = cart_derivative_;
-  in.friction_alone = friction_alone_;
   in.frames = frames_;
   in.num_steps = num_steps_;
   in.num_tails = num_tails_;
@@ -147,6 +145,13 @@ LaneInputs LaneTables::Inputs() const {
   in.tails = tails_.data();
   in.steps = steps_.data();
   return in;
+}
+
+void LaneTables::Roll(const LaneInputs& in, LaneSums sums, LaneOutputs out) const {
+  thread_local std::vector<double> storage;  // a thread's own, used again
+  storage.resize(LaneStorage(width(), in.columns, in.num_tails));
+  out.storage = storage.data();
+  lanes_->roll(in, sums, out);
 }
 
 std::vector<std::vector<Vector3<double>>> HipsSideBySide(

@@ -21,7 +21,7 @@ class LaneParameters {
  public:
   explicit LaneParameters(int width = 0) { Clear(width); }
   void Clear(int width);
-  // entries: of the same columns and parameters in every lane; none without derivatives.
+  // entries: by column, of the same columns and parameters in every lane; none without derivatives.
   void Set(int lane, const ParameterSet<double>& values, const std::vector<ColumnEntry>& entries);
   void In(LaneInputs* in) const;
 
@@ -46,9 +46,8 @@ class LaneTables {
   LaneInputs Inputs() const;
   const std::vector<double>& constants() const { return constants_; }
   int width() const { return lanes_->lanes; }
-  void Roll(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) const {
-    lanes_->roll(in, sums, out);
-  }
+  // All of `out` but its storage is the caller's.
+  void Roll(const LaneInputs& in, LaneSums sums, LaneOutputs out) const;
 
  private:
   void SetSteps(int lane, const Scene& scene, const ModelOptions& options, int frames);
@@ -59,7 +58,7 @@ class LaneTables {
   const PersonLanes* lanes_;
   int frames_, num_tails_, num_steps_;
   FrictionKind friction_ = FrictionKind::kIsotropic;
-  bool cart_derivative_ = false, friction_alone_ = false;
+  bool cart_derivative_ = false;
   std::vector<double> constants_, steps_, tails_;
 };
 

@@ -77,7 +77,7 @@ bool SceneRollouts::RollGroup(const ParameterSet<double>& parameters,
                               const Group& group, std::vector<double>* states) {
   // A thread's own, used again.
   thread_local LaneParameters of_lanes;
-  thread_local std::vector<double> failed, squares, storage;
+  thread_local std::vector<double> failed, squares;
   const int width = group.tables.width();
   LaneInputs in = group.tables.Inputs();
   in.frames = end;
@@ -88,12 +88,10 @@ bool SceneRollouts::RollGroup(const ParameterSet<double>& parameters,
   of_lanes.In(&in);
   failed.resize(width);
   squares.resize(width);
-  storage.resize(LaneStorage(width, columns));
   states->resize(std::max(0, end - begin_) * 8 * (1 + columns) * width);
   LaneOutputs out;
   out.failed = failed.data();
   out.squares = squares.data();
-  out.storage = storage.data();
   out.states = states->data();
   group.tables.Roll(in, LaneSums::kStates, out);
   bool inside = true;

@@ -25,6 +25,7 @@ struct Carried {
   Lanes* rows = nullptr;        // (P + 1) x kFrameResiduals: [J r] of one frame
   Lanes* plain = nullptr;       // (P + 1) x (P + 1)
   Lanes* robust = nullptr;      // the same
+  Lanes* tails = nullptr;       // rate and decay of each
   double* residuals = nullptr;  // of LaneOutputs
   double* states = nullptr;     // the same
 };
@@ -46,25 +47,26 @@ class Room {
   Lanes* at_;
 };
 
-// gram, of size x size, grows by the products of `size` columns of kFrameResiduals rows each.
-template <int kBlock>
+// gram, of size x size, grows by the products of kLeft columns of kFrameResiduals rows each, from
+// column i on, with kRight from j on; upper: those on and above its diagonal alone.
+template <int kLeft, int kRight, bool kUpper = false>
 void AddGramBlock(const Lanes* rows, int size, int i, int j, Lanes* gram) {
   const Lanes* const left = rows + kFrameResiduals * i;
   const Lanes* const right = rows + kFrameResiduals * j;
-  Lanes sum[kBlock][kBlock];
-  for (int a = 0; a < kBlock; ++a) {
-    for (int b = 0; b < kBlock; ++b) sum[a][b] = gram[(i + a) * size + j + b];
-  }
-  for (int k = 0; k < kFrameResiduals; ++k) {
-    for (int a = 0; a < kBlock; ++a) {
-      for (int b = 0; b < kBlock; ++b) {
-        sum[a][b] += left[kFrameResiduals * a + k] * right[kFrameResiduals * b + k];
-      }
+  Lanes sum[kLeft][kRight];
+  const auto each = [](const auto& does) {
+    for (int a = 0; a < kLeft; ++a) {
+      for (int b = kUpper ? a : 0; b < kRight; ++b) does(a, b);
     }
+  };
+  each([&](int a, int b) { sum[a][b] = gram[(i + a) * size + j + b]; });
+#pragma GCC unroll 9
+  for (int k = 0; k < kFrameResiduals; ++k) {
+    each([&](int a, int b) {
+      sum[a][b] += left[kFrameResiduals * a + k] * right[kFrameResiduals * b + k];
+    });
   }
-  for (int a = 0; a < kBlock; ++a) {
-    for (int b = 0; b < kBlock; ++b) gram[(i + a) * size + j + b] = sum[a][b];
-  }
+  each([&](int a, int b) { gram[(i + a) * size + j + b] = sum[a][b]; });
 }
 
 // The upper triangle, by blocks whose sums stay in registers.
@@ -72,10 +74,12 @@ inline void AddGram(const Lanes* rows, int size, Lanes* gram) {
   constexpr int kBlock = 3;
   const int whole = size / kBlock * kBlock;
   for (int j = 0; j < whole; j += kBlock) {
-    for (int i = 0; i <= j; i += kBlock) AddGramBlock<kBlock>(rows, size, i, j, gram);
+    for (int i = 0; i < j; i += kBlock) AddGramBlock<kBlock, kBlock>(rows, size, i, j, gram);
+    AddGramBlock<kBlock, kBlock, true>(rows, size, j, j, gram);
   }
   for (int j = whole; j < size; ++j) {
-    for (int i = 0; i <= j; ++i) AddGramBlock<1>(rows, size, i, j, gram);
+    for (int i = 0; i < whole; i += kBlock) AddGramBlock<kBlock, 1>(rows, size, i, j, gram);
+    for (int i = whole; i <= j; ++i) AddGramBlock<1, 1>(rows, size, i, j, gram);
   }
 }
 

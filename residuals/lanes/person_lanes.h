@@ -51,14 +51,13 @@ struct LaneEntry {
 struct LaneInputs {
   FrictionKind friction = FrictionKind::kIsotropic;
   bool cart_derivative = false;
-  bool friction_alone = false;  // acts in some step without the other own forces
   ResidualSigmas sigmas;
   int frames = 0;            // of the longest rollout
   int first_state = 0;       // the first frame of those that kStates hands out
   int columns = 0;           // P
   int velocity_column = -1;  // as in SensitivityInputs
   int num_entries = 0, num_tails = 0;
-  const LaneEntry* entries = nullptr;  // those of a parameter one after the other
+  const LaneEntry* entries = nullptr;  // by column
   const double* slopes = nullptr;      // of entries
   const double* constants = nullptr;   // kLaneConstants
   const double* parameters = nullptr;  // kLaneParameters
@@ -81,14 +80,14 @@ struct LaneOutputs {
   double* squares = nullptr;    // r'r
   double* plain = nullptr;      // (P + 1) x (P + 1), the upper triangle
   double* robust = nullptr;     // the same
-  double* storage = nullptr;    // LaneStorage
   double* states = nullptr;     // (frames - first_state) x (1 + P) x 8; the last within the domain
+  double* storage = nullptr;    // LaneStorage; from LaneTables
 };
 
 // Doubles that a rollout needs besides.
-constexpr int LaneStorage(int lanes, int columns) {
+constexpr int LaneStorage(int lanes, int columns, int tails) {
   const int size = columns + 1;
-  return lanes * (10 * columns + kFrameResiduals * size + 2 * size * size + 1);
+  return lanes * (10 * columns + kFrameResiduals * size + 2 * size * size + 2 * tails + 1);
 }
 
 struct PersonLanes {

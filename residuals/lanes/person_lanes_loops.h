@@ -25,6 +25,7 @@ void RollLanes(const LaneInputs& in, LaneSums sums, const LaneOutputs& out) {
     carried = {room.Take(8 * columns), room.Take(2 * columns),
                room.Take(kFrameResiduals * (columns + 1)), room.Take(size), room.Take(size)};
   }
+  carried.tails = room.Take(2 * in.num_tails);
   Roller roller(in, sums, carried);
   roller.Roll();
   Store(roller.failed(), out.failed);

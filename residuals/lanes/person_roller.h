@@ -13,11 +13,6 @@
 namespace pushid {
 namespace {
 
-// Of FrameLoss::kHip, the nonzero entries of RawFrameJacobian.
-constexpr int kOfRow[kFrameResiduals][3] = {{0, 2, -1},  {1, 2, 3},   {2, 3, -1},
-                                            {4, -1, -1}, {5, -1, -1}, {2, -1, -1},
-                                            {3, -1, -1}, {6, -1, -1}, {7, -1, -1}};
-
 class Roller {
  public:
   Roller(const LaneInputs& in, LaneSums sums, const Carried& carried)
@@ -40,6 +35,7 @@ class Roller {
     state_.q = LoadVector<4>(c + kLaneStart * kWidth);
     state_.qd = LoadVector<4>(c + (kLaneStart + 4) * kWidth);
     previous_ = state_.qd;
+    for (int k = 0; k < in.num_tails; ++k) carried_.tails[2 * k] = Tail(k, 0).Rate(p_);
     if (CarriesColumns()) StartDerivatives();
   }
 
@@ -109,7 +105,12 @@ class Roller {
     const Lanes acts = LoadLanes(step + kLaneActs * kWidth);
     const Lanes slides = LoadLanes(step + kLaneSlides * kWidth);
     Force force = self_.Balance(p_, state_, previous_) + self_.Linear(p_, state_);
-    for (int k = 0; k < in_.num_tails; ++k) force += Tail(k, t).Force(p_);
+    for (int k = 0; k < in_.num_tails; ++k) {
+      const TailOf<Lanes> tail = Tail(k, t);
+      Lanes* const rate_and_decay = carried_.tails + 2 * k;
+      rate_and_decay[1] = tail.Decay(rate_and_decay[0]);
+      force += tail.Force(p_, rate_and_decay[0], rate_and_decay[1]);
+    }
     force = (acts * force + slides * self_.Friction(p_, state_.qd)).eval();
     force += LoadVector<4>(step + kLanePush * kWidth);
     const Matrix inverse = InverseMassMatrix(self_.body, angles_, self_.body.mass);
@@ -142,64 +143,52 @@ class Roller {
   // The derivatives at the next frame (rollout_sensitivities.h); inverse: of the mass matrix, times
   // dt. A person alone does not care where the cart is: six columns of the state.
   void CarryOn(int t, Lanes acts, Lanes slides, const Force& a, const Matrix& inverse) {
-    Linearize(t, acts, slides);
-    Eigen::Matrix<Lanes, 4, 6> by_state = jacobian_.by_state.rightCols<6>();
+    Eigen::Matrix<Lanes, 4, 6> by_state = Linearize(t, acts, slides);
     const Matrix rigid = InverseDynamicsJacobian(self_.body, angles_, state_.qd, a);
     by_state.leftCols<2>() -= rigid.leftCols<2>();
     by_state.rightCols<2>() -= rigid.rightCols<2>();
-    const Eigen::Matrix<Lanes, 4, 6> on = inverse * by_state;
+    const LaneEntry* entry = in_.entries;
+    const double* slope = in_.slopes;
+    const LaneEntry* const end = entry + in_.num_entries;
     for (int c = 0; c < in_.columns; ++c) {
       Lanes* const s = carried_.by_column + 8 * c;
-      Lanes change[4];
-      for (int r = 0; r < 4; ++r) {
-        change[r] = on(r, 0) * s[2];
-        for (int k = 1; k < 6; ++k) change[r] += on(r, k) * s[2 + k];
+      Force force = Force::Zero();  // by the column
+      for (; entry != end && entry->column == c; ++entry, slope += kWidth) {
+        force += (LoadLanes(slope) * Acting(entry->parameter, acts, slides)) *
+                 jacobian_.by_parameter.col(entry->parameter);
       }
       if (in_.cart_derivative) {
-        Lanes* const before = carried_.before + 2 * c;
         for (int i = 0; i < 2; ++i) {
-          const Lanes back = jacobian_.by_previous[i] * before[i];
-          for (int r = 0; r < 4; ++r) change[r] += inverse(r, i) * back;
-          before[i] = s[4 + i];
+          Lanes& before = carried_.before[2 * c + i];
+          force[i] += jacobian_.by_previous[i] * before;
+          before = s[4 + i];
         }
       }
-      for (int r = 0; r < 4; ++r) s[4 + r] += change[r];
-    }
-    AddParameters(inverse, acts, slides);
-    for (int c = 0; c < in_.columns; ++c) {
-      Lanes* const s = carried_.by_column + 8 * c;
-      for (int r = 0; r < 4; ++r) s[r] += self_.dt * s[4 + r];
-    }
-  }
-
-  void AddParameters(const Matrix& inverse, Lanes acts, Lanes slides) {
-    int last = -1;
-    Force by_parameter = Force::Zero();
-    for (int i = 0; i < in_.num_entries; ++i) {
-      const LaneEntry& entry = in_.entries[i];
-      if (entry.parameter != last) {
-        by_parameter = inverse * (Acting(entry.parameter, acts, slides) *
-                                  jacobian_.by_parameter.col(entry.parameter));
+      force += by_state * Eigen::Map<const Eigen::Matrix<Lanes, 6, 1>>(s + 2);
+      for (int r = 0; r < 4; ++r) {
+        for (int k = 0; k < 4; ++k) s[4 + r] += inverse(r, k) * force[k];
+        s[r] += self_.dt * s[4 + r];
       }
-      last = entry.parameter;
-      const Lanes slope = LoadLanes(in_.slopes + i * kWidth);
-      Lanes* const s = carried_.by_column + 8 * entry.column;
-      for (int r = 0; r < 4; ++r) s[4 + r] += slope * by_parameter[r];
     }
   }
 
-  // Derivatives of the forces that act; those by parameters still times Acting.
-  void Linearize(int t, Lanes acts, Lanes slides) {
-    Eigen::Matrix<Lanes, 2, 2> by_velocity = Eigen::Matrix<Lanes, 2, 2>::Zero();
-    if (in_.friction_alone) {
-      self_.FrictionJacobian(p_, state_.qd, &jacobian_);
-      by_velocity = (slides - acts) * jacobian_.by_state.block<2, 2>(0, 4);
+  // Derivatives of the forces that act, by all of the state but where the cart is; those by
+  // parameters still times Acting.
+  Eigen::Matrix<Lanes, 4, 6> Linearize(int t, Lanes acts, Lanes slides) {
+    jacobian_.by_state.setZero();
+    constexpr int kOfTails = kTailBase - kTailGain + 1;
+    jacobian_.by_parameter.middleCols<kOfTails>(kTailGain).setZero();  // others are written again
+    self_.AddFrictionJacobian(p_, state_.qd, &jacobian_);
+    const Eigen::Matrix<Lanes, 2, 2> alone = (slides - acts) * jacobian_.by_state.block<2, 2>(0, 4);
+    self_.AddControlJacobian(p_, state_, previous_, &jacobian_);
+    for (int k = 0; k < in_.num_tails; ++k) {
+      const Lanes* const rate_and_decay = carried_.tails + 2 * k;
+      Tail(k, t).AddJacobian(p_, rate_and_decay[0], rate_and_decay[1], &jacobian_.by_parameter);
     }
-    self_.MotionJacobian(p_, state_, previous_, &jacobian_);
-    for (int k = 0; k < in_.num_tails; ++k) Tail(k, t).AddJacobian(p_, &jacobian_.by_parameter);
-    jacobian_.by_state *= acts;
     jacobian_.by_previous *= acts;
-    if (in_.friction_alone) jacobian_.by_state.block<2, 2>(0, 4) += by_velocity;
+    Eigen::Matrix<Lanes, 4, 6> by_state = acts * jacobian_.by_state.rightCols<6>();
+    by_state.block<2, 2>(0, 2) += alone;
+    return by_state;
   }
   static Lanes Acting(int parameter, Lanes acts, Lanes slides) {
     return parameter >= kMu && parameter < kKpX ? slides : acts;
@@ -227,22 +216,26 @@ class Roller {
     const Lanes scale = weight * robust.w;
     squares_ += scale * scale * squares;
     if (!CarriesColumns()) return;
-    FrameJacobian<8, Lanes> by_state;
-    RawFrameJacobian(self_.body, Lanes(0.0), state_, angles_, in_.sigmas, &by_state);
-    const Lanes twice = weight * robust.twice;
+    FrameJacobian<8, Lanes> j;
+    RawFrameJacobian(self_.body, Lanes(0.0), state_, angles_, in_.sigmas, &j);
+    const auto at = [&](int row, int column) { return scale * j(row, column); };
+    const Lanes twice = robust.over_w;
     for (int c = 0; c < in_.columns; ++c) {
       const Lanes* const s = carried_.by_column + 8 * c;
-      Lanes* const row = carried_.rows + kFrameResiduals * c;
+      const Lanes row[kFrameResiduals] = {at(0, 0) * s[0] + at(0, 2) * s[2],  // what is not zero
+                                          at(1, 1) * s[1] + at(1, 2) * s[2] + at(1, 3) * s[3],
+                                          at(2, 2) * s[2] + at(2, 3) * s[3],
+                                          at(3, 4) * s[4],
+                                          at(4, 5) * s[5],
+                                          at(5, 2) * s[2],
+                                          at(6, 3) * s[3],
+                                          at(7, 6) * s[6],
+                                          at(8, 7) * s[7]};
       Lanes along = 0.0;
-      for (int k = 0; k < kFrameResiduals; ++k) {
-        row[k] = 0.0;
-        for (int at : kOfRow[k]) {
-          if (at >= 0) row[k] += by_state(k, at) * s[at];
-        }
-        along += r[k] * row[k];
-      }
+      for (int k = 0; k < kFrameResiduals; ++k) along += r[k] * row[k];
       along *= twice;
-      for (int k = 0; k < kFrameResiduals; ++k) row[k] = scale * row[k] + r[k] * along;
+      Lanes* const to = carried_.rows + kFrameResiduals * c;
+      for (int k = 0; k < kFrameResiduals; ++k) to[k] = row[k] + r[k] * along;
     }
     for (int k = 0; k < kFrameResiduals; ++k) {
       carried_.rows[kFrameResiduals * in_.columns + k] = scale * r[k];
