@@ -33,6 +33,7 @@ class NormalEquations {
   void Add(const NormalEquations& other);
 
   int columns() const { return columns_; }
+  const RowMajorMatrix& upper() const { return gram_; }  // on and above G's diagonal
   // F: columns + 1 rows, the last of which is [0 rho].
   RowMajorMatrix Factor() const;
 

@@ -27,20 +27,26 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
     ok_ = cost_->Evaluate(blocks_.data(), residuals_.data(),
                           with_jacobians ? jacobians.data() : nullptr);
   }
-  // The same of a rollout whose sums are there.
-  void Prepare(const RolloutSums& sums, bool with_jacobians, const ceres::Problem& problem) {
-    std::vector<double*> jacobians = Begin(with_jacobians, problem);
-    ok_ = rollout()->Tell(sums, residuals_.data(), with_jacobians ? jacobians.data() : nullptr);
+  // The same of a rollout in lanes, whose rows are told when they are asked for.
+  void Prepare(RolloutSums sums, bool with_jacobians) {
+    sums_ = std::move(sums);
+    has_jacobians_ = with_jacobians;
+    Remember();
   }
   bool IsPrepared(bool with_jacobians) const { return Holds(blocks_.data(), with_jacobians); }
   // Null where it is none.
   const CondensedRollout* rollout() const {
     return dynamic_cast<const CondensedRollout*>(cost_.get());
   }
+  const RolloutProblem* in_lanes() const {
+    return rollout() != nullptr ? rollout()->in_lanes() : nullptr;
+  }
+  const RolloutSums& sums() const { return sums_; }
   double const* const* blocks() const { return blocks_.data(); }
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     bool held = Holds(blocks, jacobians != nullptr);
+    if (held && in_lanes() != nullptr) return rollout()->Tell(sums_, residuals, jacobians);
     for (size_t b = 0; held && jacobians != nullptr && b < blocks_.size(); ++b) {
       held = jacobians[b] == nullptr || !jacobians_[b].empty();
     }
@@ -89,6 +95,7 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
   bool has_jacobians_ = false, ok_ = false;
   std::vector<double> residuals_;
   std::vector<std::vector<double>> jacobians_;  // empty for a constant block
+  RolloutSums sums_;                            // of a rollout in lanes, in place of these
 };
 
 std::unique_ptr<ceres::CostFunction> ParallelEvaluation::Wrap(
@@ -113,9 +120,9 @@ struct ParallelEvaluation::Task {
       there = there && member->IsPrepared(with_jacobians);
     }
     if (there) return;
-    const std::vector<RolloutSums> sums = lanes->Evaluate(blocks, wanted);
+    std::vector<RolloutSums> sums = lanes->Evaluate(blocks, wanted);
     for (size_t i = 0; i < members.size(); ++i) {
-      members[i]->Prepare(sums[i], with_jacobians, problem);
+      members[i]->Prepare(std::move(sums[i]), with_jacobians);
     }
   }
 };
@@ -126,9 +133,8 @@ ParallelEvaluation::~ParallelEvaluation() = default;
 void ParallelEvaluation::SetTasks() {
   std::map<const RolloutProblem*, Prepared*> in_lanes;
   for (Prepared* prepared : prepared_) {
-    const CondensedRollout* const rollout = prepared->rollout();
-    if (rollout != nullptr && rollout->in_lanes() != nullptr) {
-      in_lanes[rollout->in_lanes()] = prepared;
+    if (prepared->in_lanes() != nullptr) {
+      in_lanes[prepared->in_lanes()] = prepared;
     } else {
       tasks_.push_back({{prepared}, nullptr});
     }
@@ -141,6 +147,15 @@ void ParallelEvaluation::SetTasks() {
     }
     tasks_.push_back(std::move(task));
   }
+}
+
+const RolloutProblem* ParallelEvaluation::ProblemOf(const ceres::CostFunction* cost) {
+  const auto* const prepared = dynamic_cast<const Prepared*>(cost);
+  return prepared != nullptr ? prepared->in_lanes() : nullptr;
+}
+
+const RolloutSums* ParallelEvaluation::SumsOf(const ceres::CostFunction* cost) {
+  return ProblemOf(cost) != nullptr ? &static_cast<const Prepared*>(cost)->sums() : nullptr;
 }
 
 void ParallelEvaluation::PrepareForEvaluation(bool evaluate_jacobians, bool) {

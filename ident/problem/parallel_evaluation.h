@@ -33,6 +33,11 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
     side_by_side_ = std::move(groups);
   }
 
+  // Of what Wrap made of a rollout in lanes: the rollout, and its sums at the last preparation.
+  // Null of other cost functions. Who adds up rows anyway need not have them told.
+  static const RolloutProblem* ProblemOf(const ceres::CostFunction* cost);
+  static const RolloutSums* SumsOf(const ceres::CostFunction* cost);
+
   void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
 
  private:

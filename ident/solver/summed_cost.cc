@@ -36,10 +36,26 @@ SummedCost::SummedCost(FitProblem::Built* built, StructuredSecants secants, Reco
     Part part{problem.GetCostFunctionForResidualBlock(id),
               of_recordings.count(id) > 0,
               {on.begin(), on.end()},
+              {},
+              nullptr,
               {}};
     for (double* block : on) {
       const auto found = column_of.find(block);
       part.columns.push_back(found == column_of.end() ? -1 : found->second);
+    }
+    part.sums = ParallelEvaluation::SumsOf(part.cost);
+    if (part.sums != nullptr) {
+      const BlockLayout& layout = ParallelEvaluation::ProblemOf(part.cost)->layout;
+      part.of_acting.resize(layout.num_acting());
+      auto acting = layout.ActingOfColumns();
+      auto next = acting.begin();
+      for (size_t b = 0; b < on.size(); ++b) {
+        for (int i = 0; i < problem.ParameterBlockSize(on[b]); ++i, ++next) {
+          for (int a = next->first; part.columns[b] >= 0 && a <= next->second; ++a) {
+            part.of_acting[a].push_back(part.columns[b] + i);
+          }
+        }
+      }
     }
     parts_.push_back(std::move(part));
   }
@@ -68,7 +84,26 @@ void SummedCost::SetBounds(ceres::Problem* problem, double* x) const {
   }
 }
 
+void SummedCost::AddSums(const Part& part, SecondOrder* sum) {
+  const RowMajorMatrix& upper = part.sums->plain.upper();
+  const size_t acting = part.of_acting.size();
+  for (size_t a = 0; a < acting; ++a) {
+    for (int i : part.of_acting[a]) {
+      sum->gradient[i] += upper(a, acting);
+      for (size_t b = 0; b < acting; ++b) {
+        const double product = upper(std::min(a, b), std::max(a, b));
+        for (int j : part.of_acting[b]) sum->information(i, j) += product;
+      }
+    }
+  }
+}
+
 bool SummedCost::AddPart(const Part& part, double* squares, SecondOrder* sum) const {
+  if (part.sums != nullptr) {
+    *squares += part.sums->squares;
+    if (part.sums->ok && sum != nullptr) AddSums(part, sum);
+    return part.sums->ok;
+  }
   const int rows = part.cost->num_residuals();
   const std::vector<int>& sizes = part.cost->parameter_block_sizes();
   VectorXd residuals(rows);

@@ -37,8 +37,11 @@ class SummedCost : public ceres::CostFunction {
     const ceres::CostFunction* cost;
     bool of_recording;
     std::vector<const double*> on;
-    std::vector<int> columns;  // of each block; -1: it stays
+    std::vector<int> columns;                 // of each block; -1: it stays
+    const RolloutSums* sums;                  // of a rollout in lanes; null of others
+    std::vector<std::vector<int>> of_acting;  // columns that move each of the rollout's own
   };
+  static void AddSums(const Part& part, SecondOrder* sum);
   // sum: null without derivatives.
   bool AddPart(const Part& part, double* squares, SecondOrder* sum) const;
   bool AddParts(bool of_recordings, double* squares, SecondOrder* sum) const;
