@@ -163,14 +163,13 @@ ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clust
   gathered.scores.resize(base.cols(), 0);
   for (const std::vector<int>& of_cluster : rows) {
     if (of_cluster.empty()) continue;
+    const Eigen::MatrixXd plain = score.jacobian(of_cluster, Eigen::all);
+    const Eigen::VectorXd residuals = score.residuals(of_cluster);
     const bool robust = score.robust_jacobian.size() > 0;
-    const Eigen::MatrixXd own =
-        (robust ? score.robust_jacobian : score.jacobian)(of_cluster, Eigen::all);
-    gathered.factors.push_back(FewRows(own, base));
+    gathered.factors.push_back(FewRows(
+        robust ? Eigen::MatrixXd(score.robust_jacobian(of_cluster, Eigen::all)) : plain, base));
     gathered.scores.conservativeResize(Eigen::NoChange, gathered.scores.cols() + 1);
-    gathered.scores.rightCols(1) =
-        base.transpose() *
-        (score.jacobian(of_cluster, Eigen::all).transpose() * score.residuals(of_cluster));
+    gathered.scores.rightCols(1) = base.transpose() * (plain.transpose() * residuals);
   }
   return gathered;
 }

@@ -158,11 +158,11 @@ class RowStack {
     const auto beyond = std::lower_bound(told.columns.begin(), told.columns.end(), estimates);
     const std::vector<Index> own(told.columns.begin(), beyond);
     const Index count = static_cast<Index>(own.size());
-    const RowMajorMatrix factor = person.robust_parts[part.part].Factor().leftCols(count);
+    const RowMajorMatrix gram = person.robust_parts[part.part].upper().topLeftCorner(count, count);
     part.score = Eigen::VectorXd::Zero(estimates);
     part.score(own) = person.scores[part.part].head(count);
     part.information = Eigen::MatrixXd::Zero(estimates, estimates);
-    part.information(own, own) = factor.transpose() * factor;
+    part.information(own, own) = Eigen::MatrixXd(gram.selfadjointView<Eigen::Upper>());
     result_.parts.push_back(std::move(part));
   }
 
