@@ -228,14 +228,6 @@ struct SelfTerms {
   template <typename Set, typename T>
   void AddControlJacobian(const Set& p, const PendulumState<T>& state,
                           const Vector4<T>& qd_previous, SelfJacobian<T>* jacobian) const {
-    AddBalanceJacobian(p, state, qd_previous, jacobian);
-    AddLinearJacobian(p, state, jacobian);
-  }
-
- private:
-  template <typename Set, typename T>
-  void AddBalanceJacobian(const Set& p, const PendulumState<T>& state,
-                          const Vector4<T>& qd_previous, SelfJacobian<T>* jacobian) const {
     auto& by_state = jacobian->by_state;
     auto& by_parameter = jacobian->by_parameter;
     const T xd = state.qd[0], yd = state.qd[1], thd = state.qd[2], phd = state.qd[3];
@@ -260,16 +252,7 @@ struct SelfTerms {
       by_parameter(0, kKdX) = -scale.force * (xd - qd_previous[0]) / dt;
       by_parameter(1, kKdY) = -scale.force * (yd - qd_previous[1]) / dt;
     }
-  }
-
-  template <typename Set, typename T>
-  void AddLinearJacobian(const Set& p, const PendulumState<T>& state,
-                         SelfJacobian<T>* jacobian) const {
-    auto& by_state = jacobian->by_state;
-    auto& by_parameter = jacobian->by_parameter;
     const L mass = body.mass, ml2 = PointInertia();
-    const T xd = state.qd[0], yd = state.qd[1], thd = state.qd[2], phd = state.qd[3];
-    const T e_th = state.q[2] - posture[0], e_ph = state.q[3] - posture[1];
     by_state(0, 2) += mass * p[kAx];
     by_state(0, 6) += mass * p[kBx];
     by_state(1, 3) -= mass * p[kAy];
@@ -298,6 +281,7 @@ struct SelfTerms {
     by_parameter(3, kDq) = -ml2 * rate_ph * phd;
   }
 
+ private:
   L PointInertia() const {
     return body.point_mass() * body.pendulum_length() * body.pendulum_length();
   }

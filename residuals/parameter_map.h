@@ -137,6 +137,7 @@ struct ParameterMap {
   std::vector<ColumnEntry> Entries(const ParameterSet<double>& set, int deviation_column,
                                    const std::vector<double>* x = nullptr) const {
     std::vector<ColumnEntry> entries;
+    entries.reserve(2 * fitted.size());
     for (size_t i = 0; i < fitted.size(); ++i) {
       const FittedParameter& f = fitted[i];
       const Action a = ActionOf(i, x);

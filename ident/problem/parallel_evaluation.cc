@@ -23,15 +23,20 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
   // At the blocks' present values; constant blocks get no derivatives.
   void Prepare(bool with_jacobians, const ceres::Problem& problem) {
     if (IsPrepared(with_jacobians)) return;
-    std::vector<double*> jacobians = Begin(with_jacobians, problem);
+    std::vector<double*> jacobians(blocks_.size(), nullptr);
+    for (size_t b = 0; with_jacobians && b < blocks_.size(); ++b) {
+      const bool constant = problem.IsParameterBlockConstant(blocks_[b]);
+      jacobians_[b].resize(constant ? 0 : num_residuals() * parameter_block_sizes()[b]);
+      if (!constant) jacobians[b] = jacobians_[b].data();
+    }
+    Remember(with_jacobians);
     ok_ = cost_->Evaluate(blocks_.data(), residuals_.data(),
                           with_jacobians ? jacobians.data() : nullptr);
   }
   // The same of a rollout in lanes, whose rows are told when they are asked for.
   void Prepare(RolloutSums sums, bool with_jacobians) {
     sums_ = std::move(sums);
-    has_jacobians_ = with_jacobians;
-    Remember();
+    Remember(with_jacobians);
   }
   bool IsPrepared(bool with_jacobians) const { return Holds(blocks_.data(), with_jacobians); }
   // Null where it is none.
@@ -61,19 +66,8 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
   }
 
  private:
-  // Where derivatives go; the point is remembered.
-  std::vector<double*> Begin(bool with_jacobians, const ceres::Problem& problem) {
-    std::vector<double*> jacobians(blocks_.size(), nullptr);
-    for (size_t b = 0; with_jacobians && b < blocks_.size(); ++b) {
-      const bool constant = problem.IsParameterBlockConstant(blocks_[b]);
-      jacobians_[b].resize(constant ? 0 : num_residuals() * parameter_block_sizes()[b]);
-      if (!constant) jacobians[b] = jacobians_[b].data();
-    }
+  void Remember(bool with_jacobians) {
     has_jacobians_ = with_jacobians;
-    Remember();
-    return jacobians;
-  }
-  void Remember() {
     point_.clear();
     for (size_t b = 0; b < blocks_.size(); ++b) {
       point_.insert(point_.end(), blocks_[b], blocks_[b] + parameter_block_sizes()[b]);
@@ -114,6 +108,7 @@ struct ParallelEvaluation::Task {
     const bool with_jacobians = wanted != LaneSums::kSquares;
     if (lanes == nullptr) return members[0]->Prepare(with_jacobians, problem);
     std::vector<double const* const*> blocks;
+    blocks.reserve(members.size());
     bool there = true;
     for (const Prepared* member : members) {
       blocks.push_back(member->blocks());

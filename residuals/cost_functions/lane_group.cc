@@ -77,7 +77,8 @@ std::vector<RolloutSums> LaneGroup::Evaluate(const std::vector<double const* con
       constants[(kLaneStart + 4 + i) * width + lane] =
           free != nullptr ? free[i] : person.start.qd[i];
     }
-    const ParameterSet<double> p = problem.layout.Parameters<double>(problem.map, blocks[lane])[0];
+    const auto sets = problem.layout.Parameters<double>(problem.map, blocks[lane]);
+    const ParameterSet<double>& p = sets[0];
     parameters.Set(
         static_cast<int>(lane), p,
         derivatives ? problem.layout.Entries(problem.map, p, 0) : std::vector<ColumnEntry>());

@@ -37,6 +37,7 @@ class Roller {
     previous_ = state_.qd;
     for (int k = 0; k < in.num_tails; ++k) carried_.tails[2 * k] = Tail(k, 0).Rate(p_);
     if (CarriesColumns()) StartDerivatives();
+    moves_ = in.velocity_column >= 0;
   }
 
   void Roll() {
@@ -123,7 +124,12 @@ class Roller {
     const Bits outside = Outside(next);
     failed_ = Select(*alive & outside, 1.0, failed_);
     *alive &= ~outside;
-    if (CarriesColumns()) {
+    if (!moves_) {
+      double acting[kWidth];
+      Store(acts + slides, acting);
+      for (double each : acting) moves_ = moves_ || each > 0.0;
+    }
+    if (CarriesColumns() && moves_) {
       CarryOn(t, acts, slides, a, Select(*alive, self_.dt, 0.0) * inverse);
     }
     previous_ = state_.qd;
@@ -216,6 +222,12 @@ class Roller {
     const Lanes scale = weight * robust.w;
     squares_ += scale * scale * squares;
     if (!CarriesColumns()) return;
+    if (!moves_) {
+      const int last = (in_.columns + 1) * (in_.columns + 1) - 1;
+      carried_.plain[last] += scale * scale * squares;
+      if (sums_ == LaneSums::kRobust) carried_.robust[last] += scale * scale * squares;
+      return;
+    }
     FrameJacobian<8, Lanes> j;
     RawFrameJacobian(self_.body, Lanes(0.0), state_, angles_, in_.sigmas, &j);
     const auto at = [&](int row, int column) { return scale * j(row, column); };
@@ -271,6 +283,7 @@ class Roller {
   Angles<Lanes> angles_;
   SelfJacobian<Lanes> jacobian_;
   Lanes failed_ = 0.0, squares_ = 0.0;
+  bool moves_ = false;  // a column may have moved some state
 };
 
 }  // namespace
