@@ -33,7 +33,8 @@ class NormalEquations {
   void Add(const NormalEquations& other);
 
   int columns() const { return columns_; }
-  const RowMajorMatrix& upper() const { return gram_; }  // on and above G's diagonal
+  const RowMajorMatrix& gram() const { return gram_; }  // J'J, on and above its diagonal
+  const Eigen::VectorXd& by_residual() const { return by_residual_; }
   // F: columns + 1 rows, the last of which is [0 rho].
   RowMajorMatrix Factor() const;
 

@@ -85,13 +85,13 @@ void SummedCost::SetBounds(ceres::Problem* problem, double* x) const {
 }
 
 void SummedCost::AddSums(const Part& part, SecondOrder* sum) {
-  const RowMajorMatrix& upper = part.sums->plain.upper();
+  const RowMajorMatrix& gram = part.sums->plain.gram();
   const size_t acting = part.of_acting.size();
   for (size_t a = 0; a < acting; ++a) {
     for (int i : part.of_acting[a]) {
-      sum->gradient[i] += upper(a, acting);
+      sum->gradient[i] += part.sums->plain.by_residual()[a];
       for (size_t b = 0; b < acting; ++b) {
-        const double product = upper(std::min(a, b), std::max(a, b));
+        const double product = gram(std::min(a, b), std::max(a, b));
         for (int j : part.of_acting[b]) sum->information(i, j) += product;
       }
     }
