@@ -1,6 +1,4 @@
 // ident: from a point near the optimum to the optimum.
-#include <ceres/iteration_callback.h>
-
 #include <algorithm>
 #include <unsupported/Eigen/SpecialFunctions>
 
@@ -15,23 +13,6 @@ namespace {
 constexpr double kWorthAnother = 50.0;
 constexpr int kMostFresh = 5;
 
-// Ends a solve where two accepted steps in a row bring less than a share of the cost each. A single
-// one tells little: in a trust region that was just cut down it is short.
-class EndsWhereSlow : public ceres::IterationCallback {
- public:
-  explicit EndsWhereSlow(double share) : share_(share) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& step) override {
-    if (step.iteration == 0 || !step.step_is_successful) return ceres::SOLVER_CONTINUE;
-    slow_ = step.cost_change < share_ * step.cost ? slow_ + 1 : 0;
-    return slow_ > 1 ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-  bool ended() const { return slow_ > 1; }
-
- private:
-  const double share_;
-  int slow_ = 0;
-};
-
 }  // namespace
 
 bool Contradicted(double rise, size_t units) {
@@ -41,7 +22,7 @@ bool Contradicted(double rise, size_t units) {
 }
 
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network,
-                 int num_threads, RecordingSums known, double slow) {
+                 int num_threads, RecordingSums known) {
   SolveStart start;
   start.kind = "warm";
   start.from = start.to = from;
@@ -62,15 +43,13 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
     FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads, all_inside);
     ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
     if (network) solver.function_tolerance = std::max(kNetworkTolerance, solver.function_tolerance);
-    EndsWhereSlow ends(slow * solver.function_tolerance);
-    if (slow > 0.0) solver.callbacks.push_back(&ends);
     const SolveStage stage =
         SolveBuilt(&built, solver, 0, &start.message, StructuredSecants(true), &start.recordings);
     start.failed = std::move(built.shortened);
     start.stages.push_back(stage);
     start.iterations += stage.iterations;
     start.cost = stage.final_cost;
-    start.converged = stage.converged || ends.ended();
+    start.converged = stage.converged;
   };
   solve();
   const double worth = kWorthAnother * problem.options().function_tolerance;

@@ -29,10 +29,9 @@ SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& op
 
 // All frames, or the likelihood, from a point near the optimum (profiles, bootstrap, leaving
 // recordings out); in one thread where refits run in parallel. hold_network: its weights are
-// constant. known: at `from`, by the weights of the problem. slow: ends where two accepted steps in
-// a row bring less than so many function tolerances each; 0: does not.
+// constant. known: at `from`, by the weights of the problem.
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network = false,
-                 int num_threads = 1, RecordingSums known = {}, double slow = 0.0);
+                 int num_threads = 1, RecordingSums known = {});
 
 // Whether the recordings contradict a demand to settle: by how much it raises the cost of all else,
 // twice that, against the 95 % point of chi-squared with a degree of freedom for each of the units

@@ -19,9 +19,6 @@ namespace {
 
 // Of the cost: what more would bring is a hundredth of what replicas differ by.
 constexpr double kReplicaTolerance = 1e-6;
-// Function tolerances, where the fit's own is larger: there feet step, the cost has kinks, and half
-// of a replica's steps bring so little. What is left by them: README.md.
-constexpr double kSlow = 20.0;
 
 // The combinations that move with a free parameter.
 std::vector<CombinationSpec> MovingCombinations(const FitProblem& problem) {
@@ -82,9 +79,8 @@ ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
   FitOptions options = problem.options();
   options.num_threads = 1;
   options.function_tolerance = std::max(kReplicaTolerance, options.function_tolerance);
-  const double slow = options.function_tolerance > kReplicaTolerance ? kSlow : 0.0;
   const FitProblem drawn(problem.recordings(), options, counts);
-  SolveStart fit = Refit(drawn, estimate, false, 1, SumsOf(each, drawn), slow);
+  SolveStart fit = Refit(drawn, estimate, false, 1, SumsOf(each, drawn));
   if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", "", nullptr);
   if (!fit.converged || !fit.failed.empty()) return {};
   return ValuesAt(drawn, fit.to, combinations);
