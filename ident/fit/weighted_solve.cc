@@ -14,8 +14,7 @@
 namespace pushid {
 namespace {
 
-// Relative changes of the weights: solves are rough while they are large.
-constexpr double kNearlySettled = 0.1, kSettled = 0.01;
+constexpr double kSettled = 0.01;  // relative change
 constexpr int kMostRounds = 20;
 constexpr int kFewIterations = 4;   // of a rough round: by weights that will change
 constexpr int kMostChanges = 2;     // of which start is the best
@@ -101,17 +100,16 @@ void SolveOn(const FitProblem& problem, SolveStart* start) {
   start->message = std::move(again.message);
 }
 
-// Weighs and solves in turns, roughly until the weights nearly stay, then exactly until they do.
-// False where they do not.
+// Weighs and solves in turns, roughly until the weights stay, then exactly until they stay again.
+// False where they do not stay.
 bool Weigh(FitProblem* problem, SolveStart* start) {
   bool exact = false;
   for (int round = 0; round < kMostRounds; ++round) {
     CostWeights now = problem->weights();
     RecordingSums recordings;
-    const double change = Reweigh(*problem, start->to, &now, &recordings);
-    const bool settled = change < kSettled;
+    const bool settled = Reweigh(*problem, start->to, &now, &recordings) < kSettled;
     if (settled && exact) return true;
-    exact = exact || change < kNearlySettled;
+    exact = exact || settled;
     if (!settled) {
       problem->Weigh(now);
       start->recordings = std::move(recordings);
