@@ -155,8 +155,8 @@ Matrix4<T> InverseMassMatrix(const BodyOf<L>& body, const Angles<T>& angles, con
   const T s22 = mass(2, 2) - w * (b02 * b02 + b12 * b12);
   const T s23 = -w * b12 * b13;
   const T s33 = mass(3, 3) - w * b13 * b13;
-  const T by_det = 1.0 / (s22 * s33 - s23 * s23);
-  const T i22 = s33 * by_det, i23 = -s23 * by_det, i33 = s22 * by_det;
+  const T inverse_det = 1.0 / (s22 * s33 - s23 * s23);
+  const T i22 = s33 * inverse_det, i23 = -s23 * inverse_det, i33 = s22 * inverse_det;
   // Upper right block: -(1/M) B S^-1.
   const T i02 = -w * b02 * i22, i03 = -w * b02 * i23;
   const T i12 = -w * (b12 * i22 + b13 * i23), i13 = -w * (b12 * i23 + b13 * i33);

@@ -199,8 +199,8 @@ struct SelfTerms {
     AddControlJacobian(p, state, qd_previous, jacobian);
   }
 
-  // Parts of the same: they add to by_state, and always write the same entries of by_parameter.
-  // Flattened, so that dual numbers stay in registers.
+  // Parts of the same: they add to by_state, and always write the same entries of the others. That
+  // of friction is flattened, so that dual numbers stay in registers.
   template <typename Set, typename T>
   [[gnu::flatten]] void AddFrictionJacobian(const Set& p, const Vector4<T>& qd,
                                             SelfJacobian<T>* jacobian) const {

@@ -97,7 +97,7 @@ void RawFrameJacobian(const BodyOf<L>& body, const L& lift, const PendulumState<
                       const Angles<T>& angles, const ResidualSigmas& sigmas,
                       FrameJacobian<kColumns, T>* jacobian) {
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
-  const L l = body.rod_length * (1.0 / sigmas.hip);
+  const L scaled_rod = body.rod_length * (1.0 / sigmas.hip);
   FrameJacobian<kColumns, T>& j = *jacobian;
   j(0, 0) = j(1, 1) = T(1.0 / sigmas.hip);
   j(3, 4) = j(4, 5) = T(1.0 / sigmas.velocity);
@@ -109,11 +109,11 @@ void RawFrameJacobian(const BodyOf<L>& body, const L& lift, const PendulumState<
     if constexpr (kColumns == 10) j(8, 8) = T(1.0 / sigmas.hip);
     return;
   }
-  j(0, 2) = l * c_th;
-  j(1, 2) = l * s_th * s_ph;
-  j(1, 3) = -l * c_th * c_ph;
-  j(2, 2) = -l * s_th * c_ph;
-  j(2, 3) = -l * c_th * s_ph;
+  j(0, 2) = scaled_rod * c_th;
+  j(1, 2) = scaled_rod * s_th * s_ph;
+  j(1, 3) = -scaled_rod * c_th * c_ph;
+  j(2, 2) = -scaled_rod * s_th * c_ph;
+  j(2, 3) = -scaled_rod * c_th * s_ph;
   if constexpr (kColumns == 10) {
     j(0, 8) = s_th / sigmas.hip;
     j(1, 8) = -c_th * s_ph / sigmas.hip;
@@ -130,20 +130,19 @@ T RobustWeight(const T& squared_norm, double robust) {
   return sqrt(2.0 / (1.0 + sqrt(1.0 + squared_norm / (robust * robust))));
 }
 
-// Of residuals that share one w: w, twice dw/ds, and that over w, of
+// Of residuals that share one w: w, and twice dw/ds over w, of
 //   d(w r) = w dr + r (2 dw/ds) r' dr, with c = sqrt(1 + s/d^2), w^2 = 2 / (1 + c) = 2 u
 template <typename T>
 struct RobustSlope {
-  T w = T(1.0), twice = T(0.0), over_w = T(0.0);
+  T w = T(1.0), over_w = T(0.0);
 
   RobustSlope(const T& squared_norm, double robust) {
     using std::sqrt;
     if (robust <= 0.0) return;
-    const double by_scale = 1.0 / (robust * robust);
-    const T c = sqrt(1.0 + squared_norm * by_scale), u = 1.0 / (1.0 + c);
+    const double inverse_square = 1.0 / (robust * robust);
+    const T c = sqrt(1.0 + squared_norm * inverse_square), u = 1.0 / (1.0 + c);
     w = sqrt(2.0 * u);
-    over_w = -0.5 * by_scale * u / c;
-    twice = w * over_w;
+    over_w = -0.5 * inverse_square * u / c;
   }
 };
 
@@ -159,7 +158,7 @@ Residual RobustlyWeighted(const Residual& r, double weight, double robust, Jacob
   // Row by row, as vectors of the processor lie.
   Eigen::Matrix<double, 1, Jacobian::ColsAtCompileTime> along = r[0] * jacobian->row(0);
   for (Eigen::Index i = 1; i < r.size(); ++i) along += r[i] * jacobian->row(i);
-  along *= slope.twice * weight;
+  along *= w * slope.over_w * weight;
   for (Eigen::Index i = 0; i < r.size(); ++i) {
     jacobian->row(i) = (weight * w) * jacobian->row(i) + r[i] * along;
   }
@@ -189,10 +188,13 @@ void CorrectForRobustLoss(const Residual& residual, double weight, double robust
   const double squared = residual.squaredNorm();
   if (robust <= 0.0 || weight <= 0.0 || squared <= 0.0) return;
   const RobustHessian<double> factor(squared / (weight * weight), robust);
-  const Eigen::VectorXd u = residual / std::sqrt(squared);
-  const Eigen::Matrix<double, 1, Eigen::Dynamic> by_u = u.transpose() * jacobian;
-  jacobian *= factor.across;
-  jacobian += (factor.along - factor.across) * u * by_u;
+  // Row by row, as vectors of the processor lie.
+  Eigen::Matrix<double, 1, Eigen::Dynamic> along = residual[0] * jacobian.row(0);
+  for (Eigen::Index i = 1; i < residual.size(); ++i) along += residual[i] * jacobian.row(i);
+  along *= (factor.along - factor.across) / squared;
+  for (Eigen::Index i = 0; i < residual.size(); ++i) {
+    jacobian.row(i) = factor.across * jacobian.row(i) + residual[i] * along;
+  }
 }
 
 template <typename T, typename L>

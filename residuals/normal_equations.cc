@@ -17,8 +17,8 @@ constexpr double kNoInformation = 1e-14;  // of a column's own, once the others 
 
 NormalEquations::NormalEquations(int columns)
     : columns_(columns),
-      by_residual_(Eigen::VectorXd::Zero(PaddedSize(columns))),
-      gram_(RowMajorMatrix::Zero(PaddedSize(columns), PaddedSize(columns))) {}
+      gradient_(Eigen::VectorXd::Zero(PaddedSize(columns))),
+      information_(RowMajorMatrix::Zero(PaddedSize(columns), PaddedSize(columns))) {}
 
 NormalEquations::NormalEquations(int columns, const double* upper, int stride)
     : NormalEquations(columns) {
@@ -26,8 +26,8 @@ NormalEquations::NormalEquations(int columns, const double* upper, int stride)
     return upper[(row * (columns + 1) + column) * stride];
   };
   for (int row = 0; row < columns; ++row) {
-    for (int column = row; column < columns; ++column) gram_(row, column) = at(row, column);
-    by_residual_[row] = at(row, columns);
+    for (int column = row; column < columns; ++column) information_(row, column) = at(row, column);
+    gradient_[row] = at(row, columns);
   }
   squares_ = at(columns, columns);
 }
@@ -38,28 +38,27 @@ int NormalEquations::PaddedSize(int columns) {
 
 void NormalEquations::Add(int count, const double* rows, const double* residuals) {
   const VectorKernels& kernels = BestVectorKernels();
-  const Eigen::Index padded = gram_.cols();
-  kernels.add_gram(count, padded, rows, padded, gram_.data(), padded);
-  kernels.narrow_product(1, count, padded, residuals, rows, padded, by_residual_.data(), padded,
-                         true);
+  const Eigen::Index padded = information_.cols();
+  kernels.add_gram(count, padded, rows, padded, information_.data(), padded);
+  kernels.narrow_product(1, count, padded, residuals, rows, padded, gradient_.data(), padded, true);
   squares_ += Eigen::Map<const Eigen::VectorXd>(residuals, count).squaredNorm();
 }
 
 void NormalEquations::Add(const NormalEquations& other) {
-  gram_ += other.gram_;
-  by_residual_ += other.by_residual_;
+  information_ += other.information_;
+  gradient_ += other.gradient_;
   squares_ += other.squares_;
 }
 
 RowMajorMatrix NormalEquations::Factor() const {
   const Eigen::Index size = columns_;
   Eigen::VectorXd length(size + 1);
-  length << gram_.diagonal().head(size).cwiseSqrt(), 1.0;
+  length << information_.diagonal().head(size).cwiseSqrt(), 1.0;
   const Eigen::VectorXd scale =
       (length.array() > 0.0).select(length.cwiseInverse(), Eigen::VectorXd::Zero(size + 1));
   RowMajorMatrix left(size + 1, size + 1);  // what the rows so far leave
-  left.topLeftCorner(size, size) = gram_.topLeftCorner(size, size);
-  left.col(size) << by_residual_.head(size), squares_;
+  left.topLeftCorner(size, size) = information_.topLeftCorner(size, size);
+  left.col(size) << gradient_.head(size), squares_;
   left.triangularView<Eigen::StrictlyLower>() = left.transpose();
   left = scale.asDiagonal() * left * scale.asDiagonal();
   RowMajorMatrix factor = RowMajorMatrix::Zero(size + 1, size + 1);

@@ -117,10 +117,10 @@ std::vector<double> EffectWeights(const std::vector<double>& misfit, double spre
                                   double error_scale) {
   std::vector<double> weights(misfit.size());
   const double precision = 1.0 / (std::max(spread, kLeastSpread) * std::max(spread, kLeastSpread));
-  const double by_square = 1.0 / (error_scale * error_scale);
+  const double inverse_variance = 1.0 / (error_scale * error_scale);
   for (size_t j = 0; j < misfit.size(); ++j) {
     const double b = EffectNode(static_cast<int>(j));
-    weights[j] = -0.5 * (precision * b * b + misfit[j] * by_square);
+    weights[j] = -0.5 * (precision * b * b + misfit[j] * inverse_variance);
   }
   const double most = *std::max_element(weights.begin(), weights.end());
   double sum = 0.0;

@@ -34,7 +34,8 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   }
 
   // Of what Wrap made of a rollout in lanes: the rollout, and its sums at the last preparation.
-  // Null of other cost functions. Who adds up rows anyway need not have them told.
+  // Null of other cost functions. For summed_cost.h, which adds
+  // sums up without rows between.
   static const RolloutProblem* ProblemOf(const ceres::CostFunction* cost);
   static const RolloutSums* SumsOf(const ceres::CostFunction* cost);
 

@@ -85,11 +85,11 @@ void SummedCost::SetBounds(ceres::Problem* problem, double* x) const {
 }
 
 void SummedCost::AddSums(const Part& part, SecondOrder* sum) {
-  const RowMajorMatrix& gram = part.sums->plain.gram();
+  const RowMajorMatrix& gram = part.sums->plain.information();
   const size_t acting = part.of_acting.size();
   for (size_t a = 0; a < acting; ++a) {
     for (int i : part.of_acting[a]) {
-      sum->gradient[i] += part.sums->plain.by_residual()[a];
+      sum->gradient[i] += part.sums->plain.gradient()[a];
       for (size_t b = 0; b < acting; ++b) {
         const double product = gram(std::min(a, b), std::max(a, b));
         for (int j : part.of_acting[b]) sum->information(i, j) += product;

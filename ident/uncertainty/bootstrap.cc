@@ -55,13 +55,13 @@ std::vector<RecordingSums> SumEach(const FitProblem& problem, FitPoint estimate)
   if (score.jacobian.cols() > kDenseColumns) return {};
   std::vector<RecordingSums> each;
   for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
-    each.push_back(SumRecordings(score, estimate, i));
+    each.push_back(SumRecording(score, estimate, i));
   }
   return each;
 }
 
 // Of the recordings as a replica counts them. Those that the fit leaves out no replica counts.
-RecordingSums SumsOf(const std::vector<RecordingSums>& each, const FitProblem& drawn) {
+RecordingSums SumAsDrawn(const std::vector<RecordingSums>& each, const FitProblem& drawn) {
   if (each.empty()) return {};
   RecordingSums all{each[0].at, 0.0, SecondOrder::Zero(each[0].at.size())};
   for (size_t i = 0; i < each.size(); ++i) {
@@ -80,7 +80,7 @@ ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
   options.num_threads = 1;
   options.function_tolerance = std::max(kReplicaTolerance, options.function_tolerance);
   const FitProblem drawn(problem.recordings(), options, counts);
-  SolveStart fit = Refit(drawn, estimate, false, 1, SumsOf(each, drawn));
+  SolveStart fit = Refit(drawn, estimate, false, 1, SumAsDrawn(each, drawn));
   if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", "", nullptr);
   if (!fit.converged || !fit.failed.empty()) return {};
   return ValuesAt(drawn, fit.to, combinations);

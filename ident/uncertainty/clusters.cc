@@ -166,8 +166,8 @@ ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clust
     const Eigen::MatrixXd plain = score.jacobian(of_cluster, Eigen::all);
     const Eigen::VectorXd residuals = score.residuals(of_cluster);
     const bool robust = score.robust_jacobian.size() > 0;
-    gathered.factors.push_back(FewRows(
-        robust ? Eigen::MatrixXd(score.robust_jacobian(of_cluster, Eigen::all)) : plain, base));
+    gathered.factors.push_back(robust ? FewRows(score.robust_jacobian(of_cluster, Eigen::all), base)
+                                      : FewRows(plain, base));
     gathered.scores.conservativeResize(Eigen::NoChange, gathered.scores.cols() + 1);
     gathered.scores.rightCols(1) = base.transpose() * (plain.transpose() * residuals);
   }

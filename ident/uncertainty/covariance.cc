@@ -140,12 +140,24 @@ Eigen::MatrixXd InformationBeside(const JacobianBlocks& score) {
   return Information(score, rows);
 }
 
-RecordingSums SumRecordings(const JacobianBlocks& score, const FitPoint& point, int recording) {
+namespace {
+
+RecordingSums SumRows(const JacobianBlocks& score, const FitPoint& point,
+                      const std::vector<int>& rows) {
   const std::vector<double> at = point.Flat();
-  const std::vector<int> rows = RowsWhere(score, recording == kAllRecordings, recording);
   return {Eigen::VectorXd::Map(at.data(), score.jacobian.cols()),
           score.residuals(rows).squaredNorm(),
           {Information(score, rows), Gradient(score, rows)}};
+}
+
+}  // namespace
+
+RecordingSums SumRecordings(const JacobianBlocks& score, const FitPoint& point) {
+  return SumRows(score, point, RowsWhere(score, true, 0));
+}
+
+RecordingSums SumRecording(const JacobianBlocks& score, const FitPoint& point, int recording) {
+  return SumRows(score, point, score.RowsOf(recording));
 }
 
 double SingularDirections::Condition() const {

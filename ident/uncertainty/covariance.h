@@ -120,10 +120,9 @@ Covariance NaiveCovariance(const JacobianBlocks& score, const Eigen::VectorXd& u
 
 // J'J of what is no data: priors, demands, pooling.
 Eigen::MatrixXd InformationBeside(const JacobianBlocks& score);
-// Of one recording, at the point that it was evaluated at; kAllRecordings: of all of them.
-inline constexpr int kAllRecordings = -1;
-RecordingSums SumRecordings(const JacobianBlocks& score, const FitPoint& point,
-                            int recording = kAllRecordings);
+// Of the data, at the point that they were evaluated at, and of one recording.
+RecordingSums SumRecordings(const JacobianBlocks& score, const FitPoint& point);
+RecordingSums SumRecording(const JacobianBlocks& score, const FitPoint& point, int recording);
 
 // What the covariances of a fit (uncertainty.h) are computed from, second derivatives included.
 struct ScoredFit {

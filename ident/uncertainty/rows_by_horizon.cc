@@ -158,7 +158,8 @@ class RowStack {
     const auto beyond = std::lower_bound(told.columns.begin(), told.columns.end(), estimates);
     const std::vector<Index> own(told.columns.begin(), beyond);
     const Index count = static_cast<Index>(own.size());
-    const RowMajorMatrix gram = person.robust_parts[part.part].gram().topLeftCorner(count, count);
+    const RowMajorMatrix gram =
+        person.robust_parts[part.part].information().topLeftCorner(count, count);
     part.score = Eigen::VectorXd::Zero(estimates);
     part.score(own) = person.scores[part.part].head(count);
     part.information = Eigen::MatrixXd::Zero(estimates, estimates);

@@ -4,6 +4,11 @@
 #include <cmath>
 
 namespace pushid {
+namespace {
+
+using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+
+}  // namespace
 
 CondensedRollout::CondensedRollout(std::shared_ptr<const RolloutProblem> problem)
     : CondensedRows(std::move(problem)) {}
@@ -57,12 +62,6 @@ RolloutStatus CondensedRollout::Visit(double const* const* blocks, Derivatives d
                by_column->data()});
       });
 }
-
-namespace {
-
-using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-
-}  // namespace
 
 CondensedRows::CondensedRows(std::shared_ptr<const RolloutProblem> problem)
     : problem_(std::move(problem)), columns_(problem_->layout) {

@@ -47,7 +47,8 @@ LaneGroup::LaneGroup(std::vector<const RolloutProblem*> problems, const PersonLa
     const int lane = static_cast<int>(i);
     tables_.Set(lane, problem.recording->scene, problem.options, problem.horizon);
   }
-  for (int t = 0; t < MostFrames(problems_); ++t) {  // frame by frame, as they lie in memory
+  const int frames = MostFrames(problems_);
+  for (int t = 0; t < frames; ++t) {  // frame by frame, as they lie in memory
     for (size_t i = 0; i < problems_.size(); ++i) {
       const RolloutProblem& problem = *problems_[i];
       if (t >= problem.horizon) continue;

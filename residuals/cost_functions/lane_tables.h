@@ -21,7 +21,8 @@ class LaneParameters {
  public:
   explicit LaneParameters(int width = 0) { Clear(width); }
   void Clear(int width);
-  // entries: by column, of the same columns and parameters in every lane; none without derivatives.
+  // entries: in ascending order of column, of the same columns and parameters in every lane; none
+  // without derivatives.
   void Set(int lane, const ParameterSet<double>& values, const std::vector<ColumnEntry>& entries);
   void In(LaneInputs* in) const;
 

@@ -86,7 +86,7 @@ bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
     at.insert(at.end(), blocks[b], blocks[b] + parameter_block_sizes()[b]);
   }
   if (at != rolled_at_) {
-    rolled_at_.clear();
+    rolled_at_.reset();
     if (!rollouts_.Roll(inputs.parameters, inputs.network_weights)) return false;
     rolled_at_ = std::move(at);
   }

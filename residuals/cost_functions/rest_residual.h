@@ -21,6 +21,7 @@
 
 #include <ceres/cost_function.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,7 @@ class SettlingResidual : public ceres::CostFunction {
   // Ceres evaluates a block from one thread at a time. It asks for derivatives where it has asked
   // for residuals just before: the simulations are those of the blocks in rolled_at_.
   mutable SceneRollouts rollouts_;
-  mutable std::vector<double> rolled_at_;
+  mutable std::optional<std::vector<double>> rolled_at_;
 };
 
 class ModalStabilityResidual : public ceres::CostFunction {

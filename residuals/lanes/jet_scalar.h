@@ -1,6 +1,6 @@
-// residuals: a number with its derivatives by a few inputs in the vectors of a processor, a scalar
-// of the models' templates. For the file that includes this, as vector_math.h says: a type without
-// linkage, so that what is made of it stays in that file too.
+// residuals: a number with its derivatives by some columns of a fit in the vectors of a processor,
+// a scalar of the models' templates. For the file that includes this, as vector_math.h says: a type
+// without linkage, so that what is made of it stays in that file too.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,12 +10,13 @@
 namespace pushid {
 namespace {
 
-template <int kInputs>
+template <int kColumns>
 struct VectorJet {
   static constexpr int kWidth = PUSHID_VECTOR_DOUBLES;
-  static constexpr int kVectors = kInputs / kWidth;  // a whole number
-  double a;                                          // the value
-  Vector v[kVectors];                                // its derivatives
+  static constexpr int kVectors = kColumns / kWidth;
+  static_assert(kColumns % kWidth == 0);
+  double a;            // the value
+  Vector v[kVectors];  // its derivatives
 
   VectorJet() = default;
   VectorJet(double constant) : a(constant) {  // NOLINT: has no derivatives
@@ -91,19 +92,19 @@ struct VectorJet {
 }  // namespace
 }  // namespace pushid
 
-template <int kInputs>
-struct Eigen::NumTraits<pushid::VectorJet<kInputs>> : Eigen::NumTraits<double> {
-  using Real = pushid::VectorJet<kInputs>;
+template <int kColumns>
+struct Eigen::NumTraits<pushid::VectorJet<kColumns>> : Eigen::NumTraits<double> {
+  using Real = pushid::VectorJet<kColumns>;
   using NonInteger = Real;
   using Nested = Real;
   using Literal = Real;
   enum { RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
 };
-template <int kInputs, typename Operation>
-struct Eigen::ScalarBinaryOpTraits<double, pushid::VectorJet<kInputs>, Operation> {
-  using ReturnType = pushid::VectorJet<kInputs>;
+template <int kColumns, typename Operation>
+struct Eigen::ScalarBinaryOpTraits<double, pushid::VectorJet<kColumns>, Operation> {
+  using ReturnType = pushid::VectorJet<kColumns>;
 };
-template <int kInputs, typename Operation>
-struct Eigen::ScalarBinaryOpTraits<pushid::VectorJet<kInputs>, double, Operation> {
-  using ReturnType = pushid::VectorJet<kInputs>;
+template <int kColumns, typename Operation>
+struct Eigen::ScalarBinaryOpTraits<pushid::VectorJet<kColumns>, double, Operation> {
+  using ReturnType = pushid::VectorJet<kColumns>;
 };

@@ -57,7 +57,7 @@ struct LaneInputs {
   int columns = 0;           // P
   int velocity_column = -1;  // as in SensitivityInputs
   int num_entries = 0, num_tails = 0;
-  const LaneEntry* entries = nullptr;  // by column
+  const LaneEntry* entries = nullptr;  // in ascending order of column
   const double* slopes = nullptr;      // of entries
   const double* constants = nullptr;   // kLaneConstants
   const double* parameters = nullptr;  // kLaneParameters

@@ -37,7 +37,7 @@ class Roller {
     previous_ = state_.qd;
     for (int k = 0; k < in.num_tails; ++k) carried_.tails[2 * k] = Tail(k, 0).Rate(p_);
     if (CarriesColumns()) StartDerivatives();
-    moves_ = in.velocity_column >= 0;
+    columns_move_ = in.velocity_column >= 0;
   }
 
   void Roll() {
@@ -124,12 +124,12 @@ class Roller {
     const Bits outside = Outside(next);
     failed_ = Select(*alive & outside, 1.0, failed_);
     *alive &= ~outside;
-    if (!moves_) {
+    if (!columns_move_) {
       double acting[kWidth];
       Store(acts + slides, acting);
-      for (double each : acting) moves_ = moves_ || each > 0.0;
+      for (double each : acting) columns_move_ = columns_move_ || each > 0.0;
     }
-    if (CarriesColumns() && moves_) {
+    if (CarriesColumns() && columns_move_) {
       CarryOn(t, acts, slides, a, Select(*alive, self_.dt, 0.0) * inverse);
     }
     previous_ = state_.qd;
@@ -183,6 +183,7 @@ class Roller {
   Eigen::Matrix<Lanes, 4, 6> Linearize(int t, Lanes acts, Lanes slides) {
     jacobian_.by_state.setZero();
     constexpr int kOfTails = kTailBase - kTailGain + 1;
+    static_assert(kOfTails == 5, "the tails' parameters are neighbours");
     jacobian_.by_parameter.middleCols<kOfTails>(kTailGain).setZero();  // others are written again
     self_.AddFrictionJacobian(p_, state_.qd, &jacobian_);
     const Eigen::Matrix<Lanes, 2, 2> alone = (slides - acts) * jacobian_.by_state.block<2, 2>(0, 4);
@@ -222,16 +223,17 @@ class Roller {
     const Lanes scale = weight * robust.w;
     squares_ += scale * scale * squares;
     if (!CarriesColumns()) return;
-    if (!moves_) {
-      const int last = (in_.columns + 1) * (in_.columns + 1) - 1;
-      carried_.plain[last] += scale * scale * squares;
-      if (sums_ == LaneSums::kRobust) carried_.robust[last] += scale * scale * squares;
+    for (int k = 0; k < kFrameResiduals; ++k) {
+      carried_.rows[kFrameResiduals * in_.columns + k] = scale * r[k];
+    }
+    if (!columns_move_) {  // in the same order as below, whoever else is there
+      AddSquares(carried_.plain);
+      if (sums_ == LaneSums::kRobust) AddSquares(carried_.robust);
       return;
     }
     FrameJacobian<8, Lanes> j;
     RawFrameJacobian(self_.body, Lanes(0.0), state_, angles_, in_.sigmas, &j);
     const auto at = [&](int row, int column) { return scale * j(row, column); };
-    const Lanes twice = robust.over_w;
     for (int c = 0; c < in_.columns; ++c) {
       const Lanes* const s = carried_.by_column + 8 * c;
       const Lanes row[kFrameResiduals] = {at(0, 0) * s[0] + at(0, 2) * s[2],  // what is not zero
@@ -245,17 +247,18 @@ class Roller {
                                           at(8, 7) * s[7]};
       Lanes along = 0.0;
       for (int k = 0; k < kFrameResiduals; ++k) along += r[k] * row[k];
-      along *= twice;
+      along *= robust.over_w;  // rows have w in them
       Lanes* const to = carried_.rows + kFrameResiduals * c;
       for (int k = 0; k < kFrameResiduals; ++k) to[k] = row[k] + r[k] * along;
-    }
-    for (int k = 0; k < kFrameResiduals; ++k) {
-      carried_.rows[kFrameResiduals * in_.columns + k] = scale * r[k];
     }
     AddGram(carried_.rows, in_.columns + 1, carried_.plain);
     if (sums_ != LaneSums::kRobust) return;
     if (in_.sigmas.robust > 0.0) Correct(robust.w * robust.w * squares, weight);
     AddGram(carried_.rows, in_.columns + 1, carried_.robust);
+  }
+
+  void AddSquares(Lanes* gram) const {
+    AddGramBlock<1, 1>(carried_.rows, in_.columns + 1, in_.columns, in_.columns, gram);
   }
 
   // CorrectForRobustLoss; squares: |w r|^2 without the weight.
@@ -283,7 +286,7 @@ class Roller {
   Angles<Lanes> angles_;
   SelfJacobian<Lanes> jacobian_;
   Lanes failed_ = 0.0, squares_ = 0.0;
-  bool moves_ = false;  // a column may have moved some state
+  bool columns_move_ = false;  // a column may have moved some state
 };
 
 }  // namespace

@@ -1,5 +1,4 @@
-// residuals: derivatives of what control perceives (models/reaction_delay.h), and of the forces
-// that act on it.
+// residuals: derivatives of what control perceives (models/reaction_delay.h).
 //
 // With S(t) = d [q, qd] / d columns and w_i the weights of a delayed state,
 //   S_p = s S(t) + (1 - s) sum_i w_i S(t_i)  row by row, s the passive shares,

@@ -25,7 +25,7 @@ struct SensitivityInputs {
   std::vector<ParameterSet<double>> parameters;
   std::vector<Vector4<double>> initial_velocity;
   std::vector<std::vector<ColumnEntry>> entries;
-  int num_columns = 0;
+  int num_columns = 0;                      // a multiple of kGramBlock where feet step
   int velocity_column = -1;                 // first of 4 * people columns; negative when not fitted
   const double* network_weights = nullptr;  // all of options.learned, instead of its own
   int weight_column = -1;                   // of the first of them; negative when not fitted

@@ -122,6 +122,7 @@ void StanceSensitivities::Advance(const SelfForce& self, const ParameterSet<doub
   for (int i = 0; i < Ids::kCount; ++i) in.parameters[i] = p[Ids::kIds[i]];
   in.columns = of_forces_.cols();
   in.by_feet = by_feet;
+  // The place, which comes first, is not among what feet know.
   in.by_ankle = ankle.by_column + 2 * in.columns;
   in.by_step = step.by_column != ankle.by_column ? step.by_column + 2 * in.columns : nullptr;
   in.by_parameter = by_parameter_[static_cast<size_t>(person)].data();
@@ -161,7 +162,7 @@ void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               int frame, const PosedPendulum<double>& state,
                               SelfForce::Jacobian* jacobian) {
   jacobian->SetZero();
-  for (Parameter id : kBodyParameters) jacobian->by_parameter.col(id).setZero();
+  jacobian->by_parameter.col(kComHeight).setZero();  // not among those; the table's body has it
   const ActiveForces active = ForcesAt(scene, options.push, person, frame);
   if (active == ActiveForces::kPushAndFriction) AddPublishedFriction(jacobian);
   if (active != ActiveForces::kAll) return;

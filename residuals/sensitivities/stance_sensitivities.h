@@ -47,8 +47,8 @@ class StanceSensitivities {
   ForceColumns of_forces_;
 };
 
-// Of F - D v' at fixed acceleration a, without the torques and what others do. All but by_previous
-// (zero) is overwritten.
+// Of F - D v' at fixed acceleration a, without the torques and what others do. Columns of what no
+// force of a person alone has stay zero (SelfJacobian).
 void NetForceJacobianOfStance(const Scene& scene, const ModelOptions& options,
                               const SelfForce& self, const ParameterSet<double>& p, int person,
                               int frame, const PosedPendulum<double>& state,

@@ -6,8 +6,11 @@
 
 #include <cmath>
 
+#include "ident/problem/jacobian_blocks.h"
 #include "ident/solver/solver.h"
 #include "ident/solver/summed_cost.h"
+#include "ident/uncertainty/covariance.h"
+#include "tests/ident/fit_samples.h"
 
 namespace pushid {
 namespace {
@@ -191,6 +194,39 @@ TEST(SummedCost, PointsThatCannotBeEvaluatedAreRefused) {
     const double* const blocks[] = {&at};
     EXPECT_EQ(summed.Evaluate(blocks, residuals, nullptr), at > 0.0);
     EXPECT_EQ(summed.Evaluate(blocks, residuals, jacobians), at > 0.0);
+  }
+}
+
+// Recordings of people alone reach the sum in lanes, without rows of their own.
+TEST(SummedCost, LanesSumToWhatRowsDo) {
+  std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
+  for (PendulumRecording& r : recordings) r.initial_velocity = InitialVelocity::kFree;
+  const FitProblem problem(recordings, UnbiasedFit(TinyStudy()));
+  FitPoint point = problem.NominalPoint();
+  FitProblem::Built built = problem.Build(&point, 0);
+  const RecordingSums expected = SumRecordings(EvaluateJacobianBlocks(built), point);
+  const SummedCost summed(&built, StructuredSecants(false), {});
+  std::vector<double> at = summed.Values(), elsewhere = at;
+  for (double& value : elsewhere) value += 0.01;
+  const size_t columns = at.size();
+  std::vector<double> residuals(columns + 1), jacobian((columns + 1) * columns);
+  double* jacobians[] = {jacobian.data()};
+  for (const std::vector<double>& asked : {at, elsewhere, at}) {
+    const double* const blocks[] = {asked.data()};
+    ASSERT_TRUE(summed.Evaluate(blocks, residuals.data(), nullptr));
+    ASSERT_TRUE(summed.Evaluate(blocks, residuals.data(), jacobians));
+  }
+  const RecordingSums& found = summed.recordings();
+  EXPECT_EQ(found.at, expected.at);
+  EXPECT_NEAR(found.squares, expected.squares, 1e-12 * expected.squares);
+  const VectorXd scale = expected.sums.information.diagonal().cwiseSqrt();
+  for (Eigen::Index i = 0; i < scale.size(); ++i) {
+    EXPECT_NEAR(found.sums.gradient[i], expected.sums.gradient[i],
+                1e-11 * scale[i] * std::sqrt(expected.squares));
+    for (Eigen::Index j = 0; j < scale.size(); ++j) {
+      EXPECT_NEAR(found.sums.information(i, j), expected.sums.information(i, j),
+                  1e-11 * scale[i] * scale[j]);
+    }
   }
 }
 

@@ -57,7 +57,7 @@ struct Crowd {
       scene.dt = i % 2 == 0 ? 1.0 / 60.0 : 1.0 / 50.0;
       for (int k = 0; k < 1 + static_cast<int>(i) % 2; ++k) {
         scene.pushes.push_back(
-            RandomPush(0, 3 + 7 * k, 4 + static_cast<int>(i) % 3, kKinds[i % 3], 90.0, &random));
+            RandomPush(0, 7 * k, 4 + static_cast<int>(i) % 3, kKinds[i % 3], 90.0, &random));
       }
       recordings[i] =
           RecordRollout(scene, options, {WithTailBase()}, 24 + 3 * static_cast<int>(i % 5));

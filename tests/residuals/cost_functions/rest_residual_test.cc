@@ -134,7 +134,6 @@ TEST(Settling, WeightIsThatOfAMeanSquare) {
   EXPECT_NEAR(0.5 * sum, cost, 1e-12 * cost);
 }
 
-// One of two is enough.
 // Simulations are kept for derivatives at the same point, and for no other.
 TEST(Settling, ValuesAreThoseOfThePointWhateverWasAskedBefore) {
   const ParameterMap map = EveryParameterMap({});

@@ -112,7 +112,7 @@ TEST(StanceJet, EqualsJetsAtEveryWidth) {
       lifts += now.feet.swings == 0 && next.swings != 0;
       lands += now.feet.swings != 0 && next.swings == 0;
       for (const PersonLanes* lanes : SupportedPersonLanes()) {
-        RowMajorMatrix found(8, kColumns);
+        RowMajorMatrix found = RowMajorMatrix::Constant(8, kColumns, NAN);
         lanes->stance_jet(step.in, found.data(), found.row(4).data());
         for (int i = 0; i < found.size(); ++i) {
           const double expected = step.expected.data()[i];

@@ -15,6 +15,7 @@ constexpr int kRolloutFrames = 45;
 constexpr int kPeople = 2;
 // Natural parameters and initial velocities of both people.
 constexpr int kRolloutColumns = kPeople * (kNumParameters + 4);
+static_assert(kRolloutColumns % kGramBlock == 0);
 using RolloutJet = ceres::Jet<double, kRolloutColumns>;
 
 // How far from rest a rollout is driven.

@@ -175,7 +175,7 @@ TEST(StanceSensitivities, AreFiniteAtTheEdges) {
       state.feet.swings = static_cast<signed char>(swings);
       state.feet.swing_time = 0.3;
       const StanceSensitivities::Hip hip(state, by_state.data());
-      RowMajorMatrix next = RowMajorMatrix::Zero(kFeetStates, kColumns);
+      RowMajorMatrix next = RowMajorMatrix::Constant(kFeetStates, kColumns, NAN);
       ForceColumns by_column = ForceColumns::Zero(4, kColumns);
       stance.Advance(self, SteppingParameters(), 0, hip, hip, state.feet, by_feet.data(), true,
                      next.data(), &by_column);
