@@ -118,7 +118,7 @@ bool SettlingResidual::Evaluate(double const* const* blocks, double* residuals,
     std::fill_n(jacobians[b], num_residuals() * parameter_block_sizes()[b], 0.0);
   }
   if (slopes.empty()) return true;
-  rolled_at_.clear();  // simulations with derivatives end where these do
+  rolled_at_.reset();  // simulations with derivatives end where these do
   if (!rollouts_.Differentiate(inputs, p.layout.num_acting(), frames)) return false;
   const ActingColumns columns(p.layout);
   RowMajorMatrix state, by_column;
