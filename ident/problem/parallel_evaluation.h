@@ -34,8 +34,7 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   }
 
   // Of what Wrap made of a rollout in lanes: the rollout, and its sums at the last preparation.
-  // Null of other cost functions. For summed_cost.h, which adds
-  // sums up without rows between.
+  // Null of other cost functions. For summed_cost.h, which adds sums up without rows between.
   static const RolloutProblem* ProblemOf(const ceres::CostFunction* cost);
   static const RolloutSums* SumsOf(const ceres::CostFunction* cost);
 
