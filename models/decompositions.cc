@@ -87,4 +87,8 @@ Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& a) {
   return u * sign.asDiagonal() * v.transpose();
 }
 
+Eigen::Quaterniond TurnBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  return Eigen::Quaterniond::FromTwoVectors(from, to);
+}
+
 }  // namespace pushid

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace pushid {
 
@@ -59,5 +60,8 @@ RightSingular DecomposeRight(const Eigen::MatrixXd& a);
 // The rotation R for which the trace of R' A is largest: with A the sum of to from' it turns `from`
 // to `to` with the least squares (Kabsch 1976).
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& a);
+
+// The shortest turn of one direction into another, which Eigen decomposes where they are opposite.
+Eigen::Quaterniond TurnBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 }  // namespace pushid

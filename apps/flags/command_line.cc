@@ -5,10 +5,12 @@
 #include <glog/logging.h>
 #ifdef __GLIBC__
 #include <malloc.h>
+#include <sys/mman.h>
 #endif
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <list>
@@ -92,11 +94,17 @@ int CheckPrinted(int exit_code) {
 }
 
 // A fit lays out the same tables again and again. What goes back to the system in between is asked
-// for and cleared anew each time, which takes 3 % of a fit of 32 recordings.
-void KeepFreedMemory() {
+// for and cleared anew each time, which takes 3 % of a fit of 32 recordings; its first megabytes,
+// page by page, take a tenth. So they come at once, in huge pages where the system has them.
+void PrepareHeap() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, 64 << 20);
+  constexpr size_t kHugePage = 2 << 20, kFirst = 4 * kHugePage;
+  void* const first = std::aligned_alloc(kHugePage, kFirst);
+  if (first == nullptr) return;
+  for (int advice : {MADV_HUGEPAGE, MADV_POPULATE_WRITE}) madvise(first, kFirst, advice);
+  std::free(first);
 #endif
 }
 
@@ -105,7 +113,6 @@ void KeepFreedMemory() {
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
            std::vector<std::string>* words, const MovedFlags& moved) {
   SetBlasThreads(1);
-  KeepFreedMemory();
   SetProgramName(argv[0]);
   gflags::SetUsageMessage(usage);
   gflags::SetVersionString(Version());
@@ -144,6 +151,7 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   }
   if (MaybeError error = CheckOutputs()) return Fail(*error);
   SayWhenInterrupted("no partial file is left; run the same command to start again");
+  PrepareHeap();
   try {
     const int exit_code = CheckPrinted(run());
     if (const std::string flag = moved.FirstGiven(); !flag.empty() && exit_code == kDone) {

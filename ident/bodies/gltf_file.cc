@@ -11,6 +11,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/gltf_shapes.h"
+#include "models/decompositions.h"
 
 namespace pushid {
 namespace {
@@ -166,7 +167,7 @@ class GltfWriter {
   void AddBone(const Eigen::Vector3d& offset, int joint) {
     const double length = offset.norm();
     if (length < kShortestBone) return;
-    const auto turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitY(), offset);
+    const Eigen::Quaterniond turn = TurnBetween(Eigen::Vector3d::UnitY(), offset);
     const double width = kBoneWidth * length;
     Json children = Children(joint);
     AddNode({{"mesh", meshes_.size() - 1},

@@ -144,7 +144,7 @@ Rotation6d ToRotation6d(const Eigen::Matrix3d& rotation) {
 
 Eigen::Matrix3d SwingBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   if (!(from.norm() > kNoLength) || !(to.norm() > kNoLength)) return Eigen::Matrix3d::Identity();
-  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
+  return TurnBetween(from, to).toRotationMatrix();
 }
 
 Eigen::Matrix3d FitRotation(const std::vector<Eigen::Vector3d>& from,
