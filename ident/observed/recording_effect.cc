@@ -33,9 +33,10 @@ double Least(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
-// Those of `left_out` do not count.
+// Those of `left_out` do not count. near: where it is known to be nearby.
 Population MostLikelyPopulation(const std::vector<Misfits>& recordings,
-                                const std::vector<int>& cluster, int left_out = -1) {
+                                const std::vector<int>& cluster, int left_out = -1,
+                                const Population* near = nullptr) {
   double squares = 0.0, residuals = 0.0;
   int acting = 0;
   for (size_t i = 0; i < recordings.size(); ++i) {
@@ -45,6 +46,7 @@ Population MostLikelyPopulation(const std::vector<Misfits>& recordings,
     acting += recordings[i].acts;
   }
   Population p{acting > 0 ? kFirstSpread : 0.0, std::sqrt(squares / residuals)};
+  if (near != nullptr && acting > 0) p = *near;
   for (int round = 0; round < kMostPopulationRounds && acting > 0; ++round) {
     double spread = 0.0;
     squares = 0.0;
@@ -72,12 +74,12 @@ Population MostLikelyPopulation(const std::vector<Misfits>& recordings,
 
 // Leaving out one cluster after the other.
 double JackknifeError(const std::vector<Misfits>& recordings, const std::vector<int>& cluster,
-                      int clusters) {
+                      int clusters, const Population& all) {
   if (clusters < 2) return 0.0;
   std::vector<double> spreads;
   double mean = 0.0, squares = 0.0;
   for (int g = 0; g < clusters; ++g) {
-    spreads.push_back(MostLikelyPopulation(recordings, cluster, g).spread);
+    spreads.push_back(MostLikelyPopulation(recordings, cluster, g, &all).spread);
     mean += spreads.back() / clusters;
   }
   for (double spread : spreads) squares += (spread - mean) * (spread - mean);
@@ -205,7 +207,7 @@ std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
   const Population p = MostLikelyPopulation(misfits, cluster);
   effect.spread = p.spread;
   effect.error_scale = p.scale;
-  if (p.spread > 0.0) effect.spread_error = JackknifeError(misfits, cluster, effect.clusters);
+  if (p.spread > 0.0) effect.spread_error = JackknifeError(misfits, cluster, effect.clusters, p);
   Squares sum;
   for (size_t i = 0; i < kept.size(); ++i) {
     if (!misfits[i].acts) continue;

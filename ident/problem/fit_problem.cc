@@ -32,6 +32,7 @@ FitProblem::FitProblem(const std::vector<PendulumRecording>& recordings, FitOpti
 FitProblem FitProblem::WithoutRecordings() const {
   FitProblem problem = *this;
   problem.counts_.assign(recordings().size(), 0);
+  problem.layouts_ = std::make_shared<Layouts>();
   return problem;
 }
 
@@ -50,6 +51,7 @@ void FitProblem::Weigh(const CostWeights& weights) {
   for (size_t i = 0; i < options_.table.specs.size(); ++i) {
     options_.table.specs[i].pooling_sigma = weights.pooling_sigma[i];
   }
+  layouts_ = std::make_shared<Layouts>();
 }
 
 FitPoint FitProblem::NominalPoint() const {
@@ -154,7 +156,7 @@ double FitProblem::DataCost(const FitPoint& point) const {
   if (options_.likelihood != Likelihood::kTrajectory) return 0.5 * DevianceAt(point).value;
   FitPoint copy = point;
   double cost = 0.0;
-  for (const auto& [rollout, blocks] : Rollouts(&copy, 0)) {
+  for (const auto& [rollout, blocks] : Rollouts(*LayOut(0), &copy)) {
     if (rollout == nullptr) continue;
     Eigen::VectorXd values(rollout->num_residuals());
     if (!RolloutResiduals(*rollout, blocks.data(), values.data())) {
@@ -171,8 +173,12 @@ size_t FitProblem::NumMotionRows(int recording) const {
 }
 
 std::vector<double*> FitProblem::RecordingBlocks(FitPoint* point, int recording) const {
+  return BlocksOf(point, recording, LayoutOf(recordings()[recording], map_, false));
+}
+
+std::vector<double*> FitProblem::BlocksOf(FitPoint* point, int recording,
+                                          const BlockLayout& layout) const {
   std::vector<double*> blocks = {point->shared.data()};
-  const BlockLayout layout = LayoutOf(recordings()[recording], map_, false);
   if (map_.num_deviations > 0) {
     for (const std::string& unit : layout.units) blocks.push_back(point->unit.at(unit).data());
   }

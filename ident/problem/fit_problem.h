@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -168,8 +169,21 @@ class FitProblem {
 
  private:
   void AddParameterBlocks(FitPoint* point, int num_threads, Built* built) const;
-  // By recording, over `horizon` frames; no problem where one does not count.
-  std::vector<RolloutAt> Rollouts(FitPoint* point, int horizon) const;
+  // The rollouts of all recordings over `horizon` frames, and those with lanes side by side: the
+  // same at every point, until weights or counts change.
+  struct LaidOut {
+    std::vector<RolloutAt> rollouts;  // by recording, nowhere yet; no problem: it does not count
+    std::vector<SideBySide> side_by_side;
+  };
+  // Kept for the copies of a problem as well, in any thread.
+  struct Layouts {
+    std::mutex mutex;
+    std::map<int, std::shared_ptr<const LaidOut>> by_horizon;
+  };
+  std::shared_ptr<const LaidOut> LayOut(int horizon) const;
+  // At a point.
+  std::vector<RolloutAt> Rollouts(const LaidOut& laid_out, FitPoint* point) const;
+  std::vector<double*> BlocksOf(FitPoint* point, int recording, const BlockLayout& layout) const;
 
   std::shared_ptr<const std::vector<PendulumRecording>>
       turned_;  // null where the file's axes serve
@@ -178,6 +192,7 @@ class FitProblem {
   std::vector<int> counts_;
   ParameterMap map_;
   double fall_of_noise_ = kFisherShift;
+  std::shared_ptr<Layouts> layouts_ = std::make_shared<Layouts>();
 };
 
 // How far units differ, estimated from the units.

@@ -44,14 +44,28 @@ void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* bui
   }
 }
 
-std::vector<RolloutAt> FitProblem::Rollouts(FitPoint* point, int horizon) const {
-  std::vector<RolloutAt> rollouts(recordings().size());
-  if (options_.likelihood != Likelihood::kTrajectory) return rollouts;  // rolls nothing out
-  for (int i = 0; i < static_cast<int>(rollouts.size()); ++i) {
+std::shared_ptr<const FitProblem::LaidOut> FitProblem::LayOut(int horizon) const {
+  const std::lock_guard<std::mutex> lock(layouts_->mutex);
+  std::shared_ptr<const LaidOut>& kept = layouts_->by_horizon[horizon];
+  if (kept != nullptr) return kept;
+  auto made = std::make_shared<LaidOut>();
+  made->rollouts.resize(recordings().size());
+  const bool rolls = options_.likelihood == Likelihood::kTrajectory;  // others roll nothing out
+  for (int i = 0; rolls && i < static_cast<int>(recordings().size()); ++i) {
     if (Count(i) == 0) continue;
-    rollouts[i] = {MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas,
-                                      Weight(i, horizon), Frames(i, horizon)),
-                   RecordingBlocks(point, i)};
+    made->rollouts[i].problem =
+        MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas,
+                           Weight(i, horizon), Frames(i, horizon));
+  }
+  made->side_by_side = PutSideBySide(made->rollouts);
+  return kept = std::move(made);
+}
+
+std::vector<RolloutAt> FitProblem::Rollouts(const LaidOut& laid_out, FitPoint* point) const {
+  std::vector<RolloutAt> rollouts = laid_out.rollouts;
+  for (int i = 0; i < static_cast<int>(rollouts.size()); ++i) {
+    const RolloutProblem* const problem = rollouts[i].problem.get();
+    if (problem != nullptr) rollouts[i].blocks = BlocksOf(point, i, problem->layout);
   }
   return rollouts;
 }
@@ -78,25 +92,28 @@ std::vector<FailedRollout> FailuresOf(const std::vector<RolloutAt>& rollouts,
 
 std::vector<FailedRollout> FitProblem::Failures(const FitPoint& point, int horizon) const {
   FitPoint copy = point;
-  const std::vector<RolloutAt> rollouts = Rollouts(&copy, horizon);
-  return FailuresOf(rollouts, PutSideBySide(rollouts));
+  const std::shared_ptr<const LaidOut> laid_out = LayOut(horizon);
+  return FailuresOf(Rollouts(*laid_out, &copy), laid_out->side_by_side);
 }
 
 FitProblem::Built FitProblem::Build(FitPoint* point, int horizon, bool hold_network,
                                     int num_threads, bool all_inside) const {
   Built built;
   AddParameterBlocks(point, num_threads, &built);
-  built.rollouts = Rollouts(point, horizon);
-  std::vector<SideBySide> side_by_side = PutSideBySide(built.rollouts);
-  if (!all_inside) built.shortened = FailuresOf(built.rollouts, side_by_side);
+  const std::shared_ptr<const LaidOut> laid_out = LayOut(horizon);
+  built.rollouts = Rollouts(*laid_out, point);
+  built.side_by_side = {laid_out, &laid_out->side_by_side};
+  if (!all_inside) built.shortened = FailuresOf(built.rollouts, *built.side_by_side);
   for (const auto& [recording, status] : built.shortened) {
     std::shared_ptr<const RolloutProblem>& rollout = built.rollouts[recording].problem;
     auto shorter = std::make_shared<RolloutProblem>(*rollout);
     shorter->horizon = status.frame;
     rollout = status.frame == 1 ? nullptr : std::move(shorter);  // nothing is left to compare
   }
-  if (!built.shortened.empty()) side_by_side = PutSideBySide(built.rollouts);
-  built.side_by_side = std::make_shared<std::vector<SideBySide>>(std::move(side_by_side));
+  if (!built.shortened.empty()) {
+    built.side_by_side =
+        std::make_shared<const std::vector<SideBySide>>(PutSideBySide(built.rollouts));
+  }
   built.evaluation->set_side_by_side(built.side_by_side);
 
   FamilyPlace place{*this, point, &built};

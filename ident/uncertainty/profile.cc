@@ -153,9 +153,10 @@ HeldFit Profiler::Hold(const ProfileTarget& target, const ProfileSearch& search,
   const double sigma = kHold * search.naive_error;
   FitPoint point = estimate_;
   point.SetFlat(from);
-  FitProblem::Built built = problem_.Build(&point, 0);
+  // Not asked which recordings fail: where one does, so does the solve, and with some of them cut
+  // short the costs could not be compared.
+  FitProblem::Built built = problem_.Build(&point, 0, false, 1, true);
   HeldFit held;
-  // With recordings cut short the costs could not be compared.
   if (!built.shortened.empty() || built.rests_left_out > 0) return held;
   ceres::CostFunction* holder;
   if (target.index >= 0) {

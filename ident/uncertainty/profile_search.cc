@@ -14,6 +14,7 @@ constexpr int kMaxSteps = 60;
 // Aimed at, on a quadratic cost. With 4 the first step of a profile to 13 standard errors (few
 // people) lands so far from the path that the held fit ends in another basin.
 constexpr int kStepsToThreshold = 8;
+constexpr int kStepsToClassify = 4;     // after the first, where only the class is wanted
 constexpr double kMaxGrowth = 3.0;      // of a step over the one before
 constexpr double kSmallestStep = 1e-3;  // what may be left of a step that keeps failing
 constexpr double kFlatReach = 1e4;      // this far without a rise is flat
@@ -44,10 +45,13 @@ double FindCrossing(const ProfileSearch& search, HeldFit below, HeldFit beyond, 
                     std::vector<HeldFit>* points) {
   const double aim = std::sqrt(2.0 * search.threshold);
   double low = Root(search, below) - aim, high = Root(search, beyond) - aim;
+  double short_by = 0.0;  // of where it is held, by the pull towards the optimum
   for (int i = 0; i < kMaxRefinements; ++i) {
     const double wanted = (below.value * high - beyond.value * low) / (high - low);
-    const HeldFit fit = hold(wanted, Extrapolate(search, &beyond, below, wanted));
+    const HeldFit fit =
+        hold(wanted + short_by, Extrapolate(search, &beyond, below, wanted + short_by));
     if (!fit.ok) break;
+    short_by += wanted - fit.value;
     points->push_back(fit);
     const double off = Root(search, fit) - aim;
     if (std::abs(off) < kCrossingTolerance * aim) return fit.value;
@@ -66,8 +70,11 @@ double FindCrossing(const ProfileSearch& search, HeldFit below, HeldFit beyond, 
   return (below.value * high - beyond.value * low) / (high - low);
 }
 
-double NextStep(double step, double rise, double run, double aim) {
-  const double wanted = rise > 0.0 ? aim / kStepsToThreshold * run / rise : kMaxGrowth * step;
+// rise: of the root, over the last step.
+double NextStep(const ProfileSearch& search, double step, double rise) {
+  const double aim = std::sqrt(2.0 * search.threshold);
+  const int steps = search.locate_crossing ? kStepsToThreshold : kStepsToClassify;
+  const double wanted = rise > 0.0 ? aim / steps * step / rise : kMaxGrowth * step;
   return std::clamp(wanted, step / kMaxGrowth, kMaxGrowth * step);
 }
 
@@ -108,8 +115,7 @@ ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& h
     const double reach = std::abs(fit.value - search.estimate) / half_width;
     if (at_limit || (reach > kFlatReach && root < kCrossingTolerance * aim)) return side;
     side.end = "steps";
-    const double run = std::abs(fit.value - last.value);
-    step = NextStep(run, root - Root(search, last), run, aim);
+    step = NextStep(search, std::abs(fit.value - last.value), root - Root(search, last));
     before = last;
     last = fit;
   }
