@@ -40,12 +40,12 @@ std::vector<double> Extrapolate(const ProfileSearch& search, const HeldFit* befo
   return start;
 }
 
-// Between a point below the threshold and one beyond it: regula falsi, Illinois' variant.
-double FindCrossing(const ProfileSearch& search, HeldFit below, HeldFit beyond, const HoldFit& hold,
-                    std::vector<HeldFit>* points) {
+// Between a point below the threshold and one beyond it: regula falsi, Illinois' variant. short_by:
+// of where it was held, what is beyond ends nearer to the optimum.
+double FindCrossing(const ProfileSearch& search, HeldFit below, HeldFit beyond, double short_by,
+                    const HoldFit& hold, std::vector<HeldFit>* points) {
   const double aim = std::sqrt(2.0 * search.threshold);
   double low = Root(search, below) - aim, high = Root(search, beyond) - aim;
-  double short_by = 0.0;  // of where it is held, by the pull towards the optimum
   for (int i = 0; i < kMaxRefinements; ++i) {
     const double wanted = (below.value * high - beyond.value * low) / (high - low);
     const HeldFit fit =
@@ -107,8 +107,9 @@ ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& h
     const double root = Root(search, fit);
     if (root >= aim) {
       side.end = "threshold";
-      side.crossing =
-          search.locate_crossing ? FindCrossing(search, last, fit, hold, &side.points) : fit.value;
+      side.crossing = search.locate_crossing
+                          ? FindCrossing(search, last, fit, wanted - fit.value, hold, &side.points)
+                          : fit.value;
       return side;
     }
     side.end = at_limit ? "bound" : "flat";

@@ -78,6 +78,32 @@ std::vector<std::string> FamiliesOf(const FitOptions& options, int horizon) {
 }
 
 // Which rows of the table a fit minimizes, stage by stage.
+double CostOf(const FitProblem& problem, FitPoint point) {
+  const FitProblem::Built built = problem.Build(&point, 0);
+  double cost = 0.0;
+  EXPECT_TRUE(built.problem->Evaluate({}, &cost, nullptr, nullptr, nullptr));
+  return cost;
+}
+
+// Rollouts are laid out once for all copies of a problem, and anew where weights change.
+TEST(FitProblem, WhatIsLaidOutGoesWithTheWeights) {
+  const auto recordings = MakePendulums(TinyStudy());
+  FitOptions options = MakePreset("tail").value();
+  const FitProblem problem(recordings, options);
+  const FitPoint point = problem.NominalPoint();
+  const double before = CostOf(problem, point);
+  FitProblem weighed = problem;
+  EXPECT_EQ(CostOf(weighed, point), before);
+  CostWeights weights = problem.weights();
+  weights.sigmas.hip *= 2.0;
+  weighed.Weigh(weights);
+  options.sigmas = weights.sigmas;
+  EXPECT_EQ(CostOf(weighed, point), CostOf(FitProblem(recordings, options), point));
+  EXPECT_LT(CostOf(weighed, point), before);
+  EXPECT_EQ(CostOf(problem, point), before);
+  EXPECT_EQ(weighed.WithoutRecordings().DataCost(point), 0.0);
+}
+
 TEST(FitProblem, FamiliesOfAStage) {
   using Names = std::vector<std::string>;
   constexpr int kFirst = 10, kLast = 0;

@@ -153,6 +153,27 @@ TEST(ProfileSearch, NeedNotLocateACrossing) {
   EXPECT_LT(crossed.points.size(), located.points.size());
 }
 
+// What holds a number is no harder than its sigma: every fit ends short of where it is held.
+TEST(ProfileSearch, FindsACrossingThoughFitsFallShort) {
+  ProfileSearch search;
+  search.point = {0.0};
+  search.direction = {1.0};
+  search.naive_error = 1.0;
+  search.threshold = 0.5 * 1.96 * 1.96;
+  const HoldFit hold = [](double wanted, const std::vector<double>&) {
+    const double value = 0.98 * wanted;
+    return HeldFit{true, value, 0.5 * value * value * (1.0 + 0.1 * value), {value}};
+  };
+  const ProfileSide side = TraceProfile(search, 1, hold);
+  const auto beyond = std::find_if(side.points.begin(), side.points.end(), [&](const HeldFit& fit) {
+    return fit.cost >= search.threshold;
+  });
+  ASSERT_NE(beyond, side.points.end());
+  EXPECT_LE(side.points.end() - beyond, 4) << "three refinements";
+  const double at = side.crossing;
+  EXPECT_NEAR(0.5 * at * at * (1.0 + 0.1 * at), search.threshold, 3e-3 * search.threshold);
+}
+
 // Large x alone show the plateau, not how fast it is reached.
 TEST(ProfileSearch, LevelsOffWhereTheDataAreTooWeak) {
   const Saturation s = NoisyData({2.0, 2.5, 3.0, 4.0}, 0.05);
