@@ -115,6 +115,17 @@ BvhKinematics::BvhKinematics(const BvhSkeleton& skeleton, double metres_per_unit
   }
 }
 
+std::vector<bool> BvhKinematics::UsedValues() const {
+  std::vector<bool> used(skeleton_.num_channels(), false);
+  for (const Step& step : steps_) {
+    const std::vector<BvhChannel>& channels = skeleton_.joints[step.joint].channels;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      used[step.first_channel + i] = step.rotates_something || !IsRotation(channels[i]);
+    }
+  }
+  return used;
+}
+
 void BvhKinematics::Positions(const double* row, Eigen::Vector3d* positions) {
   for (const Step& step : steps_) {
     const BvhJoint& joint = skeleton_.joints[step.joint];

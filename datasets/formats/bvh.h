@@ -147,6 +147,9 @@ class BvhKinematics {
   // joint, metres. Not const: the work space belongs to the object.
   void Positions(const double* row, Eigen::Vector3d* positions);
 
+  // Which values of a row they depend on.
+  std::vector<bool> UsedValues() const;
+
  private:
   struct Step {
     int joint = 0;

@@ -20,9 +20,25 @@ std::string ChannelName(const BvhSkeleton& skeleton, int index) {
   return "value " + std::to_string(index);
 }
 
-// Fills values[0 .. count) from a row of numbers.
+// Past a number of digits and a point, as nearly all are; null where it may be another one, or
+// none.
+const char* PastPlainNumber(const char* at, const char* end) {
+  constexpr std::ptrdiff_t kLongest = 32;  // none of them is infinite
+  const auto past_digits = [end](const char* p) {
+    while (p != end && *p >= '0' && *p <= '9') ++p;
+    return p;
+  };
+  const char* const digits = at != end && *at == '-' ? at + 1 : at;
+  const char* past = past_digits(digits);
+  if (past == digits) return nullptr;
+  if (past != end && *past == '.') past = past_digits(past + 1);
+  return (past == end || IsBlank(*past)) && past - at <= kLongest ? past : nullptr;
+}
+
+// Fills values[0 .. count) from a row of numbers; those that are not used may stay as they were.
 MaybeError ParseFrame(const LineReader& reader, std::string_view line, const BvhSkeleton& skeleton,
-                      int count, double* values) {
+                      const std::vector<bool>& used, double* values) {
+  const int count = static_cast<int>(used.size());
   const char* at = line.data();
   const char* const end = at + line.size();
   for (int i = 0;; ++i) {
@@ -35,6 +51,10 @@ MaybeError ParseFrame(const LineReader& reader, std::string_view line, const Bvh
     if (i == count) {
       return reader.ErrorHere("the row has more than the " + std::to_string(count) +
                               " numbers that the hierarchy's channels ask for");
+    }
+    if (const char* past = used[i] ? nullptr : PastPlainNumber(at, end)) {
+      at = past;
+      continue;
     }
     const auto [parsed_to, error] = std::from_chars(at, end, values[i]);
     if (error == std::errc() && std::isfinite(values[i]) &&
@@ -53,11 +73,13 @@ MaybeError ParseFrame(const LineReader& reader, std::string_view line, const Bvh
   }
 }
 
-// Calls take_row(values) for every row; checks that there are as many as announced.
+// Calls take_row(values) for every row; checks that there are as many as announced. used: which
+// values are asked for; all: the row, from 0, of which everything is.
 template <typename TakeRow>
-MaybeError ReadFrames(LineReader* reader, const BvhHeader& header, const TakeRow& take_row) {
-  const int channels = header.skeleton.num_channels();
-  std::vector<double> values(channels);
+MaybeError ReadFrames(LineReader* reader, const BvhHeader& header, const std::vector<bool>& used,
+                      int all, const TakeRow& take_row) {
+  const std::vector<bool> everything(used.size(), true);
+  std::vector<double> values(used.size());
   std::int64_t rows = 0;
   std::string_view line;
   while (reader->NextNonBlank(&line)) {
@@ -65,7 +87,8 @@ MaybeError ReadFrames(LineReader* reader, const BvhHeader& header, const TakeRow
       return reader->ErrorHere("wrong frame count: Frames: is " +
                                std::to_string(header.num_frames) + ", but here is one row more");
     }
-    if (MaybeError failed = ParseFrame(*reader, line, header.skeleton, channels, values.data())) {
+    if (MaybeError failed = ParseFrame(*reader, line, header.skeleton,
+                                       rows == all ? everything : used, values.data())) {
       return failed;
     }
     take_row(values);
@@ -116,8 +139,9 @@ Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options
   motion.frame_time_s = header.value().frame_time_s;
   motion.values.reserve(FramesToReserve(reader, header.value()) *
                         header.value().skeleton.num_channels());
+  const std::vector<bool> everything(header.value().skeleton.num_channels(), true);
   MaybeError failed =
-      ReadFrames(&reader, header.value(), [&motion](const std::vector<double>& values) {
+      ReadFrames(&reader, header.value(), everything, 0, [&motion](const auto& values) {
         motion.values.insert(motion.values.end(), values.begin(), values.end());
       });
   if (failed) return *std::move(failed);
@@ -144,11 +168,13 @@ Result<BvhPositions> ReadBvhPositions(const std::string& path, const BvhPosition
   BvhKinematics kinematics(header.value().skeleton, metres, result.joints);
   int frame = 0;
   std::vector<Eigen::Vector3d> positions(result.joints.size());
-  MaybeError failed = ReadFrames(&reader, header.value(), [&](const std::vector<double>& values) {
+  const auto take_row = [&](const std::vector<double>& values) {
     kinematics.Positions(values.data(), positions.data());
     if (frame++ == options.kept_frame) result.kept_values = values;
     for (std::size_t i = 0; i < positions.size(); ++i) result.positions[i].push_back(positions[i]);
-  });
+  };
+  MaybeError failed =
+      ReadFrames(&reader, header.value(), kinematics.UsedValues(), options.kept_frame, take_row);
   if (failed) return *std::move(failed);
   result.skeleton = std::move(header.value().skeleton);
   result.content_hash = reader.HashHex();

@@ -157,9 +157,17 @@ TEST_F(BvhErrorsTest, NumbersInEveryForm) {
               " { OFFSET 0 0 0 CHANNELS 1 Xrotation ";
     ends += " }";
   }
-  const BvhMotion read = Unwrapped(
-      ReadBvh(WriteText("forms.bvh", "HIERARCHY\n" + joints + "End Site { OFFSET 0 0 0 }" + ends +
-                                         "\nMOTION\nFrames: 1\nFrame Time: 1\n" + row + "\n")));
+  const std::string path =
+      WriteText("forms.bvh", "HIERARCHY\n" + joints + "End Site { OFFSET 0 0 0 }" + ends +
+                                 "\nMOTION\nFrames: 2\nFrame Time: 1\n" + row + "\n" + row + "\n");
+  BvhMotion read = Unwrapped(ReadBvh(path));
+  // Where nobody asks for their values too; of the frame that is kept all are.
+  BvhPositionOptions of_root;
+  of_root.joints = {"a0"};
+  EXPECT_EQ(Unwrapped(ReadBvhPositions(path, of_root)).positions[0].size(), 2u);
+  of_root.kept_frame = 1;
+  read.values.resize(tokens.size());
+  EXPECT_EQ(Unwrapped(ReadBvhPositions(path, of_root)).kept_values, read.values);
   ASSERT_EQ(read.values.size(), tokens.size());
   for (std::size_t i = 0; i < tokens.size(); ++i) {
     const double expected = std::strtod(tokens[i].c_str(), nullptr);
