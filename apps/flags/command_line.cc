@@ -94,17 +94,19 @@ int CheckPrinted(int exit_code) {
 }
 
 // A fit lays out the same tables again and again. What goes back to the system in between is asked
-// for and cleared anew each time, which takes 3 % of a fit of 32 recordings; its first megabytes,
-// page by page, take a tenth. So they come at once, in huge pages where the system has them.
+// for and cleared anew each time, which takes 3 % of a fit of 32 recordings. Its first megabytes,
+// page by page, take another tenth: they come at once, in huge pages where the system has them.
 void PrepareHeap() {
 #ifdef __GLIBC__
   mallopt(M_MMAP_THRESHOLD, 32 << 20);
   mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#if defined(MADV_HUGEPAGE) && defined(MADV_POPULATE_WRITE)
   constexpr size_t kHugePage = 2 << 20, kFirst = 4 * kHugePage;
   void* const first = std::aligned_alloc(kHugePage, kFirst);
   if (first == nullptr) return;
   for (int advice : {MADV_HUGEPAGE, MADV_POPULATE_WRITE}) madvise(first, kFirst, advice);
   std::free(first);
+#endif
 #endif
 }
 

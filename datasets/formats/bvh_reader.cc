@@ -20,10 +20,10 @@ std::string ChannelName(const BvhSkeleton& skeleton, int index) {
   return "value " + std::to_string(index);
 }
 
-// Past a number of digits and a point, as nearly all are; null where it may be another one, or
-// none.
+// The end of a plain decimal number (-digits.digits of at most 32 characters, so finite), as nearly
+// all are; null of anything else, which std::from_chars then judges.
 const char* PastPlainNumber(const char* at, const char* end) {
-  constexpr std::ptrdiff_t kLongest = 32;  // none of them is infinite
+  constexpr std::ptrdiff_t kLongest = 32;
   const auto past_digits = [end](const char* p) {
     while (p != end && *p >= '0' && *p <= '9') ++p;
     return p;
@@ -74,10 +74,10 @@ MaybeError ParseFrame(const LineReader& reader, std::string_view line, const Bvh
 }
 
 // Calls take_row(values) for every row; checks that there are as many as announced. used: which
-// values are asked for; all: the row, from 0, of which everything is.
+// values take_row needs; whole_row: the row, from 0, of which it needs all; -1: none.
 template <typename TakeRow>
 MaybeError ReadFrames(LineReader* reader, const BvhHeader& header, const std::vector<bool>& used,
-                      int all, const TakeRow& take_row) {
+                      int whole_row, const TakeRow& take_row) {
   const std::vector<bool> everything(used.size(), true);
   std::vector<double> values(used.size());
   std::int64_t rows = 0;
@@ -88,7 +88,7 @@ MaybeError ReadFrames(LineReader* reader, const BvhHeader& header, const std::ve
                                std::to_string(header.num_frames) + ", but here is one row more");
     }
     if (MaybeError failed = ParseFrame(*reader, line, header.skeleton,
-                                       rows == all ? everything : used, values.data())) {
+                                       rows == whole_row ? everything : used, values.data())) {
       return failed;
     }
     take_row(values);
@@ -141,7 +141,7 @@ Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options
                         header.value().skeleton.num_channels());
   const std::vector<bool> everything(header.value().skeleton.num_channels(), true);
   MaybeError failed =
-      ReadFrames(&reader, header.value(), everything, 0, [&motion](const auto& values) {
+      ReadFrames(&reader, header.value(), everything, -1, [&motion](const auto& values) {
         motion.values.insert(motion.values.end(), values.begin(), values.end());
       });
   if (failed) return *std::move(failed);

@@ -33,10 +33,10 @@ double Least(const std::vector<double>& values) {
   return *std::min_element(values.begin(), values.end());
 }
 
-// Those of `left_out` do not count. near: where it is known to be nearby.
+// Those of `left_out` do not count. first_spread: where the rounds begin.
 Population MostLikelyPopulation(const std::vector<Misfits>& recordings,
                                 const std::vector<int>& cluster, int left_out = -1,
-                                const Population* near = nullptr) {
+                                double first_spread = kFirstSpread) {
   double squares = 0.0, residuals = 0.0;
   int acting = 0;
   for (size_t i = 0; i < recordings.size(); ++i) {
@@ -45,8 +45,7 @@ Population MostLikelyPopulation(const std::vector<Misfits>& recordings,
     residuals += recordings[i].residuals;
     acting += recordings[i].acts;
   }
-  Population p{acting > 0 ? kFirstSpread : 0.0, std::sqrt(squares / residuals)};
-  if (near != nullptr && acting > 0) p = *near;
+  Population p{acting > 0 ? first_spread : 0.0, std::sqrt(squares / residuals)};
   for (int round = 0; round < kMostPopulationRounds && acting > 0; ++round) {
     double spread = 0.0;
     squares = 0.0;
@@ -74,12 +73,14 @@ Population MostLikelyPopulation(const std::vector<Misfits>& recordings,
 
 // Leaving out one cluster after the other.
 double JackknifeError(const std::vector<Misfits>& recordings, const std::vector<int>& cluster,
-                      int clusters, const Population& all) {
+                      int clusters, double spread_of_all) {
   if (clusters < 2) return 0.0;
+  // Nearby; but from none at all the rounds do not get away.
+  const double first = std::max(spread_of_all, EffectNode(1) - EffectNode(0));
   std::vector<double> spreads;
   double mean = 0.0, squares = 0.0;
   for (int g = 0; g < clusters; ++g) {
-    spreads.push_back(MostLikelyPopulation(recordings, cluster, g, &all).spread);
+    spreads.push_back(MostLikelyPopulation(recordings, cluster, g, first).spread);
     mean += spreads.back() / clusters;
   }
   for (double spread : spreads) squares += (spread - mean) * (spread - mean);
@@ -207,7 +208,8 @@ std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
   const Population p = MostLikelyPopulation(misfits, cluster);
   effect.spread = p.spread;
   effect.error_scale = p.scale;
-  if (p.spread > 0.0) effect.spread_error = JackknifeError(misfits, cluster, effect.clusters, p);
+  if (p.spread > 0.0)
+    effect.spread_error = JackknifeError(misfits, cluster, effect.clusters, p.spread);
   Squares sum;
   for (size_t i = 0; i < kept.size(); ++i) {
     if (!misfits[i].acts) continue;

@@ -153,8 +153,8 @@ HeldFit Profiler::Hold(const ProfileTarget& target, const ProfileSearch& search,
   const double sigma = kHold * search.naive_error;
   FitPoint point = estimate_;
   point.SetFlat(from);
-  // Not asked which recordings fail: where one does, so does the solve, and with some of them cut
-  // short the costs could not be compared.
+  // Where a rollout fails, so does the solve: no need to look for them first. With recordings cut
+  // short costs could not be compared.
   FitProblem::Built built = problem_.Build(&point, 0, false, 1, true);
   HeldFit held;
   if (!built.shortened.empty() || built.rests_left_out > 0) return held;

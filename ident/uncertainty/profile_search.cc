@@ -14,7 +14,10 @@ constexpr int kMaxSteps = 60;
 // Aimed at, on a quadratic cost. With 4 the first step of a profile to 13 standard errors (few
 // people) lands so far from the path that the held fit ends in another basin.
 constexpr int kStepsToThreshold = 8;
-constexpr int kStepsToClassify = 4;     // after the first, where only the class is wanted
+// After the first, where only the class is wanted. By short steps a walk stays on its branch, and
+// crosses, where beside it the cost stays lower to the bound (tail_base of the 32 recordings
+// alone).
+constexpr int kStepsToClassify = 4;
 constexpr double kMaxGrowth = 3.0;      // of a step over the one before
 constexpr double kSmallestStep = 1e-3;  // what may be left of a step that keeps failing
 constexpr double kFlatReach = 1e4;      // this far without a rise is flat
@@ -41,15 +44,14 @@ std::vector<double> Extrapolate(const ProfileSearch& search, const HeldFit* befo
 }
 
 // Between a point below the threshold and one beyond it: regula falsi, Illinois' variant. short_by:
-// of where it was held, what is beyond ends nearer to the optimum.
+// how far the fit beyond ended short of where it was held, with its sign.
 double FindCrossing(const ProfileSearch& search, HeldFit below, HeldFit beyond, double short_by,
                     const HoldFit& hold, std::vector<HeldFit>* points) {
   const double aim = std::sqrt(2.0 * search.threshold);
   double low = Root(search, below) - aim, high = Root(search, beyond) - aim;
   for (int i = 0; i < kMaxRefinements; ++i) {
     const double wanted = (below.value * high - beyond.value * low) / (high - low);
-    const HeldFit fit =
-        hold(wanted + short_by, Extrapolate(search, &beyond, below, wanted + short_by));
+    const HeldFit fit = hold(wanted + short_by, Extrapolate(search, &beyond, below, wanted));
     if (!fit.ok) break;
     short_by += wanted - fit.value;
     points->push_back(fit);

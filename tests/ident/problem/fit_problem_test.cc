@@ -69,15 +69,6 @@ TEST(FitProblem, RawResidualsSideBySideAreThoseOfEachRecording) {
   }
 }
 
-std::vector<std::string> FamiliesOf(const FitOptions& options, int horizon) {
-  std::vector<std::string> names;
-  for (const ResidualFamily& family : ResidualFamilies()) {
-    if (family.on(options, horizon)) names.push_back(family.name);
-  }
-  return names;
-}
-
-// Which rows of the table a fit minimizes, stage by stage.
 double CostOf(const FitProblem& problem, FitPoint point) {
   const FitProblem::Built built = problem.Build(&point, 0);
   double cost = 0.0;
@@ -104,6 +95,15 @@ TEST(FitProblem, WhatIsLaidOutGoesWithTheWeights) {
   EXPECT_EQ(weighed.WithoutRecordings().DataCost(point), 0.0);
 }
 
+std::vector<std::string> FamiliesOf(const FitOptions& options, int horizon) {
+  std::vector<std::string> names;
+  for (const ResidualFamily& family : ResidualFamilies()) {
+    if (family.on(options, horizon)) names.push_back(family.name);
+  }
+  return names;
+}
+
+// Which rows of the table a fit minimizes, stage by stage.
 TEST(FitProblem, FamiliesOfAStage) {
   using Names = std::vector<std::string>;
   constexpr int kFirst = 10, kLast = 0;
