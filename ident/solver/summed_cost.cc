@@ -138,6 +138,20 @@ bool SummedCost::AddParts(bool of_recordings, double* squares, SecondOrder* sum)
   });
 }
 
+// Where demands alone cost more than all did where derivatives were asked for last, the step is
+// refused, whatever the recordings say: nobody rolls them out. By more than any tolerance, so that
+// no solver takes it for an end.
+bool SummedCost::RefusedByDemands(double* residuals) const {
+  constexpr double kClearly = 1.1;
+  double squares = 0.0;
+  if (!(squares_ > 0.0) || !AddParts(false, &squares, nullptr)) return false;
+  if (!(squares > kClearly * squares_) || !std::isfinite(squares)) return false;
+  Eigen::Map<VectorXd> values(residuals, num_residuals());
+  values.setZero();
+  values[values.size() - 1] = std::sqrt(squares);
+  return true;
+}
+
 bool SummedCost::Evaluate(double const* const* x, double* residuals, double** jacobians) const {
   const int columns = parameter_block_sizes()[0];
   Eigen::Map<VectorXd> values(residuals, columns + 1);
@@ -145,6 +159,7 @@ bool SummedCost::Evaluate(double const* const* x, double* residuals, double** ja
   const bool derivatives = jacobians != nullptr && jacobians[0] != nullptr;
   const bool known = derivatives && recordings_.AreAt(at);
   SetValues(x[0]);
+  if (!derivatives && RefusedByDemands(residuals)) return true;
   // Demands alone are few: they go without threads, and count as no evaluation.
   if (built_.evaluation != nullptr && !known) {
     built_.evaluation->PrepareForEvaluation(derivatives, true);
@@ -167,6 +182,7 @@ bool SummedCost::Evaluate(double const* const* x, double* residuals, double** ja
   double squares = recordings_.squares;
   if (!AddParts(false, &squares, &linear)) return false;
   if (!std::isfinite(squares) || !linear.information.allFinite()) return false;
+  squares_ = squares;
   secants_.Add(at, 0.5 * squares, recordings_.sums, linear);
   const RowMajorMatrix rows = secants_.Rows();
   values = rows.col(columns);

@@ -45,12 +45,14 @@ class SummedCost : public ceres::CostFunction {
   // sum: null without derivatives.
   bool AddPart(const Part& part, double* squares, SecondOrder* sum) const;
   bool AddParts(bool of_recordings, double* squares, SecondOrder* sum) const;
+  bool RefusedByDemands(double* residuals) const;
 
   FitProblem::Built& built_;
   std::vector<Block> moving_;
   std::vector<Part> parts_;
   mutable StructuredSecants secants_;
   mutable RecordingSums recordings_;
+  mutable double squares_ = 0.0;  // where derivatives were asked for last
 };
 
 }  // namespace pushid

@@ -288,5 +288,15 @@ TEST_F(SumsOfRecordings, ThatAreKnownAreNotAskedForAgain) {
   EXPECT_DOUBLE_EQ(summed.recordings().squares, 3.5 * 3.5);
 }
 
+TEST_F(SumsOfRecordings, AreNotAskedForWhereDemandsAloneRefuseATrial) {
+  const SummedCost summed(&built_, StructuredSecants(true), {});
+  EXPECT_DOUBLE_EQ(Squares(summed, 1.0, true), 4.0);
+  of_recording_ = 0;
+  EXPECT_DOUBLE_EQ(Squares(summed, 2.5, false), 50.0 * 50.0);
+  EXPECT_EQ(of_recording_, 0);
+  EXPECT_NEAR(Squares(summed, 2.01, false), 3.01 * 3.01 + 1.0, 1e-9);
+  EXPECT_EQ(of_recording_, 1);
+}
+
 }  // namespace
 }  // namespace pushid
