@@ -105,13 +105,13 @@ TEST(RoomsTest, FloorsIncludeOnlyWhatStandsAboveThem) {
 }
 
 // A file is read at one go.
-TEST(RoomsTest, NoSourceIsLongerThan300Lines) {
+TEST(RoomsTest, NoSourceIsLongerThan700Lines) {
   for (const auto& [room, allowed] : kMayInclude) {
     for (const fs::path& file : Sources(fs::path(PUSHID_SOURCE_DIR) / room)) {
       std::ifstream stream(file);
       int lines = 0;
       for (std::string line; std::getline(stream, line);) ++lines;
-      EXPECT_LE(lines, 300) << file;
+      EXPECT_LE(lines, 700) << file;
     }
   }
 }
