@@ -1,5 +1,7 @@
 // ident: warnings of a fit, in words.
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "datasets/files/number_text.h"
 #include "ident/fit/estimates_table.h"
@@ -10,6 +12,7 @@
 namespace pushid {
 namespace {
 
+constexpr double kSameMass = 1.05;     // ratio of the masses of one person
 constexpr double kPullToTell = 0.5;    // standard errors
 constexpr double kHeldByDemand = 0.9;  // share of what determines a parameter
 
@@ -29,7 +32,8 @@ void AddVerdict(const FitResult& result, Warnings* warnings) {
 void AddClusterWarning(const Uncertainty& u, Warnings* warnings) {
   const std::string unit = u.clustered_by == ClusterBy::kSubject ? "person" : "recording";
   if (!u.clustered) {
-    warnings->emplace_back("a single " + unit + ": errors cannot be clustered and are too small");
+    warnings->emplace_back("a single " + unit +
+                           ": errors between people are unknown, and nothing is identified");
   } else if (u.about_people_like_them && u.num_people < kFewestPeople) {
     warnings->emplace_back(
         std::to_string(u.num_people) +
@@ -39,6 +43,27 @@ void AddClusterWarning(const Uncertainty& u, Warnings* warnings) {
     const std::string many = unit == "person" ? "people" : "recordings";
     warnings->emplace_back("the independent units are " + std::to_string(u.num_clusters) + " " +
                            many + ", fewer than ten: the standard errors are themselves uncertain");
+  }
+}
+
+// An id is one person (clusters.h), who weighs nearly the same in all recordings.
+void AddMassWarnings(const std::vector<PendulumRecording>& recordings, Warnings* warnings) {
+  std::map<std::string, std::pair<double, double>> masses;  // least and largest, kg
+  for (const PendulumRecording& recording : recordings) {
+    for (int n = 0; n < recording.num_people(); ++n) {
+      const double mass = recording.scene.people[n].body.mass;
+      auto& [least, largest] =
+          masses.emplace(recording.subject_ids[n], std::pair(mass, mass)).first->second;
+      least = std::min(least, mass);
+      largest = std::max(largest, mass);
+    }
+  }
+  for (const auto& [id, range] : masses) {
+    const auto& [least, largest] = range;
+    if (largest <= kSameMass * least) continue;
+    warnings->emplace_back(id + " weighs " + Rounded(least, 3) + " to " + Rounded(largest, 3) +
+                           " kg: one id is one person; give different people different ids, or "
+                           "correct the masses");
   }
 }
 
@@ -104,6 +129,7 @@ Warnings FitWarnings(const FitProblem& problem, const FitResult& result) {
                           " ends " + Rounded(-d->pushed_advance, 2) + " m behind the start (" +
                           SettlingSimulationName(*d, SettingsDiffer(result.behaviour)) + ")");
   }
+  AddMassWarnings(problem.recordings(), &warnings);
   AddClusterWarning(result.uncertainty, &warnings);
   AddSettlingWarning(result.uncertainty, model, problem.map().fitted.size(), &warnings);
   for (const Estimate& e : result.estimates) {

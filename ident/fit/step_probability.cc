@@ -97,7 +97,7 @@ std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
   if (!status.ok) return outcomes;
   const std::vector<double> margins = StepMargins(model, recording, path);
   for (int n = 0; n < static_cast<int>(margins.size()); ++n) {
-    outcomes.push_back({margins[n], recording.Stepped(n), PersonKey(recording, n)});
+    outcomes.push_back({margins[n], recording.Stepped(n), recording.subject_ids[n]});
   }
   return outcomes;
 }

@@ -42,7 +42,7 @@ double FactorAtMargin(double support, double margin);
 struct StepOutcome {
   double margin = 0.0;
   bool stepped = false;
-  std::string person;  // PersonKey
+  std::string person;  // id
 };
 
 // Each person asks for a dozen rollouts of all: seconds at this number, hours in a crowd.

@@ -210,7 +210,7 @@ FormationPeople DistinctPeople(const std::vector<BodyRecording>& recordings) {
   std::set<std::string> seen;
   for (const BodyRecording& recording : recordings) {
     for (int n = 0; n < recording.num_people(); ++n) {
-      if (!seen.insert(PersonKey(recording.pendulum, n)).second) continue;
+      if (!seen.insert(recording.pendulum.subject_ids[n]).second) continue;
       people.poses.push_back(recording.bodies[n].front());
       people.masses.push_back(recording.pendulum.scene.people[n].body.mass);
     }

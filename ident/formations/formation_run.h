@@ -111,7 +111,7 @@ struct FormationPeople {
   int count() const { return static_cast<int>(poses.size()); }
 };
 
-// Everybody once (PersonKey), in the order of the recordings.
+// Everybody once (by id), in the order of the recordings.
 FormationPeople DistinctPeople(const std::vector<BodyRecording>& recordings);
 
 // Puts them in the places of the scene's people, facing +x, from the first again where there are

@@ -198,7 +198,7 @@ std::optional<RecordingEffect> FitRecordingEffect(const IdentifiedModel& model,
   std::vector<std::string> people;
   for (int i = 0; i < total; ++i) {
     if (all[i].residuals == 0) continue;
-    people.push_back(PersonKey(recordings[i], recordings[i].pushed_person));
+    people.push_back(recordings[i].subject_ids[recordings[i].pushed_person]);
     kept.push_back(&recordings[i]);
     misfits.push_back(std::move(all[i]));
   }

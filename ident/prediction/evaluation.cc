@@ -111,7 +111,7 @@ std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
   for (size_t n = 0; n < prediction.steps.size(); ++n) {
     const int person = static_cast<int>(n);
     steps.push_back({prediction.steps[n].margin, prediction.steps[n].probability,
-                     recording.Stepped(person), PersonKey(recording, person)});
+                     recording.Stepped(person), recording.subject_ids[person]});
     if (prediction.feet_step) steps.back().timing = TimingOf(recording, prediction, person);
   }
   return steps;

@@ -48,7 +48,7 @@ struct ScoreClusters {
   MeanAndError Mean(const std::vector<double>& values) const;
 };
 
-// pushed: who was pushed, for each score (PersonKey, clusters.h).
+// pushed: who was pushed, for each score (ids).
 ScoreClusters ClustersOf(const std::vector<std::string>& pushed);
 ScoreClusters ClustersOf(const std::vector<PendulumRecording>& recordings);
 
@@ -65,8 +65,7 @@ std::string LabelKeysText(const LabelKeys& keys);
 // Error: a key that is not `subject` and that no recording has; not of the usual ones.
 MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const LabelKeys& keys);
 
-// What recordings are called by a key, one text each; empty where they have no such label. People
-// of one name and two masses are two.
+// What recordings are called by a key, one text each; empty where they have no such label.
 std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
                                     const std::string& key);
 
@@ -193,7 +192,7 @@ struct RecordingScore : HipMetrics {
   bool fell = false;                  // a person leaned beyond 1.0 rad
   bool fell_harder = false;           // FallsWhenPushedHarder, where it was asked
   PropagationScore propagation = {};  // empty for a single person and after a failure
-  std::string pushed = {};            // who was (PersonKey); Summarize fills it in
+  std::string pushed = {};            // whose id; Summarize fills it in
   // One per person; empty where the model says nothing of steps, and after a failure.
   std::vector<StepPrediction> steps = {};
   EffectEstimate effect = {};  // of the recording, where first frames were seen

@@ -68,7 +68,7 @@ struct StepPrediction {
   double margin = 0.0;       // m (fit/step_probability.h)
   double probability = 0.0;  // of a step
   bool stepped = false;
-  std::string person = {};  // PersonKey
+  std::string person = {};  // id
   // Where the model's feet step. In a cross-validation: of the first fold that held it out.
   std::optional<StepTiming> timing = {};
 };

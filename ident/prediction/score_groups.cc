@@ -46,7 +46,7 @@ ScoreClusters ClustersOf(const std::vector<std::string>& pushed) {
 
 ScoreClusters ClustersOf(const std::vector<PendulumRecording>& recordings) {
   std::vector<std::string> pushed;
-  for (const PendulumRecording& r : recordings) pushed.push_back(PersonKey(r, r.pushed_person));
+  for (const PendulumRecording& r : recordings) pushed.push_back(r.subject_ids[r.pushed_person]);
   return ClustersOf(pushed);
 }
 
@@ -96,17 +96,8 @@ std::string WithoutLabelText(const WithoutLabel& counts) {
 std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
                                     const std::string& key) {
   std::vector<std::string> names;
-  if (key != kSubjectUnit) {
-    for (const PendulumRecording& r : recordings) names.push_back(r.labels.Of(key));
-    return names;
-  }
-  std::map<std::string, std::set<std::string>> people;
   for (const PendulumRecording& r : recordings) {
-    people[r.subject_ids[r.pushed_person]].insert(PersonKey(r, r.pushed_person));
-  }
-  for (const PendulumRecording& r : recordings) {
-    const std::string& name = r.subject_ids[r.pushed_person];
-    names.push_back(people[name].size() > 1 ? PersonKey(r, r.pushed_person) + " kg" : name);
+    names.push_back(key == kSubjectUnit ? r.subject_ids[r.pushed_person] : r.labels.Of(key));
   }
   return names;
 }
@@ -155,7 +146,7 @@ ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
   std::vector<StepPrediction> steps;
   for (size_t i = 0; i < recordings.size(); ++i) {
     RecordingScore& score = summary.recordings[i];
-    score.pushed = PersonKey(recordings[i], recordings[i].pushed_person);
+    score.pushed = recordings[i].subject_ids[recordings[i].pushed_person];
     if (!score.failure.empty()) continue;
     all.push_back(&score);
     steps.insert(steps.end(), score.steps.begin(), score.steps.end());

@@ -5,16 +5,10 @@
 #include <map>
 #include <numeric>
 
-#include "datasets/files/number_text.h"
 #include "ident/problem/fit_problem.h"
 #include "models/decompositions.h"
 
 namespace pushid {
-
-std::string PersonKey(const PendulumRecording& recording, int person) {
-  const double mass = recording.scene.people[person].body.mass;
-  return recording.subject_ids[person] + " " + DoubleText(mass);
-}
 
 namespace {
 
@@ -24,7 +18,7 @@ constexpr size_t kFewestLineUps = 4;
 // The same for the same people in the same order.
 std::string LineUpKey(const PendulumRecording& recording) {
   std::string key;
-  for (int n = 0; n < recording.num_people(); ++n) key += PersonKey(recording, n) + "\n";
+  for (const std::string& person : recording.subject_ids) key += person + "\n";
   return key;
 }
 
@@ -39,7 +33,7 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
     const PendulumRecording& r = recordings[i];
     if (!counted(i)) continue;
     shared = shared || r.num_people() > 1;
-    for (int n = 0; n < r.num_people(); ++n) repeated = ++times[PersonKey(r, n)] > 1 || repeated;
+    for (const std::string& id : r.subject_ids) repeated = ++times[id] > 1 || repeated;
   }
   Clusters clusters;
   clusters.by = by;
@@ -54,9 +48,9 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
     const PendulumRecording& r = recordings[i];
     std::vector<int> of;
     for (int n = 0; counted(i) && n < r.num_people(); ++n) {
-      const std::string key = people ? PersonKey(r, n) : std::to_string(i);
+      const std::string key = people ? r.subject_ids[n] : std::to_string(i);
       const auto [found, added] = index.emplace(key, clusters.count());
-      if (added) clusters.names.push_back(people ? r.subject_ids[n] : r.id);
+      if (added) clusters.names.push_back(people ? key : r.id);
       of.push_back(found->second);
     }
     clusters.of.push_back(std::move(of));

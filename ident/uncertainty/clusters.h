@@ -24,6 +24,7 @@ class FitProblem;
 struct FitPoint;
 struct RecordingSums;
 
+// A person is an id, whatever they weighed that day.
 struct Clusters {
   ClusterBy by = ClusterBy::kRecording;  // kAuto decided
   bool two_way = false;
@@ -37,9 +38,6 @@ struct Clusters {
 
   int count() const { return static_cast<int>(names.size()); }
 };
-
-// A person is an id and a mass: who goes by one id with two masses is two people.
-std::string PersonKey(const PendulumRecording& recording, int person);
 
 // counts: how often each recording counts; those that do not are of no cluster. Empty: all do.
 Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by,

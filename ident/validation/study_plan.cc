@@ -215,7 +215,7 @@ std::vector<int> PushedPeople(const std::vector<PendulumRecording>& recordings) 
   std::vector<int> people;
   for (const PendulumRecording& r : recordings) {
     people.push_back(
-        known.emplace(PersonKey(r, r.pushed_person), static_cast<int>(known.size())).first->second);
+        known.emplace(r.subject_ids[r.pushed_person], static_cast<int>(known.size())).first->second);
   }
   return people;
 }

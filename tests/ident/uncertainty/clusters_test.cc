@@ -71,6 +71,24 @@ TEST(Clusters, HaveOneFreedomLessThanTheirNumberBesideAPrior) {
   EXPECT_NEAR(c.scatter.parts[1].covariance(0, 0), 1e-4, 1e-7);  // the prior's width
 }
 
+// One recording whose four rows scatter by 1e-3, and a prior of +- 40 that they say little beside:
+// H = 4 w + 1 / 1600 with w the weight of a row. Only rows of data are scaled by their scatter.
+TEST(Clusters, ThePriorIsNotScaledByTheScatterOfTheData) {
+  JacobianBlocks score = MeanProblem({{1e-3, -1e-3, 1e-3, -1e-3}});
+  constexpr double kRow = 1e-4;  // d residual / d parameter
+  score.jacobian *= kRow;
+  score.jacobian.conservativeResize(5, Eigen::NoChange);
+  score.residuals.conservativeResize(5);
+  score.jacobian(4, 0) = 1.0 / 40.0;
+  score.residuals[4] = 0.0;
+  score.cluster_of_row.push_back(FitProblem::kPriorCluster);
+  score.person_of_row.push_back(0);
+  const Covariance c = Of(score);
+  EXPECT_TRUE(c.scatter.empty());
+  EXPECT_NEAR(std::sqrt(c.inverse_hessian(0, 0)), 39.999, 1e-3);
+  EXPECT_NEAR(std::sqrt(c.naive(0, 0)), 39.997, 1e-3);
+}
+
 // Degrees of freedom by Pustejovsky and Tipton's formula, written out over rows.
 TEST(Clusters, FreedomIsSatterthwaites) {
   Random random(5);
@@ -138,11 +156,15 @@ TEST(Clusters, OfRecordingsAreAboutThesePeople) {
   EXPECT_FALSE(one.draws_people);
 }
 
-// One id with two masses is two people.
-TEST(Clusters, AnIdWithTwoMassesIsTwoPeople) {
+// Who is weighed anew before each session stays one person.
+TEST(Clusters, AnIdWithTwoMassesIsOnePerson) {
   auto recordings = MakePendulums(TinyStudy());
-  recordings[0].scene.people[0].body.mass += 20.0;
-  EXPECT_EQ(MakeClusters(recordings, ClusterBy::kSubject).count(), 3);
+  recordings[0].scene.people[0].body.mass *= 1.006;
+  EXPECT_EQ(MakeClusters(recordings, ClusterBy::kSubject).count(), 2);
+  for (PendulumRecording& r : recordings) r.subject_ids = {"S01"};
+  const Clusters one = MakeClusters(recordings, ClusterBy::kAuto);
+  EXPECT_EQ(one.people, 1);
+  EXPECT_FALSE(one.draws_people) << "six recordings of one person say nothing of others";
 }
 
 TEST(Clusters, PeopleWhoShareRecordingsAreClusteredTwoWays) {
