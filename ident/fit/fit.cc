@@ -147,7 +147,7 @@ FitResult Judge(const SolvedFit& fit) {
   // The verdict: whether the model fits, what would change if what was taken as known were not,
   // and which estimates may be called identified (model_verdict.h).
   work.Add("standard errors");
-  result.verdict = JudgeModel(problem, optimum, &result.uncertainty);
+  result.verdict = JudgeModel(problem, optimum, result.behaviour, &result.uncertainty);
   work.Add("verdict");
 
   // Tables: parameters, what ties units together, combinations, values of every unit.

@@ -79,6 +79,9 @@ void Fields(Archive& a, ModelVerdict& v) {
   a("motion", v.motion.tests);
   a("explained", v.motion.explained);
   a("of_pushes", v.of_pushes);
+  if (a.Has("none_identified", !v.none_identified.empty())) {
+    a("none_identified", v.none_identified);
+  }
 }
 
 template <class Archive>

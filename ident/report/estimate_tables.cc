@@ -139,8 +139,10 @@ std::string Freedom(double least, double most) {
 
 std::string HowSure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
-  if (!u.clustered)
-    return "standard errors: naive (the scatter cannot be estimated from a single cluster)\n";
+  if (!u.clustered) {
+    return "standard errors: of the posterior, priors included; a single recording says nothing of "
+           "errors between people\n";
+  }
   double least = std::numeric_limits<double>::infinity(), most = 0.0;
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kFixed) continue;

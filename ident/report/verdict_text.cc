@@ -132,9 +132,7 @@ std::string FailureText(const ModelVerdict& v) {
   return text;
 }
 
-}  // namespace
-
-std::string ModelVerdictText(const ModelVerdict& v) {
+std::string CheckText(const ModelVerdict& v) {
   if (!v.checked()) return "The model was not checked: " + v.not_checked + ".";
   if (v.fails()) {
     return "The model does not fit these recordings: " + FailureText(v) +
@@ -153,6 +151,14 @@ std::string ModelVerdictText(const ModelVerdict& v) {
               : "; it explains " + Rounded(100.0 * v.motion.explained, 3) +
                     " % of the hip's squared displacement in the median "
                     "recording.");
+}
+
+}  // namespace
+
+std::string ModelVerdictText(const ModelVerdict& v) {
+  const std::string none =
+      v.none_identified.empty() ? "" : "Nothing is identified: " + v.none_identified + ". ";
+  return none + CheckText(v);
 }
 
 TextTable AssumptionTable(const FitResult& result) {

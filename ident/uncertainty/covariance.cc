@@ -190,9 +190,13 @@ Covariance NaiveCovariance(const JacobianBlocks& score, const Eigen::VectorXd& u
   c.naive_freedom = std::max(1, score.num_data_rows - rank);
   c.sigma = std::sqrt(sum / c.naive_freedom);
 
+  // Rows of data scatter by sigma; priors and demands are in units of their own.
   const Eigen::MatrixXd back = unit.asDiagonal() * c.directions.v.leftCols(rank);
   const Eigen::VectorXd squared = c.directions.singular.head(rank).cwiseAbs2();
-  c.naive = c.sigma * c.sigma * back * squared.cwiseInverse().asDiagonal() * back.transpose();
+  const Eigen::MatrixXd beside = back.transpose() * InformationBeside(score) * back;
+  const Eigen::MatrixXd data = Eigen::MatrixXd(squared.asDiagonal()) - beside;
+  const Eigen::MatrixXd moves = back * squared.cwiseInverse().asDiagonal();
+  c.naive = moves * (c.sigma * c.sigma * data + beside) * moves.transpose();
   return c;
 }
 

@@ -3,7 +3,8 @@
 //
 // At the optimum, with H the Hessian of the cost, H = J'J + sum r d2r (the second term only where
 // it was computed, jacobian_blocks.h):
-//   naive      sigma^2 (J'J)^-1, sigma^2 = |r|^2 / (N - rank): rows taken as independent
+//   naive      (J'J)^-1 (sigma^2 J_d'J_d + J_b'J_b) (J'J)^-1, sigma^2 = |r_d|^2 / (N - rank): rows of data
+//              (d) taken as independent, priors and demands (b) in units of their own
 //   clustered  CR2 over clusters of rows (clusters.h). Where rows are clustered two ways,
 //              V_first + V_second - V_both. Deviations of pooled units are draws, and what they
 //              scatter is a second part, by their own prior's spread: H^-1 J_p'J_p H^-1. So is what
@@ -138,6 +139,7 @@ struct FittedColumn {
   std::string name, unit;
   Transform transform = Transform::kIdentity;
   double scale = 1.0;   // typical size, natural unit
+  double width = 1.0;   // the prior's, or the typical size: what an interval is compared with
   double fitted = 0.0;  // value on the fitted scale
   double natural = 0.0;
   bool at_bound = false;

@@ -13,7 +13,9 @@ std::vector<FittedColumn> FittedColumns(const FitProblem& problem, const FitPoin
   const auto& fitted = problem.map().fitted;
   for (size_t i = 0; i < fitted.size(); ++i) {
     const ParameterSpec& spec = table[fitted[i].parameter];
-    FittedColumn c{spec.name, spec.unit, spec.transform, spec.scale, point.shared[i], 0.0, false};
+    FittedColumn c{spec.name, spec.unit, spec.transform, spec.scale};
+    c.width = spec.prior ? spec.prior->sigma : spec.scale;
+    c.fitted = point.shared[i];
     c.natural = ToNatural(spec.transform, c.fitted);
     const double lower = ToFitted(spec.transform, spec.lower);
     const double upper = ToFitted(spec.transform, spec.upper);
@@ -27,7 +29,7 @@ std::vector<FittedColumn> FittedColumns(const FitProblem& problem, const FitPoin
       const ParameterSpec& spec = table[f.parameter];
       const bool plain = f.transform == Transform::kIdentity;
       FittedColumn c{spec.name + "[" + unit + "] deviation", plain ? spec.unit : "1"};
-      c.scale = plain ? spec.scale : 1.0;
+      c.scale = c.width = plain ? spec.scale : 1.0;
       c.fitted = c.natural = values[f.deviation];
       columns.push_back(c);
     }
@@ -39,7 +41,7 @@ std::vector<FittedColumn> FittedColumns(const FitProblem& problem, const FitPoin
                          problem.recordings()[recording].id +
                          (values.size() > 4 ? ":" + std::to_string(k / 4) : "") + "]",
                      k % 4 < 2 ? "m/s" : "rad/s"};
-      c.scale = 0.1;
+      c.scale = c.width = 0.1;
       c.fitted = c.natural = values[k];
       columns.push_back(c);
     }

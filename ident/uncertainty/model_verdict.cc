@@ -6,6 +6,7 @@
 #include <set>
 
 #include "datasets/inspection/findings.h"
+#include "ident/problem/behaviour_text.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/clusters.h"
@@ -263,18 +264,38 @@ bool MayBeLate(const ModelVerdict& verdict) {
   return false;
 }
 
+std::string WhyNoneIsIdentified(const Uncertainty& uncertainty, const Behaviour& behaviour,
+                                const ModelOptions& model) {
+  if (!uncertainty.clustered) {
+    return "there is one recording, so that errors between people and between recordings are "
+           "unknown; intervals are those of the posterior, priors included";
+  }
+  const Verdict verdict = VerdictOf(behaviour, model);
+  if (verdict != Verdict::kSettles && verdict != Verdict::kSlowToSettle) {
+    return VerdictSentence(verdict, behaviour, model);
+  }
+  return uncertainty.settling.dropped()
+             ? "the fitted person does not settle in time, and the demand to settle was dropped"
+             : "";
+}
+
 }  // namespace
 
 ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point,
-                        Uncertainty* uncertainty) {
-  const ModelVerdict verdict = ModelJudge(problem, point).Run(uncertainty);
+                        const Behaviour& behaviour, Uncertainty* uncertainty) {
+  const std::vector<FittedColumn> columns = FittedColumns(problem, point);
+  ModelVerdict verdict = ModelJudge(problem, point).Run(uncertainty);
+  verdict.none_identified =
+      WhyNoneIsIdentified(*uncertainty, behaviour, problem.options().model);
   const bool late = MayBeLate(verdict);
-  for (Estimate& e : uncertainty->estimates) {
+  const bool doubtful = verdict.fails() || !verdict.none_identified.empty();
+  for (size_t i = 0; i < columns.size(); ++i) {
+    Estimate& e = uncertainty->estimates[i];
     if (e.status != EstimateStatus::kIdentified) continue;
     const bool damping = e.name == "Kd_theta" || e.name == "Kd_phi";
-    if (e.total && !IsNarrow(e.value, e.total->lower95, e.total->upper95)) {
+    if (e.total && !IsNarrow(columns[i], e.total->lower95, e.total->upper95)) {
       e.status = EstimateStatus::kWeak;
-    } else if (verdict.fails() || (late && damping)) {
+    } else if (doubtful || (late && damping)) {
       e.status = EstimateStatus::kModelDependent;
     }
   }

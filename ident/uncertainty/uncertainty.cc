@@ -50,24 +50,27 @@ Eigen::MatrixXd DataNullSpace(const JacobianBlocks& score, const Eigen::MatrixXd
 // Limits of EstimateStatus.
 constexpr double kIdentifiedShare = 0.8;
 constexpr double kMostPull = 0.5;       // standard errors
-constexpr double kMostHalfWidth = 0.5;  // of the value
+constexpr double kMostHalfWidth = 0.5;
 
 }  // namespace
 
-bool IsNarrow(double value, double lower95, double upper95) {
-  return 0.5 * (upper95 - lower95) < kMostHalfWidth * std::abs(value);
+bool IsNarrow(const FittedColumn& c, double lower95, double upper95) {
+  if (c.transform == Transform::kLog) {
+    return 0.5 * std::log(upper95 / lower95) < std::asinh(kMostHalfWidth);
+  }
+  return 0.5 * (upper95 - lower95) < kMostHalfWidth * c.width;
 }
 
 namespace {
 
-// few_people: too few to say anything of others.
-EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched, bool few_people) {
+// few: too few recordings to know their scatter, or people to say anything of others.
+EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched, bool few) {
   if (c.at_bound) return EstimateStatus::kAtBound;
   if (touched) return EstimateStatus::kUnidentifiable;
   if (e.shares.data < kHeldShare) return EstimateStatus::kPriorHeld;
   const double pull = std::abs(e.shares.prior_pull + e.shares.settling_pull);
   const bool leads = e.shares.data > kIdentifiedShare && pull < kMostPull * e.standard_error;
-  return !few_people && leads && IsNarrow(c.natural, e.lower95, e.upper95)
+  return !few && leads && IsNarrow(c, e.lower95, e.upper95)
              ? EstimateStatus::kIdentified
              : EstimateStatus::kWeak;
 }
@@ -81,7 +84,7 @@ Interval IntervalOf(const FittedColumn& c, const ScatterOf& of) {
 }
 
 Estimate MakeEstimate(const FittedColumn& c, ScatterOf of, double naive_variance,
-                      const Shares& shares, bool touched, bool few_people) {
+                      const Shares& shares, bool touched, bool few) {
   if (touched) of.standard_error = kInfinity;
   Estimate e;
   e.freedom = of.freedom;
@@ -99,7 +102,7 @@ Estimate MakeEstimate(const FittedColumn& c, ScatterOf of, double naive_variance
   e.standard_error = interval.standard_error;
   e.lower95 = interval.lower;
   e.upper95 = interval.upper;
-  e.status = Judge(c, e, touched, few_people);
+  e.status = Judge(c, e, touched, few);
   return e;
 }
 
@@ -243,7 +246,9 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   u.freedom = u.clustered ? u.num_clusters - 1 : spread.naive_freedom;
   u.scatter = spread.scatter;
   u.these = spread.these;
-  if (!u.clustered) u.scatter.Add(spread.naive, spread.naive_freedom);
+  // One cluster says nothing of how clusters scatter: the posterior's width is left, in which it
+  // counts as one independent frame.
+  if (!u.clustered) u.scatter.Add(spread.inverse_hessian, kInfinity);
   u.covariance = u.scatter.Covariance();
   u.too_few_clusters = u.clustered && u.num_clusters - 1 < problem.map().num_shared();
   u.correlation = Correlation(u.too_few_clusters ? spread.naive : u.covariance);
@@ -251,13 +256,13 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   const Eigen::MatrixXd null_space = DataNullSpace(score, scaled, columns);
   const std::vector<Shares> shares = SharesOf(c, MovedBySettling(c, unit, point, free));
-  const bool few_people = u.about_people_like_them && u.num_people < kFewestPeople;
+  const bool few = !u.clustered || (u.about_people_like_them && u.num_people < kFewestPeople);
   for (int i = 0; i < size; ++i) {
     const bool touched =
         null_space.cols() > 0 && null_space.row(i).cwiseAbs().maxCoeff() > kTouched;
     const bool free_of_data = touched && !columns[i].at_bound;
     u.estimates.push_back(MakeEstimate(columns[i], u.scatter.OfColumn(i), spread.naive(i, i),
-                                       shares[i], free_of_data, few_people));
+                                       shares[i], free_of_data, few));
     if (!u.these.empty() && !free_of_data) {
       u.estimates.back().these = IntervalOf(columns[i], u.these.OfColumn(i));
     }

@@ -34,8 +34,8 @@ struct FitPoint;
 
 enum class EstimateStatus {
   // The data's share is above 80 %, priors and settling together pull it by less than half a
-  // standard error, and the interval's half-width is below half the value.
-  // Where the interval is about people like those recorded, they are four or more.
+  // standard error, and the interval is narrow (IsNarrow). Errors are clustered, and where the
+  // interval is about people like those recorded, they are four or more.
   kIdentified,
   kModelDependent,  // identified, if the model were right: its checks fail (model_verdict.h)
   kWeak,            // neither of these nor anything below
@@ -82,8 +82,11 @@ struct Estimate {
   EstimateStatus status = EstimateStatus::kIdentified;
 };
 
-// Whether an interval's half-width is below half the value.
-bool IsNarrow(double value, double lower95, double upper95);
+// Whether an interval is narrow, on a scale that does not depend on the estimate: of a parameter
+// that is fitted as a logarithm the half-width is below asinh(1/2), half of any value; of others
+// below half the prior's standard deviation, or half the typical size where there is no prior.
+// Compared with the estimate itself, those that came out too large would pass most often.
+bool IsNarrow(const FittedColumn& column, double lower95, double upper95);
 
 // A sum of parameters, by natural values.
 struct Combination {
@@ -118,7 +121,7 @@ struct Uncertainty {
   int num_clusters = 0;
   ClusterBy clustered_by = ClusterBy::kRecording;
   bool two_way = false;    // by people and by line-ups
-  bool clustered = false;  // false with a single cluster: naive errors lead
+  bool clustered = false;  // false with a single cluster: errors are those of the posterior
   int num_people = 0;
   bool about_people_like_them = false;  // not of these people alone
   double sigma = 0.0;                   // residual standard deviation, in sigmas
@@ -129,7 +132,7 @@ struct Uncertainty {
   bool too_few_clusters = false;
   bool full_hessian = false;        // whether the covariance knows second derivatives
   std::vector<Estimate> estimates;  // in the order of FitPoint::Flat
-  Eigen::MatrixXd covariance;       // clustered (or naive), fitted scale, same order
+  Eigen::MatrixXd covariance;       // clustered (or the posterior's), fitted scale, same order
   Scatter scatter;                  // its parts, of a fresh fit alone
   Scatter these;                    // about these people; empty where `scatter` is
   Eigen::MatrixXd correlation;      // of that covariance

@@ -2,6 +2,7 @@
 
 faults    something is wrong with the files, the people or the model; 10 minutes on two cores
 sound     nothing is wrong, but there is noise, and few people; three times as many sets
+few       nothing is wrong, but there is one person, or one recording, or all people are alike
 standing  people whose feet never move
 
 An interval that is called identified and does not hold the truth is wrong; so is any identified drag or lean term of feet that
@@ -49,6 +50,7 @@ class Study:
     drift: float = 0.0  # m, of the cameras over a recording
     rate: float = 1.0  # of the frames
     memory: float = 0.0  # of one frame's noise in the next
+    weighed: float = 0.0  # by how much a person's mass in the files differs between recordings
 
 
 def truth_of(study, random):
@@ -118,7 +120,7 @@ def write(folder, study):
             people.write_push(f"{folder}/{name}_push.csv", force, direction + study.turn, hip, feet, study.fps, duration, study.scale,
                               study.height)
             recordings.append({"id": name, "setting": "single", "pushed_person": 0, "csv": [f"{name}.csv"], "length_unit": "m",
-                               "subjects": [{"id": f"s{s}", "mass_kg": round(person.mass * study.mass, 2)}],
+                               "subjects": [{"id": f"s{s}", "mass_kg": round(person.mass * study.mass * (1 + study.weighed * (k % 7 - 3) / 3), 2)}],
                                "push_csv": f"{name}_push.csv", "push_kind": "external"})
     with open(f"{folder}/manifest.json", "w", encoding="utf-8") as file:
         json.dump({"recordings": recordings}, file)
@@ -206,6 +208,13 @@ SOUND = {
     "three people": {"subjects": 3, "pushes": 8},
     "truths within a factor of 5": {"factor": 5.0},
 }
+# Of one person the truth is that person's own: there is no spread.
+FEW = {
+    "one recording": {"subjects": 1, "pushes": 1, "spread": 0.0},
+    "two recordings of one person": {"subjects": 1, "pushes": 2, "spread": 0.0},
+    "one person, weighed anew before each of 6 pushes": {"subjects": 1, "pushes": 6, "spread": 0.0, "weighed": 0.003},
+    "six people who are alike, all pushed at one height": {"spread": 0.0},
+}
 STANDING = {f"{links} link{'s' * (links > 1)}, delay {delay:g} s": {"links": links, "delay": delay, "subjects": 6, "pushes": 6,
                                                                    "spread": 0.05}
             for links in (1, 2) for delay in (0.0, 0.12)}
@@ -219,4 +228,5 @@ def table(what, rows, sets):
 
 if __name__ == "__main__":
     studies.main(__file__, {"faults": lambda: table("what is wrong", FAULTS, SETS), "sound": lambda: table("sound data", SOUND, 3 * SETS),
+                            "few": lambda: table("few people, or all alike", FEW, 2 * SETS),
                             "standing": lambda: table("who stands", STANDING, SETS)})

@@ -151,7 +151,7 @@ ReportSection LeadSection(const ReportSource& source) {
     section.figures.push_back(*typical);
   section.figures.push_back(IntervalFigure(source));
   const std::string verdict = ModelVerdictText(source.fit.verdict);
-  if (source.fit.verdict.fails()) {
+  if (source.fit.verdict.fails() || !source.fit.verdict.none_identified.empty()) {
     section.alarm = verdict;
   } else {
     section.Say(verdict);

@@ -210,5 +210,30 @@ TEST(ModelVerdict, SaysWhyNothingWasChecked) {
   EXPECT_TRUE(Contains(result.verdict.not_checked, "2 people cannot tell"));
 }
 
+// The numbers of a person who is driven, or who settled only on demand, are not called identified.
+TEST(ModelVerdict, IdentifiesNothingOfWhoDoesNotComeToRest) {
+  const auto recordings = MakePendulums(Study(1));
+  const FitResult result = FitOf(recordings);
+  ASSERT_GT(Count(result, EstimateStatus::kIdentified), 0);
+  EXPECT_EQ(result.verdict.none_identified, "");
+  const FitProblem problem(recordings, result.options);
+  const FitPoint& optimum = result.starts[result.best_start].to;
+  const auto identified = [](const Uncertainty& u) {
+    return std::count_if(u.estimates.begin(), u.estimates.end(), [](const Estimate& e) {
+      return e.status == EstimateStatus::kIdentified;
+    });
+  };
+  Uncertainty u = result.uncertainty;
+  Behaviour driven = result.behaviour;
+  driven.settles = false;
+  driven.self_propelling = true;
+  EXPECT_NE(JudgeModel(problem, optimum, driven, &u).none_identified, "");
+  EXPECT_EQ(identified(u), 0);
+  u = result.uncertainty;
+  u.settling.binds = u.settling.contradicted = true;
+  EXPECT_NE(JudgeModel(problem, optimum, result.behaviour, &u).none_identified, "");
+  EXPECT_EQ(identified(u), 0);
+}
+
 }  // namespace
 }  // namespace pushid
