@@ -110,7 +110,7 @@ using Predictors = std::vector<Predictor>;
 Candidates NoisyModels(const Candidates& candidates) {
   Candidates noisy;
   for (const auto& [name, candidate] : candidates) {
-    if (candidate.model.process_noise.Any()) noisy.emplace_back(name, candidate);
+    if (candidate.model.process_noise != ProcessNoise::kNone) noisy.emplace_back(name, candidate);
   }
   if (Given("observed")) {
     throw Error{

@@ -52,10 +52,9 @@ DEFINE_choice(
     truth_delay, pushid::SyntheticOptions{}.model.delay,
     "without --model: reaction delay of the synthetic people: none, one or ankle_and_step "
     "(--set=reaction_delay=0.13)");
-DEFINE_string(
-    truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
-    "without --model: process noise of the synthetic people: none, diagonal or full; with speed "
-    "and push, comma-separated, as --process_noise of pushid-fit (--set=sigma_x=...)");
+DEFINE_choice(truth_noise, pushid::SyntheticOptions{}.model.process_noise,
+              "without --model: process noise of the synthetic people: none or diagonal "
+              "(--set=sigma_x=...)");
 DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
               "variation of all parameters between recordings (standard deviation of the "
               "logarithm; 0.1 is about 10 %)");

@@ -134,7 +134,7 @@ RolloutStatus InputFilter::Observe(const std::vector<PendulumState<double>>& mea
   const int people = scene_.num_people(), t = observed_ - 1;
   for (int n = 0; n < people; ++n) scene_.pushes[known_pushes_ + n].force[t] = Input(n);
   SceneForces<double> forces(scene_, options_, parameters_);
-  status_ = StepOn<double>(scene_, options_, &forces, t, &path_);
+  status_ = StepOn<double>(scene_, &forces, t, &path_);
   if (!status_.ok) return status_;
   ++observed_;
   for (int n = 0; n < people; ++n) {
@@ -165,7 +165,7 @@ RolloutStatus InputFilter::Forecast(RolloutPath<double>* path) const {
     }
   }
   SceneForces<double> forces(scene, options_, parameters_);
-  return RollOn<double>(scene, options_, &forces, observed_ - 1, path);
+  return RollOn<double>(scene, &forces, observed_ - 1, path);
 }
 
 }  // namespace pushid

@@ -1,5 +1,5 @@
-// models: what a model may be made of, one row for each: laws of friction, self forces, terms
-// between people, and parameters. Names, flags, defaults, bounds, the glossary and what acts where
+// models: what a model may be made of, one row for each: laws of friction, self forces
+// and parameters. Names, flags, defaults, bounds, the glossary and what acts where
 // are made from the rows (options.h, interaction.h, parameters.h).
 #pragma once
 
@@ -35,15 +35,3 @@
   Network(kLdp, "ldp", 4, true, true, true, Ldp)
 // clang-format on
 #define PUSHID_NO_SELF_FORCE(...)  // for tables of the other kind alone
-
-// X(member, near, Term, note): a term between two people.
-//   member  its switch (InteractionTerms), by whose name flags call it
-//   near    what must be near for it to act: kPoints (of contact) or kCarts
-//   Term, note  its formula (pair.h), and what the help of --interaction says of it
-#define PUSHID_INTERACTION_TERMS(X)                                                              \
-  X(spring, kPoints, ContactPart, "")                                                            \
-  X(damping, kPoints, ContactPart, "")                                                           \
-  X(potential, kCarts, PotentialTerm, "")                                                        \
-  X(lean, kCarts, LeanTerm, "")                                                                  \
-  X(ldp_published, kCarts, LdpPublishedTerm, "LDP's equations 10 and 11 and its table of signs") \
-  X(ldp_discrete, kCarts, LdpDiscreteTerm, "the same as LDP released it, for evaluation only")

@@ -15,7 +15,7 @@ Eigen::Vector2d InteractionReach(const InteractionTerms& terms, const ParameterS
     reach = {d + 2.0 * lean, d / p[kContactKappa] + 2.0 * lean};
   }
   if (terms.AtCarts()) {
-    reach = reach.cwiseMax(Eigen::Vector2d::Constant(SmoothLdpReach(p)));
+    reach = reach.cwiseMax(Eigen::Vector2d::Constant(p[kNeighbourRange]));
   }
   return reach;
 }

@@ -151,7 +151,7 @@ class PairFinder {
       if (r[0] * r[0] + kappa * kappa * r[1] * r[1] < d * d) return true;
     }
     if (!terms_.AtCarts()) return false;
-    const double reach = SmoothLdpReach(parameters_);
+    const double reach = parameters_[kNeighbourRange];
     return (cart_[n] - cart_[j]).squaredNorm() <= reach * reach;
   }
 

@@ -15,69 +15,41 @@ namespace pushid {
 // of them - flags, CSV headers, pictures, totals - is made from tables: the rows of model_rows.h
 // and those here.
 
-// What people do to each other: terms that add up (interaction.h), a switch for each row, and one
-// for a learned force (learned_terms.h), which has a size besides its name
-// (ident/parameters/learned_terms_io.h).
+// What people do to each other: terms that add up (interaction.h), and one for a learned force
+// (learned_terms.h), which has a size besides its name (ident/parameters/learned_terms_io.h).
 struct InteractionTerms {
-#define PUSHID_SWITCH(member, ...) bool member = false;
-  PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
-#undef PUSHID_SWITCH
+  bool spring = false, damping = false;  // of contact
+  bool ldp_published = false;            // LDP's potential and torques
   bool learned = false;
   bool learned_in_range = false;  // LDP's: of every neighbour, not of those who touch
 
   // Those that ask how far the points of contact are apart, and those that ask it of the carts.
-  bool Contact() const { return LearnedTouch() || AnyWhere(Near::kPoints); }
-  bool AtCarts() const { return (learned && learned_in_range) || AnyWhere(Near::kCarts); }
+  bool Contact() const { return spring || damping || (learned && !learned_in_range); }
+  bool AtCarts() const { return ldp_published || (learned && learned_in_range); }
   bool Any() const { return Contact() || AtCarts(); }
   // A learned force that may do what stiffness and damping of contact should.
-  bool LearnedBesideContact() const { return LearnedTouch() && (spring || damping); }
-  bool LdpPotential() const { return potential || ldp_published || ldp_discrete; }
-  bool LdpTorques() const { return lean || ldp_published || ldp_discrete; }
+  bool LearnedBesideContact() const { return learned && !learned_in_range && (spring || damping); }
   // What one gets the other gives: contact alone.
   bool Mutual() const { return Any() && !learned && !AtCarts(); }
-
- private:
-  enum class Near { kPoints, kCarts };
-  bool LearnedTouch() const { return learned && !learned_in_range; }
-  bool AnyWhere(Near asked) const {
-    bool any = false;
-#define PUSHID_SWITCH(member, near, ...) any |= member && Near::near == asked;
-    PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
-#undef PUSHID_SWITCH
-    return any;
-  }
 };
 
 struct InteractionTermName {
   std::string_view name;
   bool InteractionTerms::*member;
-  std::string_view note;
 };
 inline constexpr InteractionTermName kInteractionTerms[] = {
-#define PUSHID_SWITCH(member, near, Term, note) {#member, &InteractionTerms::member, note},
-    PUSHID_INTERACTION_TERMS(PUSHID_SWITCH)
-#undef PUSHID_SWITCH
-};
+    {"spring", &InteractionTerms::spring},
+    {"damping", &InteractionTerms::damping},
+    {"ldp_published", &InteractionTerms::ldp_published}};
 
 // White forces that act on everybody beside all others (process_noise.h).
-struct ProcessNoiseTerms {
-  bool diagonal = false;  // one standard deviation for each generalized force
-  bool full = false;      // a full Cholesky factor: they may be correlated
-  bool speed = false;     // growing with the cart's speed
-  bool push = false;      // with a factor of its own while a push acts
-
-  bool Any() const { return diagonal || full; }
+enum class ProcessNoise {
+  kNone,
+  kDiagonal  // one standard deviation for each generalized force
 };
-
-struct ProcessNoiseTermName {
-  std::string_view name;
-  bool ProcessNoiseTerms::*member;
-};
-inline constexpr ProcessNoiseTermName kProcessNoiseTerms[] = {
-    {"diagonal", &ProcessNoiseTerms::diagonal},
-    {"full", &ProcessNoiseTerms::full},
-    {"speed", &ProcessNoiseTerms::speed},
-    {"push", &ProcessNoiseTerms::push}};
+constexpr EnumNames<ProcessNoise, 2> Names(ProcessNoise) {
+  return {{{"none", ProcessNoise::kNone}, {"diagonal", ProcessNoise::kDiagonal}}};
+}
 
 // The parts of the net force, in the order of the CSV's columns. The last three are reported
 // only where they act (ReportedParts).
@@ -238,7 +210,7 @@ struct ModelOptions {
   // A user's own laws (force_law.h). Their parameters take the slots from kFirstOwnParameter on, in
   // this order. AddForceLaw (ident/parameters/own_laws.h) adds one with its rows.
   std::vector<std::shared_ptr<const ForceLaw>> own_laws = {};
-  ProcessNoiseTerms process_noise = {};
+  ProcessNoise process_noise = ProcessNoise::kNone;
 };
 
 }  // namespace pushid

@@ -173,23 +173,23 @@
     "height of contact over the ankles, in lengths of the rod (1: the hip)", \
     "with many groups that touch, whose check says so") \
   X(kPotentialStrength, "potential_strength", "u", "N m", 150, 0.1, 1e5, 150, kLog, \
-    m.interaction.LdpPotential(), m.interaction.potential, \
+    m.interaction.ldp_published, false, \
     "strength of LDP's potential", \
     "to compare with LDP") \
   X(kPotentialLength, "potential_length", "sigma", "m", 0.5, 0.02, 5, 0.5, kLog, \
-    m.interaction.LdpPotential(), m.interaction.potential, \
+    m.interaction.ldp_published, false, \
     "decay length of LDP's potential", \
     "to compare with LDP") \
   X(kNeighbourRange, "neighbour_range", "range", "m", 0.5, 0.1, 3, 0.5, kLog, \
-    m.interaction.AtCarts(), m.interaction.potential || m.interaction.lean, \
+    m.interaction.AtCarts(), false, \
     "cart distance at which LDP's terms end", \
     "where people stand farther apart than half a metre") \
   X(kLeanTheta, "lean_theta", "k_theta", "N m", 100, -2000, 2000, 100, kIdentity, \
-    m.interaction.LdpTorques(), m.interaction.lean, \
+    m.interaction.ldp_published, false, \
     "torque against leaning on others, y", \
     "to compare with LDP") \
   X(kLeanPhi, "lean_phi", "k_phi", "N m", 50, -2000, 2000, 100, kIdentity, \
-    m.interaction.LdpTorques(), m.interaction.lean, \
+    m.interaction.ldp_published, false, \
     "torque against leaning on others, x", \
     "to compare with LDP") \
   /* the rod */ \
@@ -233,59 +233,27 @@
     "with known pushes on people who stand: it tells where their mass is") \
   /* process noise, and the noise of what is measured (process_noise.h); freed by a likelihood */ \
   X(kSigmaX, "sigma_x", "sigma_x", "N s^0.5", 20, 1e-4, 1e5, 20, kLog, \
-    m.process_noise.Any(), false, \
+    m.process_noise != ProcessNoise::kNone, false, \
     "white force along x", \
     "with --likelihood=transition or innovation") \
   X(kSigmaY, "sigma_y", "sigma_y", "N s^0.5", 20, 1e-4, 1e5, 20, kLog, \
-    m.process_noise.Any(), false, \
+    m.process_noise != ProcessNoise::kNone, false, \
     "white force along y", \
     "with --likelihood=transition or innovation") \
   X(kSigmaTheta, "sigma_theta", "sigma_theta", "N m s^0.5", 15, 1e-4, 1e5, 15, kLog, \
-    m.process_noise.Any(), false, \
+    m.process_noise != ProcessNoise::kNone, false, \
     "white torque about y", \
     "with --likelihood=transition or innovation") \
   X(kSigmaPhi, "sigma_phi", "sigma_phi", "N m s^0.5", 15, 1e-4, 1e5, 15, kLog, \
-    m.process_noise.Any(), false, \
+    m.process_noise != ProcessNoise::kNone, false, \
     "white torque about x", \
     "with --likelihood=transition or innovation") \
-  X(kNoiseYX, "noise_y_x", "u_yx", "1", 0, -20, 20, 0.5, kIdentity, \
-    m.process_noise.full, false, \
-    "how far the noise of y follows that of x", \
-    "with --process_noise=full") \
-  X(kNoiseThetaX, "noise_theta_x", "u_thetax", "1", 0, -20, 20, 0.5, kIdentity, \
-    m.process_noise.full, false, \
-    "how far the noise of theta follows that of x", \
-    "with --process_noise=full") \
-  X(kNoiseThetaY, "noise_theta_y", "u_thetay", "1", 0, -20, 20, 0.5, kIdentity, \
-    m.process_noise.full, false, \
-    "how far the noise of theta follows that of y", \
-    "with --process_noise=full") \
-  X(kNoisePhiX, "noise_phi_x", "u_phix", "1", 0, -20, 20, 0.5, kIdentity, \
-    m.process_noise.full, false, \
-    "how far the noise of phi follows that of x", \
-    "with --process_noise=full") \
-  X(kNoisePhiY, "noise_phi_y", "u_phiy", "1", 0, -20, 20, 0.5, kIdentity, \
-    m.process_noise.full, false, \
-    "how far the noise of phi follows that of y", \
-    "with --process_noise=full") \
-  X(kNoisePhiTheta, "noise_phi_theta", "u_phitheta", "1", 0, -20, 20, 0.5, kIdentity, \
-    m.process_noise.full, false, \
-    "how far the noise of phi follows that of theta", \
-    "with --process_noise=full") \
-  X(kNoiseSpeed, "noise_speed", "k_v", "s/m", 0.5, 0, 100, 0.5, kIdentity, \
-    m.process_noise.Any() && m.process_noise.speed, false, \
-    "growth of the noise with the speed of the cart", \
-    "with --process_noise=...,speed") \
-  X(kNoisePush, "noise_push", "k_p", "1", 1, 1e-3, 1e3, 1, kLog, \
-    m.process_noise.Any() && m.process_noise.push, false, \
-    "factor on the noise while a push acts", \
-    "with --process_noise=...,push") \
   X(kMeasuredCart, "measured_cart", "s_c", "m", 0.003, 1e-4, 1, 0.003, kLog, \
-    m.process_noise.Any(), false, \
+    m.process_noise != ProcessNoise::kNone, false, \
     "error of the measured cart on each axis", \
     "with --likelihood=innovation") \
   X(kMeasuredHip, "measured_hip", "s_h", "m", 0.003, 1e-4, 1, 0.003, kLog, \
-    m.process_noise.Any(), false, \
+    m.process_noise != ProcessNoise::kNone, false, \
     "error of the measured hip on each axis", \
     "with --likelihood=innovation")
 // clang-format on

@@ -147,7 +147,7 @@ class PendulumFilter {
     step_.Begin(states_);
     for (int n = 0; n < scene_.num_people(); ++n) {
       velocities.push_back(step_.Velocity(frame, n, &by_state));
-      Spread(frame, n, by_state);
+      Spread(n, by_state);
     }
     for (int n = 0; n < scene_.num_people(); ++n) {
       states_[n].qd = velocities[n];
@@ -182,13 +182,12 @@ class PendulumFilter {
 
  private:
   // P one step on. With V = d qd' / ds and q' = q + dt qd', the new blocks follow from V P and Q.
-  void Spread(int frame, int n, const Eigen::Matrix<T, 4, 8>& by_state) {
+  void Spread(int n, const Eigen::Matrix<T, 4, 8>& by_state) {
     const Body& body = scene_.people[n].body;
     const PendulumState<T>& state = states_[n];
     const T dt = T(scene_.dt);
     const Matrix4<T> gain = InverseMassMatrix<T>(body, Angles<T>(state.q), body.mass) *
-                            NoiseFactor<T>(options_.process_noise, body, parameters_[n], state.qd,
-                                           Pushed(scene_, n, frame));
+                            NoiseFactor<T>(body, parameters_[n]);
     Covariance& P = covariances_[n];
     const Eigen::Matrix<T, 4, 8> moved = by_state.lazyProduct(P);
     const Matrix4<T> rates =

@@ -3,11 +3,11 @@
 
 namespace pushid {
 
-template RolloutStatus StepOn<double>(const Scene&, const ModelOptions&, SceneForces<double>*, int,
-                                      RolloutPath<double>*, FrameTable<NetForce<double>>*,
+template RolloutStatus StepOn<double>(const Scene&, SceneForces<double>*, int, RolloutPath<double>*,
+                                      FrameTable<NetForce<double>>*,
                                       const FrameTable<Vector4<double>>*);
-template RolloutStatus RollOn<double>(const Scene&, const ModelOptions&, SceneForces<double>*, int,
-                                      RolloutPath<double>*, FrameTable<NetForce<double>>*,
+template RolloutStatus RollOn<double>(const Scene&, SceneForces<double>*, int, RolloutPath<double>*,
+                                      FrameTable<NetForce<double>>*,
                                       const FrameTable<Vector4<double>>*);
 template RolloutStatus Rollout<double>(const Scene&, const ModelOptions&,
                                        const std::vector<ParameterSet<double>>&,

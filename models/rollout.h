@@ -35,8 +35,8 @@ std::string_view OutsideDomain(const Body& body, const PendulumState<T>& state) 
 // The step from frame t of a path to the next, or of the last frame the forces alone; arguments as
 // RollOn has them.
 template <typename T>
-RolloutStatus StepOn(const Scene& scene, const ModelOptions& options, SceneForces<T>* forces, int t,
-                     RolloutPath<T>* path, FrameTable<NetForce<T>>* trace = nullptr,
+RolloutStatus StepOn(const Scene& scene, SceneForces<T>* forces, int t, RolloutPath<T>* path,
+                     FrameTable<NetForce<T>>* trace = nullptr,
                      const FrameTable<Vector4<double>>* noise = nullptr) {
   const bool last = t + 1 == path->num_frames();
   forces->Update(*path, t);
@@ -47,9 +47,7 @@ RolloutStatus StepOn(const Scene& scene, const ModelOptions& options, SceneForce
     if (noise != nullptr) {
       const Vector4<double> white = noise->At(t, n) / std::sqrt(scene.dt);
       force[ForcePart::kNoise] =
-          NoiseFactor<T>(options.process_noise, scene.people[n].body, forces->Parameters(n),
-                         path->At(t, n).qd, Pushed(scene, n, t)) *
-          white.template cast<T>();
+          NoiseFactor<T>(scene.people[n].body, forces->Parameters(n)) * white.template cast<T>();
     }
     const Vector4<T> qdd = forces->AccelerationOf(n, force);
     if (trace != nullptr) {
@@ -69,12 +67,12 @@ RolloutStatus StepOn(const Scene& scene, const ModelOptions& options, SceneForce
 // null. noise: standard normal draws by frame and person that drive the process noise
 // (process_noise.h); null: none.
 template <typename T>
-RolloutStatus RollOn(const Scene& scene, const ModelOptions& options, SceneForces<T>* forces,
-                     int from, RolloutPath<T>* path, FrameTable<NetForce<T>>* trace = nullptr,
+RolloutStatus RollOn(const Scene& scene, SceneForces<T>* forces, int from, RolloutPath<T>* path,
+                     FrameTable<NetForce<T>>* trace = nullptr,
                      const FrameTable<Vector4<double>>* noise = nullptr) {
   const int steps = path->num_frames() - (trace == nullptr ? 1 : 0);
   for (int t = from; t < steps; ++t) {
-    const RolloutStatus status = StepOn<T>(scene, options, forces, t, path, trace, noise);
+    const RolloutStatus status = StepOn<T>(scene, forces, t, path, trace, noise);
     if (!status.ok) return status;
   }
   return {};
@@ -105,17 +103,15 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
   *path = RolloutPath<T>(num_frames, people);
   if (trace != nullptr) *trace = FrameTable<NetForce<T>>(num_frames, people);
   StartPath(scene, initial_velocity, path);
-  return RollOn<T>(scene, options, &forces, 0, path, trace, noise);
+  return RollOn<T>(scene, &forces, 0, path, trace, noise);
 }
 
 // Of doubles, compiled once (rollout.cc): it takes the compiler seconds.
-extern template RolloutStatus StepOn<double>(const Scene&, const ModelOptions&,
-                                             SceneForces<double>*, int, RolloutPath<double>*,
-                                             FrameTable<NetForce<double>>*,
+extern template RolloutStatus StepOn<double>(const Scene&, SceneForces<double>*, int,
+                                             RolloutPath<double>*, FrameTable<NetForce<double>>*,
                                              const FrameTable<Vector4<double>>*);
-extern template RolloutStatus RollOn<double>(const Scene&, const ModelOptions&,
-                                             SceneForces<double>*, int, RolloutPath<double>*,
-                                             FrameTable<NetForce<double>>*,
+extern template RolloutStatus RollOn<double>(const Scene&, SceneForces<double>*, int,
+                                             RolloutPath<double>*, FrameTable<NetForce<double>>*,
                                              const FrameTable<Vector4<double>>*);
 extern template RolloutStatus Rollout<double>(const Scene&, const ModelOptions&,
                                               const std::vector<ParameterSet<double>>&,

@@ -9,13 +9,11 @@ enum class Likelihood {
   kTrajectory,  // of whole rollouts from frame 0 (cost_functions/rollout_problem.h): no process
                 // noise
   kTransition,  // of every measured state given the one before
-  kTransitionAsPrinted,  // the same as printed, to compare
-  kInnovation            // of every measurement given all before it
+  kInnovation   // of every measurement given all before it
 };
-constexpr EnumNames<Likelihood, 4> Names(Likelihood) {
+constexpr EnumNames<Likelihood, 3> Names(Likelihood) {
   return {{{"trajectory", Likelihood::kTrajectory},
            {"transition", Likelihood::kTransition},
-           {"transition_as_printed", Likelihood::kTransitionAsPrinted},
            {"innovation", Likelihood::kInnovation}}};
 }
 

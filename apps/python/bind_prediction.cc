@@ -87,7 +87,7 @@ Result<std::vector<HipPaths>> Drawn(const Model& model, const IdentifiedModel& i
                                     const PendulumRecording& seen, int observed, int frames,
                                     int samples, uint64_t seed, ForecastUse use) {
   if (observed > 0) return DrawFrom(identified, seen, observed, samples, seed, frames, use);
-  if (identified.options.process_noise.Any()) {
+  if (identified.options.process_noise != ProcessNoise::kNone) {
     Result<Futures> futures = DrawFutures(identified, seen, samples, seed, frames);
     if (!futures.ok()) return futures.error();
     return HipsOf(futures.value().paths);
@@ -129,7 +129,8 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
                                "after observed=" +
                                std::to_string(observed)});
   }
-  if (samples > 0 && observed == 0 && !set.empty() && !identified.options.process_noise.Any()) {
+  if (samples > 0 && observed == 0 && !set.empty() &&
+      identified.options.process_noise == ProcessNoise::kNone) {
     Raise(Fault::kUsage, Error{"samples draws the parameters, which set=... fixes; give one of "
                                "them, or observed=... too"});
   }

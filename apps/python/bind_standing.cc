@@ -69,7 +69,7 @@ py::dict SwayDict(const Model& model, const std::vector<SharedRecording>& record
     const std::string key = kSwayMeasures[i].name;
     const auto column = [&people](auto value) { return Column(people, value); };
     dict[py::str(key)] = column([i](const PersonSway& one) { return one.measured[i]; });
-    if (!identified.options.process_noise.Any() || repeats == 0) continue;
+    if (identified.options.process_noise == ProcessNoise::kNone || repeats == 0) continue;
     dict[py::str("simulated_" + key)] =
         column([i](const PersonSway& one) { return one.simulated[i]; });
     dict[py::str("spread_" + key)] = column([i](const PersonSway& one) { return one.spread[i]; });

@@ -71,7 +71,7 @@ RolloutStatus Roll(const SyntheticOptions& options, const ModelOptions& model,
 // The motion, driven by process noise where the truth has any.
 RolloutStatus RollDriven(const SyntheticOptions& options, Random* random,
                          SyntheticRecording* made) {
-  if (!options.model.process_noise.Any()) return Roll(options, options.model, made);
+  if (options.model.process_noise == ProcessNoise::kNone) return Roll(options, options.model, made);
   FrameTable<Vector4<double>> noise(options.frames, made->scene.num_people());
   for (int t = 0; t < options.frames; ++t) {
     for (int n = 0; n < made->scene.num_people(); ++n) {

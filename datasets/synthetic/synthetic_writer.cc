@@ -135,7 +135,7 @@ MaybeError WriteSyntheticRecordings(const std::string& folder, const SyntheticOp
     if (IsNoiseParameter(static_cast<Parameter>(i))) continue;
     about["truth"][std::string(kParameterNames[i])] = options.parameters[i];
   }
-  if (options.model.process_noise.Any()) {
+  if (options.model.process_noise != ProcessNoise::kNone) {
     for (int i = kFirstNoiseParameter; i < kMeasuredCart; ++i) {
       about["truth"][std::string(kParameterNames[i])] = options.parameters[i];
     }

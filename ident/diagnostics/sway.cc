@@ -203,7 +203,7 @@ std::vector<PersonSway> SwayOfPeople(
       one.by_plates = one.by_plates || recording.HasPlates(n);
       one.measured.Add(SwayOf(MeasuredTrack(recording, n), recording.scene.dt));
     }
-    if (!options.process_noise.Any()) continue;
+    if (options.process_noise == ProcessNoise::kNone) continue;
     Simulate(recording, options, parameters[i], repeats, &random, &people);
   }
   std::vector<PersonSway> result;

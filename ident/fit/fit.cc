@@ -70,11 +70,6 @@ FitResult ResultOf(const SolvedFit& fit) {
   return result;
 }
 
-// One that compares models; the printed formula of transitions does not.
-bool ScoresSingleSteps(Likelihood likelihood) {
-  return likelihood == Likelihood::kTransition || likelihood == Likelihood::kInnovation;
-}
-
 // What learned forces do of the work of physical ones.
 void AddTakeover(const std::vector<PendulumRecording>& recordings, FitResult* result) {
   const ModelOptions& fitted = result->options.model;
@@ -167,7 +162,7 @@ FitResult Judge(const SolvedFit& fit) {
   // Residuals: what the model leaves unexplained, recording by recording.
   result.diagnostics = Diagnose(problem, fit.Best(), result.uncertainty);
   result.recordings = FittedRecordings(problem, fit.Best(), result.diagnostics);
-  if (ScoresSingleSteps(result.options.likelihood)) {
+  if (result.options.likelihood != Likelihood::kTrajectory) {
     result.likelihood = ScoreByLikelihood(problem, optimum);
   }
 

@@ -138,7 +138,8 @@ std::string PresetIn(const GivenOptions& given) {
 // Whether a stance that was not asked for goes together with what was.
 bool GoesTogether(const FitOptions& o, const std::vector<PendulumRecording>& recordings) {
   const bool states_alone = o.likelihood == Likelihood::kTrajectory &&
-                            !o.model.process_noise.Any() && o.model.learned == nullptr;
+                            o.model.process_noise == ProcessNoise::kNone &&
+                            o.model.learned == nullptr;
   const bool all_act =
       std::all_of(o.table.specs.begin(), o.table.specs.end(),
                   [&o](const ParameterSpec& spec) { return !spec.free || Acts(spec.id, o.model); });
@@ -242,11 +243,6 @@ std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOpti
     warnings.push_back("--pool_by=" + *pool_by + " without --pool lets only " + options.pool +
                        " differ by " + *pool_by + ", which the preset " + options.preset +
                        " pools; --pool=all lets all free parameters differ");
-  }
-  if (options.model.interaction.ldp_discrete) {
-    warnings.push_back(
-        "--interaction=ldp_discrete is discontinuous, so it can be evaluated but not fitted; fit "
-        "ldp (potential,lean), its smooth form");
   }
   const InteractionTerms& terms = options.model.interaction;
   if ((terms.ldp_published || terms.learned_in_range) && !NeedsGradientTraining(options)) {

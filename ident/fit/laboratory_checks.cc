@@ -104,7 +104,7 @@ MaybeError CheckPlatesAlone(const PendulumRecording& r, const FitOptions& option
   if (model.stance != Stance::kFixed) {
     return Error{whose + ", which tell nothing of feet that slide or step; add --stance=fixed"};
   }
-  if (model.process_noise.Any()) {
+  if (model.process_noise != ProcessNoise::kNone) {
     return Error{whose +
                  ", and --process_noise compares positions, which nobody measured; leave it out"};
   }

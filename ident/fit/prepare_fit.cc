@@ -106,7 +106,7 @@ MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
 MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options) {
   const ModelOptions& model = options.model;
-  if (options.likelihood == Likelihood::kTrajectory && !model.process_noise.Any()) {
+  if (options.likelihood == Likelihood::kTrajectory && model.process_noise == ProcessNoise::kNone) {
     return std::nullopt;
   }
   if (const std::string what = MemoryOf(model); !what.empty()) {
@@ -118,24 +118,14 @@ MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
                                   : " has internal memory") +
         ": leave one of them out"};
   }
-  bool told_by_pushes = false;
   for (const PendulumRecording& r : recordings) {
     if (r.num_frames() < 3) {
       return Error{"recording " + r.id + " has too few frames for a likelihood of single steps"};
-    }
-    for (const ScenePush& push : r.scene.pushes) {
-      told_by_pushes = told_by_pushes || push.kind == PushKind::kExternal;
     }
     if (r.initial_velocity != InitialVelocity::kFree) continue;
     return Error{"recording " + r.id +
                  " has free initial velocities, which likelihoods of single steps and process "
                  "noise cannot fit; set initial_velocity to zero or estimated in the manifest"};
-  }
-  if (model.process_noise.push && !told_by_pushes) {
-    return Error{
-        "--process_noise includes push, but every push is a net force computed from the same "
-        "motion by inverse dynamics, so the motion during a push contains no information on the "
-        "noise; leave push out"};
   }
   return std::nullopt;
 }

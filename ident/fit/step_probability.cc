@@ -78,7 +78,7 @@ bool StepsWith(double factor, int person, const ModelOptions& options,
   SceneForces<double> forces(scene, options, parameters);
   StartPath(scene, InitialVelocities(scene), path);
   for (int t = 0; t + 1 < path->num_frames(); ++t) {
-    const RolloutStatus status = StepOn<double>(scene, options, &forces, t, path);
+    const RolloutStatus status = StepOn<double>(scene, &forces, t, path);
     if (!status.ok) return status.person == person;
     const FeetState<double>& feet = path->At(t + 1, person).feet;
     if (feet.landed != 0 || feet.swings != 0) return true;

@@ -61,17 +61,11 @@ struct PathProblem {
 };
 
 MaybeError CheckNoise(const IdentifiedModel& model) {
-  const ProcessNoiseTerms& noise = model.options.process_noise;
   const std::string file = model.source.empty() ? "the model" : model.source;
-  if (!noise.Any()) {
+  if (model.options.process_noise == ProcessNoise::kNone) {
     return Error{file +
                  " has no process noise, without which no path is more probable than another; fit "
                  "it with --process_noise=diagonal or --likelihood=innovation"};
-  }
-  if (noise.speed) {
-    return Error{file +
-                 " has noise that grows with the speed, for which the action has further terms; "
-                 "fit it without speed in --process_noise"};
   }
   for (int i = 0; i < 4; ++i) {
     if (model.parameters[kSigmaX + i] > 0.0) continue;
@@ -129,9 +123,7 @@ void EvaluatePath(PathProblem* problem, const Nodes& nodes, ProbablePath* path) 
       const Vector4<double> white(own[0], own[1], own[2], own[3]);
       path->noise_action += 0.5 * white.squaredNorm();
       path->divergence_action += 0.5 * own[4] * own[4] - kDivergenceShift;
-      path->noise.At(t, n) = NoiseFactor<double>(problem->options.process_noise,
-                                                 scene.people[n].body, problem->parameters[n],
-                                                 path->states.At(t, n).qd, Pushed(scene, n, t)) *
+      path->noise.At(t, n) = NoiseFactor<double>(scene.people[n].body, problem->parameters[n]) *
                              white / std::sqrt(scene.dt);
     }
   }

@@ -31,11 +31,6 @@ std::string MissingNetwork(const FitOptions& o) {
                 : "--interaction names a network to be fitted, but there is none; name its layers, "
                   "as in --interaction=spring,damping,network:4";
   }
-  const InteractionTerms& terms = o.model.interaction;
-  if (terms.ldp_published + terms.ldp_discrete + (terms.potential || terms.lean) > 1) {
-    return "--interaction names ldp (potential,lean), ldp_published and ldp_discrete, forms of the "
-           "same forces, which would count twice; name one of them";
-  }
   return "";
 }
 

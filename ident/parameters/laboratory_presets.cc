@@ -60,16 +60,6 @@ FitOptions LdpPreset() {
   return o;
 }
 
-FitOptions LdpGroupsPreset() {
-  constexpr int kHidden = 4;
-  FitOptions o = LdpPreset();
-  o.preset = "ldp_groups";
-  o.model.interaction.potential = o.model.interaction.lean = o.model.interaction.learned = true;
-  o.model.interaction.learned_in_range = true;
-  o.model.learned = InitialNetwork({}, o.seed, {}, PairShape{{kHidden}, true});
-  return o;
-}
-
 FitOptions LdpPublishedPreset() {
   FitOptions o = LdpPreset();
   o.preset = kLdpPublished;

@@ -18,10 +18,8 @@ Row PresetRow() {
       "preset", OptionStage::kPreset,
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
       "tail, posture-relative recovery), group (tail with contact, pooled by setting; with feet "
-      "that slide, linear self forces too), ldp (plain PD and friction from upright), ldp_groups "
-      "(that with LDP's "
-      "potential and torques between people, and a small network beside them), or ldp_published "
-      "(LDP with all its networks, of one person or of groups)",
+      "that slide, linear self forces too), ldp (plain PD and friction from upright), or "
+      "ldp_published (LDP with all its networks, of one person or of groups)",
       nullptr);
   row.choices = PresetNames();
   row.text = [](const FitOptions&) { return std::string(kAutoPreset); };
@@ -125,21 +123,13 @@ Row PresetPriorsRow() {
       [](bool value, FitOptions* o) { o->preset_priors = value; });
 }
 
-std::string InteractionHelp() {
-  std::string text =
-      "interaction between people: none, or some of these, comma-separated: contact (smooth and "
-      "mutual: spring,damping), ldp (smoothed: potential,lean), network:4 (learned beside contact, "
-      "by hidden sizes), ldp_network:512-512 (LDP's, learned of every neighbour in range)";
-  for (const InteractionTermName& term : kInteractionTerms) {
-    text += ", " + std::string(term.name);
-    if (!term.note.empty()) text += " (" + std::string(term.note) + ")";
-  }
-  return text;
-}
-
 Row InteractionRow() {
-  const std::string help = InteractionHelp();
-  Row row = Decided(WordsRow("interaction", OptionStage::kModel, help.c_str(),
+  const char* const help =
+      "interaction between people: none, or some of these, comma-separated: contact (smooth and "
+      "mutual: spring,damping), ldp_published (LDP's equations 10 and 11 and its table of signs), "
+      "network:4 (learned beside contact, by hidden sizes), ldp_network:512-512 (LDP's, learned of "
+      "every neighbour in range)";
+  Row row = Decided(WordsRow("interaction", OptionStage::kModel, help,
                              [](const std::string& text, FitOptions* o) -> MaybeError {
                                const Result<InteractionChoice> choice =
                                    ParseInteraction("--interaction", text);
@@ -201,16 +191,14 @@ std::vector<Row> ModelOptionRows() {
       NameRow<CartDerivative>("cart_derivative", "/cart_derivative", &ModelOptions::cart_derivative,
                               "none or backward: lets Kd_x and Kd_y act"),
       InteractionRow(),
-      MayBeAbsent(NameRow<ProcessNoiseTerms>(
+      MayBeAbsent(NameRow<ProcessNoise>(
           "process_noise", "/process_noise", &ModelOptions::process_noise,
-          "white-noise forces in addition to all others: none, diagonal, or full (correlated); "
-          "with speed and push, comma-separated, it grows with the cart's speed and has a factor "
-          "while a push acts")),
+          "white-noise forces in addition to all others: none or diagonal (independent)")),
       NameRowWith<Likelihood>(
           SetLikelihood, "likelihood", "/likelihood", &O::likelihood,
           "what a fit maximizes: trajectory (whole rollouts), transition (each measured state "
-          "given the one before), innovation (each measurement given all before it, with errors "
-          "of measurement), or transition_as_printed (Eq. 6 of Lyu et al., to compare)"),
+          "given the one before), or innovation (each measurement given all before it, with errors "
+          "of measurement)"),
       PresetPriorsRow(),
   };
 }

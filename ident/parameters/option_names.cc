@@ -1,4 +1,4 @@
-// ident: names of interaction terms and of process noise.
+// ident: names of interaction terms, and covariates by parameter.
 #include "ident/parameters/option_names.h"
 
 #include <set>
@@ -13,47 +13,20 @@ namespace {
 // Empty for an unknown name.
 std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
   if (name == "contact") return {&InteractionTerms::spring, &InteractionTerms::damping};
-  if (name == "ldp") return {&InteractionTerms::potential, &InteractionTerms::lean};
   for (const InteractionTermName& term : kInteractionTerms) {
     if (name == term.name) return {term.member};
   }
   return {};
 }
 
-// The names of those that are true.
-template <typename Terms, typename Names>
-std::string ListOf(const Terms& terms, const Names& names) {
+}  // namespace
+
+std::string NameOf(const InteractionTerms& terms) {
   std::string text;
-  for (const auto& row : names) {
+  for (const InteractionTermName& row : kInteractionTerms) {
     if (terms.*row.member) text += (text.empty() ? "" : ",") + std::string(row.name);
   }
   return text.empty() ? "none" : text;
-}
-
-}  // namespace
-
-std::string NameOf(const InteractionTerms& terms) { return ListOf(terms, kInteractionTerms); }
-
-std::string NameOf(const ProcessNoiseTerms& terms) { return ListOf(terms, kProcessNoiseTerms); }
-
-MaybeError ParseName(const std::string& flag, const std::string& text, ProcessNoiseTerms* terms) {
-  *terms = {};
-  if (text == "none") return std::nullopt;
-  for (const std::string& part : SplitList(text)) {
-    bool known = false;
-    for (const auto& [name, member] : kProcessNoiseTerms) {
-      if (part != name) continue;
-      terms->*member = known = true;
-    }
-    if (!known) {
-      return Error{flag + " names '" + part +
-                   "'; it must be none, or diagonal or full, with speed, push or both"};
-    }
-  }
-  if (terms->diagonal == terms->full) {
-    return Error{flag + " is '" + text + "'; it must name either diagonal or full"};
-  }
-  return std::nullopt;
 }
 
 MaybeError ParseName(const std::string& flag, const std::string& text, InteractionTerms* terms) {
@@ -63,14 +36,13 @@ MaybeError ParseName(const std::string& flag, const std::string& text, Interacti
     const std::vector<bool InteractionTerms::*> members = TermsOf(part);
     if (part == "none") return Error{flag + ": none stands alone; leave it or the others out"};
     if (members.empty()) {
-      std::string known = "contact (spring,damping), ldp (potential,lean)";
+      std::string known = "contact (spring,damping)";
       for (const auto& term : kInteractionTerms) known += ", " + std::string(term.name);
       return Error{flag + " names '" + part + "'; it must be none, or some of " + known};
     }
     for (bool InteractionTerms::*member : members) {
       if (terms->*member) {
-        return Error{flag + " names '" + part +
-                     "' twice (contact is spring,damping; ldp is potential,lean)"};
+        return Error{flag + " names '" + part + "' twice (contact is spring,damping)"};
       }
       terms->*member = true;
     }

@@ -11,13 +11,9 @@
 
 namespace pushid {
 
-// Interaction terms: comma-separated pieces; "contact" and "ldp" are short for two of them each.
+// Interaction terms: comma-separated pieces; "contact" is short for spring and damping.
 std::string NameOf(const InteractionTerms& terms);
 MaybeError ParseName(const std::string& flag, const std::string& text, InteractionTerms* terms);
-
-// Process noise: diagonal or full, and what it grows with: "diagonal,speed,push".
-std::string NameOf(const ProcessNoiseTerms& terms);
-MaybeError ParseName(const std::string& flag, const std::string& text, ProcessNoiseTerms* terms);
 
 // The words of --covariate.
 

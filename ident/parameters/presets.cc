@@ -80,7 +80,6 @@ struct NamedPreset {
 };
 constexpr NamedPreset kPresets[] = {{"tail", TailPreset, Stance::kSlide},
                                     {"ldp", LdpPreset},
-                                    {"ldp_groups", LdpGroupsPreset},
                                     {kLdpPublished, LdpPublishedPreset},
                                     {kLdpPublishedGroups, LdpPublishedGroupsPreset},
                                     {"group", GroupPreset, Stance::kSteps, kPooledWhereFeetStep}};
@@ -189,8 +188,7 @@ void FreeNoise(FitOptions* o) {
 void SetLikelihood(Likelihood likelihood, FitOptions* options) {
   options->likelihood = likelihood;
   if (likelihood == Likelihood::kTrajectory) return;
-  ProcessNoiseTerms& noise = options->model.process_noise;
-  if (!noise.Any()) noise.diagonal = true;
+  options->model.process_noise = ProcessNoise::kDiagonal;
   options->settling_weight = options->mode_weight = 0.0;
 }
 

@@ -6,8 +6,6 @@
 //   group: people who touch: tail with contact. Where feet step contact and tail are partially
 //          pooled by setting (condition), sixteen shared parameters; where they slide there are all
 //          linear self forces, and every parameter but mu is, eighteen shared ones
-//   ldp_groups: people who touch, as LDP composes them: that with a potential, torques against
-//          leaning on each other and a learned interaction
 //   ldp_published: LDP as published (Yue et al., CVPR 2024), networks and all: PD and friction at
 //          all times, an LSTM as self force, a law of the rod; between people
 //          (ldp_published_groups, which it stands for where there are several) also potential,
@@ -73,7 +71,7 @@ inline bool NeedsJoints(const FitOptions& options) {
   return options.body_weight > 0.0 || NeedsJoints(options.model);
 }
 
-// What the fit maximizes. A likelihood of single steps has process noise, at least a diagonal one,
+// What the fit maximizes. A likelihood of single steps has process noise,
 // and demands nothing of people in simulations: these see rollouts, which it does not fit.
 void SetLikelihood(Likelihood likelihood, FitOptions* options);
 
@@ -119,10 +117,6 @@ inline constexpr char kLdpPublishedGroups[] = "ldp_published_groups";
 // and in its code, hence 200 / 60 N m s/rad; to read it as SI, use
 // --fix=Kd_theta=200,Kd_phi=200.
 FitOptions LdpPreset();
-
-// What LDP puts between people, to fit around: potential, torques against leaning on each other,
-// and a small network on every neighbour.
-FitOptions LdpGroupsPreset();
 
 // LDP as published: one force law at all times, to which the push is added; all networks in their
 // sizes, trained together with mu by LDP's loss; gains, potential and torques as they are given.

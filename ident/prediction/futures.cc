@@ -57,7 +57,7 @@ RolloutStatus RollDrawn(const Scene& scene, const ModelOptions& options,
   SceneForces<double> forces(scene, options, now);
   StartPath(scene, InitialVelocities(scene), path);
   for (int t = 0; t + 1 < path->num_frames(); ++t) {
-    const RolloutStatus status = StepOn<double>(scene, options, &forces, t, path, nullptr, noise);
+    const RolloutStatus status = StepOn<double>(scene, &forces, t, path, nullptr, noise);
     if (!status.ok) return status;
     for (int n = 0; n < scene.num_people(); ++n) {
       if (path->At(t + 1, n).feet.swings != 0) now[n] = own[n];
@@ -84,7 +84,8 @@ uint64_t SeedOfRecording(uint64_t seed, int recording) {
 }
 
 MaybeError CheckDrawsFrom(const IdentifiedModel& model) {
-  if (model.options.process_noise.Any() || StepsAreSpread(model)) return std::nullopt;
+  if (model.options.process_noise != ProcessNoise::kNone || StepsAreSpread(model))
+    return std::nullopt;
   return Error{(model.source.empty() ? "the model" : model.source) +
                " has no process noise to draw futures from; fit it with "
                "--process_noise=diagonal or --likelihood=innovation, or, where it is known who "
@@ -100,7 +101,8 @@ Result<Futures> DrawFutures(const IdentifiedModel& model, const PendulumRecordin
   Futures futures;
   futures.id = recording.id;
   Random random(seed);
-  const bool noisy = model.options.process_noise.Any(), spread = StepsAreSpread(model);
+  const bool noisy = model.options.process_noise != ProcessNoise::kNone,
+             spread = StepsAreSpread(model);
   for (int draw = 0; draw < draws; ++draw) {
     std::vector<ParameterSet<double>> drawn = parameters;
     for (size_t n = 0; spread && n < drawn.size(); ++n) {
@@ -172,12 +174,12 @@ FuturesScore ScoreFutures(const IdentifiedModel& model, const PendulumRecording&
     }
   }
   score.deviance = std::numeric_limits<double>::quiet_NaN();
-  if (!model.options.process_noise.Any()) return score;
+  if (model.options.process_noise == ProcessNoise::kNone) return score;
   ParameterMap map;
   map.pool_by = model.pool_by;
-  const Deviance deviance = DevianceOf(
-      MakeLikelihoodProblem(Likelihood::kInnovation, recording, model.options, map, 1.0, 1),
-      PeoplesParameters(model, recording));
+  const Deviance deviance =
+      DevianceOf(MakeLikelihoodProblem(Likelihood::kInnovation, recording, model.options, map, 1.0),
+                 PeoplesParameters(model, recording));
   score.deviance = deviance.value / std::max(1, deviance.measured);
   return score;
 }

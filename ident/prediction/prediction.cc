@@ -129,8 +129,7 @@ Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecordi
   }
   const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
   SceneForces<double> forces(recording.scene, model.options, parameters);
-  prediction.status =
-      RollOn<double>(recording.scene, model.options, &forces, from, &prediction.path);
+  prediction.status = RollOn<double>(recording.scene, &forces, from, &prediction.path);
   if (!prediction.status.ok) return prediction;
   for (int n = 0; n < people; ++n) {
     // From where the hip was seen, which the rod of frame 0 puts elsewhere.

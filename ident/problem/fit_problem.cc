@@ -135,7 +135,7 @@ std::vector<std::string> FitProblem::SettlingUnits(const FitPoint& point) const 
 
 LikelihoodProblem FitProblem::LikelihoodOf(int recording, double weight) const {
   return MakeLikelihoodProblem(options_.likelihood, recordings()[recording], options_.model, map_,
-                               weight, options_.seed);
+                               weight);
 }
 
 Deviance FitProblem::DevianceAt(const FitPoint& point) const {

@@ -39,9 +39,9 @@ Vector4<double> SpreadOfTransitions(const FitProblem& problem, const FitPoint& p
   int count = 0;
   for (const PendulumRecording& recording : problem.recordings()) {
     ModelOptions model = problem.options().model;
-    model.process_noise = {};
+    model.process_noise = ProcessNoise::kNone;
     const LikelihoodProblem one =
-        MakeLikelihoodProblem(Likelihood::kTransition, recording, model, problem.map(), 1.0, 1);
+        MakeLikelihoodProblem(Likelihood::kTransition, recording, model, problem.map(), 1.0);
     std::vector<GaussianDensity<double>> densities;
     Densities<double>(one, std::vector<ParameterSet<double>>(recording.num_people(), p),
                       &densities);
@@ -193,7 +193,8 @@ LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& p
 
 std::string EstimateNoise(const FitPoint& point, FitProblem* problem) {
   FitOptions options = problem->options();
-  if (!options.model.process_noise.Any() || options.likelihood != Likelihood::kTrajectory) {
+  if (options.model.process_noise == ProcessNoise::kNone ||
+      options.likelihood != Likelihood::kTrajectory) {
     return "";
   }
   const std::vector<PendulumRecording>& recordings = problem->recordings();

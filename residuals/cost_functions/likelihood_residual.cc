@@ -7,7 +7,6 @@
 #include <limits>
 #include <type_traits>
 
-#include "datasets/files/random.h"
 #include "residuals/cost_functions/rollout_problem.h"
 #include "residuals/sensitivities/net_force_jacobian.h"
 
@@ -20,9 +19,6 @@ using LaneJet = ceres::Jet<double, kLanes>;
 // Of a value on the fitted scale: an optimum off by half of this step, far less than any parameter
 // is known to. Ten times smaller steps drown the Hessian of the uncertainty in rounding.
 constexpr double kDifference = 3e-5;
-
-// Of qd, m/s and rad/s: what the deviations as printed are measured in.
-constexpr double kPrintedScale = 0.05;
 
 // Whether a push on the person stands for all that its step shows.
 bool PushedByNetForce(const Scene& scene, int person, int frame) {
@@ -44,7 +40,6 @@ void Transitions(const LikelihoodProblem& problem, const std::vector<ParameterSe
   SceneForces<T> forces(scene, problem.options, parameters);
   std::vector<PendulumState<T>> states(scene.num_people());
   std::vector<int> scratch;
-  Random random(problem.seed);
   for (int t = 0; t + 1 < r.num_frames(); ++t) {
     for (int n = 0; n < scene.num_people(); ++n) {
       states[n] = {r.states[n][t].q.template cast<T>(), r.states[n][t].qd.template cast<T>()};
@@ -55,26 +50,15 @@ void Transitions(const LikelihoodProblem& problem, const std::vector<ParameterSe
       GaussianDensity<T>& density = (*densities)[t * scene.num_people() + n];
       density.measured =
           r.Weight(n, t) > 0.0 && r.Weight(n, t + 1) > 0.0 && !PushedByNetForce(scene, n, t);
-      Vector4<double> drawn;
-      for (double& w : drawn) w = random.Normal();
       if (!density.measured) continue;
       forces.Prepare(n, &scratch);
       const Body& body = scene.people[n].body;
       const BodyOf<T> moving = DynamicBody<T>(problem.options, body, parameters[n], false);
       const PendulumState<T>& state = states[n];
       const NetForce<T> force = forces.On(n, t, states[n].qd);
-      const Matrix4<T> noise = NoiseFactor<T>(problem.options.process_noise, body, parameters[n],
-                                              state.qd, Pushed(scene, n, t));
       const Vector4<T> rate = r.states[n][t + 1].qd.template cast<T>() - state.qd;
-      if (problem.likelihood == Likelihood::kTransition) {
-        density.v = InverseDynamics<T>(moving, state, Vector4<T>(rate / dt)) - force.Total();
-        density.lower = noise / T(std::sqrt(scene.dt));
-        continue;
-      }
-      const Vector4<T> white = drawn.template cast<T>() / T(std::sqrt(scene.dt));
-      const Vector4<T> driven = force.Total() + noise * white;
-      density.v = rate - dt * Acceleration<T>(moving, state, driven);
-      density.lower = T(kPrintedScale) * Matrix4<T>::Identity();
+      density.v = InverseDynamics<T>(moving, state, Vector4<T>(rate / dt)) - force.Total();
+      density.lower = NoiseFactor<T>(body, parameters[n]) / T(std::sqrt(scene.dt));
     }
   }
 }
@@ -127,7 +111,7 @@ std::vector<Seed> SeedsOf(const LikelihoodProblem& problem) {
 
 LikelihoodProblem MakeLikelihoodProblem(Likelihood likelihood, const PendulumRecording& recording,
                                         const ModelOptions& options, const ParameterMap& map,
-                                        double weight, std::uint64_t seed) {
+                                        double weight) {
   LikelihoodProblem problem;
   problem.likelihood = likelihood;
   problem.recording = &recording;
@@ -135,7 +119,6 @@ LikelihoodProblem MakeLikelihoodProblem(Likelihood likelihood, const PendulumRec
   problem.map = map;
   problem.layout = LayoutOf(recording, map, false);
   problem.weight = weight;
-  problem.seed = seed;
   return problem;
 }
 

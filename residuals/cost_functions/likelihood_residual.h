@@ -5,8 +5,6 @@
 //                v = M (qd' - qd) / dt - (F_net - C - G) ~ N(0, L L' / dt)
 //                (Eq. 5 and 6 of Lyu et al., ACM MM 2021, as what they mean). Errors of the
 //                measured velocities count as process noise.
-//   transition_as_printed   Eq. 6 as printed: |qd' - qd - dt a - dt M^-1 L w|^2 with w drawn once.
-//                Its expectation holds |M^-1 L|^2 itself and no determinant: L goes to 0.
 //   innovation   of every measurement given all before it (models/pendulum_filter.h)
 //
 // Steps under a net push are no evidence: its rows were made from this very motion, by inverse
@@ -23,7 +21,6 @@
 #include <ceres/cost_function.h>
 
 #include <cmath>
-#include <cstdint>
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
@@ -80,15 +77,14 @@ struct LikelihoodProblem {
   ModelOptions options;
   ParameterMap map;
   BlockLayout layout;
-  std::uint64_t seed = 1;  // of what is drawn as printed
-  double weight = 1.0;     // on every row: the square root of how often the recording counts
+  double weight = 1.0;  // on every row: the square root of how often the recording counts
 
   int num_densities() const { return (recording->num_frames() - 1) * recording->num_people(); }
 };
 
 LikelihoodProblem MakeLikelihoodProblem(Likelihood likelihood, const PendulumRecording& recording,
                                         const ModelOptions& options, const ParameterMap& map,
-                                        double weight, std::uint64_t seed);
+                                        double weight);
 
 // v ~ N(0, lower lower'); where nothing was measured, v = 0 and lower = 1.
 template <typename T>

@@ -140,8 +140,7 @@ bool SceneAction::operator()(T const* const* nodes, T* rows) const {
     const Body& body = scene->people[n].body;
     ParameterSet<T> p;
     for (int i = 0; i < kNumParameters; ++i) p[i] = T((*parameters)[n][i]);
-    const Matrix4<T> factor =
-        NoiseFactor<T>(options->process_noise, body, p, states[n].qd, Pushed(*scene, n, frame));
+    const Matrix4<T> factor = NoiseFactor<T>(body, p);
     const Vector4<T> needed = MassMatrix<T>(body, states[n].q) * apart;
     Eigen::Map<Vector4<T>> white(rows);
     white = std::sqrt(dt) * SolveLower<T, 4, 1>(factor, needed);

@@ -33,7 +33,7 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--prior=mu:100:0"}, {"--prior", "sigma > 0"}},
       {{"--pool=Kp_x"}, {"--pool", "Kp_x", "fixed"}},
       {{"--fix=" + all_free}, {"every parameter is fixed"}},
-      {{"--preset=best"}, {"--preset", "'best'", "tail, ldp, ldp_groups, ldp_published"}},
+      {{"--preset=best"}, {"--preset", "'best'", "tail, ldp, ldp_published"}},
       {{"--self_force=rnn"}, {"--self_force", "'rnn'"}},
       {{"--self_force=mlp:0"}, {"--self_force", "'mlp:0'"}},
       {{"--self_force=mlp:4,gru:4"}, {"--self_force", "more than one network"}},
@@ -237,8 +237,8 @@ TEST_F(BadUsageTest, WhatDoesNothingIsWarnedAbout) {
   EXPECT_TRUE(Contains(fit_.err, "warning: --fix=mu_y=10 does nothing"));
   FitModel("m.json", {"--pool_by=subject", "--quiet"});
   EXPECT_TRUE(Contains(fit_.err, "--pool_by=subject without --pool lets only tail_base differ"));
-  FitModel("m.json", {"--interaction=ldp_discrete", "--quiet"});
-  EXPECT_TRUE(Contains(fit_.err, "warning: --interaction=ldp_discrete"));
+  FitModel("m.json", {"--interaction=ldp_published", "--quiet"});
+  EXPECT_TRUE(Contains(fit_.err, "warning: --interaction=ldp_published"));
 }
 
 TEST_F(BadUsageTest, WhatIfsAndIds) {

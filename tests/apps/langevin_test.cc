@@ -71,9 +71,9 @@ TEST_F(LangevinAppTest, FuturesAreDrawnScoredAndWritten) {
   const AppRun held_out = Succeeded(
       RunApp("pushid-crossvalidate",
              {Recordings(), "--process_noise=diagonal", "--folds=2", "--repeats=1", "--samples=10",
-              "--compare=full: --process_noise=full", "--json_out=" + scores, "--quiet"}));
+              "--compare=steps: --likelihood=innovation", "--json_out=" + scores, "--quiet"}));
   EXPECT_EQ(Json(scores).at("futures").size(), 2u);
-  EXPECT_TRUE(Contains(held_out.out, "full less tail"));
+  EXPECT_TRUE(Contains(held_out.out, "steps less tail"));
 
   const AppRun line = Succeeded(RunApp(
       "pushid-formation", {"--model=" + noisy_, "--formation=line", "--people=1", "--samples=10"}));
@@ -116,8 +116,6 @@ TEST_F(LangevinAppTest, BadUse) {
     EXPECT_TRUE(Refused(RunApp("pushid-path", flags), {says})) << says;
   }
   const std::vector<std::pair<std::vector<std::string>, std::string>> fits = {
-      {{"--process_noise=speed"}, "diagonal or full"},
-      {{"--process_noise=diagonal,full"}, "diagonal or full"},
       {{"--process_noise=white"}, "'white'"},
       {{"--likelihood=posterior"}, "--likelihood"},
       {{"--likelihood=innovation", "--stance=steps"}, "--stance=steps"},

@@ -81,7 +81,7 @@ Scene RandomCrowd(int people, Random* random) {
 TEST(NeighbourGrid, OrderOfPeopleNeverChangesTheRollout) {
   ModelOptions options;
   options.interaction.spring = options.interaction.damping = true;
-  options.interaction.potential = options.interaction.lean = true;
+  options.interaction.ldp_published = true;
   Random random(2);
   for (int people : {4, 20}) {
     const Scene scene = RandomCrowd(people, &random);

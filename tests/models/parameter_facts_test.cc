@@ -72,7 +72,7 @@ TEST(ParameterFacts, ActWhereTheirTermsAre) {
             (Names{"contact_stiffness", "contact_distance", "contact_kappa", "contact_height"}));
   EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.damping = true; }),
             (Names{"contact_damping", "contact_distance", "contact_kappa", "contact_height"}));
-  EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.ldp_discrete = true; }),
+  EXPECT_EQ(adds([](ModelOptions* m) { m->interaction.ldp_published = true; }),
             (Names{"potential_strength", "potential_length", "neighbour_range", "lean_theta",
                    "lean_phi"}));
   EXPECT_EQ(adds([](ModelOptions* m) {

@@ -22,7 +22,6 @@ ParameterSet<double> Standing() {
   p[kContactStiffness] = 2000.0, p[kContactDistance] = 0.9, p[kContactKappa] = 0.6;
   p[kContactDamping] = 100.0, p[kContactHeight] = 0.5;
   p[kSigmaX] = 3.0, p[kSigmaY] = 2.0, p[kSigmaTheta] = 1.5, p[kSigmaPhi] = 1.0;
-  p[kNoisePush] = 2.0;
   p[kMeasuredCart] = 0.002, p[kMeasuredHip] = 0.001;
   return p;
 }
@@ -70,9 +69,8 @@ struct Experiment {
       forces.Update(path.Frame(t));
       forces.Prepare(0, &scratch);
       NetForce<double> force = forces.On(0, t, path.At(t, 0).qd);
-      force[ForcePart::kNoise] = NoiseFactor<double>(options.process_noise, scene.people[0].body, p,
-                                                     path.At(t, 0).qd, Pushed(scene, 0, t)) *
-                                 noise.At(t, 0) / std::sqrt(scene.dt);
+      force[ForcePart::kNoise] =
+          NoiseFactor<double>(scene.people[0].body, p) * noise.At(t, 0) / std::sqrt(scene.dt);
       path.At(t + 1, 0) = forces.Next(0, forces.AccelerationOf(0, force), force, path.At(t, 0).qd);
       places.segment<4>(4 * t) = path.At(t + 1, 0).q;
     }
@@ -86,7 +84,7 @@ struct Experiment {
 TEST(PendulumFilter, ItsDensitiesMultiplyToTheDenseGaussian) {
   Experiment e;
   e.scene = People(1);
-  e.options.process_noise.diagonal = e.options.process_noise.push = true;
+  e.options.process_noise = ProcessNoise::kDiagonal;
   e.p = Standing();
   e.frames = 25;
   e.parameters = {e.p};
@@ -125,7 +123,7 @@ TEST(PendulumFilter, ItsDensitiesMultiplyToTheDenseGaussian) {
 TEST(PendulumFilter, InnovationsOfItsOwnMotionsAreStandardNormal) {
   for (int people : {1, 2}) {
     ModelOptions options;
-    options.process_noise.diagonal = options.process_noise.push = true;
+    options.process_noise = ProcessNoise::kDiagonal;
     options.interaction.spring = options.interaction.damping = people > 1;
     const Scene scene = People(people);
     const std::vector<ParameterSet<double>> p(people, Standing());
@@ -172,7 +170,7 @@ TEST(PendulumFilter, InnovationsOfItsOwnMotionsAreStandardNormal) {
 
 TEST(PendulumFilter, WhatIsNotMeasuredIsKnownLessAndLess) {
   ModelOptions options;
-  options.process_noise.diagonal = true;
+  options.process_noise = ProcessNoise::kDiagonal;
   const Scene scene = People(1);
   const std::vector<ParameterSet<double>> p = {Standing()};
   PendulumFilter<double> filter(scene, options, p);

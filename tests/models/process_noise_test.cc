@@ -26,41 +26,20 @@ Scene OnePerson() {
 ParameterSet<double> Noisy() {
   ParameterSet<double> p{};
   p[kSigmaX] = 20.0, p[kSigmaY] = 12.0, p[kSigmaTheta] = 9.0, p[kSigmaPhi] = 7.0;
-  for (int id = kNoiseYX; id <= kNoisePhiTheta; ++id) p[id] = 0.1 * (id - kNoiseYX + 1);
-  p[kNoiseSpeed] = 0.8, p[kNoisePush] = 3.0;
   return p;
 }
 
-TEST(NoiseFactor, IsDiagonalOrFullGrowsAndScalesWithMass) {
-  const Scene scene = OnePerson();
-  const Body& body = scene.people[0].body;
-  const ParameterSet<double> p = Noisy();
-  const Vector4<double> still = Vector4<double>::Zero(), moving = {3.0, 4.0, 0.0, 0.0};
-  const auto factor = [&](const ProcessNoiseTerms& terms, const Vector4<double>& qd, bool pushed) {
-    return NoiseFactor<double>(terms, body, p, qd, pushed);
-  };
-  ProcessNoiseTerms terms;
-  terms.diagonal = true;
+TEST(NoiseFactor, IsDiagonalAndScalesWithMass) {
   const double mass = 72.0 / kReferenceMass;
-  const Matrix4<double> diagonal = factor(terms, still, false);
-  ExpectClose(diagonal,
+  ExpectClose(NoiseFactor<double>(OnePerson().people[0].body, Noisy()),
               Matrix4<double>((mass * Vector4<double>(20.0, 12.0, 9.0, 7.0)).asDiagonal()), 1e-12);
-  EXPECT_EQ(factor(terms, moving, true), diagonal) << "it neither grows nor knows pushes";
-  terms.speed = terms.push = true;
-  ExpectClose(factor(terms, still, true), Matrix4<double>(3.0 * diagonal), 1e-12);
-  ExpectClose(factor(terms, moving, false), Matrix4<double>((1.0 + 0.8 * 4.999) * diagonal), 1e-6);
-  terms.diagonal = false, terms.full = true;
-  const Matrix4<double> full = factor(terms, still, false);
-  EXPECT_EQ(full(0, 1), 0.0);
-  EXPECT_NEAR(full(1, 0), mass * 12.0 * 0.1, 1e-12);
-  EXPECT_NEAR(full(3, 2), mass * 7.0 * 0.6, 1e-12);
 }
 
 // Cov(qd') = dt M^-1 L L' M^-1 about the step without noise.
 TEST(ProcessNoise, AStepScattersAsItsFactorSays) {
   const Scene scene = OnePerson();
   ModelOptions options;
-  options.process_noise.full = true;
+  options.process_noise = ProcessNoise::kDiagonal;
   const std::vector<ParameterSet<double>> p = {Noisy()};
   RolloutPath<double> plain, driven;
   ASSERT_TRUE(Rollout<double>(scene, options, p, InitialVelocities(scene), 2, &plain).ok);
@@ -81,8 +60,7 @@ TEST(ProcessNoise, AStepScattersAsItsFactorSays) {
   const Body& body = scene.people[0].body;
   const Vector4<double>& q = scene.people[0].start.q;
   const Matrix4<double> gain =
-      MassMatrix<double>(body, q).inverse() *
-      NoiseFactor<double>(options.process_noise, body, p[0], scene.people[0].start.qd, false);
+      MassMatrix<double>(body, q).inverse() * NoiseFactor<double>(body, p[0]);
   const Matrix4<double> expected = scene.dt * gain * gain.transpose();
   const double size = expected.diagonal().maxCoeff();
   ExpectClose(found, expected, 4.0 * std::sqrt(2.0 / kDraws), size);
@@ -92,7 +70,7 @@ TEST(ProcessNoise, AStepScattersAsItsFactorSays) {
 TEST(ProcessNoise, DrawsOfZeroChangeNothing) {
   const Scene scene = OnePerson();
   ModelOptions options;
-  options.process_noise.diagonal = options.process_noise.push = true;
+  options.process_noise = ProcessNoise::kDiagonal;
   ParameterSet<double> p = Noisy();
   p[kMu] = 40.0, p[kKpTheta] = p[kKpPhi] = 1500.0, p[kTailTime] = 0.2;
   RolloutPath<double> plain, driven;

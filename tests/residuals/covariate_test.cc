@@ -140,11 +140,11 @@ TEST(Covariates, LikelihoodsAgreeWithNumericDifferentiation) {
   map.covariates = {{"age", 40.0, "", ""}};
   map.shifts = {{Slot(0), kKpTheta, Transform::kLog, 0}};
   ModelOptions options;
-  options.process_noise = {true, false, false, false};
+  options.process_noise = ProcessNoise::kDiagonal;
   const PendulumRecording recording = TwoPeople(options, 12, &random);
   for (Likelihood likelihood : {Likelihood::kTransition, Likelihood::kInnovation}) {
     const LikelihoodProblem problem =
-        MakeLikelihoodProblem(likelihood, recording, options, map, 1.0, 3);
+        MakeLikelihoodProblem(likelihood, recording, options, map, 1.0);
     const ParameterBlocks blocks = {{std::log(1500.0), 0.1}};
     const double* const at[] = {blocks[0].data()};
     ExpectCorrectJacobian(LikelihoodResidual(problem, at), blocks,

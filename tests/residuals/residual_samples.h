@@ -207,15 +207,13 @@ inline ModelOptions WithNetwork(const NetworkShape& shape, double size, Random* 
   return options;
 }
 
-// None, each term alone or with what it needs, all smooth ones together.
+// None, the parts of contact alone and together, and LDP's terms.
 inline std::vector<InteractionTerms> SomeInteractions() {
-  std::vector<InteractionTerms> some(7);
+  std::vector<InteractionTerms> some(5);
   some[1].spring = some[1].damping = true;
   some[2].spring = true;
-  some[3].damping = some[3].potential = true;
-  some[4].lean = true;
-  some[6].ldp_published = true;
-  some[5].spring = some[5].damping = some[5].potential = some[5].lean = true;
+  some[3].damping = true;
+  some[4].ldp_published = true;
   return some;
 }
 
@@ -241,7 +239,7 @@ inline std::vector<ModelOptions> EveryModelOptions() {
 
 inline std::string DescribeTerms(const InteractionTerms& t) {
   std::string text;
-  for (bool on : {t.spring, t.damping, t.potential, t.lean, t.ldp_published, t.ldp_discrete}) {
+  for (bool on : {t.spring, t.damping, t.ldp_published}) {
     text += on ? "1" : "0";
   }
   return text;

@@ -16,7 +16,6 @@ CONTACT = [("contact_distance", "contact distance, m"), ("contact_stiffness", "c
 # Name in the table, and what is added to --preset=group.
 CANDIDATES = [
     ("no contact", "--interaction=none"),
-    ("the interaction of LDP, fitted", "--interaction=ldp --pool=none"),
     ("nothing pooled", "--pool=none"),
     ("free to move on", "--settling_weight=0"),
     ("distance and stiffness pooled", "--pool=contact_distance,contact_stiffness"),

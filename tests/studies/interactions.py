@@ -14,7 +14,6 @@ CANDIDATES = [
     ("half the prior", f"{NETWORK} --network_prior=0.5"),
     ("a fifth of it", f"{NETWORK} --network_prior=0.2"),
     ("network, no spring and no damping", "--interaction=network:4"),
-    ("composed as LDP is", "--preset=ldp_groups"),
 ]
 LARGE, AS_LDP = (f"--interaction=spring,damping,network:{size}" for size in ("64-64", "512-512"))
 LARGE_CANDIDATES = [

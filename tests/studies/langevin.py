@@ -3,7 +3,6 @@
 known      planted noise and gains, 50 studies: how often 95 % intervals of the innovation fit cover; 3 minutes
 likelihood the 32 recordings of single people by each likelihood, with the time it took; seconds
 horizons   the same parameters wanted by one step, by 8 to 64 frames, and by all; a minute
-noise      diagonal against full noise, constant or growing, on held-out recordings; 10 minutes
 futures    drawn futures of single people, held out; 6 minutes
 
 Times are those of one core.
@@ -61,7 +60,7 @@ SHOWN = ["mu", "Kp_theta", "a_x", "tail_gain", "tail_torque", "tail_time", "sigm
 
 def likelihood():
     rows = []
-    for name in ("trajectory", "transition", "transition_as_printed", "innovation"):
+    for name in ("trajectory", "transition", "innovation"):
         begin = time.time()
         model = studies.on_recordings("pushid-fit", "single", f"--likelihood={name}", "--num_threads=1", "--quiet",
                                       out="model_out", keep=False)
@@ -86,16 +85,13 @@ def horizons():
     return studies.table(["fitted to", *(f"`{p['name']}`" for p in parameters)], rows)
 
 
-CANDIDATES = [("diagonal", "diagonal"), ("full", "full"), ("diagonal, speed", "diagonal,speed"),
-              ("full, speed", "full,speed")]
 METRICS = [("deviance_1", "-2 log L a number"), ("inside50_x_1", "inside 50 %, x"), ("inside90_x_1", "inside 90 %, x"),
            ("inside90_y_1", "90 %, y"), ("inside90_theta_1", "90 %, theta"), ("crps_x_m", "CRPS x, m"),
            ("energy_m", "energy score, m")]
 
 
-def drawn(setting, likelihoods, noises, *arguments):
-    compare = "; ".join(f"{like} {title}: --likelihood={like} --process_noise={noise}"
-                        for like in likelihoods for title, noise in noises)
+def drawn(setting, likelihoods, *arguments):
+    compare = "; ".join(f"{like} diagonal: --likelihood={like} --process_noise=diagonal" for like in likelihoods)
     out = studies.on_recordings("pushid-crossvalidate", setting, "--yardsticks=false", "--samples=100", *arguments,
                                 f"--compare={compare}").json
     errors = {p["name"]: p["mean"] for p in out["predictors"]}
@@ -110,16 +106,11 @@ def drawn(setting, likelihoods, noises, *arguments):
     return rows
 
 
-def noise():
-    rows = drawn("single", ["innovation"], CANDIDATES, "--folds=4", "--repeats=1")
-    return studies.table(["held out", *(t for _, t in METRICS), "hipADE of the rollout, m"], rows)
-
-
 def futures():
-    rows = drawn("single", ["trajectory", "innovation"], [("diagonal", "diagonal")], "--folds=4", "--repeats=5")
+    rows = drawn("single", ["trajectory", "innovation"], "--folds=4", "--repeats=5")
     return studies.table(["held out", *(t for _, t in METRICS), "hipADE of the rollout, m"], rows)
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"known": known, "likelihood": likelihood, "horizons": horizons, "noise": noise,
+    studies.main(__file__, {"known": known, "likelihood": likelihood, "horizons": horizons,
                             "futures": futures})

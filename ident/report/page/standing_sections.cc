@@ -105,7 +105,7 @@ ReportSection SwaySection(const ReportSource& source) {
   ReportSection section;
   const std::vector<PersonSway>& people = source.sway;
   if (people.empty()) return section;
-  const bool simulated = source.fit.options.model.process_noise.Any();
+  const bool simulated = source.fit.options.model.process_noise != ProcessNoise::kNone;
   section.paragraphs = {
       std::string("Recordings in which nobody is pushed and the ground rests: path, root mean "
                   "square, mean power frequency (0.15 to 5 Hz) and 95 % ellipse of the centre of "

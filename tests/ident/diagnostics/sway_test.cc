@@ -71,7 +71,7 @@ TEST(Sway, QuietIsUndisturbedForLong) {
 // People who sway as the model's noise makes them: what is measured lies within the simulated.
 TEST(Sway, SimulatedAsMeasured) {
   ModelOptions options = StandingOptions();
-  options.process_noise.diagonal = true;
+  options.process_noise = ProcessNoise::kDiagonal;
   ParameterSet<double> p = StandingGains(1300.0, 400.0);
   p[kSigmaX] = p[kSigmaY] = 1.0;
   p[kSigmaX + 2] = 3.0, p[kSigmaX + 3] = 1.5;
@@ -98,7 +98,7 @@ TEST(Sway, SimulatedAsMeasured) {
     EXPECT_EQ(SwayTable(people).rows().size(), 1u + kNumSwayMeasures);
     // Without process noise only the measured ones.
     ModelOptions still = options;
-    still.process_noise = {};
+    still.process_noise = ProcessNoise::kNone;
     EXPECT_EQ(SwayOfPeople({recording}, still, {{p}}, 20, 1)[0].repeats, 0);
   }
 }

@@ -186,15 +186,14 @@ TEST(LearnedInteraction, ByName) {
         "network:4,network:4", "none,network:4", "ldp_network:", "network:4,ldp_network:4"}) {
     EXPECT_TRUE(Contains(ProblemOf(ParseInteraction("--interaction", bad)), "--interaction"));
   }
-  const FitOptions ldp = MakePreset("ldp_groups").value();
-  EXPECT_EQ(InteractionText(ldp.model), "potential,lean,ldp_network:4");
-  EXPECT_EQ(ldp.model.learned->weights.size(), 64u);
+  const FitOptions ldp = MakePreset("ldp_published_groups").value();
+  EXPECT_EQ(InteractionText(ldp.model), "ldp_published,ldp_network:512-512");
   std::string error;
   EXPECT_TRUE(ldp.IsValid(&error)) << error;
   // Another interaction takes the network of the preset away.
   const FitOptions changed =
-      MakeFitOptions({{"preset", "ldp_groups"}, {"interaction", "contact"}}).value();
-  EXPECT_EQ(changed.model.learned, nullptr);
+      MakeFitOptions({{"preset", "ldp_published_groups"}, {"interaction", "contact"}}).value();
+  EXPECT_FALSE(changed.model.learned->pair.any());
   EXPECT_EQ(LearnedName(*InitialNetwork({NetworkKind::kGru, 4}, 1, {RodKind::kLinear, {}}, {{4}})),
             "gru:4 and rod linear and interaction network:4");
 }

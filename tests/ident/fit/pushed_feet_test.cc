@@ -40,7 +40,7 @@ TEST(FitSetup, FeetTellTheStance) {
   EXPECT_EQ(stance(6, {{"preset", "group"}}), Stance::kSteps) << "who touch";
   EXPECT_EQ(stance(6, {{"preset", "group"}, {"self_force", "none"}}), Stance::kSteps);
   EXPECT_EQ(stance(6, {{"preset", "group"}, {"free", "mu"}}), Stance::kSlide);
-  EXPECT_EQ(stance(6, {{"preset", "ldp_groups"}}), Stance::kSlide);
+  EXPECT_EQ(stance(6, {{"preset", "ldp"}}), Stance::kSlide);
   EXPECT_EQ(stance(5, {}), Stance::kSlide);
   EXPECT_EQ(stance(6, {}), Stance::kSlide);
   EXPECT_EQ(stance(0, {{"stance", "auto"}}), Stance::kFixed);

@@ -15,7 +15,7 @@ IdentifiedModel NoisyModel() {
   model.source = "model.json";
   model.table = BaseTable();
   model.parameters = PublishedTailParameters();
-  model.options.process_noise.diagonal = true;
+  model.options.process_noise = ProcessNoise::kDiagonal;
   model.parameters[kSigmaX] = 15.0, model.parameters[kSigmaY] = 12.0;
   model.parameters[kSigmaTheta] = 8.0, model.parameters[kSigmaPhi] = 6.0;
   model.parameters[kMeasuredCart] = model.parameters[kMeasuredHip] = 0.002;
@@ -87,7 +87,7 @@ TEST(SmoothPath, FillsGapsAndTakesNoiseAway) {
   for (int id = 0; id < kFirstNoiseParameter; ++id) model.parameters[id] = study.parameters[id];
   for (int id = kSigmaX; id <= kSigmaPhi; ++id) model.parameters[id] = 0.5;
   model.options = study.model;
-  model.options.process_noise.diagonal = true;
+  model.options.process_noise = ProcessNoise::kDiagonal;
   model.parameters[kMeasuredCart] = 0.003, model.parameters[kMeasuredHip] = 0.004;
   const auto smoothed = Unwrapped(SmoothPath(model, recording));
   double found = 0.0, line = 0.0, kept = 0.0, measured = 0.0;
@@ -119,11 +119,8 @@ TEST(PathBetween, BadEndsAndModels) {
   says(model, EndAt("theta=1.5"), 30, "theta");
   says(model, EndAt("x=0.1"), 4, "--frames");
   IdentifiedModel other = model;
-  other.options.process_noise = {};
+  other.options.process_noise = ProcessNoise::kNone;
   says(other, EndAt("x=0.1"), 30, "no process noise");
-  other = model;
-  other.options.process_noise.speed = true;
-  says(other, EndAt("x=0.1"), 30, "speed");
   other = model;
   other.parameters[kSigmaY] = 0.0;
   says(other, EndAt("x=0.1"), 30, "sigma_y");

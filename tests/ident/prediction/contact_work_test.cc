@@ -153,7 +153,7 @@ TEST(ContactFigures, MomentumCrossesFromOneToTheNext) {
   EXPECT_LT(score.figures[kRestitution].sum, score.figures[kRestitution].weight);
 
   // Not where something else than mutual contact acts between people.
-  model.options.interaction.lean = true;
+  model.options.interaction.ldp_published = true;
   PropagationScore mixed = ScorePropagation(recording, prediction.hip);
   AddContactFigures(model, recording, prediction, &mixed);
   EXPECT_EQ(mixed.figures[kRestitution].weight, 0.0);

@@ -53,7 +53,7 @@ SyntheticOptions NoisyStudy() {
   study.subjects = 6;
   study.recordings_per_subject = 6;
   study.joint_noise_m = 0.0;
-  study.model.process_noise.diagonal = true;
+  study.model.process_noise = ProcessNoise::kDiagonal;
   study.parameters[kSigmaX] = 15.0, study.parameters[kSigmaY] = 12.0;
   study.parameters[kSigmaTheta] = 8.0, study.parameters[kSigmaPhi] = 6.0;
   study.parameters[kMeasuredCart] = study.parameters[kMeasuredHip] = 1e-4;

@@ -177,7 +177,7 @@ TEST(FitProblem, TheGradientIsThatOfTheCostInEveryPreset) {
     study.parameters[id] = BaseTable()[id].nominal;
   }
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  for (const std::string preset : {"tail", "group", "ldp", "ldp_groups"}) {
+  for (const std::string preset : {"tail", "group", "ldp"}) {
     FitOptions options = MakePreset(preset).value();
     ASSERT_FALSE(PrepareFit(recordings, &options));
     const FitProblem problem(recordings, options);

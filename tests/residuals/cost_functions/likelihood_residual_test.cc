@@ -12,8 +12,6 @@ constexpr int kLikelihoodFrames = 12;
 ParameterSet<double> NoisyParameters(Random* random, double spread) {
   ParameterSet<double> p = RandomRecoveringParameters(random, spread);
   p[kSigmaX] = 20.0, p[kSigmaY] = 15.0, p[kSigmaTheta] = 12.0, p[kSigmaPhi] = 9.0;
-  for (int id = kNoiseYX; id <= kNoisePhiTheta; ++id) p[id] = 0.1 * (id - kNoiseYX + 1);
-  p[kNoiseSpeed] = 0.5, p[kNoisePush] = 1.5;
   p[kMeasuredCart] = 0.003, p[kMeasuredHip] = 0.004;
   return p;
 }
@@ -24,8 +22,7 @@ ParameterMap LikelihoodMap(const std::vector<Parameter>& pooled) {
   map.fitted.clear();
   for (FittedParameter f : all.fitted) {
     const bool own = f.parameter >= kFirstOwnParameter;
-    const bool covariance = f.parameter >= kNoiseYX && f.parameter <= kNoisePhiTheta;
-    if (IsNoiseParameter(f.parameter) && !covariance) f.transform = Transform::kLog;
+    if (IsNoiseParameter(f.parameter)) f.transform = Transform::kLog;
     if (!own && f.parameter != kKdX && f.parameter != kKdY) map.fitted.push_back(f);
   }
   return map;
@@ -43,10 +40,10 @@ PendulumRecording Measured(int people, const ModelOptions& options, double push,
   return recording;
 }
 
-ModelOptions ModelOf(bool contact, bool full) {
+ModelOptions ModelOf(bool contact) {
   ModelOptions options;
   options.interaction.spring = options.interaction.damping = contact;
-  options.process_noise = {!full, full, true, true};
+  options.process_noise = ProcessNoise::kDiagonal;
   return options;
 }
 
@@ -64,15 +61,14 @@ TEST_P(LikelihoodTwins, JetsEqualNumericDifferentiation) {
   const LikelihoodRegime& regime = GetParam();
   Random random(7);
   const ParameterMap map = LikelihoodMap({kMu, kKpTheta, kSigmaX});
-  for (Likelihood likelihood :
-       {Likelihood::kTransition, Likelihood::kTransitionAsPrinted, Likelihood::kInnovation}) {
+  for (Likelihood likelihood : {Likelihood::kTransition, Likelihood::kInnovation}) {
     for (int people : {1, 2}) {
       SCOPED_TRACE(NameOf(likelihood) + ", " + std::to_string(people));
-      const ModelOptions options = ModelOf(people > 1, people > 1);
+      const ModelOptions options = ModelOf(people > 1);
       const PendulumRecording recording =
           Measured(people, options, regime.push, regime.noise, &random);
       const LikelihoodProblem problem =
-          MakeLikelihoodProblem(likelihood, recording, options, map, 0.7, 3);
+          MakeLikelihoodProblem(likelihood, recording, options, map, 0.7);
       const ParameterBlocks blocks =
           RandomBlocks(map, problem.layout, NoisyParameters(&random, regime.spread),
                        regime.deviation, 0.0, &random);
@@ -97,11 +93,11 @@ TEST_P(LikelihoodTwins, DifferencesOfFiltersEqualJets) {
   Random random(12);
   const ParameterMap map = LikelihoodMap({kMu, kKpTheta, kSigmaX});
   for (int people : {1, 2}) {
-    const ModelOptions options = ModelOf(people > 1, people > 1);
+    const ModelOptions options = ModelOf(people > 1);
     const PendulumRecording recording =
         Measured(people, options, regime.push, regime.noise, &random);
     const LikelihoodProblem problem =
-        MakeLikelihoodProblem(Likelihood::kInnovation, recording, options, map, 0.7, 3);
+        MakeLikelihoodProblem(Likelihood::kInnovation, recording, options, map, 0.7);
     const ParameterBlocks blocks =
         RandomBlocks(map, problem.layout, NoisyParameters(&random, regime.spread), regime.deviation,
                      0.0, &random);
@@ -115,13 +111,13 @@ TEST_P(LikelihoodTwins, DifferencesOfFiltersEqualJets) {
 TEST(LikelihoodResidual, HalfItsSquaresAreTheNegativeLogLikelihood) {
   Random random(8);
   const ParameterMap map = LikelihoodMap({});
-  const ModelOptions options = ModelOf(false, true);
+  const ModelOptions options = ModelOf(false);
   PendulumRecording recording = Measured(1, options, 80.0, 0.003, &random);
   recording.weight = {std::vector<double>(kLikelihoodFrames, 1.0)};
   recording.weight[0][5] = 0.0;  // a gap
   for (Likelihood likelihood : {Likelihood::kTransition, Likelihood::kInnovation}) {
     const LikelihoodProblem problem =
-        MakeLikelihoodProblem(likelihood, recording, options, map, 1.0, 1);
+        MakeLikelihoodProblem(likelihood, recording, options, map, 1.0);
     const ParameterSet<double> p = NoisyParameters(&random, 0.1);
     const std::vector<double> block = SharedBlock(map, p);
     const double* const blocks[] = {block.data()};
@@ -138,27 +134,10 @@ TEST(LikelihoodResidual, HalfItsSquaresAreTheNegativeLogLikelihood) {
   }
 }
 
-// As printed the noise has no determinant: less noise is always likelier.
-TEST(LikelihoodResidual, AsPrintedTheNoiseGoesToNothing) {
-  Random random(9);
-  const ParameterMap map = LikelihoodMap({});
-  const ModelOptions options = ModelOf(false, false);
-  const PendulumRecording recording = Measured(1, options, 80.0, 0.003, &random);
-  const LikelihoodProblem printed =
-      MakeLikelihoodProblem(Likelihood::kTransitionAsPrinted, recording, options, map, 1.0, 1);
-  ParameterSet<double> p = NoisyParameters(&random, 0.0);
-  std::vector<double> deviances;
-  for (double sigma : {40.0, 20.0, 5.0, 1.0}) {
-    for (int i = 0; i < 4; ++i) p[kSigmaX + i] = sigma;
-    deviances.push_back(DevianceOf(printed, {p}).value);
-  }
-  EXPECT_TRUE(std::is_sorted(deviances.rbegin(), deviances.rend()));
-}
-
 TEST(LikelihoodResidual, PeopleWhoDoNotTouchAddUp) {
   Random random(10);
   const ParameterMap map = LikelihoodMap({});
-  const ModelOptions options = ModelOf(false, true);
+  const ModelOptions options = ModelOf(false);
   const PendulumRecording both = Measured(2, options, 80.0, 0.003, &random);
   const ParameterSet<double> p = NoisyParameters(&random, 0.1);
   double sum = 0.0;
@@ -173,12 +152,11 @@ TEST(LikelihoodResidual, PeopleWhoDoNotTouchAddUp) {
       push.person = 0;
       one.scene.pushes.push_back(push);
     }
-    sum +=
-        DevianceOf(MakeLikelihoodProblem(Likelihood::kInnovation, one, options, map, 1.0, 1), {p})
-            .value;
+    sum += DevianceOf(MakeLikelihoodProblem(Likelihood::kInnovation, one, options, map, 1.0), {p})
+               .value;
   }
   const LikelihoodProblem problem =
-      MakeLikelihoodProblem(Likelihood::kInnovation, both, options, map, 1.0, 1);
+      MakeLikelihoodProblem(Likelihood::kInnovation, both, options, map, 1.0);
   EXPECT_NEAR(DevianceOf(problem, {p, p}).value, sum, 1e-9 * std::abs(sum));
 }
 

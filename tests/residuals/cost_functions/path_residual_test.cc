@@ -89,7 +89,6 @@ TEST(PathStep, ItsDivergenceRowIsHalfTheDivergence) {
 ParameterSet<double> Noisy() {
   ParameterSet<double> p = RecoveringParameters();
   p[kSigmaX] = 20.0, p[kSigmaY] = 15.0, p[kSigmaTheta] = 12.0, p[kSigmaPhi] = 9.0;
-  p[kNoisePush] = 2.0;
   return p;
 }
 
@@ -106,7 +105,7 @@ struct ThreeFrames {
     scene.people[1].start.q[0] = 0.45;
     scene.pushes = {RandomPush(0, 3, 10, PushKind::kExternal, 90.0, &random)};
     options.interaction.spring = options.interaction.damping = true;
-    options.process_noise.diagonal = options.process_noise.push = true;
+    options.process_noise = ProcessNoise::kDiagonal;
     const PendulumRecording recording = RecordRollout(scene, options, parameters, 12);
     for (int i = 0; i < 3; ++i) {
       for (int n = 0; n < 2; ++n) {

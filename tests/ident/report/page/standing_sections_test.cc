@@ -65,7 +65,7 @@ TEST(StandingSections, FrequencyResponse) {
 
 TEST(StandingSections, QuietStance) {
   FittedModel model = Standing(Delay::kNone);
-  model.fit.options.model.process_noise.diagonal = true;
+  model.fit.options.model.process_noise = ProcessNoise::kDiagonal;
   for (int i = 0; i < 4; ++i) model.fit.parameters[kSigmaX + i] = 1.0;
   const PendulumRecording recording = RecordingOf(StandingScene(0.02), model.fit.options.model,
                                                   model.fit.parameters, 1000, "A", true);
