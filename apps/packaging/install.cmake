@@ -97,6 +97,6 @@ set(CPACK_DEBIAN_TRAINING_PACKAGE_DEPENDS "pushid (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS snakemake)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libceres-dev, libeigen3-dev, nlohmann-json3-dev, libxxhash-dev, libsqlite3-dev")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, python3-yaml")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
 include(CPack)

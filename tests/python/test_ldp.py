@@ -61,7 +61,7 @@ def write(path, content):
 
 def lists(folder, train, held_out):
     for name, given in [("train", train), ("eval", held_out)]:
-        text = "".join(f"{key}:\n" + "".join(f"- {n}\n" for n in numbers) for key, numbers in given.items())
+        text = "".join(f"{key}:\n  {numbers}\n\n\n" for key, numbers in given.items())  # the release's style
         write(folder / f"{name}_list.yaml", text.encode())
 
 
@@ -205,16 +205,29 @@ def test_missing_files_are_named(checkout, capsys):
     imported(checkout)
 
 
+def test_lists_as_the_release_has_them_and_a_number_a_line(tmp_path):
+    path = tmp_path / "train_list.yaml"
+    path.write_text("X05:\n  [0, 2, 3, 5,\n    6, 7, 9]\n\n\nX09:\n  [1]  # alone\n\nrow_1:\n")
+    assert ldp.read_list(path) == {"X05": [0, 2, 3, 5, 6, 7, 9], "X09": [1], "row_1": []}
+    path.write_bytes(b"\xef\xbb\xbfX05:\r\n- 0\r\n- 2\r\nX09:\r\n  - 1\r\n")
+    assert ldp.read_list(path) == {"X05": [0, 2], "X09": [1]}
+
+
 @pytest.mark.parametrize("text, words", [
-    ("row_1:\n- 0\n- one\n", ["train_list.yaml:3", "'- one'"]),
-    ("- 0\n", ["train_list.yaml:1"]),
-    ("row_1:\n- 0\n- 0\n", ["train_list.yaml:3"]),
-    ("row_1:\n- 7\n", ["train_list.yaml", "row_1 number 7 has no recording"]),
+    ("row_1:\n- 0\n- one\n", ["'row_1'", "'one'"]),
+    ("row_1: [true]\n", ["'row_1'", "[True]"]),
+    ("row_1: 3\n", ["'row_1'", "3"]),
+    ("row_1:\n- 0\n- 0\n", ["'row_1' has a number twice"]),
+    ("- 0\n", ["no names with a list of numbers each"]),
+    ("row_1:\n  [0, 1\n", ["line 2"]),
+    ("row_1: [0]\n\x01", ["release"]),
+    ("!!python/object/apply:os.system ['touch MARK']\n", ["python/object/apply:os.system"]),
+    ("row_1:\n- 7\n", ["row_1 number 7 has no recording"]),
     ("row_1:\n- 6\n", ["eval_list.yaml", "row_1 number 6 is in the train list as well"]),
 ])
-def test_lists_name_the_line(checkout, capsys, text, words):
+def test_other_lists_are_refused(checkout, capsys, text, words):
     (checkout / GROUPS / "group_data/train_list.yaml").write_text(text)
-    refused(checkout, capsys, *words)
+    refused(checkout, capsys, "_list.yaml", *words)
 
 
 def test_recordings_in_neither_list_say_so(checkout):
@@ -239,11 +252,11 @@ def test_a_folder_that_exists_is_kept(checkout, capsys):
     assert (out / "manifest.json").read_text() == "mine"
 
 
-def hidden(tmp_path, *arguments):
-    """Python with the package of the source alone: without the compiled module, without NumPy."""
+def hidden(tmp_path, *arguments, package="numpy"):
+    """Python with the package of the source alone: without the compiled module, without NumPy or another package."""
     shutil.copytree(os.path.join(SOURCE, "apps/python/pushid"), tmp_path / "alone/pushid",
                     ignore=shutil.ignore_patterns("*.so", "__pycache__"))
-    (tmp_path / "alone/numpy.py").write_text("raise ImportError('NumPy is hidden')\n")
+    (tmp_path / f"alone/{package}.py").write_text("raise ImportError('this package is hidden')\n")
     environment = {**os.environ, "PYTHONPATH": str(tmp_path / "alone"), "PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run([sys.executable, *arguments], env=environment, text=True, capture_output=True, cwd=tmp_path)
 
@@ -254,6 +267,12 @@ def test_it_runs_without_the_compiled_module(checkout, tmp_path):
     assert run.stdout == "13 recordings (train: 10, eval: 3), written to out/manifest.json\n"
 
 
+def test_without_yaml_the_package_is_named(checkout, tmp_path):
+    run = hidden(tmp_path, "-m", "pushid.ldp", "checkout", "out", package="yaml")
+    assert run.returncode == 1 and "train_list.yaml is YAML" in run.stderr and "python3-yaml" in run.stderr
+    assert not (tmp_path / "out").exists()
+
+
 def test_everything_else_says_what_it_needs(tmp_path):
     run = hidden(tmp_path, "-c", "import pushid; print(hasattr(pushid, 'fitt')); pushid.fit")
     assert run.stdout == "False\n"
@@ -262,8 +281,6 @@ def test_everything_else_says_what_it_needs(tmp_path):
 
 @pytest.mark.skipif(not (os.path.isdir(LAYOUT) and os.path.isdir(RECORDINGS)), reason=f"{LAYOUT} is not there")
 def test_the_release_gives_the_published_recordings(tmp_path):
-    pushid = pytest.importorskip("pushid")
-    pytest.importorskip("pushid._pushid")
     out = tmp_path / "out"
     ldp.main([LAYOUT, str(out)])
     published = os.path.join(RECORDINGS, "manifest.json")
@@ -280,6 +297,8 @@ def test_the_release_gives_the_published_recordings(tmp_path):
         assert len(pushes[0]) == len(pushes[1]) == recording["push_frames"]
         for row, other in zip(*pushes):  # those have nine digits
             assert row == pytest.approx(other, rel=5e-9, abs=1e-6)
+    pushid = pytest.importorskip("pushid")
+    pytest.importorskip("pushid._pushid")
     whole = [r["id"] for r in both if r["frames"] == known[r["id"]]["frames"]]  # the layout has some as placeholders
     assert len(whole) == 11
     with warnings.catch_warnings():

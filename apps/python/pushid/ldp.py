@@ -2,7 +2,7 @@
 
 CHECKOUT is a clone of github.com/realcrane/Human-Motion-Prediction-under-Unexpected-Perturbation. Motion is copied as
 it is, pushes become CSV files, and the label `split` of every recording is the release's own: train or eval. Needs
-Python alone. In the release
+PyYAML, and neither NumPy nor the compiled module. In the release
 
     single-person/data/raw_data/indiv_data/X09/*.bvh          sorted by name: number 0, 1, ... of this person
     single-person/data/raw_data/indiv_forces/                 forces.pkl, duration.pkl: {"X09": [of number 0, ...]}
@@ -56,23 +56,25 @@ HEAD = {
 
 
 def read_list(path):
-    """{"row_1": [0, 2, ...], ...}, from the lists that the release has as YAML: a name, then a number a line."""
-    numbers = {}
+    """{"row_1": [0, 2, ...], ...}, from the lists that the release has as YAML."""
     try:
-        with open(path, encoding="utf-8") as file:
-            lines = [line.split("#")[0].rstrip() for line in file]
-    except (OSError, UnicodeDecodeError) as error:
-        raise Problem(f"{path}: {getattr(error, 'strerror', None) or error}; {COMPLETE}") from None
-    for count, line in enumerate(lines, 1):
-        name, item = re.fullmatch(r"(\w+):", line), re.fullmatch(r"\s*-\s*(\d+)", line)
-        if name and name[1] not in numbers:
-            of_name = numbers.setdefault(name[1], [])
-        elif item and numbers and int(item[1]) not in of_name:
-            of_name.append(int(item[1]))
-        elif line:
-            raise Problem(f"{path}:{count}: {line!r} is neither a new name, as in 'row_1:', nor a new number below it, "
-                          "as in '- 3'; take the file from the release")
-    return numbers
+        import yaml
+    except ImportError:
+        raise Problem(f"{path} is YAML, which takes Debian's python3-yaml (PyYAML) to read; install it") from None
+    try:
+        with open(path, "rb") as file:
+            lists = yaml.safe_load(file) or {}
+    except OSError as error:
+        raise Problem(f"{path}: {error.strerror}; {COMPLETE}") from None
+    except yaml.YAMLError as error:
+        raise Problem(f"{path}: {' '.join(str(error).split())}; take the file from the release") from None
+    check(isinstance(lists, dict), path, "no names with a list of numbers each, as in 'row_1: [0, 3]'")
+    for name, numbers in lists.items():
+        lists[name] = numbers = numbers or []
+        check(isinstance(numbers, list) and all(type(number) is int for number in numbers), path,
+              f"{name!r} has no list of whole numbers, but {numbers!r}")
+        check(len(set(numbers)) == len(numbers), path, f"{name!r} has a number twice")
+    return lists
 
 
 def folders(path, pattern, like):
