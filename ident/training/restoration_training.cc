@@ -102,14 +102,14 @@ void Scale(const CvaeWeights& scalings, std::vector<CvaeSequence>* sequences) {
   }
 }
 
-// Beside Table 3 of Yue et al., CVPR 2024, which states the two halves' autoencoders.
+// Beside the two halves' autoencoders in LDP's release; the paper's Table 3 has totals only.
 std::vector<NetworkSize> SizesOf(const CvaeTrainer& trainer, const CvaeLayout& layout) {
-  constexpr int64_t kPublished[4] = {865536, 0, 1097904, 0};
+  constexpr int64_t kReleased[4] = {865536, 0, 1097904, 0};
   std::vector<NetworkSize> sizes;
   for (size_t i = 0; i < trainer.NumParameters().size(); ++i) {
     const int64_t parameters = trainer.NumParameters()[i];
     if (parameters == 0) continue;
-    sizes.push_back({kCvaeStageNames[i], parameters, layout.halves ? kPublished[i] : 0});
+    sizes.push_back({kCvaeStageNames[i], parameters, layout.halves ? kReleased[i] : 0});
   }
   return sizes;
 }
@@ -174,7 +174,7 @@ std::string SizesText(const std::vector<NetworkSize>& sizes) {
   std::string text;
   for (const NetworkSize& size : sizes) {
     text += size.name + ": " + std::to_string(size.parameters) + " parameters";
-    if (size.published > 0) text += " (published: " + std::to_string(size.published) + ")";
+    if (size.released > 0) text += " (release: " + std::to_string(size.released) + ")";
     text += "\n";
   }
   return text;

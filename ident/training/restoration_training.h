@@ -73,14 +73,14 @@ struct RestorationTrainingOptions : TrainerOptions, CheckpointOptions {
   double effort = 1.0;                                  // multiplies the number of steps
 };
 
-// A network, how many numbers it learns, and how many the same has in its paper; 0: not stated.
+// A network, how many numbers it learns, and how many in its paper's release; 0: not known.
 struct NetworkSize {
   std::string name;
-  int64_t parameters = 0, published = 0;
+  int64_t parameters = 0, released = 0;
 };
 
 nlohmann::ordered_json SizesJson(const std::vector<NetworkSize>& sizes);
-// A line each: "lower autoencoder: 865536 parameters (published: 865536)".
+// A line each: "lower autoencoder: 865536 parameters (release: 865536)".
 std::string SizesText(const std::vector<NetworkSize>& sizes);
 
 struct TrainedRestoration : TrainingCourse {

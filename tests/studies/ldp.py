@@ -313,11 +313,14 @@ def sizes():
     trained = published("single", folds("single")[0])
     with open(os.path.join(trained.restoration, "restoration.json"), encoding="utf-8") as file:
         counted = json.load(file)["training"]["parameters"]
+    bodies = sum(counted.values())
     counted["self force, rod"] = len(trained.fitted.json["self_network"]["weights"])
     counted["self force, rod, interaction"] = len(published("groups", folds("groups")[0]).fitted.json["self_network"]["weights"])
-    paper = {"lower autoencoder": 865536, "upper autoencoder": 1097904}
-    rows = [[name, f"{count:,}", f"{paper[name]:,}" if name in paper else None] for name, count in counted.items()]
-    return studies.table(["network", "weights", "paper"], rows)
+    counted["single people, in all"] = bodies + counted["self force, rod"]
+    counted["groups, in all"] = bodies + counted["self force, rod, interaction"]
+    others = {"lower autoencoder": "865,536 (release)", "upper autoencoder": "1,097,904 (release)",
+              "single people, in all": "2.67 M (Table 3)", "groups, in all": "2.94 M (Table 3)"}
+    return studies.table(["network", "weights", "LDP"], [[n, f"{count:,}", others.get(n)] for n, count in counted.items()])
 
 
 if __name__ == "__main__":

@@ -29,15 +29,15 @@ TEST_F(CvaeAppTest, TheCvaeTrainsAndIsUsed) {
   Succeeded(RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v")}));
 }
 
-// As published: sizes are said beside the paper's, and z is drawn where that is asked for.
+// As published: sizes are said beside the release's, and z is drawn where that is asked for.
 TEST_F(CvaeAppTest, ThePublishedCvaeSaysItsSizesAndDraws) {
   const std::vector<std::string> flags = {"--kind=cvae", "--effort=0.001", "--training=published",
                                           "--coordinates=ldp"};
   const AppRun run = Succeeded(Train("v", flags));
   EXPECT_TRUE(Contains(run.err,
-                       "lower autoencoder: 865536 parameters (published: 865536)\n"
+                       "lower autoencoder: 865536 parameters (release: 865536)\n"
                        "lower sampler: 136960 parameters\n"
-                       "upper autoencoder: 1097904 parameters (published: 1097904)\n"));
+                       "upper autoencoder: 1097904 parameters (release: 1097904)\n"));
   const auto json = Json(Path("v/restoration.json"));
   EXPECT_EQ(json["settings"]["training"], "published");
   EXPECT_EQ(json["training"]["parameters"]["upper autoencoder"], 1097904);
