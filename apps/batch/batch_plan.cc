@@ -23,6 +23,7 @@
 #include <set>
 
 #include "apps/support/overwrite_check.h"
+#include "datasets/files/input_file.h"
 #include "datasets/manifest/manifest.h"
 #include "models/enum_names.h"
 #include "models/restoration/restoration.h"
@@ -278,10 +279,11 @@ Result<BatchPlan> ReadPlan(const std::string& path) {
   if (std::filesystem::is_directory(path, ignored)) {
     return Error{"is a folder; give the plan in it, a TOML file", path};
   }
-  if (!std::filesystem::is_regular_file(path, ignored)) {
-    return Error{"cannot be read: no such file", path};
-  }
-  const toml::parse_result parsed = toml::parse_file(path);
+  const Result<std::string> bytes = ReadWholeFile(path);
+  if (!bytes.ok()) return bytes.error();
+  std::string_view text = bytes.value();
+  if (MaybeError other = CheckEncoding(path, &text)) return *std::move(other);
+  const toml::parse_result parsed = toml::parse(text, path);
   if (!parsed) {
     const toml::parse_error& error = parsed.error();
     return Error{std::string(error.description()), path,

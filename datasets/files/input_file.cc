@@ -20,7 +20,42 @@ namespace {
 constexpr std::size_t kBufferSize = 1 << 18;    // fits a core's second-level cache
 constexpr std::size_t kLongestLine = 64 << 20;  // beyond it the file is no text
 
+// The encoding of a text that is not UTF-8, by its byte order mark, or by the zeros beside its
+// first characters; empty for other texts.
+std::string_view OtherEncoding(std::string_view text) {
+  using namespace std::string_view_literals;
+  // UTF-32 before UTF-16, because its mark starts with that of UTF-16.
+  constexpr std::pair<std::string_view, std::string_view> kMarks[] = {
+      {"\xFF\xFE\0\0"sv, "UTF-32LE"},
+      {"\0\0\xFE\xFF"sv, "UTF-32BE"},
+      {"\xFF\xFE"sv, "UTF-16LE"},
+      {"\xFE\xFF"sv, "UTF-16BE"}};
+  for (const auto& [mark, name] : kMarks) {
+    if (text.substr(0, mark.size()) == mark) return name;
+  }
+  std::string zeros;  // of the first four bytes: 0 where there is one, a where there is a character
+  for (const char c : text.substr(0, 4)) {
+    zeros += c == '\0' ? '0' : c == '\n' || IsBlank(c) || (c >= ' ' && c <= '~') ? 'a' : '?';
+  }
+  if (zeros == "a000") return "UTF-32LE";
+  if (zeros == "000a") return "UTF-32BE";
+  if (zeros == "a0a0") return "UTF-16LE";
+  if (zeros == "0a0a") return "UTF-16BE";
+  return "";
+}
+
 }  // namespace
+
+MaybeError CheckEncoding(const std::string& path, std::string_view* text) {
+  if (const std::string name(OtherEncoding(*text)); !name.empty()) {
+    return Error{"this text is encoded as " + name +
+                     ", not as UTF-8; save it as UTF-8, or convert it: iconv -f " + name +
+                     " -t UTF-8",
+                 path, 1};
+  }
+  if (text->substr(0, 3) == "\xEF\xBB\xBF") text->remove_prefix(3);
+  return std::nullopt;
+}
 
 InputFile::~InputFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -121,7 +156,8 @@ bool LineReader::Next(std::string_view* line) {
     }
   }
   if (!line->empty() && line->back() == '\r') line->remove_suffix(1);
-  if (line_number_ == 0 && line->substr(0, 3) == "\xEF\xBB\xBF") line->remove_prefix(3);
+  if (line_number_ == 0) error_ = CheckEncoding(path(), line);
+  if (error_) return false;
   ++line_number_;
   return true;
 }

@@ -59,6 +59,10 @@ class InputFile {
   std::string path_;
 };
 
+// Takes a byte order mark off the head of a text. An Error where the head is that of UTF-16 or
+// UTF-32: it names the encoding and how to convert the file.
+MaybeError CheckEncoding(const std::string& path, std::string_view* text);
+
 // A text file line by line, hashed on the way.
 //
 //   LineReader reader;
@@ -71,7 +75,8 @@ class LineReader {
   MaybeError Open(const std::string& path);
 
   // The next line without its end (LF or CRLF), valid until the next call; false at the end of the
-  // file or after an error. A byte order mark at the start is skipped.
+  // file or after an error. A byte order mark at the start is skipped, other encodings are an
+  // error.
   bool Next(std::string_view* line);
   // The same, passing over lines with nothing but blanks.
   bool NextNonBlank(std::string_view* line);

@@ -18,7 +18,7 @@ constexpr int kDeepestNesting = 200;  // copying and writing recurse
 
 bool IsSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-// Walks over text that is known to be valid JSON.
+// Walks over text that is known to be valid JSON, without a byte order mark.
 class JsonWalker {
  public:
   explicit JsonWalker(const std::string& text) : text_(text) { SkipSpace(); }
@@ -225,7 +225,9 @@ Result<JsonDocument> ReadJsonDocument(const std::string& path) {
   if (!text.ok()) return text.error();
   JsonDocument document;
   document.path = path;
-  document.text = std::move(text.value());
+  std::string_view content = text.value();
+  if (MaybeError other = CheckEncoding(path, &content)) return *std::move(other);
+  document.text = content;
   if (std::all_of(document.text.begin(), document.text.end(), IsSpace)) {
     return Error{"the file is empty", path, 0};
   }

@@ -12,7 +12,7 @@ namespace pushid {
 // A JSON file with its text at hand, so that a wrong value can be pointed at.
 struct JsonDocument {
   std::string path;
-  std::string text;
+  std::string text;  // without a byte order mark
   nlohmann::ordered_json content;
 
   // An Error at the place of the value that `pointer` names ("/recordings/3/fps"); at the innermost

@@ -212,7 +212,7 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
   const std::optional<MotionFormat> format = MotionFormatOfFile(path);
   if (!format) {
     const std::string first = FirstLine(path);
-    if (first.empty() || first[0] != '{') {
+    if (!EndsWith(path, ".json") && (first.empty() || first[0] != '{')) {
       return Error{"unknown kind of file: names must end in " + MotionFileEndings() +
                        ", or .json for a manifest",
                    path};

@@ -74,6 +74,9 @@ TEST_F(BatchPlanTest, BadPlansAreToldWhereAndWhy) {
   }
   EXPECT_TRUE(Refused(Batch("--plan=" + Path("none.toml")), {"none.toml", "no such file"}));
   EXPECT_TRUE(Refused(Batch("--plan=" + folder_.string()), {"is a folder; give the plan in it"}));
+  WriteText("wide.toml", std::string("[\0d\0", 4));
+  EXPECT_TRUE(
+      Refused(Batch("--plan=" + Path("wide.toml")), {"wide.toml:1", "encoded as UTF-16LE"}));
   const std::string good = "--plan=" + WriteText("plan.toml", data + rest);
   EXPECT_TRUE(Refused(Batch(good, {"--shard=3/2"}), {"--shard is '3/2'"}));
   EXPECT_TRUE(Refused(Batch(good, {"--job=zz"}), {"no job 'zz'"}));

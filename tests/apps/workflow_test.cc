@@ -74,7 +74,7 @@ TEST_F(WorkflowTest, LocallyTheSameTable) {
 
   const AppRun wrong = Shell(Snakemake("--plan=none.toml", "-j1"));
   EXPECT_EQ(wrong.exit_code, 1);
-  EXPECT_TRUE(Contains(wrong.err, "none.toml: cannot be read: no such file"));
+  EXPECT_TRUE(Contains(wrong.err, "none.toml: there is no such file"));
 }
 
 // A cluster of one node for this test alone; see slurm_node.sh.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/input_file.h"
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/force_csv.h"
@@ -147,6 +148,9 @@ void StudySeeds(const std::string& out) {
   const auto overwrite = std::filesystem::copy_options::overwrite_existing;
   std::filesystem::copy_file(folder + "/bvh/" + id + ".bvh", In(out, "bvh", "a.bvh"), overwrite);
   std::filesystem::copy_file(folder + "/manifest.json", In(out, "manifest", "a.json"), overwrite);
+  const Result<std::string> manifest = ReadWholeFile(folder + "/manifest.json");
+  if (!manifest.ok()) Check(manifest.error());
+  Check(WriteFileAtomically(In(out, "manifest", "marked.json"), "\xEF\xBB\xBF" + manifest.value()));
   std::filesystem::remove_all(folder);
   Check(WriteFileAtomically(
       In(out, "bvh", "small.bvh"),

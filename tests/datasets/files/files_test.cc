@@ -135,6 +135,59 @@ TEST_F(InputFileTest, BlankLinesArePassedOver) {
   EXPECT_FALSE(reader.NextNonBlank(&line));
 }
 
+// Windows programs write it, in front of UTF-8 too.
+constexpr char kByteOrderMark[] = "\xEF\xBB\xBF";
+
+TEST_F(InputFileTest, AByteOrderMarkIsSkippedOnce) {
+  LineReader reader;
+  ASSERT_FALSE(
+      reader.Open(WriteText("a.csv", std::string(kByteOrderMark) + "a\n" + kByteOrderMark)));
+  std::string_view line;
+  ASSERT_TRUE(reader.Next(&line));
+  EXPECT_EQ(line, "a");
+  ASSERT_TRUE(reader.Next(&line));
+  EXPECT_EQ(line, kByteOrderMark);
+}
+
+// `text` of ASCII in units of `bytes`, with a byte order mark or without.
+std::string Encoded(const std::string& text, int bytes, bool big_endian, bool mark) {
+  std::string encoded;
+  const auto add = [&](unsigned unit) {
+    for (int i = 0; i < bytes; ++i) {
+      encoded += static_cast<char>(unit >> 8 * (big_endian ? bytes - 1 - i : i) & 0xFF);
+    }
+  };
+  if (mark) add(0xFEFF);
+  for (const char c : text) add(static_cast<unsigned char>(c));
+  return encoded;
+}
+
+TEST_F(InputFileTest, OtherEncodingsAreNamed) {
+  const struct {
+    int bytes;
+    bool big_endian;
+    const char* name;
+  } cases[] = {
+      {2, false, "UTF-16LE"}, {2, true, "UTF-16BE"}, {4, false, "UTF-32LE"}, {4, true, "UTF-32BE"}};
+  for (const auto& c : cases) {
+    for (const bool mark : {true, false}) {
+      const std::string said = std::string("a.json:1: this text is encoded as ") + c.name +
+                               ", not as UTF-8; save it as UTF-8, or convert it: iconv -f " +
+                               c.name;
+      const auto path = [&](const char* text) {
+        return WriteText("a.json", Encoded(text, c.bytes, c.big_endian, mark));
+      };
+      LineReader reader;
+      ASSERT_FALSE(reader.Open(path("time,force\n0,1\n")));
+      std::string_view line;
+      EXPECT_FALSE(reader.NextNonBlank(&line));
+      ASSERT_TRUE(reader.error()) << c.name << mark;
+      EXPECT_TRUE(Contains(reader.error()->ToString(), said)) << reader.error()->ToString();
+      EXPECT_TRUE(Contains(ProblemOf(ReadJson(path("{\"a\": 1}"))), said)) << c.name << mark;
+    }
+  }
+}
+
 TEST_F(InputFileTest, EndlessLineIsRefused) {
   LineReader reader;
   ASSERT_FALSE(reader.Open("/dev/zero"));
@@ -193,6 +246,16 @@ TEST_F(JsonFileTest, ValuesAreFoundInTheText) {
   EXPECT_EQ(place("/x/2/missing"), ":2:3: m");
   EXPECT_EQ(place("/x/7"), ":1:8: m");
   EXPECT_EQ(document.ElementLines("/x"), (std::vector<int>{1, 1, 2}));
+}
+
+TEST_F(JsonFileTest, ValuesAreFoundBehindAByteOrderMark) {
+  const std::string path =
+      WriteText("a.json", std::string(kByteOrderMark) + "{\"x\": [1,\n {}], \"y\": 2}");
+  const JsonDocument document = Unwrapped(ReadJsonDocument(path));
+  EXPECT_EQ(document.ElementLines("/x"), (std::vector<int>{1, 2}));
+  EXPECT_EQ(document.ErrorAt("/y", "m").ToString(), path + ":2:12: m");
+  EXPECT_EQ(document.ErrorAt("/x/0", "m").ToString(), path + ":1:8: m");
+  EXPECT_TRUE(Contains(ProblemOf(ReadJson(WriteText("b.json", kByteOrderMark))), "is empty"));
 }
 
 TEST(Axes, TurnToForwardLeftUp) {

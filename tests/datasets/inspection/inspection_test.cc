@@ -220,6 +220,10 @@ TEST_F(InspectionTest, OtherFiles) {
   EXPECT_TRUE(Contains(Of("g.mot"), "ground_force_vy peak 700 N"));
   ASSERT_FALSE(WriteManifest(Path("manifest.json"), manifest_));
   EXPECT_TRUE(Contains(Of("manifest.json"), "1, 1 can be read, 1 have a push"));
+  WriteText("marked.json", "\xEF\xBB\xBF" + ReadText(Path("manifest.json")));
+  EXPECT_TRUE(Contains(Of("marked.json"), "1, 1 can be read, 1 have a push"));
+  WriteText("utf16.json", std::string("{\0}\0", 4));
+  EXPECT_TRUE(Contains(Of("utf16.json"), "encoded as UTF-16LE, not as UTF-8"));
   manifest_.recordings[0].id = "b";
   ASSERT_FALSE(WriteManifest(Path("other.json"), manifest_));
   const Inspection both = Unwrapped(Inspect(Path("manifest.json") + "," + Path("other.json")));
