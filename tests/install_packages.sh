@@ -16,7 +16,6 @@ fuzz_packages=(clang libclang-rt-14-dev)  # tests/fuzz/run.sh alone needs them
 workflow_packages=(snakemake slurmctld slurmd slurm-client munge)
 
 package_packages=(dpkg-dev)  # cpack: Debian packages, apps/packaging/Containerfile
-site_packages=(mkdocs)  # apps/site/build.sh alone needs it; its test is skipped without
 
 install_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then

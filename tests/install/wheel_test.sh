@@ -25,4 +25,4 @@ ls "$scratch/wheels"
 (cd "$scratch" && venv/bin/python -c "import pushid; assert '/venv/' in pushid.__file__, pushid.__file__")
 # A folder without programs, beside which no other module is found.
 mkdir "$scratch/bin"
-"$scratch/venv/bin/python" "$source_dir/apps/site/tutorials.py" "$scratch/bin" python
+"$scratch/venv/bin/python" "$source_dir/tests/apps/tutorials.py" "$scratch/bin" python
