@@ -3,22 +3,57 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 
 #include "apps/flags/command_line.h"
-#include "apps/flags/fit_option_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/names.h"
 #include "ident/bodies/restoration_files.h"
+#include "ident/checks/model_checks.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"
+#include "ident/report/fit_command.h"
 #include "ident/report/report_text.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote; the checks are added to it");
 DEFINE_string(model_out, "", "write the model with the checks here (JSON) instead of to --model");
 DEFINE_string(seed, "", "seed of all random numbers (default: that of the fit)");
 DEFINE_int32(num_threads, 1, "threads; results are the same for any number");
+
+DEFINE_string(profile, "",
+              "profile likelihood of these parameters and combinations, comma-separated; all (or "
+              "--profile alone): every free parameter");
+DEFINE_int32(bootstrap, 0,
+             "number of refits to resampled people or recordings; 199 is usually enough");
+DEFINE_string(bootstrap_by, pushid::NameOf(pushid::BootstrapOptions{}.by),
+              "unit drawn by a bootstrap (and by pushid-fit --replica): subject (all recordings "
+              "of a person), recording, or auto (as --cluster of the fit, but recordings where "
+              "people share them)");
+DEFINE_string(bootstrap_file, "",
+              "file that keeps finished replicas, so that an interrupted run can continue");
+DEFINE_string(design, "",
+              "find which further push would lower the standard error of this parameter most (all: "
+              "of all parameters together), and how much a force sensor or more people would");
+
+DEFINE_bool(population, false,
+            "print how recordings differ from the mean: the spread of a factor on tail_gain, and "
+            "each recording's effect");
+DEFINE_bool(
+    push_check, false,
+    "refit with other plausible pushes: other windows and smoothing for inverse dynamics; sensor "
+    "noise, a shift of one frame and of 0.1 m in contact height for measured pushes");
+DEFINE_double(push_check_noise, pushid::PushVariantOptions{}.sensor_noise,
+              "noise of the push sensor, as a fraction of the push's peak, for --push_check");
+DEFINE_bool(prior_check, false, "refit with the means and widths of all priors halved and doubled");
+DEFINE_bool(
+    horizon_check, false,
+    "refit the first 8, 16, 32 and 64 frames: a parameter with physical meaning keeps its value");
+DEFINE_bool(learn_forecasts, false,
+            "learn what predictions from first frames (--observed of pushid-predict and "
+            "pushid-evaluate) are put together by, on recordings left out in turn");
 
 namespace {
 
@@ -29,6 +64,41 @@ uint64_t SeedOf(const FitOptions& options) {
   FitOptions given;
   OrFail(FindFitOption("seed")->apply(FLAGS_seed, &given));
   return given.seed;
+}
+
+// Errors also for flags without the one that they belong to.
+ModelChecks ChecksFromCommandLine(uint64_t seed) {
+  ModelChecks checks;
+  checks.profile = FLAGS_profile;
+  checks.bootstrap.replicas = FLAGS_bootstrap;
+  checks.bootstrap.file = FLAGS_bootstrap_file;
+  checks.push_check = FLAGS_push_check;
+  checks.prior_check = FLAGS_prior_check;
+  checks.horizon_check = FLAGS_horizon_check;
+  checks.learn_forecasts = FLAGS_learn_forecasts;
+  checks.pushes.sensor_noise = FLAGS_push_check_noise;
+  checks.population = FLAGS_population;
+  checks.design = FLAGS_design;
+  checks.bootstrap.seed = checks.pushes.seed = seed;
+  checks.bootstrap.num_threads = checks.num_threads = FLAGS_num_threads;
+  OrFail(CheckNumbers(checks));
+  CheckFlagRules({{"bootstrap_file", FlagRule::kNeeds, {"bootstrap"}, "=N"},
+                  {"push_check_noise", FlagRule::kNeeds, {"push_check"}, ""}});
+  OrFail(ParseName("--bootstrap_by", FLAGS_bootstrap_by, &checks.bootstrap.by));
+  OrFail(CheckOutputFiles({FLAGS_bootstrap_file}));
+  return checks;
+}
+
+// With a progress line, and the message that Ctrl-C prints about --bootstrap_file.
+void Add(const std::vector<PendulumRecording>& recordings, const ModelChecks& checks,
+         FittedModel* model) {
+  if (!checks.bootstrap.file.empty()) {
+    SayWhenInterrupted("finished replicas are in " + checks.bootstrap.file +
+                       "; run the same command to continue");
+  }
+  ProgressLine line;
+  const auto progress = [&line](const std::string& what) { return line.OfJobs(what); };
+  OrFail(AddChecks(recordings, checks, progress, model));
 }
 
 // The recordings of the model, loaded as the fit loaded them, and the bodies of --body_weight.
@@ -51,7 +121,9 @@ void AddToProvenance(Provenance* from) {
   std::vector<std::string>& known = from->changed_flags;
   std::vector<std::string> added;
   for (const std::string& name : ChangedFlags()) {
-    if (!MovedCheckFlags().Has(name) && name != "bootstrap_by") continue;
+    const std::vector<std::string>& checks = CheckFlagNames();
+    const bool asks = std::find(checks.begin(), checks.end(), name) != checks.end();
+    if (!asks && name != "bootstrap_by") continue;
     from->configuration[name] = now.at(name);
     if (std::find(known.begin(), known.end(), name) == known.end()) added.push_back(name);
   }
@@ -64,8 +136,7 @@ int Run() {
   CheckRange("num_threads", FLAGS_num_threads, 1, 1024);
   CheckRecordingFlags();
   FittedModel model = OrFail(ReadFittedModel(FLAGS_model));
-  const uint64_t seed = SeedOf(model.fit.options);
-  const ModelChecks checks = ModelChecksFromCommandLine(seed, FLAGS_num_threads);
+  const ModelChecks checks = ChecksFromCommandLine(SeedOf(model.fit.options));
   if (!checks.Any()) {
     return Fail(
         "nothing is asked; give one of --profile, --bootstrap=199, --prior_check, "
@@ -79,7 +150,7 @@ int Run() {
   OrFail(ResumeFit(recordings, &model.fit));
   AddToProvenance(&model.provenance);
   model.provenance.model_file = out;
-  AddFlaggedChecks(recordings, checks, &model);
+  Add(recordings, checks, &model);
   const std::string sections = OrFail(CheckSections(recordings, checks, model.fit));
   std::printf("%s%s", ReportText(model).c_str(), sections.c_str());
   if (!writes) return kDone;
@@ -91,7 +162,13 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  pushid::AllowBareProfile(argc, argv);
+  // gflags wants a value after --profile; alone it means all.
+  static char all[] = "--profile=all";
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--profile") == 0 || std::strcmp(argv[i], "-profile") == 0) {
+      argv[i] = all;
+    }
+  }
   return pushid::RunApp(
       argc, argv,
       "pushid-check questions a fitted model with the recordings that it was fitted to: profiles, "

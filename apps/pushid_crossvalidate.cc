@@ -27,7 +27,7 @@
 #include "ident/validation/held_out_spread.h"
 #include "ident/validation/scores_report.h"
 
-DEFINE_choice(scheme, pushid::FoldScheme::kStratified,
+DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),
               "what is held out: stratified (folds by setting, strength and subject), interleaved "
               "(recordings of a setting assigned to folds in turn), subject or setting (one at a "
               "time), strong (all strong pushes)");

@@ -10,6 +10,7 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/error.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/fit/fit.h"
@@ -23,6 +24,9 @@ DEFINE_string(model_out, "", "write the identified model here (JSON)");
 DEFINE_int32(replica, 0,
              "fit bootstrap replica k: as many people or recordings (--bootstrap_by), drawn with "
              "replacement from --seed and k; 0: the recordings as they are");
+DEFINE_string(bootstrap_by, pushid::NameOf(pushid::BootstrapOptions{}.by),
+              "unit that --replica draws: subject (all recordings of a person), recording, or auto "
+              "(as --cluster, but recordings where people share them)");
 DEFINE_string(
     body_restoration, "",
     "folder that pushid-train-restoration --kind=window or cvae wrote, for --body_weight");
@@ -55,7 +59,8 @@ int Run() {
   }
   const FitSetup setup = FitSetupFromFlags();
   const FitOptions& roughly = setup.roughly();
-  const ModelChecks checks = ModelChecksFromCommandLine(Seed(), NumThreads());
+  ClusterBy drawn_by = ClusterBy::kAuto;
+  OrFail(ParseName("--bootstrap_by", FLAGS_bootstrap_by, &drawn_by));
   CheckRecordingFlags();
   CheckBodyFlags(roughly);
   if (FLAGS_check) return kDone;
@@ -64,8 +69,7 @@ int Run() {
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({}, NeedsJoints(roughly), &file_warnings, true);
   CheckPushed(recordings);
-  const ClusterBy drawn_by =
-      checks.bootstrap.by == ClusterBy::kAuto ? roughly.cluster : checks.bootstrap.by;
+  if (drawn_by == ClusterBy::kAuto) drawn_by = roughly.cluster;
   const std::vector<PendulumRecording> pendulums = Resampled(
       MakePendulumRecordings(recordings, roughly.mapping), drawn_by, Seed(), FLAGS_replica);
 
@@ -75,7 +79,6 @@ int Run() {
         LoadBodyData(FLAGS_body_restoration, "--body_restoration", recordings, options.mapping));
   }
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options)) Warn(warning);
-  OrFail(CheckAgainst(checks, options, pendulums));
   Warnings unit_warnings;
   const MaybeError unprepared = PrepareFit(pendulums, &options, &unit_warnings);
   WarnGrouped(unit_warnings);
@@ -96,10 +99,9 @@ int Run() {
   result.warnings.insert(result.warnings.begin(), file_warnings.begin(), file_warnings.end());
   model.provenance = ProvenanceOfRun();
   model.provenance.model_file = FLAGS_model_out;
-  AddFlaggedChecks(pendulums, checks, &model);
-  const std::string sections = OrFail(CheckSections(pendulums, checks, result));
+  model.advice = Advise(model);
 
-  std::printf("%s%s", ReportText(model).c_str(), sections.c_str());
+  std::printf("%s", ReportText(model).c_str());
   if (!FLAGS_model_out.empty()) {
     OrFail(WriteModelFile(FLAGS_model_out, model, NumThreads(), begin));
     std::printf("model written to %s\n", FLAGS_model_out.c_str());
@@ -112,10 +114,9 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  pushid::AllowBareProfile(argc, argv);
   return pushid::RunApp(argc, argv,
                         "pushid-fit identifies friction, balance gains and the push tail from push "
                         "recordings.\n\n  pushid-fit --recordings=M/manifest.json --setting=single "
                         "--model_out=model.json",
-                        Run, nullptr, pushid::MovedCheckFlags());
+                        Run);
 }

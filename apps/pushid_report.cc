@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/explore/explore_section.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/processes.h"
@@ -21,9 +20,6 @@
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
 DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");
 DEFINE_string(html_out, "", "write the whole report here: one self-contained page (HTML)");
-DEFINE_bool(explore, true,
-            "the page has a person to try the model on, with sliders (programs that were built "
-            "with emscripten)");
 DEFINE_bool(text, false, "print the whole report, not only the parameters");
 DEFINE_int32(num_threads, 1, "threads");
 
@@ -142,12 +138,11 @@ int WriteWhole(const FittedModel& model) {
   const std::vector<Recording> recordings = RecordingsOf(model.fit);
   ProgressLine line;
   const BuildReportOptions options{FLAGS_num_threads, line.OfJobs("recording")};
-  Report report = BuildReport(model, recordings, options);
+  const Report report = BuildReport(model, recordings, options);
   line.Finish();
   if (FLAGS_text) std::printf("%s", ToText(report).c_str());
   if (FiguresAsked()) WriteFigures(model, report);
   if (FLAGS_html_out.empty()) return kDone;
-  if (FLAGS_explore) report.sections.insert(report.sections.begin() + 1, ExploreSection(model));
   OrFail(WriteFileAtomically(FLAGS_html_out, ToPage(report)));
   std::fprintf(stderr, "report written to %s\n", FLAGS_html_out.c_str());
   if (recordings.empty()) {

@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/processes.h"
 #include "datasets/files/number_text.h"
 #include "datasets/loading/ground_record.h"
 #include "datasets/manifest/recording.h"
@@ -45,14 +43,14 @@ DEFINE_double(ground_size, pushid::SyntheticOptions{}.ground_size_m,
 DEFINE_bool(plates, false, "also write what force platforms under the feet measure");
 DEFINE_double(plate_noise, pushid::SyntheticOptions{}.plate_noise_m,
               "with --plates, standard deviation of the centre of pressure, m");
-DEFINE_choice(truth_stance, pushid::SyntheticOptions{}.model.stance,
+DEFINE_string(truth_stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
               "without --model: behaviour of the synthetic people's feet: slide, steps "
               "(hold, then step) or fixed (hold)");
-DEFINE_choice(
-    truth_delay, pushid::SyntheticOptions{}.model.delay,
+DEFINE_string(
+    truth_delay, pushid::NameOf(pushid::SyntheticOptions{}.model.delay),
     "without --model: reaction delay of the synthetic people: none, one or ankle_and_step "
     "(--set=reaction_delay=0.13)");
-DEFINE_choice(truth_noise, pushid::SyntheticOptions{}.model.process_noise,
+DEFINE_string(truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
               "without --model: process noise of the synthetic people: none or diagonal "
               "(--set=sigma_x=...)");
 DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
@@ -245,25 +243,9 @@ int Run() {
   return kDone;
 }
 
-// Until version 0.4 pushid-simulate --formation=... is pushid-formation.
-bool AsksForFormation(int argc, char** argv) {
-  return std::any_of(argv + 1, argv + argc, [](const char* word) {
-    const char* const name = word + std::strspn(word, "-");
-    return name > word && name - word <= 2 && std::strncmp(name, "formation", 9) == 0 &&
-           (name[9] == '\0' || name[9] == '=');
-  });
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (AsksForFormation(argc, argv)) {
-    SetProgramName(argv[0]);
-    std::fprintf(stderr,
-                 "%s: note: --formation moved to pushid-formation; this spelling works until %s\n",
-                 ProgramName().c_str(), MovedFlags::kUntil);
-    return Fail(RunInstead("pushid-formation", {argv + 1, argv + argc}));
-  }
   return pushid::RunApp(
       argc, argv,
       "pushid-simulate generates recordings of synthetic people with known parameters, alone or in "

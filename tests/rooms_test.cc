@@ -35,7 +35,7 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
                "prediction",  "validation",  "push",     "bodies",     "peers",
                "generators",  "forecasts",   "training", "formations", "report",
                "report/page", "checks",      ""}},
-    {"apps", {"support", "flags", "batch", "explore", "", "python"}},
+    {"apps", {"support", "flags", "batch", "", "python"}},
 };
 
 // The floor that "room/folder/NAME.h" stands on; -1: none.

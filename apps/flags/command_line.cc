@@ -113,7 +113,7 @@ void PrepareHeap() {
 }  // namespace
 
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
-           std::vector<std::string>* words, const MovedFlags& moved) {
+           std::vector<std::string>* words) {
   SetBlasThreads(1);
   SetProgramName(argv[0]);
   gflags::SetUsageMessage(usage);
@@ -121,21 +121,12 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   // Failures of the solver are reported by our own messages; --minloglevel=0 shows its log.
   FLAGS_minloglevel = google::GLOG_FATAL;
   FLAGS_logtostderr = true;
-  if (argc == 2 && std::strcmp(argv[1], kListFlags) == 0) {
-    std::printf("%s", FlagList(moved).c_str());
-    return kDone;
-  }
-  if (argc == 2 && std::strcmp(argv[1], kManPage) == 0) {
-    std::printf("%s",
-                ManPage(usage, "[--flag=value ...]", "OPTIONS", FlagSections(moved, true)).c_str());
-    return kDone;
-  }
   if (MaybeError error = CheckFlags(argc, argv)) return Fail(*error);
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
   google::InitGoogleLogging(argv[0]);
   if (FLAGS_quiet) HideProgress();
   if (Asked("help") || Asked("helpfull") || Asked("helpshort")) {
-    std::printf("%s\n%s", usage.c_str(), FlagHelp(moved, Asked("helpfull")).c_str());
+    std::printf("%s\n%s", usage.c_str(), FlagHelp(Asked("helpfull")).c_str());
     return kDone;
   }
   if (Asked("version")) {
@@ -155,12 +146,7 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
   SayWhenInterrupted("no partial file is left; run the same command to start again");
   PrepareHeap();
   try {
-    const int exit_code = CheckPrinted(run());
-    if (const std::string flag = moved.FirstGiven(); !flag.empty() && exit_code == kDone) {
-      std::fprintf(stderr, "%s: note: --%s moved to %s; this spelling works until %s\n",
-                   ProgramName().c_str(), flag.c_str(), moved.program.c_str(), MovedFlags::kUntil);
-    }
-    return exit_code;
+    return CheckPrinted(run());
   } catch (const Error& error) {
     return Fail(error);
   } catch (const std::bad_alloc&) {

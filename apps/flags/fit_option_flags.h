@@ -4,9 +4,6 @@
 
 #include <cstdint>
 
-#include "apps/flags/flag_table.h"
-#include "datasets/files/error.h"
-#include "ident/checks/model_checks.h"
 #include "ident/fit/fit_setup.h"
 
 namespace pushid {
@@ -20,21 +17,5 @@ FitSetup FitSetupFromFlags();
 
 int NumThreads();
 uint64_t Seed();
-
-// The flags that question a finished model: of pushid-check, and until version 0.4 of
-// pushid-fit too.
-
-// gflags wants a value after --profile; alone it means all.
-void AllowBareProfile(int argc, char** argv);
-
-// Errors also for flags without the one that they belong to.
-ModelChecks ModelChecksFromCommandLine(uint64_t seed, int num_threads);
-
-// Those that moved from pushid-fit to pushid-check.
-MovedFlags MovedCheckFlags();
-
-// AddChecks with a progress line, and the message that Ctrl-C prints about --bootstrap_file.
-void AddFlaggedChecks(const std::vector<PendulumRecording>& recordings, const ModelChecks& checks,
-                      FittedModel* model);
 
 }  // namespace pushid

@@ -66,20 +66,6 @@ std::string WithDashes(const std::vector<std::string>& names, const std::string&
   return text;
 }
 
-std::map<std::string, std::vector<std::string>>& Choices() {
-  static std::map<std::string, std::vector<std::string>> choices;
-  return choices;
-}
-
-std::vector<std::string> ChoicesOf(const FlagInfo& flag) {
-  if (flag.type == "bool") return {"true", "false"};
-  const FitOptionRow* const row = FindFitOption(flag.name);
-  const bool option = row != nullptr && flag.filename.find("fit_option") != std::string::npos;
-  if (option) return row->choices;
-  const auto found = Choices().find(flag.name);
-  return found == Choices().end() ? std::vector<std::string>() : found->second;
-}
-
 // The headings of --help, in their order, and the files of flags below each.
 struct Heading {
   const char* title;
@@ -91,7 +77,6 @@ const std::vector<Heading>& Headings() {
       {"model", {"model_flags"}},
       {"fit", {}},
       {kRarelyChanged, {}},
-      {"checks", {"check_flags"}},
       {"settings", {}},  // what stands nowhere else: the program's own
       {"prediction", {"observed_flags", "futures_flags"}},
       {"bodies", {"restoration_flags", "postprocess_flags", "diffusion_flags"}},
@@ -201,72 +186,31 @@ std::vector<std::string> ChangedFlags() {
   return names;
 }
 
-bool MovedFlags::Has(const std::string& flag) const {
-  return std::find(names.begin(), names.end(), flag) != names.end();
-}
-
-std::string MovedFlags::FirstGiven() const {
-  const auto given = std::find_if(names.begin(), names.end(),
-                                  [](const std::string& name) { return Given(name.c_str()); });
-  return given == names.end() ? "" : *given;
-}
-
-std::vector<HelpSection> FlagSections(const MovedFlags& moved, bool full) {
-  std::map<std::string, std::vector<HelpEntry>> below;
-  std::vector<std::string> named;
+std::string FlagHelp(bool full) {
+  std::map<std::string, std::string> below;
+  std::string named;
+  const auto add = [&below](const std::string& heading, const std::string& name,
+                            const std::string& text) {
+    below[heading] += "  " + name + "\n      " + text + "\n";
+  };
   for (const FlagInfo& flag : OwnFlags()) {
-    if (moved.Has(flag.name)) continue;
-    const std::string value =
-        flag.default_value.empty() ? "" : "=" + WithoutDust(flag, flag.default_value);
-    // What did not move with the others.
     const std::string heading = HeadingOf(flag);
-    const bool left = heading == "checks" && !moved.names.empty();
     if (heading == kRarelyChanged && !full) {
-      named.push_back(flag.name);
+      named += (named.empty() ? "--" : " --") + flag.name;
       continue;
     }
-    below[left ? "settings" : heading].push_back({"--" + flag.name + value, flag.description});
+    const std::string value =
+        flag.default_value.empty() ? "" : "=" + WithoutDust(flag, flag.default_value);
+    add(heading, "--" + flag.name + value, flag.description);
   }
-  for (const HelpEntry& entry :
-       {HelpEntry{"--flagfile=FILE", "read flags from a file, one per line"},
-        HelpEntry{"--help, -h, --helpfull", "print this"},
-        HelpEntry{"--version", "print the version"}}) {
-    below["general"].push_back(entry);
-  }
-  if (!named.empty()) {
-    below[kRarelyChanged] = {{WithDashes(named, " "), "--helpfull describes them"}};
-  }
-  std::vector<HelpSection> sections;
+  add("general", "--flagfile=FILE", "read flags from a file, one per line");
+  add("general", "--help, -h, --helpfull", "print this");
+  add("general", "--version", "print the version");
+  if (!named.empty()) add(kRarelyChanged, named, "--helpfull describes them");
+  std::string text;
   for (const Heading& heading : Headings()) {
     const auto flags = below.find(heading.title);
-    if (flags != below.end()) sections.push_back({heading.title, flags->second});
-  }
-  return sections;
-}
-
-std::string FlagHelp(const MovedFlags& moved, bool full) {
-  std::string text;
-  for (const HelpSection& section : FlagSections(moved, full)) {
-    text += "\n" + section.title + ":\n";
-    for (const HelpEntry& entry : section.entries) {
-      text += "  " + entry.name + "\n      " + entry.text + "\n";
-    }
-  }
-  if (moved.names.empty()) return text;
-  return text + "\n" + moved.what + " moved to " + moved.program + " (" +
-         WithDashes(moved.names, ", ") + "); " + ProgramName() + " takes these flags until " +
-         MovedFlags::kUntil + ".\n";
-}
-
-std::string FlagList(const MovedFlags& moved) {
-  std::string text;
-  for (const FlagInfo& flag : OwnFlags()) {
-    if (moved.Has(flag.name)) continue;
-    std::string words;
-    for (const std::string& word : ChoicesOf(flag)) words += (words.empty() ? "" : " ") + word;
-    const std::string help = flag.description.substr(0, flag.description.find_first_of(";("));
-    text += flag.name + "\t" + (flag.type == "bool" ? "bool" : "value") + "\t" + words + "\t" +
-            std::string(Trimmed(help)) + "\n";
+    if (flags != below.end()) text += "\n" + std::string(heading.title) + ":\n" + flags->second;
   }
   return text;
 }
@@ -283,11 +227,6 @@ Error NoSuchFlag(const std::string& name) {
   return Error{"there is no flag --" + name + "; " +
                (meant.empty() ? "see " : "did you mean --" + meant + "? Or see ") + ProgramName() +
                " --help"};
-}
-
-bool SetChoices(const std::string& flag, const std::vector<std::string>& words) {
-  Choices()[flag] = words;
-  return true;
 }
 
 }  // namespace pushid

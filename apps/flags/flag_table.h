@@ -1,5 +1,5 @@
 // apps: the flags of this executable as a table: what is given, what goes with what, the list that
-// --help prints and that shells complete from.
+// --help prints.
 #pragma once
 
 #include <map>
@@ -10,13 +10,6 @@
 
 #include "datasets/files/error.h"
 #include "datasets/formats/units.h"
-#include "models/enum_names.h"
-
-// A string flag that takes one of an enum's names: shells complete them.
-#define DEFINE_choice(name, value, help)            \
-  DEFINE_string(name, pushid::NameOf(value), help); \
-  const bool choices_of_##name =                    \
-      pushid::SetChoices(#name, pushid::AllNames<std::decay_t<decltype(value)>>())
 
 namespace pushid {
 
@@ -63,45 +56,17 @@ void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>
 // verbosity.
 std::map<std::string, std::string> EffectiveFlags();
 
-// What a program's JSON begins with: the name of its schema (apps/schemas), version, effective
-// flags.
+// What a program's JSON begins with: the name of its format, version, effective flags.
 nlohmann::ordered_json ResultHead(const char* schema);
 
 // Names of those that are not at their defaults.
 std::vector<std::string> ChangedFlags();
 
-// Flags that belong to another program now, and are taken here for one more version.
-struct MovedFlags {
-  std::vector<std::string> names;
-  std::string program;
-  std::string what;  // "Checks of a finished fit"
-
-  bool Has(const std::string& flag) const;
-  // The first of them that is given; empty: none.
-  std::string FirstGiven() const;
-  static constexpr char kUntil[] = "version 0.4";
-};
-
-// What --help and the manual are made of: flags below their headings.
-struct HelpEntry {
-  std::string name, text;  // "--out=", what it does
-};
-struct HelpSection {
-  std::string title;
-  std::vector<HelpEntry> entries;
-};
-std::vector<HelpSection> FlagSections(const MovedFlags& moved, bool full);
-// Under headings, without those that moved. full: what is rarely changed, too, is described and not
-// only named.
-std::string FlagHelp(const MovedFlags& moved, bool full);
-// One line a flag: name, `bool` or `value`, the words it takes, the first sentence of its help;
-// tabs between. What `pushid completion` is made of.
-std::string FlagList(const MovedFlags& moved);
+// What --help prints: flags below their headings. full: what is rarely changed, too, is described
+// and not only named.
+std::string FlagHelp(bool full);
 
 // A name that gflags does not know: names the program, and what may be meant.
 Error NoSuchFlag(const std::string& name);
-
-// The words that a flag takes. Always true, so that it can be said beside the flag.
-bool SetChoices(const std::string& flag, const std::vector<std::string>& words);
 
 }  // namespace pushid

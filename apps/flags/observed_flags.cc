@@ -9,7 +9,7 @@ DEFINE_int32(observed, 0,
              "number of observed frames before the predicted ones, including frame 0; without this "
              "flag, only frame 0");
 
-DEFINE_choice(forecast, pushid::ForecastUse::kStack,
+DEFINE_string(forecast, pushid::NameOf(pushid::ForecastUse::kStack),
               "who forecasts after observed frames: stack (all together), physics (the rollout), "
               "input (a filter with an unknown force), kinematic (no model)");
 

@@ -37,8 +37,6 @@ foreach(program ${programs})
     set(component training)
   endif()
   install(TARGETS ${program} COMPONENT ${component})
-  string(REPLACE pushid-command pushid page ${program})
-  install(FILES ${PROJECT_BINARY_DIR}/share/man/man1/${page}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT ${component})
 endforeach()
 install(DIRECTORY apps/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs)
 install(DIRECTORY apps/workflow DESTINATION ${CMAKE_INSTALL_DATADIR}/pushid COMPONENT programs

@@ -1,6 +1,6 @@
 // ident: what a finished model is asked: how wide its intervals are by other means (profiles,
 // bootstrap), what other pushes, priors and horizons would have made of it, and what to record
-// next. pushid-check asks a model's file, pushid-fit a fit that has just ended.
+// next. pushid-check asks a model's file.
 #pragma once
 
 #include <functional>

@@ -54,8 +54,8 @@ std::vector<std::string> FeetSvg(const FormationRun& run);  // for a page with S
 TextTable FeetNumbers(const FormationRun& run);
 
 // Identified people as agents of another crowd simulation: bodies, gains that are already
-// those of the person's size, contact and pushes, with units in the names
-// (apps/schemas/pushid-agents-1.schema.json). pushid.agents of Python steps them.
+// those of the person's size, contact and pushes, with units in the names.
+// pushid.agents of Python steps them.
 
 // Of feet that slide, linear forces and elastic contact. Errors: a model with a term that agents do
 // not have (delay, networks, feet that hold, dry friction, ...).

@@ -1,5 +1,4 @@
-// ident: the entries of a model's file (parameters/json_archive.h), for what reads and writes it
-// and for its schema.
+// ident: the entries of a model's file (parameters/json_archive.h), for what reads and writes it.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -6,7 +6,6 @@
 
 #include "datasets/files/json_file.h"
 #include "ident/model/model_file_fields.h"
-#include "ident/parameters/json_schema.h"
 
 namespace pushid {
 namespace {
@@ -130,7 +129,7 @@ class ModelReader {
 
 nlohmann::ordered_json ToJson(const FittedModel& model, const RunInfo& run) {
   Json json = {
-      {"schema", kModelSchema}, {"format", "pushid model"}, {"format_version", kModelFormat}};
+      {"schema", "pushid-model/1"}, {"format", "pushid model"}, {"format_version", kModelFormat}};
   json.get_ref<Json::object_t&>().reserve(64);  // it would copy all of itself where it grows
   JsonWriter writer(&json);
   ModelFields(writer, const_cast<FittedModel&>(model), run);
@@ -182,31 +181,6 @@ Result<FittedModel> ReadFittedModel(const std::string& path, const ForceLaws& la
   Result<FittedModel> model = FittedModelFromJson(document.value().content, path, laws);
   if (model.ok()) model.value().provenance.model_file = path;
   return model;
-}
-
-nlohmann::ordered_json ModelSchema() {
-  using Ordered = nlohmann::ordered_json;
-  Ordered fields, definitions = Ordered::object();
-  SchemaArchive archive(&fields, &definitions);
-  archive.Add("schema", {{"const", kModelSchema}});
-  archive.Add("format", {{"const", "pushid model"}});
-  archive.Add("format_version", {{"const", kModelFormat}});
-  FittedModel model;
-  ModelFields(archive, model, RunInfo{});
-  // What is written by lists of its own.
-  Ordered& properties = fields["properties"];
-  const Ordered number = {{"type", "number"}};
-  properties["model"] = {{"type", "object"}, {"additionalProperties", true}};
-  properties["values"] = {{"type", "object"}, {"additionalProperties", number}};
-  properties["table"] = json_schema::ListOf({{"type", "object"},
-                                             {"required", {"name", "unit", "nominal", "bounds"}},
-                                             {"additionalProperties", true}});
-  Ordered schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                    {"$id", "urn:pushid:model:1"},
-                    {"title", "A fitted model: pushid-fit --model_out"}};
-  schema.update(fields);
-  schema["$defs"] = definitions;
-  return schema;
 }
 
 }  // namespace pushid

@@ -11,8 +11,6 @@ namespace pushid {
 
 inline constexpr int kModelFormat = 1;  // raised when older readers would misread a file
 
-inline constexpr char kModelSchema[] = "pushid-model/1";  // of the files as they are written now
-
 // What changes from run to run and stands under `run`.
 struct RunInfo {
   std::string date, host, model_path;
@@ -30,8 +28,5 @@ Result<FittedModel> FittedModelFromJson(const nlohmann::ordered_json& json, cons
 Result<FittedModel> ReadFittedModel(const std::string& path, const ForceLaws& laws = {});
 
 nlohmann::ordered_json ToJson(const Behaviour& behaviour);
-
-// The JSON Schema of what ToJson writes, which apps/schemas has as a file.
-nlohmann::ordered_json ModelSchema();
 
 }  // namespace pushid

@@ -21,7 +21,6 @@ Row PresetRow() {
       "that slide, linear self forces too), ldp (plain PD and friction from upright), or "
       "ldp_published (LDP with all its networks, of one person or of groups)",
       nullptr);
-  row.choices = PresetNames();
   row.text = [](const FitOptions&) { return std::string(kAutoPreset); };
   row.json = "/preset";
   row.write = [](const FitOptions& o) { return Json(o.preset); };
@@ -45,15 +44,12 @@ Row StanceRow() {
       "(fixed where no pushed person's feet moved; steps where some did, and of people who touch "
       "also where all did; slide where three in four people alone did, fewer than half of them "
       "lifted a foot or feet were not recorded; ldp presets: slide)");
-  row.choices.insert(row.choices.begin(), kAutoStance);
   row.text = [](const FitOptions&) { return std::string(kAutoStance); };
   row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
     if (text == kAutoStance) return std::nullopt;
     Stance stance;
     if (MaybeError error = ParseName("--stance", text, &stance)) {
-      // Earlier versions had feet that step by this name.
-      const char* const now = text == "threshold" ? "; steps took its place" : "";
-      return Error{error->message + ", or " + kAutoStance + now};
+      return Error{error->message + ", or " + kAutoStance};
     }
     SetStance(stance, o);
     return std::nullopt;

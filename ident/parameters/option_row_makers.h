@@ -70,7 +70,6 @@ FitOptionRow NameRow(const char* name, const char* json, OptionField<E> field, c
         return ParseName("--" + std::string(name), text, &field(*o));
       });
   row.json = json;
-  if constexpr (std::is_enum_v<E>) row.choices = AllNames<E>();
   row.text = [field](const FitOptions& o) { return NameOf(OptionValue(field, o)); };
   row.write = [text = row.text](const FitOptions& o) { return nlohmann::ordered_json(text(o)); };
   row.read = [=](const nlohmann::ordered_json& value, FitOptions* o) {

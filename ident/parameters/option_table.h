@@ -29,8 +29,7 @@ inline constexpr char kRarelyChanged[] = "rarely changed";
 struct FitOptionRow {
   std::string name;  // of the flag, without its dashes
   std::string help;
-  std::string heading;               // of --help: model, fit, kRarelyChanged
-  std::vector<std::string> choices;  // the words it takes; empty: any
+  std::string heading;  // of --help: model, fit, kRarelyChanged
   OptionStage stage = OptionStage::kModel;
   bool is_bool = false;         // --name, --noname; the others take --name=value
   bool preset_decides = false;  // without it the preset's value holds

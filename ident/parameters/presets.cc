@@ -192,12 +192,6 @@ void SetLikelihood(Likelihood likelihood, FitOptions* options) {
   options->settling_weight = options->mode_weight = 0.0;
 }
 
-std::vector<std::string> PresetNames() {
-  std::vector<std::string> names = {kAutoPreset};
-  for (const NamedPreset& preset : kPresets) names.push_back(preset.name);
-  return names;
-}
-
 std::optional<Stance> StanceOfMovers(const std::string& preset) {
   const NamedPreset* known = FindPreset(preset);
   return known == nullptr ? std::nullopt : known->of_movers;

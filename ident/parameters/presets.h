@@ -30,9 +30,6 @@ namespace pushid {
 
 inline constexpr char kAutoPreset[] = "auto";
 
-// The names of all, kAutoPreset among them.
-std::vector<std::string> PresetNames();
-
 // What "auto" and "ldp_published" stand for on these recordings; other names as they are.
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings);
 

@@ -40,6 +40,14 @@ class AppTest : public TempDirTest {
     return Path(name);
   }
 
+  // A fitted model with checks added.
+  std::string CheckedModel(const std::vector<std::string>& checks,
+                           const std::string& name = "model.json") {
+    const std::string model = FitModel(name);
+    Succeeded(RunApp("pushid-check", With({"--model=" + model, Recordings()}, checks)));
+    return model;
+  }
+
   static nlohmann::ordered_json Json(const std::string& path) {
     return Unwrapped(ReadJsonDocument(path)).content;
   }

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using BatchFaultTest = BatchFixture;
 
 TEST_F(BatchFaultTest, LimitsEndAJobAndSaySo) {
-  const std::string endless = "\"--bootstrap=100000\"";
+  const std::string endless = "\"--self_force=mlp:64\"";
   const AppRun slow = Batch(Plan("time_limit_s = 0.5", {{"slow", endless}}, "slow"));
   EXPECT_EQ(slow.exit_code, 2) << slow.err;
   EXPECT_TRUE(Contains(slow.out, "timed out after 0.5 s"));
@@ -154,7 +154,7 @@ TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
 
 // Killed outright, it leaves no fit running.
 TEST_F(BatchFaultTest, ChildrenDieWithTheBatch) {
-  const std::string plan = Plan("", {{"endless", "\"--bootstrap=1000000\""}});
+  const std::string plan = Plan("", {{"endless", "\"--self_force=mlp:64\""}});
   RunApp("pushid-batch", {plan, "--quiet"}, 1.5);
   ASSERT_TRUE(fs::exists(Path("out/jobs")));
   const auto running = [this] {

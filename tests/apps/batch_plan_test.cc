@@ -24,7 +24,6 @@ TEST_F(BatchPlanTest, WrongFlagsAreToldBeforeAnyJob) {
       {"--lowpass_hz=-1", "--lowpass_hz is -1"},
       {"--help", "--help does not run a fit"},
       {"--version", "--version does not run a fit"},
-      {"--bootstrap_file=b", "--bootstrap_file would be overwritten by every job"},
   };
   for (const auto& [flag, says] : flags) {
     SCOPED_TRACE(flag);

@@ -68,14 +68,14 @@ TEST_F(CommandLineTest, CtrlCSaysWhatIsKept) {
                                  std::string(PUSHID_BIN_DIR) + "/" + program});
     return RunProgram("/usr/bin/timeout", flags);
   };
-  AppRun run = interrupted("pushid-fit", {Recordings(), "--bootstrap=1000000", "--quiet",
+  AppRun run = interrupted("pushid-fit", {Recordings(), "--self_force=mlp:64", "--quiet",
                                           "--model_out=" + Path("m.json")});
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_TRUE(Contains(run.err, "pushid-fit: interrupted; no partial file is left"));
   EXPECT_FALSE(std::filesystem::exists(Path("m.json")));
   const std::string kept = Path("replicas.csv");
-  run = interrupted("pushid-fit",
-                    {Recordings(), "--bootstrap=1000000", "--quiet", "--bootstrap_file=" + kept});
+  run = interrupted("pushid-check", {"--model=" + FitModel(), Recordings(), "--bootstrap=1000000",
+                                     "--quiet", "--bootstrap_file=" + kept});
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_TRUE(
       Contains(run.err, "finished replicas are in " + kept + "; run the same command to continue"));
@@ -107,16 +107,16 @@ TEST_F(CommandLineTest, AMisspeltFlagIsGuessed) {
 }
 
 TEST_F(CommandLineTest, AValueThatIsNoneIsAnOrdinaryError) {
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--bootstrap=abc"}),
-                      {"pushid-fit: error: --bootstrap=abc: 'abc' is not a whole number"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--bootstrap", "1e3"}), {"'1e3'"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--bootstrap=abc"}),
+                      {"pushid-check: error: --bootstrap=abc: 'abc' is not a whole number"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--bootstrap", "1e3"}), {"'1e3'"}));
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--quiet=maybe"}), {"'maybe' is not true or false"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--push_check_noise=x"}), {"'x' is not a number"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--bootstrap"}), {"--bootstrap has no value"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--fps=x"}), {"'x' is not a number"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--bootstrap"}), {"--bootstrap has no value"}));
   EXPECT_TRUE(
       Refused(RunApp("pushid-fit", {"M/manifest.json"}), {"--recordings=M/manifest.json?"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--design", "--check"}),
-                      {"--design has no value, as --check is a flag: --design=..."}));
+  EXPECT_TRUE(Refused(RunApp("pushid-fit", {"--preset", "--check"}),
+                      {"--preset has no value, as --check is a flag: --preset=..."}));
 }
 
 TEST_F(CommandLineTest, WhatIsMissingIsNamed) {

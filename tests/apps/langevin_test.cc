@@ -119,7 +119,6 @@ TEST_F(LangevinAppTest, BadUse) {
       {{"--process_noise=white"}, "'white'"},
       {{"--likelihood=posterior"}, "--likelihood"},
       {{"--likelihood=innovation", "--stance=steps"}, "--stance=steps"},
-      {{"--likelihood=innovation", "--horizon_check"}, "--horizon_check"},
   };
   for (const auto& [flags, says] : fits) {
     std::vector<std::string> all = flags;

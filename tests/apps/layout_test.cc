@@ -54,7 +54,7 @@ std::string Opened(std::string page) {
 }
 
 TEST_F(LayoutTest, AReportOfAFewParameters) {
-  const std::string model = FitModel("model.json", {"--profile=mu", "--bootstrap=9"});
+  const std::string model = CheckedModel({"--profile=mu", "--bootstrap=9"});
   Succeeded(RunApp("pushid-report",
                    {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")}));
   ExpectGoodLayout({Opened(ReadText(Path("report.html")))}, {0});
@@ -69,7 +69,7 @@ TEST_F(LayoutTest, AReportOfManyParameters) {
 
 // In a journal's column.
 TEST_F(LayoutTest, FiguresForPapers) {
-  const std::string model = FitModel("model.json", {"--profile=mu", "--bootstrap=9"});
+  const std::string model = CheckedModel({"--profile=mu", "--bootstrap=9"});
   Succeeded(RunApp("pushid-report",
                    {"--model=" + model, Recordings(), "--figures_out=" + Path("figures")}));
   std::string figures;

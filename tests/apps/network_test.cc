@@ -80,8 +80,6 @@ TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {
   for (const auto& [flags, complaint] :
        std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--rod=gru:4"}, "--rod is 'gru:4'"},
-           {{"--self_force=mlp:2", "--early_stopping=0.25", "--profile=mu"},
-            "--profile and --bootstrap need the minimum of the cost"},
            {{"--self_from=" + Path("gru.json")},
             "has learned gru:2, which --self_from cannot take over"}}) {
     const auto all = With({Recordings(), "--model_out=" + Path("m.json")}, flags);

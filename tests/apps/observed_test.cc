@@ -1,4 +1,4 @@
-// --observed in predict, evaluate and crossvalidate; --population in fit.
+// --observed in predict, evaluate and crossvalidate; --population of check.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -25,7 +25,7 @@ class ObservedTest : public AppTest {
 };
 
 TEST_F(ObservedTest, OneFrameIsWhatThereIsWithoutTheFlag) {
-  const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
+  const std::string model = "--model=" + CheckedModel({"--learn_forecasts"});
   for (const bool asked : {false, true}) {
     std::vector<std::string> more = {model, Recordings(),
                                      "--json_out=" + Path(asked ? "one.json" : "none.json")};
@@ -41,7 +41,7 @@ TEST_F(ObservedTest, OneFrameIsWhatThereIsWithoutTheFlag) {
 }
 
 TEST_F(ObservedTest, FramesThatAreSeenHelp) {
-  const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
+  const std::string model = "--model=" + CheckedModel({"--learn_forecasts"});
   double before = 1e9;
   for (const int k : {1, 10, 25}) {
     const AppRun run =
@@ -62,7 +62,7 @@ TEST_F(ObservedTest, FramesThatAreSeenHelp) {
 }
 
 TEST_F(ObservedTest, PredictWritesBandsBehindWhatWasSeen) {
-  const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
+  const std::string model = "--model=" + CheckedModel({"--learn_forecasts"});
   const AppRun run =
       Succeeded(RunApp("pushid-predict", {model, Recordings(), "--id=" + id_, "--observed=12",
                                           "--out=" + Path("t.csv")}));
@@ -87,7 +87,7 @@ TEST_F(ObservedTest, HeldOutRecordingsAreScoredBehindTheirFirstFrames) {
 }
 
 TEST_F(ObservedTest, WhatCannotBeIsRefused) {
-  const std::string model = "--model=" + FitModel("model.json", {"--learn_forecasts"});
+  const std::string model = "--model=" + CheckedModel({"--learn_forecasts"});
   const auto evaluate = [&](const std::string& observed) {
     return RunApp("pushid-evaluate", {model, Recordings(), observed});
   };
@@ -103,27 +103,31 @@ TEST_F(ObservedTest, WhatCannotBeIsRefused) {
   EXPECT_TRUE(
       Refused(RunApp("pushid-crossvalidate", {Recordings(), "--preset=ldp", "--observed=9"}),
               {"no push tail", "--push_tail=exponential"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--preset=ldp", "--population"}),
-                      {"--population", "push tail, and the model has none"}));
   const std::string external = ChangedManifest([](nlohmann::ordered_json& json) {
     for (auto& recording : json["recordings"]) recording["push_kind"] = "external";
   });
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {external, "--population", "--quiet"}),
+  Succeeded(RunApp("pushid-fit", {external, "--model_out=" + Path("external.json")}));
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + Path("external.json"), external,
+                                              "--population", "--quiet"}),
                       {"--population", "pushed alone", "no recording is of that kind"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--preset=ldp", "--learn_forecasts"}),
-                      {"--learn_forecasts", "push tail, and the model has none"}));
   const std::string plain = "--model=" + FitModel("plain.json");
   EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {plain, Recordings(), "--observed=9"}),
                       {"plain.json", "learned no forecasts", "pushid-check --learn_forecasts"}));
   const std::string ldp = "--model=" + FitModel("ldp.json", {"--preset=ldp"});
+  for (const char* check : {"--population", "--learn_forecasts"}) {
+    EXPECT_TRUE(Refused(RunApp("pushid-check", {ldp, Recordings(), check}),
+                        {check, "push tail, and the model has none"}));
+  }
   EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {ldp, Recordings(), "--observed=9"}),
                       {"ldp.json", "no push tail"}));
 }
 
 TEST_F(ObservedTest, PopulationIsPrintedAndKept) {
-  const std::string model = FitModel("model.json", {"--population", "--learn_forecasts"});
-  EXPECT_TRUE(Contains(fit_.out, "Recordings differ by a factor exp(b) on the push tail"));
-  EXPECT_TRUE(Contains(fit_.out, "alone"));
+  const std::string model = FitModel();
+  const AppRun run = Succeeded(RunApp(
+      "pushid-check", {"--model=" + model, Recordings(), "--population", "--learn_forecasts"}));
+  EXPECT_TRUE(Contains(run.out, "Recordings differ by a factor exp(b) on the push tail"));
+  EXPECT_TRUE(Contains(run.out, "alone"));
   const auto effect = Json(model)["recording_effect"];
   EXPECT_EQ(effect["recordings"].size(), 12u);
   EXPECT_GT(effect["error_scale_m"].get<double>(), 0.0);

@@ -41,7 +41,7 @@ class ReportPage : public AppTest {};
 
 TEST_F(ReportPage, WorksInABrowser) {
   if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
-  const std::string model = FitModel("model.json", {"--profile=mu", "--bootstrap=9"});
+  const std::string model = CheckedModel({"--profile=mu", "--bootstrap=9"});
   Succeeded(RunApp("pushid-report",
                    {"--model=" + model, Recordings(), "--html_out=" + Path("report.html")}));
   std::string page = ReadText(Path("report.html"));
@@ -82,7 +82,7 @@ TEST_F(ReportPage, LeadsWithPictures) {
 }
 
 TEST_F(ReportPage, FiguresAndTablesForPapers) {
-  const std::string model = FitModel("model.json", {"--profile=mu"});
+  const std::string model = CheckedModel({"--profile=mu"});
   const std::vector<std::string> flags = {"--model=" + model, Recordings(), "--text",
                                           "--figures_out=" + Path("figures")};
   const AppRun run = Succeeded(RunApp("pushid-report", flags));

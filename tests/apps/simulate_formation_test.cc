@@ -274,16 +274,5 @@ TEST_F(SimulateFormationTest, BadUsage) {
   EXPECT_EQ(CountFiles(), files) << "something was written";
 }
 
-TEST_F(SimulateFormationTest, TheOldSpellingRunsTheSameProgram) {
-  const std::vector<std::string> flags = {model_, "--formation=line", "--people=2"};
-  const AppRun old = Succeeded(RunApp("pushid-simulate", flags));
-  const AppRun now = RunApp("pushid-formation", flags);
-  EXPECT_EQ(old.out, now.out);
-  EXPECT_EQ(old.err,
-            "pushid-simulate: note: --formation moved to pushid-formation; this spelling works "
-            "until version 0.4\n" +
-                now.err);
-}
-
 }  // namespace
 }  // namespace pushid

@@ -121,7 +121,7 @@ TEST_F(SlurmTest, AKilledJobIsDoneWhenResumed) {
   // The slow one is there to be killed, a quick one runs beside it. Snakemake asks for their states
   // every ten seconds, which is most of what this test takes.
   const std::vector<std::pair<std::string, std::string>> variants = {
-      {"a", ""}, {"slow", "\"--bootstrap=300\""}};
+      {"a", ""}, {"slow", "\"--self_force=mlp:4\""}};
   const std::string plan = Plan("", variants, "flow");
   const std::vector<std::string> list = Lines(Batch(plan, {"--list"}).out);
   ASSERT_EQ(list.size(), 1u + 2u);

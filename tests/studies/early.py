@@ -123,7 +123,7 @@ def first():
 
 
 def population():
-    fitted = studies.fit("single", "--learn_forecasts").json
+    fitted = studies.check(studies.fit("single"), "--learn_forecasts").json
     effect, forecasts = fitted["recording_effect"], fitted["forecasts"]
     rows = [["spread w of b", with_error(effect["spread"], effect["spread_standard_error"])],
             ["error scale s, m", number(effect["error_scale_m"])],

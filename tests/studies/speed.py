@@ -113,12 +113,9 @@ def processes():
         page = os.path.join(folder, "report.html")
         rows = [["`pushid-fit --setting=single`", told(*fit)],
                 ["... `--preset=ldp`", told(*fit, "--preset=ldp")],
-                ["... `--profile`", told(*fit, "--profile")],
-                ["... `--bootstrap=199` / `1000`", f"{told(*fit, '--bootstrap=199')} / {told(*fit, '--bootstrap=1000')}"],
                 ["`pushid-crossvalidate --folds=4 --repeats=5`", told(*validate)],
                 ["`pushid-report --html_out`", told(*report, f"--html_out={page}")],
-                ["`pushid-fit --setting=groups`, the 49 recordings of groups", told(*groups)],
-                ["... `--bootstrap=20`", told(*groups, "--bootstrap=20")]]
+                ["`pushid-fit --setting=groups`, the 49 recordings of groups", told(*groups)]]
         size = os.path.getsize(page) / 1e6
     text = studies.table(["the 32 recordings of single people, one thread", "processor time"], rows)
     return f"{text}\n\nThe page has {number(size)} MB."
