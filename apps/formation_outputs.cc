@@ -4,7 +4,6 @@
 #include <gflags/gflags.h>
 
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
@@ -20,9 +19,6 @@ DEFINE_string(csv_out, "", "trajectories, one row per frame and person (CSV)");
 DEFINE_string(trajectories_out, "",
               "trajectories of the hips, for PedPy and JuPedSim (.txt, or .sqlite)");
 DEFINE_string(forces_out, "", "net forces, one row per frame, person and part (CSV)");
-DEFINE_string(agents_out, "",
-              "people, gains, contact and pushes as agents of another simulator (JSON; "
-              "pushid.agents of Python steps them)");
 DEFINE_string(bvh_out, "", "folder for the pendulums as BVH, with manifest.json and the pushes");
 DEFINE_string(svg_out, "", "picture of the wave (SVG): time across, person down, colour speed");
 DEFINE_string(forces_svg_out, "", "picture of the net forces with their parts (SVG)");
@@ -110,9 +106,9 @@ void CheckOutputFlags(int people) {
   CheckPicture("svg_out", FLAGS_svg_out, people, kMostPeopleInWave);
   CheckPicture("forces_svg_out", FLAGS_forces_svg_out, people, kMostPeopleInForces);
   OrFail(CheckTrajectoryFile("trajectories_out", FLAGS_trajectories_out));
-  OrFail(CheckOutputFiles({FLAGS_agents_out, FLAGS_csv_out, FLAGS_trajectories_out,
-                           FLAGS_forces_out, FLAGS_svg_out, FLAGS_forces_svg_out, FLAGS_html_out,
-                           FLAGS_strip_out, FLAGS_joints_out, FLAGS_bodies_out}));
+  OrFail(CheckOutputFiles({FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out, FLAGS_svg_out,
+                           FLAGS_forces_svg_out, FLAGS_html_out, FLAGS_strip_out, FLAGS_joints_out,
+                           FLAGS_bodies_out}));
   if (!FLAGS_bvh_out.empty()) OrFail(CheckOutputFolder("bvh_out", FLAGS_bvh_out));
   CheckNeeds({"forces_own_scale"}, {"forces_svg_out"});
 }
@@ -145,18 +141,12 @@ std::optional<FormationBodyPlan> PlanBodies(const FormationBodyFlags& flags,
   return plan;
 }
 
-void WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
-                  const std::vector<OnsetBand>& onsets, const std::string& title) {
+void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
+                  const std::string& title) {
   using File = const std::string&;
   const ForceScale scale = FLAGS_forces_own_scale ? ForceScale::kOwn : ForceScale::kShared;
   WriteNamed(
-      {{FLAGS_agents_out,
-        [&](File file) {
-          const Result<nlohmann::ordered_json> agents = AgentsJson(run, model);
-          if (!agents.ok()) throw Error{"--agents_out: " + agents.error().message};
-          return WriteFileAtomically(file, agents.value().dump(1) + "\n");
-        }},
-       {FLAGS_bvh_out, [&](File file) { return WriteFormationRecording(file, run); }},
+      {{FLAGS_bvh_out, [&](File file) { return WriteFormationRecording(file, run); }},
        {FLAGS_csv_out,
         [&](File file) { return WriteTrajectoryCsv(file, run.recording, run.prediction); }},
        {FLAGS_trajectories_out, [&](File file) { return WriteFormationTrajectories(file, run); }},

@@ -37,8 +37,8 @@ std::optional<FormationBodyPlan> PlanBodies(const FormationBodyFlags& flags,
                                             const std::vector<Pose>& first_poses, Scene* scene);
 
 // The tables and pictures of the run that the flags name.
-void WriteOutputs(const IdentifiedModel& model, const FormationRun& run,
-                  const std::vector<OnsetBand>& onsets, const std::string& title);
+void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
+                  const std::string& title);
 
 // The pages and bodies that the flags name; of pendulums where there is no plan for bodies.
 void WriteFormationBodies(const PostprocessOptions& postprocess,

@@ -177,7 +177,7 @@ int Run() {
   const bool as_setting = !flags.as_setting.empty();
   const bool banded = !as_setting && (DrawsWave() || scene.num_people() <= kMostPeopleForBands);
   const WaveBands bands = banded ? BandsOfWave(fitted, named.set, run) : WaveBands();
-  WriteOutputs(model, run, bands.onsets, title);
+  WriteOutputs(run, bands.onsets, title);
   WriteFormationBodies(body_flags.restoration.postprocess, bodies, run, title);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run, !flags.names.empty());

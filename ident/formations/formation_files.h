@@ -2,7 +2,6 @@
 // pushid itself read.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -52,13 +51,5 @@ std::string ForcesSvg(const FormationRun& run, const std::string& title,
 std::optional<Figure> FeetFigure(const FormationRun& run);
 std::vector<std::string> FeetSvg(const FormationRun& run);  // for a page with SvgStyle
 TextTable FeetNumbers(const FormationRun& run);
-
-// Identified people as agents of another crowd simulation: bodies, gains that are already
-// those of the person's size, contact and pushes, with units in the names.
-// pushid.agents of Python steps them.
-
-// Of feet that slide, linear forces and elastic contact. Errors: a model with a term that agents do
-// not have (delay, networks, feet that hold, dry friction, ...).
-Result<nlohmann::ordered_json> AgentsJson(const FormationRun& run, const IdentifiedModel& model);
 
 }  // namespace pushid
