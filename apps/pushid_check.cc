@@ -9,7 +9,6 @@
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
-#include "ident/bodies/restoration_files.h"
 #include "ident/checks/model_checks.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/option_table.h"
@@ -101,17 +100,12 @@ void Add(const std::vector<PendulumRecording>& recordings, const ModelChecks& ch
   OrFail(AddChecks(recordings, checks, progress, model));
 }
 
-// The recordings of the model, loaded as the fit loaded them, and the bodies of --body_weight.
+// The recordings of the model, loaded as the fit loaded them.
 std::vector<PendulumRecording> LoadFitted(FittedModel* model) {
   const std::map<std::string, std::string>& fit_flags = model->provenance.configuration;
   FitOptions& options = model->fit.options;
   LoadAs(fit_flags);
-  const auto loaded = LoadFittedRecordings(model->fit, NeedsJoints(options));
-  if (options.body_weight > 0.0) {
-    const auto folder = fit_flags.find("body_restoration");
-    options.body = OrFail(LoadBodyData(folder == fit_flags.end() ? "" : folder->second,
-                                       "--body_restoration of the fit", loaded, options.mapping));
-  }
+  const auto loaded = LoadFittedRecordings(model->fit, NeedsJoints(options.model));
   return OrFail(AsFitted(MakePendulumRecordings(loaded, options.mapping), model->fit));
 }
 

@@ -155,12 +155,6 @@ Predictors MakePredictors(const Candidates& candidates) {
   Predictors predictors;
   const int observed = ObservedFrames();
   for (const auto& [name, candidate] : candidates) {
-    if (candidate.body_weight > 0.0) {
-      throw Error{
-          "--body_weight: '" + name +
-          "' would be scored with a restoration that was trained on the held-out recordings; "
-          "pushid-train-restoration --crossvalidate --body_weight retrains both"};
-    }
     if (observed > 0 && candidate.model.push_tail == PushTail::kNone) {
       throw Error{"--observed: '" + name +
                   "' has no push tail, which --observed estimates from the first frames; give it "

@@ -15,7 +15,6 @@
 #include "datasets/files/json_file.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/parameters/presets.h"
-#include "ident/peers/peer_files.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/prediction.h"
 #include "ident/validation/held_out_spread.h"
@@ -24,9 +23,6 @@
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");
 DEFINE_string(json_out, "", "write the scores here (JSON)");
-DEFINE_string(peer, "",
-              "with --restoration: the folder of a peer (pushid-train-restoration "
-              "--kind=mrt) to compare with");
 DEFINE_bool(per_recording, true, "print a line for every recording");
 
 namespace {
@@ -37,7 +33,6 @@ using namespace pushid;
 RestorationFlags CheckedFlags() {
   RequireModel();
   const RestorationFlags restoration = RestorationFlagsFromCommandLine();
-  CheckNeeds({"peer"}, {"restoration"}, " to be compared with");
   OrFail(CheckOutputFiles({FLAGS_json_out}));
   return restoration;
 }
@@ -55,10 +50,6 @@ std::optional<BodyEvaluation> Bodies(const RestorationFlags& flags, const Identi
   for (const BodyRecording& body : bodies) {
     ScoreRestoration(model, *restoration, flags.postprocess, body, &scores, ObservedFrames(),
                      ForecastUseFlag());
-  }
-  if (!FLAGS_peer.empty()) {
-    const std::unique_ptr<Peer> peer = OrFail(LoadPeer(FLAGS_peer));
-    for (const BodyRecording& body : bodies) ScorePeer(*peer, body, &scores);
   }
   return std::optional<BodyEvaluation>(
       SummarizeAll(bodies, scores, ParseLabelKeys(FLAGS_group_by)));

@@ -12,7 +12,6 @@
 #include "datasets/files/error.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/bodies/restoration_files.h"
 #include "ident/fit/fit.h"
 #include "ident/parameters/parameter_table.h"
 #include "ident/parameters/presets.h"
@@ -27,9 +26,6 @@ DEFINE_int32(replica, 0,
 DEFINE_string(bootstrap_by, pushid::NameOf(pushid::BootstrapOptions{}.by),
               "unit that --replica draws: subject (all recordings of a person), recording, or auto "
               "(as --cluster, but recordings where people share them)");
-DEFINE_string(
-    body_restoration, "",
-    "folder that pushid-train-restoration --kind=window or cvae wrote, for --body_weight");
 DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
 DEFINE_bool(list_parameters, false,
             "only print every parameter: name, symbol, unit, meaning, when to free it (Markdown)");
@@ -37,18 +33,6 @@ DEFINE_bool(list_parameters, false,
 namespace {
 
 using namespace pushid;
-
-// --body_weight and --body_restoration go together.
-void CheckBodyFlags(const FitOptions& options) {
-  if (options.body_weight > 0.0 && FLAGS_body_restoration.empty()) {
-    throw Error{
-        "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
-        "--kind=window or cvae wrote"};
-  }
-  if (options.body_weight <= 0.0 && !FLAGS_body_restoration.empty()) {
-    throw Error{"--body_restoration does nothing without --body_weight; give --body_weight=1"};
-  }
-}
 
 int Run() {
   const double begin = Now();
@@ -62,22 +46,17 @@ int Run() {
   ClusterBy drawn_by = ClusterBy::kAuto;
   OrFail(ParseName("--bootstrap_by", FLAGS_bootstrap_by, &drawn_by));
   CheckRecordingFlags();
-  CheckBodyFlags(roughly);
   if (FLAGS_check) return kDone;
   if (!FLAGS_model_out.empty()) OrFail(CheckWritable(FLAGS_model_out));
   Warnings file_warnings;  // a result says what it was made of
   const std::vector<Recording> recordings =
-      LoadFlaggedRecordings({}, NeedsJoints(roughly), &file_warnings, true);
+      LoadFlaggedRecordings({}, NeedsJoints(roughly.model), &file_warnings, true);
   CheckPushed(recordings);
   if (drawn_by == ClusterBy::kAuto) drawn_by = roughly.cluster;
   const std::vector<PendulumRecording> pendulums = Resampled(
       MakePendulumRecordings(recordings, roughly.mapping), drawn_by, Seed(), FLAGS_replica);
 
   FitOptions options = OrFail(setup.For(pendulums));
-  if (options.body_weight > 0.0) {
-    options.body = OrFail(
-        LoadBodyData(FLAGS_body_restoration, "--body_restoration", recordings, options.mapping));
-  }
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options)) Warn(warning);
   Warnings unit_warnings;
   const MaybeError unprepared = PrepareFit(pendulums, &options, &unit_warnings);

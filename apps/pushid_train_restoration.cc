@@ -33,7 +33,7 @@ int CrossValidate(const TrainRestorationFlags& flags, const std::vector<BodyReco
   if (flags.json_out.empty()) return kDone;
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   AddBodyJson(validation.evaluation, &json);
-  json["run"] = {{"training_seconds", validation.training_seconds}, {"rounds", validation.rounds}};
+  json["run"] = {{"training_seconds", validation.training_seconds}};
   OrFail(WriteJson(flags.json_out, json));
   return kDone;
 }
@@ -59,19 +59,6 @@ nlohmann::ordered_json TrainingJson(const std::vector<BodyRecording>& recordings
   return json;
 }
 
-// Alone, or as a whole with the pendulum.
-TrainedRestoration Learn(const TrainRestorationFlags& flags,
-                         const std::vector<BodyRecording>& recordings, const std::vector<int>& all,
-                         const RestorationRunOptions& options, TrainingLine* line) {
-  const auto told = [line](const std::string& step, double done) { line->Show(step, done); };
-  if (options.fit.body_weight <= 0.0) {
-    SayWhenInterrupted(KeptCheckpoints(flags.out));
-    return OrFail(TrainFromRecordings(recordings, all, options, told));
-  }
-  SayWhenInterrupted("joint training keeps no checkpoints; run the same command to start again");
-  return OrFail(TrainChain(recordings, all, options, told)).restoration;
-}
-
 int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& recordings,
           RestorationRunOptions options) {
   OrFail(MakeFolder(flags.out));
@@ -82,7 +69,10 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   OrFail(CheckWritable(options.training.checkpoint));
   const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
   TrainingLine line;
-  const TrainedRestoration trained = Learn(flags, recordings, all, options, &line);
+  SayWhenInterrupted(KeptCheckpoints(flags.out));
+  const TrainedRestoration trained = OrFail(TrainFromRecordings(
+      recordings, all, options,
+      [&line](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
   std::fprintf(stderr, "%s", SizesText(trained.sizes).c_str());
   RestorationFile file = trained.file;

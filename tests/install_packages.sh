@@ -15,6 +15,8 @@ fuzz_packages=(clang libclang-rt-14-dev)  # tests/fuzz/run.sh alone needs them
 # The workflow's tests are skipped without them: Snakemake takes 44 s and 683 MB to install.
 workflow_packages=(snakemake slurmctld slurmd slurm-client munge)
 
+study_packages=(python3-torch)  # tests/studies/peers.py alone needs it; it is skipped without
+
 package_packages=(dpkg-dev)  # cpack: Debian packages, apps/packaging/Containerfile
 
 install_packages() {

@@ -26,13 +26,13 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 
 // The order of each room's subfolders; "" is the room itself.
 const std::map<std::string, std::vector<std::string>> kFloors = {
-    {"models", {"", "restoration", "peers", "generators"}},
+    {"models", {"", "restoration", "generators"}},
     {"datasets",
      {"files", "formats", "manifest", "sensors", "loading", "synthetic", "exchange", "inspection"}},
     {"residuals", {"packed", "", "lanes", "sensitivities", "cost_functions", "adjoint"}},
     {"ident", {"figures",     "parameters",  "problem",  "solver",     "large_networks",
                "uncertainty", "diagnostics", "model",    "observed",   "fit",
-               "prediction",  "validation",  "push",     "bodies",     "peers",
+               "prediction",  "validation",  "push",     "bodies",
                "generators",  "forecasts",   "training", "formations", "report",
                "report/page", "checks",      ""}},
     {"apps", {"support", "flags", "batch", "", "python"}},
@@ -156,8 +156,6 @@ TEST(RoomsTest, TheCoreIncludesNoOptionalLibrary) {
   const std::map<std::string, std::set<std::string>> may_include = {
       {"residuals/adjoint", {"ident/large_networks"}},
       {"ident/large_networks", {}},
-      {"models/peers", {"ident/peers", "ident/training"}},
-      {"ident/peers", {"ident/training"}},
       {"ident/forecasts", {"ident/training"}},
       {"ident/training", {}},
   };

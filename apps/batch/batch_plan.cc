@@ -214,17 +214,7 @@ class PlanReader {
     variant->restoration.emplace();
     variant->restoration_line = LineOf(*node);
     GetStrings(table, "restoration", &*variant->restoration);
-    for (const std::string& flag : *variant->restoration) {
-      CheckFlag(*node, flag);
-      const std::string peer = "--kind=";
-      const auto kind = flag.rfind(peer, 0) == 0
-                            ? FromName<RestorationKind>(flag.substr(peer.size()))
-                            : std::nullopt;
-      if (kind && !RowOf(*kind).follows_pendulum) {
-        Fail(*node, flag + " is a peer, which does not follow a pendulum; compare with it by " +
-                        "pushid-train-restoration --crossvalidate");
-      }
-    }
+    for (const std::string& flag : *variant->restoration) CheckFlag(*node, flag);
   }
 
   void CheckFlag(const toml::node& at, const std::string& flag) {

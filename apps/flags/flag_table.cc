@@ -31,8 +31,8 @@ std::vector<FlagInfo> OwnFlags() {
 
 // What names outputs or only changes speed and talk is no part of a result.
 bool IsPartOfResult(const FlagInfo& flag) {
-  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "checkpoint_seconds",
-                                                 "check", "list_parameters"};
+  static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "check",
+                                                 "list_parameters"};
   return !IsOutputFlag(flag.name) && kLeftOut.count(flag.name) == 0;
 }
 

@@ -73,8 +73,6 @@ DEFINE_bool(correction, kOptions.correction,
             "low frequencies");
 DEFINE_double(ridge_share, kOptions.ridge_share,
               "cmu: share of the linear forecast, which fades over the next frames; 0: none");
-DEFINE_double(checkpoint_seconds, kOptions.checkpoint_seconds,
-              "time between two checkpoints in --out");
 DEFINE_uint64(seed, kOptions.seed, "the first of --seeds, and the seed of the folds");
 DEFINE_int32(num_threads, kOptions.num_threads,
              "threads of the training; only a single thread is bit-reproducible");
@@ -121,8 +119,6 @@ void ReadNumbers(TrainGeneratorFlags* flags) {
   TakeInRange("push_spread", FLAGS_push_spread, 0.0, 3.0, &flags->changes.diffusion.push_spread);
   TakeInRange("ridge_share", FLAGS_ridge_share, 0.0, 1.0, &options.ridge_share);
   TakeInRange("held_out", FLAGS_held_out, 0.0, 0.5, &flags->held_out);
-  TakeInRange("checkpoint_seconds", FLAGS_checkpoint_seconds, 0.0, 1e9,
-              &options.checkpoint_seconds);
   TakeInRange("num_threads", FLAGS_num_threads, 1, 1024, &options.num_threads);
 }
 

@@ -12,21 +12,18 @@
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote: the pendulum to fit");
 namespace {
-std::string KindsThat(bool follow_pendulum) {
+std::string KindHelp() {
   std::string kinds;
   for (const pushid::RestorationKindRow& row : pushid::kRestorationKinds) {
-    if (!row.trained || row.follows_pendulum != follow_pendulum) continue;
+    if (!row.trained) continue;
     kinds += (kinds.empty() ? "" : ", ") + std::string(row.name) + " (" + row.what + ")";
   }
-  return kinds;
+  return "kind of restoration: " + kinds;
 }
-const std::string kKind = "kind of restoration: " + KindsThat(true) +
-                          ", or a peer for --peer of pushid-evaluate: " + KindsThat(false);
+const std::string kKind = KindHelp();
 }  // namespace
 
 DEFINE_string(kind, pushid::RowOf(pushid::RestorationTrainingOptions{}.kind).name, kKind.c_str());
-DEFINE_string(mrt_size, pushid::NameOf(pushid::RestorationTrainingOptions{}.mrt_size),
-              "mrt: small (0.3 million weights), or published (the published widths, 5 million)");
 DEFINE_string(coordinates, pushid::NameOf(pushid::RestorationTrainingOptions{}.coordinates),
               "cvae: joints relative to the rod's tip (tip), or to the hip at frame 0 (ldp)");
 DEFINE_string(sees, pushid::NameOf(pushid::RestorationTrainingOptions{}.view),
@@ -37,7 +34,7 @@ DEFINE_bool(halves, pushid::RestorationTrainingOptions{}.halves,
             "cvae: a network for the lower and one for the upper body (false: one for both)");
 DEFINE_string(training, pushid::NameOf(pushid::RestorationTrainingOptions{}.training),
               "cvae: pushid's training (own), or as published: Adam at 1e-4 falling to 1e-7, sigma "
-              "compared, the latent variable drawn (published)");
+              "compared, the latent variable drawn, no predicted pendulums (published)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
 DEFINE_bool(check, pushid::TrainRestorationFlags{}.check,
@@ -45,23 +42,8 @@ DEFINE_bool(check, pushid::TrainRestorationFlags{}.check,
 DEFINE_int32(crossvalidate, pushid::TrainRestorationFlags{}.crossvalidate,
              "number of folds: instead of writing a restoration, refit pendulum and restoration in "
              "every fold and score the held-out recordings; 0: off");
-DEFINE_int32(inner_folds, pushid::RestorationRunOptions{}.inner_folds,
-             "number of folds for the out-of-fold pendulum predictions");
-DEFINE_double(held_out, pushid::RestorationRunOptions{}.held_out,
-              "fraction of the recordings held out for early stopping");
-DEFINE_double(checkpoint_seconds, pushid::RestorationTrainingOptions{}.checkpoint_seconds,
-              "time between two checkpoints in --out");
 DEFINE_double(effort, pushid::RestorationTrainingOptions{}.effort,
               "factor on the number of training steps");
-DEFINE_double(
-    body_weight, 0.0,
-    "window, cvae: joint training: fit the pendulum also to the restored bodies, with this "
-    "weight, retrain the network on the new pendulums, and repeat; 0: separate training");
-DEFINE_int32(rounds, pushid::RestorationRunOptions{}.rounds,
-             "with --body_weight: largest number of rounds, unless it converges earlier");
-DEFINE_bool(predicted_pendulums, pushid::RestorationRunOptions{}.predicted_pendulums,
-            "also train on out-of-fold predicted pendulums");
-DEFINE_bool(mirrored, pushid::RestorationRunOptions{}.mirrored, "also train on mirrored copies");
 DEFINE_string(more_settings, "",
               "also train the bodies on the recorded pendulums of these settings (named as in "
               "--setting); they are neither fitted nor scored");
@@ -80,7 +62,6 @@ struct FlagOfKind {
   RestorationKind kind;
 };
 constexpr FlagOfKind kFlagsOfKinds[] = {
-    {"mrt_size", "--mrt_size", RestorationKind::kMrt},
     {"halves", "--nohalves", RestorationKind::kCvae},
     {"training", "--training", RestorationKind::kCvae},
 };
@@ -93,22 +74,12 @@ bool AtDefault(const char* flag) {
 // What goes with which kind.
 void CheckKind(RestorationKind kind, RestorationView view) {
   const RestorationKindRow& row = RowOf(kind);
-  if (view != RestorationView::kPendulum && !row.follows_pendulum) {
-    throw Error{"--sees is for kinds that follow a pendulum, and --kind=" + FLAGS_kind +
-                " continues recorded bodies"};
-  }
   if (view == RestorationView::kNeighbours && !row.sees_neighbours) {
     throw Error{"--sees=neighbours needs --kind=window"};
   }
   for (const FlagOfKind& own : kFlagsOfKinds) {
     if (kind == own.kind || AtDefault(own.flag)) continue;
     throw Error{std::string(own.given) + " needs --kind=" + NameOf(own.kind)};
-  }
-  if (ObservedFrames() > 0 && !row.follows_pendulum) {
-    throw Error{
-        "--observed is for predicted pendulums; a peer always gets the number of frames that "
-        "--kind=" +
-        FLAGS_kind + " takes"};
   }
   if (AtDefault("coordinates")) return;
   if (kind != RestorationKind::kCvae || view == RestorationView::kPose) {
@@ -129,7 +100,6 @@ void ReadOptions(RestorationRunOptions* options) {
   OrFail(ParseName("--coordinates", FLAGS_coordinates, &training.coordinates));
   OrFail(ParseName("--sees", FLAGS_sees, &training.view));
   OrFail(ParseName("--training", FLAGS_training, &training.training));
-  OrFail(ParseName("--mrt_size", FLAGS_mrt_size, &training.mrt_size));
   CheckKind(*kind, training.view);
   if (FLAGS_crossvalidate == 0) {
     Require("out", FLAGS_out, "name the folder to write");
@@ -143,34 +113,14 @@ void ReadOptions(RestorationRunOptions* options) {
   if (options->observed > 0 && FLAGS_crossvalidate == 0) {
     throw Error{"--observed needs --crossvalidate: training uses whole recordings"};
   }
-  if (!(FLAGS_body_weight >= 0.0)) throw Error{"--body_weight must not be negative"};
-  if (FLAGS_body_weight > 0.0 &&
-      (!RowOf(*kind).differentiable || training.view != RestorationView::kPendulum)) {
-    throw Error{"--body_weight needs --kind=window or cvae, and --sees=pendulum"};
-  }
-  if (FLAGS_rounds < 1) throw Error{"--rounds must be positive"};
-  if (FLAGS_body_weight == 0.0 && FLAGS_rounds != options->rounds) {
-    throw Error{"--rounds does nothing without --body_weight; give --body_weight=1"};
-  }
-  if (FLAGS_inner_folds < 2) throw Error{"--inner_folds must be at least 2"};
-  if (!(FLAGS_held_out > 0.0 && FLAGS_held_out <= 0.5)) {
-    throw Error{"--held_out must lie above 0 and not above 0.5"};
-  }
   if (!(FLAGS_effort > 0.0 && FLAGS_effort <= 100.0)) {
     throw Error{"--effort must lie above 0 and not above 100"};
   }
-  if (!(FLAGS_checkpoint_seconds >= 0.0)) throw Error{"--checkpoint_seconds must not be negative"};
   if (FLAGS_num_threads < 1) throw Error{"--num_threads must be positive"};
-  options->rounds = FLAGS_rounds;
-  options->inner_folds = FLAGS_inner_folds;
-  options->held_out = FLAGS_held_out;
-  options->predicted_pendulums = FLAGS_predicted_pendulums;
-  options->mirrored = FLAGS_mirrored;
   training.halves = FLAGS_halves;
   training.effort = FLAGS_effort;
   training.seed = FLAGS_seed;
   training.num_threads = FLAGS_num_threads;
-  training.checkpoint_seconds = FLAGS_checkpoint_seconds;
 }
 
 // The pendulum's options as the model has them.
@@ -178,7 +128,6 @@ void ReadModel(FitOptions* fit) {
   const FittedModel model = OrFail(ReadFittedModel(FLAGS_model));
   *fit = model.fit.options;
   fit->num_threads = FLAGS_num_threads;
-  fit->body_weight = FLAGS_body_weight;
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include "datasets/files/random.h"
 #include "ident/bodies/tensor_folder.h"
 #include "ident/parameters/option_names.h"
-#include "models/restoration/body_tangent.h"
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/window_restoration.h"
 
@@ -34,11 +33,9 @@ MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile
                            {NameOf(file.kind), file.settings, file.training, file.tensors});
 }
 
-Result<RestorationFile> ReadRestorationFile(const std::string& folder, const char* flag) {
-  TensorFolderKind named = kRestorationFolder;
-  named.flag = flag;
+Result<RestorationFile> ReadRestorationFile(const std::string& folder) {
   Result<TensorFolder> read = ReadTensorFolder(
-      named, folder, TrainedRestorationKinds(),
+      kRestorationFolder, folder, TrainedRestorationKinds(),
       [](const std::string& name) { return FromName<RestorationKind>(name).has_value(); });
   if (!read.ok()) return read.error();
   TensorFolder& content = read.value();
@@ -109,8 +106,19 @@ std::string RestorationJsonFile(const std::string& folder) {
 
 Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file,
                                                      const std::string& folder) {
-  return MakeByKind(kRestorationMakers, file, RestorationJsonFile(folder),
-                    "a peer is named by --peer");
+  const std::string path = RestorationJsonFile(folder);
+  for (const KindMaker& maker : kRestorationMakers) {
+    if (maker.kind != file.kind) continue;
+    TensorReader reader(file.tensors);
+    Result<std::unique_ptr<Restoration>> made = maker.make(file, path, &reader);
+    if (made.ok() && !reader.problem().empty()) {
+      return Error{reader.problem() + "; train again with this version", path};
+    }
+    return made;
+  }
+  return Error{"the kind is " + Quoted(NameOf(file.kind)) + "; it must be " +
+                   TrainedRestorationKinds(),
+               path};
 }
 
 Result<bool> LearnedAlone(const std::string& folder) {
@@ -120,55 +128,13 @@ Result<bool> LearnedAlone(const std::string& folder) {
   return file.value().training->value(kMostPeopleKey, 0) == 1;
 }
 
-Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder, const char* flag) {
+Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder) {
   if (folder == NameOf(RestorationKind::kRigid)) {
     return std::unique_ptr<Restoration>(new RigidRestoration());
   }
-  const Result<RestorationFile> file = ReadRestorationFile(folder, flag);
+  const Result<RestorationFile> file = ReadRestorationFile(folder);
   if (!file.ok()) return file.error();
   return MakeRestoration(file.value(), folder);
-}
-
-namespace {
-
-// Null where derivatives are not known.
-std::shared_ptr<const BodyTangent> TangentOf(const Restoration& restoration) {
-  const auto* window = dynamic_cast<const WindowRestoration*>(&restoration);
-  if (window != nullptr && window->weights().view == RestorationView::kPendulum) {
-    return std::make_shared<WindowTangent>(window->weights());
-  }
-  const auto* cvae = dynamic_cast<const CvaeRestoration*>(&restoration);
-  if (cvae != nullptr && cvae->weights().layout.pendulum) {
-    return std::make_shared<CvaeTangent>(cvae->weights());
-  }
-  return nullptr;
-}
-
-}  // namespace
-
-Result<std::shared_ptr<const BodyData>> MakeBodyData(const Restoration& restoration,
-                                                     const std::vector<BodyRecording>& recordings) {
-  auto data = std::make_shared<BodyData>();
-  data->restoration = TangentOf(restoration);
-  if (data->restoration == nullptr) {
-    return Error{
-        "--body_weight needs a restoration of --kind=window or cvae and --sees=pendulum: the "
-        "derivatives of others are not known"};
-  }
-  for (const BodyRecording& recording : recordings) {
-    data->motions[recording.pendulum.id] = recording.bodies;
-  }
-  return std::shared_ptr<const BodyData>(std::move(data));
-}
-
-Result<std::shared_ptr<const BodyData>> LoadBodyData(const std::string& folder, const char* flag,
-                                                     const std::vector<Recording>& recordings,
-                                                     SkeletonMapping mapping) {
-  const auto restoration = LoadRestoration(folder, flag);
-  if (!restoration.ok()) return restoration.error();
-  const auto bodies = MakeBodyRecordings(recordings, mapping);
-  if (!bodies.ok()) return bodies.error();
-  return MakeBodyData(*restoration.value(), bodies.value());
 }
 
 }  // namespace pushid

@@ -16,7 +16,6 @@
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/dense_network.h"
 #include "models/restoration/restoration.h"
-#include "residuals/cost_functions/body_residual.h"
 
 namespace pushid {
 
@@ -46,9 +45,7 @@ std::string RestorationJsonFile(const std::string& folder);
 MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile& file);
 
 // Errors: no such folder, a newer format, weights that are not those of the JSON (by their hash).
-// flag: which names the folder, for messages.
-Result<RestorationFile> ReadRestorationFile(const std::string& folder,
-                                            const char* flag = "--restoration");
+Result<RestorationFile> ReadRestorationFile(const std::string& folder);
 
 // The restoration a file describes. Errors: a kind that is no restoration, missing or misshapen
 // tensors by name.
@@ -60,8 +57,7 @@ Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file
 Result<bool> LearnedAlone(const std::string& folder);
 
 // Both. "rigid" needs no folder: the name is enough.
-Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder,
-                                                     const char* flag = "--restoration");
+Result<std::unique_ptr<Restoration>> LoadRestoration(const std::string& folder);
 
 // How z of a `cvae` is chosen (models/restoration/cvae_restoration.h).
 struct LatentChoice {
@@ -71,49 +67,31 @@ struct LatentChoice {
 // Errors: kDraw of another kind, without samplers, or with samplers whose sigma was not kept.
 MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration);
 
-// The bodies of a fit with body_weight (FitOptions). Errors: a restoration that is no `window` or
-// `cvae` of the pendulum alone, whose Jacobian is not known. Of a `cvae`, z is the sampler's mean.
-Result<std::shared_ptr<const BodyData>> MakeBodyData(const Restoration& restoration,
-                                                     const std::vector<BodyRecording>& recordings);
-
-// The same from a restoration's folder, which `flag` names, and loaded recordings with all joints.
-Result<std::shared_ptr<const BodyData>> LoadBodyData(const std::string& folder, const char* flag,
-                                                     const std::vector<Recording>& recordings,
-                                                     SkeletonMapping mapping);
-
 // What makes and trains each kind of restoration, one row each; RestorationKindRow has what
 // else there is to a kind. A new kind adds a maker and a trainer here, and defines both in files of
 // its own.
 //
-// The tables are three, because nothing but the programs that train needs LibTorch, and nothing but
-// those that compare with peers needs these: a program links everything in the tables it reads.
+// The tables are two, because nothing but the programs that train needs LibTorch: a program links
+// everything in the tables it reads.
 
-class Peer;                         // models/peers/peer.h
 struct RestorationSample;           // ident/training/restoration_training.h
 struct RestorationTrainingOptions;  // ident/training/restoration_training.h
 struct RestorationTraining;         // ident/training/restoration_training.h
 
 // What the tensors of a file become; path: of the file, for messages.
-template <typename Made>
 struct KindMaker {
   RestorationKind kind;
-  Result<std::unique_ptr<Made>> (*make)(const RestorationFile& file, const std::string& path,
-                                        TensorReader* reader);
+  Result<std::unique_ptr<Restoration>> (*make)(const RestorationFile& file, const std::string& path,
+                                               TensorReader* reader);
 };
 
 Result<std::unique_ptr<Restoration>> MakeWindow(const RestorationFile& file,
                                                 const std::string& path, TensorReader* reader);
 Result<std::unique_ptr<Restoration>> MakeCvae(const RestorationFile& file, const std::string& path,
                                               TensorReader* reader);
-inline constexpr KindMaker<Restoration> kRestorationMakers[] = {
+inline constexpr KindMaker kRestorationMakers[] = {
     {RestorationKind::kWindow, MakeWindow},
     {RestorationKind::kCvae, MakeCvae},
-};
-
-Result<std::unique_ptr<Peer>> MakeMrt(const RestorationFile& file, const std::string& path,
-                                      TensorReader* reader);
-inline constexpr KindMaker<Peer> kPeerMakers[] = {
-    {RestorationKind::kMrt, MakeMrt},
 };
 
 // training, held: samples to learn from and to stop early by. Errors: nothing to learn from.
@@ -124,11 +102,10 @@ struct KindTrainer {
   RestorationKind kind;
   RestorationTrainer* train;
 };
-RestorationTrainer TrainWindow, TrainCvae, TrainMrt;
+RestorationTrainer TrainWindow, TrainCvae;
 inline constexpr KindTrainer kRestorationTrainers[] = {
     {RestorationKind::kWindow, TrainWindow},
     {RestorationKind::kCvae, TrainCvae},
-    {RestorationKind::kMrt, TrainMrt},
 };
 
 template <typename Row, size_t kCount>
@@ -141,35 +118,12 @@ constexpr bool HasRow(const Row (&rows)[kCount], RestorationKind kind) {
 constexpr bool EveryTrainedKindIsMadeAndTrained() {
   for (const RestorationKindRow& row : kRestorationKinds) {
     if (HasRow(kRestorationTrainers, row.value) != row.trained ||
-        HasRow(kRestorationMakers, row.value) != (row.trained && row.follows_pendulum) ||
-        HasRow(kPeerMakers, row.value) != (row.trained && !row.follows_pendulum)) {
+        HasRow(kRestorationMakers, row.value) != row.trained) {
       return false;
     }
   }
   return true;
 }
 static_assert(EveryTrainedKindIsMadeAndTrained(), "a kind has no maker or no trainer");
-
-// hint: what to do about a kind that none of the makers makes. Errors: that, the maker's own,
-// missing or misshapen tensors by name.
-template <typename Made, size_t kCount>
-Result<std::unique_ptr<Made>> MakeByKind(const KindMaker<Made> (&makers)[kCount],
-                                         const RestorationFile& file, const std::string& path,
-                                         const char* hint) {
-  std::string known;
-  for (const KindMaker<Made>& maker : makers) {
-    known += (known.empty() ? "" : " and ") + NameOf(maker.kind);
-    if (maker.kind != file.kind) continue;
-    TensorReader reader(file.tensors);
-    Result<std::unique_ptr<Made>> made = maker.make(file, path, &reader);
-    if (made.ok() && !reader.problem().empty()) {
-      return Error{reader.problem() + "; train again with this version", path};
-    }
-    return made;
-  }
-  return Error{
-      "the kind is " + Quoted(NameOf(file.kind)) + "; it must be " + known + " (" + hint + ")",
-      path};
-}
 
 }  // namespace pushid

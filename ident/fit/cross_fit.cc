@@ -34,10 +34,6 @@ std::vector<std::vector<int>> FoldsOf(const FitProblem& problem) {
   return folds;
 }
 
-bool TooLargeToRepeat(const FitOptions& options) {
-  return NeedsGradientTraining(options) || options.body_weight > 0.0;
-}
-
 }  // namespace
 
 std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const FitPoint& optimum,
@@ -62,7 +58,7 @@ std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const Fit
 
 std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optimum,
                                 const IdentifiedModel& model, int num_threads) {
-  if (TooLargeToRepeat(problem.options())) return {};
+  if (NeedsGradientTraining(problem.options())) return {};
   const std::vector<std::vector<int>> held_out = FoldsOf(problem);
   std::vector<std::optional<FoldModel>> made(held_out.size());
   ParallelFor(static_cast<int>(held_out.size()), num_threads, [&](int f) {

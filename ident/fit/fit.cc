@@ -206,7 +206,7 @@ Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings
   model.push_range = FittedPushRange(model, recordings);
   model.step_probability = FitStepProbability(model, recordings);
   for (const std::vector<int>& fold : held_out) {
-    models.without.push_back(options.model.learned || options.body_weight > 0.0
+    models.without.push_back(options.model.learned
                                  ? SolvedWithout(recordings, asked, fold)
                                  : RefitWithout(solved.problem, optimum, model, fold));
   }

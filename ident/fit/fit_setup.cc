@@ -72,7 +72,7 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   }
   for (const char* name : {"horizons", "recording_weight", "effective_weight", "sigma_hip",
                            "sigma_velocity", "sigma_angle", "sigma_rate", "sigmas", "marker_noise",
-                           "robust", "loss", "settling_weight", "mode_weight", "body_weight"}) {
+                           "robust", "loss", "settling_weight", "mode_weight"}) {
     if (options.likelihood == Likelihood::kTrajectory || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name + " acts on fits of whole rollouts; --likelihood=" +
                  NameOf(options.likelihood) + " fits single steps and does not use it"};

@@ -108,11 +108,11 @@ MaybeError CheckPlatesAlone(const PendulumRecording& r, const FitOptions& option
     return Error{whose +
                  ", and --process_noise compares positions, which nobody measured; leave it out"};
   }
-  if (model.body != BodyModel::kLdp || RodMoves(model) || options.body_weight > 0.0 ||
+  if (model.body != BodyModel::kLdp || RodMoves(model) ||
       NeedsGradientTraining(options)) {
     return Error{whose +
                  ", from which neither bodies, rods nor large networks are learnt; leave --body, "
-                 "--rod, --body_weight and the network out"};
+                 "--rod and the network out"};
   }
   return std::nullopt;
 }

@@ -12,7 +12,6 @@
 #include "ident/parameters/pushed_feet.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/network_training.h"
-#include "residuals/cost_functions/body_residual.h"
 
 namespace pushid {
 namespace {
@@ -73,22 +72,6 @@ MaybeError CheckPoolingLabel(const std::vector<PendulumRecording>& recordings,
   return CheckLabel(recordings, "pool_by", key, kSubjectUnit);
 }
 
-MaybeError CheckBodies(const std::vector<PendulumRecording>& recordings,
-                       const FitOptions& options) {
-  if (options.body_weight <= 0.0) return std::nullopt;
-  if (options.body == nullptr) {
-    return Error{
-        "--body_weight needs --body_restoration, a folder that pushid-train-restoration "
-        "--kind=window or cvae wrote, and is available only in pushid-fit and "
-        "pushid-train-restoration"};
-  }
-  for (const PendulumRecording& recording : recordings) {
-    if (options.body->motions.count(recording.id) > 0) continue;
-    return Error{"--body_weight: recording " + recording.id + " has no whole bodies"};
-  }
-  return std::nullopt;
-}
-
 MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options) {
   if (options.model.stance != Stance::kSteps) return std::nullopt;
@@ -141,7 +124,6 @@ MaybeError PrepareFit(const std::vector<PendulumRecording>& recordings, FitOptio
         "it out, or fit recordings of groups"};
   }
   if (MaybeError error = CheckPoolingLabel(recordings, *options)) return error;
-  if (MaybeError error = CheckBodies(recordings, *options)) return error;
   if (MaybeError error = CheckFrameRates(recordings, *options)) return error;
   if (MaybeError error = CheckLaboratory(recordings, *options)) return error;
   if (MaybeError error = CheckLikelihood(recordings, *options)) return error;

@@ -56,18 +56,6 @@ std::string LossViolation(const FitOptions& o) {
   return "";
 }
 
-// What restored bodies cannot go together with; empty: nothing.
-std::string BodyViolation(const FitOptions& o) {
-  if (o.body_weight <= 0.0) return "";
-  const char* other = o.likelihood != Likelihood::kTrajectory ? "--likelihood"
-                      : NeedsGradientTraining(o) ? "a network that is trained by its gradient"
-                      : o.sigmas.loss == FrameLoss::kLdp ? "--loss=ldp"
-                                                         : nullptr;
-  if (other == nullptr) return "";
-  return std::string("--body_weight compares bodies on rollouts and does not go together with ") +
-         other + "; drop one of the two";
-}
-
 }  // namespace
 
 bool FitOptions::IsValid(std::string* error) const {
@@ -80,7 +68,6 @@ bool FitOptions::IsValid(std::string* error) const {
   *error = MissingNetwork(*this);
   if (error->empty()) *error = StanceViolation(*this);
   if (error->empty()) *error = LossViolation(*this);
-  if (error->empty()) *error = BodyViolation(*this);
   if (error->empty() && table.Free().empty()) {
     *error = "every parameter is fixed: nothing is left to fit";
   }
@@ -102,6 +89,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::pair<const char*, double> kRetiredOptions[] = {{"stability_weight", 0.0},
                                                               {"takeover_weight", 0.0},
                                                               {"ensemble", 1.0},
+                                                              {"body_weight", 0.0},
                                                               {"mode_margin_per_s", 0.2}};
 // The parameters of the interaction term `drive`, which `interaction` would name.
 constexpr const char* kRetiredParameters[] = {"drive_gain", "drive_torque", "drive_time"};

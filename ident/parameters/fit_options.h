@@ -68,8 +68,6 @@ constexpr EnumNames<ClusterBy, 3> Names(ClusterBy) {
            {"recording", ClusterBy::kRecording}}};
 }
 
-struct BodyData;  // residuals/cost_functions/body_residual.h
-
 struct FitOptions {
   std::string preset = "tail";                      // it was made from (presets.h)
   SelfForceKind self_force = SelfForceKind::kNone;  // by SetSelfForce (presets.h)
@@ -125,11 +123,6 @@ struct FitOptions {
   int network_iterations = 200;  // of L-BFGS, or Adam's passes over the recordings, at most
   double network_rate = 1e-3;    // learning rate of Adam, which falls to a hundredth of it
   bool hold_network = false;     // its weights are taken as they are
-
-  // Weight of restored bodies against recorded ones (residuals/cost_functions/body_residual.h), and
-  // what is known of the bodies, which no file holds; 0: pendulums alone.
-  double body_weight = 0.0;
-  std::shared_ptr<const BodyData> body;
 
   // Frames rolled out in each stage; 0 means all. Short horizons first keep the path from wandering
   // off while the gains are still wrong.

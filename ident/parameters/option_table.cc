@@ -189,10 +189,6 @@ std::vector<Row> WeightRows() {
                         "ignores networks); 0: off; set with a linear self force")),
       Decided(PoolByRow()),
       PoolingSigmaRow(),
-      MayBeAbsent(NumberRow(
-          "body_weight", "/body_weight", &O::body_weight, kNotNegative,
-          "weight of the restored bodies of --body_restoration against the recorded ones; 0: "
-          "pendulums alone")),
   };
 }
 

@@ -64,9 +64,6 @@ void SetStance(Stance stance, FitOptions* options);
 inline bool NeedsJoints(const ModelOptions& model) {
   return model.body == BodyModel::kAnthropometric;
 }
-inline bool NeedsJoints(const FitOptions& options) {
-  return options.body_weight > 0.0 || NeedsJoints(options.model);
-}
 
 // What the fit maximizes. A likelihood of single steps has process noise,
 // and demands nothing of people in simulations: these see rollouts, which it does not fit.

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "ident/problem/fit_problem.h"
-#include "residuals/cost_functions/body_residual.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/prior_residual.h"
 #include "residuals/cost_functions/rest_residual.h"
@@ -24,18 +23,6 @@ void AddTrajectory(const Family&, const Place& at) {
   const auto& [problem, blocks] = at.rollout();
   if (problem == nullptr) return;
   at.built->AddRollout(std::make_unique<CondensedRollout>(problem), blocks, at.recording);
-}
-
-// Bodies join once the path is there: their joints follow the path before and after a frame. A fit
-// has those of all recordings (PrepareFit); what was read from a file, and a design's recordings
-// that are still to be made, have none, and are seen by their pendulums alone.
-void AddBodies(const Family&, const Place& at) {
-  const Options& o = at.problem.options();
-  const std::string& id = at.problem.recordings()[at.recording].id;
-  const auto& [problem, blocks] = at.rollout();
-  if (problem == nullptr || o.body->motions.count(id) == 0) return;
-  at.built->AddRollout(std::make_unique<BodyResidual>(problem, o.body, o.body_weight), blocks,
-                       at.recording);
 }
 
 void AddLikelihood(const Family&, const Place& at) {
@@ -144,11 +131,6 @@ const std::vector<ResidualFamily>& ResidualFamilies() {
   static const std::vector<ResidualFamily> families = {
       {"trajectory", Family::kRecording, kOwn, [](const Options& o, int) { return Rolls(o); },
        AddTrajectory},
-      {"bodies", Family::kRecording, kOwn,
-       [](const Options& o, int horizon) {
-         return Rolls(o) && horizon == 0 && o.body_weight > 0.0 && o.body != nullptr;
-       },
-       AddBodies},
       {"likelihood", Family::kRecording, kOwn, [](const Options& o, int) { return !Rolls(o); },
        AddLikelihood},
       {"priors", Family::kPoint, FitProblem::kPriorCluster,

@@ -108,7 +108,6 @@ std::string ReportText(const FittedModel& model) {
       SelfForceText(o.self_force, o.model.learned.get()) +
       (RodMoves(o.model) ? ", rod " + RodName(o.model.learned->rod) : "") + ", interaction " +
       InteractionText(o.model) + PoolingText(o) +
-      (o.body_weight > 0.0 ? ", bodies with weight " + Rounded(o.body_weight, 4) : "") +
       SelfFromText(model.provenance) + "\n\n";
   text += ModelVerdictText(result.verdict) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +

@@ -171,7 +171,7 @@ Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
       if (progress) progress(*point, (index + trainer->ShareDone()) / networks_in_all);
     };
     const CheckpointOptions checkpoint = {SeedsCheckpoint(options.checkpoint, index),
-                                          options.checkpoint_seconds, index + 1 < networks_in_all};
+                                          index + 1 < networks_in_all};
     const MaybeError error = RunToEnd(trainer, key, checkpoint, told, &trained);
     ++index;
     return error;

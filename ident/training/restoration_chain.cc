@@ -2,10 +2,8 @@
 #include "ident/training/restoration_chain.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ident/bodies/body_recording.h"
-#include "ident/peers/peer_files.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
 #include "ident/validation/crossvalidation.h"
@@ -14,17 +12,9 @@
 namespace pushid {
 namespace {
 
-// The largest change of a free parameter relative to its value.
-double LargestChange(const IdentifiedModel& before, const IdentifiedModel& after) {
-  double largest = 0.0;
-  for (const Parameter p : before.table.Free()) {
-    const double from = before.parameters[p], to = after.parameters[p];
-    largest = std::max(largest, std::abs(to - from) / std::max(std::abs(from), 1e-12));
-  }
-  return largest;
-}
-
-constexpr int kScoredDraws = 3;  // of the latent variable, whose scores are averaged
+constexpr int kInnerFolds = 4;        // of the out-of-fold predictions
+constexpr double kStopsEarly = 0.15;  // share of the recordings that stop the training early
+constexpr int kScoredDraws = 3;       // of the latent variable, whose scores are averaged
 
 // Metric by metric; a failure is a failure of all.
 BodyScore MeanScore(const std::vector<BodyScore>& scores) {
@@ -47,17 +37,11 @@ void ScoreDrawn(const IdentifiedModel& model, const Restoration& restoration,
   (*scores)["restoration_drawn"].push_back(of_draw["restoration"].front());
 }
 
-// A restoration beside its baselines; of a cvae also with a drawn latent variable; a peer alone.
+// A restoration beside its baselines; of a cvae also with a drawn latent variable.
 Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedModel& model,
                                 const RestorationRunOptions& options,
                                 const BodyRecording& recording) {
   BodyScores scores;
-  if (!RowOf(file.kind).follows_pendulum) {
-    const auto peer = MakePeer(file, "");
-    if (!peer.ok()) return peer.error();
-    ScorePeer(*peer.value(), recording, &scores);
-    return scores;
-  }
   const auto restoration = MakeRestoration(file, "");
   if (!restoration.ok()) return restoration.error();
   ScoreRestoration(model, *restoration.value(), options.postprocess, recording, &scores,
@@ -74,9 +58,8 @@ Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedMod
   return scores;
 }
 
-bool LearnsFromPredictions(const RestorationRunOptions& options) {
-  return options.predicted_pendulums && RowOf(options.training.kind).follows_pendulum &&
-         options.training.view != RestorationView::kPose;
+bool LearnsFromPredictions(const RestorationTrainingOptions& options) {
+  return options.training != CvaeTraining::kPublished && options.view != RestorationView::kPose;
 }
 
 // The pendulum, and what is predicted of it out of fold where that is learned from.
@@ -85,7 +68,7 @@ Result<FittedFolds> FitPendulum(const std::vector<PendulumRecording>& pendulums,
                                 const RunProgress& progress) {
   if (progress) progress("fitting the pendulum, and without each fold", 0.0);
   Result<FittedFolds> fitted = FitFolds(pendulums, among, options.fit,
-                                        LearnsFromPredictions(options) ? options.inner_folds : 0,
+                                        LearnsFromPredictions(options.training) ? kInnerFolds : 0,
                                         options.training.seed, options.observed > 0);
   if (!fitted.ok()) return Error{"the pendulum's fit: " + fitted.error().message};
   return fitted;
@@ -99,7 +82,7 @@ Result<TrainedRestoration> TrainOn(const std::vector<BodyRecording>& recordings,
                                    const RestorationRunOptions& options,
                                    const RunProgress& progress) {
   std::vector<int> learnt, judged;
-  SplitHeldOut(pendulums, among, options.held_out, options.training.seed, &learnt, &judged);
+  SplitHeldOut(pendulums, among, kStopsEarly, options.training.seed, &learnt, &judged);
   if (learnt.empty() || judged.empty()) {
     return Error{
         "there are too few recordings to train on and to hold out for early stopping; at least two "
@@ -107,10 +90,10 @@ Result<TrainedRestoration> TrainOn(const std::vector<BodyRecording>& recordings,
   }
   const bool rod_moves = RodMoves(options.fit.model);
   auto training = MakeSamples(recordings, Picked(among, learnt), Picked(predictions, learnt),
-                              rod_moves, options.mirrored);
+                              rod_moves, true);
   for (RestorationSample& sample :
        MakeSamples(options.more, Others({}, static_cast<int>(options.more.size())), {}, rod_moves,
-                   options.mirrored)) {
+                   true)) {
     training.push_back(std::move(sample));
   }
   const auto held =
@@ -132,7 +115,7 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
   std::vector<Prediction> predictions;
-  if (LearnsFromPredictions(options)) {
+  if (LearnsFromPredictions(options.training)) {
     Result<FittedFolds> fitted = FitPendulum(pendulums, among, options, progress);
     if (!fitted.ok()) return fitted.error();
     predictions = std::move(fitted.value().predictions);
@@ -144,38 +127,14 @@ Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
                                 const std::vector<int>& among, const RestorationRunOptions& options,
                                 const RunProgress& progress) {
   const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  RestorationRunOptions now = options;
-  now.fit.body_weight = 0.0;
-  now.training.checkpoint.clear();  // one would be of one training, not of the whole
-  const auto train = [&]() -> Result<TrainedChain> {
-    FittedFolds pendulum;  // a peer has none
-    if (RowOf(options.training.kind).follows_pendulum) {
-      Result<FittedFolds> fitted = FitPendulum(pendulums, among, now, progress);
-      if (!fitted.ok()) return fitted.error();
-      pendulum = std::move(fitted.value());
-    }
-    Result<TrainedRestoration> trained =
-        TrainOn(recordings, pendulums, among, pendulum.predictions, now, progress);
-    if (!trained.ok()) return trained.error();
-    return TrainedChain{std::move(pendulum.model), std::move(trained.value())};
-  };
-  Result<TrainedChain> chain = train();
-  if (!chain.ok() || options.fit.body_weight <= 0.0) return chain;
-  now.fit.body_weight = options.fit.body_weight;
-  bool moves = true;
-  for (int round = 1; moves && round <= options.rounds; ++round) {
-    const auto restoration = MakeRestoration(chain.value().restoration.file, "");
-    if (!restoration.ok()) return restoration.error();
-    const auto body = MakeBodyData(*restoration.value(), Picked(recordings, among));
-    if (!body.ok()) return body.error();
-    now.fit.body = body.value();
-    Result<TrainedChain> again = train();
-    if (!again.ok()) return again;
-    moves = LargestChange(chain.value().model, again.value().model) > kWholeTolerance;
-    chain = std::move(again);
-    chain.value().rounds = round;
-  }
-  return chain;
+  RestorationRunOptions alone = options;
+  alone.training.checkpoint.clear();  // one would be of one training, not of the whole
+  Result<FittedFolds> pendulum = FitPendulum(pendulums, among, alone, progress);
+  if (!pendulum.ok()) return pendulum.error();
+  Result<TrainedRestoration> trained =
+      TrainOn(recordings, pendulums, among, pendulum.value().predictions, alone, progress);
+  if (!trained.ok()) return trained.error();
+  return TrainedChain{std::move(pendulum.value().model), std::move(trained.value())};
 }
 
 Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& recordings,
@@ -196,9 +155,8 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
     Result<TrainedChain> chain = TrainChain(recordings, train, options, told);
     if (!chain.ok()) return Error{fold.name + ": " + chain.error().message};
     validation.training_seconds.push_back(Now() - before);
-    validation.rounds.push_back(chain.value().rounds);
     IdentifiedModel& model = chain.value().model;
-    if (options.observed > 0 && RowOf(options.training.kind).follows_pendulum) {
+    if (options.observed > 0) {
       if (MaybeError error = CheckLearnsFromFrames(model)) return *error;
     }
     for (int i : fold.held_out) {

@@ -17,21 +17,15 @@ struct RestorationRunOptions {
   FitOptions fit;  // of the pendulum
   RestorationTrainingOptions training;
   PostprocessOptions postprocess;
-  int rounds = 3;          // of training as a whole, with fit.body_weight, at most
-  int inner_folds = 4;     // of the out-of-fold predictions
-  double held_out = 0.15;  // share of the recordings that stop the training early
-  bool predicted_pendulums = true, mirrored = true;
-  int observed = 0;  // frames that held-out recordings show first (prediction/online_predictor.h);
-                     // a peer is shown those that it takes
+  int observed = 0;  // frames that held-out recordings show first (prediction/online_predictor.h)
   // Recordings of other settings to learn from too, with their recorded pendulums; never judged.
   std::vector<BodyRecording> more;
 };
 
 // A pendulum's model and the restoration of its bodies, learned from the same recordings.
 struct TrainedChain {
-  IdentifiedModel model;  // empty beside a peer
+  IdentifiedModel model;
   TrainedRestoration restoration;
-  int rounds = 0;  // of training as a whole
 };
 
 // step: "pendulum 2/4", "window epoch 12"; done: share of this step.
@@ -43,14 +37,8 @@ Result<TrainedRestoration> TrainFromRecordings(const std::vector<BodyRecording>&
                                                const RestorationRunOptions& options,
                                                const RunProgress& progress = nullptr);
 
-inline constexpr double kWholeTolerance = 0.01;
-
-// The pendulum fitted and a restoration trained on it (a peer: alone, without a pendulum); with
-// options.fit.body_weight then as a whole: the pendulum is fitted anew to recorded bodies too
-// (residuals/cost_functions/body_residual.h), by the restoration so far, which is then trained anew
-// on the new pendulums, until no free parameter moves by more than kWholeTolerance of its value, or
-// options.rounds times. It keeps no checkpoint. Errors: those of either; a fit that finds no
-// optimum.
+// The pendulum fitted and a restoration trained on it. It keeps no checkpoint. Errors: those of
+// either; a fit that finds no optimum.
 Result<TrainedChain> TrainChain(const std::vector<BodyRecording>& recordings,
                                 const std::vector<int>& among, const RestorationRunOptions& options,
                                 const RunProgress& progress = nullptr);
@@ -60,8 +48,7 @@ struct ChainValidation {
   // the mean of the scores of three draws of the latent variable, and restoration is by its mean.
   BodyEvaluation evaluation;
   std::vector<double> training_seconds;  // of pendulum and restoration, by fold
-  std::vector<int> rounds;               // of training as a whole, by fold
-  std::vector<IdentifiedModel> models;   // of the pendulum, by fold; of peers, empty
+  std::vector<IdentifiedModel> models;   // of the pendulum, by fold
 };
 // Errors: folds that cannot be made; a fold whose pendulum fit finds no optimum, or which cannot
 // learn from first frames where some are to be seen.

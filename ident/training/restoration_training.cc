@@ -40,8 +40,7 @@ std::string KeyOfTraining(const std::vector<RestorationSample>& training,
                           const RestorationTrainingOptions& options) {
   return "2 " + NameOf(options.kind) + " " + NameOf(options.coordinates) + " " +
          NameOf(options.view) + (options.halves ? " halves " : " whole ") +
-         NameOf(options.training) + " " + NameOf(options.mrt_size) + " " +
-         std::to_string(options.effort) + " " + std::to_string(options.seed) + " " +
+         NameOf(options.training) + " " + std::to_string(options.effort) + " " + std::to_string(options.seed) + " " +
          KeyOfSamples(training) + KeyOfSamples(held);
 }
 

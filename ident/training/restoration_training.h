@@ -20,7 +20,6 @@
 #include "ident/model/identified_model.h"
 #include "ident/problem/folds.h"
 #include "ident/training/training_run.h"
-#include "models/peers/mrt_network.h"
 #include "models/restoration/cvae_trainer.h"
 #include "models/restoration/restoration.h"
 #include "models/restoration/trainer.h"
@@ -69,7 +68,6 @@ struct RestorationTrainingOptions : TrainerOptions, CheckpointOptions {
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;  // of kCvae
   bool halves = true;                                   // of kCvae: lower, then upper body
   CvaeTraining training = CvaeTraining::kOwn;           // of kCvae
-  MrtSize mrt_size = MrtSize::kSmall;                   // of kMrt
   double effort = 1.0;                                  // multiplies the number of steps
 };
 

@@ -15,6 +15,8 @@
 namespace pushid {
 namespace {
 
+constexpr double kCheckpointSeconds = 20.0;  // between two
+
 void Append(const std::string& part, std::string* bytes) {
   const uint64_t size = part.size();
   bytes->append(reinterpret_cast<const char*>(&size), sizeof size);
@@ -70,7 +72,7 @@ MaybeError Save(const std::string& path, const std::string& key, const std::stri
 
 MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOptions& options,
                     const std::function<void(TrainingPoint* point)>& told, TrainingCourse* course) {
-  double last = Now();
+  double last = Now() - kCheckpointSeconds;  // the first is due at once
   std::string state;
   std::vector<TrainingPoint> curve;
   if (Load(options.checkpoint, key, &state, &curve) && trainer->Resume(state)) {
@@ -82,7 +84,7 @@ MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOp
     curve.push_back(trainer->RunRound());
     told(&curve.back());
     const bool due =
-        trainer->Done() ? options.keep_finished : Now() - last >= options.checkpoint_seconds;
+        trainer->Done() ? options.keep_finished : Now() - last >= kCheckpointSeconds;
     if (options.checkpoint.empty() || !due) continue;
     last = Now();
     if (MaybeError error = Save(options.checkpoint, key, trainer->State(), curve)) return error;

@@ -13,9 +13,8 @@
 namespace pushid {
 
 struct CheckpointOptions {
-  std::string checkpoint;            // file; empty: none
-  double checkpoint_seconds = 20.0;  // between two
-  bool keep_finished = false;        // one more at the end: where further trainings follow
+  std::string checkpoint;      // file; empty: none
+  bool keep_finished = false;  // one more at the end: where further trainings follow
 };
 
 // How a training went.

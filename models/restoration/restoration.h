@@ -27,30 +27,25 @@ namespace pushid {
 // A new kind is a value and a row here, and a row in ident/bodies/restoration_files.h, which names
 // the functions that make it from a file and train it.
 
-enum class RestorationKind { kRigid, kWindow, kCvae, kMrt };
+enum class RestorationKind { kRigid, kWindow, kCvae };
 
 struct RestorationKindRow {
   const char* name;  // in files and on the command line
   RestorationKind value;
-  const char* what;       // for the list of kinds on the command line
-  bool trained;           // it has weights, and stands in a folder
-  bool follows_pendulum;  // otherwise it is a peer (peers/peer.h), which continues recorded bodies
-  bool sees_neighbours;   // it has RestorationView::kNeighbours
-  bool differentiable;    // by the pendulum (body_tangent.h), for training as a whole
+  const char* what;      // for the list of kinds on the command line
+  bool trained;          // it has weights, and stands in a folder
+  bool sees_neighbours;  // it has RestorationView::kNeighbours
 };
 
 inline constexpr RestorationKindRow kRestorationKinds[] = {
-    {"rigid", RestorationKind::kRigid, "the first pose carried by the rod's tip", false, true,
-     false, false},
-    {"window", RestorationKind::kWindow, "fast, default", true, true, true, true},
-    {"cvae", RestorationKind::kCvae, "LDP's chain", true, true, false, true},
-    {"mrt", RestorationKind::kMrt, "MRT, which continues 20 given frames of a whole group", true,
-     false, false, false},
+    {"rigid", RestorationKind::kRigid, "the first pose carried by the rod's tip", false, false},
+    {"window", RestorationKind::kWindow, "fast, default", true, true},
+    {"cvae", RestorationKind::kCvae, "LDP's chain", true, false},
 };
 constexpr const auto& Names(RestorationKind) { return kRestorationKinds; }
 static_assert(RowsAreInOrder(kRestorationKinds), "RowOf finds a row by its value");
 
-// Of those that can be trained, for messages: "window, cvae or mrt".
+// Of those that can be trained, for messages: "window or cvae".
 inline std::string TrainedRestorationKinds() {
   return AnyName<RestorationKind>([](const RestorationKindRow& row) { return row.trained; });
 }

@@ -29,11 +29,30 @@ constexpr int kPersonInputs = 6 + 3 * static_cast<int>(kSeenJoints.size());
 constexpr int kPushInputs = 5;
 constexpr int kShapeOutputs = 3 * (kBodyJoints - 1);
 
+constexpr std::array<int, 15> kWindowLags = {0, -2, -4, -6, -8, -12, -16, -24,
+                                             2, 4,  6,  8,  12, 16,  24};
+constexpr std::array<int, 5> kWindowRateLags = {0, -12, -6, 6, 12};
+constexpr double kWindowLagRate = 60.0;  // Hz
+static_assert(kWindowPendulumInputs == 4 * (kWindowLags.size() + kWindowRateLags.size()));
+
 Eigen::MatrixXf PendulumInputs(const RestorationInput& person) {
   const auto path = TurnedPath(person, Heading(person.first_pose));
+  const double frames_per_lag = 1.0 / (kWindowLagRate * person.dt);
   Eigen::MatrixXd inputs(kWindowPendulumInputs, path.num_frames());
   for (int t = 0; t < path.num_frames(); ++t) {
-    FillPendulumInputs(path, person.dt, t, inputs.col(t));
+    const Vector4<double> now = path.At(t);
+    int row = 0;
+    for (const int lag : kWindowLags) {
+      const Vector4<double> q = path.At(t + lag * frames_per_lag);
+      const Vector4<double>& base = lag == 0 ? path.First() : now;
+      inputs.col(t).segment<2>(row) = q.head<2>() - base.head<2>();
+      inputs.col(t).segment<2>(row + 2) = q.tail<2>() - path.First().tail<2>();
+      row += 4;
+    }
+    for (const int lag : kWindowRateLags) {
+      inputs.col(t).segment<4>(row) = path.RateAt(t + lag * frames_per_lag);
+      row += 4;
+    }
   }
   return inputs.cast<float>();
 }
@@ -48,10 +67,8 @@ Eigen::MatrixXf PushInputs(const RestorationInput& person) {
   return push.replicate(1, static_cast<int>(person.q.size()));
 }
 
-}  // namespace
-
 // Only the time and a rod that moves differ from frame to frame.
-Eigen::MatrixXf WindowPersonInputs(const RestorationInput& person) {
+Eigen::MatrixXf PersonInputs(const RestorationInput& person) {
   const double heading = Heading(person.first_pose);
   const Eigen::Matrix3d turn = TurnAboutZ(-heading);
   const Vector4<double> first = TurnedPendulum(person.q[0], -heading);
@@ -72,6 +89,8 @@ Eigen::MatrixXf WindowPersonInputs(const RestorationInput& person) {
   return inputs;
 }
 
+}  // namespace
+
 int WindowInputRows(RestorationView view) {
   if (view == RestorationView::kPose) return kPersonInputs + kPushInputs;
   return kWindowPendulumInputs + kPersonInputs +
@@ -88,13 +107,13 @@ Eigen::MatrixXf WindowInputs(const std::vector<RestorationInput>& people, int n,
   Eigen::MatrixXf inputs(WindowInputRows(view), static_cast<int>(person.q.size()));
   switch (view) {
     case RestorationView::kPendulum:
-      inputs << PendulumInputs(person), WindowPersonInputs(person);
+      inputs << PendulumInputs(person), PersonInputs(person);
       break;
     case RestorationView::kNeighbours:
-      inputs << PendulumInputs(person), WindowPersonInputs(person), NeighbourInputs(people, n);
+      inputs << PendulumInputs(person), PersonInputs(person), NeighbourInputs(people, n);
       break;
     case RestorationView::kPose:
-      inputs << WindowPersonInputs(person), PushInputs(person);
+      inputs << PersonInputs(person), PushInputs(person);
       break;
   }
   return inputs;

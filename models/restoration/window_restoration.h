@@ -2,7 +2,6 @@
 // no memory of its own, so that nothing can drift.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "models/restoration/dense_network.h"
@@ -21,7 +20,6 @@ class WindowRestoration : public Restoration {
   explicit WindowRestoration(WindowWeights weights) : weights_(std::move(weights)) {}
   std::string_view kind() const override { return RowOf(RestorationKind::kWindow).name; }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
-  const WindowWeights& weights() const { return weights_; }
 
  private:
   WindowWeights weights_;
@@ -46,41 +44,11 @@ class WindowRestoration : public Restoration {
 // The output, 63: every other joint against the hip, less the same at frame 0; with `pose` also the
 // way of the hip since frame 0, 3, which otherwise goes with the rod's tip.
 
-inline constexpr std::array<int, 15> kWindowLags = {0, -2, -4, -6, -8, -12, -16, -24,
-                                                    2, 4,  6,  8,  12, 16,  24};
-inline constexpr std::array<int, 5> kWindowRateLags = {0, -12, -6, 6, 12};
-inline constexpr double kWindowLagRate = 60.0;  // Hz
-inline constexpr int kWindowPendulumInputs =
-    4 * static_cast<int>(kWindowLags.size() + kWindowRateLags.size());
-
+inline constexpr int kWindowPendulumInputs = 80;
 inline constexpr int kWindowRodInput = kWindowPendulumInputs + 2;  // the row of the rod's length
-
-// The pendulum's part of the inputs at a frame. Value: 4 x columns, of a turned path or of its
-// derivatives; rows: kWindowPendulumInputs x columns.
-template <typename Value, typename Rows>
-void FillPendulumInputs(const FramePath<Value>& path, double dt, int frame, Rows&& rows) {
-  const double frames_per_lag = 1.0 / (kWindowLagRate * dt);
-  const Value now = path.At(frame);
-  int row = 0;
-  for (const int lag : kWindowLags) {
-    const Value q = path.At(frame + lag * frames_per_lag);
-    const Value& base = lag == 0 ? path.First() : now;
-    rows.middleRows(row, 2) = q.topRows(2) - base.topRows(2);
-    rows.middleRows(row + 2, 2) = q.bottomRows(2) - path.First().bottomRows(2);
-    row += 4;
-  }
-  for (const int lag : kWindowRateLags) {
-    rows.middleRows(row, 4) = path.RateAt(frame + lag * frames_per_lag);
-    row += 4;
-  }
-}
 
 int WindowInputRows(RestorationView view);
 int WindowOutputRows(RestorationView view);
-
-// The person's part, of which the pendulum's path changes only the rod's length, where that moves:
-// a column per frame.
-Eigen::MatrixXf WindowPersonInputs(const RestorationInput& person);
 
 // A column per frame, of person n.
 Eigen::MatrixXf WindowInputs(const std::vector<RestorationInput>& people, int n,

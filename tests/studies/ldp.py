@@ -38,7 +38,7 @@ CLAIMS = {"single": (0.097, 0.086, 0.171, 0.002, 0.131), "groups": (0.106, 0.092
 RELEASED = {"single": (None, 0.212, 0.352, None, None), "groups": (None, 0.125, 0.280, None, None)}
 
 PUBLISHED_FIT = ["--preset=ldp_published"]
-PUBLISHED_BODIES = ["--kind=cvae", "--training=published", "--coordinates=ldp", "--predicted_pendulums=false"]
+PUBLISHED_BODIES = ["--kind=cvae", "--training=published", "--coordinates=ldp"]
 OWN_BODIES = {"single": [], "groups": ["--sees=neighbours"]}
 
 

@@ -3,7 +3,7 @@
 curve     errors by the share of the recordings that were fitted (ident/validation/README.md) and their picture; half an hour of one core
 quarters  the ten quarters one by one (ident/validation/README.md); the same fits
 ridge     ridge regression and who stays still on the same parts (ident/validation/README.md); ten minutes
-bodies    the whole chain on quarters, beside siMLPe (ident/validation/README.md); eight minutes of one core
+bodies    the whole chain on quarters, (ident/validation/README.md); eight minutes of one core
 
 Parts are drawn stratified by setting, strength and pushed person; deals are whole but for the last, so that a recording is
 in at most one part more than another.
@@ -202,26 +202,17 @@ def chain(setting, part):
                                  "--quiet").json
 
 
-def simlpe(setting, part):
-    """siMLPe on the same recordings; it is given 12 frames, which do not count."""
-    model = studies.on_recordings("pushid-train-generator", setting, "--kind=simlpe", "--dataset=pushes",
-                                  f"--ids={','.join(part)}", "--quiet", out="out").path
-    return studies.on_recordings("pushid-generate", setting, f"--model={model}", f"--ids={others(setting, part)}",
-                                 "--quiet").json
-
-
 def bodies():
     rows = []
     for setting in ("single", "groups"):
-        for title, method in [("physics and `window`", chain), ("siMLPe, given 12 frames", simlpe)]:
-            found = [method(setting, part)["mean"] for part in parts(setting, 4)]
-            cells = []
-            for key in ("MPJPE_m", "hipADE_m", "hipFDE_m", "FSE_cm"):
-                values = [one[key] for one in found]
-                cells.append(f"{number(statistics.mean(values))} ({number(min(values), 2)} to {number(max(values), 2)})")
-            cells.insert(3, f"{statistics.mean(one['MBLE_m'] for one in found):.3f}")
-            rows.append([setting, title, *cells])
-    return studies.table(["a quarter", "", *[title for _, title in METRICS], "MBLE, m", "FSE, cm a frame"], rows)
+        found = [chain(setting, part)["mean"] for part in parts(setting, 4)]
+        cells = []
+        for key in ("MPJPE_m", "hipADE_m", "hipFDE_m", "FSE_cm"):
+            values = [one[key] for one in found]
+            cells.append(f"{number(statistics.mean(values))} ({number(min(values), 2)} to {number(max(values), 2)})")
+        cells.insert(3, f"{statistics.mean(one['MBLE_m'] for one in found):.3f}")
+        rows.append([setting, *cells])
+    return studies.table(["a quarter", *[title for _, title in METRICS], "MBLE, m", "FSE, cm a frame"], rows)
 
 
 if __name__ == "__main__":

@@ -26,8 +26,7 @@ class BatchRestorationTest : public BatchFixture {
 constexpr char kPhysics[] = "[[variant]]\nname = \"physics\"\nflags = []\n";
 constexpr char kBodies[] =
     "[[variant]]\nname = \"bodies\"\nflags = [\"--lowpass_hz=6\"]\n"
-    "restoration = [\"--kind=window\", \"--effort=0.05\", \"--inner_folds=2\", "
-    "\"--postprocess=bones\"]\n";
+    "restoration = [\"--kind=window\", \"--effort=0.05\", \"--postprocess=bones\"]\n";
 
 TEST_F(BatchRestorationTest, FoldsAreScoredOnRestoredBodies) {
   const AppRun run = Succeeded(Batch(Plan(std::string(kPhysics) + kBodies), {"--jobs=2"}));
@@ -76,7 +75,6 @@ TEST_F(BatchRestorationTest, WrongFlagsAreToldBeforeAnyJob) {
       {"\"--effort=0\"", "--effort must lie above 0"},
       {"\"--postprocess=glue\"", "--postprocess names 'glue'"},
       {"\"--observed=12\"", "--observed needs --crossvalidate"},
-      {"\"--kind=mrt\"", "--kind=mrt is a peer"},
       {"\"--crossvalidate=4\"", "--crossvalidate is set by the batch itself: set folds in [jobs]"},
       {"\"--out=here\"", "--out would be overwritten by every job"},
       {"\"window\"", "'window' is not a flag"},

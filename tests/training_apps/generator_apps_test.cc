@@ -164,7 +164,7 @@ TEST_F(GeneratorAppTest, ThePageWorksInABrowser) {
 // Killed at a checkpoint, it goes on and ends with the bits of a training that was not disturbed.
 TEST_F(GeneratorAppTest, GoesOnWhereItWasKilled) {
   // The first checkpoint comes after 50 steps: time enough between it and the end.
-  const std::vector<std::string> longer = {"--steps=80", "--seeds=1", "--checkpoint_seconds=0"};
+  const std::vector<std::string> longer = {"--steps=80", "--seeds=1"};
   Succeeded(Train("whole", longer));
   const AppRun killed = RunApp("pushid-train-generator", Quick("broken", longer), 120,
                                Path("broken/checkpoint.bin.1"));

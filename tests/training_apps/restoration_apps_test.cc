@@ -108,7 +108,7 @@ TEST_F(RestorationAppTest, RepeatsItselfAndGoesOnAfterAKill) {
   EXPECT_EQ(ReadText(Path("a/restoration.json")), ReadText(Path("b/restoration.json")));
   // Killed as soon as a checkpoint is there, then finished.
   const std::string checkpoint = Path("c/checkpoint.bin");
-  ASSERT_TRUE(Train("c", {five[0], five[1], "--checkpoint_seconds=0"}, checkpoint).timed_out);
+  ASSERT_TRUE(Train("c", five, checkpoint).timed_out);
   Succeeded(Train("c", five));
   EXPECT_EQ(ReadText(Path("a/weights.npy")), ReadText(Path("c/weights.npy")));
   Succeeded(Train("d", {"--seed=6", five[1]}));
@@ -133,56 +133,6 @@ TEST_F(RestorationAppTest, SeesWhatItIsToldTo) {
     Succeeded(
         RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("v"), "--quiet"}));
   }
-}
-
-// Fitted to bodies too: the weight changes the estimates, and more of them is from the data.
-TEST_F(RestorationAppTest, BodiesTakePartInAFit) {
-  Trained();
-  const auto fit = [this](const std::string& weight) {
-    Succeeded(RunApp("pushid-fit",
-                     {Recordings(), "--body_weight=" + weight, "--body_restoration=" + Path("r"),
-                      "--quiet", "--model_out=" + Path("b.json")}));
-    return Json(Path("b.json"));
-  };
-  const auto with = fit("1");
-  EXPECT_EQ(with["model"]["body_weight"], 1.0);
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--body_restoration=" + Path("r")}),
-                      {"does nothing without --body_weight"}));
-  EXPECT_TRUE(
-      Refused(RunApp("pushid-fit", {Recordings(), "--body_weight=1"}), {"--body_restoration"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--body_weight=1", "--check"}),
-                      {"--body_restoration"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings(), "--body_weight=1",
-                                            "--body_restoration=" + Path("nowhere")}),
-                      {"--body_restoration names the folder"}));
-  EXPECT_TRUE(
-      Refused(RunApp("pushid-fit", {Recordings(), "--body_weight=1", "--body_restoration=rigid"}),
-              {"--kind=window or cvae and --sees=pendulum"}));
-  const auto strong = fit("100");
-  // A recording's cost is of its rollout and its bodies: all but priors and settling.
-  double sum = 0.0;
-  for (const auto& recording : with["diagnostics"]["recordings"]) {
-    sum += recording["cost"].get<double>();
-  }
-  const double all = with["fit"]["cost"];
-  EXPECT_GT(sum, 0.8 * all);
-  EXPECT_LE(sum, all * (1.0 + 1e-9));
-  // A report has no bodies, and says what pendulums say.
-  Succeeded(RunApp("pushid-report",
-                   {"--model=" + Path("b.json"), Recordings(), "--html_out=" + Path("b.html")}));
-  EXPECT_NE(with["parameters"][0]["value"], strong["parameters"][0]["value"]);
-}
-
-TEST_F(RestorationAppTest, IsTrainedAsAWhole) {
-  const std::string few = ChangedManifest([](nlohmann::ordered_json& json) {
-    auto& all = json["recordings"];
-    all = {all[0], all[1], all[6], all[7]};
-  });
-  Succeeded(RunApp("pushid-train-restoration",
-                   {few, model_, "--crossvalidate=2", "--effort=0.1", "--body_weight=1",
-                    "--rounds=1", "--quiet", "--json_out=" + Path("cv.json")},
-                   240));
-  EXPECT_EQ(Json(Path("cv.json"))["run"]["rounds"], (std::vector<int>{1, 1}));
 }
 
 // Physics alone differ too: other recordings are fitted.
@@ -227,28 +177,6 @@ TEST_F(RestorationAppTest, CrossValidatesAfterFramesThatWereSeen) {
                       {"--observed needs --crossvalidate"}));
 }
 
-// Peers know no pendulum, and are compared over all frames and over those that they are not given.
-TEST_F(RestorationAppTest, PeersAreTrainedAndComparedWith) {
-  const std::string kind = "mrt";
-  Succeeded(Train("p", {"--kind=" + kind, "--effort=0.05"}));
-  Succeeded(
-      RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=rigid", "--quiet",
-                                 "--peer=" + Path("p"), "--json_out=" + Path("scores.json")}));
-  Succeeded(RunApp("pushid-train-restoration",
-                   {Recordings(), model_, "--crossvalidate=2", "--kind=" + kind, "--effort=0.05",
-                    "--quiet", "--json_out=" + Path("cv.json")}));
-  for (const char* file : {"scores.json", "cv.json"}) {
-    const auto baselines = Json(Path(file))["baselines"];
-    const double all = baselines[kind + "_all_frames"]["mean"]["MPJPE_m"];
-    const double after = baselines[kind]["mean"]["MPJPE_m"];
-    EXPECT_GT(all, 0.0) << kind << " " << file;
-    EXPECT_GT(after, all) << kind << " " << file << ": given frames have no error";
-  }
-  const AppRun as_restoration =
-      RunApp("pushid-evaluate", {model_, Recordings(), "--restoration=" + Path("p")});
-  EXPECT_TRUE(Refused(as_restoration, {kind, "--peer"}));
-}
-
 TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
   const auto refused = [&](const std::string& app, std::vector<std::string> flags,
                            const std::vector<std::string>& says) {
@@ -259,21 +187,13 @@ TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
   refused(train, {}, {"--out"});
   refused(train, {"--out=" + Path("x"), "--kind=best"}, {"--kind", "best", "window", "cvae"});
   refused(train, {"--out=" + Path("x"), "--effort=0"}, {"--effort"});
-  refused(train, {"--out=" + Path("x"), "--held_out=0.9"}, {"--held_out"});
   refused(train, {"--crossvalidate=1"}, {"--crossvalidate"});
   refused(train, {"--out=" + Path("x"), "--coordinates=hip"}, {"--coordinates"});
   refused(train, {"--out=" + Path("x"), "--sees=people"}, {"--sees", "neighbours"});
   refused(train, {"--out=" + Path("x"), "--kind=cvae", "--sees=neighbours"}, {"--kind=window"});
-  refused(train, {"--out=" + Path("x"), "--kind=mrt", "--sees=pose"}, {"--sees"});
-  refused(train, {"--out=" + Path("x"), "--mrt_size=published"}, {"--mrt_size", "--kind=mrt"});
-  refused(train, {"--out=" + Path("x"), "--kind=mrt", "--mrt_size=big"}, {"--mrt_size", "small"});
-  refused(train, {"--crossvalidate=2", "--kind=mrt", "--observed=20"}, {"--observed", "mrt"});
   refused(train, {"--out=" + Path("x"), "--nohalves"}, {"--kind=cvae"});
   refused(train, {"--out=" + Path("x"), "--training=published"}, {"--training", "--kind=cvae"});
   refused(train, {"--out=" + Path("x"), "--coordinates=ldp"}, {"--coordinates", "--kind=cvae"});
-  refused(train, {"--out=" + Path("x"), "--body_weight=1", "--sees=pose"}, {"--body_weight"});
-  EXPECT_TRUE(Refused(RunApp("pushid-crossvalidate", {Recordings(), "--body_weight=1"}),
-                      {"--body_weight", "pushid-train-restoration --crossvalidate"}));
   refused("pushid-evaluate", {"--restoration=" + Path("none")}, {"restoration.json"});
   refused("pushid-predict", {"--id=" + id_, "--out=" + Path("m.bvh")}, {"--restoration"});
   refused("pushid-predict",

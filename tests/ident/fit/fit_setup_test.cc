@@ -170,12 +170,6 @@ TEST(FitSetup, WhatDoesNotGoTogetherIsNamed) {
   o = MakeFitOptions({{"loss", "ldp"}}).value();
   o.sigma_source = SigmaSource::kEstimate;
   EXPECT_TRUE(Contains(violation(o), "--sigmas must be fixed"));
-  o = MakeFitOptions({{"rod", "linear"}}).value();
-  o.body_weight = 1.0;
-  std::string error;
-  EXPECT_TRUE(o.IsValid(&error)) << "bodies follow a rod that moves: " << error;
-  o.sigmas.loss = FrameLoss::kLdp;
-  EXPECT_FALSE(violation(o).empty());
 }
 
 TEST(FitSetup, BadOptionsAreNamed) {

@@ -1,5 +1,5 @@
 // models: products of single precision.
-#include "models/restoration/float_product.h"
+#include "models/restoration/dense_network.h"
 
 #include <gtest/gtest.h>
 
