@@ -7,11 +7,8 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/processes.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/error.h"
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "ident/model/model_json.h"
 #include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
@@ -24,12 +21,8 @@ DEFINE_bool(text, false, "print the whole report, not only the parameters");
 DEFINE_int32(num_threads, 1, "threads");
 
 DEFINE_string(figures_out, "",
-              "folder for every figure alone, the numbers behind every figure and table (CSV), "
-              "captions, and the table of "
-              "parameters (LaTeX, Markdown)");
-DEFINE_string(figure_format, "svg", "of --figures_out: svg, pdf or png (600 dots per inch)");
-DEFINE_double(figure_width, 85.0, "width of each figure, mm: that of a journal's column");
-DEFINE_double(figure_font, 8.0, "size of the smallest labels of figures, points");
+              "folder for every figure alone (SVG), the numbers behind every figure and table (CSV) "
+              "and captions");
 
 namespace {
 
@@ -37,67 +30,11 @@ using namespace pushid;
 
 namespace fs = std::filesystem;
 
-// Of Debian's librsvg2-bin.
-constexpr char kConverter[] = "rsvg-convert";
-constexpr char kResolution[] = "600";
-
-// Each picture in its turn. An interrupt ends it, and the folder's destructor cleans up.
-void Convert(const std::string& folder) {
-  SignalReader reader;
-  std::vector<fs::path> pictures;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".svg") pictures.push_back(entry.path());
-  }
-  const std::string log = (fs::path(folder) / "convert.log").string();
-  for (const fs::path& svg : pictures) {
-    fs::path converted = svg;
-    converted.replace_extension(FLAGS_figure_format);
-    const pid_t child = OrFail(
-        StartChild({{FindProgram(kConverter), "--dpi-x", kResolution, "--dpi-y", kResolution,
-                     "--format", FLAGS_figure_format, "--output", converted.string(), svg.string()},
-                    log,
-                    log}));
-    ChildEnd end;
-    while (end.pid == 0) {
-      reader.Wait(1000);
-      if (reader.interrupted()) {
-        KillChild(child, SIGKILL);
-        throw Error{"interrupted; nothing was written"};
-      }
-      end = NextEnded();
-    }
-    if (end.exit_code != 0) {
-      throw Error{
-          std::string(kConverter) + " failed on a figure of this name: try --figure_format=svg",
-          svg.filename().string()};
-    }
-    fs::remove(svg);
-  }
-  fs::remove(log);
-}
-
 bool FiguresAsked() { return !FLAGS_figures_out.empty(); }
 
-// Before anything is computed: flags that make no sense, a folder with other things in it, or no
-// program that makes PDF and PNG of SVG.
+// Before anything is computed: a folder with other things in it.
 void CheckFigureFlags() {
   if (!FiguresAsked()) return;
-  if (FLAGS_figure_format != "svg" && FLAGS_figure_format != "pdf" &&
-      FLAGS_figure_format != "png") {
-    throw Error{"--figure_format is " + Quoted(FLAGS_figure_format) +
-                "; it must be svg, pdf or png"};
-  }
-  if (!(FLAGS_figure_width >= 40.0 && FLAGS_figure_width <= 1000.0)) {
-    throw Error{"--figure_width is " + Rounded(FLAGS_figure_width) + "; it must be 40 to 1000 mm"};
-  }
-  if (!(FLAGS_figure_font >= 4.0 && FLAGS_figure_font <= 40.0)) {
-    throw Error{"--figure_font is " + Rounded(FLAGS_figure_font) + "; it must be 4 to 40 points"};
-  }
-  if (FLAGS_figure_format != "svg" && FindProgram(kConverter).empty()) {
-    throw Error{
-        "--figure_format=" + FLAGS_figure_format + " needs " + kConverter +
-        ", which is not installed: apt-get install librsvg2-bin, or use --figure_format=svg"};
-  }
   std::error_code ignored;
   if (!fs::exists(FLAGS_figures_out, ignored)) {
     return OrFail(AtomicFolder().Open(FLAGS_figures_out));
@@ -112,18 +49,13 @@ void CheckFigureFlags() {
 }
 
 // The folder as a whole, or nothing of it.
-void WriteFigures(const FittedModel& model, const Report& report) {
+void WriteFigures(const Report& report) {
   AtomicFolder folder;
   OrFail(folder.Open(FLAGS_figures_out));
-  std::vector<NamedText> files = FigureFiles(report, FLAGS_figure_width, FLAGS_figure_font);
-  const TextTable parameters = PaperTable(model.fit);
-  files.emplace_back("parameters.tex", LatexOf(parameters));
-  files.emplace_back("parameters.md", MarkdownOf(parameters));
-  for (const auto& [name, text] : files) {
+  for (const auto& [name, text] : FigureFiles(report)) {
     const std::string path = (fs::path(folder.path()) / name).string();
     OrFail(WriteFileAtomically(path, text));
   }
-  if (FLAGS_figure_format != "svg") Convert(folder.path());
   OrFail(folder.Commit());
   std::fprintf(stderr, "figures and tables written to %s\n", FLAGS_figures_out.c_str());
 }
@@ -141,7 +73,7 @@ int WriteWhole(const FittedModel& model) {
   const Report report = BuildReport(model, recordings, options);
   line.Finish();
   if (FLAGS_text) std::printf("%s", ToText(report).c_str());
-  if (FiguresAsked()) WriteFigures(model, report);
+  if (FiguresAsked()) WriteFigures(report);
   if (FLAGS_html_out.empty()) return kDone;
   OrFail(WriteFileAtomically(FLAGS_html_out, ToPage(report)));
   std::fprintf(stderr, "report written to %s\n", FLAGS_html_out.c_str());
@@ -175,7 +107,6 @@ int main(int argc, char** argv) {
       "pushid-report prints the report of an identified model, or writes it as an HTML page.\n\n"
       "  pushid-report --model=model.json\n"
       "  pushid-report --model=model.json --recordings=M/manifest.json --html_out=report.html\n"
-      "  pushid-report --model=model.json --recordings=M/manifest.json --figures_out=figures "
-      "--figure_format=pdf",
+      "  pushid-report --model=model.json --recordings=M/manifest.json --figures_out=figures",
       Run);
 }

@@ -8,7 +8,7 @@ build_packages=(g++ cmake ninja-build ccache
   libxxhash-dev libsqlite3-dev)
 # LibTorch trains restorations and generators, with OpenBLAS in half the time; everything else builds and
 # runs without them.
-test_packages=(libgtest-dev libbenchmark-dev libtorch-dev libopenblas0-pthread assimp-utils chromium librsvg2-bin
+test_packages=(libgtest-dev libbenchmark-dev libtorch-dev libopenblas0-pthread assimp-utils chromium
   python3 python3-dev pybind11-dev python3-numpy python3-yaml python3-pytest python3-matplotlib python3-jsonschema
   python3-venv python3-pip python3-setuptools python3-wheel)
 fuzz_packages=(clang libclang-rt-14-dev)  # tests/fuzz/run.sh alone needs them

@@ -207,11 +207,6 @@ std::string SharesText(const Shares& shares);
 std::string PullText(const Estimate& estimate);
 
 TextTable EstimateTable(const FitResult& result);
-// For papers: symbol (TeX), parameter, unit, estimate, 95 % interval and verdict of what was
-// fitted; as LaTeX with booktabs, and as Markdown.
-TextTable PaperTable(const FitResult& result);
-std::string LatexOf(const TextTable& table);
-std::string MarkdownOf(const TextTable& table);
 // Which of the free parameters the data identify: "All 7 free parameters are identified by the
 // data.", or how many, and which are not and why.
 std::string IdentifiedText(const FitResult& result);

@@ -116,12 +116,6 @@ TEST_F(ReportPage, FiguresAndTablesForPapers) {
     EXPECT_TRUE(Contains(svg, "<desc>" + EscapeXml(caption) + "</desc>"));
   }
   EXPECT_TRUE(Contains(ReadText(Path("figures/table_parameters_1.csv")), "parameter,value"));
-  const std::string tex = ReadText(Path("figures/parameters.tex"));
-  for (const char* part : {"\\toprule\nsymbol & parameter & unit", "$\\mu$ & mu & N s/m & ",
-                           "$K_{p,\\theta}$ & Kp\\_theta & N m/rad & ", " \\\\\n\\bottomrule"}) {
-    EXPECT_TRUE(Contains(tex, part));
-  }
-  EXPECT_TRUE(Contains(ReadText(Path("figures/parameters.md")), "| $\\mu$ | mu | N s/m | "));
 }
 
 TEST_F(ReportPage, FiguresReplaceFiguresAlone) {
@@ -133,27 +127,10 @@ TEST_F(ReportPage, FiguresReplaceFiguresAlone) {
   ASSERT_EQ(write({}).exit_code, 0);
   EXPECT_TRUE(Refused(write({}), {"captions.md", "already exists", "--overwrite"}));
   WriteText("figures/old.svg", "");
-  ASSERT_EQ(write({"--overwrite", "--figure_width=180", "--figure_font=9"}).exit_code, 0);
+  ASSERT_EQ(write({"--overwrite"}).exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(Path("figures/old.svg"))) << "the folder is new as a whole";
-  EXPECT_TRUE(Contains(ReadText(Path("figures/forest.svg")), "width=\"180mm\""));
   std::filesystem::remove(Path("figures/captions.md"));
   EXPECT_TRUE(Refused(write({"--overwrite"}), {"holds other files"}));
-  std::filesystem::remove_all(Path("figures"));
-  EXPECT_TRUE(Refused(write({"--figure_format=eps"}), {"'eps'", "svg, pdf or png"}));
-  EXPECT_TRUE(Refused(write({"--figure_width=3"}), {"--figure_width is 3", "40 to 1000 mm"}));
-  EXPECT_TRUE(Refused(write({"--figure_font=0"}), {"--figure_font is 0", "4 to 40 points"}));
-  EXPECT_FALSE(std::filesystem::exists(Path("figures")));
-  for (const std::string format : {"pdf", "png"}) {
-    const AppRun run = write({"--figure_format=" + format, "--overwrite"});
-    if (run.exit_code != 0) {
-      EXPECT_TRUE(Refused(run, {"rsvg-convert", "apt-get install librsvg2-bin"}));
-      continue;
-    }
-    const std::string picture = ReadText(Path("figures/forest." + format));
-    EXPECT_TRUE(Contains(picture.substr(0, 5), format == "pdf" ? "%PDF" : "PNG"));
-    EXPECT_FALSE(std::filesystem::exists(Path("figures/forest.svg")));
-    EXPECT_TRUE(std::filesystem::exists(Path("figures/forest.csv")));
-  }
   for (const auto& entry : std::filesystem::directory_iterator(Path(""))) {
     EXPECT_FALSE(Contains(entry.path().string(), ".tmp.")) << entry.path();
   }

@@ -70,9 +70,9 @@ std::vector<const ReportFigure*> FiguresOf(const Report& report);
 // For papers: a file's name and what is in it.
 using NamedText = std::pair<std::string, std::string>;
 
-// Every figure as <name>.svg, so wide and with the smallest labels in such a font; what it draws
-// and every table as <name>.csv; captions.md.
-std::vector<NamedText> FigureFiles(const Report& report, double width_mm, double font_pt);
+// Every figure as <name>.svg, as wide as a journal's column; what it draws and every table as
+// <name>.csv; captions.md.
+std::vector<NamedText> FigureFiles(const Report& report);
 inline constexpr char kCaptionsFile[] = "captions.md";
 
 // A report as one HTML page that needs nothing else: no network, no other file. Sections

@@ -62,7 +62,7 @@ TEST(ReportDocument, APageIsNoPdf) {
 
 TEST(ReportDocument, FilesStayInTheirFolderAndQuote) {
   std::map<std::string, std::string> files;
-  for (const auto& [name, text] : FigureFiles(SampleReport(), 85.0, 8.0)) files[name] = text;
+  for (const auto& [name, text] : FigureFiles(SampleReport())) files[name] = text;
   EXPECT_EQ(files["a____b.csv"], "time_s,what\n0.5,\"say \"\"x\"\", y\"\n");
   EXPECT_TRUE(Contains(files["a____b.svg"], "<desc>see</desc>"));
   EXPECT_EQ(files["table_full_1.csv"], "name,value\na<b,1\n");
