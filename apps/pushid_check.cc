@@ -34,19 +34,12 @@ DEFINE_string(bootstrap_by, pushid::NameOf(pushid::BootstrapOptions{}.by),
 DEFINE_string(bootstrap_file, "",
               "file that keeps finished replicas, so that an interrupted run can continue");
 DEFINE_string(design, "",
-              "find which further push would lower the standard error of this parameter most (all: "
-              "of all parameters together), and how much a force sensor or more people would");
+              "find which further push, of whom and with a force sensor or without, would lower the "
+              "standard error of this parameter most (all: of all parameters together)");
 
 DEFINE_bool(population, false,
             "print how recordings differ from the mean: the spread of a factor on tail_gain, and "
             "each recording's effect");
-DEFINE_bool(
-    push_check, false,
-    "refit with other plausible pushes: other windows and smoothing for inverse dynamics; sensor "
-    "noise, a shift of one frame and of 0.1 m in contact height for measured pushes");
-DEFINE_double(push_check_noise, pushid::PushVariantOptions{}.sensor_noise,
-              "noise of the push sensor, as a fraction of the push's peak, for --push_check");
-DEFINE_bool(prior_check, false, "refit with the means and widths of all priors halved and doubled");
 DEFINE_bool(
     horizon_check, false,
     "refit the first 8, 16, 32 and 64 frames: a parameter with physical meaning keeps its value");
@@ -71,18 +64,14 @@ ModelChecks ChecksFromCommandLine(uint64_t seed) {
   checks.profile = FLAGS_profile;
   checks.bootstrap.replicas = FLAGS_bootstrap;
   checks.bootstrap.file = FLAGS_bootstrap_file;
-  checks.push_check = FLAGS_push_check;
-  checks.prior_check = FLAGS_prior_check;
   checks.horizon_check = FLAGS_horizon_check;
   checks.learn_forecasts = FLAGS_learn_forecasts;
-  checks.pushes.sensor_noise = FLAGS_push_check_noise;
   checks.population = FLAGS_population;
   checks.design = FLAGS_design;
-  checks.bootstrap.seed = checks.pushes.seed = seed;
+  checks.bootstrap.seed = seed;
   checks.bootstrap.num_threads = checks.num_threads = FLAGS_num_threads;
   OrFail(CheckNumbers(checks));
-  CheckFlagRules({{"bootstrap_file", FlagRule::kNeeds, {"bootstrap"}, "=N"},
-                  {"push_check_noise", FlagRule::kNeeds, {"push_check"}, ""}});
+  CheckFlagRules({{"bootstrap_file", FlagRule::kNeeds, {"bootstrap"}, "=N"}});
   OrFail(ParseName("--bootstrap_by", FLAGS_bootstrap_by, &checks.bootstrap.by));
   OrFail(CheckOutputFiles({FLAGS_bootstrap_file}));
   return checks;
@@ -133,8 +122,8 @@ int Run() {
   const ModelChecks checks = ChecksFromCommandLine(SeedOf(model.fit.options));
   if (!checks.Any()) {
     return Fail(
-        "nothing is asked; give one of --profile, --bootstrap=199, --prior_check, "
-        "--push_check, --horizon_check, --learn_forecasts, --design=all or --population");
+        "nothing is asked; give one of --profile, --bootstrap=199, --horizon_check, "
+        "--learn_forecasts, --design=all or --population");
   }
   const std::string& out = FLAGS_model_out.empty() ? FLAGS_model : FLAGS_model_out;
   const bool writes = checks.Adds() || !FLAGS_model_out.empty();
@@ -166,8 +155,8 @@ int main(int argc, char** argv) {
   return pushid::RunApp(
       argc, argv,
       "pushid-check questions a fitted model with the recordings that it was fitted to: profiles, "
-      "bootstrap,\nother priors, pushes and horizons, what to record next. It adds the results to "
-      "the model's file\n(or writes them to --model_out); reports and advice use them.\n\n"
+      "bootstrap,\nshorter horizons, what to record next. It adds the results to the model's file (or writes them to "
+      "--model_out);\nreports and advice use them.\n\n"
       "  pushid-check --model=model.json --recordings=M/manifest.json --bootstrap=199 --profile",
       Run);
 }

@@ -1,5 +1,5 @@
-// apps: what more is asked of a fit in Python: profiles, bootstrap, refits under other priors,
-// pushes and horizons, which recording to make next; formations and most probable paths.
+// apps: what more is asked of a fit in Python: profiles, bootstrap, which recording
+// to make next; formations and most probable paths.
 #include <nlohmann/json.hpp>
 
 #include "apps/python/bindings.h"
@@ -8,8 +8,8 @@
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
 #include "ident/parameters/json_archive.h"
-#include "ident/push/push_check.h"
 #include "ident/report/report_text.h"
+#include "ident/validation/experiment_design.h"
 #include "models/crowd.h"
 
 namespace pushid {
@@ -48,24 +48,6 @@ void BootstrapOf(Model* model, int replicas, uint64_t seed, int num_threads,
   });
 }
 
-void CheckPriorsOf(Model* model) {
-  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
-    AddPriorCheck(recordings, fitted);
-    return MaybeError();
-  });
-}
-
-void CheckPushesOf(Model* model, double noise, uint64_t seed, int num_threads,
-                   const py::object& progress) {
-  PushVariantOptions options;
-  options.sensor_noise = noise;
-  options.seed = seed;
-  const JobProgress told = JobsOf(progress);
-  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
-    return AddPushCheck(recordings, options, num_threads, told, fitted);
-  });
-}
-
 void CheckHorizonsOf(Model* model, int num_threads, const py::object& progress) {
   const JobProgress told = JobsOf(progress);
   Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
@@ -98,26 +80,11 @@ Json PushesJson(const ExperimentDesign& design, const std::string& parameter) {
                     {"height", row.push.height},
                     {"duration_s", row.push.duration_s},
                     {"mass_kg", row.push.mass_kg},
+                    {"sensor", row.push.sensor},
                     {"error_ratio", ByName(design.parameters, row.error_ratio)},
                     {"mean_error_ratio", NumberJson(row.volume_ratio)}});
   }
   return rows;
-}
-
-Json StudiesJson(const StudyPlan& plan) {
-  Json sizes = Json::array();
-  for (const StudySize& size : plan.sizes) {
-    sizes.push_back({{"people", size.people},
-                     {"pushes_of_each", size.pushes},
-                     {"standard_error", ByName(plan.parameters, size.standard_error)}});
-  }
-  return {{"sensor_ratio", ByName(plan.parameters, plan.sensor_ratio)},
-          {"no_sensor", plan.no_sensor},
-          {"sizes", sizes},
-          {"no_sizes", plan.no_sizes},
-          {"between_people", ByName(plan.parameters, plan.between_people)},
-          {"between_recordings", ByName(plan.parameters, plan.between_recordings)},
-          {"noise", ByName(plan.parameters, plan.noise)}};
 }
 
 py::object DesignOf(const Model& model, const std::string& parameter) {
@@ -125,11 +92,10 @@ py::object DesignOf(const Model& model, const std::string& parameter) {
   const std::shared_ptr<const FittedModel> fitted = model.fitted;
   const ExperimentDesign design =
       WithoutGil([&] { return DesignExperiments(to->pendulums, fitted->fit); });
-  Json json = {{"text", Unwrapped(DesignText(design, parameter), Fault::kUsage)},
-               {"standard_error", ByName(design.parameters, design.standard_error)},
-               {"pushes", PushesJson(design, parameter)},
-               {"no_push", design.refused}};
-  json.update(StudiesJson(design.studies));
+  const Json json = {{"text", Unwrapped(DesignText(design, parameter), Fault::kUsage)},
+                     {"standard_error", ByName(design.parameters, design.standard_error)},
+                     {"pushes", PushesJson(design, parameter)},
+                     {"no_push", design.refused}};
   return FromJson(json);
 }
 
@@ -138,8 +104,6 @@ py::object DesignOf(const Model& model, const std::string& parameter) {
 void BindStudies(py::module_* module) {
   module->def("profile", &ProfilesOf);
   module->def("bootstrap", &BootstrapOf);
-  module->def("prior_check", &CheckPriorsOf);
-  module->def("push_check", &CheckPushesOf);
   module->def("horizon_check", &CheckHorizonsOf);
   module->def("learn_forecasts", &LearnForecastsOf);
   module->def("design", &DesignOf);

@@ -25,8 +25,7 @@ const std::map<std::string, Call> kCalls = {
 };
 
 // Flags of pushid-check that are methods of a result, and flags whose values are names.
-constexpr const char* kMethods[] = {"profile",    "bootstrap",     "design",         "prior_check",
-                                    "push_check", "horizon_check", "learn_forecasts"};
+constexpr const char* kMethods[] = {"profile", "bootstrap", "design", "horizon_check", "learn_forecasts"};
 constexpr const char* kLists[] = {"fix", "free", "set", "leave_out", "ids"};
 
 template <size_t N>

@@ -8,10 +8,9 @@
 #include "ident/fit/fit.h"
 #include "ident/observed/recording_filter.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/push/push_check.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/solver.h"
-#include "ident/uncertainty/refit_checks.h"
+#include "ident/validation/experiment_design.h"
 
 namespace pushid {
 namespace {
@@ -31,10 +30,7 @@ MaybeError CheckNumbers(const ModelChecks& checks) {
   if (checks.bootstrap.replicas < 0 || checks.bootstrap.replicas == 1) {
     return Error{"--bootstrap must be 0 (none) or at least 2 replicas"};
   }
-  const double noise = checks.pushes.sensor_noise;
-  if (noise >= 0.0 && noise <= 1.0) return std::nullopt;
-  return Error{"--push_check_noise is " + DoubleText(noise) +
-               "; it must be from 0 to 1, a fraction of the push's peak"};
+  return std::nullopt;
 }
 
 MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
@@ -51,15 +47,10 @@ MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
         "--profile and --bootstrap need the minimum of the cost, which a fit with --early_stopping "
         "does not reach; prevent overfitting with --network_prior instead"};
   }
-  if (large && (checks.push_check || checks.horizon_check || checks.prior_check)) {
+  if (checks.horizon_check && (large || options.likelihood != Likelihood::kTrajectory)) {
     return Error{
-        "--push_check, --horizon_check and --prior_check refit many times, and this network is too "
-        "large for that (trained by its gradient); choose a smaller one"};
-  }
-  if (options.likelihood != Likelihood::kTrajectory && checks.horizon_check) {
-    return Error{
-        "--horizon_check compares rollouts of many lengths, including single steps; leave "
-        "--likelihood out"};
+        "--horizon_check compares rollouts of many lengths: leave --likelihood out, and choose a "
+        "network that is small enough to be refitted (not trained by its gradient)"};
   }
   if (checks.learn_forecasts && options.model.push_tail == PushTail::kNone) {
     return Error{
@@ -152,13 +143,6 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
       return *error;
     }
   }
-  if (checks.push_check) {
-    if (MaybeError error =
-            AddPushCheck(recordings, checks.pushes, checks.num_threads, progress("push"), model)) {
-      return Error{"--push_check: " + error->ToString()};
-    }
-  }
-  if (checks.prior_check) AddPriorCheck(recordings, model);
   if (checks.horizon_check) {
     AddHorizonCheck(recordings, checks.num_threads, progress("horizon"), model);
   }
@@ -235,22 +219,6 @@ MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
   if (!bootstrap.ok()) return bootstrap.error();
   model->bootstrap = std::move(bootstrap.value());
   return std::nullopt;
-}
-
-void AddPriorCheck(const std::vector<PendulumRecording>& recordings, FittedModel* model) {
-  FitResult& fit = model->fit;
-  const FitProblem problem(recordings, fit.options);
-  model->prior_check = CheckPriors(problem, fit.starts[fit.best_start].to, fit.uncertainty);
-  const RefitTable& check = *model->prior_check;
-  for (size_t i = 0; i < check.parameters.size(); ++i) {
-    Estimate& known = fit.uncertainty.estimates[i];
-    if (known.status != EstimateStatus::kIdentified) continue;
-    if (PriorsLeaveInside(check, i, fit.uncertainty)) continue;
-    known.status = EstimateStatus::kWeak;
-    for (Estimate& e : fit.estimates) {
-      if (e.name == known.name) e.status = EstimateStatus::kWeak;
-    }
-  }
 }
 
 MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int num_threads,

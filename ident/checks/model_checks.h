@@ -1,6 +1,6 @@
 // ident: what a finished model is asked: how wide its intervals are by other means (profiles,
-// bootstrap), what other pushes, priors and horizons would have made of it, and what to record
-// next. pushid-check asks a model's file.
+// bootstrap), what fewer frames would have made of it, and what to record next. pushid-check asks a
+// model's file.
 #pragma once
 
 #include <functional>
@@ -9,24 +9,20 @@
 
 #include "datasets/files/error.h"
 #include "ident/model/fitted_model.h"
-#include "ident/push/push_check.h"
 
 namespace pushid {
 
 struct ModelChecks {
   std::string profile;         // names, comma-separated; all; empty: none
   BootstrapOptions bootstrap;  // of which `replicas` may be 0: none
-  bool push_check = false, prior_check = false, horizon_check = false;
-  bool learn_forecasts = false;
-  PushVariantOptions pushes;  // of push_check
+  bool horizon_check = false, learn_forecasts = false;
   bool population = false;
   std::string design;  // a parameter, or all; empty: none
   int num_threads = 1;
 
   // Whether they add to the model; population and design are only printed.
   bool Adds() const {
-    return !profile.empty() || bootstrap.replicas > 0 || push_check || prior_check ||
-           horizon_check || learn_forecasts;
+    return !profile.empty() || bootstrap.replicas > 0 || horizon_check || learn_forecasts;
   }
   bool Any() const { return Adds() || population || !design.empty(); }
 };
@@ -63,8 +59,6 @@ MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
 MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
                         const BootstrapOptions& options, const JobProgress& progress,
                         FittedModel* model);
-// An identified parameter that leaves its interval under other priors becomes weak.
-void AddPriorCheck(const std::vector<PendulumRecording>& recordings, FittedModel* model);
 // What predictions from first frames need. Errors: the model has no push tail.
 MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int num_threads,
                         FittedModel* model);

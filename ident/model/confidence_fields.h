@@ -1,4 +1,4 @@
-// ident: the entries of what was found out about a fit: diagnostics, profiles, bootstrap, refits
+// ident: the entries of what was found out about a fit: diagnostics, profiles, bootstrap
 // (parameters/json_archive.h).
 #pragma once
 
@@ -131,28 +131,27 @@ void Fields(Archive& a, Bootstrap& b) {
 }
 
 template <class Archive>
-void Fields(Archive& a, RefitRow& r) {
-  PUSHID_FIELDS(a, r, source, name);
-  a("values", r.value);
-  a("standard_errors", r.standard_error);
-  PUSHID_FIELDS(a, r, failure, frames);
+void Fields(Archive& a, HorizonFit& f) {
+  a("frames", f.frames);
+  a("values", f.value);
+  a("standard_errors", f.standard_error);
+  a("failure", f.failure);
 }
 
 template <class Archive>
-void Fields(Archive& a, RefitTable& t) {
-  a.Rows("parameters", std::tie(t.parameters, t.units, t.value, t.standard_error),
-         [&t](auto& row, size_t i) {
-           row("name", t.parameters[i]);
-           row("unit", t.units[i]);
-           row("value", t.value[i]);
-           row("standard_error", t.standard_error[i]);
+void Fields(Archive& a, HorizonCheck& c) {
+  a.Rows("parameters", std::tie(c.parameters, c.units, c.value, c.standard_error),
+         [&c](auto& row, size_t i) {
+           row("name", c.parameters[i]);
+           row("unit", c.units[i]);
+           row("value", c.value[i]);
+           row("standard_error", c.standard_error[i]);
          });
-  a("refits", t.rows);
-  for (const RefitRow& row : t.rows) {
-    for (const std::vector<double>* numbers : {&row.value, &row.standard_error}) {
-      a.Check(numbers->empty() || numbers->size() == t.parameters.size(),
-              "refits of different lengths");
-    }
+  a("refits", c.refits);
+  for (const HorizonFit& fit : c.refits) {
+    a.Check(fit.value.size() == fit.standard_error.size() &&
+                (fit.value.empty() || fit.value.size() == c.parameters.size()),
+            "refits of different lengths");
   }
 }
 

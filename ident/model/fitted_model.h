@@ -16,9 +16,9 @@
 #include "ident/solver/solution.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/contrast.h"
+#include "ident/uncertainty/horizon_check.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "ident/uncertainty/profile.h"
-#include "ident/uncertainty/refit_checks.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "residuals/takeover.h"
 
@@ -93,9 +93,7 @@ struct FittedModel {
   std::optional<Bootstrap> bootstrap;  // absent unless asked for
   std::vector<Advice> advice;          // report/advice.cc
   Provenance provenance;
-  // Absent unless asked for: refits with other pushes (push_check.h), and of fewer frames
-  // (refit_checks.h).
-  std::optional<RefitTable> push_check{}, horizon_check{}, prior_check{};
+  std::optional<HorizonCheck> horizon_check{};  // absent unless asked for
 };
 
 }  // namespace pushid

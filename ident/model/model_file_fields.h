@@ -75,8 +75,6 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
   }
   if (a.Has("profiles", !model.profiles.empty())) a("profiles", model.profiles);
   a.Optional("bootstrap", model.bootstrap);
-  a.Optional("push_check", model.push_check);
-  a.Optional("prior_check", model.prior_check);
   a.Optional("horizon_check", model.horizon_check);
 }
 

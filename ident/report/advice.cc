@@ -29,12 +29,10 @@ class Adviser {
     if (const std::string lag = LagText(result_); !lag.empty())
       Add(lag, Same().Set("delay", "one"));
     Identifiability();
-    Shares();
     Person();
     People();
     Recordings();
     Intervals();
-    Questions();
     Terms();
     return advice_;
   }
@@ -68,8 +66,6 @@ class Adviser {
   void People();
   void Recordings();
   void Intervals();
-  void Shares();
-  void Questions();
   void Terms();
 
   const FittedModel& model_;
@@ -242,31 +238,6 @@ void Adviser::Intervals() {
         Bootstrap(std::max(kManyReplicas, 2 * had)));
     break;  // one command serves all
   }
-}
-
-// Where priors or the demand to settle decide, more terms would only give them more to decide.
-void Adviser::Shares() {
-  std::string held;
-  for (const Estimate& e : result_.estimates) {
-    if (e.status != EstimateStatus::kPriorHeld || e.shares.settling > e.shares.prior) continue;
-    held += (held.empty() ? "" : ", ") + e.name;
-  }
-  if (!held.empty() && !model_.prior_check) {
-    Add("Priors determine " + held + "; check the sensitivity to the priors.",
-        Check().Set("prior_check", "true"));
-  }
-}
-
-void Adviser::Questions() {
-  const bool measured = !result_.push_range || result_.push_range->net_s.empty();
-  if (!measured && !model_.push_check) {
-    Add("The pushes are net forces from inverse dynamics; check how its window affects estimates.",
-        Check().Set("push_check", "true"));
-  }
-  if (model_.horizon_check || OfSteps() || result_.verdict.checked()) return;
-  Add("A parameter with physical meaning keeps its value when fewer frames are fitted; check which "
-      "do.",
-      Check().Set("horizon_check", "true"));
 }
 
 void Adviser::Terms() {

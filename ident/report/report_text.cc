@@ -121,9 +121,9 @@ std::string ReportText(const FittedModel& model) {
   if (!agreement.empty()) {
     text += agreement.ToString() + AgreementNote(model) + "\n";
   }
-  if (model.push_check) text += PushCheckText(*model.push_check) + "\n";
-  if (model.prior_check) text += PriorCheckText(*model.prior_check) + "\n";
-  if (model.horizon_check) text += HorizonCheckText(*model.horizon_check) + "\n";
+  if (model.horizon_check) {
+    text += HorizonTable(*model.horizon_check).ToString() + DriftText(*model.horizon_check) + "\n";
+  }
   if (const std::string network = NetworkText(result); !network.empty()) text += network + "\n";
   text += CorrelationText(result);
   if (result.contrast) {

@@ -10,8 +10,6 @@
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
 #include "ident/observed/recording_filter.h"
-#include "ident/uncertainty/refit_checks.h"
-#include "ident/validation/study_plan.h"
 
 namespace pushid {
 
@@ -101,60 +99,6 @@ std::string ModelVerdictText(const ModelVerdict& verdict);
 
 // What was taken as known, with what is stated of it, what the recordings want, and the test.
 TextTable AssumptionTable(const FitResult& result);
-
-// Which further push would tell most, as a table and in words.
-
-// The best `count` candidates for a parameter, or for all together ("all"), best first, and after a
-// gap the least useful one. Errors: no such parameter.
-Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
-                              int count);
-
-// With a heading and the present error below it; then what a force sensor and more people would
-// tell. Errors: no such parameter.
-Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter);
-
-// What a force sensor and more people would tell, as tables and in words.
-
-// Of one parameter, or of "all"; only a header where there is nothing to tell.
-TextTable SensorTable(const StudyPlan& plan, const std::string& parameter);
-TextTable StudySizesTable(const StudyPlan& plan, const std::string& parameter);
-
-// Why there is none of them; empty where there is.
-std::string NoSensorText(const StudyPlan& plan);
-std::string NoSizesText(const StudyPlan& plan);
-
-// Both with headings, or why there is none.
-std::string StudiesText(const StudyPlan& plan, const std::string& parameter);
-
-// What the table of sizes does not say: what the spread between people is and how well it is known.
-std::string StudySizesNote(const StudyPlan& plan);
-
-// What other pushes and shorter horizons make of the estimates, as tables and in words.
-
-// Why push and total errors say nothing: pushes made anew with the fit's own window should leave it
-// where it is. Empty where they do.
-std::string SameWindowText(const RefitTable& check);
-
-// Parameter, value, standard error, push error and total error (push/push_check.h), those two empty
-// where they say nothing.
-TextTable PushErrorTable(const RefitTable& check);
-
-// A row for each refit: by how much it moves every parameter.
-TextTable MovesTable(const RefitTable& check);
-
-// Parameter by horizon, value +- standard error; and a sentence for each drift.
-TextTable HorizonTable(const RefitTable& check);
-std::string DriftText(const RefitTable& check);
-
-// Parameter, value, and what it is under each other prior.
-TextTable PriorTable(const RefitTable& check);
-
-// For a terminal, with headings.
-std::string PushCheckText(const RefitTable& check);
-std::string HorizonCheckText(const RefitTable& check);
-// Which claim belongs to which horizon; empty where single steps were not fitted.
-std::string HorizonClaims(const RefitTable& check);
-std::string PriorCheckText(const RefitTable& check);
 
 // Profiles, bootstrap and diagnostics in words and tables for a terminal.
 

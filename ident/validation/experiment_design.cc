@@ -1,34 +1,35 @@
-// ident: candidate pushes and their information.
+// ident: candidate pushes, their information and their table.
+#include "ident/validation/experiment_design.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
-#include "ident/validation/study_plan.h"
+#include "ident/uncertainty/clusters.h"
+#include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
 
 namespace pushid {
 namespace {
 
-constexpr double kDirections[] = {0.0, 45.0, 90.0, 180.0};  // degrees
-constexpr double kHeights[] = {0.8, 1.0};
-constexpr int kMinFrames = 60;
+using Eigen::MatrixXd;
 
-struct Range {
-  double lower, upper;
-};
+constexpr double kDirections[] = {0.0, 45.0, 90.0, 180.0};  // degrees
+constexpr const char* kDirectionNames[] = {"forwards", "to the front left", "to the left",
+                                           "backwards"};
+constexpr double kHeights[] = {0.8, 1.0};
+constexpr int kMinFrames = 60, kRowsShown = 10;
 
 template <typename F>
-Range RangeOf(const std::vector<PendulumRecording>& recordings, F value) {
-  Range range{value(recordings[0]), value(recordings[0])};
-  for (const PendulumRecording& r : recordings) {
-    range.lower = std::min(range.lower, value(r));
-    range.upper = std::max(range.upper, value(r));
-  }
-  return range;
+std::pair<double, double> RangeOf(const std::vector<PendulumRecording>& recordings, F value) {
+  std::vector<double> values;
+  for (const PendulumRecording& r : recordings) values.push_back(value(r));
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return {*low, *high};
 }
 
 double PeakAcceleration(const PendulumRecording& r) {
@@ -41,29 +42,18 @@ double PeakAcceleration(const PendulumRecording& r) {
   return peak;
 }
 
-double PushSeconds(const PendulumRecording& r) {
-  return r.scene.pushes.empty() ? 0.1
-                                : static_cast<double>(r.scene.pushes[0].force.size()) * r.scene.dt;
-}
-
-PushKind UsualKind(const std::vector<PendulumRecording>& recordings) {
-  int external = 0, pushes = 0;
+bool UsuallyMeasured(const std::vector<PendulumRecording>& recordings) {
+  int more = 0;
   for (const PendulumRecording& r : recordings) {
-    for (const ScenePush& push : r.scene.pushes) {
-      external += push.kind == PushKind::kExternal;
-      ++pushes;
-    }
+    for (const ScenePush& push : r.scene.pushes) more += push.kind == PushKind::kExternal ? 1 : -1;
   }
-  return 2 * external > pushes ? PushKind::kExternal : PushKind::kNet;
+  return more > 0;
 }
 
-// Rows of the generalized force: the rising quarter of a sine where a tail goes on with it, a whole
-// half-sine where the push is all there is.
-std::vector<Vector4<double>> PushRows(const CandidatePush& push, PushKind kind, const Body& body,
-                                      double dt) {
+// A whole half-sine where it is measured, its rising half where a tail goes on with it.
+std::vector<Vector4<double>> PushRows(const CandidatePush& push, const Body& body, double dt) {
   const int rows = std::max(2, static_cast<int>(std::lround(push.duration_s / dt)));
-  const double angle = push.direction_deg * M_PI / 180.0;
-  const double span = kind == PushKind::kExternal ? M_PI : 0.5 * M_PI;
+  const double angle = push.direction_deg * M_PI / 180.0, span = push.sensor ? M_PI : 0.5 * M_PI;
   std::vector<Vector4<double>> force;
   for (int i = 0; i < rows; ++i) {
     const double size = push.acceleration * body.mass * std::sin(span * (i + 0.5) / rows);
@@ -73,9 +63,9 @@ std::vector<Vector4<double>> PushRows(const CandidatePush& push, PushKind kind, 
   return force;
 }
 
-// Shared columns of a candidate's Jacobian, weighted as a recording of the fit.
-Eigen::MatrixXd CandidateJacobian(const FitProblem& problem, const FitPoint& estimate,
-                                  const PendulumRecording& candidate) {
+// J'J of a candidate, weighted as a recording of the fit.
+MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
+                     const PendulumRecording& candidate, const std::vector<int>& known) {
   FitOptions options = problem.options();
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
   options.settling_weight = options.mode_weight = 0.0;
@@ -83,25 +73,66 @@ Eigen::MatrixXd CandidateJacobian(const FitProblem& problem, const FitPoint& est
   const FitProblem alone(one, options);
   FitPoint point = alone.NominalPoint();
   point.shared = estimate.shared;
-  const FitProblem::Built built = alone.Build(&point, 0);
-  return EvaluateJacobianBlocks(built).jacobian.leftCols(problem.map().num_shared());
+  const MatrixXd jacobian =
+      EvaluateJacobianBlocks(alone.Build(&point, 0)).jacobian(Eigen::all, known);
+  return jacobian.transpose() * jacobian;
 }
+
+// L with L L' = T of the header, without the directions where noise is all there is.
+MatrixXd SpreadRoot(const MatrixXd& clustered, const MatrixXd& naive, int groups) {
+  const Eigen::VectorXd error = clustered.diagonal().cwiseSqrt(), inverse = error.cwiseInverse();
+  const SymmetricEigen root = DecomposeSymmetric(
+      groups * (inverse.asDiagonal() * (clustered - naive) * inverse.asDiagonal()));
+  return error.asDiagonal() * root.vectors * root.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
+// (I^-1 + L L')^-1, also where I is singular (Woodbury).
+MatrixXd WithSpread(const MatrixXd& information, const MatrixXd& spread) {
+  const MatrixXd mixed = information * spread;
+  const MatrixXd inner =
+      MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * mixed;
+  return information - mixed * SolveSymmetricTransposed(inner, mixed);
+}
+
+bool Falls(const PendulumRecording& candidate) {
+  return candidate.states.empty() ||
+         std::any_of(candidate.states[0].begin(), candidate.states[0].end(), [](const auto& state) {
+           return state.q.template tail<2>().cwiseAbs().maxCoeff() > kFallAngle;
+         });
+}
+
+// Where the parameter stands among those with an error; past them for "all".
+size_t IndexOf(const ExperimentDesign& design, const std::string& parameter) {
+  return static_cast<size_t>(
+      std::find(design.parameters.begin(), design.parameters.end(), parameter) -
+      design.parameters.begin());
+}
+
+std::string Change(double ratio) { return Rounded(100.0 * (ratio - 1.0), 2) + " %"; }
 
 }  // namespace
 
 std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording>& recordings) {
-  const Range strength = RangeOf(recordings, PeakAcceleration);
-  const Range duration = RangeOf(recordings, PushSeconds);
-  const Range mass = RangeOf(recordings, [](const PendulumRecording& r) {
+  const bool measured = UsuallyMeasured(recordings);
+  const auto strength = RangeOf(recordings, PeakAcceleration);
+  const auto duration = RangeOf(recordings, [](const PendulumRecording& r) {
+    return r.scene.pushes.empty()
+               ? 0.1
+               : static_cast<double>(r.scene.pushes[0].force.size()) * r.scene.dt;
+  });
+  const auto mass = RangeOf(recordings, [](const PendulumRecording& r) {
     return r.scene.people[r.pushed_person].body.mass;
   });
+  const double middle = 0.5 * (strength.first + strength.second);
   std::vector<CandidatePush> candidates;
   for (double direction : kDirections) {
-    for (double a : {strength.lower, 0.5 * (strength.lower + strength.upper), strength.upper}) {
+    for (double a : {strength.first, middle, strength.second}) {
       for (double height : kHeights) {
-        for (double seconds : {duration.lower, duration.upper}) {
-          for (double kg : {mass.lower, mass.upper}) {
-            candidates.push_back({direction, a, height, seconds, kg});
+        for (double seconds : {duration.first, duration.second}) {
+          for (double kg : {mass.first, mass.second}) {
+            if (!measured) candidates.push_back({direction, a, height, seconds, kg, false});
+            candidates.push_back(
+                {direction, a, height, measured ? seconds : 2.0 * seconds, kg, true});
           }
         }
       }
@@ -111,19 +142,18 @@ std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording
 }
 
 PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estimate,
-                                const CandidatePush& push, PushKind kind) {
-  const PendulumRecording& like = problem.recordings()[0];
+                                const CandidatePush& push) {
   int frames = kMinFrames;
   for (const PendulumRecording& r : problem.recordings()) frames = std::max(frames, r.num_frames());
   PendulumRecording candidate;
   candidate.id = "candidate";
   candidate.subject_ids = {"candidate"};
-  candidate.scene.dt = like.scene.dt;
+  candidate.scene.dt = problem.recordings()[0].scene.dt;
   ScenePerson person;
   person.body = {push.mass_kg, kReferenceRod, 0.0};
   candidate.scene.people = {person};
-  candidate.scene.pushes = {
-      MakeScenePush(0, 0, kind, PushRows(push, kind, person.body, like.scene.dt))};
+  candidate.scene.pushes = {MakeScenePush(0, 0, push.sensor ? PushKind::kExternal : PushKind::kNet,
+                                          PushRows(push, person.body, candidate.scene.dt))};
   IdentifiedModel model;
   model.options = problem.options().model;
   model.parameters = problem.Parameters(estimate, "");
@@ -136,82 +166,38 @@ PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estim
   return candidate;
 }
 
-namespace {
-
-// L with L L' = T = G (V - V_naive), without the directions where noise is all there is.
-Eigen::MatrixXd SpreadRoot(const Eigen::MatrixXd& clustered, const Eigen::MatrixXd& naive,
-                           int groups) {
-  const Eigen::VectorXd error = clustered.diagonal().cwiseSqrt();
-  const Eigen::VectorXd inverse = error.cwiseInverse();
-  const SymmetricEigen root = DecomposeSymmetric(
-      groups * (inverse.asDiagonal() * (clustered - naive) * inverse.asDiagonal()));
-  return error.asDiagonal() * root.vectors * root.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
-// (I^-1 + L L')^-1, also where I is singular (Woodbury).
-Eigen::MatrixXd WithSpread(const Eigen::MatrixXd& information, const Eigen::MatrixXd& spread) {
-  const Eigen::MatrixXd mixed = information * spread;
-  const Eigen::MatrixXd inner =
-      Eigen::MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * mixed;
-  return information - mixed * SolveSymmetricTransposed(inner, mixed);
-}
-
-bool Falls(const PendulumRecording& candidate) {
-  if (candidate.states.empty()) return true;
-  return std::any_of(candidate.states[0].begin(), candidate.states[0].end(),
-                     [](const PendulumState<double>& state) {
-                       return state.q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle;
-                     });
-}
-
-// Shared parameters that the data determine: on a bound or undetermined there is no error to
-// reduce.
-std::vector<int> KnownParameters(const Uncertainty& uncertainty, int shared) {
-  std::vector<int> known;
-  for (int i = 0; i < shared; ++i) {
-    const EstimateStatus status = uncertainty.estimates[i].status;
-    if (status != EstimateStatus::kUnidentifiable && status != EstimateStatus::kAtBound) {
-      known.push_back(i);
-    }
-  }
-  return known;
-}
-
-}  // namespace
-
 ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
-                                   const Uncertainty& uncertainty, const ErrorParts& parts,
+                                   const Uncertainty& uncertainty, const Covariance& by_recording,
                                    const std::vector<CandidatePush>& candidates) {
-  const std::vector<int> known = KnownParameters(uncertainty, problem.map().num_shared());
   ExperimentDesign design;
-  design.studies = PlanStudies(problem, estimate, parts, known);
-  design.kind = UsualKind(problem.recordings());
-  for (int i : known) {
-    design.parameters.push_back(uncertainty.estimates[i].name);
-    design.units.push_back(uncertainty.estimates[i].unit);
-    design.standard_error.push_back(uncertainty.estimates[i].standard_error);
+  std::vector<int> known;
+  for (int i = 0; i < problem.map().num_shared(); ++i) {
+    const Estimate& e = uncertainty.estimates[i];
+    if (e.status == EstimateStatus::kUnidentifiable || e.status == EstimateStatus::kAtBound) {
+      continue;
+    }
+    known.push_back(i);
+    design.parameters.push_back(e.name);
+    design.units.push_back(e.unit);
+    design.standard_error.push_back(e.standard_error);
   }
-  const int size = static_cast<int>(known.size()), groups = parts.num_recordings();
-  if (size == 0 || groups - 1 < size) {
+  const int size = static_cast<int>(known.size());
+  const int groups = static_cast<int>(problem.recordings().size());
+  if (size == 0 || groups <= size) {
     design.refused = "a design needs more recordings (" + std::to_string(groups) +
-                     ") than free parameters (" + std::to_string(size) + ") plus one";
+                     ") than free parameters (" + std::to_string(size) + ")";
     return design;
   }
-  const Eigen::MatrixXd now = parts.by_recording(known, known);
-  const Eigen::MatrixXd present = Inverse(now);
-  const Eigen::MatrixXd spread = SpreadRoot(now, parts.naive(known, known), groups);
+  const MatrixXd now = by_recording.scatter.Covariance()(known, known), present = Inverse(now);
+  const MatrixXd spread = SpreadRoot(now, by_recording.naive(known, known), groups);
   for (const CandidatePush& push : candidates) {
-    const PendulumRecording candidate = MakeCandidate(problem, estimate, push, design.kind);
+    const PendulumRecording candidate = MakeCandidate(problem, estimate, push);
     if (Falls(candidate)) continue;
-    const Eigen::MatrixXd jacobian =
-        CandidateJacobian(problem, estimate, candidate)(Eigen::all, known);
-    const Eigen::MatrixXd information =
-        jacobian.transpose() * jacobian / (parts.sigma * parts.sigma);
-    const Eigen::MatrixXd then = Inverse(present + WithSpread(information, spread));
-    DesignRow row;
-    row.push = push;
+    const MatrixXd information = Information(problem, estimate, candidate, known) /
+                                 (by_recording.sigma * by_recording.sigma);
+    const MatrixXd then = Inverse(present + WithSpread(information, spread));
+    DesignRow row{push, {}, std::pow(then.determinant() / now.determinant(), 0.5 / size)};
     for (int i = 0; i < size; ++i) row.error_ratio.push_back(std::sqrt(then(i, i) / now(i, i)));
-    row.volume_ratio = std::pow(then.determinant() / now.determinant(), 0.5 / size);
     design.rows.push_back(row);
   }
   return design;
@@ -220,29 +206,77 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
 ExperimentDesign DesignExperiments(const std::vector<PendulumRecording>& recordings,
                                    const FitResult& result) {
   const FitProblem problem(recordings, result.options);
-  const FitPoint& estimate = result.starts[result.best_start].to;
-  return DesignExperiments(problem, estimate, result.uncertainty, ErrorPartsAt(problem, estimate),
-                           DefaultCandidates(recordings));
+  const auto estimate = problem.PointAt(result.starts[result.best_start].to.Flat());
+  if (!estimate) {
+    ExperimentDesign none;
+    none.refused = "a design needs the recordings that were fitted, as they were then";
+    return none;
+  }
+  const ScoredFit fit = ScoreAt(problem, *estimate);
+  return DesignExperiments(
+      problem, *estimate, result.uncertainty,
+      ComputeCovariance(fit.score, fit.unit, {ClusterByRecording(fit.score), {}, 0, false}),
+      DefaultCandidates(recordings));
 }
 
 Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
                                           const std::string& parameter) {
   if (!design.refused.empty()) return Error{design.refused};
-  const auto at = std::find(design.parameters.begin(), design.parameters.end(), parameter);
-  if (parameter != "all" && at == design.parameters.end()) {
+  const size_t index = IndexOf(design, parameter);
+  const bool all = parameter == "all";
+  if (!all && index == design.parameters.size()) {
     std::string known = "all";
     for (const std::string& name : design.parameters) known += ", " + name;
     return Error{"there is no error of '" + parameter + "' to reduce; choose from " + known};
   }
-  const size_t index = static_cast<size_t>(at - design.parameters.begin());
-  const auto score = [&](const DesignRow& row) {
-    return parameter == "all" ? row.volume_ratio : row.error_ratio[index];
-  };
   std::vector<DesignRow> rows = design.rows;
-  std::stable_sort(rows.begin(), rows.end(), [&score](const DesignRow& a, const DesignRow& b) {
-    return score(a) < score(b);
+  std::stable_sort(rows.begin(), rows.end(), [&](const DesignRow& a, const DesignRow& b) {
+    return all ? a.volume_ratio < b.volume_ratio : a.error_ratio[index] < b.error_ratio[index];
   });
   return rows;
+}
+
+Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
+                              int count) {
+  const Result<std::vector<DesignRow>> ranked = RankedRows(design, parameter);
+  if (!ranked.ok()) return ranked.error();
+  std::vector<std::string> header = {"one more push", "m/s^2", "height", "s", "kg", "sensor"};
+  if (parameter != "all") header.push_back("error of " + parameter);
+  header.push_back("mean of all errors");
+  TextTable table = TextTable::OfNumbers(header);
+  const auto add = [&](const DesignRow& row) {
+    const CandidatePush& push = row.push;
+    const auto direction =
+        std::find(std::begin(kDirections), std::end(kDirections), push.direction_deg) -
+        std::begin(kDirections);
+    std::vector<std::string> cells = {kDirectionNames[direction], Rounded(push.acceleration, 3),
+                                      Rounded(push.height, 2),    Rounded(push.duration_s, 2),
+                                      Rounded(push.mass_kg, 3),   push.sensor ? "yes" : "no"};
+    if (parameter != "all") cells.push_back(Change(row.error_ratio[IndexOf(design, parameter)]));
+    cells.push_back(Change(row.volume_ratio));
+    table.Add(cells);
+  };
+  const std::vector<DesignRow>& rows = ranked.value();
+  const size_t shown = std::min(rows.size(), static_cast<size_t>(count));
+  for (size_t i = 0; i < shown; ++i) add(rows[i]);
+  if (rows.size() > shown) {
+    table.AddGap();
+    add(rows.back());
+  }
+  return table;
+}
+
+Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter) {
+  if (!design.refused.empty()) return "no further push is proposed: " + design.refused + "\n";
+  const Result<TextTable> table = DesignTable(design, parameter, kRowsShown);
+  if (!table.ok()) return table.error();
+  std::string text = "effect of one more recording, best first; last row: the least useful of " +
+                     std::to_string(design.rows.size()) + " candidates\n" +
+                     table.value().ToString();
+  if (parameter == "all") return text;
+  const size_t index = IndexOf(design, parameter);
+  return text + "now: " + parameter + " +- " + Rounded(design.standard_error[index], 3) + " " +
+         design.units[index] + "\n";
 }
 
 }  // namespace pushid

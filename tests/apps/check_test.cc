@@ -21,14 +21,13 @@ class CheckTest : public AppTest {
 TEST_F(CheckTest, ChecksOfEveryKindOfModelAreAdded) {
   // Horizons take seconds, and every refit of a network or of feet that step one: not all are
   // checked by all.
-  const std::vector<std::string> most = {
-      "--profile=mu", "--bootstrap=9", "--bootstrap_by=recording", "--push_check", "--prior_check"};
-  const std::vector<std::string> few = {"--bootstrap=3", "--bootstrap_by=recording",
-                                        "--prior_check"};
+  const std::vector<std::string> most = {"--profile=mu", "--bootstrap=9",
+                                         "--bootstrap_by=recording", "--horizon_check"};
+  const std::vector<std::string> few = {"--bootstrap=3", "--bootstrap_by=recording"};
   const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases = {
       {{"--pool=mu", "--pool_by=subject", "--seed=3"}, most},
       {{"--self_force=linear,mlp:2"}, few},
-      {{"--stance=steps"}, {few[0], few[1]}},
+      {{"--stance=steps"}, few},
       {{"--replica=2", "--bootstrap_by=recording"}, few}};
   for (const auto& [fit, checks] : cases) {
     SCOPED_TRACE(fit[0]);
@@ -46,28 +45,28 @@ TEST_F(CheckTest, ChecksOfEveryKindOfModelAreAdded) {
 TEST_F(CheckTest, TheModelStaysWhereAnotherIsNamedOrNothingIsAdded) {
   const std::string model = FitModel();
   const std::string before = ReadText(model);
-  Succeeded(Check(model, {"--prior_check", "--model_out=" + Path("checked.json")}));
-  EXPECT_TRUE(Json(Path("checked.json")).contains("prior_check"));
+  Succeeded(Check(model, {"--profile=mu", "--model_out=" + Path("checked.json")}));
+  EXPECT_TRUE(Json(Path("checked.json")).contains("profiles"));
   const AppRun printed = Succeeded(Check(model, {"--design=mu", "--population"}));
   EXPECT_TRUE(Contains(printed.out, "error of mu"));
   EXPECT_TRUE(Contains(printed.out, "on the push tail, b ~ N(0, w^2)"));
   EXPECT_FALSE(Contains(printed.out, "--design=")) << "advised where it was done";
   EXPECT_EQ(ReadText(model), before);
   // Checks add up.
-  ASSERT_EQ(Check(model, {"--prior_check", "--model_out=" + model}).exit_code, 0);
+  ASSERT_EQ(Check(model, {"--profile=mu", "--model_out=" + model}).exit_code, 0);
   ASSERT_EQ(Check(model, {"--bootstrap=3"}).exit_code, 0);
-  EXPECT_TRUE(Json(model).contains("prior_check"));
+  EXPECT_TRUE(Json(model).contains("profiles"));
   EXPECT_TRUE(Json(model).contains("bootstrap"));
 }
 
 TEST_F(CheckTest, FilesAreReadAsTheFitReadThem) {
   const std::string model = FitModel("model.json", {"--resample_fps=30", "--lowpass_hz=8"});
-  EXPECT_EQ(Check(model, {"--prior_check"}).exit_code, 0);
-  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--lowpass_hz=5"}),
+  EXPECT_EQ(Check(model, {"--profile=mu"}).exit_code, 0);
+  EXPECT_TRUE(Refused(Check(model, {"--profile=mu", "--lowpass_hz=5"}),
                       {"recording " + id_, "is not what the model was fitted to"}));
   const std::string in_mm = FitModel("mm.json", {"--length_unit=mm", "--length_scale=0"});
-  EXPECT_EQ(Check(in_mm, {"--prior_check"}).exit_code, 0) << "a scale was not given";
-  EXPECT_EQ(Check(in_mm, {"--prior_check", "--length_scale=0.001"}).exit_code, 0);
+  EXPECT_EQ(Check(in_mm, {"--profile=mu"}).exit_code, 0) << "a scale was not given";
+  EXPECT_EQ(Check(in_mm, {"--profile=mu", "--length_scale=0.001"}).exit_code, 0);
 }
 
 // A command that is copied must not meet another model.
@@ -78,7 +77,7 @@ TEST_F(CheckTest, AdviceNamesTheFileOfTheModel) {
   };
   EXPECT_TRUE(Contains(fit_.out, asks("'" + model + "'")));
   EXPECT_FALSE(Contains(fit_.out, "FILE"));
-  const AppRun run = Check(model, {"--prior_check", "--model_out=" + moved});
+  const AppRun run = Check(model, {"--profile=mu", "--model_out=" + moved});
   EXPECT_TRUE(Contains(run.out, asks(moved)));
   std::filesystem::rename(moved, Path("again.json"));
   EXPECT_TRUE(Contains(RunApp("pushid-report", {"--model=" + Path("again.json")}).out,
@@ -91,19 +90,19 @@ TEST_F(CheckTest, AdviceNamesTheFileOfTheModel) {
 
 TEST_F(CheckTest, OtherRecordingsThanThoseOfTheFitAreNamed) {
   const std::string model = FitModel("model.json", {"--leave_out=" + id_});
-  EXPECT_EQ(Check(model, {"--prior_check"}).exit_code, 0) << "those of the model, by id";
-  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--setting=single"}),
+  EXPECT_EQ(Check(model, {"--profile=mu"}).exit_code, 0) << "those of the model, by id";
+  EXPECT_TRUE(Refused(Check(model, {"--profile=mu", "--setting=single"}),
                       {"recording " + id_ + " is none of those", "leave --setting and --ids"}));
   const std::string whole = FitModel("whole.json");
-  EXPECT_TRUE(Refused(Check(whole, {"--prior_check", "--leave_out=" + id_}),
+  EXPECT_TRUE(Refused(Check(whole, {"--profile=mu", "--leave_out=" + id_}),
                       {"recording " + id_ + " is missing", "--leave_out"}));
   const std::string heavier = ChangedManifest(
       [](nlohmann::ordered_json& json) { json["recordings"][0]["subjects"][0]["mass_kg"] = 90.5; });
-  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, heavier, "--prior_check"}),
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, heavier, "--profile=mu"}),
                       {"recording " + id_ + " is not what the model was fitted to", "manifest"}));
   const std::string fewer =
       ChangedManifest([](nlohmann::ordered_json& json) { json["recordings"].erase(0); });
-  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, fewer, "--prior_check"}),
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, fewer, "--profile=mu"}),
                       {id_, "give the manifest of the fit", "--ids"}));
   EXPECT_TRUE(Refused(RunApp("pushid-report", {"--model=" + whole, fewer, "--text"}),
                       {id_, "give the manifest of the fit", "--ids"}));
@@ -111,17 +110,17 @@ TEST_F(CheckTest, OtherRecordingsThanThoseOfTheFitAreNamed) {
 
 TEST_F(CheckTest, WhatItRefuses) {
   const std::string model = FitModel();
-  EXPECT_TRUE(Refused(RunApp("pushid-check", {Recordings(), "--prior_check"}), {"--model"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + model, "--prior_check"}),
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {Recordings(), "--profile=mu"}), {"--model"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + model, "--profile=mu"}),
                       {"--recordings is missing"}));
   EXPECT_TRUE(Refused(Check(model, {}), {"nothing is asked", "--profile", "--bootstrap"}));
   EXPECT_TRUE(Refused(Check(model, {"--bootstrap=1"}), {"--bootstrap must be 0"}));
   EXPECT_TRUE(Refused(Check(model, {"--profile=mew"}), {"--profile", "mew"}));
   EXPECT_TRUE(Refused(Check(model, {"--design=mew"}), {"--design: 'mew'", "choose from all"}));
-  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--bootstrap_file=" + Path("b")}),
+  EXPECT_TRUE(Refused(Check(model, {"--design=mu", "--bootstrap_file=" + Path("b")}),
                       {"--bootstrap_file needs --bootstrap=N"}));
-  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--seed=-1"}), {"--seed", "-1"}));
-  EXPECT_TRUE(Refused(Check(model, {"--prior_check", "--preset=ldp"}), {"no flag --preset"}));
+  EXPECT_TRUE(Refused(Check(model, {"--profile=mu", "--seed=-1"}), {"--seed", "-1"}));
+  EXPECT_TRUE(Refused(Check(model, {"--profile=mu", "--preset=ldp"}), {"no flag --preset"}));
 }
 
 }  // namespace

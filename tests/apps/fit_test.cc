@@ -40,23 +40,6 @@ bool SameWord(const std::string& a, const std::string& b) {
   return std::abs(x - y) <= 0.02 * std::max(std::abs(x), std::abs(y));
 }
 
-// Other pushes and shorter horizons stand in the model and in every report of it.
-TEST_F(FitAppTest, RefitsAreKeptAndReported) {
-  const std::string path = FitModel();
-  const AppRun run = Succeeded(RunApp(
-      "pushid-check", {"--model=" + path, Recordings(), "--push_check", "--horizon_check"}));
-  const nlohmann::ordered_json model = Json(path);
-  EXPECT_EQ(model["push_check"]["refits"].size(), 8u);     // of pushes by inverse dynamics
-  EXPECT_EQ(model["horizon_check"]["refits"].size(), 4u);  // one step; 8, 16 and 32 of 44
-  EXPECT_EQ(model["push_check"]["parameters"][0]["name"], "mu");
-  const AppRun report = Succeeded(RunApp("pushid-report", {"--model=" + path, "--text"}));
-  for (const char* part : {"push error", "smoothed over 7", "Estimates from fewer frames"}) {
-    EXPECT_TRUE(Contains(report.out, part)) << part;
-  }
-  EXPECT_TRUE(Contains(run.out, "total error"));
-  EXPECT_TRUE(Contains(run.out, "from the push on"));
-}
-
 TEST_F(FitAppTest, ModelHasItsParts) {
   const nlohmann::ordered_json model = Json(FitModel());
   for (const char* key :

@@ -267,7 +267,7 @@ def test_hints_are_calls():
             "use --fix=mu=0, then see": 'use fix={"mu": 0}, then see',
             "--fix: 'a' is unknown": "fix: 'a' is unknown",
             "repeat it by pushid-check --bootstrap=199": "repeat it by result.bootstrap(199)",
-            "--push_check and --profile refit": "result.push_check() and result.profile() refit",
+            "--bootstrap and --profile refit": "result.bootstrap() and result.profile() refit",
             "see pushid-push --initial_velocity": "see pushid.estimate_push(recording, initial_velocity)",
             "(pushid-fit --setting=groups --interaction=contact)":
                 '(pushid.fit(recordings, setting="groups", interaction="contact"))',

@@ -31,12 +31,9 @@ def test_bootstrap_and_crossvalidation(made, result, tmp_path):
         pushid.crossvalidate(made[0], scheme="nonsense")
 
 
-def test_refits_under_other_circumstances(made, result):
-    priors = result.prior_check()
-    assert len(priors["refits"]) == 2 and priors["parameters"][0]["name"] == "mu"
-    assert result.push_check()["refits"]
-    assert {row["frames"] for row in result.horizon_check()["refits"]} >= {8, 16, 32, 64}
-    assert "prior_check" in result.json and "push_check" in result.json
+def test_fewer_frames(made, result):
+    assert {row["frames"] for row in result.horizon_check()["refits"]} == {8, 16, 32, 64}
+    assert "horizon_check" in result.json
 
 
 def test_designs(made, result):
@@ -44,7 +41,7 @@ def test_designs(made, result):
     ratios = [row["error_ratio"]["mu"] for row in design["pushes"]]
     assert ratios == sorted(ratios) and ratios[0] < 1.0
     assert design["standard_error"]["mu"] == pytest.approx(result["mu"].standard_error)
-    assert "error of mu" in str(design) and design["sizes"][0]["people"] == 3
+    assert "error of mu" in str(design) and any(row["sensor"] for row in design["pushes"])
     with pytest.raises(pushid.UsageError, match="choose from all, mu"):
         result.design("nu")
     few = pushid.fit(made[0][:2]).design()

@@ -3,17 +3,15 @@ which has no code of pushid (tests/models/late_person_test.cc holds rollouts aga
 
 delay      fits of people who react late, with platforms and without; half an hour on two cores
 lag        the same people fitted without a delay: is it named; and people who do not react late: is it not
-design     what --design promises of platforms, and what came
 speed      a fit of 20 recordings of 10 s at 100 Hz with platforms
 
-Needs NumPy. PUSHID_STUDIES is the number of studies of `delay` (default 100, half of them for `lag`, a tenth for `design`).
+Needs NumPy. PUSHID_STUDIES is the number of studies of `delay` (default 100, half of them for `lag`).
 """
 import concurrent.futures
 import dataclasses
 import json
 import math
 import os
-import re
 import subprocess
 import tempfile
 import time
@@ -194,47 +192,6 @@ def lag():
                           "`Kd_theta` called identified"], rows)
 
 
-def promised(study):
-    """What --design says platforms would do to standard errors, of a fit without: a factor by parameter, in percent less."""
-    with tempfile.TemporaryDirectory() as folder:
-        write(folder, study)
-        if fit(folder, *LATE) is None:
-            return None
-        command = [os.path.join(studies.BIN, "pushid-check"), f"--model={folder}/model.json", f"--recordings={folder}/manifest.json",
-                   "--design=all", "--quiet"]
-        text = subprocess.run(command, capture_output=True, text=True).stdout.splitlines()
-    row = next((i for i, line in enumerate(text) if line.startswith("force platforms under the same recordings")), None)
-    if row is None:
-        return None
-    header = next(line for line in reversed(text[:row]) if line.startswith("equipment"))
-    names = [cell.removeprefix("error of ") for cell in re.split(r"\s{2,}", header.strip())[1:]]
-    cells = [1.0 + float(cell.split()[0]) / 100.0 for cell in re.split(r"\s{2,}", text[row].strip())[1:]]
-    return dict(zip(names, cells))
-
-
-def design():
-    rows = []
-    for name, each in (("ground steps", Study(0, plates=False)), ("pushes", Study(0, platform=False, plates=False))):
-        ratios = {n: [] for n in GAINS}
-        for seed in range(1, max(3, SETS // 10) + 1):
-            study = dataclasses.replace(each, seed=seed)
-            said = promised(study)
-            without, with_plates = (fitted((dataclasses.replace(study, plates=plates), LATE)) for plates in (False, True))
-            if said is None or without is None or with_plates is None:
-                continue
-            before, after = ({e["name"]: e["standard_error"] for e in f[1]} for f in (without, with_plates))
-            for n in GAINS:
-                if n in said and before.get(n):
-                    ratios[n].append((said[n], after[n] / before[n]))
-        for n in GAINS:
-            if ratios[n]:
-                said, came = np.median(ratios[n], axis=0)
-                rows.append([name, f"`{n}`", len(ratios[n]), number(said, 2), number(came, 2)])
-                name = ""
-    return studies.table(["the same studies with platforms", "standard error of", "studies", "promised, over that without (median)",
-                          "came"], rows)
-
-
 def speed():
     """20 recordings of 10 s: five of each of four people."""
     rows = []
@@ -251,4 +208,4 @@ def speed():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"delay": delay, "lag": lag, "design": design, "speed": speed})
+    studies.main(__file__, {"delay": delay, "lag": lag, "speed": speed})

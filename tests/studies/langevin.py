@@ -2,7 +2,6 @@
 
 known      planted noise and gains, 50 studies: how often 95 % intervals of the innovation fit cover; 3 minutes
 likelihood the 32 recordings of single people by each likelihood, with the time it took; seconds
-horizons   the same parameters wanted by one step, by 8 to 64 frames, and by all; a minute
 futures    drawn futures of single people, held out; 6 minutes
 
 Times are those of one core.
@@ -76,15 +75,6 @@ def likelihood():
                          rows)
 
 
-def horizons():
-    check = studies.check(studies.fit("single"), "--horizon_check").json["horizon_check"]
-    rows = [[refit["name"], *map(with_error, refit["values"], refit["standard_errors"])]
-            for refit in check["refits"] if not refit["failure"]]
-    parameters = check["parameters"]
-    rows.append(["all", *(with_error(p["value"], p["standard_error"]) for p in parameters)])
-    return studies.table(["fitted to", *(f"`{p['name']}`" for p in parameters)], rows)
-
-
 METRICS = [("deviance_1", "-2 log L a number"), ("inside50_x_1", "inside 50 %, x"), ("inside90_x_1", "inside 90 %, x"),
            ("inside90_y_1", "90 %, y"), ("inside90_theta_1", "90 %, theta"), ("crps_x_m", "CRPS x, m"),
            ("energy_m", "energy score, m")]
@@ -112,5 +102,4 @@ def futures():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"known": known, "likelihood": likelihood, "horizons": horizons,
-                            "futures": futures})
+    studies.main(__file__, {"known": known, "likelihood": likelihood, "futures": futures})

@@ -43,7 +43,7 @@ def given(asked):
     return [(name, text_of(name, value)) for name, value in asked.items() if value is not None]
 
 
-_CHECKS = ("prior_check", "push_check", "horizon_check", "learn_forecasts")
+_CHECKS = ("horizon_check", "learn_forecasts")
 
 
 def _words(command):

@@ -151,19 +151,6 @@ class Result:
         _pushid.bootstrap(self._model, replicas, seed, num_threads, os.fspath(file), progress)
         return self._part("bootstrap")
 
-    def prior_check(self):
-        """Refits with means and widths of all priors halved and doubled; returns the JSON's part `prior_check`."""
-        _pushid.prior_check(self._model)
-        return self._part("prior_check")
-
-    def push_check(self, *, noise=0.01, seed=1, num_threads=1, progress=None):
-        """Refits with other plausible pushes; returns the JSON's part `push_check`.
-
-        noise: noise of a push sensor, as a fraction of the push's peak.
-        """
-        _pushid.push_check(self._model, noise, seed, num_threads, progress)
-        return self._part("push_check")
-
     def horizon_check(self, *, num_threads=1, progress=None):
         """Refits of the first 8, 16, 32 and 64 frames; returns the JSON's part `horizon_check`."""
         _pushid.horizon_check(self._model, num_threads, progress)
@@ -331,12 +318,11 @@ def crossvalidate(recordings, candidates=None, *, scheme="stratified", folds=4, 
 
 
 class Design(dict):
-    """Benefit of one more recording, a force sensor and more people; print() shows it as pushid-fit does.
+    """Benefit of one more recording; print() shows it as pushid-check does.
 
     "pushes": a Table, best first: direction_deg (from forwards to the left), acceleration (peak force over mass, m/s^2),
-    height (of the rod), duration_s, mass_kg, error_ratio {name: standard error with it over the present one} and their
-    mean; "no_push": the reason if there are none. "sensor_ratio": {name: error with the whole push measured over that
-    without} or "no_sensor"; "sizes": studies with more people and pushes, and their errors.
+    height (of the rod), duration_s, mass_kg, sensor (whether the whole push is measured), error_ratio {name: standard
+    error with it over the present one} and their mean; "no_push": the reason if there are none.
     """
 
     def __init__(self, found):

@@ -7,6 +7,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/report/page/sections.h"
 #include "ident/report/report_text.h"
+#include "ident/validation/experiment_design.h"
 
 namespace pushid {
 namespace {
@@ -229,6 +230,58 @@ ReportSection PopulationSection(const ReportSource& source) {
   section.Say(PopulationSentence(*effect));
   section.Show("", EffectGroupsTable(*effect));
   section.figures.push_back(ForestFigure(*effect));
+  return section;
+}
+
+ReportSection HorizonCheckSection(const ReportSource& source) {
+  ReportSection section;
+  if (!source.model.horizon_check || source.model.horizon_check->refits.empty()) return section;
+  section.paragraphs = {
+      "The fit was repeated on only so many frames of every recording, counted from the start of "
+      "its push. A parameter with physical meaning keeps its value; one that drifts compensates "
+      "for something that the model omits.",
+      DriftText(*source.model.horizon_check)};
+  section.Show("values +- standard errors", HorizonTable(*source.model.horizon_check));
+  return section;
+}
+
+// A design needs the fit's own recordings, all of them and as they were.
+ReportSection DesignSection(const ReportSource& source) {
+  constexpr int kBestPushes = 8;
+  std::vector<PendulumRecording> recordings;
+  for (const RecordingView& view : source.views) {
+    const PendulumRecording& seen = view.run.recording;
+    const bool same = std::any_of(
+        source.fit.recordings.begin(), source.fit.recordings.end(), [&](const FittedRecording& r) {
+          return r.id == seen.id && r.content_hash == seen.content_hash;
+        });
+    if (same && seen.num_people() == 1) recordings.push_back(seen);
+  }
+  ReportSection section;
+  if (recordings.empty() || recordings.size() != source.fit.recordings.size()) {
+    section.paragraphs = {
+        "Left out: it needs all recordings that were fitted, as they were then, each of one "
+        "person."};
+    return section;
+  }
+  const ExperimentDesign design = DesignExperiments(recordings, source.fit);
+  if (!design.refused.empty()) {
+    section.paragraphs = {"Left out: " + design.refused + "."};
+    return section;
+  }
+  section.paragraphs = {
+      "Effect of one more recording of each kind on the standard errors, from the sensitivities at "
+      "the estimate: for all parameters together (D-optimal) and for each (c-optimal)."};
+  section.Show("for all parameters", DesignTable(design, "all", kBestPushes).value());
+  TextTable best({"parameter", "best push", "m/s^2", "height", "s", "kg", "sensor", "its error"},
+                 {true, true, false, false, false, false, false, false});
+  for (const std::string& parameter : design.parameters) {
+    std::vector<std::string> row = DesignTable(design, parameter, 1).value().rows()[1];
+    row.insert(row.begin(), parameter);
+    row.resize(best.rows()[0].size());
+    best.Add(row);
+  }
+  section.Show("for each parameter", best);
   return section;
 }
 

@@ -8,6 +8,7 @@
 #include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
 #include "ident/report/page/sections.h"
+#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {
@@ -199,6 +200,103 @@ ReportSection ResidualSection(const ReportSource& source) {
   section.Show("tests of whiteness", tests);
   section.figures.push_back(
       {"residual_correlations", "Correlations of the residuals.", figure, numbers});
+  return section;
+}
+
+namespace {
+
+// Costs on a logarithmic axis. Those of a likelihood may be negative: they count from 1 below the
+// lowest.
+struct CostAxis {
+  double base = 0.0;
+  explicit CostAxis(double lowest) : base(lowest > 0.0 ? 0.0 : lowest - 1.0) {}
+  std::string Title() const { return base == 0.0 ? "cost" : "1 + cost above the lowest"; }
+  double At(double cost) const { return std::log10(std::max(1e-300, cost - base)); }
+};
+
+// Costs of the starts, best first: steps are basins, a long first one is trust.
+ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
+  Chart chart;
+  double lowest = HUGE_VAL;
+  for (const SolveStart* start : ranked) {
+    if (start->usable) lowest = std::min(lowest, start->cost);
+  }
+  const CostAxis axis(lowest);
+  chart.title = axis.Title() + " of the starts, best first";
+  chart.x_label = "rank";
+  chart.logarithmic_y = true;
+  ChartPoints ended;
+  TextTable numbers({"rank", "start", "cost", "failed_recordings"}, {false, true, false, false});
+  for (size_t i = 0; i < ranked.size(); ++i) {
+    const SolveStart& s = *ranked[i];
+    numbers.Add({i + 1, s.kind, s.usable ? DoubleText(s.cost) : "", s.failed.size()});
+    if (!s.usable || !s.failed.empty()) continue;
+    ended.emplace_back(static_cast<double>(i + 1), axis.At(s.cost));
+  }
+  chart.lines = {{ended, kPredictedLook}, {ended, kDotLook, true}};
+  return {"starts_waterfall",
+          "Each step is another local minimum; starts on the lowest step agree. Starts with failed "
+          "recordings are left out.",
+          {{}, {chart}},
+          numbers};
+}
+
+}  // namespace
+
+ReportSection SolveSection(const ReportSource& source) {
+  ReportSection section;
+  std::vector<const SolveStart*> ranked;
+  for (const SolveStart& start : source.fit.starts) ranked.push_back(&start);
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto* a, const auto* b) {
+    return std::make_tuple(!a->usable, a->failed.size(), a->cost) <
+           std::make_tuple(!b->usable, b->failed.size(), b->cost);
+  });
+  TextTable starts(
+      {"rank", "start", "cost", "iterations", "converged", "failed recordings", "solver's message"},
+      {false, true, false, false, true, false, true});
+  for (size_t i = 0; i < ranked.size(); ++i) {
+    const SolveStart& s = *ranked[i];
+    starts.Add({i + 1, s.kind, s.usable ? Rounded(s.cost, 6) : "-", s.iterations,
+                s.converged ? "yes" : "no", s.failed.size(), s.message});
+  }
+  section.Show("starts, best first", starts);
+  if (source.fit.likelihood) section.Say(LikelihoodText(source.fit));
+  section.Say(AcrossStartsNote(source.fit));
+  if (ranked.size() > 1) section.figures.push_back(WaterfallFigure(ranked));
+  section.Show("where the best starts ended", AcrossStartsTable(source.fit));
+  const std::vector<TracePoint>& trace = source.fit.diagnostics.trace;
+  if (trace.size() < 2) return section;
+  double lowest = HUGE_VAL;
+  for (const TracePoint& point : trace) lowest = std::min(lowest, point.cost);
+  const CostAxis axis(lowest);
+  Chart cost, gradient;
+  cost.title = axis.Title();
+  gradient.title = "largest gradient component";
+  ChartLine c{{}, kPredictedLook, false}, g = c;
+  TextTable numbers({"step", "horizon_frames", "iteration", "cost", "gradient"});
+  for (size_t i = 0; i < trace.size(); ++i) {
+    const double step = static_cast<double>(i);
+    c.points.emplace_back(step, axis.At(trace[i].cost));
+    if (trace[i].gradient > 0.0) g.points.emplace_back(step, std::log10(trace[i].gradient));
+    numbers.Add({i, trace[i].horizon, trace[i].iteration, trace[i].cost, trace[i].gradient});
+  }
+  cost.lines = {c};
+  gradient.lines = {g};
+  for (Chart* chart : {&cost, &gradient}) {
+    chart->x_label = "iteration, over all horizons";
+    chart->logarithmic_y = true;
+    for (size_t i = 1; i < trace.size(); ++i) {
+      if (trace[i].horizon != trace[i - 1].horizon) chart->marks.push_back(static_cast<double>(i));
+    }
+  }
+  section.figures.push_back(
+      {"trace",
+       source.fit.options.likelihood == Likelihood::kTrajectory
+           ? "The best start. The cost jumps where the horizon grows (lines) and where "
+             "the data are weighed anew."
+           : "The best start: Fisher scoring, then BFGS.",
+       {{}, {cost, gradient}},
+       numbers});
   return section;
 }
 

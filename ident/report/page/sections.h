@@ -34,8 +34,7 @@ struct SectionRow {
 };
 
 RenderSection LeadSection, SummarySection, ParameterSection, ContrastSection, UnitSection,
-    IdentifiabilitySection, ProfileSection, BootstrapSection, PriorCheckSection, PushCheckSection,
-    HorizonCheckSection, BehaviourSection, LoopSection, FrequencySection, SwaySection,
+    IdentifiabilitySection, ProfileSection, BootstrapSection, HorizonCheckSection, BehaviourSection, LoopSection, FrequencySection, SwaySection,
     PopulationSection, ForecastSection, StepSection, GroupSection, FigureSection, MotionSection,
     VisualCheckSection, RecordingSection, LeverageSection, ResidualSection, SolveSection,
     DesignSection, AdviceSection, ProvenanceSection;
@@ -50,8 +49,6 @@ inline constexpr SectionRow kSections[] = {
     {"identifiability", "Identifiability", IdentifiabilitySection},
     {"profiles", "Profile likelihood", ProfileSection},
     {"bootstrap", "Bootstrap", BootstrapSection},
-    {"prior_check", "Sensitivity to the priors", PriorCheckSection},
-    {"push_check", "Sensitivity to the pushes", PushCheckSection},
     {"horizon_check", "Estimates from fewer frames", HorizonCheckSection},
     {"behaviour", "After a push", BehaviourSection},
     {"loop", "The identified loop", LoopSection},

@@ -72,30 +72,6 @@ TEST(Advice, ScoresFindAMissingTerm) {
 }
 
 // Where priors decide, the advice is to look at them, and no term.
-TEST(Advice, LooksAtSharesBeforeTerms) {
-  SyntheticOptions study = AdvisedStudy(5);
-  study.subjects = 4;
-  study.recordings_per_subject = 1;
-  study.frames = 8;
-  study.joint_noise_m = 0.02;
-  FittedModel model = AdvisedFit(study);
-  const auto held =
-      std::find_if(model.fit.estimates.begin(), model.fit.estimates.end(),
-                   [](const Estimate& e) { return e.status == EstimateStatus::kPriorHeld; });
-  ASSERT_NE(held, model.fit.estimates.end());
-  const auto asks = [](const FittedModel& m) {
-    const std::vector<Advice> advice = Advise(m);
-    return std::any_of(advice.begin(), advice.end(), [](const Advice& a) {
-      return a.command.find("--prior_check") != std::string::npos;
-    });
-  };
-  EXPECT_TRUE(asks(model));
-  EXPECT_FALSE(ProposesTerms(model));
-  AddPriorCheck(MakePendulums(study), &model);
-  ASSERT_EQ(model.prior_check->rows.size(), 2u);
-  EXPECT_FALSE(asks(model));
-}
-
 // A command that pools what it fixes would be refused.
 TEST(FitCommand, WhatIsFixedIsNeitherFreeNorPooled) {
   Provenance from;

@@ -6,8 +6,9 @@
 
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/solver.h"
+#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
-#include "ident/validation/study_plan.h"
+#include "ident/validation/experiment_design.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -26,10 +27,15 @@ class Design : public ::testing::Test {
     problem_ = std::make_unique<FitProblem>(recordings_, options_);
     estimate_ = Solve(*problem_).Best().to;
     uncertainty_ = ComputeUncertainty(*problem_, estimate_);
-    parts_ = ErrorPartsAt(*problem_, estimate_);
+    const ScoredFit fit = ScoreAt(*problem_, estimate_);
+    parts_ = ComputeCovariance(fit.score, fit.unit, {ClusterByRecording(fit.score), {}, 0, false});
   }
   ExperimentDesign Of(const std::vector<CandidatePush>& candidates) const {
     return DesignExperiments(*problem_, estimate_, uncertainty_, parts_, candidates);
+  }
+  void WithoutSpread() {
+    parts_.scatter = {};
+    parts_.scatter.Add(parts_.naive, 1.0);
   }
   static size_t Index(const ExperimentDesign& design, const std::string& name) {
     return static_cast<size_t>(std::find(design.parameters.begin(), design.parameters.end(), name) -
@@ -42,7 +48,7 @@ class Design : public ::testing::Test {
   std::unique_ptr<FitProblem> problem_;
   FitPoint estimate_;
   Uncertainty uncertainty_;
-  ErrorParts parts_;
+  Covariance parts_;
 };
 
 // Sideways pushes tell about sideways friction, and a strong one more than a weak one.
@@ -55,7 +61,7 @@ TEST_F(Design, ThePushThatMovesAParameterIsTheOneToRecord) {
   const auto ratio = [&](const ExperimentDesign& d, int row) {
     return d.rows[row].error_ratio[sideways];
   };
-  parts_.by_recording = parts_.naive;
+  WithoutSpread();
   const ExperimentDesign noise_alone = Of(pushes);
   for (const ExperimentDesign* d : {&alike, &noise_alone}) {
     EXPECT_LT(ratio(*d, 1), ratio(*d, 0));
@@ -74,11 +80,12 @@ TEST_F(Design, ThePushThatMovesAParameterIsTheOneToRecord) {
 TEST_F(Design, CandidatesCountAsRecordings) {
   const CandidatePush push{90, 3, 1, 0.1, 80};
   std::vector<PendulumRecording> more = recordings_;
-  more.push_back(MakeCandidate(*problem_, estimate_, push, PushKind::kNet));
+  more.push_back(MakeCandidate(*problem_, estimate_, push));
   const FitProblem with(more, options_);
   // Without spread V = V_naive, and what is found is the naive error of the fit with it.
   const Covariance now = CovarianceAt(*problem_, estimate_), then = CovarianceAt(with, estimate_);
-  parts_.by_recording = now.naive;
+  parts_ = now;
+  WithoutSpread();
   const double sigma = now.sigma / then.sigma;
   const Eigen::MatrixXd expected = sigma * sigma * then.naive;
   const ExperimentDesign d = Of({push});
@@ -87,9 +94,31 @@ TEST_F(Design, CandidatesCountAsRecordings) {
   }
 }
 
+// A sensor makes the tail known, which is found beside drag without.
+TEST_F(Design, ASensorTellsMoreOfDragThanAPushWithATail) {
+  WithoutSpread();
+  const ExperimentDesign d = Of({{90, 3, 1, 0.1, 80, false}, {90, 3, 1, 0.2, 80, true}});
+  const size_t sideways = Index(d, "mu_y");
+  EXPECT_LT(d.rows[1].error_ratio[sideways], d.rows[0].error_ratio[sideways]);
+}
+
+TEST_F(Design, TheTableSaysWhatIsBestForTheParameterAsked) {
+  const ExperimentDesign d = Of({{0, 3, 1, 0.1, 80}, {90, 3, 1, 0.1, 80}, {180, 1, 1, 0.1, 80}});
+  const TextTable table = DesignTable(d, "mu_y", 1).value();
+  EXPECT_EQ(table.rows()[1][0], "to the left");
+  const std::string text = DesignText(d, "mu_y").value();
+  EXPECT_TRUE(Contains(text, "the least useful of 3 candidates"));
+  EXPECT_TRUE(Contains(text, "now: mu_y +- "));
+  EXPECT_FALSE(Contains(DesignText(d, "all").value(), "now:"));
+  EXPECT_TRUE(Contains(ProblemOf(DesignText(d, "nu")), "all, mu"));
+  ExperimentDesign refused;
+  refused.refused = "too few recordings";
+  EXPECT_FALSE(DesignTable(refused, "all", 5).ok());
+}
+
 TEST_F(Design, DefaultCandidatesSpanTheRecordings) {
   const std::vector<CandidatePush> candidates = DefaultCandidates(recordings_);
-  EXPECT_EQ(candidates.size(), 96u);
+  EXPECT_EQ(candidates.size(), 192u);  // half of them with a sensor
   const ExperimentDesign d = Of(candidates);
   EXPECT_TRUE(d.refused.empty()) << d.refused;
   EXPECT_GT(d.rows.size(), 0u);

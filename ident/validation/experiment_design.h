@@ -1,0 +1,75 @@
+// ident: which further push, of a lighter or a heavier person, with a force sensor or without,
+// lowers the standard errors of a fit most.
+//
+// Recordings deviate from the shared parameters by the spread T, and are seen through noise. With V
+// the covariance clustered by the G recordings, V_naive the one that takes all errors for noise,
+// and I_c = J_c'J_c / sigma^2 of a candidate, rolled out at the estimate:
+//
+//   V' = (V^-1 + (I_c^-1 + T)^-1)^-1,   T = G (V - V_naive), its positive part
+//
+// However strong the push, one more recording lowers the error of a parameter that recordings
+// disagree on by no more than about sqrt(G / (G + 1)). Rejected: det(J'J + J_c'J_c) alone, which
+// believes that people are alike and promises far too much of one recording. Errors of parameters
+// on a bound, and null directions, are left out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ident/figures/text_table.h"
+#include "ident/model/fitted_model.h"
+
+namespace pushid {
+
+class FitProblem;
+struct Covariance;
+
+struct CandidatePush {
+  double direction_deg = 0.0;  // from forward (+x) towards left (+y)
+  double acceleration = 0.0;   // peak force over mass, m/s^2
+  double height = 1.0;         // of the contact, fraction of the rod
+  double duration_s = 0.1;     // of the recorded part: to the peak without a sensor
+  double mass_kg = 80.0;       // of the person
+  bool sensor = false;         // whether the whole push is measured
+};
+
+struct DesignRow {
+  CandidatePush push;
+  std::vector<double> error_ratio;  // standard error with one more such recording over the present
+  double volume_ratio = 1.0;  // of det V, the P-th root of its square root: mean of the errors
+};
+
+struct ExperimentDesign {
+  std::string refused;  // why there is none: too few recordings
+  std::vector<std::string> parameters, units;
+  std::vector<double> standard_error;  // now
+  std::vector<DesignRow> rows;         // candidates that fall are left out
+};
+
+// Directions forward, oblique, sideways and back; strengths, durations and masses as wide as those
+// of the recordings; at the hip and lower; with a sensor, and without where most recordings are.
+std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording>& recordings);
+
+// The recording a candidate would be, as the model expects it; without states where it fails.
+PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estimate,
+                                const CandidatePush& push);
+
+// by_recording: the covariance at the estimate by clusters of one recording each.
+ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
+                                   const Uncertainty& uncertainty, const Covariance& by_recording,
+                                   const std::vector<CandidatePush>& candidates);
+// With the default candidates, of a finished fit to these recordings.
+ExperimentDesign DesignExperiments(const std::vector<PendulumRecording>& recordings,
+                                   const FitResult& result);
+
+// By what they bring to a parameter, or to all together ("all"), best first. Errors: the design's
+// refusal, no such parameter.
+Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
+                                          const std::string& parameter);
+// The best `count` of them, and after a gap the least useful one.
+Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
+                              int count);
+// With a heading and the present error.
+Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter);
+
+}  // namespace pushid
