@@ -8,16 +8,15 @@
 #include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
-#include "datasets/exchange/crowd.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/names.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_files.h"
 #include "ident/formations/formation_files.h"
 #include "ident/generators/push_particles.h"
 
 DEFINE_string(csv_out, "", "trajectories, one row per frame and person (CSV)");
-DEFINE_string(trajectories_out, "",
-              "trajectories of the hips, for PedPy and JuPedSim (.txt, or .sqlite)");
+DEFINE_string(trajectories_out, "", "trajectories of the hips (.txt)");
 DEFINE_string(forces_out, "", "net forces, one row per frame, person and part (CSV)");
 DEFINE_string(bvh_out, "", "folder for the pendulums as BVH, with manifest.json and the pushes");
 DEFINE_string(svg_out, "", "picture of the wave (SVG): time across, person down, colour speed");
@@ -31,8 +30,7 @@ DEFINE_string(html_out, "", "page of the moving people (HTML)");
 DEFINE_string(strip_out, "", "strip of poses (SVG)");
 DEFINE_string(joints_out, "", "with bodies: joint positions (CSV)");
 DEFINE_string(bodies_out, "",
-              "with bodies: the bodies (.gltf or .glb: all in one animated file; "
-              "otherwise BVH, one file per person, named after this one)");
+              "with bodies: the bodies (BVH, one file per person, named after this one)");
 
 namespace pushid {
 namespace {
@@ -105,10 +103,13 @@ void WriteNamed(const std::vector<NamedOutput>& outputs) {
 void CheckOutputFlags(int people) {
   CheckPicture("svg_out", FLAGS_svg_out, people, kMostPeopleInWave);
   CheckPicture("forces_svg_out", FLAGS_forces_svg_out, people, kMostPeopleInForces);
-  OrFail(CheckTrajectoryFile("trajectories_out", FLAGS_trajectories_out));
-  OrFail(CheckOutputFiles({FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out, FLAGS_svg_out,
-                           FLAGS_forces_svg_out, FLAGS_html_out, FLAGS_strip_out, FLAGS_joints_out,
-                           FLAGS_bodies_out}));
+  if (!FLAGS_trajectories_out.empty() && !EndsWith(FLAGS_trajectories_out, ".txt")) {
+    throw Error{"--trajectories_out names " + FLAGS_trajectories_out +
+                "; trajectories end in .txt"};
+  }
+  OrFail(CheckOutputFiles({FLAGS_agents_out, FLAGS_csv_out, FLAGS_trajectories_out,
+                           FLAGS_forces_out, FLAGS_svg_out, FLAGS_forces_svg_out, FLAGS_html_out,
+                           FLAGS_strip_out, FLAGS_joints_out, FLAGS_bodies_out}));
   if (!FLAGS_bvh_out.empty()) OrFail(CheckOutputFolder("bvh_out", FLAGS_bvh_out));
   CheckNeeds({"forces_own_scale"}, {"forces_svg_out"});
 }
@@ -166,7 +167,6 @@ void WriteFormationBodies(const PostprocessOptions& postprocess,
     scene.bodies = OrFail(
         generates ? GeneratedBodies(run, plan->first_poses, *plan->generator)
                   : FormationBodies(run, plan->first_poses, *plan->restoration, postprocess));
-    if (!generates) scene.footprints = PredictedFootprints(run.recording, run.prediction);
   }
   Animation animation;
   animation.title = title + (generates ? "; bodies by diffusion" : "");
@@ -186,7 +186,7 @@ void WriteFormationBodies(const PostprocessOptions& postprocess,
                }},
               {FLAGS_joints_out, [&](File file) { return WriteJointsCsv(file, scene); }},
               {FLAGS_bodies_out, [&](File file) {
-                 OrFail(WriteBodyFiles(file, scene));
+                 OrFail(WriteBodyBvh(file, scene));
                  return MaybeError();
                }}});
 }

@@ -39,7 +39,7 @@ GroupHips HipsBeside(const LoadedGenerator& loaded, const std::optional<Identifi
 }
 
 std::vector<std::string> WriteGroup(const std::string& path, const BodyScene& scene) {
-  if (IsBodyFile(path)) return OrFail(WriteBodyFiles(path, scene));
+  if (IsBodyFile(path)) return OrFail(WriteBodyBvh(path, scene));
   OrFail(WriteJointsCsv(path, scene));
   return {path};
 }

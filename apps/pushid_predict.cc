@@ -28,8 +28,7 @@
 DEFINE_string(id, "", "the recording that gives the first frame and the push");
 DEFINE_string(out, "",
               "write the trajectory here (CSV: states, hip, forces by part); with --restoration "
-              "the bodies instead, if the name ends in .bvh (one file per person), or in .gltf or "
-              ".glb (all in one animated glTF file)");
+              "the bodies instead, if the name ends in .bvh (one file per person)");
 DEFINE_int32(frames, 0, "frames to predict; 0: as many as the recording has");
 DEFINE_double(push_scale, pushid::ChangedPushes{}.scale,
               "what-if: multiply the recorded pushes by this, as in 1.37");
@@ -86,7 +85,7 @@ PendulumRecording PushedRecording(const Recording& recorded, SkeletonMapping map
 RestorationFlags CheckedFlags() {
   RequireModel();
   Require("id", FLAGS_id, "name a recording of the manifest");
-  Require("out", FLAGS_out, "name the CSV, BVH or glTF file to write");
+  Require("out", FLAGS_out, "name the CSV or BVH file to write");
   const RestorationFlags restoration = RestorationFlagsFromCommandLine();
   const std::string needy = BodyOutput();
   if (!needy.empty() && !restoration.given()) throw NeedsRestoration(needy);
@@ -105,7 +104,7 @@ std::vector<std::string> WriteScene(const BodyScene& scene, const BodyRecording&
                                     const Prediction& prediction) {
   std::vector<std::string> files = {FLAGS_out};
   if (IsBodyFile(FLAGS_out)) {
-    files = OrFail(WriteBodyFiles(FLAGS_out, scene));
+    files = OrFail(WriteBodyBvh(FLAGS_out, scene));
   } else {
     OrFail(WriteTrajectoryCsv(FLAGS_out, recording.pendulum, prediction));
   }
@@ -134,8 +133,7 @@ int WriteBodies(const RestorationFlags& flags, const Recording& recorded, Skelet
     score = ScoreBodies(recording, bodies, std::max(1, prediction.observed));
   }
   ToLaboratory(recording.pendulum.scene, &bodies);
-  BodyScene scene = SceneOf(recording, std::move(bodies));
-  scene.footprints = PredictedFootprints(recording.pendulum, prediction);
+  const BodyScene scene = SceneOf(recording, std::move(bodies));
   const std::vector<std::string> files = WriteScene(scene, recording, prediction);
   std::printf("%s: %d frames of %d %s predicted (%s)\n", scene.id.c_str(), scene.num_frames(),
               scene.num_people(), scene.num_people() == 1 ? "body" : "bodies",

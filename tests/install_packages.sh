@@ -5,10 +5,10 @@
 
 build_packages=(g++ cmake ninja-build ccache
   libceres-dev libeigen3-dev libgoogle-glog-dev libgflags-dev nlohmann-json3-dev libtomlplusplus-dev
-  libxxhash-dev libsqlite3-dev)
+  libxxhash-dev)
 # LibTorch trains restorations and generators, with OpenBLAS in half the time; everything else builds and
 # runs without them.
-test_packages=(libgtest-dev libbenchmark-dev libtorch-dev libopenblas0-pthread assimp-utils chromium
+test_packages=(libgtest-dev libbenchmark-dev libtorch-dev libopenblas0-pthread chromium
   python3 python3-dev pybind11-dev python3-numpy python3-yaml python3-pytest python3-matplotlib python3-jsonschema
   python3-venv python3-pip python3-setuptools python3-wheel)
 fuzz_packages=(clang libclang-rt-14-dev)  # tests/fuzz/run.sh alone needs them
@@ -22,8 +22,8 @@ package_packages=(dpkg-dev)  # cpack: Debian packages, apps/packaging/Containerf
 install_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "This is no Debian, so nothing is installed. Needed are a C++17 compiler, CMake 3.23, Ceres" >&2
-    echo "Solver 2.1, Eigen 3.4, glog, gflags, nlohmann-json, xxHash and SQLite; to train restorations LibTorch; for the" >&2
-    echo "tests GoogleTest, Google Benchmark and assimp (Debian's names: $*)." >&2
+    echo "Solver 2.1, Eigen 3.4, glog, gflags, nlohmann-json and xxHash; to train restorations LibTorch; for the" >&2
+    echo "tests GoogleTest and Google Benchmark (Debian's names: $*)." >&2
     return 0
   fi
   local missing=() package

@@ -27,8 +27,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
 // The order of each room's subfolders; "" is the room itself.
 const std::map<std::string, std::vector<std::string>> kFloors = {
     {"models", {"", "restoration", "generators"}},
-    {"datasets",
-     {"files", "formats", "manifest", "sensors", "loading", "synthetic", "exchange", "inspection"}},
+    {"datasets", {"files", "formats", "manifest", "sensors", "loading", "synthetic", "inspection"}},
     {"residuals", {"packed", "", "lanes", "sensitivities", "cost_functions", "adjoint"}},
     {"ident", {"figures",     "parameters",  "problem",  "solver",     "large_networks",
                "uncertainty", "diagnostics", "model",    "observed",   "fit",

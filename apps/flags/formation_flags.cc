@@ -9,16 +9,16 @@
 #include <sstream>
 
 #include "apps/flags/command_line.h"
-#include "datasets/exchange/crowd.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/formats/trajectories.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/formations/formation_run.h"
 
 DEFINE_string(
     formation, "",
-    "line, diamond or grid of --people, or a trajectory file (.txt, .sqlite), whose people at "
+    "line, diamond or grid of --people, or a trajectory file (.txt), whose people at "
     "--formation_frame are taken; the table judges everybody 2 s after the last push (or after "
     "the onset, if later)");
 DEFINE_int32(people, 4, "number of people in a line, diamond or grid");
@@ -61,7 +61,7 @@ bool FromFile() {
 FormationShape Shape() {
   if (const auto shape = FromName<FormationShape>(FLAGS_formation)) return *shape;
   throw Error{"--formation is '" + FLAGS_formation +
-              "'; it must be line, diamond or grid, or a trajectory file (.txt, .sqlite)"};
+              "'; it must be line, diamond or grid, or a trajectory file (.txt)"};
 }
 
 struct Places {
@@ -75,9 +75,10 @@ Places PlacesOfFile() {
     throw Error{std::string("--") + flag + " is for line, diamond and grid; " + FLAGS_formation +
                 " gives the positions"};
   }
+  std::optional<std::int64_t> frame;
+  if (Given("formation_frame")) frame = FLAGS_formation_frame;
   const std::vector<CrowdPlace> read =
-      OrFail(Given("formation_frame") ? ReadCrowdPlaces(FLAGS_formation, FLAGS_formation_frame)
-                                      : ReadCrowdPlaces(FLAGS_formation, std::nullopt));
+      OrFail(PlacesAt(OrFail(ReadTrajectoryText(FLAGS_formation)), frame));
   const std::string odd = OddSpacing(read);
   if (!odd.empty()) Warn(FLAGS_formation + ": " + odd);
   Places places;
@@ -94,7 +95,7 @@ Places PlacesOfFile() {
 Places FormationPlaces() {
   if (FromFile()) return PlacesOfFile();
   if (Given("formation_frame")) {
-    throw Error{"--formation_frame needs a trajectory file (.txt, .sqlite)"};
+    throw Error{"--formation_frame needs a trajectory file (.txt)"};
   }
   return {FormationPositions(Shape(), FLAGS_people, FLAGS_spacing), {}};
 }

@@ -56,7 +56,7 @@ DEFINE_double(target_distance, kFlags.target_distance,
 DEFINE_string(json_out, "", "write the errors here (JSON)");
 DEFINE_string(poses_out, "",
               "write observed, recorded and forecast poses here (.csv), or observed "
-              "and forecast ones (.bvh, .gltf, .glb)");
+              "and forecast ones (.bvh)");
 DEFINE_string(strip_out, "", "a strip of poses (SVG)");
 DEFINE_string(page_out, "", "a page with the forecast over the recorded motion (HTML)");
 DEFINE_int32(poses, kFlags.poses, "poses of the strip");

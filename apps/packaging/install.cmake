@@ -94,7 +94,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/ident)
 set(CPACK_DEBIAN_TRAINING_PACKAGE_DEPENDS "pushid (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS snakemake)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libceres-dev, libeigen3-dev, nlohmann-json3-dev, libxxhash-dev, libsqlite3-dev")
+    "libceres-dev, libeigen3-dev, nlohmann-json3-dev, libxxhash-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy, python3-yaml")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
 include(CPack)

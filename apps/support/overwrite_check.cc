@@ -73,7 +73,7 @@ MaybeError CheckEnding(const std::string& file) {
                             "pdf", "xlsx", "xls", "mat", "h5", "pkl"}) {
     if (!EqualsIgnoringCase(file.substr(dot + 1), other)) continue;
     return Error{"no program writes ." + std::string(other) +
-                     "; use .html for pages, .svg for pictures, .bvh, .gltf or .glb for bodies, "
+                     "; use .html for pages, .svg for pictures, .bvh for bodies, "
                      ".csv for tables, .json for models and scores",
                  file};
   }

@@ -37,7 +37,8 @@ class TableReader {
     if (format_ == TableFormat::kStorage) {
       if (MaybeError failed = ReadHead()) return *std::move(failed);
     }
-    if (MaybeError failed = SetNames()) return *std::move(failed);
+    if (!NextRow(&line)) return Ended("the line of column names");
+    if (MaybeError failed = ReadNames(line)) return *std::move(failed);
     while (NextRow(&line)) {
       if (MaybeError failed = ReadRow(line)) return *std::move(failed);
     }
@@ -90,18 +91,6 @@ class TableReader {
       (rows ? announced_rows_ : announced_columns_) = number;
     }
     return Ended("endheader");
-  }
-
-  // Those of the options, else of the file's next line.
-  MaybeError SetNames() {
-    if (!options_.names.empty()) {
-      separator_ = '\t';
-      table_.names = options_.names;
-      return Choose();
-    }
-    std::string_view line;
-    if (!NextRow(&line)) return Ended("the line of column names");
-    return ReadNames(line);
   }
 
   MaybeError ReadNames(std::string_view line) {
@@ -183,16 +172,13 @@ class TableReader {
   // count: no more than one beyond the columns.
   Error WrongLength(std::size_t count) const {
     const std::string columns = std::to_string(row_.size());
-    return reader_.ErrorHere("the row has " +
-                             (count > row_.size()
-                                  ? "more than the " + columns + " values of the columns"
-                                  : std::to_string(count) + " values, not " + columns) +
-                             ", separated by " + SeparatorName(separator_) +
-                             (options_.names.empty() ? " as in the line of names" : "") +
-                             ": the file is truncated or damaged" +
-                             (separator_ == kBlanks || !options_.names.empty()
-                                  ? ""
-                                  : ", or a name with a separator in it is not in quotes"));
+    return reader_.ErrorHere(
+        "the row has " +
+        (count > row_.size() ? "more than the " + columns + " values of the columns"
+                             : std::to_string(count) + " values, not " + columns) +
+        ", separated by " + SeparatorName(separator_) +
+        " as in the line of names: the file is truncated or damaged" +
+        (separator_ == kBlanks ? "" : ", or a name with a separator in it is not in quotes"));
   }
 
   const TableFormat format_;

@@ -40,8 +40,6 @@ struct TableReadOptions {
   // Which columns to keep, from all names; unset: all.
   std::function<Result<std::vector<int>>(const std::vector<std::string>& names)> choose;
   bool keep_lines = false;
-  // Of every column, where the file has no line of names (and tabs between its cells).
-  std::vector<std::string> names;
 };
 
 // Errors name the line: no names, a name twice, rows of another length, text that is no number, a

@@ -13,22 +13,12 @@
 
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/motion_bids.h"
 #include "datasets/formats/point_motion.h"
 #include "datasets/formats/trajectories.h"
 
 namespace pushid {
 
-enum class MotionFormat {
-  kBvh,
-  kC3d,
-  kTrc,
-  kCsv,
-  kStorage,
-  kBids,
-  kTrajectoryText,
-  kTrajectorySqlite
-};
+enum class MotionFormat { kBvh, kC3d, kTrc, kCsv, kStorage, kTrajectoryText };
 
 struct MotionFormatRow {
   const char* name;  // the key of the list of files in a manifest
@@ -38,8 +28,6 @@ struct MotionFormatRow {
   // Null: the file holds a skeleton and the motion of its joints, which bvh.h reads.
   Result<PointMotion> (*read)(const std::string& path, const PointReadOptions& options);
   std::optional<TableFormat> table = std::nullopt;  // of files that are tables of numbers
-  // Of formats whose points are people of a crowd.
-  MaybeError (*write_crowd)(const std::string& path, const PointMotion& motion) = nullptr;
 };
 
 inline constexpr MotionFormatRow kMotionFormats[] = {
@@ -53,21 +41,7 @@ inline constexpr MotionFormatRow kMotionFormats[] = {
      {"sto", "mot"},
      &ReadStoragePoints,
      TableFormat::kStorage},
-    {"tsv", MotionFormat::kBids, "Motion-BIDS", {"tsv"}, &ReadMotionBids},
-    {"txt",
-     MotionFormat::kTrajectoryText,
-     "trajectories",
-     {"txt"},
-     &ReadTrajectoryText,
-     {},
-     &WriteTrajectoryText},
-    {"sqlite",
-     MotionFormat::kTrajectorySqlite,
-     "JuPedSim SQLite",
-     {"sqlite"},
-     &ReadTrajectorySqlite,
-     {},
-     &WriteTrajectorySqlite},
+    {"txt", MotionFormat::kTrajectoryText, "trajectories", {"txt"}, &ReadTrajectoryText},
 };
 
 constexpr const auto& Names(MotionFormat) { return kMotionFormats; }
@@ -75,7 +49,7 @@ static_assert(RowsAreInOrder(kMotionFormats), "RowOf finds a row by its value");
 
 inline bool HasSkeleton(MotionFormat format) { return RowOf(format).read == nullptr; }
 // Whether its points are people of a crowd.
-inline bool HoldsCrowd(MotionFormat format) { return RowOf(format).write_crowd != nullptr; }
+inline bool HoldsCrowd(MotionFormat format) { return format == MotionFormat::kTrajectoryText; }
 // Why recordings of people cannot be made of such a file.
 inline constexpr char kCrowdIsNoRecording[] =
     "a file of trajectories holds one point for each person of a group: no recording of one "

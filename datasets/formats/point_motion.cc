@@ -21,27 +21,9 @@ MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion) {
   return std::nullopt;
 }
 
-Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position, double missing) {
-  const bool seen = position.allFinite() && !(position.array() == missing).all();
+Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position) {
+  const bool seen = position.allFinite() && !position.isZero(0.0);
   return seen ? position : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-}
-
-std::vector<int> ColumnsOf(const std::vector<TablePoint>& points, const std::vector<int>& chosen) {
-  std::vector<int> columns;
-  for (int index : chosen) {
-    columns.insert(columns.end(), points[index].columns, points[index].columns + 3);
-  }
-  return columns;
-}
-
-void TakeTracks(const NumericTable& table, double missing, PointMotion* motion) {
-  for (std::size_t i = 0; i < motion->chosen.size(); ++i) {
-    const std::vector<double>*x = &table.data[3 * i], *y = x + 1, *z = x + 2;
-    std::vector<Eigen::Vector3d>& track = motion->positions.emplace_back(table.num_rows());
-    for (int row = 0; row < table.num_rows(); ++row) {
-      track[row] = SeenPosition({(*x)[row], (*y)[row], (*z)[row]}, missing);
-    }
-  }
 }
 
 namespace {
@@ -127,6 +109,26 @@ PointMotion WithoutForces(const PointMotion& motion) {
 
 namespace {
 
+// Columns x, y and z of each of the chosen points.
+std::vector<int> ColumnsOf(const std::vector<TablePoint>& points, const std::vector<int>& chosen) {
+  std::vector<int> columns;
+  for (int index : chosen) {
+    columns.insert(columns.end(), points[index].columns, points[index].columns + 3);
+  }
+  return columns;
+}
+
+// The table keeps the columns of the chosen points first.
+void TakeTracks(const NumericTable& table, PointMotion* motion) {
+  for (std::size_t i = 0; i < motion->chosen.size(); ++i) {
+    const std::vector<double>*x = &table.data[3 * i], *y = x + 1, *z = x + 2;
+    std::vector<Eigen::Vector3d>& track = motion->positions.emplace_back(table.num_rows());
+    for (int row = 0; row < table.num_rows(); ++row) {
+      track[row] = SeenPosition({(*x)[row], (*y)[row], (*z)[row]});
+    }
+  }
+}
+
 Result<PointMotion> ReadTablePoints(const std::string& path, TableFormat format,
                                     const PointReadOptions& options) {
   PointMotion motion;
@@ -165,7 +167,7 @@ Result<PointMotion> ReadTablePoints(const std::string& path, TableFormat format,
     motion.rate_hz = 1.0 / step.value();
     motion.first_time_s = table.value().data.back().front();
   }
-  TakeTracks(table.value(), 0.0, &motion);
+  TakeTracks(table.value(), &motion);
   return motion;
 }
 

@@ -1,6 +1,6 @@
 // datasets: trajectories of named points (markers, joints or people of a crowd) from files other
-// than BVH: C3D, TRC, tables (CSV, OpenSim STO and MOT) with three columns per point, Motion-BIDS,
-// trajectories of crowds.
+// than BVH: C3D, TRC, tables (CSV, OpenSim STO and MOT) with three columns per point, trajectories
+// of crowds.
 //
 //   Result<PointMotion> motion = ReadTrc("trial.trc");  // any format: motion_formats.h
 #pragma once
@@ -55,8 +55,8 @@ struct PointReadOptions {
 // The points that the options choose of motion->names; without a choice all.
 MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion);
 
-// NaN where a point was not seen: not finite, or `missing` in all coordinates.
-Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position, double missing = 0.0);
+// NaN where a point was not seen: not finite, or zero in all coordinates.
+Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position);
 
 // Points as three columns of a table.
 
@@ -64,11 +64,6 @@ struct TablePoint {
   std::string name;
   int columns[3] = {-1, -1, -1};  // x, y, z
 };
-
-// The columns of the chosen points, x, y and z of each; and their tracks, from a table that kept
-// those columns first.
-std::vector<int> ColumnsOf(const std::vector<TablePoint>& points, const std::vector<int>& chosen);
-void TakeTracks(const NumericTable& table, double missing, PointMotion* motion);
 
 // Columns that belong together by their names: hip_x, hip_y, hip_z; hip.X, ...; hipX; hip:x; the
 // point is called what is left without axis and separator. Columns without a partner are no points.

@@ -1,9 +1,10 @@
-// datasets: trajectories of crowds: rows collected, and files of text.
+// datasets: trajectories of crowds.
 #include "datasets/formats/trajectories.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "datasets/files/atomic_file.h"
@@ -14,6 +15,10 @@
 
 namespace pushid {
 namespace {
+
+// People are there for a part of the time; a file of a few rows does not fill the memory.
+constexpr double kMostFramesPerRow = 1000.0, kFewFrames = 1e6;
+constexpr double kClosestPeople = 0.05, kFarApart = 5.0;  // m
 
 // The first number of the comment's words.
 double NumberIn(std::string_view comment) {
@@ -35,6 +40,52 @@ void ReadComment(std::string_view comment, PointMotion* motion) {
     }
   }
 }
+
+// Rows (person, frame, position) gathered into points.
+class TrajectoryRows {
+ public:
+  // false: the person has that frame already.
+  bool Add(std::int64_t person, std::int64_t frame, const Eigen::Vector3d& position) {
+    const bool first = last_ < first_;
+    first_ = first ? frame : std::min(first_, frame);
+    last_ = first ? frame : std::max(last_, frame);
+    return people_[person].emplace(frame, position).second;
+  }
+
+  // Sets names, chosen, positions and first_time_s (by rate_hz, which is set before).
+  MaybeError Fill(const PointReadOptions& options, PointMotion* motion) const {
+    if (people_.empty()) return Error{"the file contains no positions", motion->path};
+    std::vector<const std::map<std::int64_t, Eigen::Vector3d>*> tracks;
+    for (const auto& [id, track] : people_) {
+      motion->names.push_back(std::to_string(id));
+      tracks.push_back(&track);
+    }
+    if (MaybeError failed = ChoosePoints(options, motion)) return failed;
+    // Differences of whole numbers as text has them may overflow.
+    const double frames = static_cast<double>(last_) - static_cast<double>(first_) + 1.0;
+    std::size_t rows = 0;
+    for (const auto* track : tracks) rows += track->size();
+    if (frames * static_cast<double>(motion->chosen.size()) >
+        kFewFrames + kMostFramesPerRow * static_cast<double>(rows)) {
+      return Error{"frames go from " + std::to_string(first_) + " to " + std::to_string(last_) +
+                       ", which is too many for " + std::to_string(rows) + " rows",
+                   motion->path};
+    }
+    motion->first_time_s = static_cast<double>(first_) / motion->rate_hz;
+    const Eigen::Vector3d unseen =
+        Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+    for (int person : motion->chosen) {
+      std::vector<Eigen::Vector3d> track(static_cast<std::size_t>(frames), unseen);
+      for (const auto& [frame, position] : *tracks[person]) track[frame - first_] = position;
+      motion->positions.push_back(std::move(track));
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::map<std::int64_t, std::map<std::int64_t, Eigen::Vector3d>> people_;
+  std::int64_t first_ = 0, last_ = -1;
+};
 
 MaybeError ReadRow(const LineReader& reader, std::string_view line, TrajectoryRows* rows) {
   std::int64_t id[2] = {0, 0};
@@ -60,6 +111,20 @@ MaybeError ReadRow(const LineReader& reader, std::string_view line, TrajectoryRo
   if (rows->Add(id[0], id[1], position)) return std::nullopt;
   return reader.ErrorHere("person " + std::to_string(id[0]) + " was in frame " +
                           std::to_string(id[1]) + " before");
+}
+
+// The ids that are written for the points.
+std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names) {
+  std::vector<std::int64_t> ids(names.size());
+  std::set<std::int64_t> seen;
+  bool numbers = true;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    numbers = numbers && ParseInteger(names[i], &ids[i]) && seen.insert(ids[i]).second;
+  }
+  for (std::size_t i = 0; i < names.size() && !numbers; ++i) {
+    ids[i] = static_cast<std::int64_t>(i) + 1;
+  }
+  return ids;
 }
 
 }  // namespace
@@ -93,24 +158,10 @@ Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadO
   return motion;
 }
 
-std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names) {
-  std::vector<std::int64_t> ids(names.size());
-  std::set<std::int64_t> seen;
-  bool numbers = true;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    numbers = numbers && ParseInteger(names[i], &ids[i]) && seen.insert(ids[i]).second;
-  }
-  for (std::size_t i = 0; i < names.size() && !numbers; ++i) {
-    ids[i] = static_cast<std::int64_t>(i) + 1;
-  }
-  return ids;
-}
-
 MaybeError WriteTrajectoryText(const std::string& path, const PointMotion& motion) {
   AtomicFile file;
   if (MaybeError failed = file.Open(path)) return failed;
   const std::vector<std::int64_t> ids = TrajectoryIds(motion.names);
-  // PedPy takes the rate from the word after framerate, and the unit from x/m.
   std::string text = "# framerate: " + DoubleText(motion.rate_hz) + "\n";
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (std::to_string(ids[i]) == motion.names[i]) continue;
@@ -134,47 +185,63 @@ MaybeError WriteTrajectoryText(const std::string& path, const PointMotion& motio
   return file.Commit();
 }
 
-namespace {
-
-// People are there for a part of the time; a file of a few rows does not fill the memory.
-constexpr double kMostFramesPerRow = 1000.0, kFewFrames = 1e6;
-
-}  // namespace
-
-bool TrajectoryRows::Add(std::int64_t person, std::int64_t frame, const Eigen::Vector3d& position) {
-  const bool first = last_ < first_;
-  first_ = first ? frame : std::min(first_, frame);
-  last_ = first ? frame : std::max(last_, frame);
-  return people_[person].emplace(frame, position).second;
+std::int64_t FirstFrame(const PointMotion& motion) {
+  return std::llround(motion.first_time_s * motion.rate_hz);
 }
 
-MaybeError TrajectoryRows::Fill(const PointReadOptions& options, PointMotion* motion) const {
-  if (people_.empty()) return Error{"the file contains no positions", motion->path};
-  std::vector<const std::map<std::int64_t, Eigen::Vector3d>*> tracks;
-  for (const auto& [id, track] : people_) {
-    motion->names.push_back(std::to_string(id));
-    tracks.push_back(&track);
+Result<std::vector<CrowdPlace>> PlacesAt(const PointMotion& motion,
+                                         std::optional<std::int64_t> wanted) {
+  const std::int64_t first = FirstFrame(motion), last = first + motion.num_frames() - 1;
+  const std::int64_t frame = wanted.value_or(first);
+  if (frame < first || frame > last) {
+    return Error{"there is no frame " + std::to_string(frame) + "; the file has those from " +
+                     std::to_string(first) + " to " + std::to_string(last),
+                 motion.path};
   }
-  if (MaybeError failed = ChoosePoints(options, motion)) return failed;
-  // Differences of whole numbers as text has them may overflow.
-  const double frames = static_cast<double>(last_) - static_cast<double>(first_) + 1.0;
-  std::size_t rows = 0;
-  for (const auto* track : tracks) rows += track->size();
-  if (frames * static_cast<double>(motion->chosen.size()) >
-      kFewFrames + kMostFramesPerRow * static_cast<double>(rows)) {
-    return Error{"frames go from " + std::to_string(first_) + " to " + std::to_string(last_) +
-                     ", which is too many for " + std::to_string(rows) + " rows",
-                 motion->path};
+  const double metres = MetresPer(motion.unit.value_or(LengthUnit::kMetre));
+  std::vector<CrowdPlace> places;
+  for (std::size_t i = 0; i < motion.chosen.size(); ++i) {
+    const Eigen::Vector3d& position = motion.positions[i][frame - first];
+    if (!position.allFinite()) continue;
+    places.push_back({motion.names[motion.chosen[i]], metres * position.head<2>()});
   }
-  motion->first_time_s = static_cast<double>(first_) / motion->rate_hz;
-  const Eigen::Vector3d unseen =
-      Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  for (int person : motion->chosen) {
-    std::vector<Eigen::Vector3d> track(static_cast<std::size_t>(frames), unseen);
-    for (const auto& [frame, position] : *tracks[person]) track[frame - first_] = position;
-    motion->positions.push_back(std::move(track));
+  if (places.empty()) {
+    return Error{"nobody is there in frame " + std::to_string(frame), motion.path};
   }
-  return std::nullopt;
+  std::stable_sort(places.begin(), places.end(), [](const CrowdPlace& a, const CrowdPlace& b) {
+    return a.position.x() != b.position.x() ? a.position.x() < b.position.x()
+                                            : a.position.y() < b.position.y();
+  });
+  return places;
+}
+
+double MedianSpacing(const std::vector<CrowdPlace>& places) {
+  if (places.size() < 2) return 0.0;
+  std::vector<double> nearest;
+  for (const CrowdPlace& one : places) {
+    double distance = std::numeric_limits<double>::infinity();
+    for (const CrowdPlace& other : places) {
+      if (&other != &one) distance = std::min(distance, (one.position - other.position).norm());
+    }
+    nearest.push_back(distance);
+  }
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
+  std::nth_element(nearest.begin(), middle, nearest.end());
+  return *middle;
+}
+
+std::string OddSpacing(const std::vector<CrowdPlace>& places) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if ((places[i].position - places[k].position).norm() > kClosestPeople) continue;
+      return "people " + places[k].name + " and " + places[i].name +
+             " (the file's ids) are no more than 5 cm apart";
+    }
+  }
+  const double spacing = MedianSpacing(places);
+  if (spacing < kFarApart) return "";
+  return "the nearest neighbour is " + Rounded(spacing, 3) +
+         " m away (median); are the lengths metres? The comment '# id frame x/cm y/cm' declares cm";
 }
 
 }  // namespace pushid

@@ -1,5 +1,4 @@
-// datasets: trajectories of crowds, one point a person: text as PedPy, JuPedSim and PeTrack write
-// it, and JuPedSim's SQLite files.
+// datasets: trajectories of crowds, one point a person, as text, and where people stand in a frame.
 //
 //   # framerate: 16.00
 //   # id frame x/m y/m z/m
@@ -10,7 +9,9 @@
 // comments say x/cm or "in cm" (mm alike); without a third coordinate z is 0.
 #pragma once
 
-#include <map>
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,41 +20,33 @@
 namespace pushid {
 
 // Errors name the line: rows of other than 4 numbers or more (3 without z), ids and frames that are
-// no whole numbers, a person twice in one frame, no framerate.
+// no whole numbers, a person twice in one frame, no framerate, more frames than fit into memory.
 Result<PointMotion> ReadTrajectoryText(const std::string& path,
                                        const PointReadOptions& options = {});
-
-// Tables trajectory_data and metadata (versions 1 and 2). Errors: no SQLite file, no such tables,
-// no fps.
-Result<PointMotion> ReadTrajectorySqlite(const std::string& path,
-                                         const PointReadOptions& options = {});
 
 // Atomically; positions in m. Names that are whole numbers are the ids, otherwise people count from
 // 1 and comments of the text give their names. A person has no row for a frame without them.
 MaybeError WriteTrajectoryText(const std::string& path, const PointMotion& motion);
 
-// Version 2. Everybody faces forward, +x; the walkable area is a rectangle with a margin
-// of 1 m around all positions.
-MaybeError WriteTrajectorySqlite(const std::string& path, const PointMotion& motion);
-
-// The ids that are written for the points.
-std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names);
-
-// Rows (person, frame, position) of trajectories gathered into points; shared by the
-// formats of trajectories.h.
-
-class TrajectoryRows {
- public:
-  // false: the person has that frame already.
-  bool Add(std::int64_t person, std::int64_t frame, const Eigen::Vector3d& position);
-
-  // Sets names, chosen, positions and first_time_s (by rate_hz, which is set before). Errors: no
-  // rows, more frames than fit into memory.
-  MaybeError Fill(const PointReadOptions& options, PointMotion* motion) const;
-
- private:
-  std::map<std::int64_t, std::map<std::int64_t, Eigen::Vector3d>> people_;
-  std::int64_t first_ = 0, last_ = -1;
+struct CrowdPlace {
+  std::string name;          // the file's id
+  Eigen::Vector2d position;  // m
 };
+
+// The file's own number of its first frame.
+std::int64_t FirstFrame(const PointMotion& motion);
+
+// Everybody seen in the frame, as the file numbers them, in the order of formations: from the
+// smallest x forwards, and of one x from right to left. Without a frame, those of the first.
+// Errors: no such frame, nobody in it.
+Result<std::vector<CrowdPlace>> PlacesAt(const PointMotion& motion,
+                                         std::optional<std::int64_t> frame);
+
+// m; of everybody's distance to the nearest other, the median; 0 of one person.
+double MedianSpacing(const std::vector<CrowdPlace>& places);
+
+// What is odd about the places: people nearly at one, or so far apart that the unit may be another;
+// empty: nothing.
+std::string OddSpacing(const std::vector<CrowdPlace>& places);
 
 }  // namespace pushid

@@ -6,10 +6,10 @@
 #include <set>
 #include <utility>
 
-#include "datasets/exchange/crowd.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/formats/trajectories.h"
 #include "datasets/inspection/findings.h"
 #include "datasets/inspection/inspection.h"
 #include "datasets/loading/load_recordings.h"

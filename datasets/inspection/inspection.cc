@@ -10,7 +10,6 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/force_csv.h"
-#include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/manifest/joint_choice.h"
 #include "datasets/manifest/manifest.h"
@@ -105,23 +104,6 @@ MaybeError LookAtC3d(const ColumnMapping& mapping, Inspection* found) {
     found->Fact("event", Rounded(event.time_s, 4) + " s " + event.label +
                              (event.context.empty() ? "" : " (" + event.context + ")"));
   }
-  return std::nullopt;
-}
-
-MaybeError LookAtBids(const ColumnMapping& mapping, Inspection* found) {
-  const Result<BidsHeader> header = ReadBidsHeader(found->path);
-  if (!header.ok()) return header.error();
-  const Result<NumericTable> table = ReadBidsTable(found->path, header.value());
-  if (!table.ok()) return table.error();
-  const std::vector<BidsChannel>& channels = header.value().channels;
-  found->Fact("channels", ListOfNames(table.value().names));
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (channels[i].units != "N") continue;
-    AddForce(channels[i].name, header.value().rate_hz, table.value().data[i], found);
-  }
-  const Result<PointMotion> motion = ReadPointMotion(found->path, MotionFormat::kBids);
-  if (!motion.ok()) return motion.error();
-  LookAtPoints(motion.value(), mapping, found);
   return std::nullopt;
 }
 
@@ -223,7 +205,6 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
   found->format = Title(*format);
   if (HasSkeleton(*format)) return LookAtBvh(mapping, found);
   if (*format == MotionFormat::kC3d) return LookAtC3d(mapping, found);
-  if (*format == MotionFormat::kBids) return LookAtBids(mapping, found);
   if (HoldsCrowd(*format)) return LookAtCrowd(*format, found);
   if (!RowOf(*format).table) {
     const Result<PointMotion> motion = ReadPointMotion(path, *format);

@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "datasets/files/input_file.h"
 #include "datasets/files/name_pattern.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
-#include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/units.h"
 #include "datasets/manifest/column_mapping.h"
@@ -216,17 +216,7 @@ class Maker {
     return ReadFrameRate(path, format_, point_options);
   }
 
-  // Those in the channels of Motion-BIDS.
-  void SetPushesOfChannels(ManifestRecording* recording) const {
-    for (std::size_t person = 0; person < recording->motion.size(); ++person) {
-      const std::string& file = recording->motion[person];
-      if (!ReadBidsPushes(ResolvePath(options_.manifest_path, file)).ok()) continue;
-      recording->pushes.push_back({static_cast<int>(person), file, 0});
-    }
-  }
-
   void SetPush(const NameValues& values, ManifestRecording* recording) {
-    if (format_ == MotionFormat::kBids) SetPushesOfChannels(recording);
     if (!push_pattern_) return;
     const std::optional<std::string> path = push_pattern_->Fill(values);
     std::error_code ignored;
@@ -273,5 +263,37 @@ class Maker {
 }  // namespace
 
 Result<MadeManifest> MakeManifest(const ManifestOptions& options) { return Maker(options).Make(); }
+
+Result<std::map<std::string, double>> ReadMasses(const std::string& path) {
+  LineReader reader;
+  if (MaybeError failed = reader.Open(path)) return *std::move(failed);
+  std::map<std::string, double> masses;
+  std::string_view line;
+  if (!reader.NextNonBlank(&line)) {
+    return reader.error() ? *reader.error() : Error{"the file lists no masses", path};
+  }
+  if (CellsOf(line, ',') != std::vector<std::string_view>{"id", "mass_kg"}) {
+    return reader.ErrorHere("the first line must be id,mass_kg, not " + Quoted(line));
+  }
+  while (reader.NextNonBlank(&line)) {
+    std::vector<std::string_view> cells = CellsOf(line, ',');
+    cells.resize(std::max<std::size_t>(cells.size(), 2));
+    const std::string id(cells[0]);
+    double value = 0.0;
+    if (!ParseDouble(cells[1], &value)) {
+      return reader.ErrorHere("mass_kg: " + NumberProblem(cells[1]));
+    }
+    if (!(value > 0.0 && value <= kHeaviestPerson)) {
+      return reader.ErrorHere("a mass in kg is above 0 and at most " + Rounded(kHeaviestPerson) +
+                              ", not " + Rounded(value));
+    }
+    if (!masses.emplace(id, value).second) {
+      return reader.ErrorHere("the mass of " + Quoted(id) + " was given before");
+    }
+  }
+  if (reader.error()) return *reader.error();
+  if (masses.empty()) return reader.ErrorHere("the file lists no masses");
+  return masses;
+}
 
 }  // namespace pushid

@@ -5,8 +5,6 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
-#include "datasets/formats/motion_bids.h"
-#include "datasets/formats/motion_formats.h"
 #include "datasets/loading/ground_record.h"
 #include "datasets/loading/plate_record.h"
 #include "datasets/manifest/manifest.h"
@@ -18,14 +16,6 @@ namespace {
 Error OfRecording(const ManifestRecording& entry, Error error) {
   error.message = "recording " + Quoted(entry.id) + ": " + error.message;
   return error;
-}
-
-// One, or several where a Motion-BIDS file holds them; frames count from the push's own start.
-Result<std::vector<TimedForce>> ReadPushFile(const std::string& path) {
-  if (MotionFormatOfFile(path) == MotionFormat::kBids) return ReadBidsPushes(path);
-  Result<std::vector<Eigen::Vector4d>> force = ReadPushCsv(path);
-  if (!force.ok()) return force.error();
-  return std::vector<TimedForce>{{0, std::move(force.value())}};
 }
 
 MaybeError CheckWithin(const Push& push, int num_frames) {
@@ -46,22 +36,20 @@ MaybeError CheckWithin(const Push& push, int num_frames) {
                push.file, 0};
 }
 
-MaybeError LoadPushes(const std::string& manifest, const ManifestPush& entry, ContentHash* hash,
-                      Recording* recording) {
+MaybeError LoadPush(const std::string& manifest, const ManifestPush& entry, ContentHash* hash,
+                    Recording* recording) {
   Push push;
   push.person = entry.person;
   push.file = ResolvePath(manifest, entry.csv);
-  Result<std::vector<TimedForce>> read = ReadPushFile(push.file);
-  if (!read.ok()) return read.error();
-  for (TimedForce& timed : read.value()) {
-    push.start_frame = entry.start_frame + timed.start_frame;
-    push.force = std::move(timed.force);
-    if (MaybeError failed = CheckWithin(push, recording->num_frames())) return failed;
-    recording->pushes.push_back(push);
-  }
+  push.start_frame = entry.start_frame;
+  Result<std::vector<Eigen::Vector4d>> force = ReadPushCsv(push.file);
+  if (!force.ok()) return force.error();
+  push.force = std::move(force.value());
+  if (MaybeError failed = CheckWithin(push, recording->num_frames())) return failed;
   const Result<std::string> file_hash = HashFile(push.file);
   if (!file_hash.ok()) return file_hash.error();
   hash->Add(file_hash.value());
+  recording->pushes.push_back(std::move(push));
   return std::nullopt;
 }
 
@@ -139,7 +127,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
     pushes.insert(pushes.begin(), ManifestPush{entry.pushed_person, entry.push_csv, 0});
   }
   for (const ManifestPush& push : pushes) {
-    if (MaybeError failed = LoadPushes(entry.manifest, push, &hash, &recording)) {
+    if (MaybeError failed = LoadPush(entry.manifest, push, &hash, &recording)) {
       return OfRecording(entry, *std::move(failed));
     }
   }

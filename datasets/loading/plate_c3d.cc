@@ -79,7 +79,7 @@ Result<PlateTracks> ReadPlates(const ManifestRecording& entry, const ManifestPla
   if (format == MotionFormat::kBvh || format == MotionFormat::kTrc) {
     return Error{std::string("a ") + RowOf(*format).title +
                      " file holds no force platforms; name the one that does as \"file\" of "
-                     "force_plates (C3D, CSV, OpenSim storage, Motion-BIDS)",
+                     "force_plates (C3D, CSV, OpenSim storage)",
                  path};
   }
   const bool own_axes = of_motion && plates.up.empty() && plates.forward.empty();

@@ -10,7 +10,6 @@
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
 #include "datasets/formats/c3d.h"
-#include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/units.h"
 #include "datasets/manifest/manifest.h"
@@ -43,14 +42,14 @@ std::vector<int> ColumnsCalled(const std::string& name, const std::vector<std::s
   return {};
 }
 
-// A column or three of a table, or of the channels of a Motion-BIDS file ("cell" for cell_x,
-// cell_y, cell_z), whose clock starts with the file.
-Result<SensorRecord> FromTable(const SensorChoice& choice, MotionFormat format) {
+// A column or three of a table ("cell" for cell_x, cell_y, cell_z), whose clock starts with the
+// file.
+Result<SensorRecord> FromTable(const SensorChoice& choice) {
   const Result<TimedColumns> read = ReadTimedColumns(
       choice.file, [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
         const std::vector<int> columns = ColumnsCalled(choice.column, names);
         if (!columns.empty()) return columns;
-        return NoColumn(choice, format == MotionFormat::kBids ? "channel" : "column", names);
+        return NoColumn(choice, "column", names);
       });
   if (!read.ok()) return read.error();
   const TimedColumns& table = read.value();
@@ -72,13 +71,7 @@ Result<SensorRecord> FromTable(const SensorChoice& choice, MotionFormat format) 
 // For files that hold more than a push.
 Error WhichColumn(const SensorChoice& choice, MotionFormat format) {
   std::vector<std::string> names;
-  if (format == MotionFormat::kBids) {
-    const Result<BidsHeader> header = ReadBidsHeader(choice.file);
-    if (!header.ok()) return header.error();
-    for (const BidsChannel& channel : header.value().channels) {
-      if (!EqualsIgnoringCase(channel.type, "POS")) names.push_back(channel.name);
-    }
-  } else if (format == MotionFormat::kC3d) {
+  if (format == MotionFormat::kC3d) {
     const Result<C3dFile> file = ReadC3d(choice.file);
     if (!file.ok()) return file.error();
     names = ChannelNames(file.value());
@@ -162,8 +155,7 @@ Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
       choice.up.empty() ? "z" : choice.up, choice.forward.empty() ? "x" : choice.forward);
   if (!rotation.ok()) return rotation.error();
   const MotionFormat format = MotionFormatOfFile(choice.file).value_or(MotionFormat::kCsv);
-  const bool several = format == MotionFormat::kC3d || format == MotionFormat::kStorage ||
-                       format == MotionFormat::kBids;
+  const bool several = format == MotionFormat::kC3d || format == MotionFormat::kStorage;
   if (choice.column.empty() && several) return WhichColumn(choice, format);
   if (!std::isfinite(choice.gain) || choice.gain == 0.0) {
     return Error{"the gain of a sensor must be a number of N per unit other than 0"};
@@ -171,7 +163,7 @@ Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
   Result<SensorRecord> record = format == MotionFormat::kC3d
                                     ? FromC3d(choice, rotation.value().row(2).transpose())
                                 : choice.column.empty() ? ReadSensorCsv(choice.file)
-                                                        : FromTable(choice, format);
+                                                        : FromTable(choice);
   if (!record.ok()) return record;
   record.value().file = choice.file;
   if (choice.zero_n.value_or(0.0) != 0.0 && record.value().is_vector) {

@@ -1,6 +1,5 @@
 // datasets: force sensors in any file: CSV of the two forms in force_csv.h, a column or three of
-// another CSV or an OpenSim storage file, a channel or three of a Motion-BIDS file, an analog
-// channel or a force platform of a C3D file.
+// another CSV or an OpenSim storage file, an analog channel or a force platform of a C3D file.
 #pragma once
 
 #include <Eigen/Core>
@@ -54,7 +53,7 @@ void SubtractRest(SensorRecord* record);
 // Files are relative to the list. Also up and forward.
 Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path);
 
-// Columns of numbers with their times, from CSV, OpenSim storage and Motion-BIDS files.
+// Columns of numbers with their times, from CSV and OpenSim storage files.
 
 struct TimedColumns {
   std::string file;

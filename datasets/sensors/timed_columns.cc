@@ -4,7 +4,6 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/numeric_table.h"
-#include "datasets/formats/motion_bids.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/sensors/sensor_choice.h"
 
@@ -14,14 +13,13 @@ Result<TimedColumns> ReadTimedColumns(
     const std::string& path,
     const std::function<Result<std::vector<int>>(const std::vector<std::string>&)>& choose) {
   const MotionFormat format = MotionFormatOfFile(path).value_or(MotionFormat::kCsv);
-  const bool bids = format == MotionFormat::kBids;
   std::vector<int> columns;
   int time = -1;
   TableReadOptions options;
   options.keep_lines = true;
   options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-    if (!bids) time = FindTimeColumn(names, "");
-    if (!bids && time < 0) return Error{"there is no column called time", path};
+    time = FindTimeColumn(names, "");
+    if (time < 0) return Error{"there is no column called time", path};
     const Result<std::vector<int>> chosen = choose(names);
     if (!chosen.ok()) return chosen.error();
     columns = chosen.value();
@@ -29,14 +27,11 @@ Result<TimedColumns> ReadTimedColumns(
     for (int column : columns) {
       if (column >= 0) wanted.push_back(column);
     }
-    if (!bids) wanted.push_back(time);
+    wanted.push_back(time);
     return wanted;
   };
-  const Result<BidsHeader> header = bids ? ReadBidsHeader(path) : BidsHeader{};
-  if (!header.ok()) return header.error();
   const Result<NumericTable> table =
-      bids ? ReadBidsTable(path, header.value(), options)
-           : ReadNumericTable(path, RowOf(format).table.value_or(TableFormat::kCsv), options);
+      ReadNumericTable(path, RowOf(format).table.value_or(TableFormat::kCsv), options);
   if (!table.ok()) return table.error();
   TimedColumns read;
   read.file = path;
@@ -46,14 +41,10 @@ Result<TimedColumns> ReadTimedColumns(
         "it has " + std::to_string(table.value().num_rows()) + " rows; three or more are needed",
         path};
   }
-  if (bids) {
-    read.rate_hz = header.value().rate_hz;
-  } else {
-    const Result<double> step = EvenTimeStep(table.value(), time);
-    if (!step.ok()) return step.error();
-    read.rate_hz = 1.0 / step.value();
-    read.first_s = table.value().data.back()[0];
-  }
+  const Result<double> step = EvenTimeStep(table.value(), time);
+  if (!step.ok()) return step.error();
+  read.rate_hz = 1.0 / step.value();
+  read.first_s = table.value().data.back()[0];
   size_t next = 0;
   for (int column : columns) {
     read.values.push_back(column >= 0 ? table.value().data[next++] : std::vector<double>());

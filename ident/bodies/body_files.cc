@@ -116,11 +116,6 @@ class HierarchyMotion {
   std::vector<std::vector<double>> values_;  // of each joint's channels at frame 0
 };
 
-bool HasEnding(const std::string& path, const std::string& ending) {
-  return path.size() > ending.size() &&
-         EqualsIgnoringCase(std::string_view(path).substr(path.size() - ending.size()), ending);
-}
-
 // "out/motion.bvh" and 2, "X-16": "out/motion_2_X-16.bvh".
 std::string PersonsFile(const std::string& path, int person, const std::string& subject) {
   const size_t slash = path.find_last_of('/');
@@ -152,63 +147,10 @@ BvhMotion ToBvh(const BodySkeleton& skeleton, const BodyMotion& motion, double d
   return HierarchyMotion(skeleton).Write(motion, dt);
 }
 
-namespace {
-
-// From the heel to beyond the toe of the first pose, on the ground below it.
-GltfFootprint ToGltf(const BodyScene& scene, int person, const Footprint& print) {
-  constexpr double kHeel = 0.05, kTips = 0.06, kSole = 0.03;  // m: behind, before, below joints
-  const Pose& first = scene.bodies[person].front();
-  const bool left = print.foot == Foot::kLeft;
-  const Eigen::Vector3d toe = first.col(left ? kLeftToe : kRightToe);
-  const Eigen::Vector2d foot = (toe - first.col(left ? kLeftAnkle : kRightAnkle)).head<2>();
-  const Eigen::Vector2d middle =
-      print.place + 0.5 * (foot.norm() + kTips - kHeel) * foot.normalized();
-  const double from = print.landing * scene.dt, to = print.lift_off * scene.dt;
-  GltfFootprint box;
-  box.name = NameOf(print.foot) + " foot of " + scene.subject_ids[person] + ", " +
-             Rounded(from, 3) + "-" + Rounded(to, 3) + " s";
-  box.person = person;
-  box.middle = {middle[0], middle[1], std::min(0.0, toe[2] - kSole)};
-  box.heading = std::atan2(foot[1], foot[0]);
-  box.length = foot.norm() + kTips + kHeel;
-  box.from = from;
-  box.to = to;
-  return box;
-}
-
-}  // namespace
-
-GltfScene ToGltf(const BodyScene& scene) {
-  GltfScene gltf;
-  gltf.name = scene.id;
-  gltf.dt = scene.dt;
-  for (int n = 0; n < scene.num_people(); ++n) {
-    const BodySkeleton skeleton = scene.skeleton(n);
-    GltfPerson person;
-    person.name = scene.subject_ids[n];
-    person.joints = skeleton.names;
-    person.parents = skeleton.parents;
-    person.rest = skeleton.rest.leftCols(skeleton.num_joints());
-    const auto head = std::find(skeleton.roles.begin(), skeleton.roles.end(), kBodyHead);
-    if (head != skeleton.roles.end()) person.head = static_cast<int>(head - skeleton.roles.begin());
-    for (const Pose& pose : scene.bodies[n]) person.frames.push_back(Retarget(skeleton, pose));
-    gltf.people.push_back(std::move(person));
-    if (n >= static_cast<int>(scene.footprints.size())) continue;
-    for (const Footprint& print : scene.footprints[n]) {
-      gltf.footprints.push_back(ToGltf(scene, n, print));
-    }
-  }
-  return gltf;
-}
-
 bool IsBodyFile(const std::string& path) {
-  return HasEnding(path, ".bvh") || HasEnding(path, ".gltf") || HasEnding(path, ".glb");
-}
-
-Result<std::vector<std::string>> WriteBodyFiles(const std::string& path, const BodyScene& scene) {
-  if (!HasEnding(path, ".gltf") && !HasEnding(path, ".glb")) return WriteBodyBvh(path, scene);
-  if (MaybeError error = WriteGltf(path, ToGltf(scene))) return *error;
-  return std::vector<std::string>{path};
+  constexpr size_t kEnding = 4;
+  return path.size() > kEnding &&
+         EqualsIgnoringCase(std::string_view(path).substr(path.size() - kEnding), ".bvh");
 }
 
 Result<std::vector<std::string>> WriteBodyBvh(const std::string& path, const BodyScene& scene) {

@@ -63,39 +63,6 @@ MaybeError WriteOneBvh(const std::string& path, const ForecastScene& scene,
   return WriteBvh(path, ToBvh(whole, scene.layout, scene.dt), kUnit);
 }
 
-// The observed frames and `next`, as a tree of joints that turn towards those that hang on them.
-void AddPerson(const std::string& name, const Trajectories& next, const ForecastScene& scene,
-               GltfScene* gltf) {
-  const ParticleLayout& layout = scene.layout;
-  std::vector<int> order;
-  AddBelow(layout, kNoBone, &order);
-  AddBelow(layout, kFixedPoint, &order);
-  std::vector<int> joint_of(layout.num_particles());
-  GltfPerson person;
-  person.name = name;
-  for (size_t k = 0; k < order.size(); ++k) {
-    joint_of[order[k]] = static_cast<int>(k);
-    const int parent = layout.parents[order[k]];
-    person.joints.push_back(layout.names[order[k]]);
-    person.parents.push_back(parent < 0 ? -1 : joint_of[parent]);
-  }
-  JointAims tree{person.parents, std::vector<std::vector<int>>(order.size())};
-  for (size_t k = 0; k < order.size(); ++k) {
-    if (person.parents[k] >= 0) tree.aims[person.parents[k]].push_back(static_cast<int>(k));
-  }
-  Trajectories whole(scene.observed.rows(), scene.observed.cols() + next.cols());
-  whole << scene.observed, next;
-  Eigen::Matrix3Xd places(3, order.size());
-  for (Eigen::Index t = 0; t < whole.cols(); ++t) {
-    for (size_t k = 0; k < order.size(); ++k) {
-      places.col(k) = whole.col(t).segment<3>(3 * order[k]).cast<double>();
-    }
-    if (t == 0) person.rest = places;
-    person.frames.push_back({places, FitTree(tree, person.rest, places).rotations});
-  }
-  gltf->people.push_back(std::move(person));
-}
-
 }  // namespace
 
 BvhMotion ToBvh(const Trajectories& motion, const ParticleLayout& layout, double dt) {
@@ -143,32 +110,16 @@ BvhMotion ToBvh(const Trajectories& motion, const ParticleLayout& layout, double
   return bvh;
 }
 
-GltfScene ToGltf(const ForecastScene& scene) {
-  GltfScene gltf;
-  gltf.name = scene.title;
-  gltf.dt = scene.dt;
-  gltf.y_up = scene.layout.mirrored_axis == 0;
-  AddPerson("forecast", scene.forecast, scene, &gltf);
-  for (size_t i = 0; i < scene.futures.size(); ++i) {
-    AddPerson("future " + std::to_string(i + 1), scene.futures[i].motion, scene, &gltf);
-  }
-  return gltf;
-}
-
 MaybeError CheckPosesPath(const std::string& flag, const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
   if (path.empty() || IsBodyFile(path) || ending == ".csv") return std::nullopt;
-  return Error{flag + " is '" + path + "'; it must end in .bvh, .gltf, .glb or .csv"};
+  return Error{flag + " is '" + path + "'; it must end in .bvh or .csv"};
 }
 
 Result<std::vector<std::string>> WritePoses(const std::string& path, const ForecastScene& scene) {
   if (MaybeError error = CheckPosesPath("the file of poses", path)) return *error;
   if (std::filesystem::path(path).extension() == ".csv") {
     if (MaybeError error = WriteCsv(path, scene)) return *error;
-    return std::vector<std::string>{path};
-  }
-  if (!EqualsIgnoringCase(std::filesystem::path(path).extension().string(), ".bvh")) {
-    if (MaybeError error = WriteGltf(path, ToGltf(scene))) return *error;
     return std::vector<std::string>{path};
   }
   std::vector<std::string> files = {path};

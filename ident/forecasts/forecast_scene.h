@@ -28,13 +28,9 @@ struct ForecastScene {
 // stay zero. Particles on fixed points hang on a root at the origin. Millimetres, the data's axes.
 BvhMotion ToBvh(const Trajectories& motion, const ParticleLayout& layout, double dt);
 
-// Observed frames and the forecast, and beside it those of every future.
-GltfScene ToGltf(const ForecastScene& scene);
-
 // .bvh: observed frames and the forecast; with futures each of them in a file of its own beside it
 // ("out_future_1.bvh"). .csv: frame,time_s,source,future,joint,x_m,y_m,z_m with source observed,
-// recorded, forecast or future. .gltf or .glb: as .bvh, but all in one scene, the futures beside
-// the forecast. Returns the files' names. Errors: another ending.
+// recorded, forecast or future. Returns the files' names. Errors: another ending.
 Result<std::vector<std::string>> WritePoses(const std::string& path, const ForecastScene& scene);
 // Whether the ending is one of these.
 MaybeError CheckPosesPath(const std::string& flag, const std::string& path);

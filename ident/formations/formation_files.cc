@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "datasets/exchange/crowd.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/formats/force_csv.h"
+#include "datasets/formats/trajectories.h"
 #include "datasets/manifest/manifest.h"
 
 namespace pushid {
@@ -102,8 +102,7 @@ MaybeError WriteFormationTrajectories(const std::string& path, const FormationRu
   motion.rate_hz = 1.0 / run.recording.scene.dt;
   motion.names = run.recording.subject_ids;
   motion.positions = run.prediction.hip;
-  ChoosePoints({}, &motion);
-  return WriteTrajectories(path, motion);
+  return WriteTrajectoryText(path, motion);
 }
 
 MaybeError WriteFormationRecording(const std::string& folder, const FormationRun& run) {

@@ -17,7 +17,7 @@ namespace pushid {
 //   frame,time_s,person,part,fx_N,fy_N,ftheta_Nm,fphi_Nm
 MaybeError WriteForcesCsv(const std::string& path, const FormationRun& run);
 
-// The hips, for programs that know crowds; the file's ending says the format (crowd.h).
+// The hips, as trajectories.h has them.
 MaybeError WriteFormationTrajectories(const std::string& path, const FormationRun& run);
 
 // The pendulums as recordings: folder/manifest.json, folder/bvh/NAME.bvh and folder/push/*.csv, in

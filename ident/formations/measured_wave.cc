@@ -1,8 +1,8 @@
 // ident: waves of trajectories.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "datasets/exchange/crowd.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/motion_formats.h"
 #include "datasets/loading/load_recordings.h"
@@ -95,9 +95,25 @@ MaybeError CheckOnePointAPerson(const std::string& path, std::optional<MotionFor
     return std::nullopt;
   }
   return Error{
-      "a wave is measured from one point a person: trajectories (.txt, .sqlite), a table with "
+      "a wave is measured from one point a person: trajectories (.txt), a table with "
       "three columns for each person (.csv), or a manifest of groups",
       path};
+}
+
+// Hips in m under the subjects' names; frames that do not count are not seen.
+PointMotion HipTrajectories(const Recording& recording) {
+  PointMotion motion;
+  motion.rate_hz = recording.fps;
+  for (const RecordedPerson& person : recording.people) {
+    motion.names.push_back(person.subject_id);
+    motion.positions.push_back(person.hip);
+    for (size_t frame = 0; frame < person.weight.size(); ++frame) {
+      if (person.weight[frame] > 0.0) continue;
+      motion.positions.back()[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  ChoosePoints({}, &motion);
+  return motion;
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST_F(AnyRecordingTest, PendulumsAloneAreShown) {
       RunApp("pushid-animate", With(arguments, {"--restoration=rigid", "--out=" + Path("n.html")})),
       {"right_knee", "\"joints\""}));
   EXPECT_TRUE(Refused(
-      RunApp("pushid-predict", With(arguments, {"--restoration=rigid", "--out=" + Path("m.glb")})),
+      RunApp("pushid-predict", With(arguments, {"--restoration=rigid", "--out=" + Path("m.bvh")})),
       {"right_knee", "WL, WR, AL, AR"}));
   Succeeded(RunApp("pushid-predict", With(arguments, {"--out=" + Path("m.csv")})));
 }

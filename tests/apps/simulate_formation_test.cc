@@ -274,5 +274,32 @@ TEST_F(SimulateFormationTest, BadUsage) {
   EXPECT_EQ(CountFiles(), files) << "something was written";
 }
 
+TEST_F(SimulateFormationTest, ACrowdIsAFormation) {
+  const std::string crowd = WriteText("crowd.txt",
+                                      "# framerate: 10\n# id frame x/m y/m\n21 0 0 0\n21 1 0 0\n"
+                                      "30 1 0.5 0.02\n44 1 1.0 -0.01\n");
+  const AppRun run =
+      Succeeded(Simulate({"--formation=" + crowd, "--formation_frame=1", "--pushed=1", "--push=20",
+                          "--duration=2", "--trajectories_out=" + Path("out.txt")}));
+  EXPECT_TRUE(Contains(run.out, "3 people of " + crowd + ", frame 1"));
+  const std::string out = ReadText(Path("out.txt"));
+  EXPECT_TRUE(Contains(out, "\n30\t0\t0.5\t0.02\t"));
+  EXPECT_FALSE(Contains(out, "person")) << "ids are the file's own";
+  // The result is itself a crowd.
+  Succeeded(Simulate({"--formation=" + Path("out.txt"), "--push=20", "--formation_frame=60",
+                      "--trajectories_out=" + Path("next.txt")}));
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& says) {
+    return Refused(Simulate(With({"--formation=" + crowd}, more)), {says});
+  };
+  EXPECT_TRUE(refused({"--formation_frame=7"}, "there is no frame 7"));
+  EXPECT_TRUE(refused({"--people=3"}, "--people is for line, diamond and grid"));
+  EXPECT_TRUE(refused({"--formation_frame=1", "--pushed=3"}, "the 3 people of the file count"));
+  EXPECT_TRUE(refused({"--formation_frame=1", "--pushed=44"}, "the file's id 44 is person 2"));
+  EXPECT_TRUE(refused({"--trajectories_out=" + crowd}, "both name"));
+  EXPECT_TRUE(refused({"--trajectories_out=a.csv"}, "trajectories end in .txt"));
+  EXPECT_TRUE(Refused(Simulate({"--formation=line", "--formation_frame=1"}),
+                      {"--formation_frame needs a trajectory file"}));
+}
+
 }  // namespace
 }  // namespace pushid

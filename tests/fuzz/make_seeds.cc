@@ -81,7 +81,6 @@ NumericTable SampleTable() {
 
 void TextSeeds(const std::string& out) {
   Check(WriteTrajectoryText(In(out, "trajectories", "a.txt"), SamplePoints()));
-  Check(WriteTrajectorySqlite(In(out, "trajectories", "a.sqlite"), SamplePoints()));
   Check(WriteTrc(In(out, "trc", "a.trc"), SamplePoints()));
   Check(WriteNumericTable(In(out, "trc", "a.sto"), TableFormat::kStorage, SampleTable()));
   Check(WriteNumericTable(In(out, "csv", "table.csv"), TableFormat::kCsv, SampleTable()));

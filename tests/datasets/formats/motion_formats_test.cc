@@ -27,9 +27,8 @@ TEST(MotionFormatsTest, EveryRow) {
     EXPECT_EQ(HasSkeleton(row.value), row.value == MotionFormat::kBvh);
   }
   EXPECT_EQ(Title(MotionFormat::kC3d), "C3D");
-  EXPECT_EQ(Title(MotionFormat::kBids), "Motion-BIDS");
-  EXPECT_EQ(MotionKeys(), "bvh, c3d, trc, csv, sto, tsv, txt, sqlite");
-  EXPECT_EQ(MotionFileEndings(), ".bvh, .c3d, .trc, .csv, .sto, .mot, .tsv, .txt, .sqlite");
+  EXPECT_EQ(MotionKeys(), "bvh, c3d, trc, csv, sto, txt");
+  EXPECT_EQ(MotionFileEndings(), ".bvh, .c3d, .trc, .csv, .sto, .mot, .txt");
 }
 
 TEST(FrameRateTest, RoundedFrameTimesAreWholeRates) {

@@ -1,8 +1,7 @@
-// Trajectories of crowds: text, and SQLite as JuPedSim writes it.
+// Trajectories of crowds, and where people stand in one frame.
 #include "datasets/formats/trajectories.h"
 
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include <cmath>
 
@@ -15,14 +14,6 @@ class TrajectoriesTest : public TempDirTest {
  protected:
   std::string TextMessage(const std::string& text) {
     return ProblemOf(ReadTrajectoryText(WriteText("crowd.txt", text)));
-  }
-  std::string Sqlite(const std::string& name, const std::string& sql) {
-    sqlite3* database = nullptr;
-    EXPECT_EQ(sqlite3_open(Path(name).c_str(), &database), SQLITE_OK);
-    EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
-        << sqlite3_errmsg(database);
-    sqlite3_close(database);
-    return Path(name);
   }
 };
 
@@ -98,67 +89,63 @@ PointMotion Crowd(const std::vector<std::string>& names) {
   return motion;
 }
 
-void ExpectSameMotion(const Result<PointMotion>& read, const PointMotion& motion, bool heights) {
-  ASSERT_TRUE(read.ok()) << read.error().ToString();
-  EXPECT_EQ(read.value().rate_hz, motion.rate_hz);
+TEST_F(TrajectoriesTest, ThereAndBack) {
+  const PointMotion motion = Crowd({"3", "17"});
+  ASSERT_FALSE(WriteTrajectoryText(Path("a.txt"), motion));
+  const PointMotion read = Unwrapped(ReadTrajectoryText(Path("a.txt")));
+  EXPECT_EQ(read.rate_hz, motion.rate_hz);
+  EXPECT_EQ(read.names, motion.names);
   for (std::size_t i = 0; i < motion.names.size(); ++i) {
     for (int frame = 0; frame < motion.num_frames(); ++frame) {
-      Eigen::Vector3d expected = motion.positions[i][frame];
-      if (!heights) expected.z() = 0.0;
-      const Eigen::Vector3d& is = read.value().positions[i][frame];
-      ASSERT_EQ(is.allFinite(), expected.allFinite());
-      if (!is.allFinite()) continue;
-      EXPECT_EQ(is, expected);
+      const Eigen::Vector3d &is = read.positions[i][frame], &was = motion.positions[i][frame];
+      ASSERT_EQ(is.allFinite(), was.allFinite());
+      if (is.allFinite()) EXPECT_EQ(is, was);
     }
   }
 }
 
-TEST_F(TrajectoriesTest, ThereAndBack) {
-  const PointMotion motion = Crowd({"3", "17"});
-  ASSERT_FALSE(WriteTrajectoryText(Path("a.txt"), motion));
-  ExpectSameMotion(ReadTrajectoryText(Path("a.txt")), motion, true);
-  ASSERT_FALSE(WriteTrajectorySqlite(Path("a.sqlite"), motion));
-  ExpectSameMotion(ReadTrajectorySqlite(Path("a.sqlite")), motion, false);
-  EXPECT_EQ(ReadTrajectorySqlite(Path("a.sqlite")).value().names, motion.names);
-}
-
 TEST_F(TrajectoriesTest, PeopleWithNamesGetNumbers) {
-  const PointMotion motion = Crowd({"anna", "2"});
-  EXPECT_EQ(TrajectoryIds(motion.names), (std::vector<std::int64_t>{1, 2}));
-  EXPECT_EQ(TrajectoryIds({"5", "5"}), (std::vector<std::int64_t>{1, 2}));
-  EXPECT_EQ(TrajectoryIds({"5", "-2"}), (std::vector<std::int64_t>{5, -2}));
-  ASSERT_FALSE(WriteTrajectoryText(Path("a.txt"), motion));
+  const auto ids = [this](const std::vector<std::string>& names) {
+    EXPECT_FALSE(WriteTrajectoryText(Path("a.txt"), Crowd(names)));
+    return Unwrapped(ReadTrajectoryText(Path("a.txt"))).names;
+  };
+  EXPECT_EQ(ids({"5", "5"}), (std::vector<std::string>{"1", "2"}));
+  EXPECT_EQ(ids({"-2", "5"}), (std::vector<std::string>{"-2", "5"}));
+  EXPECT_EQ(ids({"anna", "2"}), (std::vector<std::string>{"1", "2"}));
   EXPECT_TRUE(Contains(ReadText(Path("a.txt")), "# person 1: anna\n# id\tframe\tx/m\ty/m\tz/m\n"));
 }
 
-// Version 1 has no table of frames.
-TEST_F(TrajectoriesTest, SqliteOfJuPedSim) {
-  const std::string path = Sqlite(
-      "one.sqlite",
-      "CREATE TABLE trajectory_data (frame INTEGER, id INTEGER, pos_x REAL, pos_y REAL, ori_x "
-      "REAL, "
-      "ori_y REAL); CREATE TABLE metadata (key TEXT, value TEXT); CREATE TABLE geometry (wkt TEXT);"
-      "INSERT INTO metadata VALUES ('version', '1'), ('fps', '10.0');"
-      "INSERT INTO trajectory_data VALUES (0, 4, 1.5, 2, 1, 0), (1, 4, 1.6, 2, 1, 0);");
-  const PointMotion read = Unwrapped(ReadTrajectorySqlite(path));
-  EXPECT_EQ(read.rate_hz, 10.0);
-  EXPECT_EQ(read.names, std::vector<std::string>{"4"});
-  EXPECT_EQ(read.positions[0][1], Eigen::Vector3d(1.6, 2, 0));
+class CrowdPlacesTest : public TempDirTest {
+ protected:
+  PointMotion Crowd() {
+    return Unwrapped(ReadTrajectoryText(
+        WriteText("crowd.txt",
+                  "# framerate: 10\n# id frame x/cm y/cm\n1 5 100 0\n2 5 50 30\n3 5 50 -30\n1 6 "
+                  "110 0\n4 7 0 0\n")));
+  }
+};
+
+TEST_F(CrowdPlacesTest, FromTheBackForwardsInMetres) {
+  const auto places = Unwrapped(PlacesAt(Crowd(), std::nullopt));
+  ASSERT_EQ(places.size(), 3u);
+  EXPECT_EQ(places[0].name, "3");
+  EXPECT_EQ(places[1].name, "2");
+  EXPECT_EQ(places[2].name, "1");
+  EXPECT_EQ(places[0].position, Eigen::Vector2d(0.5, -0.3));
+  EXPECT_EQ(PlacesAt(Crowd(), 6).value().size(), 1u);
 }
 
-TEST_F(TrajectoriesTest, BadSqlite) {
-  const auto message = [](const std::string& path) {
-    return ProblemOf(ReadTrajectorySqlite(path));
-  };
-  EXPECT_TRUE(Contains(message(Path("none.sqlite")), "none.sqlite: "));
-  EXPECT_TRUE(Contains(message(WriteText("text.sqlite", "id,frame\n1,2\n, and more of it")),
-                       "is not a SQLite file of JuPedSim: file is not a database"));
-  EXPECT_TRUE(Contains(message(Sqlite("b.sqlite", "CREATE TABLE metadata (key TEXT, value TEXT);")),
-                       "fps in the table metadata is 0"));
-  EXPECT_TRUE(Contains(message(Sqlite("c.sqlite",
-                                      "CREATE TABLE metadata (key TEXT, value TEXT);"
-                                      "INSERT INTO metadata VALUES ('fps', '10');")),
-                       "no such table: trajectory_data"));
+TEST_F(CrowdPlacesTest, Errors) {
+  EXPECT_TRUE(Contains(ProblemOf(PlacesAt(Crowd(), 3)),
+                       "there is no frame 3; the file has those from 5 to 7"));
+  EXPECT_TRUE(Contains(ProblemOf(PlacesAt(Crowd(), -1)), "there is no frame -1"));
+}
+
+TEST_F(CrowdPlacesTest, OddSpacing) {
+  EXPECT_EQ(OddSpacing({{"1", {0, 0}}, {"2", {0.5, 0}}}), "");
+  EXPECT_EQ(OddSpacing({{"1", {0, 0}}}), "");
+  EXPECT_TRUE(Contains(OddSpacing({{"7", {0, 0}}, {"9", {0.05, 0}}}), "people 7 and 9"));
+  EXPECT_TRUE(Contains(OddSpacing({{"1", {0, 0}}, {"2", {45, 0}}}), "45 m away"));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "datasets/exchange/bids_dataset.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "datasets/synthetic/synthetic_recordings.h"
@@ -249,13 +248,6 @@ TEST_F(LaboratoryTest, CentresFarFromTheFeetAreRefused) {
   });
   ASSERT_FALSE(loaded.ok());
   EXPECT_TRUE(Contains(loaded.error().ToString(), "2 m from the ankles on average"));
-}
-
-// Exported without its ground, a trial would be another.
-TEST_F(LaboratoryTest, IsNotLostInExports) {
-  const auto loaded = Unwrapped(Load(OnPlatform(GroundKind::kStep)));
-  EXPECT_TRUE(
-      Contains(ProblemOf(WriteBidsDataset(Path("bids"), loaded, "0")), "ground that moves"));
 }
 
 // Two platforms, one foot each, are one.

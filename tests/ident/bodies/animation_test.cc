@@ -203,22 +203,5 @@ TEST(FormationBodiesTest, PosesStandWhereThePeopleDoAndMapBackToTheirPendulums) 
   EXPECT_NEAR(scene.people[1].start.q[2], 0.0, 1e-9);
 }
 
-using AssimpTest = TempDirTest;
-
-TEST_F(AssimpTest, AnIndependentReaderTakesTheBvh) {
-  if (std::system("command -v assimp >/dev/null 2>&1") != 0) GTEST_SKIP() << "assimp is not here";
-  BodyScene scene;
-  scene.id = "x";
-  scene.subject_ids = {"s"};
-  scene.bodies = {RigidRestoration().Restore({MovingPerson(StandingPose(), 80, 20)})[0]};
-  ASSERT_TRUE(WriteBodyBvh(Path("m.bvh"), scene).ok());
-  const std::string command =
-      "assimp info " + Path("m.bvh") + " > " + Path("info.txt") + " 2>/dev/null";
-  ASSERT_EQ(std::system(command.c_str()), 0);
-  const std::string info = ReadText(Path("info.txt"));
-  EXPECT_TRUE(Contains(info, "Animations:         1"));
-  EXPECT_TRUE(Contains(info, "LeftAnkle"));
-}
-
 }  // namespace
 }  // namespace pushid

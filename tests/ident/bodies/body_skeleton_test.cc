@@ -87,7 +87,7 @@ TEST_F(BodySkeletonTest, WhoIsCarriedIsCarriedWithAllTheirJoints) {
       EXPECT_LT((moved.positions.col(j) - recorded_.joints[0][j] - move).norm(), 1e-9);
       EXPECT_TRUE(moved.rotations[j].isIdentity(1e-7)) << joints[j].name;
     }
-    const auto files = WriteBodyFiles(Path("out.bvh"), SceneOf(recording, {motion}));
+    const auto files = WriteBodyBvh(Path("out.bvh"), SceneOf(recording, {motion}));
     ASSERT_TRUE(files.ok()) << files.error().ToString();
     const auto source = ReadBvh(Path("a.bvh")), out = ReadBvh(Path("out.bvh"));
     ASSERT_TRUE(out.ok()) << out.error().ToString();
@@ -148,11 +148,11 @@ TEST_F(BodySkeletonTest, ABentBodyComesBackFromItsFile) {
   Pose bent = first;
   ReachWithLeg(true, first.col(kLeftAnkle) + Eigen::Vector3d(0.2, 0.05, 0.15), &bent);
   BodyMotion motion = {first, FitSkeleton(first, Placed(bent, 0.4, {0.1, 0, 0})).positions};
-  ASSERT_TRUE(WriteBodyFiles(Path("out.bvh"), SceneOf(recording, {motion})).ok());
+  ASSERT_TRUE(WriteBodyBvh(Path("out.bvh"), SceneOf(recording, {motion})).ok());
   const BodySkeleton& skeleton = recording.skeletons[0];
   // Loading takes three frames.
   motion.push_back(motion.back());
-  ASSERT_TRUE(WriteBodyFiles(Path("out.bvh"), SceneOf(recording, {motion})).ok());
+  ASSERT_TRUE(WriteBodyBvh(Path("out.bvh"), SceneOf(recording, {motion})).ok());
   const auto back = ReadBack("out.bvh");
   for (int j = 0; j < skeleton.num_joints(); ++j) {
     if (skeleton.roles[j] < 0) continue;

@@ -30,6 +30,8 @@ TEST_F(ForecastSceneTest, ABvhHoldsThePositionsExactly) {
   const auto files = Unwrapped(WritePoses(Path("m.bvh"), scene));
   ASSERT_EQ(files.size(), 3u);
   EXPECT_TRUE(Contains(files[2], "m_future_2.bvh"));
+  ASSERT_TRUE(WritePoses(Path("m.BVH"), scene).ok());
+  EXPECT_EQ(ReadText(Path("m.BVH")).substr(0, 9), "HIERARCHY") << "whatever the case";
   const auto read = Unwrapped(ReadBvhPositions(Path("m.bvh"), {LengthUnit::kMillimetre, {}, {}}));
   ASSERT_EQ(read.num_frames(), 18);
   for (int i = 0; i < 4; ++i) {
@@ -52,32 +54,6 @@ TEST_F(ForecastSceneTest, WithoutFixedPointsTheFirstParticleIsTheRoot) {
   ASSERT_EQ(bvh.skeleton.joints.size(), 4u);
   EXPECT_EQ(bvh.skeleton.joints[0].name, "spine");
   EXPECT_EQ(bvh.num_frames(), 3);
-}
-
-// The forecast and its two futures, each behind the observed frames, side by side in one file.
-TEST_F(ForecastSceneTest, AGltfHoldsAllFuturesInOneScene) {
-  const ForecastScene scene = SwayingScene();
-  const GltfScene gltf = ToGltf(scene);
-  ASSERT_EQ(gltf.people.size(), 3u);
-  EXPECT_EQ(gltf.people[2].name, "future 2");
-  const GltfPerson& person = gltf.people[0];
-  ASSERT_EQ(person.frames.size(), 18u);
-  for (size_t j = 0; j < person.joints.size(); ++j) {
-    const auto at =
-        std::find(scene.layout.names.begin(), scene.layout.names.end(), person.joints[j]);
-    const Eigen::Index i = at - scene.layout.names.begin();
-    ASSERT_LT(i, 4);
-    EXPECT_LT(person.parents[j], static_cast<int>(j));
-    const Eigen::Vector3f expected = scene.forecast.col(5).segment<3>(3 * i);
-    const auto column = static_cast<Eigen::Index>(j);
-    EXPECT_LT((person.frames[17].positions.col(column) - expected.cast<double>()).norm(), 1e-6);
-    EXPECT_LT((person.rest - person.frames[0].positions).norm(), 1e-12);
-  }
-  const auto files = Unwrapped(WritePoses(Path("m.glb"), scene));
-  EXPECT_EQ(files, std::vector<std::string>{Path("m.glb")});
-  EXPECT_EQ(ReadText(Path("m.glb")).substr(0, 4), "glTF");
-  ASSERT_TRUE(WritePoses(Path("m.BVH"), scene).ok());
-  EXPECT_EQ(ReadText(Path("m.BVH")).substr(0, 9), "HIERARCHY") << "whatever the case";
 }
 
 TEST_F(ForecastSceneTest, ACsvHasARowPerSourceFrameAndJoint) {
