@@ -1,21 +1,40 @@
 // apps: pushid-formation: an identified model on people who stand together, from flags to a run,
 // from a run to files and a table.
+#include <gflags/gflags.h>
+
 #include <algorithm>
 #include <cstdio>
+#include <functional>
+#include <memory>
 
+#include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/flags/formation_flags.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
-#include "apps/formation_outputs.h"
 #include "apps/support/app_support.h"
+#include "datasets/files/atomic_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/loading/load_recordings.h"
+#include "ident/bodies/animation.h"
+#include "ident/bodies/body_files.h"
 #include "ident/figures/text_table.h"
+#include "ident/formations/formation_files.h"
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
 #include "ident/model/model_json.h"
 #include "ident/prediction/predicted_steps.h"
+
+DEFINE_string(csv_out, "", "trajectories, one row per frame and person (CSV)");
+DEFINE_string(trajectories_out, "", "trajectories of the hips (.txt)");
+DEFINE_string(forces_out, "", "net forces, one row per frame, person and part (CSV)");
+DEFINE_string(bvh_out, "", "folder for the pendulums as BVH, with manifest.json and the pushes");
+DEFINE_string(svg_out, "", "picture of the wave (SVG): time across, person down, colour speed");
+DEFINE_string(html_out, "", "page of the moving people (HTML)");
+DEFINE_string(joints_out, "", "with bodies: joint positions (CSV)");
+DEFINE_string(bodies_out, "",
+              "with bodies: the bodies (BVH, one file per person, named after this one)");
 
 namespace {
 
@@ -155,17 +174,84 @@ void ActAsIn(const std::string& setting, IdentifiedModel* model) {
               (known.empty() ? "no settings (--pool_by=setting fits them)" : known)};
 }
 
+void CheckOutputFlags(int people, bool bodies) {
+  if (!FLAGS_svg_out.empty() && people > kMostPeopleInWave) {
+    throw Error{"--svg_out shows at most " + std::to_string(kMostPeopleInWave) +
+                " people; leave it out or lower --people"};
+  }
+  if (!FLAGS_trajectories_out.empty() && !EndsWith(FLAGS_trajectories_out, ".txt")) {
+    throw Error{"--trajectories_out names " + FLAGS_trajectories_out +
+                "; trajectories end in .txt"};
+  }
+  for (const char* flag : {"joints_out", "bodies_out"}) {
+    if (!bodies && Given(flag)) throw NeedsRestoration(flag);
+  }
+  OrFail(CheckOutputFiles({FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out, FLAGS_svg_out,
+                           FLAGS_html_out, FLAGS_joints_out, FLAGS_bodies_out}));
+  if (!FLAGS_bvh_out.empty()) OrFail(CheckOutputFolder("bvh_out", FLAGS_bvh_out));
+}
+
+// A file that a flag names, or does not, and what writes it.
+struct NamedOutput {
+  std::string file;
+  std::function<MaybeError(const std::string& file)> write;
+};
+
+// bodies: none where pages show pendulums.
+void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
+                  std::vector<BodyMotion> bodies, const std::string& title) {
+  BodyScene scene;
+  scene.id = run.recording.id;
+  scene.dt = run.recording.scene.dt;
+  scene.subject_ids = run.recording.subject_ids;
+  scene.bodies = std::move(bodies);
+  using File = const std::string&;
+  const NamedOutput outputs[] = {
+      {FLAGS_bvh_out, [&](File file) { return WriteFormationRecording(file, run); }},
+      {FLAGS_csv_out,
+       [&](File file) { return WriteTrajectoryCsv(file, run.recording, run.prediction); }},
+      {FLAGS_trajectories_out, [&](File file) { return WriteFormationTrajectories(file, run); }},
+      {FLAGS_forces_out, [&](File file) { return WriteForcesCsv(file, run); }},
+      {FLAGS_svg_out,
+       [&](File file) { return WriteFileAtomically(file, WaveSvg(run, title, onsets)); }},
+      {FLAGS_html_out,
+       [&](File file) {
+         Animation animation;
+         animation.title = title;
+         animation.dt = scene.dt;
+         AddPrediction(run.recording, run.prediction, scene.bodies, &animation);
+         AddPushes(run.recording, &animation);
+         animation.figures = FeetSvg(run);
+         return WriteFileAtomically(file, AnimationHtml({animation}));
+       }},
+      {FLAGS_joints_out, [&](File file) { return WriteJointsCsv(file, scene); }},
+      {FLAGS_bodies_out, [&](File file) {
+         OrFail(WriteBodyBvh(file, scene));
+         return MaybeError();
+       }}};
+  // Up to the first that fails.
+  for (const NamedOutput& output : outputs) {
+    if (!output.file.empty()) OrFail(output.write(output.file));
+  }
+}
+
 int Run() {
   RequireModel();
   FormationFlags flags = FormationFlagsFromCommandLine();
   Scene& scene = flags.scene;
   const std::string& title = flags.title;
-  CheckOutputFlags(scene.num_people());
-  const FormationBodyFlags body_flags = FormationBodyFlagsFromCommandLine();
+  const RestorationFlags body_flags = RestorationFlagsFromCommandLine();
+  CheckOutputFlags(scene.num_people(), body_flags.given());
 
   const FuturesFlags drawn = FuturesFlagsFromCommandLine(true);
   IdentifiedModel model = LoadFlaggedModel();
-  const auto bodies = PlanBodies(body_flags, flags.first_poses, &scene);
+  std::unique_ptr<Restoration> restoration;
+  if (body_flags.given()) {
+    restoration = LoadFlaggedRestoration(body_flags, scene.num_people());
+    if (flags.first_poses.empty()) {
+      flags.first_poses = TakePoses({SyntheticPose(scene.people.front().body.rod_length)}, &scene);
+    }
+  }
   CheckDraws(drawn, model);
   ActAsIn(flags.as_setting, &model);
   const FormationRun run = RunFormation(model, scene, flags.frames, flags.names);
@@ -175,10 +261,14 @@ int Run() {
   const FittedModel fitted = OrFail(ReadFittedModel(named.file));
   // What a setting's own parameters leave open is no part of a model.
   const bool as_setting = !flags.as_setting.empty();
-  const bool banded = !as_setting && (DrawsWave() || scene.num_people() <= kMostPeopleForBands);
+  const bool banded =
+      !as_setting && (!FLAGS_svg_out.empty() || scene.num_people() <= kMostPeopleForBands);
   const WaveBands bands = banded ? BandsOfWave(fitted, named.set, run) : WaveBands();
-  WriteOutputs(run, bands.onsets, title);
-  WriteFormationBodies(body_flags.restoration.postprocess, bodies, run, title);
+  std::vector<BodyMotion> bodies;
+  if (restoration) {
+    bodies = FormationBodies(run, flags.first_poses, *restoration, body_flags.postprocess);
+  }
+  WriteOutputs(run, bands.onsets, std::move(bodies), title);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run, !flags.names.empty());
   PrintWave(run, bands, HeldInDraws(fitted, named.set), as_setting);

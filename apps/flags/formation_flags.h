@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "models/crowd.h"
+#include "models/formation.h"
 #include "models/restoration/body.h"
 
 namespace pushid {

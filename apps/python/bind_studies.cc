@@ -10,7 +10,7 @@
 #include "ident/parameters/json_archive.h"
 #include "ident/report/report_text.h"
 #include "ident/validation/experiment_design.h"
-#include "models/crowd.h"
+#include "models/formation.h"
 
 namespace pushid {
 namespace {

@@ -26,24 +26,15 @@ MaybeError WriteFormationTrajectories(const std::string& path, const FormationRu
 // rod and hip again. The manifest comes last: without it the folder is no recording.
 MaybeError WriteFormationRecording(const std::string& folder, const FormationRun& run);
 
-// Rows and panels get too thin to read beyond these.
+// Rows get too thin to read beyond these.
 inline constexpr int kMostPeopleInWave = 300;
-inline constexpr int kMostPeopleInForces = 40;
 
 // The wave: time across, person down, colour the hip's speed (on a square-root scale; orange for
 // going back, so that recoil does not look like the wave); pushes framed, each person's onset
-// dotted, with its band where there are bands; a plan of the formation beside it. Speeds that
-// nobody walks at saturate, so that one who falls does not fade the others.
+// dotted, with its band where there are bands. Speeds that nobody walks at saturate, so that one
+// who falls does not fade the others.
 std::string WaveSvg(const FormationRun& run, const std::string& title,
                     const std::vector<OnsetBand>& onsets = {});
-
-// Two panels for each person: the net force along the push (N) and the torque about y (N m) over
-// time with their parts. On one scale, so that heights compare, or each panel on its own:
-// what the tenth person feels is a fraction of the push.
-enum class ForceScale { kShared, kOwn };
-Figure ForcesFigure(const FormationRun& run, ForceScale scale = ForceScale::kShared);
-std::string ForcesSvg(const FormationRun& run, const std::string& title,
-                      ForceScale scale = ForceScale::kShared);
 
 // Feet from above: where they stood and where the model's are put, with the times of landings, and
 // the paths of the capture points (prediction/predicted_steps.h); nothing where the model has no

@@ -10,8 +10,6 @@
 #include "datasets/formats/bvh.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/bodies/body_evaluation.h"
-#include "ident/generators/push_particles.h"
-#include "ident/parameters/option_names.h"
 #include "ident/prediction/propagation.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/uncertainty/clusters.h"
@@ -172,37 +170,6 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
   std::vector<RestorationInput> people = PeopleOf(scene, first_poses);
   FollowPrediction(run.prediction, &people);
   return RestoreBodies(restoration, options, people);
-}
-
-MaybeError PrepareForFormation(const Scene& scene, const std::string& flag,
-                               LoadedGenerator* loaded) {
-  GeneratorSettings& settings = loaded->settings;
-  if (!RowOf(loaded->kind).groups) {
-    return Error{"--" + flag + " names a generator of " + NameOf(loaded->kind) +
-                 ", whose people do not interact: only the pushed would move; give one that "
-                 "pushid-train-generator --kind=" +
-                 KindsOfGroups() + " wrote"};
-  }
-  if (!AtRateOf(settings, scene.dt)) {
-    return Error{"--" + flag + " names a generator that was trained at " +
-                 Rounded(settings.rate, 3) + " frames per second, and the formation has " +
-                 Rounded(1.0 / scene.dt, 3) + ": give --fps=" + Rounded(settings.rate, 3)};
-  }
-  settings.observed = 1;
-  return std::nullopt;
-}
-
-Result<std::vector<BodyMotion>> GeneratedBodies(const FormationRun& run,
-                                                const std::vector<Pose>& first_poses,
-                                                const LoadedGenerator& loaded) {
-  BodyRecording held;
-  held.pendulum = run.recording;
-  for (const Pose& pose : first_poses) {
-    held.bodies.emplace_back(run.num_frames(), pose);
-    held.pendulum.hip.emplace_back(run.num_frames(), pose.col(kBodyHip));
-  }
-  const GroupHips hips = PendulumHips(held, run.prediction);
-  return GenerateBodies(loaded.settings, *loaded.generator, held, hips, run.num_frames());
 }
 
 FormationPeople DistinctPeople(const std::vector<BodyRecording>& recordings) {

@@ -6,7 +6,6 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/bodies/body_recording.h"
-#include "ident/generators/generator_files.h"
 #include "ident/model/identified_model.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/behaviour_text.h"
@@ -74,7 +73,7 @@ double HipSpeed(const FormationRun& run, int person, int frame);
 double SignedHipSpeed(const FormationRun& run, int person, int frame);
 
 // Bodies for people who were never recorded: a formation's people get the skeleton and pose
-// of a recorded person, or of the synthetic skeleton, and a restoration moves them, or a generator.
+// of a recorded person, or of the synthetic skeleton, and a restoration moves them.
 
 // The synthetic skeleton of this rod length, upright, over a cart at the origin; z = 0 is the
 // floor.
@@ -90,16 +89,6 @@ std::vector<BodyMotion> FormationBodies(const FormationRun& run,
                                         const std::vector<Pose>& first_poses,
                                         const Restoration& restoration,
                                         const PostprocessOptions& options);
-
-// Whether a generator can take such a scene: people who see each other, at its rate; flag: what
-// names its folder. It is shown the first poses from now on, whatever it was made for.
-MaybeError PrepareForFormation(const Scene& scene, const std::string& flag,
-                               LoadedGenerator* loaded);
-
-// What it makes of the first poses and the pushes, and of where physics have everybody's hip.
-Result<std::vector<BodyMotion>> GeneratedBodies(const FormationRun& run,
-                                                const std::vector<Pose>& first_poses,
-                                                const LoadedGenerator& loaded);
 
 // Recorded people as the people of a formation: their masses, and the postures in which
 // their recordings begin (rod length, cart height, lean, and the skeleton of a body).

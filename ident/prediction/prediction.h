@@ -102,22 +102,4 @@ PendulumRecording WithPushes(PendulumRecording recording, const ChangedPushes& c
 // "1.37 times the recorded push, at frames 0, 40 and 80".
 std::string ChangedPushesText(const ChangedPushes& changed, const PendulumRecording& recording);
 
-// What a model says of pushes that nobody gave: who steps, and where the hip ends.
-//
-// For the person of the settling simulations (80 kg, rod 0.95 m, upright), pushed at the hip by
-// half-sines, as a measured (external) push would.
-
-struct PushResponse {
-  std::vector<double> impulse_per_mass;  // m/s
-  std::vector<double> duration_s;        // of pushes forwards
-  std::vector<double> direction_deg;     // from forwards to the left; of 0.7 s
-  // P(step), 1 where the person falls; [impulse][duration or direction].
-  std::vector<std::vector<double>> step_by_duration, step_by_direction;
-  // m along the push, 6 s after it; NaN where the person falls.
-  std::vector<std::vector<double>> end_by_direction;
-};
-
-// Of a model with a step_probability.
-PushResponse ComputePushResponse(const IdentifiedModel& model);
-
 }  // namespace pushid

@@ -71,8 +71,7 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   const AppRun run =
       Succeeded(Simulate({"--formation=line", "--people=4", "--spacing=0.42", "--duration=3",
                           "--csv_out=" + Path("line.csv"), "--forces_out=" + Path("forces.csv"),
-                          "--bvh_out=" + Path("line"), "--svg_out=" + Path("wave.svg"),
-                          "--forces_svg_out=" + Path("forces.svg")}));
+                          "--bvh_out=" + Path("line"), "--svg_out=" + Path("wave.svg")}));
   EXPECT_EQ(run.err, "");
   const std::vector<std::string> onsets = Onsets(run.out);
   ASSERT_EQ(onsets.size(), 4u) << run.out;
@@ -84,13 +83,10 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   const std::string csv = ReadText(Path("line.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 4 * 181);
   EXPECT_TRUE(Contains(ReadText(Path("forces.csv")), ",interaction,"));
-  for (const char* svg : {"wave.svg", "forces.svg"}) {
-    const std::string text = ReadText(Path(svg));
-    EXPECT_EQ(text.find("<svg"), 0u);
-    const std::string title = "4 people in a line, 0.42 m apart; 80 N s at 0 s on person 0";
-    EXPECT_TRUE(Contains(text, title));
-    EXPECT_EQ(text.substr(text.size() - 7), "</svg>\n");
-  }
+  const std::string text = ReadText(Path("wave.svg"));
+  EXPECT_EQ(text.find("<svg"), 0u);
+  EXPECT_TRUE(Contains(text, "4 people in a line, 0.42 m apart; 80 N s at 0 s on person 0"));
+  EXPECT_EQ(text.substr(text.size() - 7), "</svg>\n");
   // What was written is a recording that the model predicts exactly.
   const AppRun scores =
       Succeeded(RunApp("pushid-evaluate", {model_, "--recordings=" + Path("line/manifest.json"),
@@ -182,9 +178,8 @@ TEST_F(SimulateFormationTest, AnIntervalWithoutWidthIsNone) {
 }
 
 TEST_F(SimulateFormationTest, ThreeSuccessivePushes) {
-  const AppRun run =
-      Succeeded(Simulate({"--formation=line", "--people=3", "--push=40, 40@1,56@2.5", "--fps=120",
-                          "--forces_own_scale=false", "--bvh_out=" + Path("three")}));
+  const AppRun run = Succeeded(Simulate({"--formation=line", "--people=3", "--push=40, 40@1,56@2.5",
+                                         "--fps=120", "--bvh_out=" + Path("three")}));
   EXPECT_TRUE(Contains(run.out, "no speed: there are several pushes"));
   const auto pushes = Json(Path("three/manifest.json"))["recordings"][0]["pushes"];
   ASSERT_EQ(pushes.size(), 3u);
@@ -257,8 +252,7 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--noise=0.1"}, {"no flag --noise"}},
       {{"--formation=line", "--svg_out=/none/wave.svg"}, {"/none/wave.svg"}},
       {{"--formation=line", "--people=301", "--svg_out=x"}, {"--svg_out", "300"}},
-      {{"--formation=line", "--people=41", "--forces_svg_out=x"}, {"--forces_svg_out", "40"}},
-      {{"--formation=line", "--forces_own_scale"}, {"--forces_own_scale", "--forces_svg_out"}},
+      {{"--formation=line", "--joints_out=x"}, {"--joints_out needs bodies", "--restoration"}},
       {{"--formation=line", "--bvh_out=" + alone_}, {"--bvh_out", "file"}},
       {{"--spacing=1"}, {"--formation is missing", "line, diamond or grid"}},
       {{"--formation=line", "--push=80@0,80@3", "--duration=2"}, {"--duration", "at 3 s"}},

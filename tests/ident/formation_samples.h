@@ -4,7 +4,7 @@
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/formations/formation_run.h"
 #include "ident/parameters/presets.h"
-#include "models/crowd.h"
+#include "models/formation.h"
 
 namespace pushid {
 

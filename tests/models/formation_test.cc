@@ -1,9 +1,9 @@
 // Formations: who stands where, and which push does what to whom.
+#include "models/formation.h"
+
 #include <gtest/gtest.h>
 
 #include <map>
-
-#include "models/crowd.h"
 
 namespace pushid {
 namespace {

@@ -2,7 +2,7 @@
 // as the limit of zero weights, and what a rod that moved does to the pendulum.
 #include <ceres/jet.h>
 
-#include "models/crowd.h"
+#include "models/formation.h"
 #include "models/learned_terms.h"
 #include "models/rollout.h"
 #include "tests/models/model_samples.h"
@@ -181,22 +181,6 @@ TEST(RodLaw, LdpsSizeRunsInARollout) {
   const RodShape ldp{RodKind::kLdp, {256, 128, 256}};
   const auto path = RollStanding(TwoPeople(40.0), WithRod(ldp, kMotionMlp, 0.05, &random), 60);
   EXPECT_NE(path.At(59, 0).rod, 0.0);
-}
-
-// Rollout and crowd take the same steps.
-TEST(RodLaw, CrowdsHaveRodsToo) {
-  Random random(76);
-  const Scene scene = TwoPeople(40.0);
-  const ModelOptions options = WithRod({RodKind::kMlp, {4}}, kMotionMlp, 0.8, &random);
-  const auto path = RollStanding(scene, options, 50);
-  Crowd crowd(scene, options, {RodParameters()}, 2);
-  for (int t = 1; t < 50; ++t) {
-    ASSERT_TRUE(crowd.Advance().ok);
-    for (int n = 0; n < 2; ++n) {
-      ASSERT_EQ(crowd.states()[n].q, path.At(t, n).q);
-      ASSERT_EQ(crowd.states()[n].rod, path.At(t, n).rod);
-    }
-  }
 }
 
 // Weights on l - l_0 alone make it grow without end, from a push on the angles.

@@ -1,7 +1,7 @@
 """What takes how long: the benchmarks, in the words of a table, and whole processes.
 
 benchmarks  tests/benchmarks/README.md; two minutes; needs pushid-benchmarks (-DPUSHID_BENCHMARKS=ON, the default)
-crowds      tests/benchmarks/README.md; four minutes; needs pushid-benchmarks
+crowds      tests/benchmarks/README.md; two minutes; needs pushid-benchmarks
 processes   tests/benchmarks/README.md; two minutes
 batch       tests/benchmarks/README.md; a batch of 101 fits; half a minute
 rivals      tests/benchmarks/README.md; the same fit in SciPy and PyTorch (python3-scipy, python3-torch); a minute
@@ -42,9 +42,9 @@ ROWS = [
     ("Jacobian of the 32 recordings with a network: `mlp:4` / `gru:4`",
      ["NetworkJacobian/mlp:4", "NetworkJacobian/gru:4"]),
     ("one second of a crowd of 1,000 / 10,000 people who touch",
-     [f"CrowdSecond/people:{n}/threads:1/real_time" for n in (1000, 10000)]),
-    ("the same of 10,000 whose feet step", ["CrowdSecondOfSteps/people:10000/threads:1/real_time"]),
-    ("the same of 10,000 who do not touch", ["CrowdSecondWithoutContact/people:10000/threads:1/real_time"]),
+     [f"CrowdSecond/people:{n}/real_time" for n in (1000, 10000)]),
+    ("the same of 10,000 whose feet step", ["CrowdSecondOfSteps/people:10000/real_time"]),
+    ("the same of 10,000 who do not touch", ["CrowdSecondWithoutContact/people:10000/real_time"]),
     ("learning from first frames: one frame / a prediction after 30 / a whole recording",
      ["OnlineObserve/1", "OnlinePredict/1", "OnlineRecording"]),
     ("reading a BVH file / C3D / TRC / CSV", [f"BM_Read{f}" for f in ("BvhHipAndAnkles", "C3d", "Trc", "Csv")]),
@@ -73,16 +73,13 @@ def benchmarks():
 def crowds():
     rows = []
     for people in (100, 1_000, 10_000, 100_000, 1_000_000):
-        cells = []
-        for threads in (1, 2):
-            command = [os.path.join(studies.BIN, "pushid-benchmarks"), "--benchmark_format=json",
-                       f"--benchmark_filter=^CrowdSecond/people:{people}/threads:{threads}/real_time$"]
-            out = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
-            cells.append(f"{number(json.loads(out)['benchmarks'][0]['person_steps'] / 1e6, 2)} million")
-            most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss  # kB, of the largest so far
-        rows.append([f"{people:,}", *cells, f"{number(most / 1e3)} MB"])
-    return studies.table(["people, 0.45 m apart", "person-steps a second, one thread", "two threads", "memory of the process"],
-                         rows)
+        command = [os.path.join(studies.BIN, "pushid-benchmarks"), "--benchmark_format=json",
+                   f"--benchmark_filter=^CrowdSecond/people:{people}/real_time$"]
+        out = subprocess.run(command, check=True, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
+        steps = f"{number(json.loads(out)['benchmarks'][0]['person_steps'] / 1e6, 2)} million"
+        most = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss  # kB, of the largest so far
+        rows.append([f"{people:,}", steps, f"{number(most / 1e3)} MB"])
+    return studies.table(["people, 0.45 m apart", "person-steps a second", "memory of the process"], rows)
 
 
 def processor_seconds_once(*command):

@@ -240,6 +240,23 @@ TEST_F(PushGeneratorAppTest, ForecastsPushes) {
   }
 }
 
+// It learned from net pushes, and that is told once.
+TEST_F(PushGeneratorAppTest, PushesOfAnotherKindAreToldOf) {
+  Succeeded(Train({"--kind=diffusion", "--observed=1", "--out=" + Path("g")}));
+  const auto generate = [&](const std::string& recordings) {
+    return RunApp("pushid-generate", {"--model=" + Path("g"), recordings, "--averaged=1",
+                                      "--sampling_steps=2", "--quiet"});
+  };
+  EXPECT_EQ(generate(Recordings()).err, "");
+  const AppRun other = generate(ChangedManifest([](nlohmann::ordered_json& json) {
+    for (auto& recording : json["recordings"]) recording["push_kind"] = "external";
+  }));
+  EXPECT_EQ(other.exit_code, 0) << other.err;
+  const size_t told = other.err.find("is applied to pushes of kind external");
+  EXPECT_NE(told, std::string::npos) << other.err;
+  EXPECT_EQ(other.err.find("is applied", told + 20), std::string::npos) << other.err;
+}
+
 TEST_F(PushGeneratorAppTest, SimlpeForecastsPushesFromTwelveFrames) {
   const std::vector<std::string> simlpe = {"--kind=simlpe", Recordings(), "--dataset=pushes",
                                            "--steps=20",    "--blocks=2", "--quiet"};

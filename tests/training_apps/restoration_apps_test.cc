@@ -94,7 +94,7 @@ TEST_F(RestorationAppTest, AnimatesAndPosesFormations) {
   const AppRun simulate = Succeeded(RunApp(
       "pushid-formation", {model_, restoration, "--formation=line", "--people=3", "--duration=1",
                            "--people_from=" + manifest_, "--html_out=" + Path("f.html"),
-                           "--bodies_out=" + Path("f.bvh"), "--strip_out=" + Path("f.svg")}));
+                           "--bodies_out=" + Path("f.bvh")}));
   EXPECT_TRUE(std::filesystem::exists(Path("f_2_p02.bvh")));
   EXPECT_TRUE(Contains(simulate.err, "--more_settings=groups")) << "it saw people alone";
   EXPECT_FALSE(Contains(animate.err, "--more_settings")) << "one person is no group";

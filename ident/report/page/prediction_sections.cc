@@ -12,48 +12,6 @@
 namespace pushid {
 namespace {
 
-// A panel with a row for each impulse over mass, and its columns in the numbers.
-Chart MapPanel(const std::string& title, const std::string& unit, const PushResponse& response,
-               const std::vector<double>& columns, const std::vector<std::vector<double>>& values) {
-  Chart panel{title};
-  for (double column : columns) panel.x_categories.push_back(Rounded(column, 3) + unit);
-  for (double impulse : response.impulse_per_mass) {
-    panel.y_categories.push_back(Rounded(impulse, 2));
-  }
-  panel.cells = values;
-  return panel;
-}
-
-ReportFigure MapFigure(const IdentifiedModel& model) {
-  const PushResponse response = ComputePushResponse(model);
-  const std::vector<Chart> panels = {
-      MapPanel("P(step)", " s", response, response.duration_s, response.step_by_duration),
-      MapPanel("P(step), 0.7 s", " deg", response, response.direction_deg,
-               response.step_by_direction),
-      MapPanel("displacement, m", " deg", response, response.direction_deg,
-               response.end_by_direction)};
-  std::vector<std::string> header = {"impulse_per_mass_m_s"};
-  for (const Chart& panel : panels) {
-    for (const std::string& column : panel.x_categories) {
-      header.push_back(panel.title + " " + column);
-    }
-  }
-  TextTable numbers(header, std::vector<bool>(header.size(), false));
-  for (size_t i = 0; i < response.impulse_per_mass.size(); ++i) {
-    std::vector<std::string> row = {DoubleText(response.impulse_per_mass[i])};
-    for (const Chart& panel : panels) {
-      for (double value : panel.cells[i]) row.push_back(DoubleText(value));
-    }
-    numbers.Add(row);
-  }
-  return {"step_probability",
-          "Whether a person of 80 kg steps after a push at the hip, by its impulse over the mass "
-          "(rows, m/s) and its duration or direction (0 forwards, 90 to the left), and where along "
-          "the push the hip is 6 s after it, as the model's feet have it; -: falls.",
-          {{}, panels},
-          numbers};
-}
-
 StepScore ScoreOf(const std::vector<RecordingView>& views) {
   std::vector<StepPrediction> predictions;
   for (const RecordingView& view : views) {
@@ -82,7 +40,6 @@ ReportSection StepSection(const ReportSource& source) {
   const auto& probability = source.fit.step_probability;
   if (!probability) return section;
   section.Say(StepProbabilityText(*probability));
-  section.figures.push_back(MapFigure(ModelOf(source.fit)));
   const StepScore score = ScoreOf(source.views);
   if (!score.known()) return section;
   section.tables.push_back(

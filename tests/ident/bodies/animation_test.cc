@@ -9,7 +9,7 @@
 
 #include "ident/figures/svg.h"
 #include "ident/formations/formation_run.h"
-#include "models/crowd.h"
+#include "models/formation.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"
 

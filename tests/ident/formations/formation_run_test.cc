@@ -110,23 +110,14 @@ TEST(FormationRun, WithoutInteractionNobodyElseMoves) {
   for (ForcePart part : ActingParts(run)) EXPECT_NE(part, ForcePart::kInteraction);
 }
 
-TEST(FormationPictures, ShowEverybodyEveryPushAndEveryPart) {
+TEST(FormationPictures, ShowEverybody) {
   const FormationRun run = RunShape(FormationShape::kDiamond, 13, {0, 1, 3});
   const std::string wave = WaveSvg(run, "a < b");
   for (const char* part : {"a &lt; b", ">12  (1.68, 0)<", ">speed of the hip (m/s)<"}) {
     EXPECT_TRUE(Has(wave, part)) << part;
   }
-  const std::string forces = ForcesSvg(run, "forces");
-  for (const char* part :
-       {">person 12: force along the push, N<", ">push<", ">friction<", ">balance<", ">linear<"}) {
-    EXPECT_TRUE(Has(forces, part)) << part;
-  }
-  EXPECT_TRUE(Has(forces, ">interaction<"));
-  EXPECT_FALSE(Has(forces, ">tail<"));  // an external push has none
-  for (const std::string& svg : {wave, forces}) {
-    EXPECT_FALSE(Has(svg, "nan"));
-    EXPECT_FALSE(Has(svg, "inf"));
-  }
+  EXPECT_FALSE(Has(wave, "nan"));
+  EXPECT_FALSE(Has(wave, "inf"));
 }
 
 TEST(FormationPictures, ColoursSayWhenTheySaturate) {
@@ -144,27 +135,10 @@ TEST(FormationPictures, OnsetsHaveBandsWhereTheModelKnowsItsErrors) {
   EXPECT_TRUE(Has(banded, "uncertainty of the parameters"));
 }
 
-TEST(FormationPictures, ForcesShareAScale) {
-  const FormationRun run = RunShape(FormationShape::kLine, 3, {0});
-  const auto count = [](const std::string& svg, const std::string& tick) {
-    int found = 0;
-    for (size_t at = 0; (at = svg.find(tick, at)) != std::string::npos; ++at) ++found;
-    return found;
-  };
-  // The push of person 0 reaches beyond 400 N; nobody else feels as much.
-  EXPECT_EQ(count(ForcesSvg(run, ""), ">500<") + count(ForcesSvg(run, ""), ">400<") > 2, true);
-  const std::string own = ForcesSvg(run, "", ForceScale::kOwn);
-  EXPECT_LT(count(own, ">500<") + count(own, ">400<"),
-            count(ForcesSvg(run, ""), ">500<") + count(ForcesSvg(run, ""), ">400<"));
-  EXPECT_TRUE(Has(own, "its own scale"));
-}
-
 TEST(FormationPictures, NobodyPushedNobodyMoves) {
   const FormationRun run =
       RunFormation(ContactModel(), SampleFormation(FormationShape::kLine, 1, {}), 10);
   EXPECT_FALSE(Has(WaveSvg(run, "still"), "nan"));
-  EXPECT_FALSE(Has(ForcesSvg(run, "still"), "nan"));
-  EXPECT_TRUE(Has(ForcesSvg(run, "still"), ">nothing<"));
 }
 
 TEST(FormationPictures, RecoilIsNotDrawnAsTheWave) {

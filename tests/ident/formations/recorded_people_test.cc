@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/formations/formation_run.h"
-#include "models/crowd.h"
+#include "models/formation.h"
 
 namespace pushid {
 namespace {

@@ -96,5 +96,18 @@ TEST(PushParticlesTest, AGeneratorGoesOnWhereTheRecordingWasShownTo) {
   EXPECT_FALSE(GenerateBodies(settings, still, recording).ok());
 }
 
+TEST(PushParticles, PushesOfAnotherKindAreNamed) {
+  Scene scene = OnePushed(5).pendulum.scene;
+  scene.pushes[0].kind = PushKind::kExternal;
+  GeneratorSettings settings;
+  settings.push_kinds = {PushKind::kNet};
+  EXPECT_TRUE(Contains(OtherPushKinds(settings, scene),
+                       "of kind net and is applied to pushes of kind external"));
+  settings.push_kinds = {PushKind::kNet, PushKind::kExternal};
+  EXPECT_EQ(OtherPushKinds(settings, scene), "");
+  settings.push_kinds.clear();
+  EXPECT_EQ(OtherPushKinds(settings, scene), "") << "not known";
+}
+
 }  // namespace
 }  // namespace pushid
