@@ -12,6 +12,7 @@
 #include "apps/flags/formation_flags.h"
 #include "apps/flags/futures_flags.h"
 #include "apps/flags/model_flags.h"
+#include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"

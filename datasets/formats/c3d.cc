@@ -1,4 +1,4 @@
-// datasets: C3D files as data: points, events, force platforms, poses of segments.
+// datasets: C3D files read.
 #include "datasets/formats/c3d.h"
 
 #include <Eigen/LU>
@@ -7,8 +7,10 @@
 #include <limits>
 #include <utility>
 
+#include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/c3d_parameters.h"
+#include "datasets/formats/point_motion.h"
 
 namespace pushid {
 namespace {
@@ -212,6 +214,274 @@ MaybeError AddC3dRotations(const C3dBytes& bytes, C3dFile* file) {
     file->points.push_back(std::move(track));
   }
   return std::nullopt;
+}
+
+namespace {
+
+constexpr int kMagic = 0x50;
+constexpr int kMostWords = 65535;  // of a 16-bit count
+constexpr int kMaxPoints = 32767;
+
+// Counts stored in a signed integer although they reach 65535.
+double Unsigned(double value) { return value < 0 ? value + 65536.0 : value; }
+
+class Reader {
+ public:
+  Reader(const std::string& path, std::string_view text, const C3dReadOptions& options)
+      : path_(path), text_(text), options_(options) {
+    file_.path = path;
+  }
+
+  Result<C3dFile> Read() {
+    if (MaybeError failed = ReadSections()) return *std::move(failed);
+    if (MaybeError failed = ReadHeader()) return *std::move(failed);
+    ReadNames();
+    if (MaybeError failed = ReadFrames()) return *std::move(failed);
+    if (MaybeError failed = AddC3dRotations(bytes_, &file_)) return *std::move(failed);
+    file_.events = ReadC3dEvents(file_.parameters, bytes_);
+    if (MaybeError failed = ReadC3dPlatforms(&file_)) return *std::move(failed);
+    return std::move(file_);
+  }
+
+ private:
+  Error At(std::size_t at, const std::string& message) const {
+    return C3dError(path_, at, message);
+  }
+  double Number(const char* group, const char* name, std::size_t index, double fallback) const {
+    return file_.parameters.Number(group, name, index, fallback);
+  }
+
+  MaybeError ReadSections() {
+    if (text_.size() < kC3dBlock) {
+      return Error{
+          "the file has " + std::to_string(text_.size()) +
+              " bytes; a C3D file starts with a header of 512: it is truncated or not a C3D file",
+          path_};
+    }
+    const C3dBytes head(text_, C3dProcessor::kIntel);
+    if (head.Byte(1) != kMagic || head.Byte(0) == 0) {
+      return At(1, "this is not a C3D file: its second byte is " + std::to_string(head.Byte(1)) +
+                       ", not 80");
+    }
+    const std::size_t begin = (head.Byte(0) - std::size_t{1}) * kC3dBlock;
+    if (!head.Has(begin, 4)) {
+      return At(begin, "the parameters should be here, but the file ends before");
+    }
+    const int processor = head.Byte(begin + 3);
+    if (processor < 84 || processor > 86) {
+      return At(begin + 3, "the processor is " + std::to_string(processor) +
+                               "; 84 (Intel), 85 (DEC) and 86 (MIPS) are known");
+    }
+    file_.processor = static_cast<C3dProcessor>(processor);
+    bytes_ = C3dBytes(text_, file_.processor);
+    Result<C3dParameters> parameters = ReadC3dParameters(path_, bytes_, begin + 4);
+    if (!parameters.ok()) return parameters.error();
+    file_.parameters = std::move(parameters.value());
+    return std::nullopt;
+  }
+
+  MaybeError ReadHeader() {
+    num_points_ = bytes_.Word(2);
+    const int samples = bytes_.Word(4);
+    file_.first_frame = bytes_.Word(6);
+    scale_ = bytes_.Real(12);
+    file_.floating = scale_ < 0.0;
+    data_ = bytes_.Word(16);
+    samples_per_frame_ = bytes_.Word(18);
+    file_.point_rate_hz = bytes_.Real(20);
+    if (num_points_ > kMaxPoints)
+      return At(2, std::to_string(num_points_) + " points are too many");
+    if (samples_per_frame_ == 0 && samples > 0) {
+      return At(18, "there are analog samples, but none per frame");
+    }
+    if (samples_per_frame_ > 0 && samples % samples_per_frame_ != 0) {
+      return At(4, std::to_string(samples) + " analog samples per frame are not a multiple of " +
+                       std::to_string(samples_per_frame_));
+    }
+    num_channels_ = samples_per_frame_ > 0 ? samples / samples_per_frame_ : 0;
+    if (!std::isfinite(scale_) || (scale_ == 0.0 && num_points_ > 0)) {
+      return At(12, "the scale of the points is " + Rounded(scale_));
+    }
+    if (!(file_.point_rate_hz > 0.0 && file_.point_rate_hz <= 1e5)) {
+      return At(20, "the frame rate is " + Rounded(file_.point_rate_hz) +
+                        " per second; it must be above 0 and at most 100000");
+    }
+    file_.analog_rate_hz = file_.point_rate_hz * std::max(1, samples_per_frame_);
+    if (data_ == 0) return At(16, "the header does not give the start of the data");
+    data_ = (data_ - 1) * kC3dBlock;
+    return CountFrames();
+  }
+
+  // The header counts with 16 bits; longer recordings say it in TRIAL:ACTUAL_..._FIELD (two words
+  // each) or POINT:LONG_FRAMES.
+  MaybeError CountFrames() {
+    const int last = bytes_.Word(8);
+    double frames = last - file_.first_frame + 1.0;
+    const double announced = Unsigned(Number("POINT", "FRAMES", 0, frames));
+    if (file_.parameters.Find("TRIAL", "ACTUAL_END_FIELD") != nullptr) {
+      const auto field = [this](const char* name, double fallback) {
+        return Unsigned(Number("TRIAL", name, 0, fallback)) +
+               65536.0 * Unsigned(Number("TRIAL", name, 1, 0.0));
+      };
+      frames = field("ACTUAL_END_FIELD", last) - field("ACTUAL_START_FIELD", 1.0) + 1.0;
+    } else if (last == kMostWords || announced >= kMostWords) {
+      frames = Number("POINT", "LONG_FRAMES", 0, frames);
+    }
+    if (!(frames >= 1.0 && frames < 2147483647.0 && std::floor(frames) == frames)) {
+      return At(6, "the first frame is " + std::to_string(file_.first_frame) + ", the last " +
+                       std::to_string(last) + ": the file has no frames");
+    }
+    file_.announced_frames = static_cast<int>(frames);
+    return std::nullopt;
+  }
+
+  void ReadNames() {
+    file_.point_names = file_.parameters.Texts("POINT", "LABELS");
+    file_.point_names.resize(num_points_);
+    for (int i = 0; i < num_points_; ++i) {
+      if (file_.point_names[i].empty()) file_.point_names[i] = "point_" + std::to_string(i + 1);
+    }
+    const auto text = [this](const char* name) {
+      const C3dParameter* parameter = file_.parameters.Find("POINT", name);
+      return parameter == nullptr || parameter->texts.empty() ? "" : parameter->texts[0];
+    };
+    file_.point_unit = text("UNITS");
+    file_.screen_x = text("X_SCREEN");
+    file_.screen_y = text("Y_SCREEN");
+    std::vector<std::string> names = file_.parameters.Texts("ANALOG", "LABELS");
+    std::vector<std::string> units = file_.parameters.Texts("ANALOG", "UNITS");
+    names.resize(num_channels_);
+    units.resize(num_channels_);
+    for (int i = 0; i < num_channels_; ++i) {
+      if (names[i].empty()) names[i] = "channel_" + std::to_string(i + 1);
+      file_.analog.push_back({names[i], units[i], {}});
+    }
+  }
+
+  MaybeError ReadFrames() {
+    const std::size_t word = file_.floating ? 4 : 2;
+    const std::size_t frame_size =
+        word * (4 * static_cast<std::size_t>(num_points_) +
+                static_cast<std::size_t>(num_channels_) * samples_per_frame_);
+    if (frame_size == 0 && HasC3dRotations(file_)) {
+      file_.frames_without_points = file_.announced_frames;
+      return std::nullopt;
+    }
+    if (frame_size == 0) return At(2, "the file has neither points nor analog channels");
+    const std::size_t available = data_ < bytes_.size() ? (bytes_.size() - data_) / frame_size : 0;
+    std::size_t frames = file_.announced_frames;
+    if (available < frames) {
+      if (available == 0 || !options_.accept_truncated) {
+        return At(bytes_.size(), "the file ends after " + std::to_string(available) + " of " +
+                                     std::to_string(frames) +
+                                     " frames: it is truncated; export it again");
+      }
+      frames = available;
+    }
+    file_.frames_without_points = static_cast<int>(frames);
+    file_.points.resize(num_points_);
+    for (auto& track : file_.points) track.reserve(frames);
+    for (C3dAnalogChannel& channel : file_.analog) {
+      channel.samples.reserve(frames * samples_per_frame_);
+    }
+    if (MaybeError failed = PrepareAnalog()) return failed;
+    for (std::size_t frame = 0; frame < frames; ++frame) {
+      std::size_t at = data_ + frame * frame_size;
+      for (auto& track : file_.points) {
+        track.push_back(Point(at));
+        at += 4 * word;
+      }
+      for (int sample = 0; sample < samples_per_frame_; ++sample) {
+        for (int channel = 0; channel < num_channels_; ++channel, at += word) {
+          file_.analog[channel].samples.push_back(Sample(at, channel));
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  // The fourth word holds a negative number where the point was not seen; some programs leave zeros
+  // instead. Positions no lens can see (NaN, 1e30) count as not seen.
+  Eigen::Vector3d Point(std::size_t at) const {
+    Eigen::Vector3d position;
+    double seen = 0.0;
+    if (file_.floating) {
+      for (int i = 0; i < 3; ++i) position[i] = bytes_.Real(at + 4 * i);
+      seen = bytes_.Real(at + 12);
+    } else {
+      for (int i = 0; i < 3; ++i) position[i] = scale_ * bytes_.Integer(at + 2 * i);
+      seen = bytes_.Integer(at + 6);
+    }
+    return SeenPosition(seen >= 0.0 ? position : Eigen::Vector3d(Eigen::Vector3d::Zero()));
+  }
+
+  // ANALOG:NAME, NAME2, ...: one number for each channel. None at all leaves `neutral`, and a value
+  // without dimensions holds for all; a list that is too short does not say what it left out.
+  Result<std::vector<double>> PerChannel(const std::string& name, double neutral) const {
+    std::vector<double> numbers = file_.parameters.Numbers("ANALOG", name);
+    const C3dParameter* parameter = file_.parameters.Find("ANALOG", name);
+    const std::size_t channels = file_.analog.size();
+    if (numbers.empty()) {
+      numbers.assign(channels, neutral);
+    } else if (numbers.size() == 1 && parameter->dimensions.empty()) {
+      numbers.assign(channels, numbers[0]);
+    } else if (numbers.size() < channels) {
+      return Error{"ANALOG:" + name + " ends after " + std::to_string(numbers.size()) + " of " +
+                       std::to_string(channels) + " analog channels, before " +
+                       Quoted(file_.analog[numbers.size()].name) +
+                       "; export the file again, with one number for every channel (from the " +
+                       "256th on in ANALOG:" + name + "2)",
+                   path_};
+    }
+    return numbers;
+  }
+
+  MaybeError PrepareAnalog() {
+    const C3dParameter* format = file_.parameters.Find("ANALOG", "FORMAT");
+    unsigned_ = format != nullptr && !format->texts.empty() &&
+                EqualsIgnoringCase(format->texts[0], "UNSIGNED");
+    const double general = Number("ANALOG", "GEN_SCALE", 0, 1.0);
+    Result<std::vector<double>> scales = PerChannel("SCALE", 1.0);
+    if (!scales.ok()) return scales.error();
+    Result<std::vector<double>> offsets = PerChannel("OFFSET", 0.0);
+    if (!offsets.ok()) return offsets.error();
+    for (double& scale : scales.value()) scale *= general;
+    for (double& offset : offsets.value()) offset = unsigned_ ? Unsigned(offset) : offset;
+    analog_scale_ = std::move(scales.value());
+    analog_offset_ = std::move(offsets.value());
+    return std::nullopt;
+  }
+
+  double Sample(std::size_t at, int channel) const {
+    const double raw = file_.floating ? bytes_.Real(at)
+                       : unsigned_    ? static_cast<double>(bytes_.Word(at))
+                                      : static_cast<double>(bytes_.Integer(at));
+    return (raw - analog_offset_[channel]) * analog_scale_[channel];
+  }
+
+  const std::string& path_;
+  const std::string_view text_;
+  const C3dReadOptions& options_;
+  C3dBytes bytes_;
+  C3dFile file_;
+  int num_points_ = 0, num_channels_ = 0, samples_per_frame_ = 0;
+  double scale_ = 0.0;
+  std::size_t data_ = 0;  // the first byte of the data
+  bool unsigned_ = false;
+  std::vector<double> analog_scale_, analog_offset_;
+};
+
+}  // namespace
+
+Result<C3dFile> ReadC3d(const std::string& path, const C3dReadOptions& options) {
+  const Result<std::string> text = ReadWholeFile(path);
+  if (!text.ok()) return text.error();
+  Result<C3dFile> file = Reader(path, text.value(), options).Read();
+  if (!file.ok()) return file.error();
+  ContentHash hash;
+  hash.Add(text.value());
+  file.value().content_hash = hash.Hex();
+  return file;
 }
 
 }  // namespace pushid

@@ -1,14 +1,19 @@
-// datasets: trajectories of named points, and those in tables.
+// datasets: trajectories of named points, in tables and in TRC files.
 #include "datasets/formats/point_motion.h"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <unordered_map>
 
+#include "datasets/files/input_file.h"
 #include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
+#include "datasets/files/numeric_table.h"
+#include "datasets/formats/units.h"
 
 namespace pushid {
-
 MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion) {
   if (!options.choose) {
     motion->chosen.resize(motion->names.size());
@@ -179,6 +184,220 @@ Result<PointMotion> ReadCsvPoints(const std::string& path, const PointReadOption
 
 Result<PointMotion> ReadStoragePoints(const std::string& path, const PointReadOptions& options) {
   return ReadTablePoints(path, TableFormat::kStorage, options);
+}
+
+namespace {
+
+constexpr double kRateTolerance = 0.01;
+constexpr std::int64_t kMostMarkers = 100000;
+
+std::vector<std::string_view> TabFields(std::string_view line) {
+  std::vector<std::string_view> fields = CellsOf(line, '\t');
+  while (!fields.empty() && fields.back().empty()) fields.pop_back();
+  return fields;
+}
+
+class TrcReader {
+ public:
+  TrcReader(const std::string& path, const PointReadOptions& options) : options_(options) {
+    motion_.path = path;
+  }
+
+  Result<PointMotion> Read() {
+    if (MaybeError failed = reader_.Open(motion_.path)) return *std::move(failed);
+    if (MaybeError failed = ReadHead()) return *std::move(failed);
+    if (MaybeError failed = ReadNames()) return *std::move(failed);
+    if (MaybeError failed = ReadRows()) return *std::move(failed);
+    motion_.content_hash = reader_.HashHex();
+    return std::move(motion_);
+  }
+
+ private:
+  // The next line that is not blank, in fields; an Error where the file ends.
+  MaybeError Next(const char* what, std::vector<std::string_view>* fields) {
+    std::string_view line;
+    if (!reader_.NextNonBlank(&line)) {
+      if (reader_.error()) return reader_.error();
+      return reader_.ErrorHere(std::string("the file ends where ") + what +
+                               " should be: it is truncated");
+    }
+    *fields = TabFields(line);
+    return std::nullopt;
+  }
+
+  MaybeError ReadHead() {
+    std::vector<std::string_view> fields;
+    if (MaybeError failed = Next("PathFileType", &fields)) return failed;
+    if (fields.empty() || !EqualsIgnoringCase(fields[0], "PathFileType")) {
+      return reader_.ErrorHere("a TRC file starts with PathFileType and tabs");
+    }
+    if (MaybeError failed = Next("DataRate", &fields)) return failed;
+    const std::vector<std::string> keys(fields.begin(), fields.end());
+    if (MaybeError failed = Next("the values of DataRate, NumFrames, ...", &fields)) return failed;
+    double frames = -1.0, markers = -1.0;
+    for (std::size_t i = 0; i < keys.size() && i < fields.size(); ++i) {
+      double number = 0.0;
+      const bool is_number = ParseDouble(fields[i], &number);
+      if (keys[i] == "DataRate" && is_number) motion_.rate_hz = number;
+      if (keys[i] == "NumFrames" && is_number) frames = number;
+      if (keys[i] == "NumMarkers" && is_number) markers = number;
+      if (keys[i] == "Units") motion_.unit_text = std::string(fields[i]);
+    }
+    if (!(motion_.rate_hz > 0.0 && motion_.rate_hz <= 1e5)) {
+      return reader_.ErrorHere("DataRate must be a number of frames per second above 0");
+    }
+    if (!(frames >= 1.0 && frames <= 2e9) || !(markers >= 1.0 && markers <= kMostMarkers)) {
+      return reader_.ErrorHere("NumFrames and NumMarkers must be 1 or more");
+    }
+    num_frames_ = static_cast<std::int64_t>(frames);
+    num_markers_ = static_cast<std::int64_t>(markers);
+    motion_.unit = FromName<LengthUnit>(motion_.unit_text);
+    return std::nullopt;
+  }
+
+  MaybeError ReadNames() {
+    std::vector<std::string_view> fields;
+    if (MaybeError failed = Next("Frame#, Time and the markers", &fields)) return failed;
+    if (fields.size() < 3 || !EqualsIgnoringCase(fields[0].substr(0, 5), "Frame") ||
+        !EqualsIgnoringCase(fields[1], "Time")) {
+      return reader_.ErrorHere("Frame#, Time and the names of the markers are expected here");
+    }
+    for (std::size_t i = 2; i < fields.size(); ++i) {
+      if (!fields[i].empty()) motion_.names.emplace_back(fields[i]);
+    }
+    if (static_cast<std::int64_t>(motion_.names.size()) != num_markers_) {
+      return reader_.ErrorHere("NumMarkers is " + std::to_string(num_markers_) + ", but " +
+                               std::to_string(motion_.names.size()) + " markers are named here");
+    }
+    if (MaybeError failed = Next("X1, Y1, Z1, ...", &fields)) return failed;
+    if (MaybeError failed = ChoosePoints(options_, &motion_)) return failed;
+    motion_.positions.resize(motion_.chosen.size());
+    return std::nullopt;
+  }
+
+  MaybeError ReadRows() {
+    row_.resize(3 * num_markers_);
+    std::int64_t rows = 0;
+    std::string_view line;
+    while (reader_.NextNonBlank(&line)) {
+      if (++rows > num_frames_) {
+        return reader_.ErrorHere("wrong frame count: NumFrames is " + std::to_string(num_frames_) +
+                                 ", but here is one row more");
+      }
+      if (MaybeError failed = ReadRow(line)) return failed;
+      NoteMissing(line);
+    }
+    if (reader_.error()) return reader_.error();
+    if (rows < num_frames_ && missing_) return missing_;
+    if (rows < num_frames_) {
+      return reader_.ErrorHere("wrong frame count: NumFrames is " + std::to_string(num_frames_) +
+                               ", but the file ends after " + std::to_string(rows) +
+                               ": it is truncated, or the count is wrong");
+    }
+    return CheckRate(rows);
+  }
+
+  // Where Frame# first leaves numbers out.
+  void NoteMissing(std::string_view line) {
+    const long frame =
+        std::strtol(std::string(line.substr(0, line.find('\t'))).c_str(), nullptr, 10);
+    // Numbers as text has them: a sum may overflow.
+    const bool gap = last_frame_ > 0 && frame > last_frame_ && frame - last_frame_ > 1;
+    if (!missing_ && gap) {
+      missing_ = reader_.ErrorHere("rows are missing before this one: Frame# goes from " +
+                                   std::to_string(last_frame_) + " to " + std::to_string(frame));
+    }
+    last_frame_ = frame;
+  }
+
+  // Times may be rounded to a millisecond.
+  MaybeError CheckRate(std::int64_t rows) const {
+    const double span = last_time_s_ - motion_.first_time_s;
+    if (rows < 3 || !(span > 0.0)) return std::nullopt;
+    const double step = span / static_cast<double>(rows - 1);
+    if (std::fabs(step * motion_.rate_hz - 1.0) <= kRateTolerance + 1e-3 / span)
+      return std::nullopt;
+    return reader_.ErrorHere("Time grows by " + Rounded(step) + " s a row, " + Rounded(1.0 / step) +
+                             " rows a second, but DataRate is " + Rounded(motion_.rate_hz) +
+                             "; correct the one that is wrong");
+  }
+
+  // Rows may leave out the tabs of markers not seen, so only its newline tells that a shorter one
+  // is whole.
+  MaybeError CheckLastRow(std::string_view line) const {
+    const std::size_t expected = row_.size() + 2;
+    const std::size_t cells = 1 + std::count(line.begin(), line.end(), '\t');
+    if (cells >= expected) return std::nullopt;
+    return reader_.ErrorHere(
+        "the file ends after " + std::to_string(cells) + " of the " + std::to_string(expected) +
+        " cells of its last row, without a newline: it is truncated; export it again, or end the "
+        "row with a newline if it only leaves out markers not seen");
+  }
+
+  MaybeError ReadRow(std::string_view line) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    const std::size_t expected = row_.size() + 2;
+    if (!reader_.ended_in_newline()) {
+      if (MaybeError failed = CheckLastRow(line)) return failed;
+    }
+    const std::vector<std::string_view> fields = TabFields(line);
+    if (fields.size() < 2 || fields.size() > expected) {
+      return reader_.ErrorHere("the row has " + std::to_string(fields.size()) + " cells, not " +
+                               std::to_string(expected));
+    }
+    double number = 0.0;
+    for (int i = 0; i < 2; ++i) {
+      if (!ParseDouble(fields[i], &number)) {
+        return reader_.ErrorHere(std::string(i == 0 ? "Frame#: " : "Time: ") +
+                                 NumberProblem(fields[i]));
+      }
+    }
+    if (std::isnan(last_time_s_)) motion_.first_time_s = number;
+    last_time_s_ = number;
+    for (std::size_t i = 0; i < row_.size(); ++i) {
+      const std::string_view cell = i + 2 < fields.size() ? fields[i + 2] : "";
+      if (cell.empty() || EqualsIgnoringCase(cell, "nan")) {
+        row_[i] = kNaN;
+      } else if (!ParseDouble(cell, &row_[i])) {
+        return reader_.ErrorHere(motion_.names[i / 3] + ": " + NumberProblem(cell) + kMissingCell);
+      }
+    }
+    return TakeRow();
+  }
+
+  MaybeError TakeRow() {
+    for (std::int64_t marker = 0; marker < num_markers_; ++marker) {
+      const double* at = row_.data() + 3 * marker;
+      const int missing = std::isnan(at[0]) + std::isnan(at[1]) + std::isnan(at[2]);
+      if (missing == 1 || missing == 2) {
+        return reader_.ErrorHere(motion_.names[marker] + ": " + std::to_string(missing) +
+                                 " of its 3 cells " + (missing == 1 ? "is" : "are") +
+                                 " missing: the row is cut or damaged; export the file again, or " +
+                                 "leave all 3 empty where the marker was not seen");
+      }
+    }
+    for (std::size_t i = 0; i < motion_.chosen.size(); ++i) {
+      const double* at = row_.data() + 3 * motion_.chosen[i];
+      // Some programs leave zeros where it was not seen.
+      motion_.positions[i].push_back(SeenPosition({at[0], at[1], at[2]}));
+    }
+    return std::nullopt;
+  }
+
+  const PointReadOptions& options_;
+  LineReader reader_;
+  PointMotion motion_;
+  std::int64_t num_frames_ = 0, num_markers_ = 0;
+  long last_frame_ = 0;
+  MaybeError missing_;
+  double last_time_s_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> row_;  // x, y, z of every marker
+};
+
+}  // namespace
+
+Result<PointMotion> ReadTrc(const std::string& path, const PointReadOptions& options) {
+  return TrcReader(path, options).Read();
 }
 
 }  // namespace pushid

@@ -1,12 +1,14 @@
 // datasets: what can be seen of a motion before anything is fitted.
+#include "datasets/inspection/inspect_motion.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
-#include "datasets/inspection/inspection.h"
-#include "datasets/inspection/push_and_motion.h"
+#include "datasets/loading/motion_preparation.h"
 
 namespace pushid {
 namespace {
@@ -29,6 +31,135 @@ std::string SomeOf(std::vector<std::string> texts) {
   const bool more = texts.size() > kNamed;
   if (more) texts.resize(kNamed);
   return ListOfNames(texts) + (more ? ", ..." : "");
+}
+
+// The axis that a direction is nearest to.
+int LargestAxis(const Eigen::Vector3d& direction) {
+  int axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
+
+// "-y": the same with its sign.
+std::string AxisName(const Eigen::Vector3d& direction) {
+  const int axis = LargestAxis(direction);
+  return std::string(direction[axis] < 0.0 ? "-" : "") + "xyz"[axis];
+}
+
+constexpr double kTurned = 0.5;    // rad between the ankles' line at first and in the mean
+constexpr double kSideways = 0.8;  // rad between the way of a walk and where the person faces
+constexpr double kStride = 1.0;    // s, about
+constexpr double kWalked = 0.3;    // m; less has no direction
+
+// The axis nearest to the rod.
+Eigen::Vector3d UpOf(const Eigen::Vector3d& rod) {
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  const int axis = LargestAxis(rod);
+  up[axis] = rod[axis] < 0.0 ? -1.0 : 1.0;
+  return up;
+}
+
+// Across `up`; zero where it is not seen.
+Eigen::Vector3d Across(const Eigen::Vector3d& v, const Eigen::Vector3d& up) {
+  return v.allFinite() ? Eigen::Vector3d(v - v.dot(up) * up) : Eigen::Vector3d::Zero();
+}
+
+double Angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0));
+}
+
+std::string Degrees(double radians) {
+  return std::to_string(std::lround(radians * 180.0 / M_PI)) + " degrees";
+}
+
+// The farthest that the hip gets, at either end of the recording.
+Eigen::Vector3d WayOf(const Track& hip, const Eigen::Vector3d& up, int first) {
+  for (size_t t = hip.size(); t-- > static_cast<size_t>(first);) {
+    if (hip[t].allFinite()) return Across(hip[t] - hip[first], up);
+  }
+  return Eigen::Vector3d::Zero();
+}
+
+// Frames in which all of the chosen points were seen have their mean, others NaN.
+Track MeanOf(const PointMotion& motion, const std::vector<int>& chosen) {
+  Track mean(motion.num_frames(), Eigen::Vector3d::Zero());
+  for (int index : chosen) {
+    for (int t = 0; t < motion.num_frames(); ++t) mean[t] += motion.positions[index][t];
+  }
+  for (Eigen::Vector3d& position : mean) position /= static_cast<double>(chosen.size());
+  return mean;
+}
+
+// Frames on end in which one of the chosen points was not seen.
+int LongestHidden(const PointMotion& motion, const std::vector<int>& chosen) {
+  int longest = 0;
+  for (int index : chosen) {
+    int run = 0;
+    for (const Eigen::Vector3d& position : motion.positions[index]) {
+      run = position.allFinite() ? 0 : run + 1;
+      longest = std::max(longest, run);
+    }
+  }
+  return longest;
+}
+
+struct Facing {
+  Eigen::Vector3d to_the_left = Eigen::Vector3d::Zero();
+  std::string by;     // "the pelvis", "the ankles"
+  std::string doubt;  // empty: none
+};
+
+// By the pelvis at frame `first`; without one by the line between the ankles, meant over
+// a second, as one foot is ahead in mid-stride. Doubtful where that line turns, or where the person
+// walks to its side. rod: from ankles to hip; metres: of the file's unit.
+Facing FacingOf(const PointMotion& motion, const PelvisSides& pelvis, const Track& hip,
+                const Track& left, const Track& right, const Eigen::Vector3d& rod, int first,
+                double metres) {
+  const Eigen::Vector3d up = UpOf(rod);
+  Facing facing;
+  if (pelvis.known()) {
+    const Eigen::Vector3d line =
+        MeanOf(motion, pelvis.left)[first] - MeanOf(motion, pelvis.right)[first];
+    facing.to_the_left = Across(line, up);
+    facing.by = "the pelvis";
+    if (!facing.to_the_left.isZero()) return facing;
+  }
+  const size_t stride = motion.rate_hz > 0.0 ? static_cast<size_t>(kStride * motion.rate_hz) : 1;
+  for (size_t t = first; t < std::min(left.size(), first + stride); ++t) {
+    facing.to_the_left += Across(left[t] - right[t], up);
+  }
+  facing.by = "the ankles";
+  const Eigen::Vector3d at_first = Across(left[first] - right[first], up);
+  const Eigen::Vector3d way = WayOf(hip, up, first);
+  const Eigen::Vector3d forward = facing.to_the_left.cross(up);
+  if (facing.to_the_left.isZero() || at_first.isZero()) {
+    facing.doubt = "the ankles are in one place";
+  } else if (Angle(at_first, facing.to_the_left) > kTurned) {
+    facing.doubt = "one foot is ahead, or the person turns: the line between the ankles turns by " +
+                   Degrees(Angle(at_first, facing.to_the_left));
+  } else if (metres * way.norm() > kWalked && Angle(way, forward) > kSideways) {
+    facing.doubt = "the hip goes " + Degrees(Angle(way, forward)) + " off it";
+  }
+  return facing;
+}
+
+// `to_project` takes the file's coordinates to metres, z up, x where the person faces.
+PersonSteps StepsOf(const PointMotion& motion, const PendulumJoints& joints,
+                    const Eigen::Matrix3d& to_project) {
+  const auto track = [&](const std::vector<int>& chosen) {
+    Track mean = MeanOf(motion, chosen);
+    for (Eigen::Vector3d& position : mean) position = to_project * position;
+    return mean;
+  };
+  // As loading does: a toe or heel that is lost for long is not used.
+  const double gap = PreparationOptions{}.max_gap_s * motion.rate_hz;
+  RecordedPerson person;
+  for (const PendulumTrack& row : kPendulumTracks) {
+    const std::vector<int>& chosen = joints.*row.joints;
+    const bool lost = chosen.empty() || LongestHidden(motion, chosen) > gap;
+    if (row.required || !lost) person.*row.track = track(chosen);
+  }
+  return FindSteps(person, motion.rate_hz);
 }
 
 class MotionInspector {
@@ -290,6 +421,13 @@ class MotionInspector {
 };
 
 }  // namespace
+
+PelvisSides SidesOf(const Result<BodyRoles>& roles) {
+  if (!roles.ok()) return {};
+  const BodyRoles& r = roles.value();
+  if (!r.left_asis.empty() && !r.right_asis.empty()) return {r.left_asis, r.right_asis};
+  return {r.joints[kLeftHip], r.joints[kRightHip]};
+}
 
 void InspectMotion(const PointMotion& motion, const std::optional<PendulumJoints>& joints,
                    const PelvisSides& pelvis, Inspection* inspection) {

@@ -2,6 +2,12 @@
 #include "datasets/inspection/inspection.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "datasets/files/input_file.h"
 #include "datasets/files/names.h"
@@ -11,12 +17,250 @@
 #include "datasets/formats/c3d.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/formats/trajectories.h"
+#include "datasets/inspection/findings.h"
+#include "datasets/inspection/inspect_motion.h"
+#include "datasets/loading/ground_record.h"
+#include "datasets/loading/load_recordings.h"
+#include "datasets/loading/plate_record.h"
 #include "datasets/manifest/joint_choice.h"
 #include "datasets/manifest/manifest.h"
+#include "datasets/sensors/force_platform.h"
 #include "datasets/sensors/sensor_choice.h"
+#include "models/ipm.h"
 
 namespace pushid {
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kInMillimetres = 1000.0, kDegrees = 180.0 / M_PI;
+
+InspectedGround GroundOf(const ManifestRecording& entry, const Recording& recording) {
+  InspectedGround ground;
+  ground.recording = entry.id;
+  ground.kind = entry.ground.csv.empty() ? "markers" : NameOf(entry.ground.quantity);
+  ground.rate_hz = recording.fps;
+  if (!entry.ground.csv.empty()) {
+    const Result<GroundTracks> tracks = GroundOfCsv(entry);
+    if (tracks.ok()) ground.rate_hz = tracks.value().rate_hz;
+  }
+  const std::vector<GroundPose>& poses = recording.ground;
+  for (size_t t = 0; t < poses.size(); ++t) {
+    ground.farthest_m = std::max(ground.farthest_m, poses[t].head<2>().norm());
+    ground.peak_tilt_rad = std::max(ground.peak_tilt_rad, poses[t].tail<2>().norm());
+    if (t == 0 || t + 1 == poses.size()) continue;
+    const GroundPose second = poses[t + 1] - 2.0 * poses[t] + poses[t - 1];
+    ground.peak_acceleration =
+        std::max(ground.peak_acceleration, second.head<2>().norm() * recording.fps * recording.fps);
+  }
+  return ground;
+}
+
+InspectedPlates PlatesOf(const ManifestRecording& entry, const ManifestPlates& plates,
+                         const RecordedPerson& person) {
+  InspectedPlates found{entry.id, person.subject_id, NameOf(plates.use)};
+  const Result<PlateTracks> tracks = ReadPlates(entry, plates, person);
+  if (tracks.ok()) {
+    found.platforms = tracks.value().platforms;
+    found.rate_hz = tracks.value().rate_hz;
+  }
+  double vertical = 0.0;
+  int pressed = 0;
+  for (const PlateSample& sample : person.plates) {
+    if (sample.weight <= 0.0) continue;
+    const Eigen::Vector2d centre = sample.centre.head<2>();
+    found.least = pressed == 0 ? centre : Eigen::Vector2d(found.least.cwiseMin(centre));
+    found.most = pressed == 0 ? centre : Eigen::Vector2d(found.most.cwiseMax(centre));
+    vertical += sample.force.z();
+    ++pressed;
+  }
+  if (pressed > 0) found.weight_ratio = vertical / pressed / (person.mass_kg * kGravity);
+  return found;
+}
+
+std::string Span(double least, double most) {
+  return Rounded(kInMillimetres * least, 3) + " to " + Rounded(kInMillimetres * most, 3) + " mm";
+}
+
+Json Two(const Eigen::Vector2d& v) { return Json::array({v.x(), v.y()}); }
+
+// Ground and platforms of a recording as it was read from its entry, with a fact for each.
+void InspectLaboratory(const ManifestRecording& entry, const Recording& recording,
+                       Inspection* found) {
+  if (entry.ground.given()) {
+    const InspectedGround ground = GroundOf(entry, recording);
+    found->Fact("ground", entry.id + ": " + ground.kind + " at " + Rounded(ground.rate_hz, 5) +
+                              " per second, up to " +
+                              Rounded(kInMillimetres * ground.farthest_m, 3) + " mm, " +
+                              Rounded(ground.peak_acceleration, 3) + " m/s^2 and " +
+                              Rounded(kDegrees * ground.peak_tilt_rad, 3) + " degrees of tilt");
+    found->grounds.push_back(ground);
+  }
+  for (const ManifestPlates& plates : entry.plates) {
+    const InspectedPlates seen =
+        PlatesOf(entry, plates, recording.people[static_cast<size_t>(plates.person)]);
+    std::string text = entry.id + ", " + seen.person + ": " + std::to_string(seen.platforms) +
+                       " at " + Rounded(seen.rate_hz, 5) + " per second, ";
+    text += plates.use == PlateUse::kNone
+                ? "not used"
+                : "measured: mean vertical force " + Rounded(seen.weight_ratio, 4) +
+                      " of the weight, centre of pressure " + Span(seen.least.x(), seen.most.x()) +
+                      " forward and " + Span(seen.least.y(), seen.most.y()) + " to the left";
+    found->Fact("force plates", text);
+    found->plates.push_back(seen);
+  }
+}
+
+constexpr std::size_t kMostSignals = 6;  // in the picture
+constexpr double kForceOnset = 20.0;     // N
+
+// Peak, impulse and onset of a force in N; keeps it for the picture. NaN: no value.
+void AddForce(const std::string& name, double rate_hz, std::vector<double> values,
+              Inspection* found) {
+  double peak = 0.0, impulse = 0.0;
+  int onset = -1;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    if (std::fabs(values[i]) > std::fabs(peak)) peak = values[i];
+    impulse += values[i] / rate_hz;
+    if (onset < 0 && std::fabs(values[i]) > kForceOnset) onset = static_cast<int>(i);
+  }
+  found->Fact(name, "peak " + Rounded(peak, 3) + " N, impulse " + Rounded(impulse, 3) + " N s" +
+                        (onset >= 0 ? ", above " + Rounded(kForceOnset) + " N from " +
+                                          Rounded(onset / rate_hz, 3) + " s"
+                                    : ""));
+  if (found->forces.size() < kMostSignals) {
+    found->forces.push_back({name, "N", rate_hz, std::move(values)});
+  }
+}
+
+// The analog channels of a C3D file, and what presses its force platforms.
+void LookAtAnalog(const C3dFile& file, Inspection* found) {
+  std::vector<std::string> names;
+  std::set<std::string> units;
+  for (const C3dAnalogChannel& channel : file.analog) {
+    names.push_back(channel.name);
+    units.insert(channel.unit);
+    const bool steady =
+        std::all_of(channel.samples.begin(), channel.samples.end(),
+                    [&channel](double sample) { return sample == channel.samples[0]; });
+    if (steady && file.num_frames() > 1) names.back() += " (constant)";
+  }
+  found->Fact("analog", ListOfNames(names) + " at " + Rounded(file.analog_rate_hz) +
+                            " per second, in " + ListOfNames({units.begin(), units.end()}));
+  for (const C3dAnalogChannel& channel : file.analog) {
+    if (channel.unit == "N" && file.platforms.empty()) {
+      AddForce(channel.name, file.analog_rate_hz, channel.samples, found);
+    }
+  }
+}
+
+void LookAtPlatforms(const C3dFile& file, Inspection* found) {
+  const LengthUnit unit = FromName<LengthUnit>(file.point_unit).value_or(LengthUnit::kMillimetre);
+  for (std::size_t i = 0; i < file.platforms.size(); ++i) {
+    const std::string name = "platform:" + std::to_string(i + 1);
+    const Result<PlatformRecord> platform = EvaluatePlatform(file, static_cast<int>(i), unit);
+    if (!platform.ok()) {
+      found->Warn(platform.error().message);
+      continue;
+    }
+    const Eigen::Vector3d& normal = platform.value().normal;
+    std::vector<double> pressing;
+    for (const Eigen::Vector3d& force : platform.value().force) {
+      pressing.push_back(force.dot(normal));
+    }
+    found->Fact(name + " type", std::to_string(file.platforms[i].type) + ", surface faces (" +
+                                    Rounded(normal.x(), 2) + ", " + Rounded(normal.y(), 2) + ", " +
+                                    Rounded(normal.z(), 2) + ")");
+    AddForce(name, platform.value().rate_hz, std::move(pressing), found);
+    if (file.platforms[i].origin.z() > 0.0) {
+      found->Warn(name +
+                  " has its sensors above its surface (ORIGIN z > 0); they are taken to be "
+                  "below");
+    }
+  }
+}
+
+// The file's frame with most people.
+std::int64_t FullestFrame(const PointMotion& motion) {
+  int fullest = 0;
+  std::ptrdiff_t most = -1;
+  for (int frame = 0; frame < motion.num_frames(); ++frame) {
+    const auto there =
+        std::count_if(motion.positions.begin(), motion.positions.end(),
+                      [frame](const auto& track) { return track[frame].allFinite(); });
+    if (there > most) fullest = frame, most = there;
+  }
+  return FirstFrame(motion) + fullest;
+}
+
+// People, times, how close they stand.
+void InspectCrowd(const PointMotion& motion, Inspection* found) {
+  found->Fact("people", std::to_string(motion.names.size()) + ": " + ListOfNames(motion.names));
+  found->Fact("frames", std::to_string(motion.num_frames()) + " at " + Rounded(motion.rate_hz) +
+                            " per second, from the file's frame " +
+                            std::to_string(FirstFrame(motion)));
+  const std::int64_t frame = FullestFrame(motion);
+  const Result<std::vector<CrowdPlace>> places = PlacesAt(motion, frame);
+  if (!places.ok()) return;
+  const std::size_t people = places.value().size();
+  found->Fact("fullest frame",
+              std::to_string(frame) + ": " + std::to_string(people) + " people" +
+                  (people < 2 ? ""
+                              : ", the nearest other " + Rounded(MedianSpacing(places.value()), 3) +
+                                    " m away (median)"));
+  const std::string odd = OddSpacing(places.value());
+  if (!odd.empty()) found->Warn(odd);
+  found->Fact("use", "pushid-formation --formation=" + motion.path + " --formation_frame=" +
+                         std::to_string(frame) + " places people as they stand there");
+}
+
+// Facts about the manifest, and a warning for every recording that cannot be read and everything
+// unusual about the others.
+MaybeError InspectManifest(Inspection* found) {
+  const Result<Manifest> manifest = ReadManifests(found->path);
+  if (!manifest.ok()) return manifest.error();
+  std::map<std::string, int> settings, formats;
+  std::set<std::string> subjects;
+  int pushed = 0, read = 0;
+  std::vector<PendulumRecording> pendulums;
+  std::vector<Finding> facing;
+  for (const ManifestRecording& entry : manifest.value().recordings) {
+    ++settings[entry.labels.setting()];
+    ++formats[entry.plates_alone ? "force plates alone" : Title(entry.motion_format)];
+    for (const ManifestSubject& subject : entry.subjects) subjects.insert(subject.id);
+    pushed += entry.push_csv.empty() && entry.pushes.empty() ? 0 : 1;
+    Warnings warnings;
+    LoadOptions options;
+    options.plates_alone = true;
+    const Result<Recording> recording = LoadRecording(manifest.value(), entry, options, &warnings);
+    for (const Warning& warning : warnings) found->Warn(warning.text);
+    if (recording.ok()) ++read;
+    if (recording.ok()) {
+      InspectLaboratory(entry, recording.value(), found);
+      pendulums.push_back(MakePendulumRecording(recording.value(), SkeletonMapping::kExact));
+      const std::vector<Finding> more = FacingFindings(recording.value());
+      facing.insert(facing.end(), more.begin(), more.end());
+    }
+    if (!recording.ok()) found->Warn(recording.error().ToString());
+  }
+  std::vector<Finding> findings = FindingsOf(pendulums);
+  findings.insert(findings.end(), facing.begin(), facing.end());
+  for (const std::string& text : FindingTexts(findings)) found->Warn(text);
+  const auto counts = [](const std::map<std::string, int>& of) {
+    std::vector<std::string> texts;
+    for (const auto& [name, count] : of) texts.push_back(name + " " + std::to_string(count));
+    return ListOfNames(texts);
+  };
+  const std::size_t all = manifest.value().recordings.size();
+  found->Fact("recordings", std::to_string(all) + ", " + std::to_string(read) + " can be read, " +
+                                std::to_string(pushed) + " have a push");
+  found->Fact("settings", counts(settings));
+  found->Fact("formats", counts(formats));
+  found->Fact("subjects", ListOfNames({subjects.begin(), subjects.end()}));
+  return std::nullopt;
+}
 
 // A warning where hip and ankles cannot be found.
 void LookAtPoints(const PointMotion& motion, const ColumnMapping& mapping, Inspection* found) {
@@ -246,6 +490,37 @@ std::string InspectionText(const Inspection& inspection) {
   }
   for (const std::string& warning : inspection.warnings) text += "  warning: " + warning + "\n";
   return text;
+}
+
+Json InspectionJson(const Inspection& inspection) {
+  Json json = {
+      {"schema", "pushid-inspection/1"}, {"file", inspection.path}, {"format", inspection.format}};
+  json["facts"] = Json::array();
+  for (const auto& [what, text] : inspection.facts) {
+    json["facts"].push_back({{"what", what}, {"text", text}});
+  }
+  json["warnings"] = inspection.warnings;
+  json["ground"] = Json::array();
+  for (const InspectedGround& g : inspection.grounds) {
+    json["ground"].push_back({{"recording", g.recording},
+                              {"kind", g.kind},
+                              {"rate_hz", g.rate_hz},
+                              {"farthest_m", g.farthest_m},
+                              {"peak_acceleration_m_s2", g.peak_acceleration},
+                              {"peak_tilt_rad", g.peak_tilt_rad}});
+  }
+  json["plates"] = Json::array();
+  for (const InspectedPlates& p : inspection.plates) {
+    json["plates"].push_back({{"recording", p.recording},
+                              {"person", p.person},
+                              {"use", p.use},
+                              {"platforms", p.platforms},
+                              {"rate_hz", p.rate_hz},
+                              {"weight_ratio", p.weight_ratio},
+                              {"centre_least_m", Two(p.least)},
+                              {"centre_most_m", Two(p.most)}});
+  }
+  return json;
 }
 
 }  // namespace pushid

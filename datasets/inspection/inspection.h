@@ -12,13 +12,8 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/formats/c3d.h"
-#include "datasets/formats/point_motion.h"
-#include "datasets/inspection/push_and_motion.h"
 #include "datasets/loading/foot_steps.h"
 #include "datasets/manifest/column_mapping.h"
-#include "datasets/manifest/joint_choice.h"
-#include "datasets/manifest/manifest.h"
 
 namespace pushid {
 
@@ -77,32 +72,5 @@ std::string InspectionText(const Inspection& inspection);
 
 // The same with names and numbers: {"file", "format", "facts", "warnings", "ground", "plates"}.
 nlohmann::ordered_json InspectionJson(const Inspection& inspection);
-
-// The parts of Inspect.
-
-// A motion: unit, axes, rate, gaps, jumps, standing height, a static start, the onset of the push,
-// steps. Adds facts, warnings and the picture's data. `joints`: indices into motion.names, all of
-// which were read; without them only rate, gaps and jumps are looked at. pelvis: alike.
-void InspectMotion(const PointMotion& motion, const std::optional<PendulumJoints>& joints,
-                   const PelvisSides& pelvis, Inspection* inspection);
-
-// Peak, impulse and onset of a force in N; keeps it for the picture. NaN: no value.
-void AddForce(const std::string& name, double rate_hz, std::vector<double> values,
-              Inspection* found);
-
-// The analog channels of a C3D file, and what presses its force platforms.
-void LookAtAnalog(const C3dFile& file, Inspection* found);
-void LookAtPlatforms(const C3dFile& file, Inspection* found);
-
-// People, times, how close they stand. motion: of every person, as trajectories.h reads them.
-void InspectCrowd(const PointMotion& motion, Inspection* found);
-
-// Ground and platforms of a recording as it was read from its entry, with a fact for each.
-void InspectLaboratory(const ManifestRecording& entry, const Recording& recording,
-                       Inspection* found);
-
-// Adds facts about the manifest at inspection->path, and a warning for every recording that cannot
-// be read and everything unusual about the others.
-MaybeError InspectManifest(Inspection* inspection);
 
 }  // namespace pushid

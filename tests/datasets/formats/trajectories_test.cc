@@ -99,7 +99,9 @@ TEST_F(TrajectoriesTest, ThereAndBack) {
     for (int frame = 0; frame < motion.num_frames(); ++frame) {
       const Eigen::Vector3d &is = read.positions[i][frame], &was = motion.positions[i][frame];
       ASSERT_EQ(is.allFinite(), was.allFinite());
-      if (is.allFinite()) EXPECT_EQ(is, was);
+      if (is.allFinite()) {
+        EXPECT_EQ(is, was);
+      }
     }
   }
 }

@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "datasets/files/random.h"
-#include "datasets/inspection/push_and_motion.h"
 #include "tests/test_support.h"
 
 namespace pushid {
