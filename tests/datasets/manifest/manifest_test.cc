@@ -101,7 +101,7 @@ TEST_F(ManifestTest, ReadsEverything) {
   EXPECT_EQ(b.labels.Of("why"), "because");
   EXPECT_EQ(b.labels.Keys(),
             (std::vector<std::string>{"condition", "magnitude", "setting", "split", "why"}));
-  EXPECT_TRUE(MisspeltKeys(b).empty()) << "split is like sqlite, and is a label";
+  EXPECT_TRUE(MisspeltKeys(b).empty()) << "split is a label";
   EXPECT_EQ(b.joints.hip->name, "Hips");
   EXPECT_EQ(b.joints.left_ankle->index, 3);
   EXPECT_FALSE(b.joints.right_ankle);
