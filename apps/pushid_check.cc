@@ -71,7 +71,7 @@ ModelChecks ChecksFromCommandLine(uint64_t seed) {
   checks.bootstrap.seed = seed;
   checks.bootstrap.num_threads = checks.num_threads = FLAGS_num_threads;
   OrFail(CheckNumbers(checks));
-  CheckFlagRules({{"bootstrap_file", FlagRule::kNeeds, {"bootstrap"}, "=N"}});
+  CheckNeeds({"bootstrap_file"}, {"bootstrap"}, "=N");
   OrFail(ParseName("--bootstrap_by", FLAGS_bootstrap_by, &checks.bootstrap.by));
   OrFail(CheckOutputFiles({FLAGS_bootstrap_file}));
   return checks;

@@ -1,12 +1,16 @@
-// apps: the command line of every program: help, version, common checks.
+// apps: the command line of every program: help, version, common checks, what is given and what goes
+// with what.
 #pragma once
 
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "apps/flags/flag_table.h"
 #include "apps/support/app_support.h"
 #include "apps/support/overwrite_check.h"
+#include "datasets/formats/units.h"
 
 namespace pushid {
 
@@ -19,5 +23,45 @@ int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
 // A flag that is given several times would keep its last value alone: all of them, with the
 // separator between. Before RunApp.
 void JoinRepeated(const std::string& flag, char separator, int argc, char** argv);
+
+// Errors: one of `flags` is given and acts, and none of `others` does; `why` follows "--flag needs
+// --other or --another". A flag of others acts where its value is not its default. A switch that is
+// given as off asks for nothing.
+void CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::string>& others,
+                const std::string& why = "");
+// Errors: one of `flags` acts, and `other` too; `why` is the whole sentence, in which {} stands for
+// the flag.
+void CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
+                   const std::string& why);
+
+// Whether a flag was given at all, even with its default's value.
+bool Given(const char* flag);
+
+// "--recordings is missing ..." when a flag that is needed is empty.
+void Require(const std::string& flag, const std::string& value, const std::string& what);
+
+// "--spacing is -1; it must lie between ...". Written so that NaN fails.
+void CheckRange(const char* flag, double value, double lowest, double highest);
+// The value that a flag has, into its place.
+template <typename Value, typename Target>
+void TakeInRange(const char* flag, Value value, double lowest, double highest, Target* target) {
+  *target = value;
+  CheckRange(flag, static_cast<double>(value), lowest, highest);
+}
+
+// --length_unit or --length_scale, whichever has a value, into its place. Errors: both; a unit or a
+// scale that is none.
+void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
+                std::optional<double>* length_scale);
+
+// The effective flags of this executable that are part of a result: not outputs, threads,
+// verbosity.
+std::map<std::string, std::string> EffectiveFlags();
+
+// What a program's JSON begins with: the name of its format, version, effective flags.
+nlohmann::ordered_json ResultHead(const char* schema);
+
+// Names of those that are not at their defaults.
+std::vector<std::string> ChangedFlags();
 
 }  // namespace pushid
