@@ -27,10 +27,8 @@ DEFINE_int32(person, 0, "number of the pushed person, counted from 0");
 DEFINE_string(out, "", "write the push here (CSV); {id} is replaced by the recording's id");
 DEFINE_bool(into_manifest, false, "write the push's entry into the manifest");
 
-DEFINE_int32(first_frame, -1,
-             "inverse dynamics: first frame of the window; -1: detected");
-DEFINE_int32(end_frame, -1,
-             "inverse dynamics: frame after the window; -1: detected");
+DEFINE_int32(first_frame, -1, "inverse dynamics: first frame of the window; -1: detected");
+DEFINE_int32(end_frame, -1, "inverse dynamics: frame after the window; -1: detected");
 DEFINE_int32(smoothing, 9,
              "inverse dynamics: Savitzky-Golay window in frames, odd, at least 5; 0: none (2 mm of "
              "noise then cause 600 N)");
@@ -247,7 +245,8 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
     throw Error{"--smoothing is longer than recording " + recording.id + ", which has " +
                 std::to_string(recording.num_frames()) + " frames"};
   }
-  const PushWindow window = OrFail(PushWindowFrom({FLAGS_first_frame, FLAGS_end_frame}, recording, options));
+  const PushWindow window =
+      OrFail(PushWindowFrom({FLAGS_first_frame, FLAGS_end_frame}, recording, options));
   const EstimatedPush push = OrFail(EstimatePush(recording, window, options));
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(FLAGS_person, t) > 0.0) continue;

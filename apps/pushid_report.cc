@@ -20,9 +20,10 @@ DEFINE_string(html_out, "", "write the whole report here: one self-contained pag
 DEFINE_bool(text, false, "print the whole report, not only the parameters");
 DEFINE_int32(num_threads, 1, "threads");
 
-DEFINE_string(figures_out, "",
-              "folder for every figure alone (SVG), the numbers behind every figure and table (CSV) "
-              "and captions");
+DEFINE_string(
+    figures_out, "",
+    "folder for every figure alone (SVG), the numbers behind every figure and table (CSV) "
+    "and captions");
 
 namespace {
 

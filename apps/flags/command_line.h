@@ -1,5 +1,5 @@
-// apps: the command line of every program: help, version, common checks, what is given and what goes
-// with what.
+// apps: the command line of every program: help, version, common checks, what is given and what
+// goes with what.
 #pragma once
 
 #include <map>

@@ -47,10 +47,10 @@ TEST_F(BatchTest, OneBadVariantCostsItsOwnJobsOnly) {
 
 TEST_F(BatchTest, ReplicasAreThoseOfTheBootstrap) {
   // With given weights: a replica of a batch estimates its own, the bootstrap keeps the fit's.
-  FitModel("model.json", {"--seed=7", "--settling_weight=0", "--sigmas=fixed",
-                          "--recording_weight=recording"});
-  Succeeded(RunApp("pushid-check",
-                   {"--model=" + Path("model.json"), Recordings(), "--bootstrap=2"}));
+  FitModel("model.json",
+           {"--seed=7", "--settling_weight=0", "--sigmas=fixed", "--recording_weight=recording"});
+  Succeeded(
+      RunApp("pushid-check", {"--model=" + Path("model.json"), Recordings(), "--bootstrap=2"}));
   const nlohmann::ordered_json model = Json(Path("model.json"));
   Batch(Plan("bootstrap = 2\nseed = 7",
              {{"physics",

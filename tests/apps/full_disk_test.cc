@@ -145,7 +145,7 @@ TEST_F(SmallDiskTest, ABootstrapStopsAtTheFirstReplicaItCannotKeep) {
   if (!Mount(64)) GTEST_SKIP() << kNoMounts;
   const std::string file = Path("disk/replicas.jsonl");
   const std::vector<std::string> few = {"--model=" + FitModel(), "--bootstrap=3", Recordings(),
-                                  "--bootstrap_file=" + file, "--quiet"};
+                                        "--bootstrap_file=" + file, "--quiet"};
   Succeeded(RunApp("pushid-check", few));
   const std::string kept = ReadText(file);
   Fill(4096);
