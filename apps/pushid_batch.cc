@@ -183,8 +183,6 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   options.jobs = FLAGS_jobs;
   options.resume = FLAGS_resume;
   options.keep_going = FLAGS_keep_going;
-  options.time_limit_s = Given("time_limit") ? FLAGS_time_limit : plan.time_limit_s;
-  options.memory_limit_mb = Given("memory_limit") ? FLAGS_memory_limit : plan.memory_limit_mb;
   options.bin = OwnFolder();
   ProgressLine line;
   const BatchOutcome o = OrFail(RunBatch(plan, jobs, options, [&line](const BatchProgress& p) {
@@ -211,7 +209,9 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
 
 int Run() {
   CheckFlags();
-  const BatchPlan plan = OrFail(ReadPlan(FLAGS_plan));
+  BatchPlan plan = OrFail(ReadPlan(FLAGS_plan));
+  if (Given("time_limit")) plan.time_limit_s = FLAGS_time_limit;
+  if (Given("memory_limit")) plan.memory_limit_mb = FLAGS_memory_limit;
   const Result<Manifest> manifest = ReadManifests(plan.manifest);
   if (!manifest.ok()) return Fail(plan.ErrorAt("recordings", manifest.error()));
   const std::vector<BatchJob> all = OrFail(ExpandPlan(plan, manifest.value()));

@@ -34,7 +34,6 @@
 
 #include "datasets/files/error.h"
 #include "datasets/manifest/manifest.h"
-#include "ident/figures/text_table.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
@@ -105,10 +104,6 @@ std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n);
 
 // What a job left in its folder: status.json, model.json and, of a fold, scores.json.
 
-// status.json says how a job ended; it is written last and whole.
-//
-//   {"id": "...", "variant": "physics", "group": "X05", "replica": 0, "status": "failed",
-//    "reason": "...", "commands": [["pushid-fit", ...], ...], "run": {"seconds": 1.5}}
 enum class JobState {
   kDone,    // all its files can be read
   kFailed,  // it ended otherwise, or they cannot
@@ -124,12 +119,6 @@ struct JobStatus {
   double seconds = 0.0;
 };
 
-MaybeError WriteJobStatus(const std::string& folder, const BatchJob& job, const JobStatus& status,
-                          const std::vector<std::vector<std::string>>& commands);
-
-// kOpen where the folder has no status.json.
-Result<JobStatus> ReadJobStatus(const std::string& folder);
-
 struct HeldOutScore {
   Metric metric;
   double value = 0.0;  // mean over what was held out
@@ -138,9 +127,7 @@ struct HeldOutScore {
 struct JobResult {
   const BatchJob* job = nullptr;
   JobStatus status;
-  std::map<std::string, double> parameters, errors;  // free ones, with standard errors
-  std::map<std::string, EstimateStatus> statuses;
-  std::map<std::string, double> data_shares;  // of their variance
+  std::map<std::string, Estimate> parameters;  // free ones
   double cost = 0.0, solve_s = 0.0;
   bool settles = false;
   std::vector<std::string> warnings;
@@ -159,9 +146,6 @@ std::string JobFolder(const BatchPlan& plan, const BatchJob& job);
 // Never an error: damage costs the one job, which the next run does again.
 JobResult ReadResult(const BatchPlan& plan, const BatchJob& job);
 
-// All that some job was scored by.
-std::vector<Metric> HeldOutMetrics(const std::vector<JobResult>& rows);
-
 // Running a batch's jobs, several at a time, each in a folder and in processes of its own.
 //
 // A job has ended when jobs/<id>/status.json stands; it is written last and whole. Everything else
@@ -169,12 +153,10 @@ std::vector<Metric> HeldOutMetrics(const std::vector<JobResult>& rows);
 // lock of its folder, so that batches may run in one output folder at the same time.
 
 struct BatchRunOptions {
-  int jobs = 1;             // at a time
-  bool resume = true;       // skip those that are done; failed ones are tried again
-  bool keep_going = true;   // after a failure
-  double time_limit_s = 0;  // of one job; 0: none
-  int memory_limit_mb = 0;
-  std::string bin;  // where the programs are
+  int jobs = 1;            // at a time
+  bool resume = true;      // skip those that are done; failed ones are tried again
+  bool keep_going = true;  // after a failure
+  std::string bin;         // where the programs are
 };
 
 struct BatchProgress {
@@ -207,28 +189,6 @@ Value& ValueOf(const std::string& key, std::vector<std::pair<std::string, Value>
 
 // The table of a batch: one row a job, with what it found or why it failed.
 
-// A column of the table. A new one is a row in JobColumns: summary.csv, summary.json, the page and
-// the terminal take name, place and cell from there.
-struct JobCell {
-  std::string exact{};  // in summary.csv
-  std::string shown{};  // to people: rounded or shortened
-  // Of a number to be summarized over groups (JobColumn::over_groups).
-  std::optional<double> number{};
-  nlohmann::ordered_json json{};  // null: not in summary.json
-};
-
-struct JobColumn {
-  std::string name;   // in summary.csv
-  std::string place;  // in a job of summary.json: "/run/seconds"
-  std::string title;  // on the page; empty: only in the files
-  bool words;         // to the left
-  bool over_groups;   // the variants' table has its mean and spread over groups
-  std::function<JobCell(const JobResult&)> cell;
-};
-
-// In the order of summary.csv.
-std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows);
-
 std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs);
 
 // summary.csv, summary.json and summary.html in the plan's folder.
@@ -237,35 +197,5 @@ MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& row
 // By variant: jobs done and failed, mean and spread over groups of each parameter; the bootstrap of
 // each group where those are few; failures.
 std::string SummaryText(const std::vector<JobResult>& rows);
-
-// What a batch's jobs found, in tables for people; numbers rounded.
-
-inline constexpr size_t kMostRowsOnPage = 2000;
-
-// Counts of each variant, and how its estimates (replica 0) differ between groups.
-TextTable VariantTable(const std::vector<JobResult>& rows);
-
-// Errors of what was held out, a row a group and variant: means over those folds alone that all
-// variants have, so that none is judged by easier ones, and the difference to the first variant
-// with its standard error over folds. Says which folds are missing.
-TextTable HeldOutTable(const std::vector<JobResult>& rows);
-
-// A parameter of one group over the bootstrap replicas of that group.
-struct BootstrapSpread {
-  const BatchJob* job;  // replica 0
-  std::string parameter;
-  double estimate;
-  int replicas;
-  double standard_error, lower95, upper95;
-};
-// Groups of at least two replicas.
-std::vector<BootstrapSpread> SpreadOverReplicas(const std::vector<JobResult>& rows);
-TextTable BootstrapTable(const std::vector<JobResult>& rows);
-
-// Each warning once, with how many jobs it is of.
-TextTable WarningTable(const std::vector<JobResult>& rows);
-
-TextTable FailureTable(const std::vector<JobResult>& rows);
-TextTable JobTable(const std::vector<JobResult>& rows);
 
 }  // namespace pushid

@@ -1,22 +1,137 @@
-// apps: the pool of jobs.
+// apps: running jobs, and reading what they left.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "apps/batch/batch.h"
 #include "apps/support/app_support.h"
 #include "apps/support/processes.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/json_fields.h"
+#include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
+#include "ident/bodies/body_evaluation.h"
+#include "ident/model/model_json.h"
 #include "ident/parameters/json_archive.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::string StatusFile(const std::string& folder) { return folder + "/status.json"; }
+
+// status.json says how a job ended; it is written last and whole.
+//
+//   {"id": "...", "variant": "physics", "group": "X05", "replica": 0, "status": "failed",
+//    "reason": "...", "commands": [["pushid-fit", ...], ...], "run": {"seconds": 1.5}}
+MaybeError WriteJobStatus(const std::string& folder, const BatchJob& job, const JobStatus& status,
+                          const std::vector<std::vector<std::string>>& commands) {
+  const nlohmann::ordered_json json = {
+      {"schema", "pushid-job/1"}, {"id", job.id},           {"variant", job.variant},
+      {"group", job.group},       {"replica", job.replica}, {"status", NameOf(status.state)},
+      {"reason", status.reason},  {"commands", commands},   {"run", {{"seconds", status.seconds}}}};
+  return WriteJson(StatusFile(folder), json);
+}
+
+// kOpen where the folder has no status.json.
+Result<JobStatus> ReadJobStatus(const std::string& folder) {
+  JobStatus status;
+  std::error_code ignored;
+  if (!std::filesystem::exists(StatusFile(folder), ignored)) return status;
+  const Result<JsonDocument> read = ReadJsonDocument(StatusFile(folder));
+  if (!read.ok()) return read.error();
+  const JsonDocument& document = read.value();
+  JsonFields fields(document, document.content, "", "status");
+  fields.Require("status", "done or failed");
+  status.state = fields.Choice("status", JobState::kFailed);
+  status.reason = fields.Text("reason", "why the job failed");
+  if (fields.Require("run", "an object with the seconds")) {
+    JsonFields run(document, fields.At("run"), fields.Pointer("run"), "status, run");
+    status.seconds = run.Number("seconds", "how long the job took");
+    fields.Add(run);
+  }
+  if (fields.failed()) return *fields.error();
+  return status;
+}
+
+void AddModel(const FitResult& fit, JobResult* result) {
+  for (const Estimate& estimate : fit.estimates) {
+    if (estimate.status != EstimateStatus::kFixed) result->parameters[estimate.name] = estimate;
+  }
+  result->cost = fit.cost;
+  for (const Warning& warning : fit.warnings) result->warnings.push_back(warning.text);
+  result->settles = fit.behaviour.settles;
+  result->solve_s = fit.solve_seconds;
+}
+
+// The table shows nothing of a job whose files are not whole.
+JobResult Failed(const BatchJob& job, const std::string& reason, double seconds) {
+  JobResult result;
+  result.job = &job;
+  result.status = {JobState::kFailed, reason, seconds};
+  return result;
+}
+
+Result<std::vector<HeldOutScore>> ReadHeldOut(const std::string& path, bool bodies) {
+  const Result<JsonDocument> document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  const Result<ScoreSummary> hips = ScoresFromJson(document.value().content, path);
+  if (!hips.ok()) return hips.error();
+  std::vector<HeldOutScore> scores;
+  if (!bodies) {
+    for (const HipMetric& metric : kHipMetrics) {
+      scores.push_back({metric, hips.value().mean.*metric.value});
+    }
+    return scores;
+  }
+  const Result<BodyMetrics> restored = MeanBodyMetrics(document.value().content, path);
+  if (!restored.ok()) return restored.error();
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    scores.push_back({kBodyMetrics[m], restored.value()[m]});
+  }
+  return scores;
+}
+
+}  // namespace
+
+const double* JobResult::HeldOut(const Metric& metric) const {
+  const auto at = std::find_if(held_out.begin(), held_out.end(), [&metric](const auto& score) {
+    return score.metric.Key() == metric.Key();
+  });
+  return at == held_out.end() ? nullptr : &at->value;
+}
+
+std::string JobFolder(const BatchPlan& plan, const BatchJob& job) {
+  return plan.dir + "/jobs/" + job.id;
+}
+
+JobResult ReadResult(const BatchPlan& plan, const BatchJob& job) {
+  const std::string folder = JobFolder(plan, job);
+  const Result<JobStatus> status = ReadJobStatus(folder);
+  if (!status.ok()) return Failed(job, status.error().ToString(), 0.0);
+  const double seconds = status.value().seconds;
+  JobResult result;
+  result.job = &job;
+  result.status = status.value();
+  if (!result.done()) return result;
+  const Result<FittedModel> model = ReadFittedModel(folder + "/model.json");
+  if (!model.ok()) return Failed(job, model.error().ToString(), seconds);
+  AddModel(model.value().fit, &result);
+  if (job.held_out.empty()) return result;
+  auto scores = ReadHeldOut(folder + "/scores.json", job.restoration_flags.has_value());
+  if (!scores.ok()) return Failed(job, scores.error().ToString(), seconds);
+  result.held_out = std::move(scores.value());
+  return result;
+}
+
+namespace {
+
 using Clock = std::chrono::steady_clock;
 
 double Since(Clock::time_point begin) {
@@ -127,7 +242,7 @@ class Pool {
   // Its next command.
   MaybeError Start(Running* running) {
     const ChildSpec spec{running->commands[running->step], running->folder + "/stdout.txt",
-                         running->folder + "/stderr.txt", options_.memory_limit_mb};
+                         running->folder + "/stderr.txt", plan_.memory_limit_mb};
     const Result<pid_t> child = StartChild(spec);
     if (!child.ok()) return child.error();
     running->pid = child.value();
@@ -151,9 +266,9 @@ class Pool {
       }
       running_.erase(at);
     }
-    if (options_.time_limit_s <= 0.0) return;
+    if (plan_.time_limit_s <= 0.0) return;
     for (Running& running : running_) {
-      if (running.out_of_time || Since(running.begin) < options_.time_limit_s) continue;
+      if (running.out_of_time || Since(running.begin) < plan_.time_limit_s) continue;
       running.out_of_time = true;
       KillChild(running.pid, SIGKILL);
     }
@@ -161,11 +276,11 @@ class Pool {
 
   std::string ReasonOf(const Running& running, const ChildEnd& end) const {
     if (running.out_of_time) {
-      return "timed out after " + DoubleText(options_.time_limit_s) + " s";
+      return "timed out after " + DoubleText(plan_.time_limit_s) + " s";
     }
     const std::string last = LastLine(running.folder + "/stderr.txt");
-    if (options_.memory_limit_mb > 0 && LooksOutOfMemory(end, last)) {
-      return "out of memory (limit " + std::to_string(options_.memory_limit_mb) + " MB" +
+    if (plan_.memory_limit_mb > 0 && LooksOutOfMemory(end, last)) {
+      return "out of memory (limit " + std::to_string(plan_.memory_limit_mb) + " MB" +
              (end.signal != 0 ? std::string("; ") + strsignal(end.signal) : "") + ")";
     }
     if (end.signal != 0) {
@@ -226,7 +341,7 @@ class Pool {
     }
   }
 
-  int EndOfWait() const { return options_.time_limit_s > 0.0 ? 50 : 500; }
+  int EndOfWait() const { return plan_.time_limit_s > 0.0 ? 50 : 500; }
 
   void Report() {
     const int finished = outcome_.done + outcome_.failed;

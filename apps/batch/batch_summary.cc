@@ -1,4 +1,5 @@
-// apps: collecting a batch's results.
+// apps: what a batch found, in files and in tables for people.
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -11,14 +12,421 @@
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/json_archive.h"
+#include "ident/problem/statistics.h"
 #include "ident/report/page/document.h"
+#include "ident/uncertainty/bootstrap.h"
 
 namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kMostRowsInText = 40;
+constexpr size_t kMostRowsInText = 40, kMostRowsOnPage = 2000;
+
+// A column of the table. A new one is a row in JobColumns: summary.csv, summary.json, the page and
+// the terminal take name, place and cell from there.
+struct JobCell {
+  std::string exact{};  // in summary.csv
+  std::string shown{};  // to people: rounded or shortened
+  // Of a number to be summarized over groups (JobColumn::over_groups).
+  std::optional<double> number{};
+  nlohmann::ordered_json json{};  // null: not in summary.json
+};
+
+struct JobColumn {
+  std::string name;   // in summary.csv
+  std::string place;  // in a job of summary.json: "/run/seconds"
+  std::string title;  // on the page; empty: only in the files
+  bool words;         // to the left
+  bool over_groups;   // the variants' table has its mean and spread over groups
+  std::function<JobCell(const JobResult&)> cell;
+};
+
+// All that some job was scored by.
+std::vector<Metric> HeldOutMetrics(const std::vector<JobResult>& rows) {
+  std::vector<Metric> metrics;
+  for (const JobResult& row : rows) {
+    for (const HeldOutScore& score : row.held_out) {
+      const bool known = std::any_of(metrics.begin(), metrics.end(), [&score](const Metric& m) {
+        return m.Key() == score.metric.Key();
+      });
+      if (!known) metrics.push_back(score.metric);
+    }
+  }
+  return metrics;
+}
+
+JobCell Words(const std::string& text) { return {text, text, {}, text}; }
+
+JobCell Number(double value, int digits) {
+  return {DoubleText(value), Rounded(value, digits), value, NumberJson(value)};
+}
+
+JobCell Nothing() { return {}; }
+
+std::string Joined(const std::vector<std::string>& sentences) {
+  std::string text;
+  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
+  return text;
+}
+
+// A value that is not the data's own says so.
+std::string EstimateText(const Estimate& e) {
+  const std::string text = Rounded(e.value, 4), error = Rounded(e.standard_error, 3);
+  return (std::isfinite(e.standard_error) ? text + " +- " + error : text) +
+         (e.status == EstimateStatus::kIdentified ? "" : " (" + NameOf(e.status) + ")");
+}
+
+// "hipADE" -> "hip_ade", "relative_MPJPE" -> "relative_mpjpe"
+std::string LowerCase(const std::string& name) {
+  std::string text;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto c = static_cast<unsigned char>(name[i]);
+    const bool begins = i > 0 && std::isupper(c) && name[i - 1] != '_' &&
+                        !std::isupper(static_cast<unsigned char>(name[i - 1]));
+    text += (begins ? "_" : "") + std::string(1, static_cast<char>(std::tolower(c)));
+  }
+  return text;
+}
+
+// In the order in which jobs first have them.
+std::vector<std::string> ParameterNames(const std::vector<JobResult>& rows) {
+  std::vector<std::string> names;
+  std::set<std::string> seen;
+  for (const JobResult& row : rows) {
+    for (const auto& [name, value] : row.parameters) {
+      if (seen.insert(name).second) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+// A name may have a slash.
+std::string Place(const char* folder, const std::string& name, const char* rest = "") {
+  return (Json::json_pointer(folder) / name).to_string() + rest;
+}
+
+// What a job says of one parameter; nothing where it has none of that name.
+JobColumn OfParameter(const std::string& name, const char* ending, const char* key, bool words,
+                      JobCell (*cell)(const Estimate&)) {
+  const bool value = *ending == '\0';  // on the page error and status stand beside it
+  return {name + ending,
+          Place("/parameters", name, key),
+          value ? name : "",
+          words,
+          value,
+          [name, cell](const JobResult& row) {
+            const auto found = row.parameters.find(name);
+            return found == row.parameters.end() ? JobCell{} : cell(found->second);
+          }};
+}
+
+JobColumn HeldOutColumn(const Metric& metric) {
+  return {"held_out_" + LowerCase(metric.name) + "_" + metric.unit,
+          Place("/held_out", metric.Key()),
+          std::string("held-out ") + metric.name + ", " + metric.unit,
+          false,
+          false,
+          [metric](const JobResult& row) {
+            const double* const value = row.HeldOut(metric);
+            return value != nullptr ? Number(*value, 3) : Nothing();
+          }};
+}
+
+// In the order of summary.csv.
+std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
+  using Row = const JobResult&;
+  std::vector<JobColumn> columns = {
+      {"id", "/id", "job", true, false,
+       [](Row r) {
+         return JobCell{r.job->id, r.job->id.substr(0, 8), {}, r.job->id};
+       }},
+      {"variant", "/variant", "variant", true, false, [](Row r) { return Words(r.job->variant); }},
+      {"group", "/group", "group", true, false, [](Row r) { return Words(r.job->group); }},
+      {"replica", "/replica", "replica", false, false,
+       [](Row r) {
+         const std::string text = std::to_string(r.job->replica);
+         return JobCell{text, text, {}, r.job->replica};
+       }},
+      {"status", "/status", "status", true, false,
+       [](Row r) { return Words(NameOf(r.status.state)); }},
+      {"reason", "/reason", "", true, false, [](Row r) { return Words(r.status.reason); }},
+  };
+  const auto add = [&columns](JobColumn column) { columns.push_back(std::move(column)); };
+  const std::vector<std::string> names = ParameterNames(rows);
+  const auto of_parameters = [&](const char* ending, const char* key, bool words,
+                                 JobCell (*cell)(const Estimate&)) {
+    for (const std::string& name : names) add(OfParameter(name, ending, key, words, cell));
+  };
+  of_parameters("", "/value", false, [](const Estimate& e) {
+    JobCell cell = Number(e.value, 4);
+    cell.shown = EstimateText(e);
+    return cell;
+  });
+  of_parameters("_se", "/standard_error", false,
+                [](const Estimate& e) { return Number(e.standard_error, 3); });
+  of_parameters("_status", "/status", true,
+                [](const Estimate& e) { return Words(NameOf(e.status)); });
+  of_parameters("_data_share", "/data_share", false,
+                [](const Estimate& e) { return Number(e.shares.data, 3); });
+  add({"cost", "/cost", "", false, false,
+       [](Row r) { return r.done() ? Number(r.cost, 4) : Nothing(); }});
+  add({"settles", "/settles", "settles", false, false, [](Row r) {
+         if (!r.done()) return Nothing();
+         const std::string text = r.settles ? "yes" : "no";
+         return JobCell{text, text, {}, r.settles};
+       }});
+  for (const Metric& metric : HeldOutMetrics(rows)) add(HeldOutColumn(metric));
+  add({"warnings", "/warnings", "warnings", false, false, [](Row r) {
+         if (r.warnings.empty()) return Nothing();
+         return JobCell{Joined(r.warnings), std::to_string(r.warnings.size()), {}, r.warnings};
+       }});
+  add({"solve_s", "/run/solve_s", "solve s", false, false, [](Row r) {
+         JobCell cell = r.done() ? Number(r.solve_s, 2) : Nothing();
+         cell.json = r.solve_s;
+         return cell;
+       }});
+  add({"seconds", "/run/seconds", "seconds", false, false, [](Row r) {
+         JobCell cell = r.status.state == JobState::kOpen ? Nothing() : Number(r.status.seconds, 2);
+         cell.json = r.status.seconds;
+         return cell;
+       }});
+  return columns;
+}
+
+struct VariantSummary {
+  std::map<JobState, int> jobs;
+  std::map<std::string, std::vector<double>> values;
+};
+
+std::vector<std::pair<std::string, VariantSummary>> ByVariant(const std::vector<JobResult>& rows) {
+  std::vector<std::pair<std::string, VariantSummary>> variants;
+  const std::vector<JobColumn> columns = JobColumns(rows);
+  for (const JobResult& row : rows) {
+    VariantSummary& variant = ValueOf(row.job->variant, &variants);
+    ++variant.jobs[row.status.state];
+    if (row.job->replica > 0) continue;
+    for (const JobColumn& column : columns) {
+      if (!column.over_groups) continue;
+      const std::optional<double> number = column.cell(row).number;
+      if (number) variant.values[column.title].push_back(*number);
+    }
+  }
+  return variants;
+}
+
+// The folds of one group: what each variant scored on each.
+struct FoldScores {
+  std::vector<std::string> variants;  // in the plan's order
+  std::vector<std::string> folds;
+  std::map<std::pair<std::string, std::string>, const JobResult*> scores;  // by variant and fold
+
+  bool Has(const std::string& variant, const std::string& fold) const {
+    return scores.count({variant, fold}) > 0;
+  }
+  std::vector<std::string> FoldsOfAll() const {
+    std::vector<std::string> of_all;
+    for (const std::string& fold : folds) {
+      const bool all = std::all_of(variants.begin(), variants.end(),
+                                   [&](const std::string& v) { return Has(v, fold); });
+      if (all) of_all.push_back(fold);
+    }
+    return of_all;
+  }
+};
+
+void AddOnce(const std::string& name, std::vector<std::string>* names) {
+  if (std::find(names->begin(), names->end(), name) == names->end()) names->push_back(name);
+}
+
+std::vector<std::pair<std::string, FoldScores>> ByGroup(const std::vector<JobResult>& rows) {
+  std::vector<std::pair<std::string, FoldScores>> groups;
+  for (const JobResult& row : rows) {
+    if (row.job->held_out.empty() || row.job->replica > 0) continue;
+    FoldScores& group = ValueOf(row.job->folded, &groups);
+    AddOnce(row.job->variant, &group.variants);
+    AddOnce(row.job->group, &group.folds);
+    if (row.done() && !row.held_out.empty()) {
+      group.scores[{row.job->variant, row.job->group}] = &row;
+    }
+  }
+  return groups;
+}
+
+// "0.0123 +- 0.0045" of paired values; the error over folds.
+std::string MeanWithError(const std::vector<double>& values) {
+  if (values.size() < 2) return "-";
+  const MeanAndError mean = MeanOf(values);
+  return Rounded(mean.mean, 3) + " +- " + Rounded(mean.error, 2);
+}
+
+std::vector<std::string> HeldOutRow(const std::string& group, const std::string& variant,
+                                    const FoldScores& of, const std::vector<Metric>& metrics) {
+  const std::vector<std::string> compared = of.FoldsOfAll();
+  std::string missing;
+  for (const std::string& fold : of.folds) {
+    // "X05 fold 2 of 4": the group stands in the row already.
+    if (!of.Has(variant, fold))
+      missing += (missing.empty() ? "" : ", ") + fold.substr(group.size() + 1);
+  }
+  std::vector<std::string> cells = {
+      group, variant, std::to_string(compared.size()) + " of " + std::to_string(of.folds.size())};
+  for (const Metric& metric : metrics) {
+    std::vector<double> values, differences;
+    for (const std::string& fold : compared) {
+      const double* const value = of.scores.at({variant, fold})->HeldOut(metric);
+      const double* const first = of.scores.at({of.variants[0], fold})->HeldOut(metric);
+      if (value != nullptr) values.push_back(*value);
+      if (value != nullptr && first != nullptr) differences.push_back(*value - *first);
+    }
+    cells.push_back(values.empty() ? "-" : Rounded(MeanOf(values).mean, 3));
+    cells.push_back(variant == of.variants[0] ? "-" : MeanWithError(differences));
+  }
+  cells.push_back(missing.empty() ? "-" : missing);
+  return cells;
+}
+
+// Errors of what was held out, a row a group and variant: means over those folds alone that all
+// variants have, so that none is judged by easier ones, and the difference to the first variant
+// with its standard error over folds. Says which folds are missing.
+TextTable HeldOutTable(const std::vector<JobResult>& rows) {
+  std::vector<std::string> header = {"group", "variant", "folds compared"};
+  const std::vector<Metric> metrics = HeldOutMetrics(rows);
+  for (const Metric& metric : metrics) {
+    header.push_back(std::string("held-out ") + metric.name + ", " + metric.unit);
+    header.push_back("minus the first variant");
+  }
+  header.push_back("folds missing");
+  std::vector<bool> words(header.size(), false);
+  words[0] = words[1] = words.back() = true;
+  TextTable table(header, words);
+  for (const auto& [group, scores] : ByGroup(rows)) {
+    for (const std::string& variant : scores.variants) {
+      table.Add(HeldOutRow(group, variant, scores, metrics));
+    }
+  }
+  return table;
+}
+
+// Counts of each variant, and how its estimates (replica 0) differ between groups.
+TextTable VariantTable(const std::vector<JobResult>& rows) {
+  TextTable table({"variant", "jobs done", "failed", "open", "over groups", "mean", "std deviation",
+                   "lowest", "highest"},
+                  {true, false, false, false, true, false, false, false, false});
+  for (const auto& [name, v] : ByVariant(rows)) {
+    std::vector<std::string> counts = {name};
+    for (JobState state : {JobState::kDone, JobState::kFailed, JobState::kOpen}) {
+      const auto found = v.jobs.find(state);
+      counts.push_back(std::to_string(found == v.jobs.end() ? 0 : found->second));
+    }
+    table.Add(counts);
+    for (const auto& [what, values] : v.values) {
+      double sum = 0.0, squares = 0.0;
+      for (double value : values) sum += value;
+      const double n = static_cast<double>(values.size()), mean = sum / n;
+      for (double value : values) squares += (value - mean) * (value - mean);
+      const auto [low, high] = std::minmax_element(values.begin(), values.end());
+      table.Add({"", "", "", "", what, Rounded(mean, 4),
+                 values.size() > 1 ? Rounded(std::sqrt(squares / (n - 1.0)), 3) : "-",
+                 Rounded(*low, 4), Rounded(*high, 4)});
+    }
+  }
+  return table;
+}
+
+// A parameter of one group over the bootstrap replicas of that group.
+struct BootstrapSpread {
+  const BatchJob* job;  // replica 0
+  std::string parameter;
+  double estimate;
+  int replicas;
+  double standard_error, lower95, upper95;
+};
+
+// Groups of at least two replicas.
+std::vector<BootstrapSpread> SpreadOverReplicas(const std::vector<JobResult>& rows) {
+  std::vector<BootstrapSpread> spreads;
+  std::map<std::pair<std::string, std::string>, std::map<std::string, std::vector<double>>> drawn;
+  for (const JobResult& row : rows) {
+    if (row.job->replica == 0) continue;
+    auto& values = drawn[{row.job->variant, row.job->group}];
+    for (const auto& [name, e] : row.parameters) values[name].push_back(e.value);
+  }
+  for (const JobResult& row : rows) {
+    if (row.job->replica > 0 || !row.done()) continue;
+    for (const auto& [name, estimate] : row.parameters) {
+      const std::vector<double>& values = drawn[{row.job->variant, row.job->group}][name];
+      const int n = static_cast<int>(values.size());
+      if (n < 2) continue;
+      double sum = 0.0, squares = 0.0;
+      for (double value : values) sum += value;
+      for (double value : values) squares += (value - sum / n) * (value - sum / n);
+      spreads.push_back({row.job, name, estimate.value, n, std::sqrt(squares / (n - 1)),
+                         Quantile(values, 0.025), Quantile(values, 0.975)});
+    }
+  }
+  return spreads;
+}
+
+TextTable BootstrapTable(const std::vector<JobResult>& rows) {
+  TextTable table({"variant", "group", "parameter", "estimate", "replicas", "bootstrap error",
+                   "2.5 %", "97.5 %"},
+                  {true, true, true, false, false, false, false, false});
+  for (const BootstrapSpread& s : SpreadOverReplicas(rows)) {
+    if (table.rows().size() > kMostRowsOnPage) break;
+    table.Add({s.job->variant, s.job->group, s.parameter, Rounded(s.estimate, 4),
+               std::to_string(s.replicas), Rounded(s.standard_error, 3), Rounded(s.lower95, 4),
+               Rounded(s.upper95, 4)});
+  }
+  return table;
+}
+
+// Each warning once, with how many jobs it is of.
+TextTable WarningTable(const std::vector<JobResult>& rows) {
+  std::vector<std::pair<std::string, std::vector<const JobResult*>>> warnings;
+  for (const JobResult& row : rows) {
+    for (const std::string& warning : row.warnings) {
+      ValueOf(warning, &warnings).push_back(&row);
+    }
+  }
+  TextTable table({"jobs", "the first", "warning"}, {false, true, true});
+  for (const auto& [warning, jobs] : warnings) {
+    if (table.rows().size() > kMostRowsOnPage) break;
+    table.Add({std::to_string(jobs.size()), jobs[0]->job->id.substr(0, 8), warning});
+  }
+  return table;
+}
+
+TextTable FailureTable(const std::vector<JobResult>& rows) {
+  TextTable table({"failed", "variant", "group", "replica", "reason"},
+                  {true, true, true, false, true});
+  for (const JobResult& row : rows) {
+    if (row.status.state != JobState::kFailed || table.rows().size() > kMostRowsOnPage) continue;
+    table.Add({row.job->id.substr(0, 8), row.job->variant, row.job->group,
+               std::to_string(row.job->replica), row.status.reason});
+  }
+  return table;
+}
+
+TextTable JobTable(const std::vector<JobResult>& rows) {
+  std::vector<JobColumn> columns;
+  std::vector<std::string> header;
+  std::vector<bool> words;
+  for (const JobColumn& column : JobColumns(rows)) {
+    if (column.title.empty()) continue;
+    columns.push_back(column);
+    header.push_back(column.title);
+    words.push_back(column.words);
+  }
+  TextTable table(header, words);
+  for (const JobResult& row : rows) {
+    if (table.rows().size() > kMostRowsOnPage) break;
+    std::vector<std::string> cells;
+    for (const JobColumn& column : columns) cells.push_back(column.cell(row).shown);
+    table.Add(cells);
+  }
+  return table;
+}
 
 // Full precision, for summary.csv.
 TextTable FullTable(const std::vector<JobResult>& rows) {
@@ -125,158 +533,6 @@ std::string SummaryText(const std::vector<JobResult>& rows) {
     text += "\n" + bootstrap.ToString();
   }
   return text + (failed.rows().size() > 1 ? "\n" + failed.ToString() : "");
-}
-
-namespace {
-
-JobCell Words(const std::string& text) { return {text, text, {}, text}; }
-
-JobCell Number(double value, int digits) {
-  return {DoubleText(value), Rounded(value, digits), value, NumberJson(value)};
-}
-
-JobCell Nothing() { return {}; }
-
-std::string Joined(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
-  return text;
-}
-
-// A value that is not the data's own says so.
-std::string EstimateText(double value, double error, EstimateStatus status) {
-  const std::string text = Rounded(value, 4);
-  return (std::isfinite(error) ? text + " +- " + Rounded(error, 3) : text) +
-         (status == EstimateStatus::kIdentified ? "" : " (" + NameOf(status) + ")");
-}
-
-// "hipADE" -> "hip_ade", "relative_MPJPE" -> "relative_mpjpe"
-std::string LowerCase(const std::string& name) {
-  std::string text;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const auto c = static_cast<unsigned char>(name[i]);
-    const bool begins = i > 0 && std::isupper(c) && name[i - 1] != '_' &&
-                        !std::isupper(static_cast<unsigned char>(name[i - 1]));
-    text += (begins ? "_" : "") + std::string(1, static_cast<char>(std::tolower(c)));
-  }
-  return text;
-}
-
-// In the order in which jobs first have them.
-std::vector<std::string> ParameterNames(const std::vector<JobResult>& rows) {
-  std::vector<std::string> names;
-  std::set<std::string> seen;
-  for (const JobResult& row : rows) {
-    for (const auto& [name, value] : row.parameters) {
-      if (seen.insert(name).second) names.push_back(name);
-    }
-  }
-  return names;
-}
-
-// A name may have a slash.
-std::string Place(const char* folder, const std::string& name, const char* rest = "") {
-  return (Json::json_pointer(folder) / name).to_string() + rest;
-}
-
-JobColumn ParameterColumn(const std::string& name) {
-  return {
-      name, Place("/parameters", name, "/value"), name, false, true, [name](const JobResult& row) {
-        const auto found = row.parameters.find(name);
-        if (found == row.parameters.end()) return Nothing();
-        JobCell cell = Number(found->second, 4);
-        cell.shown = EstimateText(found->second, row.errors.at(name), row.statuses.at(name));
-        return cell;
-      }};
-}
-
-// On the page error and status stand beside the value. of: the member of a result that has them.
-template <typename Value>
-JobColumn BesideParameter(const std::string& name, const char* ending, const char* key,
-                          std::map<std::string, Value> JobResult::*of) {
-  constexpr bool kWords = !std::is_same_v<Value, double>;
-  return {name + ending,
-          Place("/parameters", name, key),
-          "",
-          kWords,
-          false,
-          [name, of](const JobResult& row) {
-            const auto found = (row.*of).find(name);
-            if (found == (row.*of).end()) return Nothing();
-            if constexpr (kWords)
-              return Words(NameOf(found->second));
-            else
-              return Number(found->second, 3);
-          }};
-}
-
-JobColumn HeldOutColumn(const Metric& metric) {
-  return {"held_out_" + LowerCase(metric.name) + "_" + metric.unit,
-          Place("/held_out", metric.Key()),
-          std::string("held-out ") + metric.name + ", " + metric.unit,
-          false,
-          false,
-          [metric](const JobResult& row) {
-            const double* const value = row.HeldOut(metric);
-            return value != nullptr ? Number(*value, 3) : Nothing();
-          }};
-}
-
-}  // namespace
-
-std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
-  using Row = const JobResult&;
-  std::vector<JobColumn> columns = {
-      {"id", "/id", "job", true, false,
-       [](Row r) {
-         return JobCell{r.job->id, r.job->id.substr(0, 8), {}, r.job->id};
-       }},
-      {"variant", "/variant", "variant", true, false, [](Row r) { return Words(r.job->variant); }},
-      {"group", "/group", "group", true, false, [](Row r) { return Words(r.job->group); }},
-      {"replica", "/replica", "replica", false, false,
-       [](Row r) {
-         const std::string text = std::to_string(r.job->replica);
-         return JobCell{text, text, {}, r.job->replica};
-       }},
-      {"status", "/status", "status", true, false,
-       [](Row r) { return Words(NameOf(r.status.state)); }},
-      {"reason", "/reason", "", true, false, [](Row r) { return Words(r.status.reason); }},
-  };
-  const auto add = [&columns](JobColumn column) { columns.push_back(std::move(column)); };
-  const std::vector<std::string> names = ParameterNames(rows);
-  for (const std::string& name : names) add(ParameterColumn(name));
-  for (const std::string& name : names) {
-    add(BesideParameter(name, "_se", "/standard_error", &JobResult::errors));
-  }
-  for (const std::string& name : names) {
-    add(BesideParameter(name, "_status", "/status", &JobResult::statuses));
-  }
-  for (const std::string& name : names) {
-    add(BesideParameter(name, "_data_share", "/data_share", &JobResult::data_shares));
-  }
-  add({"cost", "/cost", "", false, false,
-       [](Row r) { return r.done() ? Number(r.cost, 4) : Nothing(); }});
-  add({"settles", "/settles", "settles", false, false, [](Row r) {
-         if (!r.done()) return Nothing();
-         const std::string text = r.settles ? "yes" : "no";
-         return JobCell{text, text, {}, r.settles};
-       }});
-  for (const Metric& metric : HeldOutMetrics(rows)) add(HeldOutColumn(metric));
-  add({"warnings", "/warnings", "warnings", false, false, [](Row r) {
-         if (r.warnings.empty()) return Nothing();
-         return JobCell{Joined(r.warnings), std::to_string(r.warnings.size()), {}, r.warnings};
-       }});
-  add({"solve_s", "/run/solve_s", "solve s", false, false, [](Row r) {
-         JobCell cell = r.done() ? Number(r.solve_s, 2) : Nothing();
-         cell.json = r.solve_s;
-         return cell;
-       }});
-  add({"seconds", "/run/seconds", "seconds", false, false, [](Row r) {
-         JobCell cell = r.status.state == JobState::kOpen ? Nothing() : Number(r.status.seconds, 2);
-         cell.json = r.status.seconds;
-         return cell;
-       }});
-  return columns;
 }
 
 }  // namespace pushid

@@ -118,15 +118,6 @@ Error RunInstead(const std::string& name, const std::vector<std::string>& argume
   return Error{std::string("cannot be started: ") + std::strerror(errno), file};
 }
 
-Result<std::string> OutputOf(const std::vector<std::string>& command) {
-  std::FILE* const pipe = popen(ShellText(command).c_str(), "r");
-  if (pipe == nullptr) return Error{"cannot be started", command[0]};
-  std::string text;
-  for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
-  if (pclose(pipe) != 0) return Error{"fails", command[0]};
-  return text;
-}
-
 std::string ShellText(const std::vector<std::string>& command) {
   std::string text;
   for (const std::string& word : command) {

@@ -33,9 +33,6 @@ std::string FindProgram(const std::string& name);
 // Runs it instead of the running one, with these arguments. Returns only where that fails.
 Error RunInstead(const std::string& name, const std::vector<std::string>& arguments);
 
-// What a command prints on stdout; errors: it cannot be started, or fails.
-Result<std::string> OutputOf(const std::vector<std::string>& command);
-
 // A command as a shell takes it, every word quoted.
 std::string ShellText(const std::vector<std::string>& command);
 
