@@ -1,17 +1,143 @@
-// ident: the entries of the parts of a model's file, each list for writing and reading alike
+// ident: the entries of a model's file and of its parts, each list for writing and reading alike
 // (parameters/json_archive.h). Units stand in the keys.
 #pragma once
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include "ident/model/estimate_fields.h"
 #include "ident/model/fitted_model.h"
+#include "ident/model/model_json.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/json_archive.h"
+#include "ident/parameters/learned_terms_io.h"
 
 namespace pushid {
+
+template <class Archive>
+void Fields(Archive& a, Interval& i) {
+  a("standard_error", i.standard_error);
+  a.Pair("interval_95", i.lower, i.upper);
+}
+
+// Models of older versions have Student's quantile everywhere.
+template <class Archive>
+void QuantileField(Archive& a, double* quantile) {
+  if (a.Has("quantile")) {
+    a("quantile", *quantile);
+  } else if (a.Has("freedom")) {
+    double freedom = 1.0;
+    a("freedom", freedom);
+    *quantile = StudentQuantile95(freedom);
+  }
+}
+
+template <class Archive>
+void Fields(Archive& a, Estimate& e) {
+  // Models written before shares were computed say nothing of them, nor of degrees of freedom.
+  const bool shares = a.Has("shares");
+  PUSHID_FIELDS(a, e, name, value, standard_error, standard_error_naive);
+  a.Pair("interval_95", e.lower95, e.upper95);
+  if (shares) {
+    a("freedom", e.freedom);
+    QuantileField(a, &e.quantile);
+    a.Group("shares", [&](auto& g) {
+      g("data", e.shares.data);
+      g("prior", e.shares.prior);
+      g("settling", e.shares.settling);
+    });
+    a.Group("pull", [&](auto& g) {
+      g("prior", e.shares.prior_pull);
+      g("settling", e.shares.settling_pull);
+    });
+  }
+  if (a.Has("total", e.total.has_value())) {
+    TotalError& total = e.total ? *e.total : e.total.emplace();
+    a.Group("total", [&](auto& g) {
+      g("standard_error", total.error);
+      g.Pair("interval_95", total.lower95, total.upper95);
+    });
+  }
+  a.Optional("these_people", e.these);
+  PUSHID_FIELDS(a, e, unit, status);
+}
+
+template <class Archive>
+void Fields(Archive& a, Combination& c) {
+  PUSHID_FIELDS(a, c, name, value, standard_error);
+  a.Pair("interval_95", c.lower95, c.upper95);
+  QuantileField(a, &c.quantile);
+  a.Optional("these_people", c.these);
+  a("unit", c.unit);
+}
+
+template <class Archive>
+void Fields(Archive& a, ContrastRow& r) {
+  PUSHID_FIELDS(a, r, name, first, second, difference);
+  a.Pair("interval_95", r.lower95, r.upper95);
+  PUSHID_FIELDS(a, r, p, p_holm);
+  a.Optional("effect", r.effect);
+  PUSHID_FIELDS(a, r, unit, status);
+}
+
+template <class Archive>
+void Fields(Archive& a, Contrast& c) {
+  PUSHID_FIELDS(a, c, label, first, second);
+  a("people_first", c.only_first);
+  a("people_second", c.only_second);
+  a("people_both", c.both);
+  a("rows", c.rows);
+}
+
+template <class Archive>
+void Fields(Archive& a, NullDirection& n) {
+  PUSHID_FIELDS(a, n, parameters, coefficients, identified, sentence);
+}
+
+template <class Archive>
+void Fields(Archive& a, SettlingDemand& s) {
+  PUSHID_FIELDS(a, s, binds, contradicted);
+  if (a.Has("unmet")) a("unmet", s.unmet);
+  PUSHID_FIELDS(a, s, rise, free_seconds);
+}
+
+// All but the estimates, which stand at the top of the file.
+template <class Archive>
+void Fields(Archive& a, Uncertainty& u) {
+  a.Via(
+      "clustered_by", [&] { return u.clustered ? NameOf(u.clustered_by) : std::string("none"); },
+      [&](const std::string& name) {
+        u.clustered = name != "none";
+        if (u.clustered) a("clustered_by", u.clustered_by);
+      });
+  if (a.Has("two_way")) a("two_way", u.two_way);
+  a("clusters", u.num_clusters);
+  if (a.Has("people")) {
+    a("people", u.num_people);
+    a("about_people_like_them", u.about_people_like_them);
+  }
+  a("residuals", u.num_residuals);
+  if (a.Has("full_hessian")) a("full_hessian", u.full_hessian);
+  PUSHID_FIELDS(a, u, sigma, freedom, too_few_clusters, condition_number);
+  a.Written("fitted", [&] {
+    std::vector<std::string> names;
+    for (const Estimate& e : u.estimates) names.push_back(e.name);
+    return names;
+  });
+  a("covariance_fitted_scale", u.covariance);
+  PUSHID_FIELDS(a, u, correlation, null_directions);
+  if (a.Has("held_directions")) a("held_directions", u.held_directions);
+  if (a.Has("settling")) a("settling", u.settling);
+}
+
+template <class Archive>
+void Fields(Archive& a, SubjectParameters& s) {
+  PUSHID_FIELDS(a, s, mass_kg, pooled);
+}
+
+// The solve.
 
 // The sentences, and beside them, under KEY_of_recordings, those that are of one recording.
 template <class Archive>
@@ -226,6 +352,218 @@ void Fields(Archive& a, ContactTakeover& t) {
   a("stiffness_N_m", t.stiffness);
   a("damping_N_s_m", t.damping);
   a("rms_force_m_s2", t.rms_force);
+}
+
+template <class Archive>
+void Fields(Archive& a, Finding& f) {
+  PUSHID_FIELDS(a, f, kind, recording, about, value);
+}
+
+template <class Archive>
+void Fields(Archive& a, StartDiagnostics& s) {
+  PUSHID_FIELDS(a, s, condition_number, null_directions, without_effect, notes);
+  if (a.Has("findings")) a("findings", s.findings);  // older files have none
+}
+
+template <class Archive>
+void Fields(Archive& a, Outlier& o) {
+  PUSHID_FIELDS(a, o, frame, person, error, weight);
+}
+
+template <class Archive>
+void Fields(Archive& a, RecordingDiagnostics& r) {
+  a("id", r.id);
+  a("explained_percent", r.explained);
+  PUSHID_FIELDS(a, r, cost, lag1, ljung_box, ljung_box_p, outliers);
+}
+
+template <class Archive>
+void Fields(Archive& a, Whiteness& w) {
+  PUSHID_FIELDS(a, w, channel, autocorrelation, error, push, push_error, band, mean_band, ljung_box,
+                ljung_box_p);
+}
+
+template <class Archive>
+void Fields(Archive& a, Leverage& l) {
+  PUSHID_FIELDS(a, l, recordings, parameters, units, change, in_errors);
+  const auto whole = [&l](const std::vector<std::vector<double>>& rows) {
+    return rows.size() == l.recordings.size() &&
+           std::all_of(rows.begin(), rows.end(), [&l](const std::vector<double>& row) {
+             return row.size() == l.parameters.size();
+           });
+  };
+  a.Check(whole(l.change) && whole(l.in_errors) && l.units.size() == l.parameters.size(),
+          "rows of the leverage have wrong lengths");
+}
+
+template <class Archive>
+void Fields(Archive& a, TracePoint& t) {
+  PUSHID_FIELDS(a, t, horizon, iteration, cost, gradient);
+}
+
+template <class Archive>
+void Fields(Archive& a, AssumptionTest& t) {
+  PUSHID_FIELDS(a, t, name, unit, stated, wanted, error, t, p, moves);
+}
+
+template <class Archive>
+void Fields(Archive& a, PartTest& t) {
+  PUSHID_FIELDS(a, t, parameter, part, t, p);
+}
+
+template <class Archive>
+void Fields(Archive& a, MotionTest& t) {
+  PUSHID_FIELDS(a, t, quantity, unit, difference, error, t, p);
+}
+
+template <class Archive>
+void Fields(Archive& a, ModelVerdict& v) {
+  a.Written("fails", [&] { return v.fails(); });
+  PUSHID_FIELDS(a, v, not_checked, freedom, p_assumptions, p_parts, p_motion, assumptions, parts);
+  a("motion", v.motion.tests);
+  a("explained", v.motion.explained);
+  a("of_pushes", v.of_pushes);
+  if (a.Has("none_identified", !v.none_identified.empty())) {
+    a("none_identified", v.none_identified);
+  }
+}
+
+template <class Archive>
+void Fields(Archive& a, Diagnostics& d) {
+  PUSHID_FIELDS(a, d, start, recordings, whiteness, leverage, trace);
+}
+
+template <class Archive>
+void Fields(Archive& a, Advice& advice) {
+  PUSHID_FIELDS(a, advice, sentence, command);
+}
+
+template <class Archive>
+void Fields(Archive& a, ProfilePoint& p) {
+  PUSHID_FIELDS(a, p, value, cost, others);
+}
+
+template <class Archive>
+void Fields(Archive& a, Profile& p) {
+  PUSHID_FIELDS(a, p, name, unit, estimate);
+  a("class", p.classification);
+  a.OrNull("class_by_data_alone", p.by_data_alone);
+  a.Pair("interval_95", p.lower95, p.upper95);
+  PUSHID_FIELDS(a, p, cost, threshold);
+  a.Pair("ends", p.lower_end, p.upper_end);
+  a("points", p.points);
+}
+
+template <class Archive>
+void Fields(Archive& a, Bootstrap& b) {
+  PUSHID_FIELDS(a, b, replicas, seed);
+  if (a.Has("drawn_by")) {  // added later; recordings were drawn before
+    PUSHID_FIELDS(a, b, drawn_by, drawn_from, people_shared);
+  }
+  a("failed", b.failed);
+  a.Rows("parameters", std::tie(b.names, b.units, b.standard_error, b.lower95, b.upper95),
+         [&b](auto& row, size_t i) {
+           row("name", b.names[i]);
+           row("unit", b.units[i]);
+           row("standard_error", b.standard_error[i]);
+           row.Pair("interval_95", b.lower95[i], b.upper95[i]);
+         });
+  a("values", b.values);
+  for (const std::vector<double>& row : b.values) {
+    a.Check(row.size() == b.names.size(), "rows of different lengths");
+  }
+}
+
+template <class Archive>
+void Fields(Archive& a, HorizonFit& f) {
+  a("frames", f.frames);
+  a("values", f.value);
+  a("standard_errors", f.standard_error);
+  a("failure", f.failure);
+}
+
+template <class Archive>
+void Fields(Archive& a, HorizonCheck& c) {
+  a.Rows("parameters", std::tie(c.parameters, c.units, c.value, c.standard_error),
+         [&c](auto& row, size_t i) {
+           row("name", c.parameters[i]);
+           row("unit", c.units[i]);
+           row("value", c.value[i]);
+           row("standard_error", c.standard_error[i]);
+         });
+  a("refits", c.refits);
+  for (const HorizonFit& fit : c.refits) {
+    a.Check(fit.value.size() == fit.standard_error.size() &&
+                (fit.value.empty() || fit.value.size() == c.parameters.size()),
+            "refits of different lengths");
+  }
+}
+
+inline nlohmann::ordered_json ValuesJson(const ParameterTable& table,
+                                         const ParameterSet<double>& set) {
+  nlohmann::ordered_json values = nlohmann::ordered_json::object();
+  for (const ParameterSpec& spec : table.specs) values[spec.name] = set[spec.id];
+  return values;
+}
+
+// The file from top to bottom. Entries that are only written are read by ModelReader first: the
+// others are of a model whose options and parameters are known.
+template <class Archive>
+void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
+  FitResult& fit = model.fit;
+  Provenance& from = model.provenance;
+  const ModelOptions& options = fit.options.model;
+  a("version", from.version);
+  a.Written("model", [&] { return OptionsJson(fit.options); });
+  a("parameters", fit.estimates);
+  PUSHID_FIELDS(a, fit, derived, nuisance, subjects, settings);
+  a.Written("values", [&] { return ValuesJson(fit.options.table, fit.parameters); });
+  PUSHID_FIELDS(a, fit, behaviour, uncertainty);
+  if (a.Has("verdict")) a("verdict", fit.verdict);
+  if (a.Has("diagnostics")) {
+    a.Group("diagnostics", [&](auto& g) {
+      Fields(g, fit.diagnostics);
+      g("advice", model.advice);
+    });
+  }
+  WarningFields(a, "warnings", fit.warnings);
+  a.Group("fit",
+          [&](auto& g) { PUSHID_FIELDS(g, fit, converged, cost, message, best_start, starts); });
+  a.Written("table", [&] { return TableJson(fit.options.table); });
+  a.Group("data", [&](auto& g) {
+    PUSHID_FIELDS(g, from, manifest_hash, setting);
+    g("recordings", fit.recordings);
+  });
+  a("configuration", from.configuration);
+  if (a.Has("changed_flags")) a("changed_flags", from.changed_flags);
+  a.Group("run", [&](auto& g) {
+    g.Written("date", [&] { return run.date; });
+    g.Written("host", [&] { return run.host; });
+    g("manifest", from.manifest);
+    g.Written("model_out", [&] { return run.model_path; });
+    g("solve_seconds", fit.solve_seconds);
+    if (g.Has("work")) g("work", fit.work);
+    g.Written("total_seconds", [&] { return run.total_seconds; });
+    g.Written("num_threads", [&] { return run.num_threads; });
+  });
+  a.Optional("contrast", fit.contrast);
+  a.Optional("feet", fit.feet);
+  a.Optional("push_range", fit.push_range);
+  a.Optional("step_probability", fit.step_probability);
+  a.Optional("likelihood", fit.likelihood);
+  a.Optional("recording_effect", fit.recording_effect);
+  a.Optional("forecasts", fit.forecasts);
+  if (a.Has("self_network", options.learned != nullptr)) {
+    a.Written("self_network", [&] { return ToJson(*options.learned); });
+  }
+  a.Optional("network_takeover", fit.takeover);
+  a.Optional("contact_takeover", fit.contact_takeover);
+  if (const auto laws = LawNames(options); a.Has("force_laws", !laws.empty())) {
+    a.Written("force_laws", [&] { return laws; });
+  }
+  if (a.Has("profiles", !model.profiles.empty())) a("profiles", model.profiles);
+  a.Optional("bootstrap", model.bootstrap);
+  a.Optional("horizon_check", model.horizon_check);
 }
 
 }  // namespace pushid

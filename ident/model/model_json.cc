@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
-#include "ident/model/model_file_fields.h"
+#include "ident/model/model_fields.h"
 
 namespace pushid {
 namespace {
