@@ -245,12 +245,6 @@ Result<JsonDocument> ReadJsonDocument(const std::string& path) {
   return document;
 }
 
-Result<nlohmann::json> ReadJson(const std::string& path) {
-  Result<JsonDocument> document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  return nlohmann::json(document.value().content);
-}
-
 MaybeError WriteJson(const std::string& path, const nlohmann::json& content, int indent) {
   return Write(path, content, indent);
 }

@@ -35,9 +35,6 @@ std::string MissingText(const std::vector<MissingKey>& missing);
 // Errors: unreadable file, JSON syntax (line, column), nesting deeper than 200.
 Result<JsonDocument> ReadJsonDocument(const std::string& path);
 
-// The same for readers that need no places.
-Result<nlohmann::json> ReadJson(const std::string& path);
-
 // Writes atomically, indented by `indent` spaces, with a newline at the end. Doubles are written so
 // that they read back the same. NaN and infinity have no JSON and come out as null: say them in
 // words instead. Bytes that are not UTF-8 are replaced.

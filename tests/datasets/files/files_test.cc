@@ -183,7 +183,8 @@ TEST_F(InputFileTest, OtherEncodingsAreNamed) {
       EXPECT_FALSE(reader.NextNonBlank(&line));
       ASSERT_TRUE(reader.error()) << c.name << mark;
       EXPECT_TRUE(Contains(reader.error()->ToString(), said)) << reader.error()->ToString();
-      EXPECT_TRUE(Contains(ProblemOf(ReadJson(path("{\"a\": 1}"))), said)) << c.name << mark;
+      EXPECT_TRUE(Contains(ProblemOf(ReadJsonDocument(path("{\"a\": 1}"))), said))
+          << c.name << mark;
     }
   }
 }
@@ -206,7 +207,7 @@ TEST_F(JsonFileTest, DoublesReadBackTheSame) {
   ASSERT_FALSE(WriteJson(Path("a.json"), content));
   const std::string text = ReadText(Path("a.json"));
   EXPECT_EQ(text.back(), '\n');
-  const nlohmann::json read = Unwrapped(ReadJson(Path("a.json")));
+  const nlohmann::json read = Unwrapped(ReadJsonDocument(Path("a.json"))).content;
   EXPECT_EQ(read["values"], content["values"]);
 }
 
@@ -226,9 +227,9 @@ TEST_F(JsonFileTest, SyntaxErrorsHaveLineAndColumn) {
   };
   for (const auto& c : cases) {
     const std::string path = WriteText("a.json", c.text);
-    EXPECT_TRUE(Contains(ProblemOf(ReadJson(path)), path + c.place)) << c.text;
+    EXPECT_TRUE(Contains(ProblemOf(ReadJsonDocument(path)), path + c.place)) << c.text;
   }
-  EXPECT_TRUE(Contains(ProblemOf(ReadJson(WriteText("a.json", std::string(1 << 20, '[')))),
+  EXPECT_TRUE(Contains(ProblemOf(ReadJsonDocument(WriteText("a.json", std::string(1 << 20, '[')))),
                        "a.json:1:201: the JSON nests deeper than 200"));
 }
 
@@ -255,7 +256,8 @@ TEST_F(JsonFileTest, ValuesAreFoundBehindAByteOrderMark) {
   EXPECT_EQ(document.ElementLines("/x"), (std::vector<int>{1, 2}));
   EXPECT_EQ(document.ErrorAt("/y", "m").ToString(), path + ":2:12: m");
   EXPECT_EQ(document.ErrorAt("/x/0", "m").ToString(), path + ":1:8: m");
-  EXPECT_TRUE(Contains(ProblemOf(ReadJson(WriteText("b.json", kByteOrderMark))), "is empty"));
+  EXPECT_TRUE(
+      Contains(ProblemOf(ReadJsonDocument(WriteText("b.json", kByteOrderMark))), "is empty"));
 }
 
 TEST(Axes, TurnToForwardLeftUp) {
