@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "apps/flags/command_line.h"
-#include "apps/support/overwrite_check.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/inspection/inspection.h"

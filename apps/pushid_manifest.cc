@@ -9,7 +9,6 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
-#include "apps/support/overwrite_check.h"
 #include "datasets/files/names.h"
 #include "datasets/inspection/manifest_maker.h"
 

@@ -22,7 +22,7 @@
 #include <map>
 #include <set>
 
-#include "apps/support/overwrite_check.h"
+#include "apps/support/app_support.h"
 #include "datasets/files/input_file.h"
 #include "datasets/manifest/manifest.h"
 #include "models/enum_names.h"

@@ -21,7 +21,6 @@
 #include <sstream>
 
 #include "apps/support/app_support.h"
-#include "apps/support/overwrite_check.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/option_table.h"

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "apps/support/app_support.h"
-#include "apps/support/overwrite_check.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {

@@ -7,7 +7,6 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/support/app_support.h"
-#include "apps/support/overwrite_check.h"
 #include "datasets/files/names.h"
 #include "datasets/inspection/findings.h"
 #include "datasets/manifest/manifest.h"

@@ -1,7 +1,8 @@
-// apps: exit codes, errors and warnings, progress.
+// apps: exit codes, errors and warnings, progress, outputs against inputs.
 #include "apps/support/app_support.h"
 
 #include <dlfcn.h>
+#include <gflags/gflags.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -11,9 +12,15 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <vector>
 
+#include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
 #include "datasets/loading/load_recordings.h"
+#include "datasets/manifest/manifest.h"
 #include "ident/model/model_json.h"
 
 namespace pushid {
@@ -153,6 +160,128 @@ void TrainingLine::Show(const std::string& step, double done) {
     text += ", " + std::to_string(static_cast<int>(std::lround(left))) + " s left";
   }
   line_.Show(text);
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kInputs[] = {"recordings",  "model",  "physics",  "truth",    "self_from",
+                                   "people_from", "sensor", "masses",   "sensors",  "mapping",
+                                   "generator",   "plan",   "flagfile", "formation"};
+
+// Through symbolic and hard links too. One file that exists is never another that does not.
+bool Same(const std::string& a, const std::string& b) {
+  std::error_code failed, unknown;
+  const bool same = fs::equivalent(a, b, failed);
+  if (!failed || fs::exists(a, unknown) || fs::exists(b, unknown)) return same;
+  const auto whole = [](const std::string& path) {
+    std::error_code ignored;
+    std::string text = fs::weakly_canonical(fs::absolute(path), ignored).string();
+    if (text.size() > 1 && text.back() == '/') text.pop_back();
+    return text;
+  };
+  return whole(a) == whole(b);
+}
+
+Error BothName(const std::string& a, const std::string& b, const std::string& path) {
+  return Error{a + " and " + b + " both name " + path + "; give each a file of its own"};
+}
+
+// The name of a flag says what it writes or, of pages and pictures, its help in brackets.
+struct OutputKind {
+  const char *flag, *help, *ending;
+};
+constexpr OutputKind kKinds[] = {{"svg_out", "(SVG", ".svg"},
+                                 {"html_out", "(HTML", ".html"},
+                                 {"csv_out", nullptr, ".csv"},
+                                 {"json_out", nullptr, ".json"}};
+
+// name, help: of the flag.
+bool Writes(const std::string& name, const std::string& help, const OutputKind& kind) {
+  return EndsWith(name, kind.flag) ||
+         (kind.help != nullptr && help.find(kind.help) != std::string::npos);
+}
+
+// A page under the name of a picture, say.
+MaybeError CheckKind(const std::string& name, const std::string& path, const std::string& help) {
+  for (const OutputKind& kind : kKinds) {
+    if (!Writes(name, help, kind) || EndsWith(path, kind.ending)) continue;
+    for (const OutputKind& other : kKinds) {
+      if (!EndsWith(path, other.ending) || Writes(name, help, other)) continue;
+      return Error{name + " writes " + kind.ending + ", but " + path + " ends in " + other.ending};
+    }
+  }
+  return std::nullopt;
+}
+
+// A file that would hold something else than its name says.
+MaybeError CheckEnding(const std::string& file) {
+  const size_t dot = file.rfind('.');
+  if (dot == std::string::npos) return std::nullopt;
+  for (const char* other : {"fbx", "obj", "usd", "png", "jpg", "jpeg", "gif", "mp4", "avi", "webm",
+                            "pdf", "xlsx", "xls", "mat", "h5", "pkl"}) {
+    if (!EqualsIgnoringCase(file.substr(dot + 1), other)) continue;
+    return Error{"no program writes ." + std::string(other) +
+                     "; use .html for pages, .svg for pictures, .bvh for bodies, "
+                     ".csv for tables, .json for models and scores",
+                 file};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+OutputFiles::OutputFiles() {
+  std::vector<gflags::CommandLineFlagInfo> flags;
+  gflags::GetAllFlags(&flags);
+  for (const gflags::CommandLineFlagInfo& flag : flags) {
+    if (!IsOutputFlag(flag.name) || flag.current_value.empty()) continue;
+    files_.push_back({"--" + flag.name, flag.current_value, flag.description});
+  }
+}
+
+MaybeError OutputFiles::CheckNotRead(const std::string& reader, const std::string& path) const {
+  for (const NamedPath& output : files_) {
+    // pushid-check adds to the model that it reads.
+    if (reader == "--model" && output.name == "--model_out") continue;
+    if (Same(output.path, path)) return BothName(reader, output.name, path);
+  }
+  return std::nullopt;
+}
+
+MaybeError CheckOutputs() {
+  const OutputFiles outputs;
+  const auto& files = outputs.files_;
+  for (size_t i = 0; i < files.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      if (!Same(files[i].path, files[k].path)) continue;
+      return BothName(files[k].name, files[i].name, files[i].path);
+    }
+  }
+  for (const char* input : kInputs) {
+    gflags::CommandLineFlagInfo flag;
+    const bool known = gflags::GetCommandLineFlagInfo(input, &flag);
+    if (!known || flag.is_default || flag.current_value.empty()) continue;
+    // A formation may be a word as well as a file.
+    if (flag.name == "formation" && !fs::is_regular_file(flag.current_value)) continue;
+    for (const std::string& path : ManifestPaths(flag.current_value)) {
+      if (MaybeError error = outputs.CheckNotRead("--" + flag.name, path)) return error;
+    }
+  }
+  for (const auto& [name, path, help] : files) {
+    if (MaybeError error = CheckKind(name, path, help)) return error;
+  }
+  return std::nullopt;
+}
+
+MaybeError CheckOutputFiles(std::initializer_list<std::string> files) {
+  for (const std::string& file : files) {
+    if (file.empty()) continue;
+    if (MaybeError error = CheckEnding(file)) return error;
+    if (MaybeError error = CheckWritable(file)) return error;
+  }
+  return std::nullopt;
 }
 
 }  // namespace pushid

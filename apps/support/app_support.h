@@ -1,13 +1,16 @@
 // apps: what every executable does the same way: exit codes, errors and warnings, progress, Ctrl-C,
-// the threads of the BLAS.
+// the threads of the BLAS; no program replaces what it reads, nor one of its outputs by another.
 //
 // stdout carries the result, stderr log and progress. Exit codes: 0 done, 1 bad usage or data, 2
 // the fit failed.
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/files/names.h"
 #include "datasets/loading/warning.h"
 #include "ident/problem/parallel.h"
 
@@ -94,6 +97,38 @@ class TrainingLine {
   ProgressLine line_;
   std::string step_;
   double made_, start_ = 0.0, done_at_start_ = 0.0;
+};
+
+// Outputs are known by their flags' names (out, *_out, bootstrap_file), inputs by the list in
+// app_support.cc; so the check holds for every program at once.
+
+// Whether a flag of this name says where to write. Here, so that plans are read without flags.
+inline bool IsOutputFlag(const std::string& name) {
+  return name == "out" || name == "bootstrap_file" ||
+         (EndsWith(name, "_out") && name != "leave_out" && name != "held_out");
+}
+
+// Whether the outputs that are named (not empty) can be written, before a long run.
+MaybeError CheckOutputFiles(std::initializer_list<std::string> files);
+
+// Between the flags, as they are given. RunApp asks for it before anything is done.
+MaybeError CheckOutputs();
+
+// The files that the output flags name.
+class OutputFiles {
+ public:
+  OutputFiles();
+
+  // For an input that no flag names: `reader` says what does ("--sensors", "the command line").
+  MaybeError CheckNotRead(const std::string& reader, const std::string& path) const;
+
+ private:
+  friend MaybeError CheckOutputs();
+  struct NamedPath {
+    std::string name, path;
+    std::string help;  // of the flag
+  };
+  std::vector<NamedPath> files_;
 };
 
 }  // namespace pushid
