@@ -96,18 +96,11 @@ onload = () => document.querySelectorAll('iframe').forEach(frame => document.bod
 }
 
 // The page's elements after its scripts ran, on stdout; what the console said, on stderr. profile:
-// a folder for the browser's own files. milliseconds: of the page's time, for what it has to wait
-// for; 0: none.
-inline AppRun Browse(const std::string& profile, const std::string& page, int milliseconds = 0) {
-  std::vector<std::string> flags = {"--headless",
-                                    "--no-sandbox",
-                                    "--disable-gpu",
-                                    "--enable-logging=stderr",
-                                    "--window-size=1000,800",
-                                    "--user-data-dir=" + profile};
-  if (milliseconds > 0) flags.push_back("--virtual-time-budget=" + std::to_string(milliseconds));
-  flags.insert(flags.end(), {"--dump-dom", "file://" + page});
-  return RunProgram(Browser(), flags);
+// a folder for the browser's own files.
+inline AppRun Browse(const std::string& profile, const std::string& page) {
+  return RunProgram(Browser(), {"--headless", "--no-sandbox", "--disable-gpu",
+                                "--enable-logging=stderr", "--window-size=1000,800",
+                                "--user-data-dir=" + profile, "--dump-dom", "file://" + page});
 }
 
 // What a probe said, the one of the frame with this number; a remark of its own where the page's
