@@ -82,40 +82,36 @@ std::string ComplaintOf(const std::vector<std::string>& command) {
   return last;
 }
 
-void CheckRestoration(const BatchPlan& plan, const BatchVariant& variant, const std::string& bin) {
-  const std::string trainer = bin + "/pushid-train-restoration";
-  const auto wrong = [&](const std::string& what) {
-    return Error{"variant '" + variant.name + "': " + what, plan.path, variant.restoration_line};
-  };
-  std::error_code ignored;
-  if (!std::filesystem::exists(trainer, ignored)) {
-    throw wrong("a restoration needs " + trainer + ", which is only built with LibTorch");
-  }
-  // Which model and where to is said by each job.
-  std::vector<std::string> command = {trainer, "--check", "--model=model.json",
-                                      "--out=restoration"};
-  command.insert(command.end(), variant.restoration->begin(), variant.restoration->end());
-  const std::string complaint = ComplaintOf(command);
-  if (!complaint.empty()) throw wrong(complaint);
-}
-
 // The flags of the variants of these jobs, checked by the programs themselves before any job
 // starts: a flag misspelt would fail in every job, one after the other. Errors: what the program
 // says, with the plan's line; there is no program that trains.
 void CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
                    const std::string& bin) {
+  using Flags = std::vector<std::string>;
   for (const BatchVariant& variant : plan.variants) {
     const bool wanted = std::any_of(jobs.begin(), jobs.end(), [&variant](const BatchJob& job) {
       return job.variant == variant.name;
     });
     if (!wanted) continue;
-    std::vector<std::string> command = {bin + "/pushid-fit", "--check"};
-    command.insert(command.end(), variant.flags.begin(), variant.flags.end());
-    const std::string complaint = ComplaintOf(command);
-    if (!complaint.empty()) {
-      throw Error{"variant '" + variant.name + "': " + complaint, plan.path, variant.line};
+    const auto wrong = [&](const std::string& what, int line) {
+      return Error{"variant '" + variant.name + "': " + what, plan.path, line};
+    };
+    const auto check = [&](Flags command, const Flags& flags, int line) {
+      command.insert(command.end(), flags.begin(), flags.end());
+      const std::string complaint = ComplaintOf(command);
+      if (!complaint.empty()) throw wrong(complaint, line);
+    };
+    check({bin + "/pushid-fit", "--check"}, variant.flags, variant.line);
+    if (!variant.restoration) continue;
+    const std::string trainer = bin + "/pushid-train-restoration";
+    std::error_code ignored;
+    if (!std::filesystem::exists(trainer, ignored)) {
+      throw wrong("a restoration needs " + trainer + ", which is only built with LibTorch",
+                  variant.restoration_line);
     }
-    if (variant.restoration) CheckRestoration(plan, variant, bin);
+    // Which model and where to is said by each job.
+    check({trainer, "--check", "--model=model.json", "--out=restoration"}, *variant.restoration,
+          variant.restoration_line);
   }
 }
 
@@ -164,7 +160,7 @@ std::string TimeText(double seconds) {
 // Of all jobs of the plan, whichever of them ran now.
 void ShowSummary(const BatchPlan& plan, const std::vector<BatchJob>& all) {
   const std::vector<JobResult> rows = ReadResults(plan, all);
-  OrFail(WriteSummary(plan, rows));
+  WriteSummary(plan, rows);
   std::printf("%s", SummaryText(rows).c_str());
 }
 
@@ -214,7 +210,7 @@ int Run() {
   if (Given("memory_limit")) plan.memory_limit_mb = FLAGS_memory_limit;
   const Result<Manifest> manifest = ReadManifests(plan.manifest);
   if (!manifest.ok()) return Fail(plan.ErrorAt("recordings", manifest.error()));
-  const std::vector<BatchJob> all = OrFail(ExpandPlan(plan, manifest.value()));
+  const std::vector<BatchJob> all = ExpandPlan(plan, manifest.value());
   const std::vector<BatchJob> jobs = ChosenJobs(all);
   if (!FLAGS_gather || FLAGS_list || FLAGS_dry_run) CheckVariants(plan, jobs, OwnFolder());
   if (FLAGS_list) return List(plan, jobs);

@@ -90,7 +90,7 @@ struct BatchJob {
 
 // In a fixed order: variants as in the plan, groups as in the manifest, folds, replicas. Errors: of
 // the manifest, a group with fewer recordings than folds, files that cannot be read.
-Result<std::vector<BatchJob>> ExpandPlan(const BatchPlan& plan, const Manifest& manifest);
+std::vector<BatchJob> ExpandPlan(const BatchPlan& plan, const Manifest& manifest);
 
 // What to run, one after the other: pushid-fit and, of a fold, pushid-evaluate on what was held
 // out. folder: of the job; bin: where the programs are.
@@ -192,7 +192,7 @@ Value& ValueOf(const std::string& key, std::vector<std::pair<std::string, Value>
 std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs);
 
 // summary.csv, summary.json and summary.html in the plan's folder.
-MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows);
+void WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows);
 
 // By variant: jobs done and failed, mean and spread over groups of each parameter; the bootstrap of
 // each group where those are few; failures.

@@ -22,41 +22,26 @@ void AddPiece(const std::string& text, ContentHash* hash) {
 
 // What a manifest's entry says, with the contents of every file it names. Whatever text of it is a
 // file counts: the keys that name files are the reader's business.
-MaybeError HashFiles(const nlohmann::ordered_json& json, const std::string& manifest,
-                     ContentHash* hash) {
+void HashFiles(const nlohmann::ordered_json& json, const std::string& manifest, ContentHash* hash) {
   if (json.is_structured()) {
-    for (const auto& part : json) {
-      if (MaybeError error = HashFiles(part, manifest, hash)) return error;
-    }
-    return std::nullopt;
+    for (const auto& part : json) HashFiles(part, manifest, hash);
   }
-  if (!json.is_string()) return std::nullopt;
+  if (!json.is_string()) return;
   const std::string path = ResolvePath(manifest, json.get<std::string>());
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
-  const Result<std::string> contents = HashFile(path);
-  if (!contents.ok()) return contents.error();
-  AddPiece(contents.value(), hash);
-  return std::nullopt;
+  if (std::filesystem::is_regular_file(path, ignored)) AddPiece(OrFail(HashFile(path)), hash);
 }
 
-// What the manifest says of all its recordings.
-Result<std::string> CommonHash(const Manifest& manifest) {
+// Of what a manifest says of all its recordings, or of one.
+std::string HashOf(const nlohmann::ordered_json& json, const std::string& manifest) {
   ContentHash hash;
-  AddPiece(manifest.json->dump(), &hash);
-  if (MaybeError error = HashFiles(*manifest.json, manifest.path, &hash)) return *error;
-  return hash.Hex();
-}
-
-Result<std::string> RecordingHash(const ManifestRecording& entry) {
-  ContentHash hash;
-  AddPiece(entry.json->dump(), &hash);
-  if (MaybeError error = HashFiles(*entry.json, entry.manifest, &hash)) return *error;
+  AddPiece(json.dump(), &hash);
+  HashFiles(json, manifest, &hash);
   return hash.Hex();
 }
 
 // What a variant's flags say: of a file its contents, wherever it lies.
-Result<std::string> FlagsHash(const BatchPlan& plan, const BatchVariant& variant) {
+std::string FlagsHash(const BatchPlan& plan, const BatchVariant& variant) {
   ContentHash hash;
   for (const std::string& flag : variant.flags) {
     const std::string file = FileOfFlag(flag);
@@ -66,8 +51,8 @@ Result<std::string> FlagsHash(const BatchPlan& plan, const BatchVariant& variant
     }
     const Result<std::string> contents = HashFile(file);
     if (!contents.ok()) {
-      return Error{"variant '" + variant.name + "': " + contents.error().ToString(), plan.path,
-                   variant.line};
+      throw Error{"variant '" + variant.name + "': " + contents.error().ToString(), plan.path,
+                  variant.line};
     }
     AddPiece(flag.substr(0, flag.find('=') + 1) + contents.value(), &hash);
   }
@@ -103,15 +88,15 @@ struct Part {
   std::vector<int> train, held_out;  // indices into the manifest
 };
 
-Result<std::vector<Part>> PartsOf(const BatchPlan& plan, const Manifest& manifest,
-                                  const std::string& group, const std::vector<int>& members) {
-  if (plan.folds == 0) return std::vector<Part>{{group, group, members, {}}};
+std::vector<Part> PartsOf(const BatchPlan& plan, const Manifest& manifest, const std::string& group,
+                          const std::vector<int>& members) {
+  if (plan.folds == 0) return {{group, group, members, {}}};
   std::vector<PendulumRecording> known;
   for (int i : members) known.push_back(AsKnown(manifest.recordings[i]));
   const auto folds = MakeFolds(known, FoldScheme::kStratified, plan.folds, 1, plan.seed);
   if (!folds.ok()) {
-    return plan.ErrorAt("folds", Error{"group '" + group + "' in " + std::to_string(plan.folds) +
-                                       " folds: " + folds.error().message});
+    throw plan.ErrorAt("folds", Error{"group '" + group + "' in " + std::to_string(plan.folds) +
+                                      " folds: " + folds.error().message});
   }
   std::vector<Part> parts;
   for (size_t f = 0; f < folds.value().size(); ++f) {
@@ -165,34 +150,28 @@ class Expander {
  public:
   Expander(const BatchPlan& plan, const Manifest& manifest) : plan_(plan), manifest_(manifest) {}
 
-  Result<std::vector<BatchJob>> Expand() {
-    const Result<std::vector<int>> chosen = Chosen();
-    if (!chosen.ok()) return chosen.error();
-    const Result<std::string> common = CommonHash(manifest_);
-    if (!common.ok()) return common.error();
-    common_hash_ = common.value();
+  std::vector<BatchJob> Expand() {
+    const std::vector<int> chosen = Chosen();
+    common_hash_ = HashOf(*manifest_.json, manifest_.path);
     hashes_.resize(manifest_.recordings.size());
     std::vector<std::pair<std::string, std::vector<int>>> groups;
-    for (int i : chosen.value()) {
-      const Result<std::string> hash = RecordingHash(manifest_.recordings[i]);
-      if (!hash.ok()) return hash.error();
-      hashes_[i] = hash.value();
-      const std::string name = GroupOf(plan_.group_by, manifest_.recordings[i]);
+    for (int i : chosen) {
+      const ManifestRecording& entry = manifest_.recordings[i];
+      hashes_[i] = HashOf(*entry.json, entry.manifest);
+      const std::string name = GroupOf(plan_.group_by, entry);
       if (name.empty()) {
-        return plan_.ErrorAt(
-            "group_by",
-            Error{"must be none, recording, subject or a label; recording " +
-                  Quoted(manifest_.recordings[i].id) + " has no label " + Quoted(plan_.group_by)});
+        throw plan_.ErrorAt("group_by",
+                            Error{"must be none, recording, subject or a label; recording " +
+                                  Quoted(entry.id) + " has no label " + Quoted(plan_.group_by)});
       }
       ValueOf(name, &groups).push_back(i);
     }
     for (const BatchVariant& variant : plan_.variants) {
-      const Result<std::string> flags = FlagsHash(plan_, variant);
-      if (!flags.ok()) return flags.error();
+      const std::string flags = FlagsHash(plan_, variant);
       for (const auto& [name, members] : groups) {
-        const auto parts = PartsOf(plan_, manifest_, name, members);
-        if (!parts.ok()) return parts.error();
-        for (const Part& part : parts.value()) AddPart(variant, flags.value(), part);
+        for (const Part& part : PartsOf(plan_, manifest_, name, members)) {
+          AddPart(variant, flags, part);
+        }
       }
     }
     return jobs_;
@@ -200,14 +179,16 @@ class Expander {
 
  private:
   // Each key by itself, so that the one that is wrong can be named.
-  Result<std::vector<int>> Chosen() const {
-    const auto all = SelectRecordings(manifest_, plan_.setting, {});
-    if (!all.ok()) return plan_.ErrorAt("setting", all.error());
-    const auto named = SelectRecordings(manifest_, plan_.setting, plan_.ids);
-    if (!named.ok()) return plan_.ErrorAt("ids", named.error());
-    const auto left = SelectRecordings(manifest_, plan_.setting, plan_.ids, plan_.leave_out);
-    if (!left.ok()) return plan_.ErrorAt("leave_out", left.error());
-    return left;
+  std::vector<int> Chosen() const {
+    const auto by = [this](const char* key, const std::vector<std::string>& ids,
+                           const std::vector<std::string>& leave_out) {
+      const auto selected = SelectRecordings(manifest_, plan_.setting, ids, leave_out);
+      if (!selected.ok()) throw plan_.ErrorAt(key, selected.error());
+      return selected.value();
+    };
+    by("setting", {}, {});
+    by("ids", plan_.ids, {});
+    return by("leave_out", plan_.ids, plan_.leave_out);
   }
 
   void AddPart(const BatchVariant& variant, const std::string& flags_hash, const Part& part) {
@@ -248,7 +229,7 @@ class Expander {
 
 }  // namespace
 
-Result<std::vector<BatchJob>> ExpandPlan(const BatchPlan& plan, const Manifest& manifest) {
+std::vector<BatchJob> ExpandPlan(const BatchPlan& plan, const Manifest& manifest) {
   return Expander(plan, manifest).Expand();
 }
 

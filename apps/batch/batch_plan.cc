@@ -31,8 +31,8 @@
 namespace pushid {
 namespace {
 
-// Flags that name files to read: as all paths of a plan they are relative to it.
-const std::set<std::string> kFileFlags = {"self_from"};
+// The flag that names a file to read: as all paths of a plan it is relative to it.
+constexpr std::string_view kFileFlag = "--self_from=";
 
 // Flags that no variant has, and what to do instead.
 const std::map<std::string, std::string> kOwnFlags = {
@@ -55,20 +55,18 @@ class PlanReader {
     plan_.path = path;
   }
 
-  Result<BatchPlan> Read() {
+  BatchPlan Read() {
     Known(root_, "the plan", {"data", "jobs", "variant", "output"});
     Data();
     Jobs();
     Variants();
     Output();
-    if (error_) return *error_;
     return plan_;
   }
 
  private:
-  // The first error is the one reported.
-  void Fail(const toml::node& at, const std::string& message) {
-    if (!error_) error_ = Error{message, path_, LineOf(at)};
+  [[noreturn]] void Fail(const toml::node& at, const std::string& message) {
+    throw Error{message, path_, LineOf(at)};
   }
 
   static int LineOf(const toml::node& at) { return static_cast<int>(at.source().begin.line); }
@@ -88,12 +86,11 @@ class PlanReader {
     for (const auto& [key, value] : table) plan_.lines[std::string(key.str())] = LineOf(value);
   }
 
+  // Null where there is none, unless it is needed.
   const toml::table* Table(const char* name, bool needed) {
     const toml::node* node = root_.get(name);
-    if (node == nullptr) {
-      if (needed) Fail(root_, "the plan has no [" + std::string(name) + "]");
-      return nullptr;
-    }
+    if (node == nullptr && needed) Fail(root_, "the plan has no [" + std::string(name) + "]");
+    if (node == nullptr) return nullptr;
     if (!node->is_table()) Fail(*node, std::string(name) + " must be a table: [" + name + "]");
     return node->as_table();
   }
@@ -104,7 +101,7 @@ class PlanReader {
     const toml::node* node = table.get(key);
     if (node == nullptr) return;
     const auto found = node->value_exact<T>();
-    if (!found) return Fail(*node, std::string(key) + " must be " + kind);
+    if (!found) Fail(*node, std::string(key) + " must be " + kind);
     *value = *found;
   }
 
@@ -112,10 +109,10 @@ class PlanReader {
     const toml::node* node = table.get(key);
     if (node == nullptr) return;
     const std::string wrong = std::string(key) + " must be a list of strings: [\"...\"]";
-    if (!node->is_array()) return Fail(*node, wrong);
+    if (!node->is_array()) Fail(*node, wrong);
     for (const toml::node& entry : *node->as_array()) {
       const auto text = entry.value_exact<std::string>();
-      if (!text) return Fail(entry, wrong);
+      if (!text) Fail(entry, wrong);
       values->push_back(*text);
     }
   }
@@ -124,8 +121,8 @@ class PlanReader {
     int64_t count = *value;
     Get(table, key, "a whole number", &count);
     if (count < 0 || count > most) {
-      return Fail(*table.get(key), std::string(key) + " is " + std::to_string(count) +
-                                       "; it must lie between 0 and " + std::to_string(most));
+      Fail(*table.get(key), std::string(key) + " is " + std::to_string(count) +
+                                "; it must lie between 0 and " + std::to_string(most));
     }
     *value = static_cast<int>(count);
   }
@@ -136,7 +133,6 @@ class PlanReader {
 
   void Data() {
     const toml::table* data = Table("data", true);
-    if (data == nullptr) return;
     Known(*data, "[data]", {"recordings", "setting", "ids", "leave_out"});
     KeepLines(*data);
     std::string manifest;
@@ -174,7 +170,7 @@ class PlanReader {
     if (limit == nullptr) return;
     const auto seconds = limit->value<double>();  // 60 or 60.0
     if (!limit->is_number() || !seconds || !(*seconds >= 0.0)) {
-      return Fail(*limit, "time_limit_s must be a number of seconds, 0 for none");
+      Fail(*limit, "time_limit_s must be a number of seconds, 0 for none");
     }
     plan_.time_limit_s = *seconds;
   }
@@ -182,8 +178,8 @@ class PlanReader {
   void Variants() {
     const toml::node* node = root_.get("variant");
     if (node == nullptr || !node->is_array_of_tables()) {
-      return Fail(node == nullptr ? root_ : *node,
-                  "the plan needs at least one [[variant]] with a name and flags");
+      Fail(node == nullptr ? root_ : *node,
+           "the plan needs at least one [[variant]] with a name and flags");
     }
     std::set<std::string> names;
     for (const toml::node& entry : *node->as_array()) {
@@ -219,7 +215,7 @@ class PlanReader {
 
   void CheckFlag(const toml::node& at, const std::string& flag) {
     if (flag.rfind("--", 0) != 0) {
-      return Fail(at, "'" + flag + "' is not a flag; write \"--name=value\"");
+      Fail(at, "'" + flag + "' is not a flag; write \"--name=value\"");
     }
     const std::string name = flag.substr(2, flag.find('=') - 2);
     const auto own = kOwnFlags.find(name);
@@ -237,7 +233,6 @@ class PlanReader {
 
   void Output() {
     const toml::table* output = Table("output", true);
-    if (output == nullptr) return;
     Known(*output, "[output]", {"dir"});
     std::string dir;
     Get(*output, "dir", "a string", &dir);
@@ -248,15 +243,12 @@ class PlanReader {
   const std::string& path_;
   const toml::table& root_;
   BatchPlan plan_;
-  MaybeError error_;
 };
 
 }  // namespace
 
 std::string FileOfFlag(const std::string& flag) {
-  const size_t equals = flag.find('=');
-  if (flag.rfind("--", 0) != 0 || equals == std::string::npos) return "";
-  return kFileFlags.count(flag.substr(2, equals - 2)) == 1 ? flag.substr(equals + 1) : "";
+  return flag.rfind(kFileFlag, 0) == 0 ? flag.substr(kFileFlag.size()) : "";
 }
 
 Error BatchPlan::ErrorAt(const std::string& key, const Error& error) const {
@@ -279,7 +271,11 @@ Result<BatchPlan> ReadPlan(const std::string& path) {
     return Error{std::string(error.description()), path,
                  static_cast<int>(error.source().begin.line)};
   }
-  return PlanReader(path, parsed.table()).Read();
+  try {
+    return PlanReader(path, parsed.table()).Read();
+  } catch (const Error& error) {
+    return error;
+  }
 }
 
 }  // namespace pushid

@@ -40,13 +40,11 @@ MaybeError WriteJobStatus(const std::string& folder, const BatchJob& job, const 
 }
 
 // kOpen where the folder has no status.json.
-Result<JobStatus> ReadJobStatus(const std::string& folder) {
+JobStatus ReadJobStatus(const std::string& folder) {
   JobStatus status;
   std::error_code ignored;
   if (!std::filesystem::exists(StatusFile(folder), ignored)) return status;
-  const Result<JsonDocument> read = ReadJsonDocument(StatusFile(folder));
-  if (!read.ok()) return read.error();
-  const JsonDocument& document = read.value();
+  const JsonDocument document = OrFail(ReadJsonDocument(StatusFile(folder)));
   JsonFields fields(document, document.content, "", "status");
   fields.Require("status", "done or failed");
   status.state = fields.Choice("status", JobState::kFailed);
@@ -56,7 +54,7 @@ Result<JobStatus> ReadJobStatus(const std::string& folder) {
     status.seconds = run.Number("seconds", "how long the job took");
     fields.Add(run);
   }
-  if (fields.failed()) return *fields.error();
+  OrFail(fields.error());
   return status;
 }
 
@@ -70,31 +68,18 @@ void AddModel(const FitResult& fit, JobResult* result) {
   result->solve_s = fit.solve_seconds;
 }
 
-// The table shows nothing of a job whose files are not whole.
-JobResult Failed(const BatchJob& job, const std::string& reason, double seconds) {
-  JobResult result;
-  result.job = &job;
-  result.status = {JobState::kFailed, reason, seconds};
-  return result;
-}
-
-Result<std::vector<HeldOutScore>> ReadHeldOut(const std::string& path, bool bodies) {
-  const Result<JsonDocument> document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  const Result<ScoreSummary> hips = ScoresFromJson(document.value().content, path);
-  if (!hips.ok()) return hips.error();
+std::vector<HeldOutScore> ReadHeldOut(const std::string& path, bool bodies) {
+  const JsonDocument document = OrFail(ReadJsonDocument(path));
+  const ScoreSummary hips = OrFail(ScoresFromJson(document.content, path));
   std::vector<HeldOutScore> scores;
   if (!bodies) {
     for (const HipMetric& metric : kHipMetrics) {
-      scores.push_back({metric, hips.value().mean.*metric.value});
+      scores.push_back({metric, hips.mean.*metric.value});
     }
     return scores;
   }
-  const Result<BodyMetrics> restored = MeanBodyMetrics(document.value().content, path);
-  if (!restored.ok()) return restored.error();
-  for (int m = 0; m < kNumBodyMetrics; ++m) {
-    scores.push_back({kBodyMetrics[m], restored.value()[m]});
-  }
+  const BodyMetrics restored = OrFail(MeanBodyMetrics(document.content, path));
+  for (int m = 0; m < kNumBodyMetrics; ++m) scores.push_back({kBodyMetrics[m], restored[m]});
   return scores;
 }
 
@@ -113,21 +98,22 @@ std::string JobFolder(const BatchPlan& plan, const BatchJob& job) {
 
 JobResult ReadResult(const BatchPlan& plan, const BatchJob& job) {
   const std::string folder = JobFolder(plan, job);
-  const Result<JobStatus> status = ReadJobStatus(folder);
-  if (!status.ok()) return Failed(job, status.error().ToString(), 0.0);
-  const double seconds = status.value().seconds;
   JobResult result;
   result.job = &job;
-  result.status = status.value();
-  if (!result.done()) return result;
-  const Result<FittedModel> model = ReadFittedModel(folder + "/model.json");
-  if (!model.ok()) return Failed(job, model.error().ToString(), seconds);
-  AddModel(model.value().fit, &result);
-  if (job.held_out.empty()) return result;
-  auto scores = ReadHeldOut(folder + "/scores.json", job.restoration_flags.has_value());
-  if (!scores.ok()) return Failed(job, scores.error().ToString(), seconds);
-  result.held_out = std::move(scores.value());
-  return result;
+  try {
+    result.status = ReadJobStatus(folder);
+    if (!result.done()) return result;
+    AddModel(OrFail(ReadFittedModel(folder + "/model.json")).fit, &result);
+    if (job.held_out.empty()) return result;
+    result.held_out = ReadHeldOut(folder + "/scores.json", job.restoration_flags.has_value());
+    return result;
+  } catch (const Error& error) {
+    // The table shows nothing of a job whose files are not whole.
+    JobResult failed;
+    failed.job = &job;
+    failed.status = {JobState::kFailed, error.ToString(), result.status.seconds};
+    return failed;
+  }
 }
 
 namespace {

@@ -514,14 +514,10 @@ std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<Batc
   return rows;
 }
 
-MaybeError WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows) {
-  if (MaybeError error = WriteFileAtomically(plan.dir + "/summary.csv", CsvOf(FullTable(rows)))) {
-    return error;
-  }
-  if (MaybeError error = WriteJson(plan.dir + "/summary.json", SummaryJson(plan, rows))) {
-    return error;
-  }
-  return WriteFileAtomically(plan.dir + "/summary.html", ToPage(PageOf(plan, rows)));
+void WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows) {
+  OrFail(WriteFileAtomically(plan.dir + "/summary.csv", CsvOf(FullTable(rows))));
+  OrFail(WriteJson(plan.dir + "/summary.json", SummaryJson(plan, rows)));
+  OrFail(WriteFileAtomically(plan.dir + "/summary.html", ToPage(PageOf(plan, rows))));
 }
 
 std::string SummaryText(const std::vector<JobResult>& rows) {
