@@ -79,11 +79,11 @@ int Run() {
   const std::vector<Recording> recordings = LoadFlaggedRecordings({FLAGS_id}, true);
   const std::unique_ptr<Restoration> restoration =
       LoadFlaggedRestoration(flags, static_cast<int>(recordings.front().people.size()));
-  const Result<BodyRecording> recording = MakeBodyRecording(recordings.front(), model.mapping);
+  const Result<BodyRecording> recording = MakeBodyRecording(recordings.front());
   if (!recording.ok() && Given("restoration")) return Fail(recording.error());
   if (!recording.ok()) Warn(recording.error().ToString() + "; only pendulums are shown");
 
-  const PendulumRecording pendulum = MakePendulumRecording(recordings.front(), model.mapping);
+  const PendulumRecording pendulum = MakePendulumRecording(recordings.front());
   WarnGrouped(InputWarnings(model, {pendulum}));
   Animation animation;
   animation.title = pendulum.id;

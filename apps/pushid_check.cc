@@ -28,14 +28,14 @@ DEFINE_string(profile, "",
 DEFINE_int32(bootstrap, 0,
              "number of refits to resampled people or recordings; 199 is usually enough");
 DEFINE_string(bootstrap_by, pushid::NameOf(pushid::BootstrapOptions{}.by),
-              "unit drawn by a bootstrap (and by pushid-fit --replica): subject (all recordings "
-              "of a person), recording, or auto (as --cluster of the fit, but recordings where "
-              "people share them)");
+              "unit drawn by a bootstrap: subject (all recordings of a person), recording, or auto "
+              "(as standard errors are clustered, but recordings where people share them)");
 DEFINE_string(bootstrap_file, "",
               "file that keeps finished replicas, so that an interrupted run can continue");
-DEFINE_string(design, "",
-              "find which further push, of whom and with a force sensor or without, would lower the "
-              "standard error of this parameter most (all: of all parameters together)");
+DEFINE_string(
+    design, "",
+    "find which further push, of whom and with a force sensor or without, would lower the "
+    "standard error of this parameter most (all: of all parameters together)");
 
 DEFINE_bool(population, false,
             "print how recordings differ from the mean: the spread of a factor on tail_gain, and "
@@ -95,7 +95,7 @@ std::vector<PendulumRecording> LoadFitted(FittedModel* model) {
   FitOptions& options = model->fit.options;
   LoadAs(fit_flags);
   const auto loaded = LoadFittedRecordings(model->fit, NeedsJoints(options.model));
-  return OrFail(AsFitted(MakePendulumRecordings(loaded, options.mapping), model->fit));
+  return OrFail(AsFitted(MakePendulumRecordings(loaded), model->fit));
 }
 
 // A model says how it was made: with these flags too.
@@ -155,7 +155,8 @@ int main(int argc, char** argv) {
   return pushid::RunApp(
       argc, argv,
       "pushid-check questions a fitted model with the recordings that it was fitted to: profiles, "
-      "bootstrap,\nshorter horizons, what to record next. It adds the results to the model's file (or writes them to "
+      "bootstrap,\nshorter horizons, what to record next. It adds the results to the model's file "
+      "(or writes them to "
       "--model_out);\nreports and advice use them.\n\n"
       "  pushid-check --model=model.json --recordings=M/manifest.json --bootstrap=199 --profile",
       Run);

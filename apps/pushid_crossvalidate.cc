@@ -193,8 +193,7 @@ int Run() {
   CheckFlags(setups);
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   CheckPushed(recordings);
-  const std::vector<PendulumRecording> pendulums =
-      MakePendulumRecordings(recordings, setups[0].second.roughly().mapping);
+  const std::vector<PendulumRecording> pendulums = MakePendulumRecordings(recordings);
   CheckObservedFlag(pendulums);
   OrFail(CheckGroups(pendulums, ParseLabelKeys(FLAGS_group_by)));
   const Candidates candidates = CandidatesOf(setups, &pendulums);

@@ -45,7 +45,7 @@ std::optional<BodyEvaluation> Bodies(const RestorationFlags& flags, const Identi
   for (const Recording& recording : recordings) people = std::max(people, recording.people.size());
   const std::unique_ptr<Restoration> restoration =
       LoadFlaggedRestoration(flags, static_cast<int>(people));
-  const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings, model.mapping));
+  const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   BodyScores scores;
   for (const BodyRecording& body : bodies) {
     ScoreRestoration(model, *restoration, flags.postprocess, body, &scores, ObservedFrames(),
@@ -63,8 +63,7 @@ int Run() {
   CheckDraws(drawn, model);
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({}, restoration.given() || NeedsJoints(model.options));
-  const std::vector<PendulumRecording> pendulums =
-      MakePendulumRecordings(recordings, model.mapping);
+  const std::vector<PendulumRecording> pendulums = MakePendulumRecordings(recordings);
   CheckObservedFlag(pendulums, model);
   const LabelKeys group_by = ParseLabelKeys(FLAGS_group_by);
   OrFail(CheckGroups(pendulums, group_by));

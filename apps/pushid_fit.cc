@@ -21,11 +21,8 @@
 
 DEFINE_string(model_out, "", "write the identified model here (JSON)");
 DEFINE_int32(replica, 0,
-             "fit bootstrap replica k: as many people or recordings (--bootstrap_by), drawn with "
+             "fit bootstrap replica k: as many people or recordings, drawn with "
              "replacement from --seed and k; 0: the recordings as they are");
-DEFINE_string(bootstrap_by, pushid::NameOf(pushid::BootstrapOptions{}.by),
-              "unit that --replica draws: subject (all recordings of a person), recording, or auto "
-              "(as --cluster, but recordings where people share them)");
 DEFINE_bool(check, false, "only check the flags: nothing is read, fitted or written");
 DEFINE_bool(list_parameters, false,
             "only print every parameter: name, symbol, unit, meaning, when to free it (Markdown)");
@@ -43,8 +40,6 @@ int Run() {
   }
   const FitSetup setup = FitSetupFromFlags();
   const FitOptions& roughly = setup.roughly();
-  ClusterBy drawn_by = ClusterBy::kAuto;
-  OrFail(ParseName("--bootstrap_by", FLAGS_bootstrap_by, &drawn_by));
   CheckRecordingFlags();
   if (FLAGS_check) return kDone;
   if (!FLAGS_model_out.empty()) OrFail(CheckWritable(FLAGS_model_out));
@@ -52,9 +47,8 @@ int Run() {
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({}, NeedsJoints(roughly.model), &file_warnings, true);
   CheckPushed(recordings);
-  if (drawn_by == ClusterBy::kAuto) drawn_by = roughly.cluster;
-  const std::vector<PendulumRecording> pendulums = Resampled(
-      MakePendulumRecordings(recordings, roughly.mapping), drawn_by, Seed(), FLAGS_replica);
+  const std::vector<PendulumRecording> pendulums =
+      Resampled(MakePendulumRecordings(recordings), ClusterBy::kAuto, Seed(), FLAGS_replica);
 
   FitOptions options = OrFail(setup.For(pendulums));
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options)) Warn(warning);

@@ -71,8 +71,7 @@ void WarnOfPushKinds(const GeneratorSettings& settings,
 int FromPushes(const LoadedGenerator& loaded, const GenerateFlags& flags) {
   const std::optional<IdentifiedModel> physics = LoadPhysics(flags.physics);
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
-  const std::vector<BodyRecording> bodies =
-      OrFail(MakeBodyRecordings(recordings, SkeletonMapping::kExact));
+  const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   BodyScores scores;
   const BodyRecording* shown = nullptr;
   for (const BodyRecording& recording : bodies) {

@@ -123,7 +123,7 @@ int Between(const Ends& ends, const IdentifiedModel& model) {
 
 int Smooth(const IdentifiedModel& model) {
   const std::vector<Recording> recordings = LoadFlaggedRecordings({FLAGS_id});
-  const PendulumRecording recording = MakePendulumRecording(recordings.front(), model.mapping);
+  const PendulumRecording recording = MakePendulumRecording(recordings.front());
   const ProbablePath found = OrFail(SmoothPath(model, recording));
   double furthest = 0.0;
   for (int n = 0; n < recording.num_people(); ++n) {

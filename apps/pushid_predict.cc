@@ -73,8 +73,8 @@ ChangedPushes ChangedPushesFromCommandLine() {
 }
 
 // With the pushes that the flags, once checked, ask for.
-PendulumRecording PushedRecording(const Recording& recorded, SkeletonMapping mapping) {
-  const PendulumRecording recording = MakePendulumRecording(recorded, mapping);
+PendulumRecording PushedRecording(const Recording& recorded) {
+  const PendulumRecording recording = MakePendulumRecording(recorded);
   const ChangedPushes changed = ChangedPushesFromCommandLine();
   const int frames = FLAGS_frames > 0 ? FLAGS_frames : recording.num_frames();
   OrFail(CheckChangedPushes(changed, recording, frames));
@@ -121,11 +121,11 @@ std::vector<std::string> WriteScene(const BodyScene& scene, const BodyRecording&
 
 // Restores bodies, writes what the flags name and prints, for a whole recording also how far they
 // are from the recorded ones; returns the exit code.
-int WriteBodies(const RestorationFlags& flags, const Recording& recorded, SkeletonMapping mapping,
+int WriteBodies(const RestorationFlags& flags, const Recording& recorded,
                 const Prediction& prediction) {
   const std::unique_ptr<Restoration> restoration =
       LoadFlaggedRestoration(flags, static_cast<int>(recorded.people.size()));
-  const BodyRecording recording = OrFail(MakeBodyRecording(recorded, mapping));
+  const BodyRecording recording = OrFail(MakeBodyRecording(recorded));
   std::vector<BodyMotion> bodies =
       RestoreBodies(*restoration, flags.postprocess, PredictedPeople(recording, prediction));
   BodyScore score;
@@ -163,7 +163,7 @@ int Run() {
   CheckDraws(futures, model);
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({FLAGS_id}, restoration.given() || NeedsJoints(model.options));
-  const PendulumRecording recording = PushedRecording(recordings.front(), model.mapping);
+  const PendulumRecording recording = PushedRecording(recordings.front());
 
   WarnGrouped(InputWarnings(model, {recording}));
   CheckObservedFlag({recording}, model);
@@ -179,9 +179,8 @@ int Run() {
                  OutsideText(prediction.status).c_str());
     return kFitFailed;
   }
-  const int code = restoration.given()
-                       ? WriteBodies(restoration, recordings.front(), model.mapping, prediction)
-                       : WritePendulums(recording, prediction);
+  const int code = restoration.given() ? WriteBodies(restoration, recordings.front(), prediction)
+                                       : WritePendulums(recording, prediction);
   if (code != kDone) return code;
   if (const ChangedPushes changed = ChangedPushesFromCommandLine(); changed.Any()) {
     std::printf("%s; no recorded motion to compare with\n",

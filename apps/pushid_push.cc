@@ -351,7 +351,7 @@ int Run() {
   std::vector<RecordingsPush> pushes;
   std::vector<Finding> findings;
   for (const Recording& recorded : recordings) {
-    const PendulumRecording recording = MakePendulumRecording(recorded, SkeletonMapping::kExact);
+    const PendulumRecording recording = MakePendulumRecording(recorded);
     const MadePush made = flags.sensor.sensors.empty() ? ByInverseDynamics(flags, recording)
                                                        : FromSensor(flags, recorded, recording);
     WarnOfFirstRow(recorded.id, made);

@@ -229,7 +229,7 @@ int Run() {
   }
   const std::vector<SyntheticRecording> made = OrFail(MakeSyntheticRecordings(study));
   for (const std::string& warning :
-       ExtrapolationWarnings(truth, MakePendulumRecordings(Recordings(made), truth.mapping))) {
+       ExtrapolationWarnings(truth, MakePendulumRecordings(Recordings(made)))) {
     Warn(warning);
   }
   OrFail(WriteSyntheticRecordings(FLAGS_out, study, made));

@@ -166,8 +166,7 @@ int FromPushes(const TrainGeneratorFlags& flags) {
   const bool needs_push = !RowOf(flags.options.kind).groups || flags.physics ||
                           flags.accuracy == ForecastAccuracy::kBest;
   if (needs_push) CheckPushed(recordings);
-  const std::vector<BodyRecording> bodies =
-      OrFail(MakeBodyRecordings(recordings, SkeletonMapping::kExact));
+  const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   if (flags.crossvalidate > 0) return CrossValidate(flags, bodies);
   OrFail(MakeFolder(flags.out));
   Json data = Json::array();

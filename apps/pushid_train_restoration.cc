@@ -100,7 +100,7 @@ void AddMoreRecordings(const std::string& settings, const std::vector<Recording>
     bool is_known = false;
     for (const Recording& other : known) is_known = is_known || other.id == recording.id;
     if (is_known) continue;
-    options->more.push_back(OrFail(MakeBodyRecording(recording, options->fit.mapping)));
+    options->more.push_back(OrFail(MakeBodyRecording(recording)));
   }
 }
 
@@ -111,8 +111,7 @@ int Run() {
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   CheckPushed(recordings);
   RestorationRunOptions options = flags.options;
-  const std::vector<BodyRecording> bodies =
-      OrFail(MakeBodyRecordings(recordings, options.fit.mapping));
+  const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   CheckObservedFlag(PendulumsOf(bodies));
   AddMoreRecordings(flags.more_settings, recordings, &options);
   return flags.crossvalidate > 0 ? CrossValidate(flags, bodies, options)

@@ -64,9 +64,6 @@ struct BatchPlan {
   Error ErrorAt(const std::string& key, const Error& error) const;
 };
 
-// The file that a variant's flag reads ("--self_from=model.json"), or nothing.
-std::string FileOfFlag(const std::string& flag);
-
 // Errors: file:line, what is wrong: TOML syntax, unknown or missing keys, wrong types, values out
 // of range, two variants of one name, flags that the batch sets itself.
 Result<BatchPlan> ReadPlan(const std::string& path);

@@ -40,22 +40,10 @@ std::string HashOf(const nlohmann::ordered_json& json, const std::string& manife
   return hash.Hex();
 }
 
-// What a variant's flags say: of a file its contents, wherever it lies.
-std::string FlagsHash(const BatchPlan& plan, const BatchVariant& variant) {
+// What a variant's flags say.
+std::string FlagsHash(const BatchVariant& variant) {
   ContentHash hash;
-  for (const std::string& flag : variant.flags) {
-    const std::string file = FileOfFlag(flag);
-    if (file.empty()) {
-      AddPiece(flag, &hash);
-      continue;
-    }
-    const Result<std::string> contents = HashFile(file);
-    if (!contents.ok()) {
-      throw Error{"variant '" + variant.name + "': " + contents.error().ToString(), plan.path,
-                  variant.line};
-    }
-    AddPiece(flag.substr(0, flag.find('=') + 1) + contents.value(), &hash);
-  }
+  for (const std::string& flag : variant.flags) AddPiece(flag, &hash);
   if (variant.restoration) AddPiece("restoration", &hash);
   for (const std::string& flag : variant.restoration.value_or(std::vector<std::string>{})) {
     AddPiece(flag, &hash);
@@ -167,7 +155,7 @@ class Expander {
       ValueOf(name, &groups).push_back(i);
     }
     for (const BatchVariant& variant : plan_.variants) {
-      const std::string flags = FlagsHash(plan_, variant);
+      const std::string flags = FlagsHash(variant);
       for (const auto& [name, members] : groups) {
         for (const Part& part : PartsOf(plan_, manifest_, name, members)) {
           AddPart(variant, flags, part);

@@ -31,9 +31,6 @@
 namespace pushid {
 namespace {
 
-// The flag that names a file to read: as all paths of a plan it is relative to it.
-constexpr std::string_view kFileFlag = "--self_from=";
-
 // Flags that no variant has, and what to do instead.
 const std::map<std::string, std::string> kOwnFlags = {
     {"recordings", "set it in [data]"},
@@ -194,11 +191,7 @@ class PlanReader {
       GetStrings(table, "flags", &variant.flags);
       const toml::node* flags = table.get("flags");
       variant.line = LineOf(flags == nullptr ? table : *flags);
-      for (std::string& flag : variant.flags) {
-        CheckFlag(table, flag);
-        const std::string file = FileOfFlag(flag);
-        if (!file.empty()) flag = flag.substr(0, flag.find('=') + 1) + Resolve(file);
-      }
+      for (const std::string& flag : variant.flags) CheckFlag(table, flag);
       GetRestoration(table, &variant);
       plan_.variants.push_back(variant);
     }
@@ -246,10 +239,6 @@ class PlanReader {
 };
 
 }  // namespace
-
-std::string FileOfFlag(const std::string& flag) {
-  return flag.rfind(kFileFlag, 0) == 0 ? flag.substr(kFileFlag.size()) : "";
-}
 
 Error BatchPlan::ErrorAt(const std::string& key, const Error& error) const {
   const auto line = lines.find(key);

@@ -37,15 +37,14 @@ std::string Text(const Model& model, const Advised& calls) {
 
 std::string JsonText(const Model& model) { return ToJson(*model.fitted, RunInfo()).dump(); }
 
-std::shared_ptr<const FittedTo> Data(const std::vector<SharedRecording>& recordings,
-                                     SkeletonMapping mapping) {
-  return std::make_shared<const FittedTo>(FittedTo{recordings, Pendulums(recordings, mapping)});
+std::shared_ptr<const FittedTo> Data(const std::vector<SharedRecording>& recordings) {
+  return std::make_shared<const FittedTo>(FittedTo{recordings, Pendulums(recordings)});
 }
 
 // Gives recordings to a model that was loaded.
 void Attach(Model* model, const std::vector<SharedRecording>& recordings) {
   const std::vector<FittedRecording>& fitted = model->fitted->fit.recordings;
-  auto to = Data(recordings, model->fitted->fit.options.mapping);
+  auto to = Data(recordings);
   const bool same =
       std::equal(fitted.begin(), fitted.end(), to->pendulums.begin(), to->pendulums.end(),
                  [](const FittedRecording& was, const PendulumRecording& is) {
@@ -98,7 +97,7 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
   CheckRecordings(recordings);
   const FitSetup setup = Setup(given);
   auto model = std::make_shared<Model>();
-  model->to = Data(recordings, setup.roughly().mapping);
+  model->to = Data(recordings);
   const std::vector<PendulumRecording>& pendulums = model->to->pendulums;
   FitOptions options = Unwrapped(setup.For(pendulums), Fault::kUsage);
   const std::vector<std::string> ignored = OptionWarnings(given, options);
@@ -157,7 +156,7 @@ void WriteReport(const Model& model, const std::string& path, const Advised& cal
 py::object EvaluateOn(const Model& model, const std::vector<SharedRecording>& recordings,
                       int observed, const std::string& forecast) {
   const IdentifiedModel identified = IdentifiedOf(model);
-  const auto pendulums = Pendulums(recordings, identified.mapping);
+  const auto pendulums = Pendulums(recordings);
   if (observed > 0) Check(CheckObserved(pendulums, observed), Fault::kUsage);
   const ForecastUse use = ForecastFrom(forecast);
   return FromJson(WithoutGil(
@@ -172,12 +171,10 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
   CheckRecordings(recordings);
   FoldScheme how = FoldScheme::kStratified;
   Check(ParseName("scheme", scheme, &how), Fault::kUsage);
+  const auto pendulums = Pendulums(recordings);
   std::vector<Predictor> predictors;
-  SkeletonMapping mapping = SkeletonMapping::kExact;
   for (const auto& [name, given] : candidates) {
     const FitSetup setup = Setup(given);
-    mapping = setup.roughly().mapping;
-    const auto pendulums = Pendulums(recordings, mapping);
     predictors.push_back(ModelPredictor(name, Unwrapped(setup.For(pendulums), Fault::kUsage),
                                         observed, FramesUse::kForecast, ForecastFrom(forecast)));
   }
@@ -187,7 +184,6 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
       predictors.push_back(BaselinePredictor(baseline, observed));
     }
   }
-  const auto pendulums = Pendulums(recordings, mapping);
   const auto folds = Unwrapped(MakeFolds(pendulums, how, num_folds, repeats, seed), Fault::kUsage);
   const JobProgress told = JobsOf(progress);
   return FromJson(WithoutGil([&] {

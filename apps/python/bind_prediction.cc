@@ -117,8 +117,7 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
   const IdentifiedModel identified = With(model, set);
   const ForecastUse use = ForecastFrom(forecast);
   const PendulumRecording seen =
-      PushedAs({push_scale, push_again}, MakePendulumRecording(*recording, identified.mapping),
-               observed, frames);
+      PushedAs({push_scale, push_again}, MakePendulumRecording(*recording), observed, frames);
   if (observed < 0 || frames < 0 || samples < 0) {
     Raise(Fault::kUsage, Error{"observed, frames and samples must not be negative"});
   }
@@ -150,8 +149,7 @@ class Online {
   Online(const Model& model, const SharedRecording& recording, int frames,
          const std::string& forecast)
       : model_(std::make_unique<IdentifiedModel>(IdentifiedOf(model))),
-        recording_(std::make_unique<PendulumRecording>(
-            MakePendulumRecording(*recording, model_->mapping))),
+        recording_(std::make_unique<PendulumRecording>(MakePendulumRecording(*recording))),
         last_(*recording),
         predictor_(std::make_unique<OnlinePredictor>(
             Unwrapped(OnlinePredictor::Make(*model_, *recording_, frames, ForecastFrom(forecast)),
@@ -188,7 +186,7 @@ class Online {
         if (track->size() > 2) track->erase(track->begin());
       }
     }
-    predictor_->Observe(FrameAt(MakePendulumRecording(last_, model_->mapping), 1));
+    predictor_->Observe(FrameAt(MakePendulumRecording(last_), 1));
   }
 
   py::dict Predict() const { return DictOf(predictor_->Predict(), *recording_); }
@@ -222,8 +220,7 @@ class Online {
 Array Restored(const Restoration& restoration, const Model& model, const SharedRecording& recording,
                int observed) {
   const IdentifiedModel identified = IdentifiedOf(model);
-  const BodyRecording bodies =
-      Unwrapped(MakeBodyRecording(*recording, identified.mapping), Fault::kData);
+  const BodyRecording bodies = Unwrapped(MakeBodyRecording(*recording), Fault::kData);
   const Prediction predicted =
       Unwrapped(PredictFrom(identified, bodies.pendulum, observed), Fault::kUsage);
   if (!predicted.status.ok) {

@@ -31,7 +31,7 @@ Array TrackArray(const SharedRecording& recording, Track RecordedPerson::*track)
 }
 
 Array StatesArray(const SharedRecording& recording) {
-  const PendulumRecording seen = MakePendulumRecording(*recording, SkeletonMapping::kExact);
+  const PendulumRecording seen = MakePendulumRecording(*recording);
   return TableArray(seen.num_frames(), seen.num_people(), 8, [&](int t, int n) {
     Eigen::Matrix<double, 8, 1> state;
     state << seen.states[n][t].q, seen.states[n][t].qd;
@@ -161,7 +161,7 @@ py::dict Defaults() {
 
 py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first_frame,
                          int end_frame, int smoothing, const std::string& initial_velocity) {
-  const PendulumRecording seen = MakePendulumRecording(*recording, SkeletonMapping::kExact);
+  const PendulumRecording seen = MakePendulumRecording(*recording);
   PushEstimationOptions options;
   options.person = person;
   options.smoothing_frames = smoothing;
@@ -181,7 +181,7 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
 // What of recordings cannot be right, a dict each.
 py::list FindingsIn(const std::vector<SharedRecording>& recordings) {
   py::list list;
-  std::vector<Finding> found = FindingsOf(Pendulums(recordings, SkeletonMapping::kExact));
+  std::vector<Finding> found = FindingsOf(Pendulums(recordings));
   for (const SharedRecording& one : recordings) {
     for (Finding& finding : FacingFindings(*one)) found.push_back(std::move(finding));
   }

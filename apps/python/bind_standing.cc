@@ -38,8 +38,8 @@ py::dict ResponseDict(const FrequencyResponse& response) {
 
 py::dict ResponsesOf(const Model& model, const std::vector<SharedRecording>& recordings) {
   const IdentifiedModel identified = IdentifiedOf(model);
-  const auto responses = WithoutGil(
-      [&] { return FrequencyResponses(identified, Pendulums(recordings, identified.mapping)); });
+  const auto responses =
+      WithoutGil([&] { return FrequencyResponses(identified, Pendulums(recordings)); });
   py::dict dict;
   for (const FrequencyResponse& response : responses) {
     // Recordings whose segments last differently long are apart.
@@ -54,9 +54,8 @@ py::dict SwayDict(const Model& model, const std::vector<SharedRecording>& record
                   uint64_t seed) {
   if (repeats < 0) Raise(Fault::kUsage, Error{"repeats must not be negative"});
   const IdentifiedModel identified = IdentifiedOf(model);
-  const auto people = WithoutGil([&] {
-    return SwayOfPeople(identified, Pendulums(recordings, identified.mapping), repeats, seed);
-  });
+  const auto people =
+      WithoutGil([&] { return SwayOfPeople(identified, Pendulums(recordings), repeats, seed); });
   py::dict dict;
   py::list names, of;
   for (const PersonSway& one : people) {

@@ -213,7 +213,7 @@ py::dict Between(const Model& model, const std::string& start, const std::string
 
 py::dict Smooth(const Model& model, const SharedRecording& recording) {
   const IdentifiedModel identified = IdentifiedOf(model);
-  const PendulumRecording seen = MakePendulumRecording(*recording, identified.mapping);
+  const PendulumRecording seen = MakePendulumRecording(*recording);
   auto path = WithoutGil([&] { return SmoothPath(identified, seen); });
   return PathDict(Unwrapped(std::move(path), Fault::kUsage), seen.num_people());
 }

@@ -65,8 +65,7 @@ Warnings WarningsOf(const Told& told);
 // Recordings are shared, so that results and arrays outlive the list they came from.
 using SharedRecording = std::shared_ptr<const Recording>;
 std::vector<Recording> Copies(const std::vector<SharedRecording>& recordings);
-std::vector<PendulumRecording> Pendulums(const std::vector<SharedRecording>& recordings,
-                                         SkeletonMapping mapping);
+std::vector<PendulumRecording> Pendulums(const std::vector<SharedRecording>& recordings);
 
 // A choice by its name.
 template <typename E>

@@ -68,11 +68,10 @@ std::vector<Recording> Copies(const std::vector<SharedRecording>& recordings) {
   return copies;
 }
 
-std::vector<PendulumRecording> Pendulums(const std::vector<SharedRecording>& recordings,
-                                         SkeletonMapping mapping) {
+std::vector<PendulumRecording> Pendulums(const std::vector<SharedRecording>& recordings) {
   std::vector<PendulumRecording> pendulums;
   for (const SharedRecording& one : recordings) {
-    pendulums.push_back(MakePendulumRecording(*one, mapping));
+    pendulums.push_back(MakePendulumRecording(*one));
   }
   return pendulums;
 }
@@ -187,7 +186,7 @@ void AddPush(const Array& rows, int person, int start, const PushHeight& height,
                      "(rows,) or (rows, 2 or 3) of forces in N, or (rows, 4) of generalized forces "
                      "in N and N m"));
   }
-  const PendulumRecording seen = MakePendulumRecording(*recording, SkeletonMapping::kExact);
+  const PendulumRecording seen = MakePendulumRecording(*recording);
   Push push;
   push.person = person;
   push.start_frame = start;

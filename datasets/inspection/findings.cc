@@ -497,8 +497,7 @@ std::vector<Finding> FacingFindings(const Recording& recording) {
 }
 
 std::vector<Finding> FindingsOf(const Recording& recording) {
-  std::vector<Finding> found =
-      FindingsOf(MakePendulumRecording(recording, SkeletonMapping::kExact));
+  std::vector<Finding> found = FindingsOf(MakePendulumRecording(recording));
   for (Finding& finding : FacingFindings(recording)) found.push_back(std::move(finding));
   return found;
 }

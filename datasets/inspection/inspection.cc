@@ -239,7 +239,7 @@ MaybeError InspectManifest(Inspection* found) {
     if (recording.ok()) ++read;
     if (recording.ok()) {
       InspectLaboratory(entry, recording.value(), found);
-      pendulums.push_back(MakePendulumRecording(recording.value(), SkeletonMapping::kExact));
+      pendulums.push_back(MakePendulumRecording(recording.value()));
       const std::vector<Finding> more = FacingFindings(recording.value());
       facing.insert(facing.end(), more.begin(), more.end());
     }

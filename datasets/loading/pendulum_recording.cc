@@ -113,7 +113,7 @@ std::vector<PlateFrame> PlateFrames(const Recording& recording, const RecordedPe
 
 }  // namespace
 
-PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping) {
+PendulumRecording MakePendulumRecording(const Recording& recording) {
   PendulumRecording result;
   result.id = recording.id;
   result.labels = recording.labels;
@@ -130,7 +130,7 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
     ScenePerson in_scene;
     for (size_t t = 0; t < person.hip.size(); ++t) {
       const MappedPose pose =
-          MapSkeleton(person.hip[t], person.left_ankle[t], person.right_ankle[t], mapping);
+          MapSkeleton(person.hip[t], person.left_ankle[t], person.right_ankle[t]);
       states[t].q = pose.q;
       if (t > 0) states[t].qd = (pose.q - states[t - 1].q) * recording.fps;
       lengths[t] = pose.rod_length;
@@ -169,11 +169,10 @@ PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapp
   return result;
 }
 
-std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings,
-                                                      SkeletonMapping mapping) {
+std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings) {
   std::vector<PendulumRecording> pendulums;
   for (const Recording& recording : recordings) {
-    pendulums.push_back(MakePendulumRecording(recording, mapping));
+    pendulums.push_back(MakePendulumRecording(recording));
   }
   return pendulums;
 }

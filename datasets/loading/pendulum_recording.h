@@ -71,9 +71,8 @@ struct PendulumRecording {
 
 // Rod length and cart height are those of frame 0; the start velocity is zero or estimated, as the
 // recording says (`free` starts from the estimate).
-PendulumRecording MakePendulumRecording(const Recording& recording, SkeletonMapping mapping);
-std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings,
-                                                      SkeletonMapping mapping);
+PendulumRecording MakePendulumRecording(const Recording& recording);
+std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recording>& recordings);
 
 // Horizontal and of length 1: of the impulse on the pushed person; without one of the ground's
 // farthest shift; x without either.

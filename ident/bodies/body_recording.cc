@@ -50,9 +50,9 @@ void AddSeen(const BodyRecording& recording, int observed, std::vector<Restorati
 
 }  // namespace
 
-Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapping mapping) {
+Result<BodyRecording> MakeBodyRecording(const Recording& recording) {
   BodyRecording result;
-  result.pendulum = MakePendulumRecording(recording, mapping);
+  result.pendulum = MakePendulumRecording(recording);
   for (const RecordedPerson& person : recording.people) {
     if (MaybeError error = CheckSkeleton(recording, person)) return *error;
     BodyMotion motion(person.joints.size());
@@ -67,11 +67,10 @@ Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapp
   return result;
 }
 
-Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings,
-                                                      SkeletonMapping mapping) {
+Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings) {
   std::vector<BodyRecording> bodies;
   for (const Recording& recording : recordings) {
-    Result<BodyRecording> body = MakeBodyRecording(recording, mapping);
+    Result<BodyRecording> body = MakeBodyRecording(recording);
     if (!body.ok()) return body.error();
     bodies.push_back(std::move(body.value()));
   }
@@ -82,7 +81,7 @@ RecordedBodies BodiesOfGroups(const std::vector<Recording>& recordings) {
   const bool groups = std::any_of(recordings.begin(), recordings.end(),
                                   [](const Recording& r) { return r.people.size() > 1; });
   if (!groups) return {};
-  const auto made = MakeBodyRecordings(recordings, SkeletonMapping::kExact);
+  const auto made = MakeBodyRecordings(recordings);
   if (!made.ok()) return {};
   RecordedBodies bodies;
   for (const BodyRecording& recording : made.value()) bodies.push_back(recording.bodies);

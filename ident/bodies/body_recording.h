@@ -65,9 +65,8 @@ struct BodyRecording {
 
 // The recording must have been read with all joints. Errors: roles that no joint of a skeleton
 // plays and that its neighbours do not fill (datasets/manifest/body_roles.h).
-Result<BodyRecording> MakeBodyRecording(const Recording& recording, SkeletonMapping mapping);
-Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings,
-                                                      SkeletonMapping mapping);
+Result<BodyRecording> MakeBodyRecording(const Recording& recording);
+Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings);
 // Of all recordings; of none where not all have such a skeleton, or nobody is in a group.
 RecordedBodies BodiesOfGroups(const std::vector<Recording>& recordings);
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings);

@@ -14,12 +14,6 @@
 
 namespace pushid {
 namespace {
-
-bool IsLarge(const FitOptions& options) {
-  const auto& learned = options.model.learned;
-  return learned != nullptr && learned->weights.size() > size_t{kMostGaussNewtonWeights};
-}
-
 Error NotAsFitted(const std::string& id, const std::string& what) {
   return Error{"recording " + id + " " + what};
 }
@@ -41,12 +35,6 @@ MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
   }
   // Whether it was trained by its gradient, or will be: a model's file holds its network.
   const bool large = IsLarge(options);
-  const bool stopped_early = options.early_stopping > 0.0 && !large;
-  if (stopped_early && (bootstrap || !checks.profile.empty())) {
-    return Error{
-        "--profile and --bootstrap need the minimum of the cost, which a fit with --early_stopping "
-        "does not reach; prevent overfitting with --network_prior instead"};
-  }
   if (checks.horizon_check && (large || options.likelihood != Likelihood::kTrajectory)) {
     return Error{
         "--horizon_check compares rollouts of many lengths: leave --likelihood out, and choose a "

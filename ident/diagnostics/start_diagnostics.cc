@@ -69,13 +69,30 @@ void HoldUnusedTail(const std::vector<PendulumRecording>& recordings, FitOptions
   }
 }
 
+namespace {
+
+// The nominal point with every free gain multiplied by kNearby^u, u uniform in [-1, 1].
+FitPoint NearbyPoint(const FitProblem& problem) {
+  Random random(kNearbySeed);
+  FitPoint point = problem.NominalPoint();
+  for (size_t i = 0; i < point.shared.size(); ++i) {
+    const Transform transform = problem.map().fitted[i].transform;
+    const double natural =
+        ToNatural(transform, point.shared[i]) * std::pow(kNearby, random.Uniform(-1.0, 1.0));
+    point.shared[i] = ToFitted(transform, natural);
+  }
+  return point;
+}
+
+}  // namespace
+
 MaybeError CheckEffects(const FitProblem& problem) {
   const FitPoint nominal = problem.NominalPoint();
   std::vector<std::string> names = WithoutEffect(problem, nominal, EvaluateAt(problem, nominal));
   if (names.empty()) return std::nullopt;
   // A term may rest at the nominal values (a contact not reached, a network that begins without
   // any output) and act beside them.
-  FitPoint nearby = RandomStart(problem, kNearby, kNearbySeed);
+  FitPoint nearby = NearbyPoint(problem);
   Random random(kNearbySeed);
   for (double& weight : nearby.weights) weight += random.Uniform(-kNearbyWeight, kNearbyWeight);
   MoveOffBounds(problem, &nearby);

@@ -26,9 +26,7 @@ FitOptions WithPeopleApart(const FitResult& result) {
   options.pool_by = kSubjectUnit;
   options.pooling_sigma.reset();
   options.start_deviations.clear();
-  options.early_stopping = 0.0;
   options.hold_network = true;
-  options.num_starts = 1;
   options.horizons = {0};
   for (ParameterSpec& spec : options.table.specs) {
     if (spec.free) spec.nominal = result.parameters[spec.id];
@@ -51,7 +49,7 @@ void AddContrastEffects(const std::vector<PendulumRecording>& recordings, FitRes
   if (by_person || !PeopleCanBeTold(recordings)) return;
   FitProblem problem(recordings, WithPeopleApart(*result));
   const WeightedSolution solved = SolveAsAsked(&problem);
-  if (solved.solution.best < 0) return;
+  if (!solved.solution.ok()) return;
   for (ContrastRow& row : result->contrast->rows) {
     const ParameterSpec* spec = problem.options().table.Find(row.name);
     if (!spec->pooled || spec->pooling_sigma <= kLeastPoolingSigma) continue;

@@ -19,7 +19,7 @@ constexpr double kFoldTolerance = 1e-5;
 
 std::vector<std::vector<int>> FoldsOf(const FitProblem& problem) {
   std::vector<std::vector<int>> units =
-      MakeResamplingUnits(problem.recordings(), problem.options().cluster).units;
+      MakeResamplingUnits(problem.recordings(), ClusterBy::kAuto).units;
   if (units.size() < kFewestUnits) {
     units.clear();
     for (size_t i = 0; i < problem.recordings().size(); ++i) units.push_back({static_cast<int>(i)});

@@ -22,27 +22,24 @@ namespace {
 struct SolvedFit {
   FitProblem problem;
   WeightedSolution solved;
-  std::string no_noise;  // a warning
 
-  bool ok() const { return solved.solution.best >= 0; }
-  const SolveStart& Best() const { return solved.solution.Best(); }
+  bool ok() const { return solved.solution.ok(); }
+  const SolveStart& Best() const { return solved.solution.start; }
 };
 
-// What judging and folds have in common. Errors: a large network's physical model alone has no
-// usable optimum; without one of the whole, the result is not ok().
+// What judging and folds have in common. Errors: a large network's training fails; without a usable
+// optimum the result is not ok().
 Result<SolvedFit> SolveFit(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options, const SolveProgress& progress) {
-  const Result<FitOptions> trained = WithLargeNetworkTrained(recordings, options, progress);
+  const bool trains = NeedsGradientTraining(options);
+  const Result<FitOptions> trained =
+      trains ? TrainLargeNetwork(recordings, options, progress) : Result<FitOptions>(options);
   if (!trained.ok()) return trained.error();
-  SolvedFit fit{FitProblem(recordings, trained.value()), {}, ""};
+  SolvedFit fit{FitProblem(recordings, trained.value()), {}};
   // What was trained together is an optimum of it all already.
-  const bool stays =
-      options.network_training == NetworkTraining::kTogether && NeedsGradientTraining(options);
-  if (stays) fit.problem.set_gradient_tolerance(std::numeric_limits<double>::infinity());
+  if (trains) fit.problem.set_gradient_tolerance(std::numeric_limits<double>::infinity());
   fit.solved = SolveAsAsked(&fit.problem, progress);
   fit.problem.set_gradient_tolerance(options.gradient_tolerance);
-  if (!fit.ok()) return fit;
-  fit.no_noise = EstimateNoise(fit.Best().to, &fit.problem);
   return fit;
 }
 
@@ -52,14 +49,14 @@ FitResult ResultOf(const SolvedFit& fit) {
   const Solution& solution = fit.solved.solution;
   FitResult result;
   result.options = fit.problem.options();
-  result.starts = solution.starts;
-  result.best_start = solution.best;
+  result.starts = {solution.start};
+  result.best_start = solution.ok() ? 0 : -1;
   result.solve_seconds = solution.seconds;
   if (!result.ok()) {
-    result.message = "no start could be solved: " + solution.starts[0].message;
+    result.message = "no start could be solved: " + solution.start.message;
     return result;
   }
-  const SolveStart& best = solution.Best();
+  const SolveStart& best = solution.start;
   result.converged = best.converged;
   result.cost = best.cost;
   result.message = best.message;
@@ -96,7 +93,6 @@ void AddFittedTo(const std::vector<PendulumRecording>& recordings, FitResult* re
 void AddWarnings(const SolvedFit& fit, FitResult* result) {
   Warnings& warnings = result->warnings;
   warnings = FitWarnings(fit.problem, *result);
-  if (!fit.no_noise.empty()) warnings.emplace_back(fit.no_noise);
   if (fit.solved.weights_settled) return;
   warnings.emplace_back(
       result->options.likelihood == Likelihood::kTrajectory
@@ -133,7 +129,6 @@ FitResult Judge(const SolvedFit& fit) {
   const FitPoint& optimum = fit.Best().to;
   const std::optional<FitPoint>& free = fit.solved.free;
   WorkLog work = fit.solved.work;
-  work.Add("noise");
 
   // Errors clustered by person, and the shares of data and priors (uncertainty.h).
   result.uncertainty = ComputeUncertainty(problem, optimum, free ? &*free : nullptr);

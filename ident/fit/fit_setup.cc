@@ -6,7 +6,6 @@
 #include <sstream>
 
 #include "datasets/files/names.h"
-#include "ident/model/model_json.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/presets.h"
@@ -23,40 +22,11 @@ const std::string* Find(const GivenOptions& given, const std::string& name) {
   return nullptr;
 }
 
-// Takes over what a person does alone; the terms between people stay as they are.
-MaybeError TakeSelfFrom(const std::string& path, Stance stance, ParameterTable* table) {
-  const Result<FittedModel> read = ReadFittedModel(path);
-  if (!read.ok()) return read.error();
-  const FitResult& source = read.value().fit;
-  if (const auto& network = source.options.model.learned) {
-    return Error{"has learned " + LearnedName(*network) +
-                     ", which --self_from cannot take over; fit one without",
-                 path};
-  }
-  if (source.options.model.stance != stance) {
-    return Error{"was fitted with --stance=" + NameOf(source.options.model.stance) +
-                     ", which --self_from cannot take into a fit with --stance=" + NameOf(stance),
-                 path};
-  }
-  for (ParameterSpec& spec : table->specs) {
-    if (spec.id >= kFirstPairParameter && spec.id < kSupportFront) continue;
-    if (IsNoiseParameter(spec.id)) continue;  // of this fit
-    spec.nominal = source.parameters[spec.id];
-    spec.free = false;
-  }
-  return std::nullopt;
-}
-
 MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* options) {
   for (const FitOptionRow& row : FitOptionRows()) {
     const std::string* value = row.stage == stage ? Find(given, row.name) : nullptr;
     if (value == nullptr) continue;
-    if (stage == OptionStage::kOtherModel) {
-      if (MaybeError error = TakeSelfFrom(*value, options->model.stance, &options->table))
-        return error;
-    } else if (MaybeError error = row.apply(*value, options)) {
-      return error;
-    }
+    if (MaybeError error = row.apply(*value, options)) return error;
   }
   return std::nullopt;
 }
@@ -64,23 +34,18 @@ MaybeError ApplyStage(OptionStage stage, const GivenOptions& given, FitOptions* 
 // Options that were given but act on nothing: an error that says what is missing.
 MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
   const auto& network = options.model.learned;
-  for (const char* name : {"network_prior", "early_stopping", "network_training",
-                           "network_optimizer", "network_iterations", "network_rate"}) {
-    if (network != nullptr || Find(given, name) == nullptr) continue;
-    return Error{std::string("--") + name +
-                 " acts on networks, but there is none; add one, as in --self_force=mlp:4"};
+  if (network == nullptr && Find(given, "network_prior") != nullptr) {
+    return Error{
+        "--network_prior acts on networks, but there is none; add one, as in --self_force=mlp:4"};
   }
-  for (const char* name : {"horizons", "recording_weight", "effective_weight", "sigma_hip",
-                           "sigma_velocity", "sigma_angle", "sigma_rate", "sigmas", "marker_noise",
-                           "robust", "loss", "settling_weight", "mode_weight"}) {
+  for (const char* name : {"marker_noise", "loss", "settling_weight", "mode_weight"}) {
     if (options.likelihood == Likelihood::kTrajectory || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name + " acts on fits of whole rollouts; --likelihood=" +
                  NameOf(options.likelihood) + " fits single steps and does not use it"};
   }
-  if (const std::string* noise = Find(given, "process_noise");
-      options.likelihood != Likelihood::kTrajectory && noise != nullptr && *noise == "none") {
-    return Error{"--likelihood=" + NameOf(options.likelihood) +
-                 " needs process noise, and --process_noise is none"};
+  if (options.model.friction == FrictionKind::kAnisotropic && Find(given, "friction") != nullptr &&
+      options.preset.rfind("ldp", 0) != 0) {
+    return Error{"--friction=anisotropic is for --preset=ldp; take isotropic or coulomb"};
   }
   for (const char* name : {"fix", "free", "prior"}) {
     const std::string* named = Find(given, name);
@@ -89,10 +54,8 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
         CheckTouching(*named, std::string("--") + name, options.table, options.model);
     if (error) return error;
   }
-  for (const char* name : {"pool_by", "pooling_sigma"}) {
-    if (AnyPooled(options.table) || Find(given, name) == nullptr) continue;
-    return Error{std::string("--") + name + " applies to pooled parameters, but the preset " +
-                 options.preset +
+  if (!AnyPooled(options.table) && Find(given, "pool_by") != nullptr) {
+    return Error{"--pool_by applies to pooled parameters, but the preset " + options.preset +
                  " pools none; add --pool=all, or name some, as in --pool=Kp_theta"};
   }
   return std::nullopt;
@@ -115,9 +78,7 @@ Result<FitOptions> OverPreset(const std::string& preset, const GivenOptions& giv
   FitOptions o = std::move(made.value());
   if (MaybeError error = ApplyStage(OptionStage::kModel, given, &o)) return *error;
   FreeTerms(&o);
-  for (OptionStage stage : {OptionStage::kOtherModel, OptionStage::kTable}) {
-    if (MaybeError error = ApplyStage(stage, given, &o)) return *error;
-  }
+  if (MaybeError error = ApplyStage(OptionStage::kTable, given, &o)) return *error;
   // Its shape is known now, and so is the seed.
   if (const auto network = o.model.learned) {
     o.model.learned = InitialNetwork(network->shape, o.seed, network->rod, network->pair);

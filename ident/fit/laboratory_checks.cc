@@ -16,8 +16,8 @@ MaybeError CheckDelay(const std::vector<PendulumRecording>& recordings, const Fi
   if (options.model.delay == Delay::kNone) return std::nullopt;
   if (options.model.cart_derivative != CartDerivative::kNone) {
     return Error{
-        "--delay and --cart_derivative do not go together: a late difference of velocities has no "
-        "meaning in short steps; leave one of the two out"};
+        "--delay and the derivative of the cart's velocity (--preset=ldp_published) do not go "
+        "together: a late difference of velocities has no meaning in short steps"};
   }
   for (Parameter id : {kReactionDelay, kStepDelay}) {
     if (!Acts(id, options.model)) continue;
@@ -105,11 +105,11 @@ MaybeError CheckPlatesAlone(const PendulumRecording& r, const FitOptions& option
     return Error{whose + ", which tell nothing of feet that slide or step; add --stance=fixed"};
   }
   if (model.process_noise != ProcessNoise::kNone) {
-    return Error{whose +
-                 ", and --process_noise compares positions, which nobody measured; leave it out"};
+    return Error{
+        whose +
+        ", and process noise compares positions, which nobody measured; leave --likelihood out"};
   }
-  if (model.body != BodyModel::kLdp || RodMoves(model) ||
-      NeedsGradientTraining(options)) {
+  if (model.body != BodyModel::kLdp || RodMoves(model) || NeedsGradientTraining(options)) {
     return Error{whose +
                  ", from which neither bodies, rods nor large networks are learnt; leave --body, "
                  "--rod and the network out"};

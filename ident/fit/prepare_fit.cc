@@ -11,7 +11,7 @@
 #include "ident/parameters/presets.h"
 #include "ident/parameters/pushed_feet.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/solver/network_training.h"
+#include "ident/solver/solver.h"
 
 namespace pushid {
 namespace {

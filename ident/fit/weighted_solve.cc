@@ -7,7 +7,6 @@
 
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/solver/network_training.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/clusters.h"
 
@@ -16,10 +15,8 @@ namespace {
 
 constexpr double kSettled = 0.01;  // relative change
 constexpr int kMostRounds = 20;
-constexpr int kFewIterations = 4;   // of a rough round: by weights that will change
-constexpr int kMostChanges = 2;     // of which start is the best
-constexpr double kSameCost = 1e-6;  // relative: another start at the same optimum
-constexpr double kRough = 1e-3;     // function tolerance on the way
+constexpr int kFewIterations = 4;  // of a rough round: by weights that will change
+constexpr double kRough = 1e-3;    // function tolerance on the way
 // The demand joins in three steps, each solved to its own optimum: all of it at once outweighs
 // everything else where people are far from settled, and the solver creeps along its edge. A
 // twentieth moves the optimum near the edge, and from there along it by steps of ordinary length.
@@ -36,7 +33,7 @@ double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights,
                RecordingSums* recordings) {
   const FitOptions options = problem.options();
   double change = 0.0;
-  if (options.sigma_source == SigmaSource::kEstimate) {
+  if (EstimatesSigmas(options)) {
     const ResidualSigmas& before = options.sigmas;
     const ResidualSigmas now = weights->sigmas = EstimateSigmas(problem, point);
     for (const auto& [a, b] : {std::pair(before.hip, now.hip),
@@ -47,19 +44,16 @@ double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights,
     }
     problem.Weigh(*weights);  // the effective weight is that of residuals in these sigmas
   }
-  if (options.recording_weight == RecordingWeight::kEffective) {
+  if (options.estimate_weights) {
     weights->effective_weight = EstimateEffectiveWeight(problem, point, recordings);
     change = std::max(change, Change(options.effective_weight, weights->effective_weight));
   }
   return std::max(change, UpdatePoolingSpread(problem, point, weights));
 }
 
-// On the way an optimum need not be exact; a network that stops learning in time must not be
-// stopped before.
+// On the way an optimum need not be exact.
 FitProblem Roughly(FitProblem problem) {
-  const FitOptions& options = problem.options();
-  if (options.early_stopping > 0.0 && !options.hold_network) return problem;
-  problem.set_function_tolerance(std::max(kRough, options.function_tolerance));
+  problem.set_function_tolerance(std::max(kRough, problem.options().function_tolerance));
   return problem;
 }
 
@@ -87,10 +81,8 @@ std::vector<FailedRollout> FailuresAfter(const FitProblem& problem, const SolveS
 
 // From the optimum under other weights to that under these.
 void SolveOn(const FitProblem& problem, SolveStart* start) {
-  const FitOptions& options = problem.options();
-  const bool hold_network = options.early_stopping > 0.0;
   SolveStart again =
-      Refit(problem, start->to, hold_network, options.num_threads, std::move(start->recordings));
+      Refit(problem, start->to, false, problem.options().num_threads, std::move(start->recordings));
   start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
   start->iterations += again.iterations;
   start->to = std::move(again.to);
@@ -138,7 +130,7 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
   for (double share : kDemandSteps) {
     part.set_settling_weight(share * demanding.options().settling_weight);
     if (share == kDemandSteps[0] && std::isinf(CostAt(part.WithoutRecordings(), free.to))) {
-      held = SolveFrom(Roughly(part), part.NominalPoint(), "nominal", "", nullptr);
+      held = SolveFrom(Roughly(part), part.NominalPoint(), "nominal", nullptr);
     } else {
       SolveOn(share < 1.0 ? OnTheWay(part) : part, &held);
     }
@@ -149,7 +141,7 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
 
 // Step 2 of the header, from the optimum without the demand.
 void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
-  SolveStart& best = solved->solution.starts[solved->solution.best];
+  SolveStart& best = solved->solution.start;
   const FitProblem without = *problem;
   problem->set_settling_weight(weight);
   const FitProblem demands = problem->WithoutRecordings();
@@ -173,28 +165,7 @@ void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
   }
   solved->free = best.to;
   best = std::move(held);
-}
-
-// The other starts, by the weights and demands of the best (held: where a demand binds it), so that
-// their costs compare. Whether one of them is better, which is then the best.
-bool SolveOthers(const FitProblem& problem, bool held, Solution* solution) {
-  const int found = solution->best;
-  for (int i = 0; i < static_cast<int>(solution->starts.size()); ++i) {
-    SolveStart& start = solution->starts[i];
-    if (i == found || !start.usable) continue;
-    start.recordings = {};  // by other weights
-    if (held) {
-      start = SolveHeld(problem, start);
-    } else {
-      SolveOn(problem, &start);
-      start.failed = FailuresAfter(problem, start);
-    }
-    const SolveStart& best = solution->Best();
-    const bool better = start.converged && start.failed.size() <= best.failed.size() &&
-                        start.cost < best.cost - kSameCost * std::abs(best.cost);
-    if (better) solution->best = i;
-  }
-  return solution->best != found;
+  best.usable = true;
 }
 
 }  // namespace
@@ -207,23 +178,17 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
   Solution& solution = solved.solution;
   solution = Solve(Roughly(*problem), progress);
   solved.work.Add("starts and horizons");
-  bool again = solution.best >= 0;
-  for (int change = 0; again && change <= kMostChanges; ++change) {
-    problem->set_settling_weight(0.0);
-    solved.settling = {};
-    solved.free.reset();
-    SolveStart& best = solution.starts[solution.best];
-    solved.weights_settled = Weigh(problem, &best);
-    best.failed = FailuresAfter(*problem, best);
-    solved.work.Add("weights");
-    Demand(weight, problem, &solved);
-    solved.work.Add("settling");
-    again = SolveOthers(*problem, solved.settling.holds(), &solution);
-    solved.work.Add("other starts");
+  if (!solution.ok()) {
+    problem->set_settling_weight(weight);
+    return solved;
   }
-  if (again) solved.free.reset();  // that of another start
-  for (SolveStart& start : solution.starts) start.recordings = {};
-  if (solution.best < 0) problem->set_settling_weight(weight);
+  SolveStart& best = solution.start;
+  solved.weights_settled = Weigh(problem, &best);
+  best.failed = FailuresAfter(*problem, best);
+  solved.work.Add("weights");
+  Demand(weight, problem, &solved);
+  solved.work.Add("settling");
+  best.recordings = {};
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solved;
@@ -239,20 +204,6 @@ WeightedSolution SolveAsAsked(FitProblem* problem, const SolveProgress& progress
   solved.weights_settled = by_steps.stays;
   solved.work.Add("likelihood");
   return solved;
-}
-
-Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>& recordings,
-                                           const FitOptions& options,
-                                           const SolveProgress& progress) {
-  if (!NeedsGradientTraining(options)) return options;
-  FitProblem physics(recordings, PhysicsAlone(options));
-  if (options.network_training == NetworkTraining::kTogether) {
-    return TrainLargeNetwork(recordings, options, {physics.options(), physics.NominalPoint()},
-                             progress);
-  }
-  const Solution solution = SolveAsAsked(&physics, progress).solution;
-  if (solution.best < 0) return Error{"the physical model alone has no usable optimum"};
-  return TrainLargeNetwork(recordings, options, {physics.options(), solution.Best().to}, progress);
 }
 
 }  // namespace pushid

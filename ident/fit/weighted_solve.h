@@ -12,8 +12,6 @@
 //    freedom the data contradict the demand: it is dropped, and the result says so. A constraint
 //    that need not bind has less than one degree of freedom, so this keeps the demand too often
 //    rather than too seldom. Where no fit that meets the demand is found, it is dropped as well.
-// With several starts the others are solved by the same weights and demand, so that their costs
-// compare; where one of them turns out better, it is weighed in turn.
 #pragma once
 
 #include <optional>
@@ -41,12 +39,5 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
 // By rollouts as above, or by a likelihood of single steps (solver/solver.h), as the
 // problem's options say.
 WeightedSolution SolveAsAsked(FitProblem* problem, const SolveProgress& progress = nullptr);
-
-// Where a network is too large for Gauss-Newton (solver/network_training.h): the physical model
-// solved alone as above, and then the network trained. Returns the options with the network held,
-// to be solved as above; for any other network the options as they are.
-Result<FitOptions> WithLargeNetworkTrained(const std::vector<PendulumRecording>& recordings,
-                                           const FitOptions& options,
-                                           const SolveProgress& progress = nullptr);
 
 }  // namespace pushid

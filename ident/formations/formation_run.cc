@@ -151,8 +151,7 @@ std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene) {
     const Eigen::Vector3d cart = 0.5 * (pose.col(kLeftAnkle) + pose.col(kRightAnkle));
     pose.colwise() +=
         Eigen::Vector3d(person.start.q[0] - cart.x(), person.start.q[1] - cart.y(), 0.0);
-    const MappedPose mapped = MapSkeleton(pose.col(0), pose.col(kLeftAnkle), pose.col(kRightAnkle),
-                                          SkeletonMapping::kExact);
+    const MappedPose mapped = MapSkeleton(pose.col(0), pose.col(kLeftAnkle), pose.col(kRightAnkle));
     person.body.rod_length = mapped.rod_length;
     person.body.cart_height = mapped.cart_height;
     person.start.q.tail<2>() = mapped.q.tail<2>();

@@ -25,7 +25,6 @@ std::array<Eigen::Vector3d, kNumForecasters> ForecastStack::DefaultLogits() {
 IdentifiedModel ModelOf(const FitResult& result) {
   IdentifiedModel model;
   model.options = result.options.model;
-  model.mapping = result.options.mapping;
   model.table = result.options.table;
   model.parameters = result.parameters;
   model.pool_by = result.options.pool_by;

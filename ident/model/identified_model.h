@@ -138,7 +138,6 @@ struct FitResult;
 struct IdentifiedModel {
   std::string source;  // file, for messages
   ModelOptions options;
-  SkeletonMapping mapping = SkeletonMapping::kExact;
   ParameterTable table;  // names, units and bounds, for --set
   ParameterSet<double> parameters{};
   std::string pool_by = kSubjectUnit;

@@ -18,10 +18,6 @@ namespace {
 // What options of networks ask for that there is not; empty: nothing.
 std::string MissingNetwork(const FitOptions& o) {
   const auto& network = o.model.learned;
-  if (network == nullptr && o.early_stopping > 0.0) {
-    return "--early_stopping acts on networks, but there is none; add one, as in "
-           "--self_force=mlp:4";
-  }
   const bool pair = network != nullptr && network->pair.any();
   if (o.model.interaction.learned_in_range != (pair && network->pair.ldp)) {
     return "--interaction names another network between people than there is";
@@ -39,45 +35,34 @@ std::string StanceViolation(const FitOptions& o) {
   if (o.model.stance == Stance::kSlide) return "";
   const char* sliding = RodMoves(o.model)          ? "--rod"
                         : NeedsGradientTraining(o) ? "a network that is trained by its gradient"
-                        : o.model.push != PushUse::kAsRecorded             ? "--push=added"
-                        : o.model.cart_derivative != CartDerivative::kNone ? "--cart_derivative"
+                        : o.model.push != PushUse::kAsRecorded             ? "a push that is added"
+                        : o.model.cart_derivative != CartDerivative::kNone ? "the cart's derivative"
                                                                            : nullptr;
   if (sliding == nullptr) return "";
   return std::string(sliding) + " is for feet that slide and does not go together with --stance=" +
          NameOf(o.model.stance) + "; drop one of the two";
 }
 
-// What LDP's loss cannot go together with; empty: nothing.
-std::string LossViolation(const FitOptions& o) {
-  if (o.sigmas.loss != FrameLoss::kLdp) return "";
-  if (o.sigma_source == SigmaSource::kEstimate) {
-    return "--loss=ldp weights all states equally: --sigmas must be fixed";
-  }
-  return "";
-}
-
 }  // namespace
 
 bool FitOptions::IsValid(std::string* error) const {
-  for (const FitOptionRow& row : FitOptionRows()) {
+  for (const FitOptionRow& row : AllOptionRows()) {
     const std::string violated = row.violation ? row.violation(*this) : "";
     if (violated.empty()) continue;
-    *error = "--" + row.name + " is " + row.text(*this) + "; it " + violated;
+    *error = (row.is_flag ? "--" : "") + row.name + " is " + row.text(*this) + "; it " + violated;
     return false;
   }
   *error = MissingNetwork(*this);
   if (error->empty()) *error = StanceViolation(*this);
-  if (error->empty()) *error = LossViolation(*this);
   if (error->empty() && table.Free().empty()) {
     *error = "every parameter is fixed: nothing is left to fit";
   }
   return error->empty();
 }
 
-bool NeedsGradientTraining(const FitOptions& options) {
+bool IsLarge(const FitOptions& options) {
   const auto& network = options.model.learned;
-  return !options.hold_network && network != nullptr &&
-         static_cast<int>(network->weights.size()) > kMostGaussNewtonWeights;
+  return network != nullptr && static_cast<int>(network->weights.size()) > kMostGaussNewtonWeights;
 }
 
 namespace {
@@ -91,8 +76,11 @@ constexpr std::pair<const char*, double> kRetiredOptions[] = {{"stability_weight
                                                               {"ensemble", 1.0},
                                                               {"body_weight", 0.0},
                                                               {"mode_margin_per_s", 0.2}};
-// The parameters of the interaction term `drive`, which `interaction` would name.
-constexpr const char* kRetiredParameters[] = {"drive_gain", "drive_torque", "drive_time"};
+// Parameters of earlier versions, of terms that `interaction` or `process_noise` would name.
+constexpr const char* kRetiredParameters[] = {"drive_gain",  "drive_torque",  "drive_time",
+                                              "noise_y_x",   "noise_theta_x", "noise_theta_y",
+                                              "noise_phi_x", "noise_phi_y",   "noise_phi_theta",
+                                              "noise_speed", "noise_push"};
 
 }  // namespace
 
@@ -124,7 +112,7 @@ Json TableJson(const ParameterTable& table) {
 
 Json OptionsJson(const FitOptions& options) {
   Json json;
-  for (const FitOptionRow& row : FitOptionRows()) {
+  for (const FitOptionRow& row : AllOptionRows()) {
     if (!row.json.empty()) json[Json::json_pointer(row.json)] = row.write(options);
   }
   return json;
@@ -209,7 +197,7 @@ FitOptions OptionsFrom(const Json& json) {
                              " was an option of earlier versions; models fitted with it cannot be "
                              "read any more");
   }
-  for (const FitOptionRow& row : FitOptionRows()) {
+  for (const FitOptionRow& row : AllOptionRows()) {
     if (row.json.empty()) continue;
     const Json::json_pointer place(row.json);
     if (row.may_be_absent && !json.contains(place)) continue;

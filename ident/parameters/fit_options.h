@@ -12,49 +12,10 @@
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/parameter_table.h"
 #include "models/enum_names.h"
-#include "models/skeleton_mapping.h"
 #include "residuals/fit_choices.h"
 #include "residuals/frame_residual.h"
 
 namespace pushid {
-
-// How much a recording counts.
-enum class RecordingWeight {
-  kEffective,  // as many frames as are independent (uncertainty/clusters.h)
-  kFrame,      // every frame counts as one: lasting errors count many times
-  kRecording   // every recording counts as one frame
-};
-constexpr EnumNames<RecordingWeight, 3> Names(RecordingWeight) {
-  return {{{"effective", RecordingWeight::kEffective},
-           {"frame", RecordingWeight::kFrame},
-           {"recording", RecordingWeight::kRecording}}};
-}
-
-// Where the standard deviations of the residuals come from.
-enum class SigmaSource {
-  kEstimate,  // from the residuals' own robust scale, component by component
-  kFixed      // as they are given
-};
-constexpr EnumNames<SigmaSource, 2> Names(SigmaSource) {
-  return {{{"estimate", SigmaSource::kEstimate}, {"fixed", SigmaSource::kFixed}}};
-}
-
-// How a network that is too large for Gauss-Newton is trained, and by what.
-enum class NetworkTraining {
-  kAfterPhysics,  // the physical model alone, then the weights, then the physical model again
-  kTogether       // weights and free parameters at once, from the nominal values
-};
-constexpr EnumNames<NetworkTraining, 2> Names(NetworkTraining) {
-  return {{{"after_physics", NetworkTraining::kAfterPhysics},
-           {"together", NetworkTraining::kTogether}}};
-}
-enum class NetworkOptimizer {
-  kLbfgs,  // Ceres' L-BFGS on all recordings
-  kAdam    // Adam on a few recordings at a time, as LDP trains
-};
-constexpr EnumNames<NetworkOptimizer, 2> Names(NetworkOptimizer) {
-  return {{{"lbfgs", NetworkOptimizer::kLbfgs}, {"adam", NetworkOptimizer::kAdam}}};
-}
 
 // Whose errors are independent of each other.
 enum class ClusterBy {
@@ -71,7 +32,6 @@ constexpr EnumNames<ClusterBy, 3> Names(ClusterBy) {
 struct FitOptions {
   std::string preset = "tail";                      // it was made from (presets.h)
   SelfForceKind self_force = SelfForceKind::kNone;  // by SetSelfForce (presets.h)
-  SkeletonMapping mapping = SkeletonMapping::kExact;
   ModelOptions model;
   ParameterTable table;
   bool preset_priors = true;  // false: FreeTerms takes the weak priors away
@@ -80,13 +40,12 @@ struct FitOptions {
 
   // Where they are estimated: where the estimation starts, and in a result what it found.
   ResidualSigmas sigmas;
-  SigmaSource sigma_source = SigmaSource::kEstimate;
   double marker_noise = 0.001;  // m, of hip and ankles: no residual counts as more exact
-  RecordingWeight recording_weight = RecordingWeight::kEffective;
-  // Independent frames per frame, where recording_weight is effective: found by the fit; 0: not
-  // yet, every recording counts as one frame.
+  // Independent frames per frame (uncertainty/clusters.h): found by the fit; 0: not yet, every
+  // recording counts as one frame.
   double effective_weight = 0.0;
-  ClusterBy cluster = ClusterBy::kAuto;  // of standard errors and of resampling
+  // False: sigmas and effective weight stay as they are given.
+  bool estimate_weights = true;
   // Weight of the demand that people settle (cost_functions/rest_residual.h), which the data may
   // contradict (fit/weighted_solve.h): 0: none.
   double settling_weight = 0.0;
@@ -114,21 +73,11 @@ struct FitOptions {
   // prior that ties its weights to zero; 0: none. Smaller where it does not predict better than
   // none.
   double network_prior = 1.0;
-  // Share of the recordings held out to stop a network's training before it learns the rest by
-  // heart; 0: none, the prior alone holds it.
-  double early_stopping = 0.0;
-  // Of large networks (large_networks/large_network_fit.h).
-  NetworkTraining network_training = NetworkTraining::kAfterPhysics;
-  NetworkOptimizer network_optimizer = NetworkOptimizer::kLbfgs;
-  int network_iterations = 200;  // of L-BFGS, or Adam's passes over the recordings, at most
-  double network_rate = 1e-3;    // learning rate of Adam, which falls to a hundredth of it
-  bool hold_network = false;     // its weights are taken as they are
+  bool hold_network = false;  // its weights are taken as they are
 
   // Frames rolled out in each stage; 0 means all. Short horizons first keep the path from wandering
   // off while the gains are still wrong.
   std::vector<int> horizons = {8, 16, 32, 64, 0};
-  int num_starts = 1;         // the best of so many: from the nominal values, the others random
-  double start_spread = 5.0;  // random starts multiply every free gain by up to this, either way
   uint64_t seed = 1;
   int num_threads = 1;
 
@@ -142,10 +91,19 @@ struct FitOptions {
   bool IsValid(std::string* error) const;
 };
 
+// LDP's loss weights all states alike, by the sigmas that it is given.
+inline bool EstimatesSigmas(const FitOptions& options) {
+  return options.estimate_weights && options.sigmas.loss != FrameLoss::kLdp;
+}
+
 // More weights than these are trained by their gradient alone: a Jacobian of the 32 single-person
 // recordings would hold 20,000 rows of them.
 inline constexpr int kMostGaussNewtonWeights = 2000;
-bool NeedsGradientTraining(const FitOptions& options);
+bool IsLarge(const FitOptions& options);
+// Until it has been trained.
+inline bool NeedsGradientTraining(const FitOptions& options) {
+  return !options.hold_network && IsLarge(options);
+}
 
 // As JSON: the options, and the parameter table.
 nlohmann::ordered_json OptionsJson(const FitOptions& options);

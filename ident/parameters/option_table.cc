@@ -1,13 +1,18 @@
-// ident: the rows of weights, solver and table.
+// ident: the rows of all options.
 #include "ident/parameters/option_table.h"
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/parameters/option_row_makers.h"
+#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/option_names.h"
+#include "ident/parameters/presets.h"
 
 namespace pushid {
 namespace {
@@ -15,43 +20,348 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Row = FitOptionRow;
 
-constexpr std::int64_t kLongestHorizon = 1000000;  // frames
+// Rows by the kind of their value.
 
-MaybeError ReadHorizons(const std::string& text, FitOptions* o) {
-  o->horizons.clear();
-  for (const std::string& part : SplitList(text)) {
-    std::int64_t frames = 0;
-    if (!ParseInteger(part, &frames) || frames < 2 || frames > kLongestHorizon) {
-      return Error{"--horizons: '" + part + "' is not a number of frames of at least 2"};
-    }
-    o->horizons.push_back(static_cast<int>(frames));
+// Where a row's value stands: among the options of the fit, those of the model, or the sigmas.
+template <typename T>
+class OptionField {
+ public:
+  OptionField(T FitOptions::*of_fit) : of_fit_(of_fit) {}               // NOLINT: stands for it
+  OptionField(T ModelOptions::*of_model) : of_model_(of_model) {}       // NOLINT
+  OptionField(T ResidualSigmas::*of_sigmas) : of_sigmas_(of_sigmas) {}  // NOLINT
+  T& operator()(FitOptions& o) const {
+    return of_fit_ ? o.*of_fit_ : of_model_ ? o.model.*of_model_ : o.sigmas.*of_sigmas_;
   }
-  o->horizons.push_back(0);
-  return std::nullopt;
+
+ private:
+  T FitOptions::*of_fit_ = nullptr;
+  T ModelOptions::*of_model_ = nullptr;
+  T ResidualSigmas::*of_sigmas_ = nullptr;
+};
+
+template <typename T>
+const T& OptionValue(OptionField<T> field, const FitOptions& options) {
+  return field(const_cast<FitOptions&>(options));  // only read
 }
 
-Row HorizonsRow() {
-  Row row =
-      WordsRow("horizons", OptionStage::kModel,
-               "frames of the stages before all frames, from the first push on, comma-separated",
-               ReadHorizons);
-  row.text = [](const FitOptions& o) {
-    std::string text;
-    for (int frames : o.horizons) {
-      if (frames > 0) text += (text.empty() ? "" : ",") + std::to_string(frames);
-    }
-    return text;
-  };
-  row.violation = [](const FitOptions& o) {
-    const bool sound = std::all_of(o.horizons.begin(), o.horizons.end(),
-                                   [](int frames) { return frames == 0 || frames >= 2; });
-    return sound ? "" : "must be numbers of frames of at least 2";
-  };
-  row.json = "/horizons";
-  row.write = [](const FitOptions& o) { return Json(o.horizons); };
-  row.read = [](const Json& json, FitOptions* o) { o->horizons = json.get<std::vector<int>>(); };
+struct OptionRange {
+  double lower, upper;
+  bool open = false;  // without its lower end
+  const char* words;  // "must be positive"
+};
+constexpr double kAnyNumber = std::numeric_limits<double>::max();
+constexpr OptionRange kPositive = {0.0, kAnyNumber, true, "must be positive"};
+constexpr OptionRange kNotNegative = {0.0, kAnyNumber, false, "must be a number of at least 0"};
+
+// Written so that NaN and infinity lie outside.
+std::string RangeViolation(const OptionRange& range, double value) {
+  const bool inside =
+      (range.open ? value > range.lower : value >= range.lower) && value <= range.upper;
+  return inside ? "" : range.words;
+}
+
+// "--robust is 'abc'; it must be positive".
+Error BadOption(const std::string& name, const std::string& value, const std::string& must) {
+  return Error{"--" + name + " is '" + value + "'; it " + must};
+}
+
+// A row that stands in no model, with a way to apply its words.
+Row WordsRow(const char* name, OptionStage stage, const char* help,
+             std::function<MaybeError(const std::string&, FitOptions*)> apply) {
+  Row row;
+  row.name = name;
+  row.help = help;
+  row.stage = stage;
+  row.apply = std::move(apply);
   return row;
 }
+
+Row NumberRow(const char* name, const char* json, OptionField<double> field, OptionRange range,
+              const char* help) {
+  Row row;
+  row.name = name;
+  row.json = json;
+  row.help = help;
+  row.text = [field](const FitOptions& o) { return DoubleText(OptionValue(field, o)); };
+  row.apply = [=](const std::string& text, FitOptions* o) -> MaybeError {
+    if (ParseDouble(text, &field(*o))) return std::nullopt;
+    return BadOption(name, text, range.words);
+  };
+  row.violation = [=](const FitOptions& o) { return RangeViolation(range, OptionValue(field, o)); };
+  row.write = [field](const FitOptions& o) { return Json(OptionValue(field, o)); };
+  row.read = [field](const Json& json_value, FitOptions* o) { field(*o) = json_value; };
+  return row;
+}
+
+// A whole number of at least 1.
+Row CountRow(const char* name, const char* json, OptionField<int> field, const char* help) {
+  Row row;
+  row.name = name;
+  row.json = json;
+  row.help = help;
+  row.text = [field](const FitOptions& o) { return std::to_string(OptionValue(field, o)); };
+  row.apply = [=](const std::string& text, FitOptions* o) -> MaybeError {
+    std::int64_t value = 0;
+    const bool whole = ParseInteger(text, &value) && value <= std::numeric_limits<int>::max() &&
+                       value >= std::numeric_limits<int>::min();
+    if (!whole) return BadOption(name, text, "must be a whole number of at least 1");
+    field(*o) = static_cast<int>(value);
+    return std::nullopt;
+  };
+  row.violation = [field](const FitOptions& o) {
+    return OptionValue(field, o) >= 1 ? "" : "must be positive";
+  };
+  row.write = [field](const FitOptions& o) { return Json(OptionValue(field, o)); };
+  row.read = [field](const Json& json_value, FitOptions* o) { field(*o) = json_value; };
+  return row;
+}
+
+// Yes or no.
+Row BoolRow(const char* name, const char* json, bool FitOptions::*field, const char* help) {
+  Row row = WordsRow(
+      name, OptionStage::kModel, help, [=](const std::string& text, FitOptions* o) -> MaybeError {
+        for (const auto& [yes, no] :
+             {std::pair("true", "false"), std::pair("1", "0"), std::pair("yes", "no")}) {
+          if (text != yes && text != no) continue;
+          o->*field = text == yes;
+          return std::nullopt;
+        }
+        return BadOption(name, text, "must be true or false");
+      });
+  row.is_bool = true;
+  row.text = [field](const FitOptions& o) { return o.*field ? "true" : "false"; };
+  row.json = json;
+  row.write = [field](const FitOptions& o) { return Json(o.*field); };
+  row.read = [field](const Json& value, FitOptions* o) { o->*field = value; };
+  return row;
+}
+
+// By the preset.
+Row Decided(Row row) {
+  row.preset_decides = true;
+  return row;
+}
+
+// In older files.
+Row MayBeAbsent(Row row) {
+  row.may_be_absent = true;
+  return row;
+}
+
+// In files alone: what a preset or the fit itself decides.
+Row Stored(Row row) {
+  row.is_flag = false;
+  return row;
+}
+
+// An enum by name.
+template <typename E>
+Row NameRow(const char* name, const char* json, OptionField<E> field, const char* help) {
+  Row row = WordsRow(name, OptionStage::kModel, help, [=](const std::string& text, FitOptions* o) {
+    return ParseName("--" + std::string(name), text, &field(*o));
+  });
+  row.json = json;
+  row.text = [field](const FitOptions& o) { return NameOf(OptionValue(field, o)); };
+  row.write = [text = row.text](const FitOptions& o) { return Json(text(o)); };
+  row.read = [=](const Json& value, FitOptions* o) {
+    if (MaybeError error = ParseName(name, value.get<std::string>(), &field(*o))) {
+      throw std::runtime_error(error->ToString());
+    }
+  };
+  return row;
+}
+
+// An enum that other options depend on, which `set` sets with it; absent in older files.
+template <typename E>
+Row NameRowWith(void (*set)(E, FitOptions*), const char* name, const char* json,
+                OptionField<E> field, const char* help) {
+  Row row = NameRow<E>(name, json, field, help);
+  row.apply = [=](const std::string& text, FitOptions* o) -> MaybeError {
+    E value{};
+    if (MaybeError error = ParseName("--" + std::string(name), text, &value)) return error;
+    set(value, o);
+    return std::nullopt;
+  };
+  return MayBeAbsent(row);
+}
+
+// What the model is.
+
+Row PresetRow() {
+  Row row = WordsRow(
+      "preset", OptionStage::kPreset,
+      "the model: auto (tail for recordings of one person, group where there are more), tail (push "
+      "tail, posture-relative recovery), group (tail with contact, pooled by setting; with feet "
+      "that slide, linear self forces too), ldp (plain PD and friction from upright), or "
+      "ldp_published (LDP with all its networks, of one person or of groups)",
+      nullptr);
+  row.text = [](const FitOptions&) { return std::string(kAutoPreset); };
+  row.json = "/preset";
+  row.write = [](const FitOptions& o) { return Json(o.preset); };
+  row.read = [](const Json& json, FitOptions* o) { o->preset = json; };
+  return row;
+}
+
+// What is learned so far; its weights are drawn once all of it is known (fit_setup.h).
+LearnedTerms Learned(const FitOptions& o) {
+  return o.model.learned != nullptr ? *o.model.learned : LearnedTerms{};
+}
+void SetLearned(const LearnedTerms& network, FitOptions* o) {
+  o->model.learned = network.any() ? std::make_shared<const LearnedTerms>(network) : nullptr;
+}
+
+Row StanceRow() {
+  Row row = NameRow<Stance>(
+      "stance", "/stance", &ModelOptions::stance,
+      "behaviour of the feet: slide (the cart moves under any force), steps (they hold until the "
+      "capture point leaves their support, then one of them steps), fixed (they hold), or auto "
+      "(fixed where no pushed person's feet moved; steps where some did, and of people who touch "
+      "also where all did; slide where three in four people alone did, fewer than half of them "
+      "lifted a foot or feet were not recorded; ldp presets: slide)");
+  row.text = [](const FitOptions&) { return std::string(kAutoStance); };
+  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
+    if (text == kAutoStance) return std::nullopt;
+    Stance stance;
+    if (MaybeError error = ParseName("--stance", text, &stance)) {
+      return Error{error->message + ", or " + kAutoStance};
+    }
+    SetStance(stance, o);
+    return std::nullopt;
+  };
+  return MayBeAbsent(row);
+}
+
+std::string SelfForceHelp() {
+  std::string text = "additional self force: none, ";
+  for (const SelfForceLaw& law : kSelfForces) {
+    if (law.value != SelfForceKind::kNone)
+      text += law.name + (" (" + std::string(law.note)) + "), ";
+  }
+  std::vector<std::string> examples = NetworkExamples();
+  const std::string embedding = examples.back();
+  examples.pop_back();
+  return text + "a network by kind and hidden size (" + Listed(examples, ",") + "; " + embedding +
+         " with an embedding), or linear and a network, comma-separated";
+}
+
+Row SelfForceRow() {
+  const std::string help = SelfForceHelp();
+  Row row = Decided(WordsRow("self_force", OptionStage::kModel, help.c_str(),
+                             [](const std::string& text, FitOptions* o) -> MaybeError {
+                               const Result<SelfForceChoice> choice =
+                                   ParseSelfForce("--self_force", text);
+                               if (!choice.ok()) return choice.error();
+                               SetSelfForce(choice.value().kind, o);
+                               LearnedTerms network = Learned(*o);
+                               network.shape = choice.value().network;
+                               SetLearned(network, o);
+                               return std::nullopt;
+                             }));
+  row.json = "/self_force";
+  row.write = [](const FitOptions& o) {
+    return Json(SelfForceText(o.self_force, o.model.learned.get()));
+  };
+  row.read = [](const Json& json, FitOptions* o) {
+    const auto self = ParseSelfForce("self_force", json.get<std::string>());
+    if (!self.ok()) throw std::runtime_error(self.error().ToString());
+    o->self_force = self.value().kind;
+  };
+  return row;
+}
+
+Row RodRow() {
+  Row row = WordsRow("rod", OptionStage::kModel,
+                     "the rod's length: constant, or a state that a learned law changes, together "
+                     "with the cart's height: linear, mlp:4 (hidden sizes); or LDP's, whose cart "
+                     "keeps its height, ldp:256-128-256",
+                     [](const std::string& text, FitOptions* o) -> MaybeError {
+                       const Result<RodShape> rod = ParseRod("--rod", text);
+                       if (!rod.ok()) return rod.error();
+                       LearnedTerms network = Learned(*o);
+                       network.rod = rod.value();
+                       SetLearned(network, o);
+                       return std::nullopt;
+                     });
+  row.text = [](const FitOptions& o) { return RodName(Learned(o).rod); };
+  return row;
+}
+
+Row InteractionRow() {
+  const char* const help =
+      "interaction between people: none, or some of these, comma-separated: contact (smooth and "
+      "mutual: spring,damping), ldp_published (LDP's equations 10 and 11 and its table of signs), "
+      "network:4 (learned beside contact, by hidden sizes), ldp_network:512-512 (LDP's, learned of "
+      "every neighbour in range)";
+  Row row = Decided(WordsRow("interaction", OptionStage::kModel, help,
+                             [](const std::string& text, FitOptions* o) -> MaybeError {
+                               const Result<InteractionChoice> choice =
+                                   ParseInteraction("--interaction", text);
+                               if (!choice.ok()) return choice.error();
+                               o->model.interaction = choice.value().terms;
+                               LearnedTerms learned = Learned(*o);
+                               learned.pair = choice.value().pair;
+                               SetLearned(learned, o);
+                               return std::nullopt;
+                             }));
+  row.json = "/interaction";
+  row.text = [](const FitOptions& o) { return InteractionText(o.model); };
+  row.write = [](const FitOptions& o) { return Json(InteractionText(o.model)); };
+  row.read = [](const Json& json, FitOptions* o) {
+    const auto choice = ParseInteraction("interaction", json.get<std::string>());
+    if (!choice.ok()) throw std::runtime_error(choice.error().ToString());
+    o->model.interaction = choice.value().terms;
+  };
+  return row;
+}
+
+std::vector<Row> ModelRows() {
+  using O = FitOptions;
+  return {
+      PresetRow(),
+      StanceRow(),
+      SelfForceRow(),
+      RodRow(),
+      Decided(NameRow<Posture>("posture", "/posture", &ModelOptions::posture,
+                               "balance error measured from: upright or initial")),
+      MayBeAbsent(Decided(NameRow<Directions>(
+          "directions", "/directions", &ModelOptions::directions,
+          "isotropic (people answer alike in all directions; fitted along each push), body (along "
+          "what people face, sideways parameters free where forward ones are) or axes (those of "
+          "the file; sideways parameters as the preset has them)"))),
+      Decided(
+          NameRow<GainScaling>("gain_scaling", "/gain_scaling", &ModelOptions::gain_scaling,
+                               "gains of other bodies: none, mass, or body (mass and rod length)")),
+      Decided(NameRow<FrictionKind>("friction", "/friction", &ModelOptions::friction,
+                                    AnyName<FrictionKind>().c_str())),
+      Stored(NameRow<PushUse>("push", "/push", &ModelOptions::push, "")),
+      Decided(NameRow<PushTail>("push_tail", "/push_tail", &ModelOptions::push_tail,
+                                "none or exponential")),
+      NameRowWith<Delay>(
+          SetDelay, "delay", "/delay", &ModelOptions::delay,
+          "reaction delay of active feedback: none, one (of all of it) or ankle_and_step (the "
+          "feet's own); reaction_delay and the passive shares of stiffness and damping are then "
+          "fitted"),
+      NameRowWith<BodyModel>(
+          SetBody, "body", "/body", &ModelOptions::body,
+          "where a body's mass is: ldp (nine tenths at the hip; of who stands, an average body's), "
+          "anthropometric (by the recorded segments, de Leva 1996), or table (cart_share, "
+          "com_height, gyration_radius and push_gain, of robots and rigs: fixed or fitted)"),
+      Stored(NameRow<CartDerivative>("cart_derivative", "/cart_derivative",
+                                     &ModelOptions::cart_derivative, "")),
+      InteractionRow(),
+      Stored(MayBeAbsent(NameRow<ProcessNoise>("process_noise", "/process_noise",
+                                               &ModelOptions::process_noise, ""))),
+      NameRowWith<Likelihood>(
+          SetLikelihood, "likelihood", "/likelihood", &O::likelihood,
+          "what a fit maximizes: trajectory (whole rollouts), or, under process noise, transition "
+          "(each measured state given the one before) or innovation (each measurement given all "
+          "before it, with errors "
+          "of measurement)"),
+      BoolRow("preset_priors", "", &O::preset_priors, "keep the preset's weak priors"),
+  };
+}
+
+// How the recordings, the priors and the demands on the person weigh.
 
 Row LossRow() {
   Row row = NameRow<FrameLoss>(
@@ -64,61 +374,9 @@ Row LossRow() {
     if (MaybeError error = ParseName("--loss", text, &loss)) return error;
     if (loss == o->sigmas.loss) return std::nullopt;
     o->sigmas = loss == FrameLoss::kLdp ? kLdpSigmas : ResidualSigmas();
-    // Estimated, they would no longer be those of LDP.
-    o->sigma_source = loss == FrameLoss::kLdp ? SigmaSource::kFixed : FitOptions().sigma_source;
     return std::nullopt;
   };
   return MayBeAbsent(row);
-}
-
-Row SeedRow() {
-  Row row = WordsRow("seed", OptionStage::kModel, "seed of all random numbers",
-                     [](const std::string& text, FitOptions* o) -> MaybeError {
-                       const char* const end = text.data() + text.size();
-                       const auto read = std::from_chars(text.data(), end, o->seed);
-                       if (read.ec != std::errc() || read.ptr != end) {
-                         return BadOption("seed", text, "must be a whole number of at least 0");
-                       }
-                       return std::nullopt;
-                     });
-  row.text = [](const FitOptions& o) { return std::to_string(o.seed); };
-  row.json = "/seed";
-  row.write = [](const FitOptions& o) { return Json(o.seed); };
-  row.read = [](const Json& json, FitOptions* o) { o->seed = json; };
-  return row;
-}
-
-constexpr char kEstimate[] = "estimate";
-
-Row PoolingSigmaRow() {
-  const auto text = [](const FitOptions& o) {
-    return o.pooling_sigma ? DoubleText(*o.pooling_sigma) : std::string(kEstimate);
-  };
-  const auto apply = [](const std::string& given, FitOptions* o) -> MaybeError {
-    double sigma = 0.0;
-    o->pooling_sigma.reset();
-    if (given == kEstimate) return std::nullopt;
-    if (!ParseDouble(given, &sigma) || !(sigma > 0.0)) {
-      return BadOption("pooling_sigma", given, "must be positive, or estimate");
-    }
-    o->pooling_sigma = sigma;
-    return std::nullopt;
-  };
-  Row row = WordsRow("pooling_sigma", OptionStage::kModel,
-                     "how far a unit may deviate from the shared value: a standard deviation on "
-                     "the fitted scale (0.2 is about 20 % for a positive parameter), or estimate",
-                     apply);
-  row.text = text;
-  row.json = "/pooling_sigma";
-  row.write = [](const FitOptions& o) {
-    return o.pooling_sigma ? Json(*o.pooling_sigma) : Json(kEstimate);
-  };
-  row.read = [](const Json& json, FitOptions* o) {
-    o->pooling_sigma.reset();
-    if (json != kEstimate) o->pooling_sigma = json.get<double>();
-  };
-  row.preset_decides = true;
-  return row;
 }
 
 Row PoolByRow() {
@@ -139,46 +397,45 @@ Row PoolByRow() {
   return row;
 }
 
+constexpr char kEstimate[] = "estimate";
+
+// A standard deviation, or estimate.
+Row PoolingSigmaRow() {
+  Row row;
+  row.name = "pooling_sigma";
+  row.json = "/pooling_sigma";
+  row.write = [](const FitOptions& o) {
+    return o.pooling_sigma ? Json(*o.pooling_sigma) : Json(kEstimate);
+  };
+  row.read = [](const Json& json, FitOptions* o) {
+    o->pooling_sigma.reset();
+    if (json != kEstimate) o->pooling_sigma = json.get<double>();
+  };
+  return Stored(row);
+}
+
 Row Rare(Row row) {
   row.heading = kRarelyChanged;
   return row;
 }
 
-// How the recordings, the priors and the demands on the person weigh.
 std::vector<Row> WeightRows() {
   using O = FitOptions;
   return {
       LossRow(),
-      Rare(NumberRow("sigma_hip", "/sigmas/hip_m", &ResidualSigmas::hip, kPositive,
-                     "standard deviation of the hip's position, m")),
-      Rare(NumberRow("sigma_velocity", "/sigmas/velocity_m_s", &ResidualSigmas::velocity, kPositive,
-                     "standard deviation of the cart's velocity, m/s")),
-      Rare(NumberRow("sigma_angle", "/sigmas/angle_rad", &ResidualSigmas::angle, kPositive,
-                     "standard deviation of the angles, rad")),
-      Rare(NumberRow("sigma_rate", "/sigmas/rate_rad_s", &ResidualSigmas::rate, kPositive,
-                     "standard deviation of the angular rates, rad/s")),
-      MayBeAbsent(NameRow<SigmaSource>(
-          "sigmas", "/sigmas/source", &O::sigma_source,
-          "the residuals' standard deviations: estimate (from the residuals, starting at "
-          "--sigma_*), or fixed (at --sigma_*)")),
+      Stored(NumberRow("sigma_hip", "/sigmas/hip_m", &ResidualSigmas::hip, kPositive, "")),
+      Stored(NumberRow("sigma_velocity", "/sigmas/velocity_m_s", &ResidualSigmas::velocity,
+                       kPositive, "")),
+      Stored(NumberRow("sigma_angle", "/sigmas/angle_rad", &ResidualSigmas::angle, kPositive, "")),
+      Stored(NumberRow("sigma_rate", "/sigmas/rate_rad_s", &ResidualSigmas::rate, kPositive, "")),
       Rare(MayBeAbsent(NumberRow(
           "marker_noise", "/sigmas/marker_noise_m", &O::marker_noise, kPositive,
           "standard deviation of a marker's position, m: lower limit of estimated sigmas"))),
-      NumberRow("robust", "/sigmas/robust", &ResidualSigmas::robust, kNotNegative,
-                "pseudo-Huber scale of a frame in sigmas; 0: plain least squares"),
-      NameRow<RecordingWeight>(
-          "recording_weight", "/recording_weight", &O::recording_weight,
-          "weight of a recording: effective (its number of independent frames), frame (every frame "
-          "counts as one) or recording (every recording counts as one frame)"),
-      Rare(MayBeAbsent(NumberRow(
-          "effective_weight", "/effective_weight", &O::effective_weight,
-          {0.0, 1e6, false, "must be a number from 0 to 1e6"},
-          "--recording_weight=effective: independent frames per frame at the start of their "
-          "estimation; 0: one frame per recording"))),
-      MayBeAbsent(NameRow<ClusterBy>(
-          "cluster", "/cluster", &O::cluster,
-          "unit with independent errors: subject, recording, or auto (subject where people were "
-          "recorded more than once)")),
+      Stored(NumberRow("robust", "/sigmas/robust", &ResidualSigmas::robust, kNotNegative, "")),
+      Stored(
+          MayBeAbsent(BoolRow("estimate_weights", "/estimate_weights", &O::estimate_weights, ""))),
+      Stored(MayBeAbsent(NumberRow("effective_weight", "/effective_weight", &O::effective_weight,
+                                   {0.0, 1e6, false, "must be a number from 0 to 1e6"}, ""))),
       Decided(
           NumberRow("settling_weight", "/settling_weight", &O::settling_weight, kNotNegative,
                     "weight of the settling constraint (pushed people must settle in the settling "
@@ -193,29 +450,122 @@ std::vector<Row> WeightRows() {
 }
 
 // Where the solve starts and ends.
+
+Row HorizonsRow() {
+  Row row;
+  row.name = "horizons";
+  row.text = [](const FitOptions& o) { return Json(o.horizons).dump(); };
+  row.violation = [](const FitOptions& o) {
+    const bool sound = std::all_of(o.horizons.begin(), o.horizons.end(),
+                                   [](int frames) { return frames == 0 || frames >= 2; });
+    return sound ? "" : "must be numbers of frames of at least 2";
+  };
+  row.json = "/horizons";
+  row.write = [](const FitOptions& o) { return Json(o.horizons); };
+  row.read = [](const Json& json, FitOptions* o) { o->horizons = json.get<std::vector<int>>(); };
+  return Stored(row);
+}
+
+Row SeedRow() {
+  Row row = WordsRow("seed", OptionStage::kModel, "seed of all random numbers",
+                     [](const std::string& text, FitOptions* o) -> MaybeError {
+                       const char* const end = text.data() + text.size();
+                       const auto read = std::from_chars(text.data(), end, o->seed);
+                       if (read.ec != std::errc() || read.ptr != end) {
+                         return BadOption("seed", text, "must be a whole number of at least 0");
+                       }
+                       return std::nullopt;
+                     });
+  row.text = [](const FitOptions& o) { return std::to_string(o.seed); };
+  row.json = "/seed";
+  row.write = [](const FitOptions& o) { return Json(o.seed); };
+  row.read = [](const Json& json, FitOptions* o) { o->seed = json; };
+  return row;
+}
+
 std::vector<Row> SolverRows() {
   using O = FitOptions;
   return {
       HorizonsRow(),
-      CountRow("starts", "/num_starts", &O::num_starts, "number of starts; the best one is used"),
-      NumberRow("start_spread", "/start_spread", &O::start_spread,
-                {1.0, 1000.0, false, "must lie between 1 and 1000"},
-                "random starts multiply or divide every gain by up to this"),
       SeedRow(),
       CountRow("num_threads", "", &O::num_threads, "threads"),
       CountRow("max_iterations", "/max_iterations", &O::max_iterations, "iterations of each stage"),
-      Decided(NumberRow("function_tolerance", "/function_tolerance", &O::function_tolerance,
-                        kNotNegative, "relative change of the cost that ends a stage")),
-      NumberRow("gradient_tolerance", "/gradient_tolerance", &O::gradient_tolerance, kNotNegative,
-                "gradient that ends a stage"),
-      NumberRow("parameter_tolerance", "/parameter_tolerance", &O::parameter_tolerance,
-                kNotNegative, "relative step that ends a stage"),
+      Stored(NumberRow("function_tolerance", "/function_tolerance", &O::function_tolerance,
+                       kNotNegative, "")),
+      Stored(NumberRow("gradient_tolerance", "/gradient_tolerance", &O::gradient_tolerance,
+                       kNotNegative, "")),
+      Stored(NumberRow("parameter_tolerance", "/parameter_tolerance", &O::parameter_tolerance,
+                       kNotNegative, "")),
+  };
+}
+
+// Edits of the table of parameters.
+
+Row ContrastRow() {
+  Row row = WordsRow(
+      "contrast", OptionStage::kTable,
+      "a label with two values (patients and controls, eyes open and closed, before and after), of "
+      "a recording or of a person in the manifest's subjects: the difference of every free "
+      "parameter between them is fitted",
+      [](const std::string& text, FitOptions* o) -> MaybeError {
+        o->contrast = text;
+        return std::nullopt;
+      });
+  row.text = [](const FitOptions& o) { return o.contrast; };
+  row.json = "/contrast";
+  row.write = [](const FitOptions& o) { return Json(o.contrast); };
+  row.read = [](const Json& json, FitOptions* o) { o->contrast = json.get<std::string>(); };
+  return MayBeAbsent(row);
+}
+
+Row CovariateRow() {
+  Row row = WordsRow(
+      "covariate", OptionStage::kTable,
+      "numbers of people that parameters follow, as in 'Kp_theta ~ age + height; Kd_theta ~ age': "
+      "keys of the manifest's subjects, mass (kg) or rod (m)",
+      [](const std::string& text, FitOptions* o) -> MaybeError {
+        const Result<std::vector<CovariatesOfParameter>> chosen = ParseCovariates(text);
+        if (!chosen.ok()) return chosen.error();
+        o->covariates = text;
+        return std::nullopt;
+      });
+  row.text = [](const FitOptions& o) { return o.covariates; };
+  row.json = "/covariate";
+  row.write = [](const FitOptions& o) { return Json(o.covariates); };
+  row.read = [](const Json& json, FitOptions* o) { o->covariates = json.get<std::string>(); };
+  return MayBeAbsent(row);
+}
+
+Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
+  return WordsRow(name, OptionStage::kTable, help, [list](const std::string& text, FitOptions* o) {
+    TableEdits edits;
+    edits.*list = text;
+    return EditTable(edits, &o->table);
+  });
+}
+
+std::vector<Row> TableRows() {
+  return {
+      ContrastRow(),
+      CovariateRow(),
+      EditRow("free", &TableEdits::free, "parameters fitted: name or name=start, comma-separated"),
+      EditRow("fix", &TableEdits::fix,
+              "parameters held fixed: name or name=value, comma-separated"),
+      EditRow("prior", &TableEdits::prior,
+              "priors: name:mean:sigma in the parameter's unit, comma-separated"),
+      Decided(WordsRow("pool", OptionStage::kModel,
+                       "parameters that may differ by unit, comma-separated, or all, or none; "
+                       "all,-mu: all but mu",
+                       [](const std::string& text, FitOptions* o) -> MaybeError {
+                         o->pool = text;
+                         return std::nullopt;
+                       })),
   };
 }
 
 }  // namespace
 
-const std::vector<FitOptionRow>& FitOptionRows() {
+const std::vector<FitOptionRow>& AllOptionRows() {
   static const std::vector<FitOptionRow> rows = [] {
     std::vector<FitOptionRow> all;
     const auto add = [&all](const std::string& heading, const std::vector<FitOptionRow>& part) {
@@ -224,14 +574,28 @@ const std::vector<FitOptionRow>& FitOptionRows() {
         if (row.heading.empty()) all.back().heading = heading;
       }
     };
-    add("model", ModelOptionRows());
+    add("model", ModelRows());
     add("fit", WeightRows());
-    add("fit", NetworkOptionRows());
+    add("fit",
+        {MayBeAbsent(NumberRow(
+            "network_prior", "/network_prior", &FitOptions::network_prior, kNotNegative,
+            "standard deviation of the prior that ties a network's weights to zero; 0: none"))});
     add(kRarelyChanged, SolverRows());
-    add("model", TableOptionRows());
+    add("model", TableRows());
     return all;
   }();
   return rows;
+}
+
+const std::vector<FitOptionRow>& FitOptionRows() {
+  static const std::vector<FitOptionRow> flags = [] {
+    std::vector<FitOptionRow> rows = AllOptionRows();
+    rows.erase(
+        std::remove_if(rows.begin(), rows.end(), [](const Row& row) { return !row.is_flag; }),
+        rows.end());
+    return rows;
+  }();
+  return flags;
 }
 
 const FitOptionRow* FindFitOption(const std::string& name) {

@@ -17,10 +17,9 @@ namespace pushid {
 
 // When a row is applied (fit/fit_setup.h).
 enum class OptionStage {
-  kPreset,      // first, and before anything else is known
-  kModel,       // before the parameters of the chosen terms are freed
-  kOtherModel,  // after that: takes parameters from a model's file
-  kTable        // last: edits single parameters
+  kPreset,  // first, and before anything else is known
+  kModel,   // before the parameters of the chosen terms are freed
+  kTable    // last: edits single parameters
 };
 
 // The heading of what most users leave alone; --helpfull describes it.
@@ -32,11 +31,12 @@ struct FitOptionRow {
   std::string heading;  // of --help: model, fit, kRarelyChanged
   OptionStage stage = OptionStage::kModel;
   bool is_bool = false;         // --name, --noname; the others take --name=value
+  bool is_flag = true;          // otherwise it stands in files alone
   bool preset_decides = false;  // without it the preset's value holds
   // Its value in words: the default of the flag when asked of FitOptions(). Null where there is no
   // such value (an edit of the table, a file).
   std::function<std::string(const FitOptions&)> text;
-  // Errors name the flag and the value. Null for kPreset and kOtherModel.
+  // Errors name the flag and the value. Null for kPreset.
   std::function<MaybeError(const std::string&, FitOptions*)> apply;
   // What the value violates, as in "must be positive"; empty: nothing. Null: any value will do.
   std::function<std::string(const FitOptions&)> violation;
@@ -48,7 +48,8 @@ struct FitOptionRow {
   std::function<void(const nlohmann::ordered_json&, FitOptions*)> read;
 };
 
-// In the order in which they are applied and written.
+// All, and those that are flags; in the order in which they are applied and written.
+const std::vector<FitOptionRow>& AllOptionRows();
 const std::vector<FitOptionRow>& FitOptionRows();
 // nullptr when there is none of that name.
 const FitOptionRow* FindFitOption(const std::string& name);

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "datasets/manifest/recording.h"
+#include "ident/parameters/learned_terms_io.h"
 #include "models/learned_terms.h"
 #include "models/parameters.h"
 #include "models/self_terms.h"
@@ -172,7 +173,7 @@ std::string MemoryOf(const ModelOptions& model) {
   if (model.delay != Delay::kNone) return "--delay=" + NameOf(model.delay);
   if (model.stance != Stance::kSlide) return "--stance=" + NameOf(model.stance);
   if (model.learned != nullptr) return "a network";
-  if (model.cart_derivative != CartDerivative::kNone) return "--cart_derivative";
+  if (model.cart_derivative != CartDerivative::kNone) return "the cart's derivative";
   return "";
 }
 
@@ -276,6 +277,92 @@ MaybeError PoolParameters(FitOptions* o) {
   edits.pool = o->pool;
   edits.pool_by = o->pool_by;
   return EditTable(edits, &o->table);
+}
+
+// What a laboratory's model frees.
+
+void FreeFrom(const WeakStart& start, ParameterTable* table) {
+  ParameterSpec& spec = (*table)[start.id];
+  spec.free = true;
+  spec.nominal = start.value;
+  spec.prior = Prior{start.value, start.sigma};
+}
+
+void SetBody(BodyModel body, FitOptions* options) {
+  options->model.body = body;
+  if (body != BodyModel::kTable) return;
+  ParameterSpec& com = options->table[kComHeight];
+  com.nominal = 1.0;
+  com.free = false;
+  com.prior.reset();
+}
+
+void SetDelay(Delay delay, FitOptions* options) {
+  options->model.delay = delay;
+  if (delay == Delay::kNone) return;
+  // A hinge on the free modes knows none of it; settling simulations do.
+  options->mode_weight = 0.0;
+  // Weak priors: published delays are 0.10 to 0.16 s (median 0.134), passive shares 0 to 0.9.
+  for (const WeakStart& start :
+       {WeakStart{kReactionDelay, 0.13, 0.1}, WeakStart{kStepDelay, 0.2, 0.15},
+        WeakStart{kPassiveStiffness, 0.2, 0.2}, WeakStart{kPassiveDamping, 0.2, 0.2}}) {
+    FreeFrom(start, &options->table);
+  }
+}
+
+void TiePassive(FitOptions* o) {
+  ParameterSpec& damping = o->table[kPassiveDamping];
+  if (o->model.delay == Delay::kNone || damping.named) return;
+  damping.tied_to = kPassiveStiffness;
+  damping.free = damping.pooled = false;
+}
+
+// LDP.
+
+namespace {
+
+constexpr double kCartGainPerFrame = 4.0, kAngleGainPerFrame = 200.0;  // Kd
+
+}  // namespace
+
+FitOptions LdpPreset() {
+  FitOptions o;
+  o.preset = "ldp";
+  o.table = BaseTable();
+  o.table[kKpX].nominal = o.table[kKpY].nominal = 30;
+  o.table[kKdTheta].nominal = o.table[kKdPhi].nominal = kAngleGainPerFrame / kLdpRate;
+  for (Parameter id : {kMu, kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = true;
+  o.model.posture = Posture::kUpright;
+  o.model.gain_scaling = GainScaling::kNone;
+  o.model.push = PushUse::kAsRecorded;
+  o.model.push_tail = PushTail::kNone;
+  return o;
+}
+
+FitOptions LdpPublishedPreset() {
+  FitOptions o = LdpPreset();
+  o.preset = kLdpPublished;
+  for (Parameter id : {kKpTheta, kKpPhi, kKdTheta, kKdPhi}) o.table[id].free = false;
+  o.table[kKdX].nominal = o.table[kKdY].nominal = kCartGainPerFrame / kLdpRate;
+  o.model.cart_derivative = CartDerivative::kBackward;
+  o.model.push = PushUse::kAdded;
+  o.model.learned =
+      InitialNetwork({NetworkKind::kLdp, 256, 32}, o.seed, {RodKind::kLdp, {256, 128, 256}});
+  o.sigmas = kLdpSigmas;
+  o.estimate_weights = false;
+  o.effective_weight = 1.0;
+  o.network_prior = 0.0;
+  return o;
+}
+
+FitOptions LdpPublishedGroupsPreset() {
+  FitOptions o = LdpPublishedPreset();
+  o.preset = kLdpPublishedGroups;
+  o.model.interaction.ldp_published = true;
+  o.model.interaction.learned = o.model.interaction.learned_in_range = true;
+  const LearnedTerms& alone = *o.model.learned;
+  o.model.learned = InitialNetwork(alone.shape, o.seed, alone.rod, PairShape{{512, 512}, true});
+  return o;
 }
 
 }  // namespace pushid

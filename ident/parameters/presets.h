@@ -114,7 +114,8 @@ FitOptions LdpPreset();
 
 // LDP as published: one force law at all times, to which the push is added; all networks in their
 // sizes, trained together with mu by LDP's loss; gains, potential and torques as they are given.
-// The carts' Kd of 4 per frame acts on backward differences, as in LDP's code.
+// The carts' Kd of 4 per frame acts on backward differences, as in LDP's code. Every frame counts
+// as one.
 FitOptions LdpPublishedPreset();
 FitOptions LdpPublishedGroupsPreset();
 

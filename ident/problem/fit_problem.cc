@@ -199,10 +199,7 @@ int PushFrame(const PendulumRecording& recording) {
 double FitProblem::Weight(int recording, int horizon) const {
   const double counted = std::sqrt(static_cast<double>(Count(recording)));
   if (options_.likelihood != Likelihood::kTrajectory) return counted;
-  if (options_.recording_weight == RecordingWeight::kFrame) return counted;
-  if (options_.recording_weight == RecordingWeight::kEffective && options_.effective_weight > 0.0) {
-    return counted * std::sqrt(options_.effective_weight);
-  }
+  if (options_.effective_weight > 0.0) return counted * std::sqrt(options_.effective_weight);
   // A recording's frames are far from independent: together they count as one.
   const PendulumRecording& r = recordings()[recording];
   const int all = r.num_frames(),

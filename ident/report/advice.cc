@@ -17,7 +17,7 @@ constexpr double kStrongLeverage = 1.0;  // standard errors that one recording m
 constexpr int kFewRecordings = 10;
 constexpr double kTermLevel = 0.001;  // of a score test: seven terms are tested at once
 constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
-constexpr int kManyIterations = 1000, kManyStarts = 8;
+constexpr int kManyIterations = 1000;
 constexpr int kReplicas = 199, kManyReplicas = 999;
 
 class Adviser {
@@ -75,11 +75,9 @@ class Adviser {
 
 void Adviser::Solver() {
   if (!result_.converged) {
-    Add("The solver stopped before it converged; allow more iterations and more starts.",
-        Same()
-            .Set("max_iterations",
-                 std::to_string(std::max(kManyIterations, 2 * result_.options.max_iterations)))
-            .Set("starts", std::to_string(std::max(kManyStarts, 2 * result_.options.num_starts))));
+    Add("The solver stopped before it converged; allow more iterations.",
+        Same().Set("max_iterations",
+                   std::to_string(std::max(kManyIterations, 2 * result_.options.max_iterations))));
   }
 }
 
@@ -145,7 +143,7 @@ FitCommand Adviser::DecayingModes() const {
 
 void Adviser::Person() {
   const FitOptions& o = result_.options;
-  if (OfSteps() || o.network_training == NetworkTraining::kTogether) return;  // nothing holds them
+  if (OfSteps() || IsLarge(o)) return;  // nothing holds them
   const Verdict verdict = VerdictOf(result_.behaviour, o.model);
   const std::string sentence = Capitalized(VerdictSentence(verdict, result_.behaviour, o.model));
   const bool tail = o.model.push_tail == PushTail::kExponential;

@@ -29,26 +29,11 @@ std::string PoolingText(const FitOptions& options) {
   return "";
 }
 
-std::string SelfFromText(const Provenance& provenance) {
-  const auto from = provenance.configuration.find("self_from");
-  if (from == provenance.configuration.end() || from->second.empty()) return "";
-  return ", self parameters from " + from->second;
-}
-
 std::string TrainingText(const FitOptions& o) {
   std::string text =
       o.network_prior > 0.0 ? "prior " + Rounded(o.network_prior, 4) : std::string("no prior");
-  if (o.early_stopping > 0.0) {
-    text += ", early stopping on " + Rounded(100.0 * o.early_stopping, 4) + " % of the recordings";
-  }
   if (o.model.learned->num_weights() > kMostGaussNewtonWeights) {
-    const bool together = o.network_training == NetworkTraining::kTogether;
-    const bool adam = o.network_optimizer == NetworkOptimizer::kAdam;
-    text += std::string(", trained ") + (together ? "together with the free parameters " : "") +
-            "by " +
-            (adam ? "Adam, " + std::to_string(o.network_iterations) + " passes" + ", rate " +
-                        Rounded(o.network_rate, 3) + " falling to a hundredth"
-                  : "L-BFGS");
+    text += ", trained together with the free parameters by Adam";
     text += ", fixed while the errors above were computed";
   }
   return text;
@@ -99,16 +84,15 @@ std::string ReportText(const FittedModel& model) {
   const FitResult& result = model.fit;
   const FitOptions& o = result.options;
   const Provenance& from = model.provenance;  // empty where no program fitted
-  std::string text =
-      (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " + o.preset + ": " +
-      Count(static_cast<int>(result.recordings.size()), "recording") +
-      (from.setting.empty() ? "" : " (" + from.setting + ")") + ", " + FeetOfFit(result) +
-      ", posture " + NameOf(o.model.posture) + ", push " + NameOf(o.model.push) + ", push tail " +
-      NameOf(o.model.push_tail) + ", self force " +
-      SelfForceText(o.self_force, o.model.learned.get()) +
-      (RodMoves(o.model) ? ", rod " + RodName(o.model.learned->rod) : "") + ", interaction " +
-      InteractionText(o.model) + PoolingText(o) +
-      SelfFromText(model.provenance) + "\n\n";
+  std::string text = (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " +
+                     o.preset + ": " +
+                     Count(static_cast<int>(result.recordings.size()), "recording") +
+                     (from.setting.empty() ? "" : " (" + from.setting + ")") + ", " +
+                     FeetOfFit(result) + ", posture " + NameOf(o.model.posture) + ", push " +
+                     NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
+                     ", self force " + SelfForceText(o.self_force, o.model.learned.get()) +
+                     (RodMoves(o.model) ? ", rod " + RodName(o.model.learned->rod) : "") +
+                     ", interaction " + InteractionText(o.model) + PoolingText(o) + "\n\n";
   text += ModelVerdictText(result.verdict) + "\n\n";
   text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
           DerivedTable(result).ToString() + ConventionText(result) + GainsText(result) + "\n\n";
@@ -141,12 +125,10 @@ std::string ReportText(const FittedModel& model) {
   if (result.step_probability) text += StepProbabilityText(*result.step_probability) + "\n";
   text += "\n";
   text += "cost " + Rounded(result.cost, 6) + " after " +
-          Count(result.starts[result.best_start].iterations, "iteration") + " from " +
-          Count(static_cast<int>(result.starts.size()), "start") + "; " +
+          Count(result.starts[result.best_start].iterations, "iteration") + "; " +
           (result.converged ? "converged" : "NOT CONVERGED") + "\n";
   if (result.likelihood) text += LikelihoodText(result) + "\n";
   text += PreparationText(model.provenance.configuration);
-  text += AcrossStartsText(result);
   for (const std::string& warning : GroupedWarnings(result.warnings))
     text += "warning: " + warning + "\n";
   const std::string diagnostics = DiagnosticsText(model);

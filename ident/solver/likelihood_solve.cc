@@ -15,9 +15,8 @@ namespace pushid {
 namespace {
 
 constexpr int kMostRounds = 30;
-constexpr double kSameCost = 1e-3;   // of a log likelihood, absolute
-constexpr double kSameNoise = 0.01;  // the same, where only the noise is wanted
-constexpr double kSettled = 0.01;    // relative change of a spread
+constexpr double kSameCost = 1e-3;  // of a log likelihood, absolute
+constexpr double kSettled = 0.01;   // relative change of a spread
 // Noise starts too low rather than too high: rows end where it has fallen far, and never where it
 // rises. Of what transitions leave, measured velocities err too.
 constexpr double kShareOfNoise = 0.1;
@@ -122,24 +121,6 @@ bool SolveOn(FitProblem* problem, SolveStart* start) {
   return false;
 }
 
-struct NoiseFit {
-  double cost = std::numeric_limits<double>::infinity();
-  FitPoint at;
-  std::string message;
-};
-
-// The likelihood's maximum over what is not held.
-NoiseFit FitNoise(const FitProblem& problem, const std::vector<int>& held, const FitPoint& from) {
-  NoiseFit fit;
-  fit.at = from;
-  for (int round = 0; round < kMostRounds; ++round) {
-    const double before = fit.cost;
-    fit.cost = SolveByBfgs(problem, held, &fit.at, &fit.message).final_cost;
-    if (!std::isfinite(fit.cost) || std::abs(before - fit.cost) < kSameNoise) break;
-  }
-  return fit;
-}
-
 // The optimum of whole rollouts, roughly: from other values a likelihood of single steps may climb
 // to a place where all roughness is force.
 FitPoint RolloutStart(const FitProblem& problem) {
@@ -148,7 +129,7 @@ FitPoint RolloutStart(const FitProblem& problem) {
   options.function_tolerance = kRoughRollouts;
   const FitProblem rollouts(problem.recordings(), options, problem.counts());
   const FitPoint nominal = problem.NominalPoint();
-  const SolveStart start = SolveFrom(rollouts, nominal, "nominal", "", nullptr);
+  const SolveStart start = SolveFrom(rollouts, nominal, "nominal", nullptr);
   return start.usable ? start.to : nominal;
 }
 
@@ -157,86 +138,24 @@ FitPoint RolloutStart(const FitProblem& problem) {
 LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress) {
   const auto begin = std::chrono::steady_clock::now();
   LikelihoodSolution solved;
-  std::vector<SolveStart>& starts = solved.solution.starts;
-  const FitProblem as_asked = *problem;
-  const FitOptions& asked = as_asked.options();
-  for (int s = 0; s < asked.num_starts; ++s) {
-    FitPoint from = s > 0 ? RandomStart(as_asked, asked.start_spread, RandomStartSeed(asked, s))
-                          : RolloutStart(as_asked);
-    FitProblem with_noise = WithNoise(as_asked, &from);
-    FitOptions own = with_noise.options();
-    const std::string label = asked.num_starts > 1 ? "start " + std::to_string(s + 1) + "/" +
-                                                         std::to_string(asked.num_starts) + ", "
-                                                   : "";
-    own.horizons = {0};
-    own.max_iterations = kScoringSteps;
-    const FitProblem whole(as_asked.recordings(), own, as_asked.counts());
-    SolveStart start = SolveFrom(whole, from, s > 0 ? "random" : "rollouts", label, progress);
-    for (int round = 1; round < kScoringRounds; ++round) {
-      start.to = SolveFrom(whole, start.to, start.kind, label, progress).to;
-    }
-    start.failed.clear();
-    const bool stays = SolveOn(&with_noise, &start);
-    start.usable = std::isfinite(start.cost) && start.failed.empty();
-    const SolveStart* best = solved.solution.best < 0 ? nullptr : &solved.solution.Best();
-    if (start.usable && (best == nullptr || start.cost < best->cost)) {
-      solved.solution.best = s;
-      solved.stays = stays;
-      *problem = std::move(with_noise);
-    }
-    starts.push_back(std::move(start));
+  FitPoint from = RolloutStart(*problem);
+  FitProblem with_noise = WithNoise(*problem, &from);
+  FitOptions own = with_noise.options();
+  own.horizons = {0};
+  own.max_iterations = kScoringSteps;
+  const FitProblem whole(problem->recordings(), own, problem->counts());
+  SolveStart& start = solved.solution.start;
+  start = SolveFrom(whole, from, "rollouts", progress);
+  for (int round = 1; round < kScoringRounds; ++round) {
+    start.to = SolveFrom(whole, start.to, start.kind, progress).to;
   }
+  start.failed.clear();
+  solved.stays = SolveOn(&with_noise, &start);
+  start.usable = std::isfinite(start.cost) && start.failed.empty();
+  if (start.usable) *problem = std::move(with_noise);
   solved.solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solved;
-}
-
-std::string EstimateNoise(const FitPoint& point, FitProblem* problem) {
-  FitOptions options = problem->options();
-  if (options.model.process_noise == ProcessNoise::kNone ||
-      options.likelihood != Likelihood::kTrajectory) {
-    return "";
-  }
-  const std::vector<PendulumRecording>& recordings = problem->recordings();
-  FitOptions own = options;
-  SetLikelihood(Likelihood::kInnovation, &own);
-  FreeNoise(&own);
-  for (ParameterSpec& spec : own.table.specs) {
-    if (IsNoiseParameter(spec.id) && GivenByUser(spec)) spec.free = false;
-  }
-  StartNoise(*problem, point, kLowMeasurementError, &own);
-  const FitProblem steps(recordings, own);
-  FitPoint noise = steps.NominalPoint();
-  noise.unit = point.unit;
-  std::vector<int> held;
-  const auto& fitted = steps.map().fitted;
-  for (size_t i = 0; i < fitted.size(); ++i) {
-    if (IsNoiseParameter(fitted[i].parameter)) continue;
-    held.push_back(static_cast<int>(i));
-    noise.shared[i] = point.shared[held.size() - 1];  // in table order, with the noise at its end
-  }
-  for (size_t i = fitted.size(); i < noise.Flat().size(); ++i) held.push_back(static_cast<int>(i));
-  NoiseFit best;
-  for (double error : kMeasurementErrors) {
-    FitPoint from = noise;
-    for (size_t i = 0; i < fitted.size(); ++i) {
-      const ParameterSpec& spec = own.table[fitted[i].parameter];
-      if (IsMeasurementError(spec.id) && spec.nominal == kLowMeasurementError) {
-        from.shared[i] = ToFitted(spec.transform, error);
-      }
-    }
-    const NoiseFit fit = FitNoise(steps, held, from);
-    if (std::isfinite(fit.cost) ? fit.cost < best.cost : best.message.empty()) best = fit;
-  }
-  if (!std::isfinite(best.cost)) return "the process noise is not estimated: " + best.message;
-  noise = best.at;
-  const ParameterSet<double> found = steps.Parameters(noise, "");
-  for (const FittedParameter& f : fitted) {
-    if (!IsNoiseParameter(f.parameter)) continue;
-    options.table[f.parameter].nominal = found[f.parameter];
-  }
-  *problem = FitProblem(recordings, std::move(options), problem->counts());
-  return "";
 }
 
 LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point) {

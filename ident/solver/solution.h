@@ -1,4 +1,4 @@
-// ident: what a solve went through, start by start, where it ended, and how well a likelihood
+// ident: what a solve went through, where it ended, and how well a likelihood
 // explains the recordings there.
 #pragma once
 
@@ -30,9 +30,8 @@ struct SolveStage {
   std::vector<TracePoint> trace;
 };
 
-// One start of a multi-start.
 struct SolveStart {
-  std::string kind;  // nominal, random, rollouts, or warm: from another optimum
+  std::string kind;  // nominal, rollouts, or warm: from another optimum
   bool usable = false;
   bool converged = false;
   double cost = 0.0;
@@ -46,14 +45,13 @@ struct SolveStart {
 };
 
 struct Solution {
-  std::vector<SolveStart> starts;  // in order of trial
-  int best = -1;                   // index into starts; -1: no start was usable
+  SolveStart start;
   double seconds = 0.0;
 
-  const SolveStart& Best() const { return starts[best]; }
+  bool ok() const { return start.usable; }
 };
 
-// phase: "start 2/8, horizon 32"; called after every accepted iteration.
+// phase: "32 frames"; called after every accepted iteration.
 using SolveProgress = std::function<void(const std::string& phase, int iteration, double cost)>;
 
 // How well a fit by a likelihood explains the recordings, to compare with other models by the same

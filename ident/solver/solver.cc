@@ -10,8 +10,6 @@
 #include <memory>
 
 #include "datasets/files/number_text.h"
-#include "datasets/files/random.h"
-#include "ident/solver/network_training.h"
 #include "ident/solver/summed_cost.h"
 
 namespace pushid {
@@ -47,7 +45,7 @@ ceres::LinearSolverType LinearSolverFor(int columns, bool has_network) {
   return has_network ? ceres::DENSE_NORMAL_CHOLESKY : ceres::SPARSE_NORMAL_CHOLESKY;
 }
 
-// By secants where there are few columns; early stopping looks at the problem's own blocks.
+// By secants where there are few columns.
 ceres::Solver::Summary Minimize(FitProblem::Built* built, ceres::Solver::Options options,
                                 StructuredSecants secants, RecordingSums* recordings) {
   ceres::Solver::Summary summary;
@@ -56,7 +54,7 @@ ceres::Solver::Summary Minimize(FitProblem::Built* built, ceres::Solver::Options
   auto summed = std::make_unique<SummedCost>(built, std::move(secants),
                                              whole ? *recordings : RecordingSums());
   if (recordings != nullptr) *recordings = {};
-  if (summed->parameter_block_sizes()[0] > kDenseColumns || options.update_state_every_iteration) {
+  if (summed->parameter_block_sizes()[0] > kDenseColumns) {
     ceres::Solve(options, built->problem.get(), &summary);
     return summary;
   }
@@ -121,46 +119,24 @@ double CostAt(const FitProblem& problem, FitPoint point) {
 }
 
 // A network learns on top of a physical model that has converged without it, together with it.
-void TrainNetwork(const FitProblem& problem, const std::string& label,
-                  const SolveProgress& progress, SolveStart* start) {
+void TrainNetwork(const FitProblem& problem, const SolveProgress& progress, SolveStart* start) {
   const FitOptions& options = problem.options();
-  EarlyStoppingSplit split;
-  if (options.early_stopping > 0.0) {
-    const auto made = SplitForEarlyStopping(problem, options.early_stopping, options.seed);
-    if (!made.ok()) {
-      start->usable = false;
-      start->message = made.error().ToString();
-      return;
-    }
-    split = made.value();
-  }
-  const bool stop_early = !split.held_out.empty();
-  const FitProblem training(problem.recordings(), options,
-                            stop_early ? split.training : problem.counts());
-  const FitProblem held_out(problem.recordings(), options, split.held_out);
-  FitProblem::Built built = training.Build(&start->to, 0, false, options.num_threads);
+  FitProblem::Built built = problem.Build(&start->to, 0, false, options.num_threads);
   ceres::Solver::Options solver = SolverOptions(options, *built.problem);
   solver.function_tolerance = std::max(kNetworkTolerance, options.function_tolerance);
-  ProgressCallback callback(progress, label + "network");
+  ProgressCallback callback(progress, "network");
   if (progress) solver.callbacks.push_back(&callback);
-  EarlyStopping stopping(held_out, &start->to);
-  if (stop_early) {
-    solver.callbacks.push_back(&stopping);
-    solver.update_state_every_iteration = true;
-  }
   const SolveStage stage = SolveBuilt(&built, solver, 0, &start->message, StructuredSecants(false));
-  if (stop_early) start->to = stopping.best();
   start->stages.push_back(stage);
   start->iterations += stage.iterations;
   start->failed = problem.Failures(start->to, 0);
-  // Of all recordings, whatever the training saw.
-  start->cost = stop_early ? CostAt(problem, start->to) : stage.final_cost;
-  start->converged = stage.converged || stopping.stopped();
+  start->cost = stage.final_cost;
+  start->converged = stage.converged;
   start->usable = start->converged || stage.final_cost < stage.initial_cost;
 }
 
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,
-                     const std::string& label, const SolveProgress& progress) {
+                     const SolveProgress& progress) {
   const FitOptions& options = problem.options();
   SolveStart start;
   start.kind = kind;
@@ -181,7 +157,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
       if (!last) {
         solver.function_tolerance = std::max(kOnTheWay, kLessExact * options.function_tolerance);
       }
-      ProgressCallback callback(progress, label + HorizonName(horizons[i]));
+      ProgressCallback callback(progress, HorizonName(horizons[i]));
       if (progress) solver.callbacks.push_back(&callback);
       const SolveStage stage =
           SolveBuilt(&built, solver, horizons[i], &start.message, StructuredSecants(false));
@@ -197,7 +173,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
       left_out_before = left_out;
     }
   }
-  if (!from.weights.empty()) TrainNetwork(problem, label, progress, &start);
+  if (!from.weights.empty()) TrainNetwork(problem, progress, &start);
   return start;
 }
 
@@ -221,49 +197,36 @@ std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* poin
   return notes;
 }
 
-std::uint64_t RandomStartSeed(const FitOptions& options, int i) {
-  return options.seed * 1000003u + static_cast<std::uint64_t>(i);
-}
-
-FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed) {
-  Random random(seed);
-  FitPoint point = problem.NominalPoint();
-  for (size_t i = 0; i < point.shared.size(); ++i) {
-    const Transform transform = problem.map().fitted[i].transform;
-    const double natural =
-        ToNatural(transform, point.shared[i]) * std::pow(spread, random.Uniform(-1.0, 1.0));
-    point.shared[i] = ToFitted(transform, natural);
-  }
-  return point;
-}
-
 Solution Solve(const FitProblem& problem, const SolveProgress& progress) {
   const auto begin = std::chrono::steady_clock::now();
-  const FitOptions& options = problem.options();
-  Solution solution;
-  const int num_starts = std::max(1, options.num_starts);
-  for (int i = 0; i < num_starts; ++i) {
-    const std::string label =
-        num_starts > 1 ? "start " + std::to_string(i + 1) + "/" + std::to_string(num_starts) + ", "
-                       : "";
-    const FitPoint from =
-        i > 0 ? RandomStart(problem, options.start_spread, RandomStartSeed(options, i))
-              : problem.NominalPoint();
-    solution.starts.push_back(
-        SolveFrom(problem, from, i > 0 ? "random" : "nominal", label, progress));
-  }
-  for (int i = 0; i < static_cast<int>(solution.starts.size()); ++i) {
-    const SolveStart& tried = solution.starts[i];
-    if (!tried.usable) continue;
-    if (solution.best < 0 || tried.failed.size() < solution.Best().failed.size() ||
-        (tried.failed.size() == solution.Best().failed.size() &&
-         tried.cost < solution.Best().cost)) {
-      solution.best = i;
-    }
-  }
+  Solution solution{SolveFrom(problem, problem.NominalPoint(), "nominal", progress)};
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solution;
+}
+
+FitOptions PhysicsAlone(FitOptions options) {
+  const ModelOptions whole = options.model;
+  options.model.learned = nullptr;
+  options.model.interaction.learned = false;
+  for (ParameterSpec& spec : options.table.specs) {
+    const bool of_network = Acts(spec.id, whole) && !Acts(spec.id, options.model);
+    if (of_network) spec.free = spec.pooled = false;
+  }
+  return options;
+}
+
+LargeNetworkTrainer& LargeNetworkTraining() {
+  static LargeNetworkTrainer trainer = nullptr;
+  return trainer;
+}
+
+Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recordings,
+                                     const FitOptions& options, const SolveProgress& progress) {
+  if (LargeNetworkTraining() != nullptr) {
+    return LargeNetworkTraining()(recordings, options, progress);
+  }
+  return Error{"this program trains no large networks: it is built without pushid_large_networks"};
 }
 
 }  // namespace pushid

@@ -1,4 +1,4 @@
-// ident: from starts to an optimum: horizon curriculum, multi-start.
+// ident: from a start to an optimum by growing horizons.
 #pragma once
 
 #include <ceres/solver.h>
@@ -43,41 +43,28 @@ double CostAt(const FitProblem& problem, FitPoint point);
 
 // Runs one start through the horizons.
 SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std::string& kind,
-                     const std::string& label, const SolveProgress& progress);
+                     const SolveProgress& progress);
 
 // A start on a bound stalls: such values are moved inwards by a tenth of their typical size (on a
 // log scale by 10 %). Returns what was moved, in words.
 std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* point);
 
-// Of the i-th start, the first being 0.
-std::uint64_t RandomStartSeed(const FitOptions& options, int i);
-// The nominal point with every free gain multiplied by spread^u, u uniform in [-1, 1].
-FitPoint RandomStart(const FitProblem& problem, double spread, uint64_t seed);
-
-// All starts; the best usable one by cost, with fewer failed recordings winning first.
+// From the nominal point.
 Solution Solve(const FitProblem& problem, const SolveProgress& progress = nullptr);
 
 // A solve that maximizes a likelihood of single steps (residuals/fit_choices.h).
 //
-// The first start is the optimum of rollouts; the noise starts at the spread of the transitions
+// It starts at the optimum of rollouts; the noise starts at the spread of the transitions
 // that it leaves. A few steps of Fisher scoring (residuals/cost_functions/likelihood_residual.h),
 // the problem built anew after every third, come near the optimum; BFGS finds it, in turns with the
 // spread of pooled units.
 struct LikelihoodSolution {
   Solution solution;
-  bool stays = false;  // the best one's likelihood, from round to round
+  bool stays = false;  // the likelihood, from round to round
 };
 
-// The best of the starts, each on its own. problem: on return with the best one's start of the
-// noise and its units' spread.
+// problem: on return with the start of the noise and the units' spread.
 LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress = nullptr);
-
-// The process noise, and the errors of measurement, under which a fit of whole rollouts explains
-// single steps best (innovation likelihood), everything else held at `point`: the fixed values of
-// the problem's table on return. What the user has set stays. Nothing changes where the model has
-// no noise, or a likelihood of steps has found it already. Returns a warning where it cannot be
-// estimated.
-std::string EstimateNoise(const FitPoint& point, FitProblem* problem);
 
 // At a point of a problem.
 LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point);
@@ -97,5 +84,22 @@ LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& poi
 // those do that nothing depends on.
 SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, FitPoint* point,
                        std::string* message);
+
+// Networks too large for Gauss-Newton.
+
+// The fit without its network.
+FitOptions PhysicsAlone(FitOptions options);
+
+// Trains a large network together with the free parameters (large_networks/large_network_fit.h).
+// Returns the options with the trained network, held, and the parameters' values to start from.
+// Errors: what the adjoint gradient refuses (free initial velocities).
+using LargeNetworkTrainer = Result<FitOptions> (*)(const std::vector<PendulumRecording>& recordings,
+                                                   const FitOptions& options,
+                                                   const SolveProgress& progress);
+// Set by the library pushid_large_networks in programs that link it, elsewhere null.
+LargeNetworkTrainer& LargeNetworkTraining();
+// Errors: this program does not link it.
+Result<FitOptions> TrainLargeNetwork(const std::vector<PendulumRecording>& recordings,
+                                     const FitOptions& options, const SolveProgress& progress);
 
 }  // namespace pushid

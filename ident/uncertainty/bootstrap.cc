@@ -81,7 +81,7 @@ ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
   options.function_tolerance = std::max(kReplicaTolerance, options.function_tolerance);
   const FitProblem drawn(problem.recordings(), options, counts);
   SolveStart fit = Refit(drawn, estimate, false, 1, SumAsDrawn(each, drawn));
-  if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", "", nullptr);
+  if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", nullptr);
   if (!fit.converged || !fit.failed.empty()) return {};
   return ValuesAt(drawn, fit.to, combinations);
 }
@@ -170,9 +170,7 @@ double Quantile(std::vector<double> values, double share) {
 
 Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& estimate,
                                    const BootstrapOptions& options, const JobProgress& progress) {
-  const ResamplingUnits from =
-      MakeResamplingUnits(problem.recordings(),
-                          options.by == ClusterBy::kAuto ? problem.options().cluster : options.by);
+  const ResamplingUnits from = MakeResamplingUnits(problem.recordings(), options.by);
   const bool people = from.by == ClusterBy::kSubject;
   if (from.units.size() < 2) {
     return Error{"a bootstrap over " + std::string(people ? "people" : "recordings") +

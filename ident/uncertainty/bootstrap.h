@@ -43,7 +43,7 @@ struct BootstrapOptions {
   uint64_t seed = 1;
   std::string file;  // keeps finished replicas; empty: nothing is kept
   int num_threads = 1;
-  ClusterBy by = ClusterBy::kAuto;  // auto: as standard errors are clustered (FitOptions::cluster)
+  ClusterBy by = ClusterBy::kAuto;  // auto: as standard errors are clustered
 };
 
 // Errors: fewer than two people or recordings to draw, a file that cannot be used or belongs to

@@ -141,7 +141,7 @@ double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point,
     return one_each;
   }
   // By its own sigmas no frame is worth more than one: that would undo the markers' noise.
-  const bool own = problem.options().sigma_source == SigmaSource::kEstimate;
+  const bool own = EstimatesSigmas(problem.options());
   const double weight = own ? std::min(1.0, now / frames / lambda) : now / frames / lambda;
   const double before = problem.options().effective_weight;
   if (!(before > 0.0)) {  // recordings did not weigh alike

@@ -49,12 +49,12 @@ HorizonFit FitFirst(const FitProblem& whole, int frames) {
   options.num_threads = 1;
   const FitProblem problem(first, options);
   const Solution solution = Solve(problem);
-  if (solution.best < 0 || !solution.Best().usable) {
-    fit.failure = "no start could be solved";
-  } else if (!solution.Best().failed.empty()) {
+  if (!solution.ok()) {
+    fit.failure = "it could not be solved";
+  } else if (!solution.start.failed.empty()) {
     fit.failure = "some rollouts leave the model's domain";
   } else {
-    const FitPoint& point = solution.Best().to;
+    const FitPoint& point = solution.start.to;
     fit.value = SharedValues(problem, point);
     fit.standard_error = Errors(ComputeUncertainty(problem, point), fit.value.size());
   }

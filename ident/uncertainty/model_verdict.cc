@@ -83,7 +83,7 @@ class ModelJudge {
   ModelJudge(const FitProblem& problem, const FitPoint& point)
       : problem_(problem),
         point_(point),
-        clusters_(MakeClusters(problem.recordings(), problem.options().cluster, problem.counts())),
+        clusters_(MakeClusters(problem.recordings(), ClusterBy::kAuto, problem.counts())),
         columns_(FittedColumns(problem, point)) {
     verdict_.not_checked = WhyNot(problem.options(), columns_.size());
     if (!verdict_.checked()) return;
@@ -285,8 +285,7 @@ ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point,
                         const Behaviour& behaviour, Uncertainty* uncertainty) {
   const std::vector<FittedColumn> columns = FittedColumns(problem, point);
   ModelVerdict verdict = ModelJudge(problem, point).Run(uncertainty);
-  verdict.none_identified =
-      WhyNoneIsIdentified(*uncertainty, behaviour, problem.options().model);
+  verdict.none_identified = WhyNoneIsIdentified(*uncertainty, behaviour, problem.options().model);
   const bool late = MayBeLate(verdict);
   const bool doubtful = verdict.fails() || !verdict.none_identified.empty();
   for (size_t i = 0; i < columns.size(); ++i) {

@@ -49,7 +49,7 @@ Eigen::MatrixXd DataNullSpace(const JacobianBlocks& score, const Eigen::MatrixXd
 
 // Limits of EstimateStatus.
 constexpr double kIdentifiedShare = 0.8;
-constexpr double kMostPull = 0.5;       // standard errors
+constexpr double kMostPull = 0.5;  // standard errors
 constexpr double kMostHalfWidth = 0.5;
 
 }  // namespace
@@ -70,9 +70,8 @@ EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched, boo
   if (e.shares.data < kHeldShare) return EstimateStatus::kPriorHeld;
   const double pull = std::abs(e.shares.prior_pull + e.shares.settling_pull);
   const bool leads = e.shares.data > kIdentifiedShare && pull < kMostPull * e.standard_error;
-  return !few && leads && IsNarrow(c, e.lower95, e.upper95)
-             ? EstimateStatus::kIdentified
-             : EstimateStatus::kWeak;
+  return !few && leads && IsNarrow(c, e.lower95, e.upper95) ? EstimateStatus::kIdentified
+                                                            : EstimateStatus::kWeak;
 }
 
 // About one fitted number, natural unit.
@@ -177,7 +176,7 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
   const FitProblem::Built built = problem.Build(&copy, 0);
   Evaluated e{EvaluateJacobianBlocks(built, true), FittedColumns(problem, point), {}, {}, {}};
   e.unit = Units(e.columns);
-  e.clusters = MakeClusters(problem.recordings(), problem.options().cluster, problem.counts());
+  e.clusters = MakeClusters(problem.recordings(), ClusterBy::kAuto, problem.counts());
   e.clustering = ClusterRows(problem, e.clusters, e.score);
   // Where feet step the gradient jumps: differences across a jump left no minimum, and those of a
   // shorter step know nothing of it.

@@ -64,7 +64,7 @@ TEST_F(BatchFaultTest, LongListsOfRecordingsReachTheFit) {
     json["recordings"].back()["id"] = std::string(230, 'x') + std::to_string(i);
   }
   WriteText("manifest.json", json.dump(1));
-  const AppRun run = Batch(Plan("", {{"a", "\"--starts=1\", \"--max_iterations=1\""}}));
+  const AppRun run = Batch(Plan("", {{"a", "\"--max_iterations=1\""}}));
   EXPECT_TRUE(Contains(run.out, "the fit did not converge")) << run.out << run.err;
 }
 

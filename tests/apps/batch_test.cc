@@ -46,15 +46,13 @@ TEST_F(BatchTest, OneBadVariantCostsItsOwnJobsOnly) {
 }
 
 TEST_F(BatchTest, ReplicasAreThoseOfTheBootstrap) {
-  // With given weights: a replica of a batch estimates its own, the bootstrap keeps the fit's.
-  FitModel("model.json",
-           {"--seed=7", "--settling_weight=0", "--sigmas=fixed", "--recording_weight=recording"});
+  // By a likelihood: of rollouts a replica of a batch estimates its own weights, the bootstrap
+  // keeps the fit's.
+  FitModel("model.json", {"--seed=7", "--likelihood=transition"});
   Succeeded(
       RunApp("pushid-check", {"--model=" + Path("model.json"), Recordings(), "--bootstrap=2"}));
   const nlohmann::ordered_json model = Json(Path("model.json"));
-  Batch(Plan("bootstrap = 2\nseed = 7",
-             {{"physics",
-               "\"--settling_weight=0\", \"--sigmas=fixed\", \"--recording_weight=recording\""}}));
+  Batch(Plan("bootstrap = 2\nseed = 7", {{"physics", "\"--likelihood=transition\""}}));
   const nlohmann::ordered_json summary = Json(Path("out/summary.json"));
   ASSERT_EQ(summary["jobs"].size(), 3u);
   EXPECT_NEAR(summary["jobs"][0]["parameters"]["mu"]["value"].get<double>(),
@@ -201,26 +199,6 @@ TEST_F(BatchTest, IdsFollowTheContent) {
   json["length_unit"] = "cm";
   WriteText("manifest.json", json.dump(1));
   for (const std::string& id : Ids(Batch(plan, {"--list"}).out)) EXPECT_EQ(changed.count(id), 0u);
-}
-
-// "done before" would otherwise be said of a fit that took its values from an older file.
-TEST_F(BatchTest, IdsFollowTheFilesThatFlagsName) {
-  const std::string model = ReadText(FitModel("fitted.json"));
-  const std::vector<std::pair<std::string, std::string>> variants = {
-      {"held", "\"--self_from=self.json\", \"--free=mu\""}};
-  const std::string plan = Plan("", variants);
-  EXPECT_TRUE(Refused(Batch(plan, {"--list"}), {"plan.toml:7", "self.json", "no such file"}));
-  WriteText("self.json", model);
-  const AppRun run = Batch(plan);  // from any folder: the file is beside the plan
-  EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
-  const std::set<std::string> ids = Ids(Batch(plan, {"--list"}).out);
-  WriteText("self.json", model + "\n");
-  EXPECT_NE(Ids(Batch(plan, {"--list"}).out), ids);
-  // The same file elsewhere is the same job.
-  WriteText("moved.json", model);
-  const std::string moved =
-      Plan("", {{"held", "\"--self_from=moved.json\", \"--free=mu\""}}, "out", "moved.toml");
-  EXPECT_EQ(Ids(Batch(moved, {"--list"}).out), ids);
 }
 
 // What the workflow of apps/workflow asks for: where each job's files go, and the table alone.

@@ -28,7 +28,7 @@ TEST_F(CheckTest, ChecksOfEveryKindOfModelAreAdded) {
       {{"--pool=mu", "--pool_by=subject", "--seed=3"}, most},
       {{"--self_force=linear,mlp:2"}, few},
       {{"--stance=steps"}, few},
-      {{"--replica=2", "--bootstrap_by=recording"}, few}};
+      {{"--replica=2"}, few}};
   for (const auto& [fit, checks] : cases) {
     SCOPED_TRACE(fit[0]);
     const std::string model = FitModel("model.json", fit);

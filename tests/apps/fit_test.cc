@@ -125,13 +125,12 @@ Words ShellWords(const std::string& line) {
 }
 
 TEST_F(FitAppTest, AdviceRepeatsTheVeryFit) {
-  const std::string first = FitModel(
-      "first.json",
-      {"--preset=group", "--interaction=none", "--pool=mu,a_x", "--pool_by=subject",
-       "--pooling_sigma=0.15", "--posture=upright", "--gain_scaling=mass", "--preset_priors=false",
-       "--prior=a_x:-11:3", "--settling_weight=3", "--mode_weight=5", "--cart_derivative=backward",
-       "--fix=c_q,d_q=0.1", "--robust=0.3", "--horizons=8,20", "--recording_weight=frame",
-       "--seed=3", "--function_tolerance=1e-7", "--leave_out=" + id_});
+  const std::string first =
+      FitModel("first.json",
+               {"--preset=group", "--interaction=none", "--pool=mu,a_x", "--pool_by=subject",
+                "--posture=upright", "--gain_scaling=mass", "--preset_priors=false",
+                "--prior=a_x:-11:3", "--settling_weight=3", "--mode_weight=5", "--fix=c_q,d_q=0.1",
+                "--marker_noise=0.002", "--seed=3", "--leave_out=" + id_});
   const std::string out = fit_.out;
   const size_t begin = out.find("\n  pushid-fit ", out.find("alone changes"));
   ASSERT_NE(begin, std::string::npos) << out;
@@ -175,14 +174,10 @@ TEST_F(FitAppTest, AReplicaSaysSo) {
   EXPECT_EQ(RunApp("pushid-fit", {Recordings(), "--resample=60"}).exit_code, 1);
 }
 
-TEST_F(FitAppTest, TheHeaderNamesPoolingAndTheSelfModel) {
-  const std::string alone = FitModel("alone.json");
-  FitModel("m.json", {"--self_from=" + alone, "--free=mu", "--pool=mu", "--pool_by=subject"});
-  EXPECT_TRUE(Contains(fit_.out, "pooled by subject, self parameters from " + alone));
+TEST_F(FitAppTest, TheHeaderNamesPooling) {
+  FitModel("m.json", {"--pool=mu", "--pool_by=subject"});
+  EXPECT_TRUE(Contains(fit_.out, "pooled by subject"));
   EXPECT_TRUE(Contains(fit_.out, "spread between subjects"));
-  EXPECT_TRUE(
-      Refused(RunApp("pushid-fit", {Recordings(), "--self_from=" + alone, "--stance=steps"}),
-              {"was fitted with --stance=slide"}));
   // All of them stand in one setting.
   FitModel("m.json", {"--pool=mu", "--pool_by=setting"});
   EXPECT_FALSE(Contains(fit_.out, "pooled by"));
@@ -218,7 +213,7 @@ TEST_F(FitAppTest, GainsThatCannotBeToldApartAreNamed) {
 }
 
 TEST_F(FitAppTest, ThePlainPresetFitsToo) {
-  const nlohmann::ordered_json model = Json(FitModel("m.json", {"--preset=ldp", "--starts=1"}));
+  const nlohmann::ordered_json model = Json(FitModel("m.json", {"--preset=ldp"}));
   EXPECT_EQ(model["model"]["preset"], "ldp");
   EXPECT_FALSE(Contains(fit_.out, "mu_y"));
   EXPECT_TRUE(Contains(fit_.out, "In LDP's units, per frame of 1/60 s: Kd_theta "));

@@ -12,7 +12,7 @@ class LangevinAppTest : public AppTest {
  protected:
   void SetUp() override {
     AppTest::SetUp();
-    noisy_ = FitModel("noisy.json", {"--process_noise=diagonal"});
+    noisy_ = FitModel("noisy.json", {"--likelihood=innovation"});
     plain_ = FitModel("plain.json");
   }
   std::vector<std::string> Predict(const std::string& model) const {
@@ -70,8 +70,8 @@ TEST_F(LangevinAppTest, FuturesAreDrawnScoredAndWritten) {
 
   const AppRun held_out = Succeeded(
       RunApp("pushid-crossvalidate",
-             {Recordings(), "--process_noise=diagonal", "--folds=2", "--repeats=1", "--samples=10",
-              "--compare=steps: --likelihood=innovation", "--json_out=" + scores, "--quiet"}));
+             {Recordings(), "--likelihood=innovation", "--folds=2", "--repeats=1", "--samples=10",
+              "--compare=steps: --likelihood=transition", "--json_out=" + scores, "--quiet"}));
   EXPECT_EQ(Json(scores).at("futures").size(), 2u);
   EXPECT_TRUE(Contains(held_out.out, "steps less tail"));
 
@@ -116,7 +116,6 @@ TEST_F(LangevinAppTest, BadUse) {
     EXPECT_TRUE(Refused(RunApp("pushid-path", flags), {says})) << says;
   }
   const std::vector<std::pair<std::vector<std::string>, std::string>> fits = {
-      {{"--process_noise=white"}, "'white'"},
       {{"--likelihood=posterior"}, "--likelihood"},
       {{"--likelihood=innovation", "--stance=steps"}, "--stance=steps"},
   };

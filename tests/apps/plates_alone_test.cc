@@ -69,8 +69,8 @@ TEST_F(PlatesAloneApp, AreRefusedElsewhere) {
     return run.err;
   };
   EXPECT_TRUE(Contains(told("pushid-fit", {"--stance=slide"}), "add --stance=fixed"));
-  EXPECT_TRUE(Contains(told("pushid-fit", {"--stance=fixed", "--process_noise=diagonal"}),
-                       "which nobody measured"));
+  EXPECT_TRUE(Contains(told("pushid-fit", {"--stance=fixed", "--likelihood=innovation"}),
+                       "set \"use\": \"none\" there"));
   EXPECT_TRUE(Contains(told("pushid-crossvalidate", {}), "was measured by force plates alone"));
 }
 

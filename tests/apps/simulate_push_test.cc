@@ -48,10 +48,9 @@ TEST_F(SimulateAppTest, TheTruthOfGroupsIsFound) {
       Simulate("made", {"--people=6", "--group_size=3", "--recordings_per_person=3", "--noise=0"});
   EXPECT_TRUE(Contains(run_.out, "18 recordings of 6 people in rows of 3"));
   EXPECT_TRUE(Contains(run_.out, "contact_stiffness"));
-  Succeeded(RunApp("pushid-fit",
-                   {"--recordings=" + manifest, "--setting=groups", "--preset=group", "--pool=none",
-                    "--preset_priors=false", "--settling_weight=0", "--mode_weight=0",
-                    "--function_tolerance=1e-12", "--model_out=" + Path("model.json")}));
+  Succeeded(RunApp("pushid-fit", {"--recordings=" + manifest, "--setting=groups", "--preset=group",
+                                  "--pool=none", "--preset_priors=false", "--settling_weight=0",
+                                  "--mode_weight=0", "--model_out=" + Path("model.json")}));
   const nlohmann::ordered_json truth = Json(manifest)["synthetic"]["truth"];
   const auto model = Json(Path("model.json"));
   for (const char* name : {"mu", "Kp_theta", "contact_stiffness", "contact_distance",

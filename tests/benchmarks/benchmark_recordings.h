@@ -65,7 +65,7 @@ inline BenchmarkRecordings LoadForBenchmarks(const std::string& setting) {
   for (const Recording& recording : published.ok()        ? published.value()
                                     : setting == "groups" ? SyntheticGroups()
                                                           : SyntheticOfPublishedLengths()) {
-    result.recordings.push_back(MakePendulumRecording(recording, SkeletonMapping::kExact));
+    result.recordings.push_back(MakePendulumRecording(recording));
   }
   return result;
 }

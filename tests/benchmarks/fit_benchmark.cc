@@ -23,13 +23,12 @@ FitOptions OptionsOf(const char* name) { return MakePreset(name).value(); }
 void Report(benchmark::State& state, const Solution& solution) {
   const BenchmarkRecordings& data = SinglePeople();
   state.SetLabel(std::to_string(data.recordings.size()) + " " + data.origin + " recordings");
-  if (solution.best < 0) {
+  if (!solution.ok()) {
     state.SkipWithError("no usable start");
     return;
   }
-  state.counters["cost"] = solution.Best().cost;
-  state.counters["starts"] = static_cast<double>(solution.starts.size());
-  state.counters["iterations"] = solution.Best().iterations;
+  state.counters["cost"] = solution.start.cost;
+  state.counters["iterations"] = solution.start.iterations;
 }
 
 void SolveOnly(benchmark::State& state, const char* preset) {
@@ -73,11 +72,11 @@ void UncertaintyAlone(benchmark::State& state, const char* preset) {
   const FitOptions options = OptionsOf(preset);
   const FitProblem problem(SinglePeople().recordings, options);
   const Solution solution = Solve(problem);
-  if (solution.best < 0) {
+  if (!solution.ok()) {
     state.SkipWithError("no usable start");
     return;
   }
-  for (auto _ : state) benchmark::DoNotOptimize(ComputeUncertainty(problem, solution.Best().to));
+  for (auto _ : state) benchmark::DoNotOptimize(ComputeUncertainty(problem, solution.start.to));
 }
 BENCHMARK_CAPTURE(UncertaintyAlone, tail, "tail")->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(UncertaintyAlone, ldp, "ldp")->Unit(benchmark::kMillisecond);
@@ -150,12 +149,12 @@ void GroupSolve(benchmark::State& state, const FitOptions& options) {
   for (auto _ : state) solution = Solve(problem);
   state.SetLabel(std::to_string(Groups().recordings.size()) + " " + Groups().origin +
                  " recordings");
-  if (solution.best < 0) {
+  if (!solution.ok()) {
     state.SkipWithError("no usable start");
     return;
   }
-  state.counters["cost"] = solution.Best().cost;
-  state.counters["iterations"] = solution.Best().iterations;
+  state.counters["cost"] = solution.start.cost;
+  state.counters["iterations"] = solution.start.iterations;
 }
 BENCHMARK_CAPTURE(GroupSolve, contact, GroupOptions(SelfForceKind::kNone))
     ->Unit(benchmark::kSecond);

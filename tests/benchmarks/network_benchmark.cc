@@ -110,12 +110,12 @@ void NetworkSolve(benchmark::State& state, const char* self_force) {
   const FitProblem problem(SinglePeople().recordings, options);
   Solution solution;
   for (auto _ : state) solution = Solve(problem);
-  if (solution.best < 0) {
+  if (!solution.ok()) {
     state.SkipWithError("no usable start");
     return;
   }
-  state.counters["cost"] = solution.Best().cost;
-  state.counters["iterations"] = solution.Best().iterations;
+  state.counters["cost"] = solution.start.cost;
+  state.counters["iterations"] = solution.start.iterations;
 }
 
 void RegisterAll() {

@@ -46,7 +46,7 @@ inline SyntheticOptions TinyStudy() {
 inline std::vector<PendulumRecording> AsPendulums(const std::vector<Recording>& recordings) {
   std::vector<PendulumRecording> pendulums;
   for (const Recording& recording : recordings) {
-    pendulums.push_back(MakePendulumRecording(recording, SkeletonMapping::kExact));
+    pendulums.push_back(MakePendulumRecording(recording));
   }
   return pendulums;
 }
@@ -89,8 +89,7 @@ inline FitOptions UnbiasedFit(const SyntheticOptions& study) {
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
   options.settling_weight = 0.0;
   options.sigmas.robust = 0.0;
-  options.sigma_source = SigmaSource::kFixed;
-  options.recording_weight = RecordingWeight::kRecording;
+  options.estimate_weights = false;
   return options;
 }
 

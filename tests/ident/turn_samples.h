@@ -26,7 +26,7 @@ class TurnsTest : public TempDirTest {
       ADD_FAILURE() << recordings.error().ToString();
       return {};
     }
-    auto bodies = MakeBodyRecordings(recordings.value(), SkeletonMapping::kExact);
+    auto bodies = MakeBodyRecordings(recordings.value());
     if (!bodies.ok()) ADD_FAILURE() << bodies.error().ToString();
     return bodies.ok() ? bodies.value() : std::vector<BodyRecording>();
   }

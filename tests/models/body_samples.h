@@ -48,8 +48,8 @@ inline Pose Placed(const Pose& pose, double turn, const Eigen::Vector3d& move) {
 inline RestorationInput WithPendulum(const Pose& first_pose, double mass) {
   RestorationInput person;
   person.first_pose = first_pose;
-  const MappedPose mapped = MapSkeleton(first_pose.col(0), first_pose.col(kLeftAnkle),
-                                        first_pose.col(kRightAnkle), SkeletonMapping::kExact);
+  const MappedPose mapped =
+      MapSkeleton(first_pose.col(0), first_pose.col(kLeftAnkle), first_pose.col(kRightAnkle));
   person.body = {mass, mapped.rod_length, mapped.cart_height};
   person.q = {mapped.q};
   return person;

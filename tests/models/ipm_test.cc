@@ -155,7 +155,7 @@ TEST(Ipm, PhysicsDoesNotDependOnTheHeading) {
     const auto turned_pose = [&](double time) {
       const Vector4<double> q = state.q + time * state.qd;
       const Eigen::Vector3d cart = turn * Eigen::Vector3d(q[0], q[1], body.cart_height);
-      return MapSkeleton(turn * HipPosition(body, q), cart, cart, SkeletonMapping::kExact).q;
+      return MapSkeleton(turn * HipPosition(body, q), cart, cart).q;
     };
     constexpr double kStep = 1e-5;
     const PendulumState<double> turned{turned_pose(0.0),

@@ -8,7 +8,7 @@ import pushid
 @pytest.fixture(scope="module")
 def noisy(made):
     """A model that knows the noise of single steps."""
-    return pushid.fit(made[0], process_noise="diagonal")
+    return pushid.fit(made[0], likelihood="innovation")
 
 
 def test_profiles(result):

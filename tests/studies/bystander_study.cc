@@ -85,7 +85,7 @@ int Run() {
   std::istringstream ids(FLAGS_ids);
   for (std::string id; std::getline(ids, id, ',');) options.ids.push_back(id);
   const auto recordings = OrExit(LoadRecordings(FLAGS_recordings, options));
-  const auto bodies = OrExit(MakeBodyRecordings(recordings, SkeletonMapping::kExact));
+  const auto bodies = OrExit(MakeBodyRecordings(recordings));
   std::printf("where they stand, error of the recorded people m, way of the others m\n");
   for (const auto& [name, place] : {std::pair("nobody", Place::kNobody),
                                     {"ahead", Place::kInFront},

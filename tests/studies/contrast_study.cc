@@ -111,7 +111,7 @@ Result<std::vector<PendulumRecording>> Draw(const Kind& kind, uint64_t seed) {
       for (Recording& recording : made.value()) all.push_back(std::move(recording));
     }
   }
-  return MakePendulumRecordings(all, SkeletonMapping::kExact);
+  return MakePendulumRecordings(all);
 }
 
 struct Tally {

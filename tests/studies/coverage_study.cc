@@ -58,8 +58,8 @@ void Judge(int dataset, std::mutex* mutex, std::vector<Tally>* tallies) {
   options.sigmas = ResidualSigmas();  // the robust loss as a user has it
   const FitProblem problem(recordings, options);
   const Solution solution = Solve(problem);
-  if (solution.best < 0) return;
-  const FitPoint& estimate = solution.Best().to;
+  if (!solution.ok()) return;
+  const FitPoint& estimate = solution.start.to;
   const Uncertainty uncertainty = ComputeUncertainty(problem, estimate);
 
   const bool refined = dataset < FLAGS_refined;

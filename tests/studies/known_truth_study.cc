@@ -39,7 +39,7 @@ DEFINE_double(people_spread, 0.1, "of the gains between people, on a log scale")
 DEFINE_bool(noise_at_first_frame, true,
             "whether frame 0, which sets rod and posture, is noisy too");
 DEFINE_double(noise, -1.0, "of hip and ankles, m; negative: 1 to 5 mm");
-DEFINE_string(options, "", "of the fits, as in '--cluster=recording'; empty: the defaults");
+DEFINE_string(options, "", "of the fits, as in '--settling_weight=0'; empty: the defaults");
 DEFINE_bool(details, false, "a line for every estimate, on stderr");
 DEFINE_int32(num_threads, 2, "threads");
 
@@ -113,7 +113,7 @@ void Judge(int index, std::mutex* mutex, Study* all) {
     const auto made = MakeSyntheticRecordings(study);
     if (!made.ok()) continue;
     const std::vector<PendulumRecording> recordings =
-        MakePendulumRecordings(Recordings(made.value()), SkeletonMapping::kExact);
+        MakePendulumRecordings(Recordings(made.value()));
     FitOptions options = OrExit(MakeFitOptions(Given(), &recordings));
     const MaybeError unprepared = PrepareFit(recordings, &options);
     const FitResult result = unprepared ? FitResult() : Fit(recordings, options);

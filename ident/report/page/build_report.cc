@@ -38,7 +38,7 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
   for (size_t i = 0; i < recordings.size(); ++i) {
     RecordingView& view = views[i];
     view.recording = &recordings[i];
-    view.run.recording = MakePendulumRecording(recordings[i], model.mapping);
+    view.run.recording = MakePendulumRecording(recordings[i]);
     view.run.prediction = Predict(model, view.run.recording);
     view.note = NoteOf(result, view.run.recording, view.run.prediction);
     if (view.note.empty()) fitted.push_back(view.run.recording);
@@ -92,8 +92,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   ReportSource source{model};
   source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
   const IdentifiedModel identified = ModelOf(result);
-  const std::vector<PendulumRecording> on_ground =
-      MakePendulumRecordings(recordings, identified.mapping);
+  const std::vector<PendulumRecording> on_ground = MakePendulumRecordings(recordings);
   source.frequency = FrequencyResponses(identified, on_ground);
   source.sway = SwayOfPeople(identified, on_ground);
   source.propagation = PropagationOf(result, source.views);

@@ -214,56 +214,19 @@ struct CostAxis {
   double At(double cost) const { return std::log10(std::max(1e-300, cost - base)); }
 };
 
-// Costs of the starts, best first: steps are basins, a long first one is trust.
-ReportFigure WaterfallFigure(const std::vector<const SolveStart*>& ranked) {
-  Chart chart;
-  double lowest = HUGE_VAL;
-  for (const SolveStart* start : ranked) {
-    if (start->usable) lowest = std::min(lowest, start->cost);
-  }
-  const CostAxis axis(lowest);
-  chart.title = axis.Title() + " of the starts, best first";
-  chart.x_label = "rank";
-  chart.logarithmic_y = true;
-  ChartPoints ended;
-  TextTable numbers({"rank", "start", "cost", "failed_recordings"}, {false, true, false, false});
-  for (size_t i = 0; i < ranked.size(); ++i) {
-    const SolveStart& s = *ranked[i];
-    numbers.Add({i + 1, s.kind, s.usable ? DoubleText(s.cost) : "", s.failed.size()});
-    if (!s.usable || !s.failed.empty()) continue;
-    ended.emplace_back(static_cast<double>(i + 1), axis.At(s.cost));
-  }
-  chart.lines = {{ended, kPredictedLook}, {ended, kDotLook, true}};
-  return {"starts_waterfall",
-          "Each step is another local minimum; starts on the lowest step agree. Starts with failed "
-          "recordings are left out.",
-          {{}, {chart}},
-          numbers};
-}
-
 }  // namespace
 
 ReportSection SolveSection(const ReportSource& source) {
   ReportSection section;
-  std::vector<const SolveStart*> ranked;
-  for (const SolveStart& start : source.fit.starts) ranked.push_back(&start);
-  std::stable_sort(ranked.begin(), ranked.end(), [](const auto* a, const auto* b) {
-    return std::make_tuple(!a->usable, a->failed.size(), a->cost) <
-           std::make_tuple(!b->usable, b->failed.size(), b->cost);
-  });
   TextTable starts(
-      {"rank", "start", "cost", "iterations", "converged", "failed recordings", "solver's message"},
-      {false, true, false, false, true, false, true});
-  for (size_t i = 0; i < ranked.size(); ++i) {
-    const SolveStart& s = *ranked[i];
-    starts.Add({i + 1, s.kind, s.usable ? Rounded(s.cost, 6) : "-", s.iterations,
+      {"start", "cost", "iterations", "converged", "failed recordings", "solver's message"},
+      {true, false, false, true, false, true});
+  for (const SolveStart& s : source.fit.starts) {
+    starts.Add({s.kind, s.usable ? Rounded(s.cost, 6) : "-", s.iterations,
                 s.converged ? "yes" : "no", s.failed.size(), s.message});
   }
-  section.Show("starts, best first", starts);
+  section.Show("solved from", starts);
   if (source.fit.likelihood) section.Say(LikelihoodText(source.fit));
-  section.Say(AcrossStartsNote(source.fit));
-  if (ranked.size() > 1) section.figures.push_back(WaterfallFigure(ranked));
-  section.Show("where the best starts ended", AcrossStartsTable(source.fit));
   const std::vector<TracePoint>& trace = source.fit.diagnostics.trace;
   if (trace.size() < 2) return section;
   double lowest = HUGE_VAL;

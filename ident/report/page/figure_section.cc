@@ -38,7 +38,7 @@ Animation AnimationOf(const RecordingView& view) {
   Animation animation;
   animation.title = recording.id;
   animation.dt = recording.scene.dt;
-  auto bodies = MakeBodyRecording(*view.recording, SkeletonMapping::kExact);
+  auto bodies = MakeBodyRecording(*view.recording);
   if (bodies.ok()) {
     ToLaboratory(recording.scene, &bodies.value().bodies);
     AddRecorded(recording, bodies.value().bodies, &animation);

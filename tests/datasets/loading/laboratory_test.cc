@@ -58,7 +58,7 @@ class LaboratoryTest : public TempDirTest {
 TEST_F(LaboratoryTest, WhatWasRolledOutComesBack) {
   SyntheticOptions options = OnPlatform(GroundKind::kStep);
   const auto loaded = Unwrapped(Load(options));
-  const PendulumRecording seen = MakePendulumRecording(loaded[0], SkeletonMapping::kExact);
+  const PendulumRecording seen = MakePendulumRecording(loaded[0]);
   ASSERT_TRUE(seen.scene.ground.moves());
   ASSERT_TRUE(seen.HasPlates());
   double shear = 0.0;
@@ -82,7 +82,7 @@ TEST_F(LaboratoryTest, CentresOfWhoPressedNothingBeforeCountFromTheirMean) {
     plates[t].centre.x() += 7.0;
     if (t < plates.size() / 2) plates[t].weight = 0.0;
   }
-  const PendulumRecording seen = MakePendulumRecording(recording, SkeletonMapping::kExact);
+  const PendulumRecording seen = MakePendulumRecording(recording);
   double sum = 0.0;
   for (const PlateFrame& frame : seen.plates[0]) sum += frame.weight > 0.0 ? frame.centre.x() : 0.0;
   EXPECT_NEAR(sum, 0.0, 1e-9);

@@ -232,12 +232,12 @@ TEST(MotionPreparationTest, WeightsReachThePendulum) {
   Recording recording = Walk(60.0, 10);
   recording.people[0].weight.assign(10, 1.0);
   recording.people[0].weight[4] = 0.0;
-  const PendulumRecording pendulum = MakePendulumRecording(recording, SkeletonMapping::kExact);
+  const PendulumRecording pendulum = MakePendulumRecording(recording);
   for (int t = 0; t < 10; ++t) {
     EXPECT_EQ(pendulum.Weight(0, t), t == 4 || t == 5 ? 0.0 : 1.0) << t;
   }
   recording.people[0].weight.clear();
-  EXPECT_EQ(MakePendulumRecording(recording, SkeletonMapping::kExact).Weight(0, 4), 1.0);
+  EXPECT_EQ(MakePendulumRecording(recording).Weight(0, 4), 1.0);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST_F(PlatesAlone, StandForAsLongAsTheyMeasuredAndHaveNoWeight) {
   const Recording& recording = loaded[0];
   EXPECT_DOUBLE_EQ(recording.fps, kRate);
   ASSERT_EQ(recording.num_frames(), kRows);
-  const PendulumRecording seen = MakePendulumRecording(recording, SkeletonMapping::kExact);
+  const PendulumRecording seen = MakePendulumRecording(recording);
   EXPECT_NEAR(seen.scene.people[0].body.rod_length, 0.9, 1e-12);
   EXPECT_NEAR(seen.scene.people[0].body.cart_height, kUsualAnkleHeight, 1e-12);
   for (int t = 0; t < kRows; ++t) EXPECT_EQ(seen.Weight(0, t), 0.0) << t;

@@ -47,7 +47,7 @@ class SyntheticRecordings : public TempDirTest {
 };
 
 void ExpectMotionOf(const SyntheticRecording& made, const Recording& observed, double tolerance) {
-  const PendulumRecording pendulum = MakePendulumRecording(observed, SkeletonMapping::kExact);
+  const PendulumRecording pendulum = MakePendulumRecording(observed);
   ASSERT_EQ(pendulum.num_frames(), made.path.num_frames());
   EXPECT_EQ(pendulum.id, made.recording.id);
   EXPECT_EQ(pendulum.subject_ids[0], made.recording.people[0].subject_id);

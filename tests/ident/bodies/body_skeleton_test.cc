@@ -40,7 +40,7 @@ class BodySkeletonTest : public RecordingFolderTest {
     recorded_ = loaded[0].people[0];
     Recording recording = loaded[0];
     recording.ground = ground;
-    return Unwrapped(MakeBodyRecording(recording, SkeletonMapping::kExact));
+    return Unwrapped(MakeBodyRecording(recording));
   }
 
   // Joints of a file that was written in the source's own axes and lengths, m, world.
@@ -200,7 +200,7 @@ TEST_F(BodySkeletonTest, TheFilledIsSaidAndTheUnknownIsAnError) {
   options.keep_all_joints = true;
   const auto loaded = Unwrapped(Load(options));
   EXPECT_TRUE(warnings_.empty()) << "there is no body to fill";
-  const std::string made = ProblemOf(MakeBodyRecording(loaded[0], SkeletonMapping::kExact));
+  const std::string made = ProblemOf(MakeBodyRecording(loaded[0]));
   EXPECT_TRUE(Contains(made, Path("a.bvh") + ": recording a"));
   EXPECT_TRUE(Contains(made, "not recognised: left_knee; name them"));
   EXPECT_TRUE(Contains(made, "\"joints\": {\"left_knee\": ...}"));
@@ -224,7 +224,7 @@ TEST_F(BodySkeletonTest, HingesGetTheAxesThatTheyLack) {
   LoadOptions options;
   options.keep_all_joints = true;
   const auto loaded = Unwrapped(Load(options));
-  const auto made = Unwrapped(MakeBodyRecording(loaded[0], SkeletonMapping::kExact));
+  const auto made = Unwrapped(MakeBodyRecording(loaded[0]));
   const BvhMotion out = ToBvh(made.skeletons[0], made.bodies[0], 1.0 / 60.0);
   EXPECT_EQ(out.skeleton.joints[11].channels,
             (std::vector<BvhChannel>{BvhChannel::kXrotation, BvhChannel::kZrotation,

@@ -187,13 +187,13 @@ TEST(Advice, RepeatsEveryChangedFlagOnceAndKeepsLists) {
   from.configuration = {
       {"preset", "group"},        {"pool", "none"},   {"interaction", "none"},
       {"leave_out", "a,b"},       {"fix", "mu=3"},    {"seed", "1"},
-      {"preset_priors", "false"}, {"profile", "all"}, {"pooling_sigma", "0.14999999999999999"}};
-  from.changed_flags = {"fix",           "interaction", "leave_out",     "pool",
-                        "pooling_sigma", "preset",      "preset_priors", "profile"};
+      {"preset_priors", "false"}, {"profile", "all"}, {"marker_noise", "0.14999999999999999"}};
+  from.changed_flags = {"fix",  "interaction", "leave_out",     "marker_noise",
+                        "pool", "preset",      "preset_priors", "profile"};
   const FitCommand same("pushid-fit", from);
   EXPECT_EQ(same.ToString(),
             "pushid-fit --recordings='my data/manifest.json' --leave_out=a,b --preset=group "
-            "--fix=mu=3 --interaction=none --pool=none --pooling_sigma=0.15 --preset_priors=false");
+            "--fix=mu=3 --interaction=none --marker_noise=0.15 --pool=none --preset_priors=false");
   EXPECT_TRUE(Contains(FitCommand(same).Append("fix", "a_x=1").ToString(), "--fix=mu=3,a_x=1 "));
   const std::string set = FitCommand(same).Set("interaction", "contact").ToString();
   EXPECT_TRUE(Contains(set, "--interaction=contact "));

@@ -27,14 +27,14 @@ std::vector<Estimate> EstimatesOf(int study, bool noise_at_first_frame) {
   made.seed = 100 + static_cast<uint64_t>(study);
   made.joint_noise_m = kNoise;
   made.noise_at_first_frame = noise_at_first_frame;
-  const std::vector<PendulumRecording> recordings = MakePendulums(made);
+  std::vector<PendulumRecording> recordings = MakePendulums(made);
+  for (PendulumRecording& r : recordings) r.subject_ids = {"S1"};  // people are alike here
   FitOptions options = UnbiasedFit(made);
-  options.cluster = ClusterBy::kRecording;  // people are alike here
-  options.sigmas = ResidualSigmas();        // the robust loss as a user has it
+  options.sigmas = ResidualSigmas();  // the robust loss as a user has it
   const FitProblem problem(recordings, options);
   const Solution solution = Solve(problem);
-  if (solution.best < 0) return {};
-  return ComputeUncertainty(problem, solution.Best().to).estimates;
+  if (!solution.ok()) return {};
+  return ComputeUncertainty(problem, solution.start.to).estimates;
 }
 
 TEST_P(Coverage, IntervalsCoverTheTruth) {

@@ -40,7 +40,7 @@ TEST(CrossFit, LooksAtNothingHeldOut) {
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
   const FitOptions options = UnbiasedFit(study);
   const FitProblem problem(recordings, options);
-  const SolveStart start = SolveFrom(problem, problem.NominalPoint(), "nominal", "", nullptr);
+  const SolveStart start = SolveFrom(problem, problem.NominalPoint(), "nominal", nullptr);
   ASSERT_TRUE(start.usable);
   const std::vector<FoldModel> folds = FoldsOfProblem(recordings, options, start.to);
   ASSERT_EQ(folds.size(), 4u);

@@ -36,7 +36,7 @@ Vector3<double> TurnedBy(double angle, const Vector3<double>& p) {
 // The markers as another camera system has them; forces at the recorded poses.
 std::vector<Recording> TurnedBy(double angle, std::vector<Recording> recordings) {
   for (Recording& r : recordings) {
-    const PendulumRecording before = MakePendulumRecording(r, SkeletonMapping::kExact);
+    const PendulumRecording before = MakePendulumRecording(r);
     for (RecordedPerson& person : r.people) {
       for (auto* points : {&person.hip, &person.left_ankle, &person.right_ankle}) {
         for (Vector3<double>& p : *points) p = TurnedBy(angle, p);

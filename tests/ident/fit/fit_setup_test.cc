@@ -27,8 +27,7 @@ TEST(FitSetup, OptionsOverThePreset) {
   const FitOptions o = MakeFitOptions({{"fix", "mu=30"},
                                        {"self_force", "linear"},
                                        {"preset_priors", "false"},
-                                       {"prior", "a_x:-9:3"},
-                                       {"horizons", "4,9"}})
+                                       {"prior", "a_x:-9:3"}})
                            .value();
   EXPECT_EQ(o.self_force, SelfForceKind::kLinear);
   EXPECT_GT(o.mode_weight, 0.0);  // comes with the linear self force
@@ -37,7 +36,6 @@ TEST(FitSetup, OptionsOverThePreset) {
   EXPECT_TRUE(o.table[kBx].free);
   EXPECT_FALSE(o.table[kBx].prior);
   EXPECT_EQ(o.table[kAx].prior->mean, -9.0);  // an edit comes after the preset's priors went
-  EXPECT_EQ(o.horizons, (std::vector<int>{4, 9, 0}));
   EXPECT_EQ(MakeFitOptions({{"self_force", "linear"}, {"mode_weight", "0"}}).value().mode_weight,
             0.0);
 }
@@ -45,9 +43,10 @@ TEST(FitSetup, OptionsOverThePreset) {
 TEST(FitSetup, PoolingFollowsTheTerms) {
   const FitOptions group = MakeFitOptions({{"preset", "group"}}).value();
   EXPECT_TRUE(group.table[kContactDistance].pooled);
-  const FitOptions repelled =
-      MakeFitOptions({{"preset", "group"}, {"interaction", "contact,potential"}}).value();
-  EXPECT_TRUE(repelled.table[kPotentialStrength].pooled);
+  const FitOptions undamped =
+      MakeFitOptions({{"preset", "group"}, {"interaction", "spring"}}).value();
+  EXPECT_TRUE(undamped.table[kContactStiffness].pooled);
+  EXPECT_FALSE(undamped.table[kContactDamping].pooled);
   const FitOptions none = MakeFitOptions({{"preset", "group"}, {"pool", "none"}}).value();
   EXPECT_FALSE(AnyPooled(none.table));
 }
@@ -117,17 +116,6 @@ TEST(PrepareFit, StepsNeedFrames) {
   EXPECT_TRUE(Contains(PrepareFit(recordings, &options)->ToString(), "20 frames per second"));
 }
 
-TEST(FitSetup, PoolingSigmaIsANumberOrEstimated) {
-  const FitOptions given = MakeFitOptions({{"preset", "tail"}, {"pooling_sigma", "0.4"}}).value();
-  EXPECT_EQ(given.pooling_sigma, 0.4);
-  EXPECT_EQ(given.table[kTailTime].pooling_sigma, 0.4);
-  for (const char* text : {"0.4", "estimate"}) {
-    const FitOptions o = MakeFitOptions({{"preset", "group"}, {"pooling_sigma", text}}).value();
-    EXPECT_EQ(FindFitOption("pooling_sigma")->text(o), text);
-    EXPECT_EQ(OptionsFrom(OptionsJson(o)).pooling_sigma, o.pooling_sigma);
-  }
-}
-
 TEST(FitSetup, AutoLooksAtTheRecordings) {
   const std::vector<PendulumRecording> single = MakePendulums(TinyStudy());
   EXPECT_EQ(MakeFitOptions({}, &single).value().preset, "tail");
@@ -147,13 +135,12 @@ TEST(FitSetup, AutoLooksAtTheRecordings) {
   }
 }
 
-TEST(FitSetup, LdpsLossWeighsItsRowsAlikeUnlessToldOtherwise) {
-  const FitOptions o = MakeFitOptions({{"loss", "ldp"}, {"sigma_rate", "0.3"}}).value();
+TEST(FitSetup, LdpsLossWeighsItsRowsAlike) {
+  const FitOptions o = MakeFitOptions({{"loss", "ldp"}}).value();
   EXPECT_EQ(o.sigmas.loss, FrameLoss::kLdp);
   EXPECT_EQ(o.sigmas.hip, 0.1);
   EXPECT_EQ(o.sigmas.velocity, 0.1);
-  EXPECT_EQ(o.sigmas.rate, 0.3);
-  EXPECT_EQ(o.sigma_source, SigmaSource::kFixed);
+  EXPECT_FALSE(EstimatesSigmas(o));
   EXPECT_EQ(OptionsFrom(OptionsJson(o)).sigmas.loss, FrameLoss::kLdp);
   EXPECT_EQ(MakeFitOptions({{"loss", "hip"}}).value().sigmas.hip, ResidualSigmas().hip);
 }
@@ -167,32 +154,23 @@ TEST(FitSetup, WhatDoesNotGoTogetherIsNamed) {
   FitOptions o = MakeFitOptions({{"preset", "group"}}).value();
   o.model.interaction.learned = true;  // without its network
   EXPECT_TRUE(Contains(violation(o), "names a network to be fitted, but there is none"));
-  o = MakeFitOptions({{"loss", "ldp"}}).value();
-  o.sigma_source = SigmaSource::kEstimate;
-  EXPECT_TRUE(Contains(violation(o), "--sigmas must be fixed"));
 }
 
 TEST(FitSetup, BadOptionsAreNamed) {
   const std::pair<GivenOptions, std::string> cases[] = {
       {{{"preset", "tial"}}, "--preset is 'tial'"},
       {{{"posture", "flat"}}, "--posture is 'flat'; it must be upright or initial"},
-      {{{"sigma_hip", "wide"}}, "--sigma_hip is 'wide'; it must be positive"},
-      {{{"starts", "two"}}, "--starts is 'two'; it must be a whole number"},
-      {{{"starts", "0"}}, "--starts is 0; it must be positive"},
-      {{{"horizons", "8,x"}}, "--horizons: 'x'"},
+      {{{"marker_noise", "wide"}}, "--marker_noise is 'wide'; it must be positive"},
+      {{{"max_iterations", "two"}}, "--max_iterations is 'two'; it must be a whole number"},
+      {{{"max_iterations", "0"}}, "--max_iterations is 0; it must be positive"},
+      {{{"friction", "anisotropic"}}, "--friction=anisotropic is for --preset=ldp"},
       {{{"seed", "-1"}}, "--seed is '-1'"},
       {{{"fix", "nu"}}, "--fix names 'nu'"},
       {{{"interaction", "network"}}, "a network is network:4"},
       {{{"network_prior", "0.5"}}, "--network_prior acts on networks"},
-      {{{"early_stopping", "0.2"}}, "--early_stopping acts on networks"},
       {{{"preset_priors", "of course"}},
        "--preset_priors is 'of course'; it must be true or false"},
       {{{"seed", "2x"}}, "--seed is '2x'"},
-      {{{"pooling_sigma", "guess"}},
-       "--pooling_sigma is 'guess'; it must be positive, or estimate"},
-      {{{"preset", "ldp"}, {"pooling_sigma", "0.3"}},
-       "--pooling_sigma applies to pooled parameters"},
-      {{{"self_from", "no/such.json"}}, "no/such.json"},
   };
   for (const auto& [given, says] : cases) EXPECT_TRUE(Contains(Complaint(given), says)) << says;
   EXPECT_EQ(Complaint({{"self_force", "mlp:4"}, {"network_prior", "0.5"}}), "");
@@ -216,10 +194,6 @@ TEST(FitSetup, OnlyACandidatesOwnOptionsMustAct) {
   EXPECT_TRUE(MakeFitOptions(Merged(given, {{"self_force", "none"}})).ok());
   const GivenOptions more = {{"self_force", "none"}, {"network_prior", "1"}};
   EXPECT_FALSE(MakeFitOptions(Merged(given, more), nullptr, more).ok());
-  // A part of the recordings held out from a network that is none is no fit at all.
-  EXPECT_FALSE(MakeFitOptions(Merged({{"self_force", "mlp:2"}, {"early_stopping", "0.2"}},
-                                     {{"self_force", "none"}}))
-                   .ok());
 }
 
 TEST(FitSetup, SeedsAndBoolsAsFlagsTakeThem) {
@@ -228,7 +202,6 @@ TEST(FitSetup, SeedsAndBoolsAsFlagsTakeThem) {
     EXPECT_TRUE(MakeFitOptions({{"preset_priors", yes}}).value().preset_priors) << yes;
   }
   EXPECT_FALSE(MakeFitOptions({{"preset_priors", "0"}}).value().preset_priors);
-  EXPECT_EQ(MakeFitOptions({{"horizons", ""}}).value().horizons, std::vector<int>{0});
 }
 
 // The way of the library and that of the flags are one.
@@ -328,7 +301,7 @@ TEST(PrepareFit, RefusesWhatCannotBeFitted) {
                        "contact_stiffness has no effect on any of these recordings"));
   options = MakePreset("tail").value();
   options.sigmas.hip = -1.0;
-  EXPECT_TRUE(Contains(PrepareFit(recordings, &options)->ToString(), "--sigma_hip is -1"));
+  EXPECT_TRUE(Contains(PrepareFit(recordings, &options)->ToString(), "sigma_hip is -1"));
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST_P(GroupRecovery, NoiseFree) {
   ASSERT_EQ(recordings[0].num_people(), 4);
   const FitOptions options = RowFit(study, true);
   const FitProblem problem(recordings, options);
-  const SolveStart solved = SolveFrom(problem, problem.NominalPoint(), "nominal", "", nullptr);
+  const SolveStart solved = SolveFrom(problem, problem.NominalPoint(), "nominal", nullptr);
   ASSERT_TRUE(solved.usable) << solved.message;
   EXPECT_LT(solved.cost, 1e-10);
   const ParameterSet<double> found = problem.Parameters(solved.to, "");

@@ -46,7 +46,8 @@ TEST(LaboratoryChecks, ALateDifferenceOfVelocities) {
   FitOptions options = WithTable();
   options.model.delay = Delay::kOne;
   options.model.cart_derivative = CartDerivative::kBackward;
-  EXPECT_TRUE(Contains(Refused(OnPlatform(0.0), options), "--delay and --cart_derivative"));
+  EXPECT_TRUE(Contains(Refused(OnPlatform(0.0), options),
+                       "--delay and the derivative of the cart's velocity"));
 }
 
 TEST(LaboratoryChecks, PlatformsAreNoSingleSteps) {

@@ -14,7 +14,6 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
-#include "ident/solver/network_training.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -140,7 +139,7 @@ TEST(LearnedInteraction, OrderOfPeopleDoesNotMatter) {
     FitOptions with = of.With({{2}});
     with.max_iterations = 4;
     const FitProblem problem(of.training, with);
-    return SolveFrom(problem, problem.NominalPoint(), "nominal", "", nullptr);
+    return SolveFrom(problem, problem.NominalPoint(), "nominal", nullptr);
   };
   const SolveStart one = solve(rows), other = solve(mixed);
   EXPECT_GT(one.cost, 0.0);

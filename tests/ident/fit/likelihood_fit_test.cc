@@ -25,11 +25,8 @@ SyntheticOptions ProcessNoiseStudy(uint64_t seed) {
 }
 
 FitOptions ByLikelihood(const SyntheticOptions& study, const std::string& likelihood) {
-  FitOptions options = MakeFitOptions({{"preset", "tail"},
-                                       {"pool", "none"},
-                                       {"process_noise", "diagonal"},
-                                       {"likelihood", likelihood}})
-                           .value();
+  FitOptions options =
+      MakeFitOptions({{"preset", "tail"}, {"pool", "none"}, {"likelihood", likelihood}}).value();
   options.model.directions = Directions::kAxes;  // those of the planted noise
   for (ParameterSpec& spec : options.table.specs) {
     spec.tied_to.reset();
@@ -38,16 +35,6 @@ FitOptions ByLikelihood(const SyntheticOptions& study, const std::string& likeli
   options.model.gain_scaling = study.model.gain_scaling;
   options.model.push = study.model.push;
   return HoldDamping(options);
-}
-
-// Whole rollouts; nobody has set the noise.
-FitOptions NoisyRollouts(const SyntheticOptions& study) {
-  FitOptions options = HoldDamping(DefaultFit(study));
-  options.model.process_noise = ProcessNoise::kDiagonal;
-  for (ParameterSpec& spec : options.table.specs) {
-    if (IsNoiseParameter(spec.id)) spec.nominal = AllParameterFacts()[spec.id].nominal;
-  }
-  return options;
 }
 
 // Noise of the joints alone, and a measured push: from errors of measurement that start far too low
@@ -110,35 +97,6 @@ TEST(TransitionFit, OnExactStatesFindsTheNoise) {
     EXPECT_NEAR(result.parameters[id], study.parameters[id], 0.08 * study.parameters[id])
         << result.options.table[id].name;
   }
-}
-
-// Whole rollouts are fitted as ever; the noise is what single steps need at their optimum.
-TEST(ProcessNoise, OfATrajectoryFitIsEstimatedAfterIt) {
-  const SyntheticOptions study = ProcessNoiseStudy(6);
-  const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  const FitOptions noisy = NoisyRollouts(study);
-  FitOptions plain = noisy;
-  plain.model.process_noise = ProcessNoise::kNone;
-  const FitResult without = Fit(recordings, plain), with = Fit(recordings, noisy);
-  ASSERT_TRUE(without.ok() && with.ok());
-  for (int id = 0; id < kFirstNoiseParameter; ++id) {
-    EXPECT_EQ(without.parameters[id], with.parameters[id]) << without.options.table.specs[id].name;
-  }
-  for (Parameter id : {kSigmaX, kSigmaY, kSigmaTheta, kSigmaPhi}) {
-    EXPECT_NEAR(with.parameters[id], study.parameters[id], 0.15 * study.parameters[id]);
-  }
-}
-
-// Beside gains that are not the noise's own: roughness may be force or errors of measurement.
-TEST(ProcessNoise, IsToldFromErrorsOfMeasurement) {
-  SyntheticOptions study = ProcessNoiseStudy(3);
-  study.subjects = 6;
-  study.noise_at_first_frame = true;
-  const FitResult fit = Fit(MakePendulums(study), NoisyRollouts(study));
-  ASSERT_TRUE(fit.ok());
-  EXPECT_NEAR(fit.parameters[kMeasuredHip], 0.002, 2e-4);
-  EXPECT_NEAR(fit.parameters[kMeasuredCart], 0.002 / std::sqrt(2.0), 2e-4);
-  EXPECT_LT(fit.parameters[kSigmaX], 20.0) << "with what the gains err by, but no roughness";
 }
 
 TEST(InnovationFit, ComesBackFromJson) {

@@ -11,7 +11,7 @@
 #include "ident/observed/recording_filter.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
-#include "ident/solver/network_training.h"
+#include "ident/solver/solver.h"
 #include "tests/ident/network_samples.h"
 #include "tests/test_support.h"
 
@@ -79,54 +79,6 @@ TEST(NetworkFit, ThreadsDoNotMatter) {
   }
 }
 
-TEST(EarlyStopping, KeepsTheBestPointAndStopsInTime) {
-  const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
-  FitOptions options = study.options;
-  options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1);
-  const FitProblem problem(study.training, options);
-  FitPoint point = problem.NominalPoint();
-  EarlyStopping stopping(problem, &point);
-  ceres::IterationSummary step;
-  step.step_is_successful = true;
-  const auto at = [&](double mu) {  // the truth of the study is the best
-    point.shared[0] = ToFitted(problem.map().fitted[0].transform, mu);
-    return stopping(step);
-  };
-  const double nominal = point.shared[0];
-  EXPECT_EQ(at(25.0), ceres::SOLVER_CONTINUE);
-  const double best = stopping.best().shared[0];
-  EXPECT_NE(best, nominal);
-  ceres::CallbackReturnType last = ceres::SOLVER_CONTINUE;
-  for (int i = 0; i < 10; ++i) last = at(300.0 + i);
-  EXPECT_EQ(last, ceres::SOLVER_TERMINATE_SUCCESSFULLY);
-  EXPECT_TRUE(stopping.stopped());
-  EXPECT_EQ(stopping.best().shared[0], best);
-}
-
-TEST(EarlyStopping, HoldsOutAStratifiedShare) {
-  const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
-  const FitProblem problem(study.training, study.options);
-  const auto split = Unwrapped(SplitForEarlyStopping(problem, 0.25, 1));
-  int held_out = 0;
-  for (size_t i = 0; i < study.training.size(); ++i) {
-    EXPECT_EQ(split.training[i] + split.held_out[i], 1);
-    held_out += split.held_out[i];
-  }
-  EXPECT_NEAR(held_out, 0.25 * static_cast<double>(study.training.size()), 1.0);
-  EXPECT_FALSE(SplitForEarlyStopping(problem, 0.01, 1).ok());
-}
-
-// Six recordings cannot give a fiftieth of themselves away, and the fit says so.
-TEST(EarlyStopping, AShareThatCannotBeHeldOutIsAFailure) {
-  const SyntheticOptions synthetic = TinyStudy();
-  FitOptions options = DefaultFit(synthetic);
-  options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1);
-  options.early_stopping = 0.02;
-  const FitResult result = Fit(MakePendulums(synthetic), options);
-  EXPECT_FALSE(result.ok());
-  EXPECT_TRUE(Contains(result.message, "--early_stopping"));
-}
-
 TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   Study study = PlantedStudy(PlantedNetwork({NetworkKind::kGru, 2}), 0.002);
   study.options.network_prior = 1.0;
@@ -142,16 +94,6 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   for (const Estimate& e : read.fit.nuisance) {
     EXPECT_FALSE(Contains(e.name, "weight"));
   }
-}
-
-TEST(NetworkFit, AnEarlyStopHasTheCostOfAllRecordings) {
-  Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
-  study.options.network_prior = 0.0;
-  study.options.early_stopping = 0.25;
-  const FitResult result = FitWith(study, {NetworkKind::kMlp, 2});
-  double sum = 0.0;
-  for (const FittedRecording& recording : result.recordings) sum += recording.cost;
-  EXPECT_NEAR(result.cost, sum, 1e-9 * sum);
 }
 
 // The weights, of which a result keeps no covariance, follow along.

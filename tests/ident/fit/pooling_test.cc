@@ -137,16 +137,16 @@ TEST(FreeVelocity, StartsThatMoveAreRecovered) {
   const FitOptions options = ExactFit(study);
   const FitProblem problem(recordings, options);
   const Solution solution = Solve(problem);
-  ASSERT_GE(solution.best, 0);
-  const std::vector<double>& found = solution.Best().to.velocity.at(4);
+  ASSERT_TRUE(solution.ok());
+  const std::vector<double>& found = solution.start.to.velocity.at(4);
   ASSERT_EQ(found.size(), 4u);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(found[i], velocity[i], 1e-6) << i;
-  const ParameterSet<double> p = problem.Parameters(solution.Best().to, "");
+  const ParameterSet<double> p = problem.Parameters(solution.start.to, "");
   for (Parameter id : options.table.Free()) {
     const double truth = study.parameters[id];
     EXPECT_NEAR(p[id], truth, 1e-6 * std::max(1.0, std::abs(truth))) << kParameterNames[id];
   }
-  const Uncertainty u = ComputeUncertainty(problem, solution.Best().to);
+  const Uncertainty u = ComputeUncertainty(problem, solution.start.to);
   EXPECT_EQ(u.estimates.size(), options.table.Free().size() + 4);
   EXPECT_NE(FindEstimate(u.estimates, "initial xd[" + moving.id + "]"), nullptr);
 }

@@ -31,7 +31,7 @@ TEST(Recovery, NoiseFreeFromStartsWrongByUpToFive) {
   for (uint64_t seed = 1; seed <= 10; ++seed) {
     SCOPED_TRACE("start " + std::to_string(seed));
     const FitPoint from = WrongStart(problem, study.parameters, seed);
-    const SolveStart solved = SolveFrom(problem, from, "random", "", nullptr);
+    const SolveStart solved = SolveFrom(problem, from, "random", nullptr);
     ASSERT_TRUE(solved.usable) << solved.message;
     EXPECT_TRUE(solved.failed.empty());
     EXPECT_LT(solved.cost, 1e-12);
@@ -47,7 +47,7 @@ TEST(Recovery, NoiseFreeWithTheRobustLoss) {
   ASSERT_GT(options.sigmas.robust, 0.0);
   const FitProblem problem(recordings, options);
   const SolveStart solved =
-      SolveFrom(problem, WrongStart(problem, study.parameters, 3), "random", "", nullptr);
+      SolveFrom(problem, WrongStart(problem, study.parameters, 3), "random", nullptr);
   ExpectTruth(problem, solved.to, study.parameters);
 }
 
@@ -59,7 +59,7 @@ TEST(Recovery, NoiseFreeWithLateralGains) {
   for (Parameter id : {kMuY, kKpPhi, kKdTheta, kKdPhi}) options.table[id].free = true;
   const FitProblem problem(recordings, options);
   const SolveStart solved =
-      SolveFrom(problem, WrongStart(problem, study.parameters, 5), "random", "", nullptr);
+      SolveFrom(problem, WrongStart(problem, study.parameters, 5), "random", nullptr);
   ASSERT_TRUE(solved.usable);
   ExpectTruth(problem, solved.to, study.parameters);
 }
@@ -79,8 +79,8 @@ TEST(Recovery, NoiseFreeLdpPreset) {
   options.table = preset.table;
   const FitProblem problem(recordings, options);
   const Solution solution = Solve(problem);
-  ASSERT_GE(solution.best, 0);
-  ExpectTruth(problem, solution.Best().to, study.parameters);
+  ASSERT_TRUE(solution.ok());
+  ExpectTruth(problem, solution.start.to, study.parameters);
 }
 
 // The defaults hold a fit to settle and to weak priors. How far off that puts noise-free recordings

@@ -12,7 +12,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
-#include "ident/solver/network_training.h"
+#include "ident/solver/solver.h"
 #include "tests/ident/network_samples.h"
 #include "tests/test_support.h"
 

@@ -60,8 +60,8 @@ TEST(StanceFit, ExactRecordingsGiveTheTruthFromMostStarts) {
   for (double wrong : {0.75, 0.8, 0.85, 0.9, 1.1, 1.15, 1.2, 1.25, 1.3}) {
     FitOptions options = FreeStance(study);
     for (Parameter id : kFree) options.table[id].nominal *= wrong;
-    options.sigma_source = SigmaSource::kFixed;
-    options.recording_weight = RecordingWeight::kFrame;
+    options.estimate_weights = false;
+    options.effective_weight = 1.0;
     options.function_tolerance = 1e-16;
     const FitResult fit = Fit(recordings, options);
     ASSERT_TRUE(fit.ok()) << wrong << ": " << fit.message;
@@ -129,8 +129,8 @@ TEST(StanceFit, ExactStandingGivesTheTruthFromAnotherStart) {
   const SyntheticOptions study = HeldStudy(0.0);
   FitOptions options = MakeFitOptions({{"preset", "tail"}, {"stance", "fixed"}}).value();
   for (ParameterSpec& spec : options.table.specs) spec.prior.reset();
-  options.sigma_source = SigmaSource::kFixed;
-  options.recording_weight = RecordingWeight::kFrame;
+  options.estimate_weights = false;
+  options.effective_weight = 1.0;
   options.function_tolerance = 1e-16;
   const FitResult fit = Fit(MakePendulums(study), options);
   ASSERT_TRUE(fit.ok()) << fit.message;

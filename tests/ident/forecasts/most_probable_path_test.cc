@@ -78,7 +78,7 @@ TEST(SmoothPath, FillsGapsAndTakesNoiseAway) {
   study.joint_noise_m = 0.004;
   study.noise_at_first_frame = false;
   const auto made = Unwrapped(MakeSyntheticRecordings(study));
-  PendulumRecording recording = MakePendulumRecording(made[0].recording, SkeletonMapping::kExact);
+  PendulumRecording recording = MakePendulumRecording(made[0].recording);
   const RolloutPath<double>& truth = made[0].path;
   constexpr int kFirst = 18, kLast = 30;
   recording.weight = {std::vector<double>(recording.num_frames(), 1.0)};

@@ -32,7 +32,7 @@ TEST_F(FormationFilesTest, TheManifestsPendulumsAreThoseRolledOut) {
   ASSERT_EQ(ProblemOf(WriteFormationRecording(Path("out"), run_)), "no error");
   EXPECT_EQ(CountFiles(), 13 + 6 + 1);
   const auto loaded = Unwrapped(LoadRecordings(Path("out/manifest.json")));
-  const PendulumRecording read = MakePendulumRecording(loaded.front(), SkeletonMapping::kExact);
+  const PendulumRecording read = MakePendulumRecording(loaded.front());
   ASSERT_EQ(read.num_people(), 13);
   ASSERT_EQ(read.num_frames(), 150);
   EXPECT_EQ(read.scene.pushes.size(), 6u);

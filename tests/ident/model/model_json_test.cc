@@ -22,7 +22,6 @@ using Json = nlohmann::ordered_json;
 FittedModel SampleModel(const TableEdits& edits = {}, int num_threads = 1) {
   const SyntheticOptions study = TinyStudy();
   FitOptions options = DefaultFit(study);
-  options.num_starts = 2;
   options.num_threads = num_threads;
   EXPECT_FALSE(EditTable(edits, &options.table));
   FittedModel model;

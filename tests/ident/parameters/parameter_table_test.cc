@@ -61,7 +61,8 @@ TEST(Presets, LdpAsPublished) {
     EXPECT_EQ(o.model.posture, Posture::kUpright);
     EXPECT_EQ(o.sigmas.loss, FrameLoss::kLdp);
     EXPECT_EQ(o.model.learned->rod_at(), 298244);
-    EXPECT_EQ(o.network_training, NetworkTraining::kTogether);
+    EXPECT_FALSE(o.estimate_weights);
+    EXPECT_EQ(o.effective_weight, 1.0);
     std::string error;
     EXPECT_TRUE(o.IsValid(&error)) << error;
   }
@@ -248,9 +249,7 @@ TEST(OptionNames, RoundTrip) {
   ExpectRoundTrip<PushUse>();
   ExpectRoundTrip<PushTail>();
   ExpectRoundTrip<CartDerivative>();
-  ExpectRoundTrip<SkeletonMapping>();
   ExpectRoundTrip<SelfForceKind>();
-  ExpectRoundTrip<RecordingWeight>();
   ExpectRoundTrip<FoldScheme>();
   ExpectRoundTrip<Transform>();
   ExpectRoundTrip<EstimateStatus>();

@@ -286,7 +286,7 @@ TEST(Behaviour, AFitThatIsNotHeldToSettleSaysSo) {
   const auto made = Unwrapped(MakeSyntheticRecordings(study));
   std::vector<PendulumRecording> recordings;
   for (const Recording& r : Recordings(made)) {
-    recordings.push_back(MakePendulumRecording(r, SkeletonMapping::kExact));
+    recordings.push_back(MakePendulumRecording(r));
   }
   FitOptions options;
   options.model = study.model;

@@ -46,7 +46,7 @@ FitOptions WeighedFit(const SyntheticOptions& study) {
   options.sigmas.velocity = 2.0 * study.joint_noise_m * study.fps;
   options.sigmas.angle = 2.0 * study.joint_noise_m;
   options.sigmas.rate = 4.0 * study.joint_noise_m * study.fps;
-  options.recording_weight = RecordingWeight::kFrame;
+  options.effective_weight = 1.0;
   options.pool = "Kp_theta";
   options.pool_by = kSubjectUnit;
   options.pooling_sigma.reset();
@@ -67,8 +67,8 @@ TEST(PoolingSpread, OfUnitsThatDifferComesBack) {
     const auto recordings = People(study, spread);
     FitProblem problem(recordings, options);
     const Solution solution = SolveWeighted(&problem).solution;
-    ASSERT_GE(solution.best, 0);
-    EXPECT_TRUE(solution.Best().converged);
+    ASSERT_TRUE(solution.ok());
+    EXPECT_TRUE(solution.start.converged);
     EXPECT_NEAR(problem.options().table[kKpTheta].pooling_sigma / SampleDeviation(spread), 1.0,
                 0.1);
   }
@@ -81,7 +81,7 @@ TEST(PoolingSpread, EndsWhereEmStandsStill) {
   FitOptions options = WeighedFit(study);
   const auto recordings = People(study, 0.1);
   FitProblem problem(recordings, options);
-  FitPoint point = SolveWeighted(&problem).solution.Best().to;
+  FitPoint point = SolveWeighted(&problem).solution.start.to;
   const double sigma = problem.options().table[kKpTheta].pooling_sigma;
   const JacobianBlocks blocks = EvaluateJacobianBlocks(problem.Build(&point, 0));
   const Eigen::MatrixXd covariance = Inverse(blocks.jacobian.transpose() * blocks.jacobian);
@@ -102,7 +102,7 @@ TEST(PoolingSpread, IsSmallWhereUnitsAreAlike) {
   FitOptions options = WeighedFit(study);
   const auto recordings = People(study, 0.0);
   FitProblem problem(recordings, options);
-  ASSERT_GE(SolveWeighted(&problem).solution.best, 0);
+  ASSERT_TRUE(SolveWeighted(&problem).solution.ok());
   const double sigma = problem.options().table[kKpTheta].pooling_sigma;
   EXPECT_LT(sigma, 0.04);
   EXPECT_GE(sigma, kLeastPoolingSigma);

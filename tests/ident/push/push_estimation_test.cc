@@ -19,7 +19,7 @@ std::vector<SyntheticRecording> Make(const SyntheticOptions& options) {
 }
 
 PendulumRecording Pendulum(const SyntheticRecording& made) {
-  return MakePendulumRecording(made.recording, SkeletonMapping::kExact);
+  return MakePendulumRecording(made.recording);
 }
 
 EstimatedPush Estimated(const PendulumRecording& recording, const PushWindow& window,
@@ -211,8 +211,8 @@ TEST(PushEstimation, AgreesWithThePublishedPushes) {
   double difference = 0.0, size = 0.0;
   for (const Recording& recording : recordings) {
     const Push& published = recording.pushes[0];
-    const EstimatedPush estimated = Estimated(
-        MakePendulumRecording(recording, SkeletonMapping::kExact), {0, published.EndFrame()}, {});
+    const EstimatedPush estimated =
+        Estimated(MakePendulumRecording(recording), {0, published.EndFrame()}, {});
     for (size_t i = 0; i < published.force.size(); ++i) {
       difference += (estimated.push.force[i] - published.force[i]).squaredNorm();
       size += published.force[i].squaredNorm();

@@ -14,8 +14,7 @@ namespace {
 PendulumRecording StandingPerson() {
   SyntheticOptions options;
   options.strengths = {{"none", 0.0}};
-  return MakePendulumRecording(MakeSyntheticRecordings(options).value()[0].recording,
-                               SkeletonMapping::kExact);
+  return MakePendulumRecording(MakeSyntheticRecordings(options).value()[0].recording);
 }
 
 // A half-sine of 300 N from 0.213 s on, 0.11 s long, sampled every `step` s with some jitter.
@@ -81,8 +80,8 @@ TEST(PushFromSensor, PositionsAreOfSecondOrder) {
     options.frames = i == 0 ? 31 : 61;
     // The mean of both signs: where in a frame a push begins is not of any order.
     for (int shift = 0; shift < 20; ++shift) {
-      const PendulumRecording recording = MakePendulumRecording(
-          MakeSyntheticRecordings(options).value()[0].recording, SkeletonMapping::kExact);
+      const PendulumRecording recording =
+          MakePendulumRecording(MakeSyntheticRecordings(options).value()[0].recording);
       SensorPushOptions given;
       given.frame_zero_time_s = -0.005 * shift;
       const Push push = Unwrapped(PushFromSensor(record, recording, given));

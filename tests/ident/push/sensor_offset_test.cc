@@ -32,7 +32,7 @@ PushedRecording MakePushed(double shift_s, double noise_m, uint64_t seed) {
   const auto made = Unwrapped(MakeSyntheticRecordings(options));
   const Recording& recording = made[0].recording;
   PushedRecording pushed;
-  pushed.recording = MakePendulumRecording(recording, SkeletonMapping::kExact);
+  pushed.recording = MakePendulumRecording(recording);
   const Push& push = recording.pushes[0];
   for (int i = 0; i < 1500; ++i) {
     const double t = i / 1000.0;

@@ -104,7 +104,7 @@ class BootstrapRun : public TempDirTest {
       : recordings_(MakePendulums(TinyStudy())),
         options_(UnbiasedFit(TinyStudy())),
         problem_(recordings_, options_),
-        estimate_(Solve(problem_).Best().to) {}
+        estimate_(Solve(problem_).start.to) {}
 
   Result<Bootstrap> Run(int replicas, int threads, const std::string& file = "",
                         uint64_t seed = 1) const {
@@ -154,7 +154,7 @@ TEST_F(BootstrapRun, EachDrawIsFittedOnce) {
                              .value();
   EXPECT_EQ(fits, 10);
   EXPECT_EQ(many.values.size() + many.failed, 300u);
-  const ResamplingUnits from = MakeResamplingUnits(three, problem.options().cluster);
+  const ResamplingUnits from = MakeResamplingUnits(three, ClusterBy::kAuto);
   FitOptions as_replicas = options_;
   as_replicas.function_tolerance = 1e-6;
   for (int k : {0, 150, 299}) {  // what is known of each recording at the estimate changes nothing

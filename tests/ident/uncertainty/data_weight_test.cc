@@ -11,8 +11,7 @@ namespace {
 
 FitOptions Estimated(const SyntheticOptions& study) {
   FitOptions options = DefaultFit(study);
-  options.sigma_source = SigmaSource::kEstimate;
-  options.recording_weight = RecordingWeight::kEffective;
+  options.estimate_weights = true;
   return options;
 }
 
@@ -30,7 +29,7 @@ TEST(DataWeight, SigmasAreThoseOfTheNoise) {
     const auto recordings = MakePendulums(study);
     FitOptions options = Estimated(study);
     FitProblem problem(recordings, options);
-    ASSERT_GE(SolveWeighted(&problem).solution.best, 0);
+    ASSERT_TRUE(SolveWeighted(&problem).solution.ok());
     const ResidualSigmas sigmas = problem.options().sigmas;
     EXPECT_NEAR(sigmas.hip / noise, 1.0, 0.1);
     // The cart is the mean of two ankles, its velocity a difference of two frames.
@@ -44,14 +43,13 @@ TEST(DataWeight, NoResidualIsMoreExactThanAMarker) {
   FitOptions options = Estimated(study);
   options.marker_noise = 0.003;
   FitProblem problem(recordings, options);
-  ASSERT_GE(SolveWeighted(&problem).solution.best, 0);
+  ASSERT_TRUE(SolveWeighted(&problem).solution.ok());
   EXPECT_DOUBLE_EQ(problem.options().sigmas.hip, 0.003);
   EXPECT_DOUBLE_EQ(problem.options().sigmas.velocity, 0.003 * study.fps / kRateWeight);
 }
 
 FitProblem EffectivelyWeighed(const std::vector<PendulumRecording>& recordings) {
   FitOptions options = UnbiasedFit(Noisy(0.003));
-  options.recording_weight = RecordingWeight::kEffective;
   return FitProblem(recordings, options);
 }
 
@@ -61,8 +59,8 @@ TEST(DataWeight, MakesUpForSigmas) {
   const auto recordings = MakePendulums(Noisy(0.003));
   FitProblem problem = EffectivelyWeighed(recordings);
   const Solution solution = SolveWeighted(&problem).solution;
-  ASSERT_GE(solution.best, 0);
-  const FitPoint& point = solution.Best().to;
+  ASSERT_TRUE(solution.ok());
+  const FitPoint& point = solution.start.to;
   RecordingSums sums;
   const double weight = EstimateEffectiveWeight(problem, point, &sums);
   CostWeights weights = problem.weights();
@@ -125,17 +123,17 @@ TEST(DataWeight, LeavesAnUnpenalizedOptimumWhereItWas) {
   study.subject_spread = 0.1;
   const auto recordings = MakePendulums(study);
   FitOptions by_frame = UnbiasedFit(study), effective = by_frame;
-  by_frame.recording_weight = RecordingWeight::kFrame;
-  effective.recording_weight = RecordingWeight::kEffective;
+  by_frame.effective_weight = 1.0;
+  effective.estimate_weights = true;
   by_frame.function_tolerance = effective.function_tolerance = 1e-12;
   FitProblem frames(recordings, by_frame), independent(recordings, effective);
   const Solution a = SolveWeighted(&frames).solution;
   const Solution b = SolveWeighted(&independent).solution;
-  ASSERT_TRUE(a.best >= 0 && b.best >= 0);
+  ASSERT_TRUE(a.ok() && b.ok());
   EXPECT_GT(std::abs(std::log(independent.options().effective_weight)), 0.5);
-  for (size_t i = 0; i < a.Best().to.shared.size(); ++i) {
-    EXPECT_NEAR(a.Best().to.shared[i], b.Best().to.shared[i],
-                1e-3 * std::max(1.0, std::abs(a.Best().to.shared[i])));
+  for (size_t i = 0; i < a.start.to.shared.size(); ++i) {
+    EXPECT_NEAR(a.start.to.shared[i], b.start.to.shared[i],
+                1e-3 * std::max(1.0, std::abs(a.start.to.shared[i])));
   }
 }
 
@@ -147,7 +145,7 @@ TEST(DataWeight, ExactDataOutweighAPrior) {
   FitOptions options = Estimated(study);
   options.table[kMu].prior = Prior{20.0, 10.0};
   FitProblem problem(recordings, options);
-  ASSERT_FALSE(SolveWeighted(&problem).solution.best < 0);
+  ASSERT_TRUE(SolveWeighted(&problem).solution.ok());
   const SolveStart refit = Refit(problem, problem.NominalPoint());
   const Uncertainty u = ComputeUncertainty(problem, refit.to);
   const Estimate* mu = FindEstimate(u.estimates, "mu");
@@ -166,8 +164,8 @@ TEST(DataWeight, WhatThePriorsHoldIsCalledSo) {
   FitOptions options = Estimated(study);
   FitProblem problem(recordings, options);
   const Solution solution = SolveWeighted(&problem).solution;
-  ASSERT_GE(solution.best, 0);
-  const Uncertainty u = ComputeUncertainty(problem, solution.Best().to);
+  ASSERT_TRUE(solution.ok());
+  const Uncertainty u = ComputeUncertainty(problem, solution.start.to);
   const Estimate* stiffness = FindEstimate(u.estimates, "Kp_theta");
   ASSERT_NE(stiffness, nullptr);
   EXPECT_LT(stiffness->shares.data, 0.5);

@@ -32,7 +32,8 @@ std::unique_ptr<Solved> SolveSmall(int recordings, double prior_sigma) {
   solved->recordings = MakePendulums(study);
   solved->recordings.resize(recordings);
   solved->options = UnbiasedFit(study);
-  solved->options.cluster = ClusterBy::kRecording;
+  // Of one person recordings are the clusters.
+  for (PendulumRecording& r : solved->recordings) r.subject_ids = {"S1"};
   for (ParameterSpec& spec : solved->options.table.specs) {
     spec.free = spec.id == kMu || spec.id == kKpTheta || spec.id == kTailGain;
     if (!spec.free) spec.nominal = study.parameters[spec.id];
@@ -41,8 +42,8 @@ std::unique_ptr<Solved> SolveSmall(int recordings, double prior_sigma) {
   }
   solved->problem = std::make_unique<FitProblem>(solved->recordings, solved->options);
   const Solution solution = Solve(*solved->problem);
-  EXPECT_GE(solution.best, 0);
-  solved->point = solution.Best().to;
+  EXPECT_TRUE(solution.ok());
+  solved->point = solution.start.to;
   FitPoint copy = solved->point;
   solved->score = EvaluateJacobianBlocks(solved->problem->Build(&copy, 0));
   solved->uncertainty = ComputeUncertainty(*solved->problem, solved->point);
@@ -145,7 +146,7 @@ TEST(Uncertainty, MovesAreCloseToRefitting) {
     std::vector<PendulumRecording> others = s->recordings;
     others.erase(others.begin() + g);
     const FitProblem problem(others, s->options);
-    const FitPoint point = SolveFrom(problem, s->point, "nominal", "", nullptr).to;
+    const FitPoint point = SolveFrom(problem, s->point, "nominal", nullptr).to;
     for (int i = 0; i < 3; ++i) {
       const double error = std::sqrt(s->uncertainty.covariance(i, i));
       const double real = (point.shared[i] - s->point.shared[i]) / error;
@@ -200,9 +201,8 @@ TEST(Uncertainty, IntervalsAndCorrelation) {
 // Two people, three pushes each: errors about people like them, and about these two.
 TEST(Uncertainty, TellsThesePeopleFromPeopleLikeThem) {
   const auto s = SolveSmall(6, 0.5);
-  FitOptions options = s->options;
-  options.cluster = ClusterBy::kSubject;
-  const FitProblem problem(s->recordings, options);
+  const std::vector<PendulumRecording> of_two = MakePendulums(TinyStudy());
+  const FitProblem problem(of_two, s->options);
   const Uncertainty people = ComputeUncertainty(problem, s->point);
   EXPECT_TRUE(people.about_people_like_them);
   EXPECT_EQ(people.num_people, 2);

@@ -1,5 +1,7 @@
 // Which push to record next, checked by recording it.
 
+#include "ident/validation/experiment_design.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -8,7 +10,6 @@
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
-#include "ident/validation/experiment_design.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -25,7 +26,7 @@ class Design : public ::testing::Test {
     options_.model.friction = FrictionKind::kAnisotropic;
     EXPECT_FALSE(EditTable({"", "mu_y=20", "", "", ""}, &options_.table));
     problem_ = std::make_unique<FitProblem>(recordings_, options_);
-    estimate_ = Solve(*problem_).Best().to;
+    estimate_ = Solve(*problem_).start.to;
     uncertainty_ = ComputeUncertainty(*problem_, estimate_);
     const ScoredFit fit = ScoreAt(*problem_, estimate_);
     parts_ = ComputeCovariance(fit.score, fit.unit, {ClusterByRecording(fit.score), {}, 0, false});

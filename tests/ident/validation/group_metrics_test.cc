@@ -146,7 +146,7 @@ class RealGroupsTest : public ::testing::Test {
     const auto recordings = Unwrapped(LoadRecordings(RecordingsRoot() + "/manifest.json", load));
     std::map<std::string, int> position;
     for (const Recording& recording : recordings) {
-      const auto body = Unwrapped(MakeBodyRecording(recording, SkeletonMapping::kExact));
+      const auto body = Unwrapped(MakeBodyRecording(recording));
       const bool in_first = position[recording.labels.setting()]++ % 4 == 0;
       (in_first ? first_ : others_).push_back({body.bodies});
     }

@@ -28,7 +28,7 @@ bool ComesBack(SyntheticOptions study, FitOptions options, Parameter parameter) 
     return false;
   }
   const std::vector<PendulumRecording> recordings =
-      MakePendulumRecordings(Recordings(made.value()), SkeletonMapping::kExact);
+      MakePendulumRecordings(Recordings(made.value()));
   options.settling_weight = 0.0;
   options.preset_priors = false;
   FreeTerms(&options);

@@ -42,7 +42,7 @@ Recording Walkers(int people) {
 RecordingView Seen(const Recording& recording) {
   RecordingView view;
   view.recording = &recording;
-  view.run.recording = MakePendulumRecording(recording, SkeletonMapping::kExact);
+  view.run.recording = MakePendulumRecording(recording);
   view.run.prediction.status.ok = true;
   view.run.prediction.hip = view.run.recording.hip;
   return view;
