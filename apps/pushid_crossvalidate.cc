@@ -120,7 +120,7 @@ Candidates NoisyModels(const Candidates& candidates) {
   if (noisy.empty()) {
     throw Error{
         "--samples: no candidate has process noise to draw from; add "
-        "--process_noise=diagonal or --likelihood=innovation"};
+        "--likelihood=innovation"};
   }
   return noisy;
 }

@@ -65,7 +65,7 @@ MaybeError CheckNoise(const IdentifiedModel& model) {
   if (model.options.process_noise == ProcessNoise::kNone) {
     return Error{file +
                  " has no process noise, without which no path is more probable than another; fit "
-                 "it with --process_noise=diagonal or --likelihood=innovation"};
+                 "it with --likelihood=innovation"};
   }
   for (int i = 0; i < 4; ++i) {
     if (model.parameters[kSigmaX + i] > 0.0) continue;

@@ -88,7 +88,7 @@ MaybeError CheckDrawsFrom(const IdentifiedModel& model) {
     return std::nullopt;
   return Error{(model.source.empty() ? "the model" : model.source) +
                " has no process noise to draw futures from; fit it with "
-               "--process_noise=diagonal or --likelihood=innovation, or, where it is known who "
+               "--likelihood=innovation, or, where it is known who "
                "steps, with --stance=steps"};
 }
 

@@ -263,7 +263,7 @@ def test_hints_are_calls():
     said = pushid._pushid.in_python
     for text, call in {
             "leave them out (--leave_out=a,b)": 'leave them out (leave_out=["a", "b"])',
-            "--preset=group or --starts=8 adds one.": 'preset="group" or starts=8 adds one.',
+            "--preset=group or --seed=8 adds one.": 'preset="group" or seed=8 adds one.',
             "use --fix=mu=0, then see": 'use fix={"mu": 0}, then see',
             "--fix: 'a' is unknown": "fix: 'a' is unknown",
             "repeat it by pushid-check --bootstrap=199": "repeat it by result.bootstrap(199)",

@@ -1,7 +1,6 @@
 """What people do to each other, learned beside contact: does it predict what was not fitted?
 
 learned  held-out errors of groups, settling and false movers (ident/validation/README.md); 20 minutes of one core
-large    the same of networks that are trained by their gradient (ident/validation/README.md); 40 minutes of one core
 """
 import studies
 from studies import number, with_error
@@ -14,13 +13,6 @@ CANDIDATES = [
     ("half the prior", f"{NETWORK} --network_prior=0.5"),
     ("a fifth of it", f"{NETWORK} --network_prior=0.2"),
     ("network, no spring and no damping", "--interaction=network:4"),
-]
-LARGE, AS_LDP = (f"--interaction=spring,damping,network:{size}" for size in ("64-64", "512-512"))
-LARGE_CANDIDATES = [
-    ("large network, stopped early", f"{LARGE} --early_stopping=0.2"),
-    ("large network, a fifth of the prior", f"{LARGE} --network_prior=0.2"),
-    ("as large as LDP's, stopped early", f"{AS_LDP} --early_stopping=0.2"),
-    ("as large as LDP's, a fifth of the prior", f"{AS_LDP} --network_prior=0.2"),
 ]
 
 
@@ -35,11 +27,11 @@ def cells(p):
                    f"{moves['false_movers']:.2g} of {moves['bystanders']:.0f}"]
 
 
-def compared(candidates):
-    compare = "; ".join(f"{name}: {flags}" for name, flags in candidates)
+def learned():
+    compare = "; ".join(f"{name}: {flags}" for name, flags in CANDIDATES)
     out = studies.on_recordings("pushid-crossvalidate", "groups", *PRESET, "--folds=5", "--repeats=1",
                                 f"--compare={compare}")
-    flags = dict(candidates)
+    flags = dict(CANDIDATES)
     rows = []
     for p in sorted(out.json["predictors"], key=lambda p: p["mean"]["hipADE_m"]):
         title = f"**`{' '.join(PRESET)}`**" if p["name"] == "group" else p["name"]
@@ -50,13 +42,5 @@ def compared(candidates):
                          rows)
 
 
-def learned():
-    return compared(CANDIDATES)
-
-
-def large():
-    return compared(LARGE_CANDIDATES)
-
-
 if __name__ == "__main__":
-    studies.main(__file__, {"learned": learned, "large": large})
+    studies.main(__file__, {"learned": learned})

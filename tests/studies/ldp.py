@@ -7,7 +7,6 @@ groups     the same of groups; an hour
 strength   MPJPE by the strength of the push; the same runs
 quarter    trained on a quarter of the recordings, single people, first fold; ten minutes
 ablation   parts of the restoration left out, single people, first fold; a quarter of an hour
-optimizers L-BFGS against Adam, single people, first fold; three minutes
 strong     pushes 1.37 times as strong, and three pushes, of the first fold's held-out single people; seconds
 people     ten people in a line and 13 in a diamond, from recorded people; a minute
 sizes      number of weights beside the paper's; seconds
@@ -239,24 +238,6 @@ def ablation():
     return studies.table(["as published", "rolled out", *[title for _, title in METRICS]], rows)
 
 
-def optimizers():
-    fold = folds("single")[0]
-    rows = []
-    train, held = written(fold[1]), written(fold[2])
-    for name, flags in [("L-BFGS, 200 iterations", ["--network_optimizer=lbfgs"]),
-                        ("Adam, 200 passes at 1e-3", ["--network_optimizer=adam"]),
-                        ("Adam, 500 passes at 3e-4",
-                         ["--network_optimizer=adam", "--network_iterations=500", "--network_rate=3e-4"])]:
-        fitted = studies.run("pushid-fit", f"--recordings={train}", "--preset=ldp_published", *flags, out="model_out")
-        cell = []
-        for recordings in (train, held):
-            mean = studies.run("pushid-evaluate", f"--recordings={recordings}", f"--model={fitted.path}").json["mean"]
-            cell += [number(mean["hipADE_m"]), number(mean["hipFDE_m"])]
-        rows.append([name, *cell, f"{fitted.seconds / 60:.1f}"])
-    return studies.table(["first fold", "hipADE, trained on, m", "hipFDE, trained on, m", "hipADE, held out, m",
-                          "hipFDE, held out, m", "minutes"], rows)
-
-
 def path_of(trained, recording, *flags):
     """Hip by frame of person 0, or None where the rollout left the domain."""
     done = studies.run("pushid-predict", f"--recordings={trained.held}", f"--model={trained.fitted.path}",
@@ -325,5 +306,5 @@ def sizes():
 
 if __name__ == "__main__":
     studies.main(__file__, {"single": lambda: tables("single"), "groups": lambda: tables("groups"), "strength": strength,
-                            "quarter": quarter, "ablation": ablation, "optimizers": optimizers, "strong": strong,
+                            "quarter": quarter, "ablation": ablation,  "strong": strong,
                             "people": people, "sizes": sizes})

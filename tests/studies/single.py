@@ -5,7 +5,6 @@ transcript  the report of pushid-fit (ident/README.md)
 depends     the same fit with other assumptions and without one person (ident/README.md)
 intervals   clustered, profile and bootstrap (ident/uncertainty/README.md); a minute
 coupled     mu, Kp_x and Kp_y all free (ident/uncertainty/README.md); a second
-starts      another optimum from other starts? (ident/README.md); ten seconds
 
 Times are those of one core; without one, seconds.
 """
@@ -94,14 +93,6 @@ def coupled():
                               "...\n" + "\n".join(told))
 
 
-def starts():
-    found = fit("--starts=32").json["fit"]["starts"]
-    best = min(s["cost"] for s in found if s["usable"])
-    same = sum(1 for s in found if s["usable"] and s["cost"] - best <= 1e-6 * best)
-    return (f"`pushid-fit --setting=single --starts=32`, every gain wrong by up to 5 times either way: {same} of "
-            f"{len(found)} starts end at the same cost, {number(best, 6)}, to a relative 1e-6.")
-
-
 if __name__ == "__main__":
     studies.main(__file__, {"summary": summary, "transcript": transcript, "depends": depends, "intervals": intervals,
-                            "coupled": coupled, "starts": starts})
+                            "coupled": coupled})

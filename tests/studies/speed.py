@@ -184,7 +184,7 @@ def rivals():
             f"\n\nMedians of five, in turns, one thread; {machine()}.")
 
 
-SOLVING = ("starts and horizons", "weights", "settling", "other starts")  # purposes of run.work
+SOLVING = ("starts and horizons", "weights", "settling")  # purposes of run.work
 LANES = {"cost of": "CostsSideBySide", "normal equations of": "EquationsSideBySide"}
 
 
