@@ -25,7 +25,7 @@
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/own_laws.h"
+#include "ident/parameters/parameter_table.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/prediction.h"

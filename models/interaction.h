@@ -1,14 +1,262 @@
-// models: the sum of the interaction terms a model asks for, between two people.
+// models: what two people do to each other: contact, LDP's forces, and the sum of the terms that a
+// model asks for.
+//
+// A term is a struct with
+//   template <typename T> static void Add(const Pair&, const ParameterSet<T>&,
+//                                         const PosedPendulum<T>& n, const PosedPendulum<T>& j,
+//                                         PairForce<T>*);
+// that adds the generalized forces [N, N, N m, N m] it exerts on both.
 #pragma once
 
+#include <cmath>
 #include <type_traits>
 
-#include "models/contact.h"
-#include "models/ldp_interaction.h"
+#include "models/dual.h"
+#include "models/ipm.h"
 #include "models/options.h"
-#include "models/pair.h"
+#include "models/parameters.h"
 
 namespace pushid {
+
+// How a person stood at frame 0.
+struct FirstPose {
+  Vector4<double> q = Vector4<double>::Zero();
+  Angles<double> angles;
+
+  FirstPose() = default;
+  explicit FirstPose(const Vector4<double>& at) : q(at), angles(at) {}
+};
+
+// Two people and how they stood at frame 0.
+struct Pair {
+  Body body_n, body_j;
+  FirstPose first_n, first_j;
+
+  Pair Swapped() const { return {body_j, body_n, first_j, first_n}; }
+};
+
+template <typename T>
+struct PairForce {
+  Vector4<T> on_n = Vector4<T>::Zero(), on_j = Vector4<T>::Zero();
+  bool acts = false;
+};
+
+// Contact between two people, a smooth reciprocal force between points along their rods.
+//
+// The points stand s rod lengths from the ankles (s = 0: between the carts; 1: the hips). With r =
+// (dx, dy) from j to n,
+//   d = sqrt(dx^2 + kappa^2 dy^2)     distance in which people are deeper than wide (kappa < 1)
+//   d* = softmin(d_contact, d_0)      who stood closer than d_contact stood there free of load
+//   load x = d* - d                   compression, m
+//   spring  f = A x^2 / (x + w)       N for x > 0, else 0; w = 0.05 m
+//   damping f = B x / (x + w) x'
+// acts on n along the gradient of d, and its opposite on j. A spring of stiffness A beyond the
+// first centimetres, damping B that fades in with the load. The force is continuous, the spring
+// with its first derivatives; those of the damping jump at x = 0 from 0 to B x' / w. The sum is not
+// held to push: where two people part fast, the damping outweighs the spring and pulls (x' < 0; in
+// one published recording up to 45 N, 6.7 N s of pull against 46.6 N s of push). Cutting the pull
+// off would make the force itself depend on a switch. Generalized forces by virtual work at the
+// points. Rejected: LDP's potential, whose push depends on the neighbour's velocity and is not
+// mutual (below).
+
+inline constexpr double kContactOnset = 0.05;     // m, w above
+inline constexpr double kContactSoftness = 0.02;  // m, of the softmin
+
+template <typename T>
+using Vector2 = Eigen::Matrix<T, 2, 1>;
+
+// Position (x, y) of the contact point: at a height of the body, which has the rod of frame 0
+// even where the rod moves. Q: of the state, a constant (double) at frame 0.
+template <typename T, typename Q>
+Vector2<T> ContactPoint(const Body& body, const Vector4<Q>& q, const Angles<Q>& angles,
+                        const T& height) {
+  const T reach = height * body.rod_length;
+  return {q[0] + reach * angles.s_th, q[1] - reach * angles.c_th * angles.s_ph};
+}
+
+template <typename T>
+Vector2<T> ContactVelocity(const Body& body, const Angles<T>& angles, const Vector4<T>& qd,
+                           const T& height) {
+  const T reach = height * body.rod_length;
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  return {qd[0] + reach * c_th * qd[2],
+          qd[1] + reach * (s_th * s_ph * qd[2] - c_th * c_ph * qd[3])};
+}
+
+// A horizontal force at the contact point as a generalized force (virtual work).
+template <typename T>
+Vector4<T> ContactGeneralizedForce(const Body& body, const Angles<T>& angles, const T& height,
+                                   const T& fx, const T& fy) {
+  const T reach = height * body.rod_length;
+  const auto& [s_th, c_th, s_ph, c_ph] = angles;
+  return {fx, fy, reach * (fx * c_th + fy * s_th * s_ph), -reach * fy * c_th * c_ph};
+}
+
+template <typename T>
+T ContactDistance(const Eigen::Matrix<T, 2, 1>& r, const T& kappa) {
+  using std::sqrt;
+  constexpr double kTiny = 1e-12;  // m^2: a derivative also where two points coincide
+  return sqrt(r[0] * r[0] + kappa * kappa * r[1] * r[1] + kTiny);
+}
+
+// The load x, m, of two points at the distance d that stood at r0 from each other; not positive
+// without any.
+template <typename T>
+T ContactLoad(const ParameterSet<T>& p, const T& d, const Vector2<T>& r0) {
+  using std::sqrt;
+  const T d0 = ContactDistance(r0, p[kContactKappa]);
+  const T gap = p[kContactDistance] - d0;
+  const T free =
+      0.5 * (p[kContactDistance] + d0 - sqrt(gap * gap + kContactSoftness * kContactSoftness));
+  return free - d;
+}
+
+// From j's contact point to n's at frame 0.
+template <typename T>
+Vector2<T> BetweenFirstContactPoints(const Pair& pair, const T& height) {
+  return ContactPoint(pair.body_n, pair.first_n.q, pair.first_n.angles, height) -
+         ContactPoint(pair.body_j, pair.first_j.q, pair.first_j.angles, height);
+}
+
+// The load of two people.
+template <typename T>
+T LoadBetween(const Pair& pair, const ParameterSet<T>& p, const Vector4<T>& q_n,
+              const Vector4<T>& q_j) {
+  const T& height = p[kContactHeight];
+  const Vector2<T> r = ContactPoint(pair.body_n, q_n, Angles<T>(q_n), height) -
+                       ContactPoint(pair.body_j, q_j, Angles<T>(q_j), height);
+  const T d = ContactDistance<T>(r, p[kContactKappa]);
+  // Free distances are never larger than the contact distance.
+  if (RealPart(d) >= RealPart(p[kContactDistance])) return T(0.0);
+  return ContactLoad<T>(p, d, BetweenFirstContactPoints(pair, height));
+}
+
+// The horizontal force on n's point. r, v: n's point and its velocity, seen from j's; r0: at
+// frame 0. Zero without load.
+template <bool kSpring, bool kDamping, typename T>
+Vector2<T> ContactForce(const ParameterSet<T>& p, const Vector2<T>& r, const Vector2<T>& v,
+                        const Vector2<T>& r0) {
+  const T& kappa = p[kContactKappa];
+  const T d = ContactDistance(r, kappa);
+  const T x = ContactLoad(p, d, r0);
+  if (!(RealPart(x) > 0.0)) return Vector2<T>::Zero();
+  const Vector2<T> along(r[0] / d, kappa * kappa * r[1] / d);
+  T f = T(0.0);
+  if (kSpring) f += p[kContactStiffness] * x;
+  if (kDamping) f -= p[kContactDamping] * (along[0] * v[0] + along[1] * v[1]);
+  f *= x / (x + kContactOnset);
+  return f * along;
+}
+
+template <bool kSpring, bool kDamping>
+struct ContactTerm {
+  template <typename T>
+  static void Add(const Pair& pair, const ParameterSet<T>& p, const PosedPendulum<T>& n,
+                  const PosedPendulum<T>& j, PairForce<T>* force) {
+    const T& height = p[kContactHeight];
+    const Angles<T>&of_n = n.angles, &of_j = j.angles;
+    const Vector2<T> r =
+        ContactPoint(pair.body_n, n.q, of_n, height) - ContactPoint(pair.body_j, j.q, of_j, height);
+    // Free distances are never larger than the contact distance.
+    if (RealPart(ContactDistance(r, p[kContactKappa])) >= RealPart(p[kContactDistance])) return;
+    const Vector2<T> v = ContactVelocity(pair.body_n, of_n, n.qd, height) -
+                         ContactVelocity(pair.body_j, of_j, j.qd, height);
+    const Vector2<T> r0 = BetweenFirstContactPoints(pair, height);
+    const Vector2<T> f = ContactForce<kSpring, kDamping, T>(p, r, v, r0);
+    if (RealPart(f[0]) == 0.0 && RealPart(f[1]) == 0.0) return;
+    force->on_n += ContactGeneralizedForce<T>(pair.body_n, of_n, height, f[0], f[1]);
+    force->on_j += ContactGeneralizedForce<T>(pair.body_j, of_j, height, T(-f[0]), T(-f[1]));
+    force->acts = true;
+  }
+};
+
+// What people do to each other in LDP (Yue et al., CVPR 2024, section 3.2): a
+// repulsive potential between carts and torques against leaning on each other.
+//
+// With r = r_n - r_j and v = v_j - v_n of the carts, d = |r|, dt = 1/60 s:
+//   U = u exp(-b / sigma),  b = 0.5 sqrt((|r| + |r - dt v|)^2 - (dt |v|)^2),  F on n = -grad_r U
+//   torques of constant size k: with s = sign(x_j - x_n),
+//     F_theta = -s k  iff  s theta_n >= 0.1 or s theta_j <= -0.1
+//   and with s = sign(y_j - y_n), F_phi = +s k  iff  s phi_n <= -0.1 or s phi_j >= 0.1:
+//   push away when I lean towards the neighbour or the neighbour leans towards me.
+// for d < range (Eq. 10 and 11, and the supplement's table). Equal coordinates count as "behind".
+// Not mutual: what n gets from j is not what j gets from n.
+
+inline constexpr double kLdpStep = 1.0 / 60.0;  // s
+inline constexpr double kLdpLean = 0.1;         // rad
+
+// b of the potential.
+template <typename T>
+T LdpEllipse(const Eigen::Matrix<T, 2, 1>& r, const Eigen::Matrix<T, 2, 1>& v) {
+  using std::sqrt;
+  constexpr double kTiny = 1e-12;  // m^2: a derivative also where two carts coincide
+  const Eigen::Matrix<T, 2, 1> step = kLdpStep * v;
+  const T near = sqrt(r.squaredNorm() + kTiny), next = sqrt((r - step).squaredNorm() + kTiny);
+  return 0.5 * sqrt((near + next) * (near + next) - step.squaredNorm() + kTiny);
+}
+
+// LDP's table: the torques on n, in units of their size, by hard switches.
+struct LdpTorqueSigns {
+  int theta = 0, phi = 0;
+};
+inline LdpTorqueSigns LdpTable(const Vector4<double>& n, const Vector4<double>& j) {
+  LdpTorqueSigns signs;
+  int s = j[0] - n[0] > 0.0 ? 1 : -1;
+  if (s * n[2] >= kLdpLean || s * j[2] <= -kLdpLean) signs.theta = -s;
+  s = j[1] - n[1] > 0.0 ? 1 : -1;
+  if (s * n[3] <= -kLdpLean || s * j[3] >= kLdpLean) signs.phi = s;
+  return signs;
+}
+
+// Whether the carts are closer than the range.
+template <typename T>
+bool InLdpRange(const ParameterSet<T>& p, const Vector4<T>& q_n, const Vector4<T>& q_j) {
+  const double dx = RealPart(q_n[0]) - RealPart(q_j[0]), dy = RealPart(q_n[1]) - RealPart(q_j[1]);
+  return std::hypot(dx, dy) < RealPart(p[kNeighbourRange]);
+}
+
+// -grad_r U at one of two carts.
+template <typename T>
+Eigen::Matrix<T, 2, 1> LdpRepulsion(const ParameterSet<T>& p, const Eigen::Matrix<T, 2, 1>& r,
+                                    const Eigen::Matrix<T, 2, 1>& v) {
+  using std::exp, std::sqrt;
+  constexpr double kTiny = 1e-12;  // m^2
+  const Eigen::Matrix<T, 2, 1> next = r - kLdpStep * v;
+  const T near = sqrt(r.squaredNorm() + kTiny), then = sqrt(next.squaredNorm() + kTiny);
+  const T b = LdpEllipse(r, v);
+  const Eigen::Matrix<T, 2, 1> slope = (near + then) / (4.0 * b) * (r / near + next / then);
+  return (p[kPotentialStrength] / p[kPotentialLength] * exp(-b / p[kPotentialLength])) * slope;
+}
+
+template <typename T>
+Vector4<double> Reals(const Vector4<T>& v) {
+  return {RealPart(v[0]), RealPart(v[1]), RealPart(v[2]), RealPart(v[3])};
+}
+
+struct LdpPublishedTerm {
+  template <typename T>
+  static void Add(const Pair&, const ParameterSet<T>& p, const PendulumState<T>& n,
+                  const PendulumState<T>& j, PairForce<T>* force) {
+    if (!InLdpRange(p, n.q, j.q)) return;
+    force->acts = true;
+    AddOn(p, n, j, &force->on_n);
+    AddOn(p, j, n, &force->on_j);
+  }
+
+ private:
+  template <typename T>
+  static void AddOn(const ParameterSet<T>& p, const PendulumState<T>& n, const PendulumState<T>& j,
+                    Vector4<T>* on_n) {
+    const Eigen::Matrix<T, 2, 1> r = n.q.template head<2>() - j.q.template head<2>();
+    const Eigen::Matrix<T, 2, 1> v = j.qd.template head<2>() - n.qd.template head<2>();
+    on_n->template head<2>() += LdpRepulsion(p, r, v);
+    const LdpTorqueSigns signs = LdpTable(Reals(n.q), Reals(j.q));
+    (*on_n)[2] += static_cast<double>(signs.theta) * p[kLeanTheta];
+    (*on_n)[3] += static_cast<double>(signs.phi) * p[kLeanPhi];
+  }
+};
+
+// The sum of the interaction terms a model asks for, between two people.
 
 // What two people do to each other; their poses as PosedPendulum or, to be posed here, as states.
 template <typename T>

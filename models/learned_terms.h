@@ -5,9 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "models/contact.h"
 #include "models/enum_names.h"
-#include "models/ldp_interaction.h"
+#include "models/interaction.h"
 #include "models/options.h"
 #include "models/self_network.h"
 

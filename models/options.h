@@ -208,7 +208,7 @@ struct ModelOptions {
   // What is learned (learned_terms.h); null: nothing.
   std::shared_ptr<const LearnedTerms> learned;
   // A user's own laws (force_law.h). Their parameters take the slots from kFirstOwnParameter on, in
-  // this order. AddForceLaw (ident/parameters/own_laws.h) adds one with its rows.
+  // this order. AddForceLaw (ident/parameters/parameter_table.h) adds one with its rows.
   std::vector<std::shared_ptr<const ForceLaw>> own_laws = {};
   ProcessNoise process_noise = ProcessNoise::kNone;
 };

@@ -9,7 +9,7 @@
 //     }
 //   };
 //   const auto drag = MakeForceLaw("drag", {{"drag", "d", "1/m", 0.1, 0.0, 5.0, 0.1}}, Drag{});
-//   AddForceLaw(drag, &options.model, &options.table);  // ident/parameters/own_laws.h
+//   AddForceLaw(drag, &options.model, &options.table);  // ident/parameters/parameter_table.h
 // The whole example, with a fit, is tests/install/consumer/own_law.cc.
 #pragma once
 

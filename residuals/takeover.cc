@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "models/contact.h"
 #include "models/decompositions.h"
+#include "models/interaction.h"
 #include "models/learned_terms.h"
 #include "models/neighbours.h"
 #include "models/self_force.h"

@@ -34,7 +34,7 @@ MaybeError AddCovariates(const std::vector<PendulumRecording>& recordings, FitOp
 // Differences in standard deviations between people.
 
 // Where the fit does not let people differ, a second one does: each parameter that is compared
-// deviates by person, and its spread is estimated (problem/pooling_spread.cc), while the contrast
+// deviates by person, and its spread is estimated (problem/fit_problem.cc), while the contrast
 // takes away what the label explains. Differences, intervals and p values remain those of the fit
 // itself. An effect stays untold where no spread is found, of what two people share, where fewer
 // than kFewestPeople people were recorded or nobody more than once, and where that fit fails.

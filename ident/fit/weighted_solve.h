@@ -2,7 +2,7 @@
 // tested.
 //
 // 1. The fit is solved without the demand. Sigmas and effective frames (uncertainty/clusters.h)
-//    and the spread of pooled units (problem/pooling_spread.cc) are estimated at its optimum and
+//    and the spread of pooled units (problem/fit_problem.cc) are estimated at its optimum and
 //    the fit solved on from there, until none changes by more than 1 %: the demand must not make
 //    the data look worse than they are.
 // 2. Who settles in time as fitted is not moved by the demand at all. Otherwise the fit is solved

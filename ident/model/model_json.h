@@ -5,7 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "ident/model/fitted_model.h"
-#include "ident/parameters/own_laws.h"
+#include "ident/parameters/parameter_table.h"
 
 namespace pushid {
 

@@ -9,7 +9,7 @@
 #include "ident/parameters/json_archive.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
-#include "ident/parameters/own_laws.h"
+#include "ident/parameters/parameter_table.h"
 #include "models/learned_terms.h"
 
 namespace pushid {

@@ -57,7 +57,7 @@ struct FitOptions {
   std::string pool = "none";
   std::string pool_by = kSubjectUnit;  // the unit they may differ by
   // Standard deviation of a unit's deviation from the shared value, on the fitted scale (0.2 on
-  // a log scale is about 20 %); none: estimated from the units (problem/pooling_spread.cc).
+  // a log scale is about 20 %); none: estimated from the units (problem/fit_problem.cc).
   // PoolParameters gives it to the pooled parameters.
   std::optional<double> pooling_sigma;
   // Where deviations start, by unit, one for each pooled parameter in the table's order, on the

@@ -15,6 +15,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <exception>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -22,10 +23,10 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "ident/parameters/option_names.h"
-#include "ident/parameters/wrong_entry.h"
 
 // At most sixty, by the macros with which nlohmann's JSON goes through members.
 #define PUSHID_FIELDS(archive, object, ...)                              \
@@ -37,6 +38,34 @@
 #define PUSHID_FIELD(name) fields_of(#name, has_fields.name);
 
 namespace pushid {
+
+// What is wrong with an entry, whose path it gives.
+class WrongEntry : public std::runtime_error {
+ public:
+  WrongEntry(std::string path, const std::string& what)
+      : std::runtime_error(what), path_(std::move(path)) {}
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+// What an exception says for people: without nlohmann's "[json.exception.type_error.302] ".
+inline std::string ReasonOf(const std::exception& exception) {
+  const std::string text = exception.what();
+  const size_t end = text.rfind("[json.exception", 0) == 0 ? text.find("] ") : std::string::npos;
+  return end == std::string::npos ? text : text.substr(end + 2);
+}
+
+// What `read` gives; what it throws is said of that path.
+template <typename Read>
+auto ReadAt(const std::string& path, Read read) -> decltype(read()) {
+  try {
+    return read();
+  } catch (const std::exception& exception) {
+    throw WrongEntry(path, ReasonOf(exception));
+  }
+}
 
 // JSON knows neither infinity nor NaN, and would have a null that no reader takes: they are written
 // as the texts "infinity", "-infinity" and "nan". NumberFrom throws on any other text.

@@ -3,6 +3,7 @@
 // report and the result JSON read it.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "datasets/files/error.h"
 #include "ident/figures/text_table.h"
 #include "models/enum_names.h"
+#include "models/force_law.h"
 #include "models/options.h"
 #include "models/parameters.h"
 #include "residuals/parameter_map.h"
@@ -128,5 +130,22 @@ TextTable ParameterGlossary();
 
 // The same as a table in Markdown.
 std::string ParameterGlossaryMarkdown();
+
+// A user's own force laws in a fit.
+
+using ForceLaws = std::vector<std::shared_ptr<const ForceLaw>>;
+
+// Gives a law to the model and its parameters to the table: free, starting at their nominal values,
+// without priors. Errors: a second law of that name, a parameter whose name is taken, more of them
+// than there are slots. Nothing is added then.
+MaybeError AddForceLaw(std::shared_ptr<const ForceLaw> law, ModelOptions* model,
+                       ParameterTable* table);
+
+// Those of `laws` that a model file names, added in its order. Errors: one that is not among them.
+MaybeError AddNamedLaws(const std::vector<std::string>& names, const ForceLaws& laws,
+                        ModelOptions* model, ParameterTable* table);
+
+// Their names, in the model's order.
+std::vector<std::string> LawNames(const ModelOptions& model);
 
 }  // namespace pushid

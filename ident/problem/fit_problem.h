@@ -223,7 +223,7 @@ double UpdatePoolingSpread(const FitProblem& problem, const FitPoint& point, Cos
 // What a fit minimizes, family by family: each row says when a family is part of the cost
 // and adds its residual blocks (residuals/cost_functions/) to the Ceres problem.
 //
-// A new family is a row of the table in residual_families.cc with the two functions that it names,
+// A new family is a row of the table in fit_problem.cc with the two functions that it names,
 // its cost function in a file of its own, and an option for its weight
 // (ident/parameters/option_table.cc). Solver, covariance, profiles and bootstrap take it from here.
 

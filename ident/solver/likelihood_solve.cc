@@ -1,17 +1,25 @@
 // ident: rounds of building and solving by a likelihood.
+#include <ceres/gradient_problem.h>
+#include <ceres/gradient_problem_solver.h>
+
+#include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/jacobian_blocks.h"
 #include "ident/solver/solver.h"
+#include "models/decompositions.h"
 #include "models/parameters.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 
 namespace pushid {
+
 namespace {
 
 constexpr int kMostRounds = 30;
@@ -161,6 +169,168 @@ LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& p
 LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point) {
   const Deviance deviance = problem.DevianceAt(point);
   return {deviance.value, deviance.measured, problem.map().num_shared()};
+}
+
+namespace {
+
+using Eigen::MatrixXd, Eigen::VectorXd;
+
+// Of a number that nothing depends on, in a direction's information.
+constexpr double kNoInformation = 1e-12;
+// How far the logarithm of noise may fall: far.
+constexpr double kAnyFall = 40.0;
+constexpr double kNearBound = 1e-3;  // on the fitted scale
+constexpr double kRidge = 1e-9;      // of the information's diagonal: directions may be unknown
+
+// Bounds of every number of a point, in its order; those of units are open.
+struct Bounds {
+  VectorXd lower, upper;
+};
+
+Bounds BoundsOf(const FitProblem& problem, Eigen::Index size) {
+  Bounds bounds{VectorXd::Constant(size, -HUGE_VAL), VectorXd::Constant(size, HUGE_VAL)};
+  const auto& fitted = problem.map().fitted;
+  for (size_t i = 0; i < fitted.size(); ++i) {
+    const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
+    bounds.lower[i] = ToFitted(spec.transform, spec.lower);
+    bounds.upper[i] = ToFitted(spec.transform, spec.upper);
+  }
+  return bounds;
+}
+
+VectorXd FlatOf(const FitPoint& point) {
+  const std::vector<double> flat = point.Flat();
+  return Eigen::Map<const VectorXd>(flat.data(), static_cast<Eigen::Index>(flat.size()));
+}
+
+void SetFlat(const VectorXd& flat, FitPoint* point) {
+  point->SetFlat(std::vector<double>(flat.data(), flat.data() + flat.size()));
+}
+
+// The cost at the origin, for every row. The solver compares changes with the cost itself, and a
+// negative log likelihood may be negative: counted from here it is not, as no row falls so far.
+constexpr double kLevelOfRow = 1e3;
+constexpr double kLeastChange = 1e-4;  // nats: changes below end the search
+
+// The exact cost: half the squares of rows that do not end, but for a constant.
+class WhitenedCost : public ceres::FirstOrderFunction {
+ public:
+  WhitenedCost(const FitProblem& problem, const FitPoint& at, const MatrixXd& root)
+      : problem_(problem),
+        point_(at),
+        origin_(FlatOf(at)),
+        root_(root),
+        bounds_(BoundsOf(problem, origin_.size())) {
+    problem_.set_fall_of_noise(kAnyFall);
+    built_ = problem_.Build(&point_, 0);
+    double at_origin = 0.0;
+    built_.problem->Evaluate({}, &at_origin, nullptr, nullptr, nullptr);
+    level_ = kLevelOfRow * built_.problem->NumResiduals();
+    shift_ = level_ - at_origin;
+  }
+
+  double level() const { return level_; }
+  // What a cost of the solver's is above the negative log likelihood.
+  double above() const { return shift_ + built_.Offset(); }
+
+  VectorXd At(const double* z) const {
+    return origin_ + root_ * Eigen::Map<const VectorXd>(z, root_.cols());
+  }
+
+  bool Evaluate(const double* z, double* cost, double* gradient) const override {
+    const VectorXd x = At(z);
+    if ((x.array() < bounds_.lower.array()).any() || (x.array() > bounds_.upper.array()).any()) {
+      return false;
+    }
+    SetFlat(x, &point_);
+    std::vector<double> by_x;
+    if (!built_.problem->Evaluate({}, cost, nullptr, gradient != nullptr ? &by_x : nullptr,
+                                  nullptr)) {
+      return false;
+    }
+    *cost += shift_;
+    if (gradient == nullptr) return true;
+    Eigen::Map<VectorXd>(gradient, root_.cols()) =
+        root_.transpose() * Eigen::Map<const VectorXd>(by_x.data(), x.size());
+    return true;
+  }
+  int NumParameters() const override { return static_cast<int>(root_.cols()); }
+
+ private:
+  FitProblem problem_;
+  mutable FitPoint point_;  // Ceres' problem looks at it
+  VectorXd origin_;
+  MatrixXd root_;
+  Bounds bounds_;
+  double level_ = 0.0, shift_ = 0.0;
+  mutable FitProblem::Built built_;
+};
+
+// R of the header at a point: a column for each number that moves.
+MatrixXd RootOfInverse(const MatrixXd& information, const std::vector<int>& moving) {
+  MatrixXd own = information(moving, moving);
+  own.diagonal() *= 1.0 + kRidge;
+  const MatrixXd factor = CholeskyFactor(own);
+  if (factor.size() == 0) return {};
+  MatrixXd root = MatrixXd::Zero(information.rows(), factor.cols());
+  root(moving, Eigen::all) = Inverse(factor).transpose();
+  return root;
+}
+
+}  // namespace
+
+SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, FitPoint* point,
+                       std::string* message) {
+  SolveStage stage;
+  stage.final_cost = HUGE_VAL;
+  FitProblem fisher = problem;
+  fisher.set_fall_of_noise(kFisherShift);
+  const FitProblem::Built built = fisher.Build(point, 0);
+  if (!built.shortened.empty()) {
+    const FailedRollout& failed = built.shortened.front();
+    *message = "the filter of recording " + problem.recordings()[failed.recording].id +
+               " leaves the model's domain: " + std::string(failed.status.quantity) + " at frame " +
+               std::to_string(failed.status.frame);
+    return stage;
+  }
+  const JacobianBlocks score = EvaluateJacobianBlocks(built);
+  const VectorXd x = FlatOf(*point), gradient = score.jacobian.transpose() * score.residuals;
+  const Bounds bounds = BoundsOf(problem, x.size());
+  const MatrixXd information = score.jacobian.transpose() * score.jacobian;
+  const double nothing = kNoInformation * information.diagonal().maxCoeff();
+  std::vector<int> moving;
+  for (int i = 0; i < x.size(); ++i) {
+    const bool at_bound = (x[i] < bounds.lower[i] + kNearBound && gradient[i] > 0.0) ||
+                          (x[i] > bounds.upper[i] - kNearBound && gradient[i] < 0.0);
+    const bool stays = std::find(held.begin(), held.end(), i) != held.end();
+    if (!at_bound && !stays && information(i, i) > nothing) moving.push_back(i);
+  }
+  const MatrixXd root = RootOfInverse(information, moving);
+  if (root.size() == 0) {
+    *message = moving.empty() ? "no parameter changes the likelihood"
+                              : "the Fisher information has no inverse";
+    return stage;
+  }
+  auto* cost = new WhitenedCost(problem, *point, root);  // of the gradient problem
+  const ceres::GradientProblem whitened(cost);
+  ceres::GradientProblemSolver::Options options;
+  options.line_search_direction_type = ceres::BFGS;
+  options.max_num_iterations = problem.options().max_iterations;
+  options.function_tolerance = kLeastChange / cost->level();
+  options.logging_type = ceres::SILENT;
+  std::vector<double> z(moving.size(), 0.0);
+  ceres::GradientProblemSolver::Summary summary;
+  ceres::Solve(options, whitened, z.data(), &summary);
+  *message = summary.message;
+  stage.initial_cost = summary.initial_cost - cost->above();
+  if (summary.IsSolutionUsable()) stage.final_cost = summary.final_cost - cost->above();
+  stage.converged = summary.termination_type == ceres::CONVERGENCE;
+  stage.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  for (const ceres::IterationSummary& i : summary.iterations) {
+    stage.trace.push_back({0, i.iteration, i.cost - cost->above(), i.gradient_max_norm});
+  }
+  if (summary.IsSolutionUsable()) SetFlat(cost->At(z.data()), point);
+  return stage;
 }
 
 }  // namespace pushid

@@ -6,7 +6,6 @@
 
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/jacobian_blocks.h"
-#include "ident/problem/raw_residuals.h"
 #include "ident/solver/structured_secants.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/raw_residuals.h"
+#include "ident/problem/jacobian_blocks.h"
 #include "ident/uncertainty/assumptions.h"
 
 namespace pushid {

@@ -1,5 +1,4 @@
 // LDP's interaction against cases worked out by hand.
-#include "models/ldp_interaction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,11 @@
 // A user's own force laws: in the table, in a fit, in files, and what is refused.
-#include "ident/parameters/own_laws.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
+#include "ident/parameters/parameter_table.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/prediction.h"
 #include "residuals/autodiff_force_law.h"

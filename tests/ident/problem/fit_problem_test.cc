@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ident/problem/raw_residuals.h"
+#include "ident/problem/jacobian_blocks.h"
 #include "residuals/cost_functions/rest_residual.h"
 #include "tests/ident/fit_samples.h"
 
