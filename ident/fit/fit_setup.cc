@@ -98,9 +98,7 @@ std::string PresetIn(const GivenOptions& given) {
 
 // Whether a stance that was not asked for goes together with what was.
 bool GoesTogether(const FitOptions& o, const std::vector<PendulumRecording>& recordings) {
-  const bool states_alone = o.likelihood == Likelihood::kTrajectory &&
-                            o.model.process_noise == ProcessNoise::kNone &&
-                            o.model.learned == nullptr;
+  const bool states_alone = o.likelihood == Likelihood::kTrajectory && o.model.learned == nullptr;
   const bool all_act =
       std::all_of(o.table.specs.begin(), o.table.specs.end(),
                   [&o](const ParameterSpec& spec) { return !spec.free || Acts(spec.id, o.model); });

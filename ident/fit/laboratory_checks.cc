@@ -104,11 +104,6 @@ MaybeError CheckPlatesAlone(const PendulumRecording& r, const FitOptions& option
   if (model.stance != Stance::kFixed) {
     return Error{whose + ", which tell nothing of feet that slide or step; add --stance=fixed"};
   }
-  if (model.process_noise != ProcessNoise::kNone) {
-    return Error{
-        whose +
-        ", and process noise compares positions, which nobody measured; leave --likelihood out"};
-  }
   if (model.body != BodyModel::kLdp || RodMoves(model) || NeedsGradientTraining(options)) {
     return Error{whose +
                  ", from which neither bodies, rods nor large networks are learnt; leave --body, "

@@ -89,13 +89,10 @@ MaybeError CheckFrameRates(const std::vector<PendulumRecording>& recordings,
 MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
                            const FitOptions& options) {
   const ModelOptions& model = options.model;
-  if (options.likelihood == Likelihood::kTrajectory && model.process_noise == ProcessNoise::kNone) {
-    return std::nullopt;
-  }
+  if (options.likelihood == Likelihood::kTrajectory) return std::nullopt;
   if (const std::string what = MemoryOf(model); !what.empty()) {
     return Error{
-        "process noise and the likelihoods of single steps require a model whose state is position "
-        "and velocity; " +
+        "the likelihoods of single steps require a model whose state is position and velocity; " +
         what +
         (model.learned != nullptr ? " has weights, which they cannot fit"
                                   : " has internal memory") +
@@ -107,8 +104,8 @@ MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
     }
     if (r.initial_velocity != InitialVelocity::kFree) continue;
     return Error{"recording " + r.id +
-                 " has free initial velocities, which likelihoods of single steps and process "
-                 "noise cannot fit; set initial_velocity to zero or estimated in the manifest"};
+                 " has free initial velocities, which likelihoods of single steps cannot fit; "
+                 "set initial_velocity to zero or estimated in the manifest"};
   }
   return std::nullopt;
 }

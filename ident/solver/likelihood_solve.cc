@@ -45,10 +45,8 @@ Vector4<double> SpreadOfTransitions(const FitProblem& problem, const FitPoint& p
   Vector4<double> sum = Vector4<double>::Zero();
   int count = 0;
   for (const PendulumRecording& recording : problem.recordings()) {
-    ModelOptions model = problem.options().model;
-    model.process_noise = ProcessNoise::kNone;
-    const LikelihoodProblem one =
-        MakeLikelihoodProblem(Likelihood::kTransition, recording, model, problem.map(), 1.0);
+    const LikelihoodProblem one = MakeLikelihoodProblem(
+        Likelihood::kTransition, recording, problem.options().model, problem.map(), 1.0);
     std::vector<GaussianDensity<double>> densities;
     Densities<double>(one, std::vector<ParameterSet<double>>(recording.num_people(), p),
                       &densities);
@@ -116,7 +114,7 @@ bool SolveOn(FitProblem* problem, SolveStart* start) {
     CostWeights weights = problem->weights();
     const double spread = UpdatePoolingSpread(*problem, start->to, &weights);
     problem->Weigh(weights);
-    const SolveStage stage = SolveByBfgs(*problem, {}, &start->to, &start->message);
+    const SolveStage stage = SolveByBfgs(*problem, &start->to, &start->message);
     const double before = start->cost;
     start->stages.push_back(stage);
     start->iterations += stage.iterations;
@@ -279,8 +277,7 @@ MatrixXd RootOfInverse(const MatrixXd& information, const std::vector<int>& movi
 
 }  // namespace
 
-SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, FitPoint* point,
-                       std::string* message) {
+SolveStage SolveByBfgs(const FitProblem& problem, FitPoint* point, std::string* message) {
   SolveStage stage;
   stage.final_cost = HUGE_VAL;
   FitProblem fisher = problem;
@@ -302,8 +299,7 @@ SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, 
   for (int i = 0; i < x.size(); ++i) {
     const bool at_bound = (x[i] < bounds.lower[i] + kNearBound && gradient[i] > 0.0) ||
                           (x[i] > bounds.upper[i] - kNearBound && gradient[i] < 0.0);
-    const bool stays = std::find(held.begin(), held.end(), i) != held.end();
-    if (!at_bound && !stays && information(i, i) > nothing) moving.push_back(i);
+    if (!at_bound && information(i, i) > nothing) moving.push_back(i);
   }
   const MatrixXd root = RootOfInverse(information, moving);
   if (root.size() == 0) {

@@ -253,7 +253,7 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
   start.kind = "warm";
   start.from = start.to = from;
   if (problem.options().likelihood != Likelihood::kTrajectory) {
-    const SolveStage stage = SolveByBfgs(problem, {}, &start.to, &start.message);
+    const SolveStage stage = SolveByBfgs(problem, &start.to, &start.message);
     start.stages.push_back(stage);
     start.iterations = stage.iterations;
     start.cost = stage.final_cost;

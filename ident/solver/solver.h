@@ -80,10 +80,9 @@ LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& poi
 // held there.
 //
 // From *point, whose value is overwritten; where nothing can be evaluated it stays, the cost is
-// infinite, and message says why. held: columns of FitPoint::Flat that stay where they are, as
-// those do that nothing depends on.
-SolveStage SolveByBfgs(const FitProblem& problem, const std::vector<int>& held, FitPoint* point,
-                       std::string* message);
+// infinite, and message says why. Numbers that
+// nothing depends on stay where they are.
+SolveStage SolveByBfgs(const FitProblem& problem, FitPoint* point, std::string* message);
 
 // Networks too large for Gauss-Newton.
 
