@@ -60,7 +60,7 @@ std::string RangeViolation(const OptionRange& range, double value) {
   return inside ? "" : range.words;
 }
 
-// "--robust is 'abc'; it must be positive".
+// "--marker_noise is 'abc'; it must be positive".
 Error BadOption(const std::string& name, const std::string& value, const std::string& must) {
   return Error{"--" + name + " is '" + value + "'; it " + must};
 }
