@@ -36,8 +36,10 @@ Result<SolvedFit> SolveFit(const std::vector<PendulumRecording>& recordings,
       trains ? TrainLargeNetwork(recordings, options, progress) : Result<FitOptions>(options);
   if (!trained.ok()) return trained.error();
   SolvedFit fit{FitProblem(recordings, trained.value()), {}};
-  // What was trained together is an optimum of it all already.
-  if (trains) fit.problem.set_gradient_tolerance(std::numeric_limits<double>::infinity());
+  // By given weights, what was trained together is an optimum of it all already.
+  if (trains && !options.estimate_weights) {
+    fit.problem.set_gradient_tolerance(std::numeric_limits<double>::infinity());
+  }
   fit.solved = SolveAsAsked(&fit.problem, progress);
   fit.problem.set_gradient_tolerance(options.gradient_tolerance);
   return fit;

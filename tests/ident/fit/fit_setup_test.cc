@@ -99,9 +99,7 @@ TEST(FitSetup, StanceBringsWhatGoesWithIt) {
     EXPECT_FALSE(holds.table[id].free) << holds.table[id].name;
   }
   for (const auto& [flag, value] :
-       {std::pair("rod", "linear"),
-        std::pair("push", "added"),  // a net push holds the feet's reaction already
-        std::pair("cart_derivative", "backward"), std::pair("self_force", "lstm:64")}) {
+       {std::pair("rod", "linear"), std::pair("self_force", "lstm:64")}) {
     EXPECT_TRUE(Contains(Complaint({{"preset", "tail"}, {"stance", "steps"}, {flag, value}}),
                          "is for feet that slide"))
         << flag;
