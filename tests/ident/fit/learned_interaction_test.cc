@@ -105,7 +105,7 @@ TEST(LearnedInteraction, LargeOnesLearnByTheirGradient) {
 }
 
 // Where contact is learned alone, its parameters act through the network's gate and nothing else:
-// the first of the three steps is without them.
+// physics alone is without them.
 TEST(LearnedInteraction, LargeOnesLearnWithoutContact) {
   Rows rows;
   rows.options.max_iterations = 20;
