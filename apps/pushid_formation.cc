@@ -221,8 +221,7 @@ std::vector<Pose> PlaceFlaggedPeople(Scene* scene) {
   LoadOptions options;
   options.keep_all_joints = true;
   const std::vector<Recording> recordings = OrFail(LoadRecordings(FLAGS_people_from, options));
-  const std::vector<BodyRecording> bodies =
-      OrFail(MakeBodyRecordings(recordings, SkeletonMapping::kExact));
+  const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   return PlacePeople(DistinctPeople(bodies), scene);
 }
 

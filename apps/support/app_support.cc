@@ -166,9 +166,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kInputs[] = {"recordings",  "model",  "physics",  "truth",    "self_from",
-                                   "people_from", "sensor", "masses",   "sensors",  "mapping",
-                                   "generator",   "plan",   "flagfile", "formation"};
+constexpr const char* kInputs[] = {"recordings", "model",    "physics",  "truth",   "people_from",
+                                   "sensor",     "masses",   "sensors",  "mapping", "generator",
+                                   "plan",       "flagfile", "formation"};
 
 // Through symbolic and hard links too. One file that exists is never another that does not.
 bool Same(const std::string& a, const std::string& b) {
