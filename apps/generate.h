@@ -8,15 +8,11 @@
 #include <vector>
 
 #include "apps/flags/generate_flags.h"
-#include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/group_forecasts.h"
 #include "ident/forecasts/social_report.h"
 #include "ident/model/identified_model.h"
 
 namespace pushid {
-
-// What --poses_out, --strip_out and --page_out ask for; their names go to stdout.
-void ShowForecast(const ForecastScene& scene, const GenerateFlags& flags);
 
 // Windows of clips forecast, judged and shown. Returns the exit code.
 int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags);

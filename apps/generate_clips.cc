@@ -9,6 +9,7 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
+#include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/forecast_spread.h"
 #include "ident/forecasts/most_probable_path.h"
 #include "ident/parameters/option_names.h"
@@ -21,6 +22,7 @@ using Json = nlohmann::ordered_json;
 
 // All windows are forecast together, in pieces that fit the memory.
 constexpr size_t kTogether = 64;
+constexpr double kTargetDistance = 0.05;  // m; what counts as near the target of a path
 
 std::vector<Trajectories> Forecasts(const MotionGenerator& generator,
                                     const std::vector<ForecastWindow>& windows) {
@@ -87,7 +89,7 @@ void SearchPath(const MotionGenerator& generator, const GenerateFlags& flags,
     return;
   }
   const PathChoice choice =
-      OrFail(MostProbablePath(scene->futures, target, flags.target_distance, scene->layout));
+      OrFail(MostProbablePath(scene->futures, target, kTargetDistance, scene->layout));
   (*json)["path"] = {{"future", choice.future + 1},
                      {"near", choice.near},
                      {"distance_m", choice.distance},
@@ -124,8 +126,7 @@ ForecastScene SceneOfWindow(const LoadedGenerator& loaded, const GenerateFlags& 
   return scene;
 }
 
-}  // namespace
-
+// What --poses_out, --strip_out and --page_out ask for; their names go to stdout.
 void ShowForecast(const ForecastScene& scene, const GenerateFlags& flags) {
   if (!flags.poses_out.empty()) {
     const auto files = OrFail(WritePoses(flags.poses_out, scene));
@@ -135,9 +136,11 @@ void ShowForecast(const ForecastScene& scene, const GenerateFlags& flags) {
     OrFail(WriteFileAtomically(file, content));
     std::printf("%s\n", file.c_str());
   };
-  if (!flags.strip_out.empty()) write(flags.strip_out, ForecastStripSvg(scene, flags.poses));
+  if (!flags.strip_out.empty()) write(flags.strip_out, ForecastStripSvg(scene, kStripPoses));
   if (!flags.page_out.empty()) write(flags.page_out, ForecastPageHtml(scene));
 }
+
+}  // namespace
 
 int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags) {
   const MocapFolder mocap = OrFail(ReadMocapFolder(flags.folder));
@@ -148,7 +151,8 @@ int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags)
                           std::to_string(layout.num_particles()) + " particles of the generator",
                       flags.folder});
   }
-  const auto windows = MakeForecastWindows(mocap, flags.protocol, flags.stride);
+  const auto windows =
+      MakeForecastWindows(mocap, flags.protocol, flags.protocol == ForecastProtocol::kAll ? 8 : 0);
   if (windows.empty()) {
     return Fail(
         Error{"no clip of --protocol=" + NameOf(flags.protocol) + " is long enough for a window",

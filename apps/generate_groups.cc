@@ -160,7 +160,7 @@ std::vector<std::string> ShowGroup(const LoadedGenerator& loaded, const Generate
     files = WriteGroup(flags.poses_out, SceneOf(recording, bodies));
   }
   if (!flags.strip_out.empty()) {
-    OrFail(WriteFileAtomically(flags.strip_out, PoseStrip(animation, flags.poses).ToString()));
+    OrFail(WriteFileAtomically(flags.strip_out, PoseStrip(animation, kStripPoses).ToString()));
     files.push_back(flags.strip_out);
   }
   if (!flags.page_out.empty()) {

@@ -60,7 +60,7 @@ DEFINE_double(subject_spread, pushid::SyntheticOptions{}.subject_spread,
               "variation of all parameters between people, as in --recording_spread");
 DEFINE_int32(clips, 0,
              "write motion-capture clips of a walking stick figure instead, for "
-             "pushid-train-generator --dataset=cmu: so many of each of four actions, and one more "
+             "pushid-train-generator: so many of each of four actions, and one more "
              "to test; --frames at 50 Hz, 600 if not given; 0: recordings of pushes");
 DEFINE_int32(turns, 0,
              "write so many recordings of three people who talk in turns instead, without a push, "

@@ -74,8 +74,8 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   settings.training = Json{{"version", Version()}, {"configuration", EffectiveFlags()}};
   (*settings.training)["data"] = data;
   (*settings.training)["curve"] = CurveJson(trained.curve);
-  const std::string title = NameOf(flags.options.kind) + ", " + NameOf(flags.data) + ", " +
-                            std::to_string(data.size()) + " motions";
+  const std::string title =
+      NameOf(flags.options.kind) + ", " + std::to_string(data.size()) + " motions";
   OrFail(
       WriteFileAtomically(Inside(flags.out, "curve.svg"), TrainingCurveSvg(trained.curve, title)));
   OrFail(WriteGenerator(flags.out, trained.networks));
@@ -86,7 +86,8 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   return kDone;
 }
 
-constexpr int kFolds = 4;  // of the comparison
+constexpr double kHeldOut = 0.15;  // share of the recordings that only show how the training goes
+constexpr int kFolds = 4;          // of the comparison
 // Networks that are only compared are trained more briefly, by these shares of steps and epochs.
 constexpr double kShareOfSteps = 0.5, kShareOfEpochs = 1.0 / 3.0;
 const std::vector<double> kBlends = {0.25, 0.5, 0.75};
@@ -157,15 +158,13 @@ int FromClips(const TrainGeneratorFlags& flags) {
     if (clip.is_test) continue;
     data.push_back({{"clip", clip.name}, {"content_hash", clip.content_hash}});
   }
-  return Train(flags, SamplesOf(mocap, flags.with_validation), data);
+  return Train(flags, SamplesOf(mocap, !flags.hold_out), data);
 }
 
-int FromPushes(const TrainGeneratorFlags& flags) {
+int FromGroups(const TrainGeneratorFlags& flags) {
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
-  // Groups move without a push too; people by themselves, and physics, need one.
-  const bool needs_push = !RowOf(flags.options.kind).groups || flags.physics ||
-                          flags.accuracy == ForecastAccuracy::kBest;
-  if (needs_push) CheckPushed(recordings);
+  // Groups move without a push too; physics need one.
+  if (flags.physics || flags.accuracy == ForecastAccuracy::kBest) CheckPushed(recordings);
   const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   if (flags.crossvalidate > 0) return CrossValidate(flags, bodies);
   OrFail(MakeFolder(flags.out));
@@ -175,8 +174,8 @@ int FromPushes(const TrainGeneratorFlags& flags) {
   for (const BodyRecording& body : bodies) {
     data.push_back({{"id", body.pendulum.id}, {"content_hash", body.pendulum.content_hash}});
   }
-  if (flags.held_out > 0.0 && all.size() > 1) {
-    SplitHeldOut(PendulumsOf(bodies), all, flags.held_out, flags.options.seed, &learnt, &held);
+  if (flags.hold_out && all.size() > 1) {
+    SplitHeldOut(PendulumsOf(bodies), all, kHeldOut, flags.options.seed, &learnt, &held);
   }
   GeneratorSamples samples = SamplesOf(bodies, learnt, held, flags.observed);
   if (flags.accuracy == ForecastAccuracy::kBest) {
@@ -188,7 +187,7 @@ int FromPushes(const TrainGeneratorFlags& flags) {
 int Run() {
   const TrainGeneratorFlags flags = TrainGeneratorFlagsFromCommandLine();
   SetBlasThreads(flags.options.num_threads);
-  return flags.data == GeneratorData::kCmu ? FromClips(flags) : FromPushes(flags);
+  return RowOf(flags.options.kind).groups ? FromGroups(flags) : FromClips(flags);
 }
 
 }  // namespace
@@ -198,6 +197,6 @@ int main(int argc, char** argv) {
       argc, argv,
       "pushid-train-generator trains networks that continue observed motion, for pushid-generate.\n"
       "Run again with the same --out, it continues an interrupted training.\n\n"
-      "  pushid-train-generator --kind=particles --dataset=cmu --folder=cmu_mocap --out=generator",
+      "  pushid-train-generator --folder=cmu_mocap --out=generator",
       Run);
 }

@@ -26,13 +26,6 @@ Trajectories Mirrored(const Trajectories& motion, const ParticleLayout& layout) 
   return mirrored;
 }
 
-Eigen::MatrixXf MirroredControls(const Eigen::MatrixXf& controls, const std::vector<float>& signs) {
-  if (controls.size() == 0) return controls;
-  Eigen::MatrixXf mirrored = controls;
-  for (size_t i = 0; i < signs.size(); ++i) mirrored.row(static_cast<Eigen::Index>(i)) *= signs[i];
-  return mirrored;
-}
-
 Eigen::MatrixXf BoneLengths(const Trajectories& motion, const ParticleLayout& layout) {
   Eigen::MatrixXf lengths = Eigen::MatrixXf::Zero(layout.num_particles(), motion.cols());
   for (int i = 0; i < layout.num_particles(); ++i) {

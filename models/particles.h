@@ -31,8 +31,6 @@ struct ParticleLayout {
 };
 
 Trajectories Mirrored(const Trajectories& motion, const ParticleLayout& layout);
-// What acts on the body, in the same mirror: a row per control, a sign (1 or -1) each.
-Eigen::MatrixXf MirroredControls(const Eigen::MatrixXf& controls, const std::vector<float>& signs);
 
 // A row per particle, a column per frame, m; zero where there is no bone.
 Eigen::MatrixXf BoneLengths(const Trajectories& motion, const ParticleLayout& layout);

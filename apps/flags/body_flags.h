@@ -9,7 +9,6 @@
 #include "datasets/files/error.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/problem/folds.h"
-#include "models/generators/diffusion_generator.h"
 #include "models/restoration/postprocess.h"
 #include "models/restoration/restoration.h"
 
@@ -22,11 +21,8 @@ PostprocessOptions PostprocessFromCommandLine();
 // out. takes_folds: whether there are any. Errors: no such scheme, or one where there are no folds.
 FoldScheme SchemeFromCommandLine(bool takes_folds);
 
-// diffusion_flags.cc: how a generator of diffusion is sampled. Errors name the flag.
-DiffusionGeneratorOptions DiffusionOptionsFromCommandLine();
-
-// These flags.
-std::vector<const char*> DiffusionFlagNames();
+// published_flags.cc: the paper whose settings are asked for, sde or sdm; empty: none.
+std::string PublishedFromCommandLine();
 
 // The flags by which an executable takes a restoration.
 

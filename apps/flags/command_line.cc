@@ -94,7 +94,7 @@ const std::vector<Heading>& Headings() {
       {kRarelyChanged, {}},
       {"settings", {}},  // what stands nowhere else: the program's own
       {"prediction", {"observed_flags", "futures_flags"}},
-      {"bodies", {"restoration_flags", "postprocess_flags", "diffusion_flags"}},
+      {"bodies", {"restoration_flags", "postprocess_flags"}},
       {"output", {"overwrite_flag"}},
       {"general", {"command_line"}}};
   return headings;

@@ -11,30 +11,28 @@ namespace pushid {
 struct GenerateFlags {
   std::string model;   // folder of the generator
   std::string folder;  // of clips
-  GeneratorData data = GeneratorData::kCmu;
   GeneratorChanges changes;
   ForecastProtocol protocol = ForecastProtocol::kValidation;
-  int stride = 0;                  // between windows; 0: the protocol's
   int samples = 0;                 // futures of every window; 0: none
   uint64_t seed = 1;               // of the samples
   std::string action;              // of the window to show; empty: the first
   int window = 0;                  // which of the action's
   std::string id;                  // of the recording to show
-  int person = 0;                  // of that recording
   int observed = 0;                // frames shown to diffusion; 0: as it was made for
   int frames = 0;                  // of the shown motion in all; 0: as many as the recording
   std::string states, states_out;  // files of states of people; empty: none
   std::string physics;             // file of a model; empty: none
   int target_window = -1;          // whose end is the target of the path search; -1: none
-  double target_distance = 0.05;   // m; what counts as near it
   std::string json_out, poses_out, strip_out, page_out;
-  int poses = 6;  // of the strip
 
   bool Shows() const { return !poses_out.empty() || !strip_out.empty() || !page_out.empty(); }
 };
 GenerateFlags GenerateFlagsFromCommandLine();
 
-// Errors: flags that say something to generators of another kind alone.
+// Errors: flags that say something to generators of the other kind alone, or that this kind needs.
 void CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind);
+
+// Poses of the strip.
+inline constexpr int kStripPoses = 6;
 
 }  // namespace pushid

@@ -15,7 +15,6 @@ namespace pushid {
 namespace {
 
 constexpr char kHead[] = "recording,frame,person,symbol";
-constexpr char kGroup[] = "group";
 constexpr std::int64_t kMostFrames = 100000000;
 
 bool IsRow(LineReader* reader, std::string_view* line) {
@@ -26,8 +25,7 @@ bool IsRow(LineReader* reader, std::string_view* line) {
 }
 
 std::string WhoseText(const StateRow& row) {
-  return (row.person.empty() ? "the group" : Quoted(row.person)) + " of recording " +
-         Quoted(row.recording);
+  return Quoted(row.person) + " of recording " + Quoted(row.recording);
 }
 
 Result<StateRow> RowOfCells(const LineReader& reader, std::string_view line) {
@@ -45,7 +43,6 @@ Result<StateRow> RowOfCells(const LineReader& reader, std::string_view line) {
   }
   if (texts[0].empty()) return reader.ErrorHere("the recording is missing; give its id");
   if (texts[3].empty()) return reader.ErrorHere("the symbol is missing; name the state");
-  if (texts[2] == kGroup) texts[2].clear();
   return StateRow{texts[0], texts[2], static_cast<int>(frame), texts[3], reader.line_number()};
 }
 
@@ -115,11 +112,9 @@ Result<RecordedStates> StatesOf(const StateTable& table, const std::string& reco
   for (const StateRow& row : table.rows) {
     if (row.recording != recording) continue;
     last_line = row.line;
-    const bool known = row.person.empty() ||
-                       std::find(subjects.begin(), subjects.end(), row.person) != subjects.end();
-    if (!known) {
+    if (std::find(subjects.begin(), subjects.end(), row.person) == subjects.end()) {
       return Error{"nobody in recording " + Quoted(recording) + " is " + Quoted(row.person) +
-                       "; there are " + ListOfNames(subjects) + ", and group",
+                       "; there are " + ListOfNames(subjects),
                    table.path, row.line};
     }
     if (row.frame >= frames) {
@@ -135,8 +130,7 @@ Result<RecordedStates> StatesOf(const StateTable& table, const std::string& reco
                      std::to_string(from.begin()->first) + "; give that of frame 0",
                  table.path, last_line};
   }
-  if (by_person.count("") == 1) states.group = Held(by_person[""], frames);
-  if (by_person.size() == by_person.count("")) return states;
+  if (by_person.empty()) return states;
   for (const std::string& subject : subjects) {
     if (by_person.count(subject) == 0) {
       return Error{"there are no states of " + WhoseText({recording, subject}) +
@@ -154,7 +148,6 @@ MaybeError WriteStates(const std::string& path, const std::vector<RecordedStates
     for (size_t n = 0; n < states.people.size(); ++n) {
       AppendChanges(states.recording, states.subjects[n], states.people[n], &text);
     }
-    AppendChanges(states.recording, kGroup, states.group, &text);
   }
   return WriteFileAtomically(path, text);
 }

@@ -1,15 +1,14 @@
-// datasets: states of people and of whole groups as annotators have them, in one CSV file for all
+// datasets: states of people as annotators have them, in one CSV file for all
 // recordings:
 //
 //   recording,frame,person,symbol
 //   talk_01,0,S01,speak
 //   talk_01,0,S02,listen
-//   talk_01,0,group,turn
 //   talk_01,95,S01,listen
 //
 // A symbol holds until the person's next row, so that changes suffice; rows come in any order.
-// person: the id of a subject of the manifest; `group`, or nothing: the symbol is that of the whole
-// group. frame: of the recording as it is loaded, from 0. Lines that start with # are comments.
+// person: the id of a subject of the manifest. frame: of the recording as it is loaded, from 0.
+// Lines that start with # are comments.
 #pragma once
 
 #include <string>
@@ -20,7 +19,7 @@
 namespace pushid {
 
 struct StateRow {
-  std::string recording, person;  // person: empty for the whole group
+  std::string recording, person;
   int frame = 0;
   std::string symbol = {};
   int line = 0;
@@ -43,7 +42,6 @@ struct RecordedStates {
   std::string recording;
   std::vector<std::string> subjects;
   std::vector<std::vector<std::string>> people = {};  // [person][frame]; empty: none are known
-  std::vector<std::string> group = {};                // [frame]; empty: none is known
 };
 
 // Those of a recording of so many frames. Errors: a row of nobody in it, or behind its end; people

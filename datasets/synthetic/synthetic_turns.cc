@@ -174,7 +174,6 @@ RecordedStates StatesOfTurns(const Recording& recording, const std::vector<int>&
                                                                : TurnState::kListen));
     }
   }
-  for (const int speaker : speakers) states.group.push_back(speaker == kNobody ? "pause" : "turn");
   return states;
 }
 

@@ -94,7 +94,7 @@ Result<PathChoice> MostProbablePath(const std::vector<SampledFuture>& futures,
   if (choice.near > 0) return choice;
   return Error{"none of " + std::to_string(futures.size()) + " sampled futures ends within " +
                Rounded(distance, 3) + " m of the target; the nearest is " + Rounded(nearest, 3) +
-               " m away: raise --samples or --target_distance"};
+               " m away: raise --samples"};
 }
 
 Result<MinimizedPath> PathToPose(const MotionGenerator& generator, const ObservedMotion& person,

@@ -1,8 +1,11 @@
-// ident: recorded groups beside forecast ones.
+// ident: annotated states and those found in other motion; recorded groups beside forecast ones.
 #include "ident/forecasts/social_report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
@@ -11,24 +14,112 @@
 namespace pushid {
 namespace {
 
+bool AllBuiltIn(const std::set<std::string>& names) {
+  return std::all_of(names.begin(), names.end(), [](const std::string& name) {
+    return FromName<SocialState>(name).has_value();
+  });
+}
+
+int SymbolOf(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+MaybeError FindByClassifier(const StateTable& table, const std::vector<BodyRecording>& recordings,
+                            SocialCues* cues) {
+  std::vector<StateClassifier::Annotated> samples;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    if (cues->annotated[i].people.empty()) continue;
+    const GroupMotion group = RecordedGroup(recordings[i], *cues, i, 1);
+    samples.push_back(
+        {StateFeaturesOf(AtWordRate(group), 1.0 / kWordRate), StatesOfPeople(group, cues->states)});
+  }
+  if (samples.size() < 2 || cues->states.names.size() < 2) {
+    return Error{
+        "the states of people are not the built-in ones, so that a classifier has to find "
+        "them in forecasts: it needs two of these recordings with states of their people, "
+        "and two different states",
+        table.path};
+  }
+  std::vector<const StateClassifier::Annotated*> groups;
+  for (const StateClassifier::Annotated& group : samples) groups.push_back(&group);
+  const auto classifier = std::make_shared<StateClassifier>(groups, cues->states.num_symbols());
+  cues->states.of = [classifier](const std::vector<BodyMotion>& people, double dt) {
+    return classifier->Of(StateFeaturesOf(people, dt));
+  };
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<SocialCues> SocialCuesOf(const StateTable& table, const std::vector<std::string>& ids,
+                                const std::vector<BodyRecording>& recordings) {
+  if (MaybeError error = CheckRecordings(table, ids)) return *error;
+  SocialCues cues;
+  cues.source = table.path;
+  std::set<std::string> names;
+  for (const BodyRecording& recording : recordings) {
+    const PendulumRecording& pendulum = recording.pendulum;
+    Result<RecordedStates> states =
+        StatesOf(table, pendulum.id, pendulum.subject_ids, recording.num_frames());
+    if (!states.ok()) return states.error();
+    for (const auto& person : states.value().people) names.insert(person.begin(), person.end());
+    cues.annotated.push_back(std::move(states.value()));
+  }
+  if (AllBuiltIn(names)) return cues;
+  cues.states.names.assign(names.begin(), names.end());
+  if (MaybeError error = FindByClassifier(table, recordings, &cues)) return *error;
+  return cues;
+}
+
+GroupMotion RecordedGroup(const BodyRecording& recording, const SocialCues& cues, size_t index,
+                          int first_frame, bool annotated) {
+  const PendulumRecording& pendulum = recording.pendulum;
+  GroupMotion group{recording.bodies, pendulum.scene.dt, pendulum.pushed_person, first_frame};
+  if (!annotated || cues.annotated.empty()) return group;
+  const RecordedStates& states = cues.annotated[index];
+  for (const std::vector<std::string>& person : states.people) {
+    group.states.emplace_back();
+    for (const std::string& name : person) {
+      group.states.back().push_back(SymbolOf(cues.states.names, name));
+    }
+  }
+  return group;
+}
+
+std::vector<RecordedStates> StatesInUse(const std::vector<BodyRecording>& recordings,
+                                        const SocialCues& cues) {
+  std::vector<RecordedStates> all;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const PendulumRecording& pendulum = recordings[i].pendulum;
+    RecordedStates states{pendulum.id, pendulum.subject_ids};
+    const GroupMotion group = RecordedGroup(recordings[i], cues, i, 1);
+    for (const Symbols& person : StatesOfPeople(group, cues.states)) {
+      states.people.emplace_back();
+      for (int t = 0; t < recordings[i].num_frames(); ++t) {
+        const auto at = static_cast<size_t>(std::lround(t * pendulum.scene.dt * kWordRate));
+        states.people.back().push_back(cues.states.names[person[std::min(at, person.size() - 1)]]);
+      }
+    }
+    all.push_back(std::move(states));
+  }
+  return all;
+}
+
+namespace {
+
 using Json = nlohmann::ordered_json;
 using Groups = std::vector<GroupMotion>;
 
 constexpr size_t kMostStatesDrawn = 12;
 constexpr double kFramesAMinute = 60.0 * kWordRate;
 
-// Symbols that count: of everybody, and of every whole group.
-struct CountedStates {
-  std::vector<Symbols> people, groups;
-};
-CountedStates StatesOfAll(const Groups& groups, const StateFunction& states,
-                          const GroupVocabulary& vocabulary) {
-  CountedStates all;
+// Symbols that count, of everybody.
+std::vector<Symbols> StatesOfAll(const Groups& groups, const StateFunction& states) {
+  std::vector<Symbols> all;
   for (const GroupMotion& group : groups) {
     for (const Symbols& person : StatesOfPeople(group, states)) {
-      all.people.push_back(Counted(group, person));
+      all.push_back(Counted(group, person));
     }
-    all.groups.push_back(Counted(group, vocabulary.Of(group, states)));
   }
   return all;
 }
@@ -81,25 +172,19 @@ void AddWords(const MotionWords& words, const Groups& groups, SocialRow* row) {
 
 // words: null where recorded motion meets itself.
 SocialRow Compared(const std::string& name, const Groups& groups, const SocialReport& report,
-                   const GroupVocabulary& vocabulary, const MotionWords* words) {
-  const CountedStates counted = StatesOfAll(groups, report.cues.states, vocabulary);
-  const auto transitions = [](const std::vector<Symbols>& all, const Eigen::MatrixXd& like) {
-    return CountTransitions(all, static_cast<int>(like.rows()), Transitions::kAll);
-  };
+                   const MotionWords* words) {
+  const std::vector<Symbols> counted = StatesOfAll(groups, report.cues.states);
   SocialRow row;
   row.name = name;
-  row.transitions = transitions(counted.people, report.transitions);
-  row.group_transitions = transitions(counted.groups, report.group_transitions);
+  row.transitions = CountTransitions(counted, report.cues.states.num_symbols(), Transitions::kAll);
   row.sscp = JensenShannon(report.transitions, row.transitions);
-  row.group_sscp = JensenShannon(report.group_transitions, row.group_transitions);
   Eigen::MatrixXd recorded = report.transitions, changes = row.transitions;
   recorded.diagonal().setZero();
   changes.diagonal().setZero();
   row.sscp_changes = JensenShannon(recorded, changes);
-  row.sscp_by_frame = SscpByFrame(report.transitions, counted.people);
-  row.group_sscp_by_frame = SscpByFrame(report.group_transitions, counted.groups);
-  for (size_t k = 1; k < LongestOf(counted.people); ++k) {
-    row.people.push_back(static_cast<int>(StepsInto(counted.people, k).size()));
+  row.sscp_by_frame = SscpByFrame(report.transitions, counted);
+  for (size_t k = 1; k < LongestOf(counted); ++k) {
+    row.people.push_back(static_cast<int>(StepsInto(counted, k).size()));
   }
   if (words != nullptr) AddWords(*words, groups, &row);
   return row;
@@ -128,15 +213,9 @@ std::optional<SocialReport> CompareSocially(const std::vector<BodyRecording>& re
   report.cues = cues;
   const Groups annotated = groups_from(first_frame, true);
   report.first_frame = static_cast<int>(FirstStep(annotated.front())) + 1;
-  const GroupVocabulary vocabulary(annotated, cues.states);
-  report.group_names = vocabulary.names();
-  const CountedStates counted = StatesOfAll(annotated, cues.states, vocabulary);
-  report.transitions =
-      CountTransitions(counted.people, cues.states.num_symbols(), Transitions::kAll);
-  report.group_transitions = CountTransitions(
-      counted.groups, static_cast<int>(report.group_names.size()), Transitions::kAll);
-  report.rows.push_back(
-      Compared("recorded", groups_from(first_frame, false), report, vocabulary, nullptr));
+  report.transitions = CountTransitions(StatesOfAll(annotated, cues.states),
+                                        cues.states.num_symbols(), Transitions::kAll);
+  report.rows.push_back(Compared("recorded", groups_from(first_frame, false), report, nullptr));
   const MotionWords words(CountedMotions(annotated));
   for (auto& [name, summary] : *evaluation) {
     Groups groups;
@@ -148,7 +227,7 @@ std::optional<SocialReport> CompareSocially(const std::vector<BodyRecording>& re
       groups.push_back({score.predicted, pendulum.scene.dt, pendulum.pushed_person, first_frame});
     }
     if (groups.empty()) continue;
-    report.rows.push_back(Compared(name, groups, report, vocabulary, &words));
+    report.rows.push_back(Compared(name, groups, report, &words));
     if (!summary.groups) continue;
     const SocialRow& row = report.rows.back();
     summary.groups->social = {row.sscp, row.sscp_changes, row.ndms};
@@ -166,17 +245,6 @@ Json MatrixJson(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
-// Of many states few follow each other: [from, to, count].
-Json SparseJson(const Eigen::MatrixXd& matrix) {
-  Json cells = Json::array();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-      if (matrix(i, j) != 0.0) cells.push_back({i, j, matrix(i, j)});
-    }
-  }
-  return cells;
-}
-
 Json FramesJson(const ByFrame& by_frame) {
   Json values = Json::array();
   for (const auto& value : by_frame) values.push_back(NumberOrNull(value));
@@ -188,44 +256,27 @@ Json FramesJson(const ByFrame& by_frame) {
 Json ToJson(const SocialReport& report) {
   Json json = {{"states", report.cues.source},
                {"names", report.cues.states.names},
-               {"group_names", report.group_names},
                {"first_frame", report.first_frame},
                {"rate_hz", kWordRate}};
-  if (report.cues.share_found) {
-    json["classifier"] = {{"found", *report.cues.share_found},
-                          {"most_frequent", *report.cues.share_of_most_frequent}};
-  }
   json["transitions"] = MatrixJson(report.transitions);
-  json["group_transitions"] = SparseJson(report.group_transitions);
   for (const SocialRow& row : report.rows) {
     json["by"][row.name] = {{"sscp", NumberOrNull(row.sscp)},
-                            {"group_sscp", NumberOrNull(row.group_sscp)},
                             {"ndms", NumberOrNull(row.ndms)},
                             {"transitions", MatrixJson(row.transitions)},
-                            {"group_transitions", SparseJson(row.group_transitions)},
                             {"by_frame",
                              {{"people", row.people},
                               {"sscp", FramesJson(row.sscp_by_frame)},
-                              {"group_sscp", FramesJson(row.group_sscp_by_frame)},
                               {"ndms", FramesJson(row.ndms_by_frame)}}}};
   }
   return json;
 }
 
 std::string SocialText(const SocialReport& report) {
-  TextTable table = TextTable::OfNumbers({"states " + report.cues.source, "SSCP", "of groups"});
-  const auto cell = [](const std::optional<double>& value) {
-    return value ? Rounded(*value, 3) : std::string("none");
-  };
+  TextTable table = TextTable::OfNumbers({"states " + report.cues.source, "SSCP"});
   for (const SocialRow& row : report.rows) {
-    table.Add({row.name, cell(row.sscp), cell(row.group_sscp)});
+    table.Add({row.name, row.sscp ? Rounded(*row.sscp, 3) : std::string("none")});
   }
-  std::string text = table.ToString();
-  if (!report.cues.share_found) return text;
-  return text + "states of motion are found by a classifier: " +
-         Rounded(100.0 * *report.cues.share_found, 3) +
-         " % of those of recordings left out (the most frequent one has " +
-         Rounded(100.0 * *report.cues.share_of_most_frequent, 3) + " %)\n";
+  return table.ToString();
 }
 
 namespace {
@@ -275,22 +326,16 @@ std::vector<std::string> SocialFigures(const SocialReport& report, const std::st
   if (found == report.rows.end()) return {};
   const std::vector<Chart> by_frame = {
       FrameChart("SSCP by frame", report, *found, &SocialRow::sscp_by_frame),
-      FrameChart("SSCP of groups", report, *found, &SocialRow::group_sscp_by_frame),
       FrameChart("NDMS by frame", report, *found, &SocialRow::ndms_by_frame)};
   std::vector<std::string> figures = {
       DrawFigure({{}, by_frame}, kFiguresWidth, "forecasts and recorded motion").ToInline()};
-  const auto add = [&](const Eigen::MatrixXd& recorded, const Eigen::MatrixXd& forecast,
-                       const std::vector<std::string>& names, const std::string& title) {
-    if (names.size() > kMostStatesDrawn) return;
-    Chart left = ChangesChart("recorded", recorded, names);
-    Chart right = ChangesChart(predictor, forecast, names);
-    left.full_cell = right.full_cell = std::max(left.full_cell, right.full_cell);
-    figures.push_back(DrawFigure({{}, {left, right}, title}, kFiguresWidth, title).ToInline());
-  };
-  add(report.transitions, found->transitions, report.cues.states.names,
-      "people: changes of state a minute");
-  add(report.group_transitions, found->group_transitions, report.group_names,
-      "groups: changes of state a minute");
+  const std::vector<std::string>& names = report.cues.states.names;
+  if (names.size() > kMostStatesDrawn) return figures;
+  Chart left = ChangesChart("recorded", report.transitions, names);
+  Chart right = ChangesChart(predictor, found->transitions, names);
+  left.full_cell = right.full_cell = std::max(left.full_cell, right.full_cell);
+  const std::string title = "people: changes of state a minute";
+  figures.push_back(DrawFigure({{}, {left, right}, title}, kFiguresWidth, title).ToInline());
   return figures;
 }
 

@@ -1,9 +1,9 @@
 // ident: what groups do, recorded and forecast, as Tanke et al. (ICCV 2023, called SDM) compare it:
-// states of people and of whole groups (Eq. 11), how often one follows another (Fig. 5), and SSCP
+// states of people (Eq. 11), how often one follows another (Fig. 5), and SSCP
 // and NDMS at every frame that was not shown (Eq. 13 and 14).
 //
 //   sscp(t)   Jensen and Shannon's distance of the transitions into frame t, of everybody in all
-//             forecasts, to all recorded transitions; group_sscp(t) of whole groups' symbols
+//             forecasts, to all recorded transitions
 //   ndms(t)   mean score of the words whose first step ends at frame t
 //
 // Few people have few transitions at one frame, and even recorded ones are then far from all that
@@ -34,9 +34,6 @@ struct SocialCues {
   StateFunction states = SocialStateFunction();
   std::string source = "built-in";
   std::vector<RecordedStates> annotated = {};  // of each recording; empty: nothing is
-  // Where states of motion are found by a classifier (models/restoration/state_classifier.h): the
-  // share found in recordings left out of its training, and that of the most frequent state.
-  std::optional<double> share_found = {}, share_of_most_frequent = {};
 };
 
 // Annotated states. Where all of their names are those of SocialState, states of any other motion
@@ -59,17 +56,16 @@ using ByFrame = std::vector<std::optional<double>>;
 
 struct SocialRow {
   std::string name;  // of a predictor, or "recorded": recorded motion, its states not annotated
-  std::optional<double> sscp, sscp_changes, group_sscp, ndms;
-  Eigen::MatrixXd transitions, group_transitions;  // counts
-  std::vector<int> people;                         // whose transitions there are, by frame
-  ByFrame sscp_by_frame, group_sscp_by_frame, ndms_by_frame;
+  std::optional<double> sscp, sscp_changes, ndms;
+  Eigen::MatrixXd transitions;  // counts
+  std::vector<int> people;      // whose transitions there are, by frame
+  ByFrame sscp_by_frame, ndms_by_frame;
 };
 
 struct SocialReport {
   SocialCues cues;
-  std::vector<std::string> group_names;
-  int first_frame = 1;                             // at 60 Hz
-  Eigen::MatrixXd transitions, group_transitions;  // recorded, as annotated where they are
+  int first_frame = 1;          // at 60 Hz
+  Eigen::MatrixXd transitions;  // recorded, as annotated where they are
   std::vector<SocialRow> rows;
 };
 

@@ -2,7 +2,9 @@
 #include "ident/generators/generator_files.h"
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
+#include "datasets/files/random.h"
 #include "datasets/manifest/recording.h"
 #include "ident/bodies/tensor_folder.h"
 #include "ident/parameters/json_archive.h"
@@ -11,11 +13,13 @@ namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-// flag: what names the folder.
-TensorFolderKind GeneratorFolder(const char* flag) {
-  return {"generator", flag, "pushid-train-generator --out", 1};
-}
+constexpr TensorFolderKind kGeneratorFolder = {"generator", "--model",
+                                               "pushid-train-generator --out", 1};
 constexpr int kMostParticles = 1000;
+
+void Demand(bool holds, const std::string& what) {
+  if (!holds) throw std::runtime_error(what);
+}
 
 bool IsKind(const std::string& name) { return FromName<GeneratorKind>(name).has_value(); }
 
@@ -32,7 +36,165 @@ void CheckLayout(const ParticleLayout& layout) {
   }
 }
 
+// The networks of each kind.
+
+// How many a file has.
+int ReadMembers(const Json& json) {
+  constexpr int kMostMembers = 100;
+  const int members = json.at("members");
+  Demand(members >= 1 && members <= kMostMembers, "members must be 1 to 100");
+  return members;
+}
+
+// What their tensors are called.
+constexpr char kMember[] = "member";
+std::string MemberName(size_t member, const std::string& name = kMember) {
+  return name + std::to_string(member);
+}
+template <typename Network>
+void AddMembers(const std::string& name, const std::vector<Network>& members, TensorList* tensors) {
+  for (size_t m = 0; m < members.size(); ++m) AddTensors(MemberName(m, name), members[m], tensors);
+}
+template <typename Network>
+TensorList TensorsOf(const std::vector<Network>& members) {
+  TensorList tensors;
+  AddMembers(kMember, members, &tensors);
+  return tensors;
+}
+
+constexpr int kMostCorrected = 100000, kMostBlocks = 1000;
+constexpr char kSimlpePartner[] = "simlpe";  // of its tensors, beside particles
+
+Json SimlpeSettings(const std::vector<SimlpeNetwork>& members) {
+  return {{"members", members.size()},
+          {"blocks", members.empty() ? 0 : members.front().blocks.size()}};
+}
+
+std::vector<SimlpeNetwork> ReadSimlpeMembers(const std::string& name, const Json& json,
+                                             const GeneratorSettings& settings,
+                                             TensorReader* reader) {
+  const int count = ReadMembers(json), blocks = json.at("blocks");
+  Demand(blocks >= 1 && blocks <= kMostBlocks, "blocks must be 1 to 1000");
+  std::vector<SimlpeNetwork> members;
+  for (int m = 0; m < count; ++m) {
+    members.push_back(TakeSimlpe(MemberName(m, name), settings.observed,
+                                 settings.layout.num_coordinates(), blocks, reader));
+  }
+  return members;
+}
+
+double ReadShare(const Json& json, const char* key) {
+  const double share = json.value(key, 0.0);  // older files know no siMLPe
+  Demand(share >= 0.0 && share <= 1.0, std::string(key) + " must lie between 0 and 1");
+  return share;
+}
+
 }  // namespace
+
+template <class Archive>
+void Fields(Archive& a, ParticleStructure& s) {
+  PUSHID_FIELDS(a, s, skip, particles);
+  if (a.Has("poses")) a("poses", s.poses);  // this and those below: older files have none
+  if (a.Has("correlated_noise")) a("correlated_noise", s.correlated_noise);
+  if (a.Has("corrected_frames")) a("corrected_frames", s.corrected_frames);
+  a.Check(s.particles || s.poses, "particles or poses must be true");
+  a.Check(s.corrected_frames >= 0 && s.corrected_frames <= kMostCorrected,
+          "corrected_frames must be 0 to 100000");
+}
+
+template <class Archive>
+void Fields(Archive& a, DiffusionStructure& s) {
+  a("pooling", s.pooling);
+  a("pooling_at", s.join);
+  a("frame", s.frame);
+}
+
+Json TrainedParticles::Settings() const {
+  Json json = {{"members", members.size()}};
+  json.update(JsonOf(members.front().structure));
+  json.update(Json{{"jitter", jitter},
+                   {"ridge_share", ridge_share},
+                   {"simlpe_share", simlpe_share},
+                   {"simlpe", SimlpeSettings(partners.simlpe)}});
+  return json;
+}
+
+TensorList TrainedParticles::Tensors() const {
+  TensorList tensors = TensorsOf(members);
+  const RidgeForecast& ridge = partners.ridge;
+  if (ridge_share > 0.0) AddTensors("ridge", DenseLayer{ridge.weights, ridge.bias}, &tensors);
+  AddMembers(kSimlpePartner, partners.simlpe, &tensors);
+  return tensors;
+}
+
+SharedNetworks ReadParticles(const Json& json, const GeneratorSettings& settings,
+                             TensorReader* reader) {
+  const auto networks = std::make_shared<TrainedParticles>();
+  TrainedParticles& trained = *networks;
+  ParticleStructure structure;
+  structure.correlated_noise = false;  // as in files without that entry
+  ReadJson(json, &structure);
+  trained.jitter = json.at("jitter");
+  trained.ridge_share = ReadShare(json, "ridge_share");
+  trained.simlpe_share = ReadShare(json, "simlpe_share");
+  Demand(trained.jitter >= 0.0, "jitter must not be negative");
+  const int members = ReadMembers(json), size = settings.layout.num_coordinates();
+  for (int m = 0; m < members; ++m) {
+    trained.members.push_back(TakeParticles(MemberName(m), structure, size, reader));
+  }
+  if (trained.simlpe_share > 0.0) {
+    trained.partners.simlpe =
+        ReadSimlpeMembers(kSimlpePartner, json.at("simlpe"), settings, reader);
+  }
+  if (trained.ridge_share <= 0.0) return networks;
+  Demand(settings.observed > kRidgeDisplacements, "the ridge needs more observed frames");
+  DenseLayer ridge;
+  TensorFields(reader).Layer("ridge", size * (1 + kRidgeDisplacements), size * settings.predicted,
+                             &ridge);
+  trained.partners.ridge = {ridge.weights, ridge.bias};
+  return networks;
+}
+
+std::unique_ptr<MotionGenerator> TrainedParticles::Make(const GeneratorSettings& settings,
+                                                        const GeneratorChanges& changes) const {
+  ParticleGeneratorOptions options = changes.particles;
+  options.jitter = jitter;
+  options.ridge_share = changes.ridge ? ridge_share : 0.0;
+  options.simlpe_share = changes.simlpe ? simlpe_share : 0.0;
+  return std::make_unique<ParticleGenerator>(settings.layout, members, partners, options);
+}
+
+TensorList TrainedDiffusion::Tensors() const { return TensorsOf(members); }
+
+Json TrainedDiffusion::Settings() const {
+  Json json = {{"members", members.size()}};
+  json.update(JsonOf(members.front().structure));
+  return json;
+}
+
+SharedNetworks ReadDiffusion(const nlohmann::ordered_json& json, const GeneratorSettings& settings,
+                             TensorReader* reader) {
+  Demand(settings.layout.num_particles() == kBodyJoints, "diffusion needs bodies of 22 joints");
+  const auto trained = std::make_shared<TrainedDiffusion>();
+  const auto structure = FromJson<DiffusionStructure>(json);
+  const int members = ReadMembers(json);
+  for (int m = 0; m < members; ++m) {
+    trained->members.push_back(TakeDiffusion(MemberName(m), structure, reader));
+  }
+  return trained;
+}
+
+std::unique_ptr<MotionGenerator> TrainedDiffusion::Make(const GeneratorSettings& settings,
+                                                        const GeneratorChanges& changes) const {
+  const auto noise = [seed = changes.seed] {
+    const auto random = std::make_shared<Random>(seed);
+    return NormalSource([random] { return random->Normal(); });
+  };
+  DiffusionGeneratorOptions options = changes.diffusion;
+  options.learnt_frames = settings.observed + settings.predicted;
+  return std::make_unique<DiffusionGenerator>(settings.layout, members, 1.0 / settings.rate,
+                                              options, noise);
+}
 
 template <class Archive>
 void Fields(Archive& a, ParticleLayout& layout) {
@@ -59,7 +221,7 @@ void Fields(Archive& a, ForecastChoice& choice) {
 
 template <class Archive>
 void Fields(Archive& a, GeneratorSettings& settings) {
-  PUSHID_FIELDS(a, settings, data, observed, predicted);
+  PUSHID_FIELDS(a, settings, observed, predicted);
   a("rate_hz", settings.rate);
   a("layout", settings.layout);
   a.Optional("choice", settings.choice);
@@ -84,9 +246,6 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
   GeneratorSettings& settings = trained.settings;
   ReadJson(json, &settings);
   CheckLayout(settings.layout);
-  Demand(!json.value("pendulum", false),
-         "it corrects physics (--pendulum_input), which is gone: blend it with them, and train it "
-         "again");
   for (const Json& name : json.value("push_kinds", Json::array())) {
     const std::optional<PushKind> kind = FromName<PushKind>(name.get<std::string>());
     Demand(kind.has_value(), "push_kinds has " + name.dump() + ", which is not a kind of push");
@@ -101,15 +260,8 @@ TrainedNetworks Read(const TensorFolder& folder, TensorReader* reader) {
 
 }  // namespace
 
-int ReadMembers(const Json& json) {
-  constexpr int kMostMembers = 100;
-  const int members = json.at("members");
-  Demand(members >= 1 && members <= kMostMembers, "members must be 1 to 100");
-  return members;
-}
-
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained) {
-  return WriteTensorFolder(GeneratorFolder("--out"), folder,
+  return WriteTensorFolder(kGeneratorFolder, folder,
                            {NameOf(trained.kind()), SettingsJson(trained),
                             trained.settings.training, trained.of_kind->Tensors()});
 }
@@ -119,12 +271,11 @@ std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
   return trained.of_kind->Make(trained.settings, changes);
 }
 
-Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes,
-                                      const char* flag) {
-  const Result<TensorFolder> read = ReadTensorFolder(
-      GeneratorFolder(flag), folder, Listed(AllNames<GeneratorKind>(), ","), IsKind);
+Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes) {
+  const Result<TensorFolder> read =
+      ReadTensorFolder(kGeneratorFolder, folder, Listed(AllNames<GeneratorKind>(), ","), IsKind);
   if (!read.ok()) return read.error();
-  const std::string path = JsonFileOf(GeneratorFolder(flag), folder);
+  const std::string path = JsonFileOf(kGeneratorFolder, folder);
   TensorReader reader(read.value().tensors);
   TrainedNetworks trained;
   try {
@@ -136,7 +287,6 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
   if (!reader.problem().empty()) {
     return Error{reader.problem() + "; train again with this version", path};
   }
-  if (const MaybeError error = trained.of_kind->Check(changes)) return Error{error->message, path};
   return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes),
                          nullptr};
 }

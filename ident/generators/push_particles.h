@@ -13,8 +13,6 @@
 namespace pushid {
 
 inline constexpr int kPushControls = 4;
-// In the mirror y and phi change their signs.
-inline const std::vector<float> kMirroredPush = {1.0f, -1.0f, 1.0f, -1.0f};
 
 ParticleLayout PushLayout(const std::vector<std::string>& joint_names);
 

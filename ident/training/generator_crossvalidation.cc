@@ -66,8 +66,8 @@ class FoldJudge {
     }
     alone.diffusion.blend = 0.0;
     alone.diffusion.sampled.reset();
-    if (!error && RowOf(trained_.kind()).any_observed && validation_.observed != kShown &&
-        validation_.blends.empty() && recording.num_frames() > kShown) {
+    if (!error && validation_.observed != kShown && validation_.blends.empty() &&
+        recording.num_frames() > kShown) {
       error = Add("generator_shown_20", recording, kShown, alone, scores);
     }
     const int observed = validation_.observed, seen = SeenByBaselines(observed);

@@ -1,4 +1,4 @@
-// ident: generators on pushes: trained anew for every fold, so that nothing has seen the recordings
+// ident: generators of groups: trained anew for every fold, so that nothing has seen the recordings
 // it is judged on.
 //
 //   generator                  the forecast, of the frames that were not shown
@@ -6,8 +6,8 @@
 //   generator_unblended        without the physics that the forecast is blended with
 //   generator_blend_0.25       the same with another share of physics, where such are compared
 //   rigid                      those physics alone, first poses carried by the rods' tips
-//   generator_shown_20         of kinds that are trained for it: shown 20 frames, no physics; not
-//                              where shares of physics are compared
+//   generator_shown_20         shown 20 frames, no physics; not where shares of physics are
+//                              compared
 //   static, constant_velocity  as in body_evaluation.h, shown as many frames as the generator
 //
 // All but generator_all_frames and generator_shown_20 count the frames that the generator was not

@@ -34,16 +34,13 @@ std::string KeyOf(const GeneratorSamples& samples, const ParticleTrainingOptions
     for (const LearntParticles& motion : *motions) {
       hash.Add(std::to_string(motion.group) + " " + std::to_string(motion.motion.cols()));
       AddTo(&hash, motion.motion);
-      AddTo(&hash, motion.controls);
     }
   }
-  return Joined("generator 4 " + NameOf(o.structure.cell) + " " + NameOf(o.noise_loss), hash,
-                o.structure.skip, o.structure.pose_operator, o.structure.particles,
-                o.structure.poses, o.structure.controls, o.structure.corrected_frames, o.observed,
-                o.predicted, o.from_start, o.even_frames, o.steps, o.noise_steps, o.batch,
-                o.warm_up, o.learning_rate, o.constant_rate, o.clip, o.jitter, o.mirrored,
-                o.together, o.transitions, o.distance, o.squared, o.bones, o.critic, o.changes,
-                o.seed);
+  return Joined("generator 5", hash, o.structure.skip, o.structure.particles, o.structure.poses,
+                o.structure.corrected_frames, o.observed, o.predicted, o.even_frames, o.steps,
+                o.noise_steps, o.batch, o.warm_up, o.learning_rate, o.constant_rate, o.clip,
+                o.jitter, o.mirrored, static_cast<int>(o.noise_loss), o.together, o.transitions,
+                o.distance, o.squared, o.bones, o.critic, o.changes, o.seed);
 }
 
 std::string KeyOf(const GeneratorSamples& samples, const SimlpeTrainingOptions& o) {
@@ -87,7 +84,7 @@ template <typename OfKind, typename Options, typename Network>
 MaybeError TrainSeeds(const GeneratorSamples& samples, const Options& of_kind, int seeds,
                       const GeneratorTrainingOptions& options, const SeedRunner& run,
                       std::vector<Network>* members) {
-  const int window = of_kind.observed + (of_kind.from_start ? 1 : of_kind.predicted);
+  const int window = of_kind.observed + of_kind.predicted;
   bool enough = false;
   for (const LearntParticles& motion : samples.learnt) enough |= motion.motion.cols() >= window;
   if (!enough) {
@@ -104,16 +101,6 @@ MaybeError TrainSeeds(const GeneratorSamples& samples, const Options& of_kind, i
 }
 
 }  // namespace
-
-Result<SharedNetworks> TrainSimlpe(const GeneratorSamples& samples,
-                                   const GeneratorTrainingOptions& options, const SeedRunner& run) {
-  const auto simlpe = std::make_shared<TrainedSimlpe>();
-  if (MaybeError error = TrainSeeds<SimlpeTrainer>(samples, options.simlpe, options.seeds, options,
-                                                   run, &simlpe->members)) {
-    return *error;
-  }
-  return SharedNetworks(simlpe);
-}
 
 Result<SharedNetworks> TrainParticles(const GeneratorSamples& samples,
                                       const GeneratorTrainingOptions& options,
@@ -186,20 +173,6 @@ Result<TrainedGenerator> TrainGenerator(const GeneratorSamples& samples,
 
 namespace {
 
-// Motions of the recordings, a group a person's share of the push: everybody counts alike.
-std::vector<LearntParticles> People(const std::vector<BodyRecording>& recordings,
-                                    const std::vector<int>& among) {
-  std::vector<LearntParticles> people;
-  for (int i : among) {
-    for (int n = 0; n < recordings[i].num_people(); ++n) {
-      PushedParticles particles = ParticlesOf(recordings[i], n);
-      people.push_back(
-          {0, std::move(particles.motion.frames), std::move(particles.motion.controls)});
-    }
-  }
-  return people;
-}
-
 std::vector<ObservedGroup> ObservedGroups(const std::vector<BodyRecording>& recordings,
                                           const std::vector<int>& among) {
   std::vector<ObservedGroup> groups;
@@ -211,7 +184,6 @@ std::vector<ObservedGroup> ObservedGroups(const std::vector<BodyRecording>& reco
 
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation) {
   GeneratorSamples samples;
-  samples.settings.data = GeneratorData::kCmu;
   samples.settings.observed = kObservedFrames;
   samples.settings.predicted = kForecastFrames;
   samples.settings.rate = kForecastRate;
@@ -235,7 +207,6 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            int observed) {
   GeneratorSamples samples;
   GeneratorSettings& settings = samples.settings;
-  settings.data = GeneratorData::kPushes;
   settings.observed = observed;
   settings.rate = 1.0 / recordings.front().pendulum.scene.dt;
   settings.layout = PushLayout(recordings.front().joint_names);
@@ -244,13 +215,11 @@ GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
     for (const PushKind kind : PushKindsOf(recordings[i].pendulum.scene)) kinds.insert(kind);
   }
   settings.push_kinds.assign(kinds.begin(), kinds.end());
-  samples.learnt = People(recordings, among);
-  samples.held = People(recordings, held);
   samples.groups = ObservedGroups(recordings, among);
   samples.held_groups = ObservedGroups(recordings, held);
   int longest = observed + 1;
-  for (const auto& motion : samples.learnt) {
-    longest = std::max(longest, static_cast<int>(motion.motion.cols()));
+  for (const ObservedGroup& group : samples.groups) {
+    longest = std::max(longest, static_cast<int>(group.front().frames.cols()));
   }
   settings.predicted = longest - observed;
   return samples;
@@ -264,18 +233,7 @@ void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* optio
   particles.predicted = settings.predicted;
   // siMLPe forecasts as many frames as it sees, and more from its own.
   options->simlpe.observed = options->simlpe.predicted = settings.observed;
-  if (settings.data != GeneratorData::kPushes) {
-    if (options->correction) particles.structure.corrected_frames = settings.predicted;
-    return;
-  }
-  // A push stands at the start of its recording, recordings differ in length, and a metric is a
-  // mean over all frames.
-  particles.from_start = true;
-  particles.even_frames = true;
-  particles.structure.controls = kPushControls;
-  particles.mirrored_controls = kMirroredPush;
-  // The ridge knows one horizon only, and siMLPe no push.
-  options->ridge_share = options->simlpe_share = 0.0;
+  if (options->correction) particles.structure.corrected_frames = settings.predicted;
 }
 
 }  // namespace pushid

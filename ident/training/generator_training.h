@@ -14,30 +14,30 @@ namespace pushid {
 struct GeneratorTrainingOptions : TrainerOptions, CheckpointOptions, KindTrainingOptions {
   GeneratorKind kind = GeneratorKind::kParticles;
   int seeds = RowOf(GeneratorKind::kParticles).seeds;  // networks that are averaged
-  bool correction =
-      true;  // cmu: of the whole forecast at once (models/generators/particle_network.h)
-  // cmu: of the blend that particles are part of.
+  // Of particles: of the whole forecast at once (models/generators/particle_network.h), and the
+  // shares of the blend that they are part of.
+  bool correction = true;
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;
   double simlpe_share = ParticleGeneratorOptions{}.simlpe_share;
 };
 
 struct GeneratorSamples {
   GeneratorSettings settings;
-  std::vector<LearntParticles> learnt, held;
-  std::vector<ObservedGroup> groups, held_groups;  // of diffusion
+  std::vector<LearntParticles> learnt, held;       // of particles
   std::vector<Trajectories> ridge;                 // what the linear forecast learns from
+  std::vector<ObservedGroup> groups, held_groups;  // of diffusion
 };
 
 // Both phases of all clips but those below test/; with_validation: also the validation clips, which
 // otherwise only show how the training goes.
 GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation);
 
-// Every person of the recordings `among`, whole; those of `held` show how the training goes.
+// The groups of the recordings `among`, whole; those of `held` show how the training goes.
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,
                            const std::vector<int>& among, const std::vector<int>& held,
                            int observed);
 
-// Options that the data decide: frames of a window, where it starts, controls, the rate.
+// Options that the data decide: frames of a window, the rate.
 void SetForData(const GeneratorSamples& samples, GeneratorTrainingOptions* options);
 
 // Stages of the curve are "network 1, drift", ...

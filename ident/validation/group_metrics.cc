@@ -9,9 +9,70 @@
 #include <set>
 
 #include "ident/parameters/json_archive.h"
+#include "models/restoration/cvae_restoration.h"
 #include "models/restoration/group_motion.h"
 
 namespace pushid {
+namespace {
+
+constexpr double kWholeFrame = 0.1;  // frames; rates are rounded
+
+int WordFrames(const GroupMotion& group) {
+  const double seconds = (static_cast<double>(group.people.front().size()) - 1.0) * group.dt;
+  return 1 + static_cast<int>(seconds * kWordRate + kWholeFrame);
+}
+
+// Of the nearest frames.
+template <typename Value>
+std::vector<Value> AtWordRate(const std::vector<Value>& values, const GroupMotion& group) {
+  std::vector<Value> resampled;
+  for (int k = 0; k < WordFrames(group); ++k) {
+    const auto at = static_cast<size_t>(std::lround(k / (kWordRate * group.dt)));
+    resampled.push_back(values[std::min(at, values.size() - 1)]);
+  }
+  return resampled;
+}
+
+}  // namespace
+
+std::vector<BodyMotion> AtWordRate(const GroupMotion& group) {
+  std::vector<BodyMotion> people;
+  for (const BodyMotion& person : group.people) {
+    people.push_back(Resampled(person, group.dt, 1.0 / kWordRate, WordFrames(group)));
+  }
+  return people;
+}
+
+std::ptrdiff_t FirstStep(const GroupMotion& group) {
+  const double frames = std::max(0, group.first_frame - 1) * group.dt * kWordRate;
+  return static_cast<std::ptrdiff_t>(std::ceil(frames - kWholeFrame));
+}
+
+std::vector<Symbols> StatesOfPeople(const GroupMotion& group, const StateFunction& states) {
+  if (group.states.empty()) return states.of(AtWordRate(group), 1.0 / kWordRate);
+  std::vector<Symbols> people;
+  for (const Symbols& person : group.states) people.push_back(AtWordRate(person, group));
+  return people;
+}
+
+Symbols Counted(const GroupMotion& group, const Symbols& symbols) {
+  const auto size = static_cast<std::ptrdiff_t>(symbols.size());
+  Symbols counted(symbols.begin() + std::min(FirstStep(group), size), symbols.end());
+  if (counted.size() > 1) counted[0] = counted[1];
+  return counted;
+}
+
+std::vector<BodyMotion> CountedMotions(const std::vector<GroupMotion>& groups) {
+  std::vector<BodyMotion> all;
+  for (const GroupMotion& group : groups) {
+    for (const BodyMotion& person : AtWordRate(group)) {
+      const auto size = static_cast<std::ptrdiff_t>(person.size());
+      all.emplace_back(person.begin() + std::min(FirstStep(group), size), person.end());
+    }
+  }
+  return all;
+}
+
 namespace {
 
 constexpr int kNever = -1;

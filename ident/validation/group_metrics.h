@@ -33,13 +33,9 @@
 
 namespace pushid {
 
-// The states of people and of whole groups, frame by frame (Eq. 11 of Tanke et al., ICCV
-// 2023, called SDM), at the rate of words and transitions, 60 Hz.
-//
-// People's states are annotated (datasets/loading/state_csv.h) or follow from the motion as a
-// StateFunction has them. The symbol of a whole group depends on how many of its people are in
-// which state, never on who they are: "1 speak + 2 listen", or what annotators call that most
-// often.
+// The states of people, frame by frame (Eq. 11 of Tanke et al., ICCV 2023, called SDM), at the rate
+// of words and transitions, 60 Hz. They are annotated (datasets/loading/state_csv.h) or follow from
+// the motion as a StateFunction has them.
 
 struct GroupMotion {
   std::vector<BodyMotion> people;
@@ -47,8 +43,7 @@ struct GroupMotion {
   int pushed_person = 0;
   int first_frame = 1;  // that counts; everybody knows frame 0
   // As annotated, a value per frame of `people`; empty: not annotated.
-  std::vector<Symbols> states = {};            // [person], of the names of a StateFunction
-  std::vector<std::string> group_states = {};  // of the whole group
+  std::vector<Symbols> states = {};  // [person], of the names of a StateFunction
 };
 
 // Transitions and words are those of 60 frames a second.
@@ -63,27 +58,6 @@ Symbols Counted(const GroupMotion& group, const Symbols& symbols);
 
 // Everybody's frames whose steps count.
 std::vector<BodyMotion> CountedMotions(const std::vector<GroupMotion>& groups);
-
-// The symbols of whole groups, as recorded groups have them. What no recorded group does together
-// is "other".
-class GroupVocabulary {
- public:
-  GroupVocabulary(const std::vector<GroupMotion>& recorded, const StateFunction& states);
-
-  // The last is kOther.
-  const std::vector<std::string>& names() const { return names_; }
-  // Of all frames.
-  Symbols Of(const GroupMotion& group, const StateFunction& states) const;
-
-  // "2 stand + 1 step", in the order of the states; people: everybody's symbol at a frame.
-  static std::string NameOf(std::vector<int> people, const StateFunction& states);
-
- private:
-  std::vector<std::string> names_;
-  std::map<std::string, int> symbols_;  // by name
-  std::map<std::string, int> of_;       // by what people do
-};
-inline constexpr char kOther[] = "other";
 
 // Of what people do, of any number of groups against any others; the three of them are symmetric
 // but for ndms, whose words are those of `motions`.

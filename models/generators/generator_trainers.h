@@ -4,8 +4,7 @@
 #include <vector>
 
 #include "models/generators/diffusion_network.h"
-#include "models/generators/particle_network.h"
-#include "models/generators/simlpe_network.h"
+#include "models/generators/particle_generator.h"
 #include "models/restoration/trainer.h"
 
 namespace pushid {
@@ -23,26 +22,18 @@ namespace pushid {
 // is drawn and mapped by g at every frame (Eq. 2), and the losses of the forecast reach g as well.
 
 // What transitions are charged. likelihood: -log N(p; f, g^2) with its determinant. drawn: Eq. 6 as
-// it is printed, |p - f - g w|^2 with w ~ N(0, 1) drawn. squared: the mean of that over w,
-// |p - f|^2 + g^2. The minimum of both is g = 0.
-enum class NoiseLoss { kLikelihood, kSquared, kDrawn };
-constexpr EnumNames<NoiseLoss, 3> Names(NoiseLoss) {
-  return {{{"likelihood", NoiseLoss::kLikelihood},
-           {"squared", NoiseLoss::kSquared},
-           {"drawn", NoiseLoss::kDrawn}}};
-}
+// it is printed, |p - f - g w|^2 with w ~ N(0, 1) drawn, whose minimum is g = 0.
+enum class NoiseLoss { kLikelihood, kDrawn };
 
 struct LearntParticles {
   int group = 0;  // an action; groups are drawn by the root of their number of windows
   Trajectories motion;
-  Eigen::MatrixXf controls = {};
 };
 
 struct ParticleTrainingOptions : TrainerOptions {
   ParticleStructure structure;
   int observed = 25, predicted = 25;  // frames of a window
-  bool from_start = false;   // windows begin where the motion does, and may be longer than it
-  bool even_frames = false;  // of the loss; otherwise frame t weighs 1/t
+  bool even_frames = false;           // of the loss; otherwise frame t weighs 1/t
   int steps = 1200, noise_steps = 300;
   int batch = 64;
   int warm_up = 100;
@@ -57,9 +48,8 @@ struct ParticleTrainingOptions : TrainerOptions {
   double critic = 0.0;         // of a Wasserstein critic with gradient penalty (Eq. 12)
   double changes = 0.0;        // of the distance of displacements from frame to frame (siMLPe)
   NoiseLoss noise_loss = NoiseLoss::kLikelihood;
-  bool together = false;                 // Eq. 6 trains f and g; there are no steps of noise then
-  double transitions = 0.01;             // weight of Eq. 6 where it trains both
-  std::vector<float> mirrored_controls;  // the sign of each control in the mirror
+  bool together = false;      // Eq. 6 trains f and g; there are no steps of noise then
+  double transitions = 0.01;  // weight of Eq. 6 where it trains both
 };
 
 inline constexpr int kFirstNoiseStep = 10;  // displacements before are not judged by the noise

@@ -18,7 +18,6 @@
 
 #include "models/generators/motion_generator.h"
 #include "models/generators/particle_network.h"
-#include "models/generators/simlpe_network.h"
 #include "models/particles.h"
 
 namespace pushid {
@@ -54,6 +53,44 @@ class RidgeFit {
   double count_ = 0.0;
 };
 
+// siMLPe: a perceptron over the cosine coefficients of what was observed, without recurrence,
+// displacements or noise (Guo et al., "Back to MLP: A Simple Baseline for Human Motion Prediction",
+// WACV 2023).
+//
+//   Z = D (S - pose_mean) / pose_spread        D: the orthonormal DCT-II over the T frames observed
+//   Y = Z W_in + b_in                          all coordinates, each coefficient alone
+//   Y <- Y + norm(A_i Y + a_i),  i < blocks    all coefficients, each coordinate alone
+//   S_{T+u} = S_T + pose_spread [D' (Y W_out + b_out)]_u,  u = 1 .. T
+//
+// norm: layer norm over the coordinates of each coefficient, the only nonlinearity. Apart from the
+// paper poses are scaled, and with 25 frames observed instead of 50 forecasts of the same length
+// fill all of T. Longer forecasts continue its own.
+
+struct SimlpeBlock {
+  DenseLayer mix;                // A_i, a_i: over coefficients
+  Eigen::VectorXf scale, shift;  // of the norm, by coordinate
+};
+
+struct SimlpeNetwork {
+  Eigen::VectorXf pose_mean, pose_spread;  // by coordinate; m
+  DenseLayer input, output;                // over coordinates
+  std::vector<SimlpeBlock> blocks;
+
+  int observed() const { return static_cast<int>(blocks.front().mix.bias.size()); }
+  // The last T frames of `seen` are read.
+  Trajectories Forecast(const Trajectories& seen, int frames) const;
+};
+
+inline constexpr float kNormSmooth = 1e-5f;  // added to the variance
+
+void AddTensors(const std::string& name, const SimlpeNetwork& network, TensorList* tensors);
+SimlpeNetwork TakeSimlpe(const std::string& name, int observed, int coordinates, int blocks,
+                         TensorReader* reader);
+
+// The mean of several seeds.
+Trajectories MeanForecast(const std::vector<SimlpeNetwork>& members, const Trajectories& seen,
+                          int frames);
+
 // What is blended with the networks; empty where its share is 0.
 struct BlendPartners {
   RidgeForecast ridge;
@@ -71,7 +108,6 @@ struct ParticleGeneratorOptions {
   // the validation split, where the noise that was learned, drawn anew every frame, covers 80 ms
   // but too little of 1000 ms: errors of a forecast last.
   double noise_memory = 0.32;
-  bool correlated_noise = true;  // off: coordinates are drawn independently
 };
 
 class ParticleGenerator : public MotionGenerator {

@@ -1,4 +1,5 @@
-// models: the particles' network as a LibTorch module. Included by *_torch.cc files alone.
+// models: the particles' network as a LibTorch module, its windows and its losses. Included by
+// *_torch.cc files alone.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -8,17 +9,13 @@
 
 namespace pushid {
 
-// Windows to learn from: frames of [batch, frame, coordinate], controls alike, and which frames
-// there are (the rest repeats the last).
-struct ParticleBatch {
-  torch::Tensor frames, controls, present;
-};
+// Windows to learn from are tensors of [batch, frame, coordinate].
 
 class ParticleModule : public torch::nn::Module {
  public:
   explicit ParticleModule(const ParticleNetwork& start)
       : structure_(start.structure), size_(start.num_coordinates()) {
-    const int gates = structure_.NumGates() * kParticleHidden;
+    const int gates = kParticleGates;
     const double bound = 1.0 / std::sqrt(static_cast<double>(kParticleHidden));
     const auto uniform = [bound](std::vector<int64_t> shape) {
       return (2.0 * torch::rand(shape) - 1.0) * bound;
@@ -26,7 +23,6 @@ class ParticleModule : public torch::nn::Module {
     pose_mean_ = ToTensor(start.pose_mean);
     pose_spread_ = ToTensor(start.pose_spread);
     step_spread_ = ToTensor(start.step_spread);
-    control_spread_ = ToTensor(start.control_spread);
     input_ = register_parameter("input", uniform({gates, structure_.NumInputs(size_)}));
     recurrent_ = register_parameter("recurrent", uniform({gates, kParticleHidden}));
     input_bias_ = register_parameter("input_bias", uniform({gates}));
@@ -67,25 +63,26 @@ class ParticleModule : public torch::nn::Module {
   // Frames forecast after the first `observed`, [batch, frame, coordinate]. jitter: [batch, 1,
   // coordinate], in spreads. noise: e of every frame, [batch, frame, coordinate], of a sampled
   // path; undefined: the path without noise.
-  torch::Tensor Forecast(const ParticleBatch& batch, const torch::Tensor& jitter, int observed,
+  torch::Tensor Forecast(const torch::Tensor& batch, const torch::Tensor& jitter, int observed,
                          int predicted, const torch::Tensor& noise = {}) const {
-    const torch::Tensor past = batch.frames.narrow(1, 0, observed);
+    const torch::Tensor past = batch.narrow(1, 0, observed);
     const torch::Tensor steps = Steps(past);
-    std::vector<torch::Tensor> state = Run(Inputs(steps, past, batch.controls, 0, jitter));
-    const torch::Tensor correction = Correction(past, state[0], jitter, predicted);
+    torch::Tensor state = Run(Inputs(steps, past, jitter)).second;
+    const torch::Tensor correction = Correction(past, state, jitter, predicted);
     torch::Tensor pose = past.select(1, observed - 1), history = LastSteps(steps, observed);
     const torch::Tensor still = jitter.squeeze(1);
     std::vector<torch::Tensor> poses;
     for (int t = 0; t < predicted; ++t) {
       if (t > 0) {
         const torch::Tensor last = history.narrow(1, 0, size_);
-        Move(Input(last, pose, batch.controls, observed + t - 1, still), &state);
+        state = torch::gru_cell(Inputs(last, pose, still), state, input_, recurrent_, input_bias_,
+                                recurrent_bias_);
       }
-      torch::Tensor next = Drift(state[0], history);
-      if (noise.defined()) next = next + LogNoise(state[0]).exp() * noise.select(1, t);
-      const torch::Tensor moved = structure_.PredictsSteps() ? pose + step_spread_ * next
-                                                             : pose_mean_ + pose_spread_ * next;
-      const torch::Tensor step = structure_.PredictsSteps() ? next : (moved - pose) / step_spread_;
+      torch::Tensor next = Drift(state, history);
+      if (noise.defined()) next = next + LogNoise(state).exp() * noise.select(1, t);
+      const torch::Tensor moved =
+          structure_.particles ? pose + step_spread_ * next : pose_mean_ + pose_spread_ * next;
+      const torch::Tensor step = structure_.particles ? next : (moved - pose) / step_spread_;
       history = torch::cat({step, history.narrow(1, 0, (kSkipSteps - 1) * size_)}, 1);
       pose = moved;
       poses.push_back(pose);
@@ -95,21 +92,20 @@ class ParticleModule : public torch::nn::Module {
 
   // Of the true motion: what the drift misses, e = p_{t+1} - f, and the hidden states, for t from
   // `first` - 1 on. drift_learns: off: no gradients reach the drift and the cell.
-  std::pair<torch::Tensor, torch::Tensor> Misses(const ParticleBatch& batch,
+  std::pair<torch::Tensor, torch::Tensor> Misses(const torch::Tensor& batch,
                                                  const torch::Tensor& jitter, int first,
                                                  bool drift_learns = false) const {
     torch::AutoGradMode gradients(drift_learns && torch::GradMode::is_enabled());
-    const torch::Tensor steps = Steps(batch.frames);
-    const int64_t frames = batch.frames.size(1);
-    const torch::Tensor before = batch.frames.narrow(1, 0, frames - 1);
-    torch::Tensor hidden;
-    Run(Inputs(steps.narrow(1, 0, frames - 1), before, batch.controls, 0, jitter), &hidden);
+    const torch::Tensor steps = Steps(batch);
+    const int64_t frames = batch.size(1);
+    const torch::Tensor before = batch.narrow(1, 0, frames - 1);
+    const torch::Tensor hidden = Run(Inputs(steps.narrow(1, 0, frames - 1), before, jitter)).first;
     std::vector<torch::Tensor> misses;
     for (int64_t t = first; t < frames; ++t) {
       const torch::Tensor drift = Drift(hidden.select(1, t - 1), LastSteps(steps, t));
-      const torch::Tensor truth = structure_.PredictsSteps()
+      const torch::Tensor truth = structure_.particles
                                       ? steps.select(1, t)
-                                      : (batch.frames.select(1, t) - pose_mean_) / pose_spread_;
+                                      : (batch.select(1, t) - pose_mean_) / pose_spread_;
       misses.push_back(truth - drift);
     }
     return {torch::stack(misses, 1), hidden.narrow(1, first - 1, frames - first)};
@@ -161,22 +157,13 @@ class ParticleModule : public torch::nn::Module {
     }
     return torch::cat(last, 1);
   }
+  // Of frames, or of one.
   torch::Tensor Inputs(const torch::Tensor& steps, const torch::Tensor& frames,
-                       const torch::Tensor& controls, int64_t first,
                        const torch::Tensor& jitter) const {
     std::vector<torch::Tensor> parts;
     if (structure_.particles) parts.push_back(steps);
     if (structure_.poses) parts.push_back((frames - pose_mean_) / pose_spread_ + jitter);
-    if (structure_.controls > 0) {
-      parts.push_back(controls.narrow(1, first, frames.size(1)) / control_spread_);
-    }
-    return torch::cat(parts, 2);
-  }
-  torch::Tensor Input(const torch::Tensor& step, const torch::Tensor& pose,
-                      const torch::Tensor& controls, int64_t frame,
-                      const torch::Tensor& jitter) const {
-    return Inputs(step.unsqueeze(1), pose.unsqueeze(1), controls, frame, jitter.unsqueeze(1))
-        .squeeze(1);
+    return torch::cat(parts, -1);
   }
   // Of all frames forecast, [batch, frame, coordinate]; hidden: after the last that was seen.
   torch::Tensor Correction(const torch::Tensor& past, const torch::Tensor& hidden,
@@ -197,35 +184,18 @@ class ParticleModule : public torch::nn::Module {
     torch::Tensor drift = torch::addmm(drift_bias_, hidden, drift_.t());
     return structure_.HasSkip() ? torch::addmm(drift, history, skip_.t()) : drift;
   }
-  // The cell over all frames: hidden state (and memory) after the last; all of them on request.
-  std::vector<torch::Tensor> Run(const torch::Tensor& inputs, torch::Tensor* all = nullptr) const {
+  // The cell over all frames: all hidden states, and the last.
+  std::pair<torch::Tensor, torch::Tensor> Run(const torch::Tensor& inputs) const {
     const torch::Tensor zero = torch::zeros({1, inputs.size(0), kParticleHidden});
     const std::vector<torch::Tensor> weights = {input_, recurrent_, input_bias_, recurrent_bias_};
-    if (structure_.cell == ParticleCell::kGru) {
-      const auto [hidden, last] =
-          torch::gru(inputs, zero, weights, true, 1, 0.0, is_training(), false, true);
-      if (all != nullptr) *all = hidden;
-      return {last.squeeze(0)};
-    }
-    const auto [hidden, last, memory] =
-        torch::lstm(inputs, {zero, zero}, weights, true, 1, 0.0, is_training(), false, true);
-    if (all != nullptr) *all = hidden;
-    return {last.squeeze(0), memory.squeeze(0)};
-  }
-  void Move(const torch::Tensor& input, std::vector<torch::Tensor>* state) const {
-    if (structure_.cell == ParticleCell::kGru) {
-      (*state)[0] =
-          torch::gru_cell(input, (*state)[0], input_, recurrent_, input_bias_, recurrent_bias_);
-      return;
-    }
-    const auto [hidden, memory] = torch::lstm_cell(input, {(*state)[0], (*state)[1]}, input_,
-                                                   recurrent_, input_bias_, recurrent_bias_);
-    *state = {hidden, memory};
+    const auto [all, last] =
+        torch::gru(inputs, zero, weights, true, 1, 0.0, is_training(), false, true);
+    return {all, last.squeeze(0)};
   }
 
   ParticleStructure structure_;
   int64_t size_;
-  torch::Tensor pose_mean_, pose_spread_, step_spread_, control_spread_;
+  torch::Tensor pose_mean_, pose_spread_, step_spread_;
   torch::Tensor input_, recurrent_, input_bias_, recurrent_bias_, drift_, drift_bias_, skip_;
   torch::Tensor noise_, noise_bias_, noise_mix_;
   torch::nn::Linear correction_hidden_{nullptr}, correction_{nullptr};
@@ -239,21 +209,18 @@ class ParticleWindows {
 
   int num_windows() const { return static_cast<int>(all_.size()); }
   // Drawn by group, window and side.
-  ParticleBatch Draw() const;
+  torch::Tensor Draw() const;
   // At most `most` of all windows, evenly taken, none in the mirror.
-  ParticleBatch Some(int most) const;
+  torch::Tensor Some(int most) const;
 
  private:
-  struct Place {
-    int64_t row, last_row;  // where the window begins, where its motion ends
-  };
-  ParticleBatch Gather(const std::vector<Place>& places) const;
+  torch::Tensor Gather(const std::vector<int64_t>& places) const;
 
   const ParticleTrainingOptions& options_;
-  torch::Tensor frames_, controls_;  // of all motions below one another, then of all mirrored
-  int64_t mirrored_rows_ = 0;        // where the mirrored begin
-  std::vector<Place> all_;
-  std::vector<std::vector<Place>> by_group_;
+  torch::Tensor frames_;       // of all motions below one another, then of all mirrored
+  int64_t mirrored_rows_ = 0;  // where the mirrored begin
+  std::vector<int64_t> all_;   // the rows where windows begin
+  std::vector<std::vector<int64_t>> by_group_;
   std::vector<double> group_share_;  // summed up
 };
 
@@ -270,5 +237,142 @@ inline double RateShareToZero(int step, int steps, int warm_up) {
 ParticleNetwork ParticleStatistics(const ParticleLayout& layout,
                                    const std::vector<LearntParticles>& motions,
                                    const ParticleTrainingOptions& options);
+
+// What a forecast of particles is charged.
+class ParticleLosses {
+ public:
+  ParticleLosses(const ParticleLayout& layout, const ParticleTrainingOptions& options)
+      : options_(options) {
+    const int64_t count = layout.num_particles();
+    weights_ = torch::tensor(layout.weights);
+    weights_ = weights_ / weights_.sum();
+    frames_ = torch::ones({options.predicted});
+    if (!options.even_frames) {
+      frames_ = 1.0 / torch::arange(1, options.predicted + 1, torch::kFloat32);
+    }
+    parents_ = torch::zeros({count}, torch::kInt64);
+    has_bone_ = torch::zeros({count});
+    fixed_ = torch::zeros({count, 3});
+    is_fixed_ = torch::zeros({count, 1});
+    for (int64_t i = 0; i < count; ++i) {
+      const int parent = layout.parents[static_cast<size_t>(i)];
+      if (parent != kNoBone) has_bone_[i] = 1.0f;
+      if (parent >= 0) parents_[i] = parent;
+      if (parent != kFixedPoint) continue;
+      is_fixed_[i][0] = 1.0f;
+      for (int k = 0; k < 3; ++k) fixed_[i][k] = layout.fixed(k, i);
+    }
+  }
+
+  // Of forecasts, [batch, frame, coordinate], against the windows they belong to; m.
+  torch::Tensor operator()(const torch::Tensor& forecast, const torch::Tensor& batch) const {
+    const torch::Tensor truth = batch.narrow(1, options_.observed, options_.predicted);
+    const torch::Tensor share = frames_ * torch::ones({batch.size(0), options_.predicted});
+    const auto mean = [&](const torch::Tensor& by_frame) {
+      return (by_frame * share).sum() / share.sum();
+    };
+    const torch::Tensor squares = (Points(forecast) - Points(truth)).square().sum(3);
+    const torch::Tensor weights = weights_.to(squares.scalar_type());
+    torch::Tensor loss =
+        options_.distance * mean(torch::matmul((squares + kSmooth).sqrt(), weights));
+    if (options_.squared > 0.0) {
+      loss = loss + options_.squared * mean(torch::matmul(squares, weights));
+    }
+    if (options_.changes > 0.0) {
+      const auto changes = [](const torch::Tensor& of) { return Points(of).diff(1, 1); };
+      const torch::Tensor misfit = changes(forecast) - changes(truth);
+      const torch::Tensor distances = (misfit.square().sum(3) + kSmooth).sqrt();
+      const torch::Tensor share_of = share.narrow(1, 1, options_.predicted - 1);
+      loss = loss + options_.changes * (torch::matmul(distances, weights) * share_of).sum() /
+                        share_of.sum();
+    }
+    if (options_.bones > 0.0) {
+      const torch::Tensor misfit = (Bones(forecast) - Bones(truth)).abs() * has_bone_;
+      loss = loss + options_.bones * mean(misfit.sum(2) / has_bone_.sum());
+    }
+    return loss;
+  }
+
+ private:
+  static constexpr double kSmooth = 1e-12;  // m^2; a root has no derivative at 0
+
+  static torch::Tensor Points(const torch::Tensor& motion) {
+    return motion.reshape({motion.size(0), motion.size(1), motion.size(2) / 3, 3});
+  }
+  torch::Tensor Bones(const torch::Tensor& motion) const {
+    const torch::Tensor points = Points(motion);
+    const torch::Tensor starts =
+        points.index_select(2, parents_) * (1.0 - is_fixed_) + fixed_ * is_fixed_;
+    return ((points - starts).square().sum(3) + kSmooth).sqrt();
+  }
+
+  const ParticleTrainingOptions& options_;
+  torch::Tensor weights_, frames_, parents_, has_bone_, fixed_, is_fixed_;
+};
+
+// A training on windows: of particles, and of siMLPe.
+template <typename Run, typename Self, typename Options>
+struct WindowsRun : StepsRun<Run, Self> {
+  WindowsRun(const ParticleLayout& layout, const std::vector<LearntParticles>& learnt,
+             const std::vector<LearntParticles>& held, const Options& given)
+      : options(given),
+        windows(layout, learnt, options),
+        held_windows(layout, held, options),
+        losses(layout, options) {}
+
+  Options options;
+  ParticleWindows windows, held_windows;
+  ParticleLosses losses;
+
+  virtual double LossOfHeld(const torch::Tensor& batch, int of_step) = 0;
+  double HeldLoss(int of_step) override {
+    constexpr int kHeldWindows = 256;
+    if (held_windows.num_windows() == 0) return std::nan("");
+    torch::NoGradGuard no_grad;
+    return LossOfHeld(held_windows.Some(kHeldWindows), of_step);
+  }
+};
+
+// Of transitions, elementwise (NoiseLoss): `misses` of the drift, in the units of the noise.
+inline torch::Tensor TransitionLoss(NoiseLoss loss, const torch::Tensor& misses,
+                                    const torch::Tensor& log_noise) {
+  if (loss == NoiseLoss::kLikelihood) {
+    return log_noise + 0.5 * misses.square() * (-2.0 * log_noise).exp();
+  }
+  return (misses - log_noise.exp() * torch::randn_like(misses)).square();
+}
+
+// A Wasserstein critic of whole forecasts (SDE's Eq. 12): three layers of 256 on what moves from
+// the last observed frame on, in the pose's spreads.
+class ParticleCritic : public torch::nn::Module {
+ public:
+  ParticleCritic(int64_t inputs, torch::Tensor spread) : spread_(std::move(spread)) {
+    layers_ = register_module(
+        "layers", torch::nn::Sequential(torch::nn::Linear(inputs, kWidth), torch::nn::ELU(),
+                                        torch::nn::Linear(kWidth, kWidth), torch::nn::ELU(),
+                                        torch::nn::Linear(kWidth, kWidth), torch::nn::ELU(),
+                                        torch::nn::Linear(kWidth, 1)));
+  }
+  torch::Tensor Features(const torch::Tensor& forecast, const torch::Tensor& last) const {
+    return ((forecast - last) / spread_).flatten(1);
+  }
+  torch::Tensor Score(const torch::Tensor& features) { return layers_->forward(features).mean(); }
+
+  // The critic's own loss: forecasts below truths, with a slope of 1 in between.
+  torch::Tensor Loss(const torch::Tensor& forecast, const torch::Tensor& truth) {
+    const torch::Tensor share = torch::rand({truth.size(0), 1});
+    const torch::Tensor between =
+        (share * truth + (1.0 - share) * forecast).detach().requires_grad_(true);
+    const torch::Tensor slope =
+        torch::autograd::grad({layers_->forward(between).sum()}, {between}, {}, true, true)[0];
+    return Score(forecast) - Score(truth) + kPenalty * (slope.norm(2, 1) - 1.0).square().mean();
+  }
+
+ private:
+  static constexpr int64_t kWidth = 256;
+  static constexpr double kPenalty = 10.0;
+  torch::Tensor spread_;
+  torch::nn::Sequential layers_{nullptr};
+};
 
 }  // namespace pushid

@@ -23,7 +23,7 @@ ParticleRollout::ParticleRollout(const ParticleNetwork& network,
     : network_(network), people_(people), copies_(copies), jitter_(jitter) {
   const Eigen::Index count = static_cast<Eigen::Index>(people.size()) * copies;
   const int size = network.num_coordinates();
-  hidden_ = memory_ = Eigen::MatrixXf::Zero(kParticleHidden, count);
+  hidden_ = Eigen::MatrixXf::Zero(kParticleHidden, count);
   history_ = Eigen::MatrixXf::Zero(kSkipSteps * size, count);
   log_likelihood_ = Eigen::VectorXf::Zero(count);
   log_mix_ = network.noise_mix.diagonal().array().log().sum();
@@ -72,28 +72,13 @@ void ParticleRollout::Observe(const Eigen::MatrixXf& pose) {
     seen = (pose.colwise() - network_.pose_mean).array().colwise() / network_.pose_spread.array();
     if (jitter_ != nullptr) seen += *jitter_;
   }
-  for (Eigen::Index n = 0; structure.controls > 0 && n < count; ++n) {
-    const Eigen::MatrixXf& controls = people_[n / copies_].controls;
-    inputs.col(n).tail(structure.controls).setZero();
-    if (frame_ < controls.cols()) {
-      inputs.col(n).tail(structure.controls) =
-          controls.col(frame_).array() / network_.control_spread.array();
-    }
-  }
   ++frame_;
   const Array in = Apply(network_.input, inputs), own = Apply(network_.recurrent, hidden_);
   const int h = kParticleHidden;
-  if (structure.cell == ParticleCell::kGru) {
-    const Array reset = Sigmoid(in.topRows(h) + own.topRows(h));
-    const Array update = Sigmoid(in.middleRows(h, h) + own.middleRows(h, h));
-    const Array fresh = (in.bottomRows(h) + reset * own.bottomRows(h)).tanh();
-    hidden_ = (1.0f - update) * fresh + update * hidden_.array();
-    return;
-  }
-  const Array gates = in + own;
-  memory_ = Sigmoid(gates.middleRows(h, h)) * memory_.array() +
-            Sigmoid(gates.topRows(h)) * gates.middleRows(2 * h, h).tanh();
-  hidden_ = Sigmoid(gates.bottomRows(h)) * memory_.array().tanh();
+  const Array reset = Sigmoid(in.topRows(h) + own.topRows(h));
+  const Array update = Sigmoid(in.middleRows(h, h) + own.middleRows(h, h));
+  const Array fresh = (in.bottomRows(h) + reset * own.bottomRows(h)).tanh();
+  hidden_ = (1.0f - update) * fresh + update * hidden_.array();
 }
 
 const Eigen::MatrixXf& ParticleRollout::Step(const Eigen::MatrixXf* noise) {
@@ -115,7 +100,7 @@ const Eigen::MatrixXf& ParticleRollout::Step(const Eigen::MatrixXf* noise) {
                            .transpose();
     log_likelihood_.array() -= log_mix_;
   }
-  const bool steps = network_.structure.PredictsSteps();
+  const bool steps = network_.structure.particles;
   next.array().colwise() *= (steps ? network_.step_spread : network_.pose_spread).array();
   Observe(steps ? Eigen::MatrixXf(pose_ + next)
                 : Eigen::MatrixXf(next.colwise() + network_.pose_mean));
@@ -161,12 +146,8 @@ void ListTensors(const std::string& name, int coordinates, ParticleNetwork* netw
   fields->Matrix(name + ".pose_mean", coordinates, 1, &network->pose_mean);
   fields->Matrix(name + ".pose_spread", coordinates, 1, &network->pose_spread);
   fields->Matrix(name + ".step_spread", coordinates, 1, &network->step_spread);
-  if (structure.controls > 0) {
-    fields->Matrix(name + ".control_spread", structure.controls, 1, &network->control_spread);
-  }
-  const int gates = structure.NumGates() * kParticleHidden;
-  fields->Layer(name + ".input", structure.NumInputs(coordinates), gates, &network->input);
-  fields->Layer(name + ".recurrent", kParticleHidden, gates, &network->recurrent);
+  fields->Layer(name + ".input", structure.NumInputs(coordinates), kParticleGates, &network->input);
+  fields->Layer(name + ".recurrent", kParticleHidden, kParticleGates, &network->recurrent);
   fields->Layer(name + ".drift", kParticleHidden, coordinates, &network->drift);
   fields->Layer(name + ".noise", kParticleHidden, coordinates, &network->noise);
   if (structure.correlated_noise) {

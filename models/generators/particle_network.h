@@ -3,7 +3,7 @@
 // Differential Equations", ACM MM 2021, called SDE).
 //
 //   p_t     = (S_t - S_{t-1}) / step_spread            displacement of every coordinate; p_0 = 0
-//   h_t     = cell([p_t, (S_t - pose_mean) / pose_spread, controls_t], h_{t-1})
+//   h_t     = GRU([p_t, (S_t - pose_mean) / pose_spread], h_{t-1})
 //   p_{t+1} = f + g (M e),   e ~ N(0, 1)               the transition of SDE's Eq. 4
 //   f       = W h_t + b + sum_{k<9} A_k p_{t-k}        drift; A_0 = 1 and the rest 0 before
 //   log g   = V h_t + c, held within -6 .. 2           noise of every coordinate
@@ -20,42 +20,31 @@
 // neighbours are torn apart. Rejected: M M^T = D + U U^T of rank 4, which spreads futures less well
 // and saves nothing at this size.
 //
-// The forecast is the path without noise; what is predicted is fed back. Cells in PyTorch's
-// conventions. Rejected: a pose operator that is learned, as the released fragment has it: the sum
-// is what it has to be, and without it the error at 80 ms doubles.
+// The forecast is the path without noise; what is predicted is fed back. The cell is in PyTorch's
+// conventions. Rejected: a pose operator that is learned, as the released fragment has it (the sum
+// is what it has to be, and without it the error at 80 ms doubles); an LSTM, which is no better.
 #pragma once
 
-#include "models/enum_names.h"
 #include "models/generators/motion_generator.h"
 #include "models/restoration/dense_network.h"
 
 namespace pushid {
 
-enum class ParticleCell { kGru, kLstm };
-constexpr EnumNames<ParticleCell, 2> Names(ParticleCell) {
-  return {{{"gru", ParticleCell::kGru}, {"lstm", ParticleCell::kLstm}}};
-}
-
 struct ParticleStructure {
-  ParticleCell cell = ParticleCell::kGru;
   bool skip = true;              // the sum over A_k
-  bool pose_operator = true;     // off: the next pose itself is predicted
   bool particles = true;         // off: poses go in alone, and the next pose comes out
   bool poses = true;             // off: displacements go in alone, as in SDE
   bool correlated_noise = true;  // off: M = 1
-  int controls = 0;              // further inputs a frame: a push
   int corrected_frames = 0;      // U; 0: no correction
 
-  bool PredictsSteps() const { return pose_operator && particles; }
-  bool HasSkip() const { return skip && PredictsSteps(); }
-  int NumGates() const { return cell == ParticleCell::kGru ? 3 : 4; }
+  bool HasSkip() const { return skip && particles; }
   int NumInputs(int coordinates) const {
-    return ((particles ? 1 : 0) + (poses ? 1 : 0)) * coordinates + controls;
+    return ((particles ? 1 : 0) + (poses ? 1 : 0)) * coordinates;
   }
 };
 
 inline constexpr int kSkipSteps = 9;
-inline constexpr int kParticleHidden = 256;
+inline constexpr int kParticleHidden = 256, kParticleGates = 3 * kParticleHidden;
 inline constexpr int kCorrectionTerms = 6, kCorrectionHidden = 256;
 inline constexpr float kLeastLogNoise = -6.0f, kLargestLogNoise = 2.0f;
 // Of a coordinate's noise, what no other coordinate shares (in variance): M has an inverse.
@@ -64,8 +53,7 @@ inline constexpr float kOwnNoise = 0.01f;
 struct ParticleNetwork {
   ParticleStructure structure;
   Eigen::VectorXf pose_mean, pose_spread, step_spread;  // by coordinate; m
-  Eigen::VectorXf control_spread;
-  DenseLayer input, recurrent;  // of the gates, side by side
+  DenseLayer input, recurrent;                          // of the gates, side by side
   DenseLayer drift, noise;
   DenseLayer correction_hidden, correction;
   Eigen::MatrixXf noise_mix;  // M, coordinates x coordinates; or empty
@@ -100,7 +88,7 @@ class ParticleRollout {
   void PrepareCorrection();
 
   int step_ = 0;  // of the forecast
-  Eigen::MatrixXf pose_, shown_, hidden_, memory_, history_;
+  Eigen::MatrixXf pose_, shown_, hidden_, history_;
   Eigen::MatrixXf correction_;  // 6 coordinates x people
   Eigen::VectorXf log_likelihood_;
   float log_mix_ = 0.0f;  // log of the determinant of M

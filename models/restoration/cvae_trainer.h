@@ -24,7 +24,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "models/restoration/cvae_features.h"
 #include "models/restoration/cvae_restoration.h"
 #include "models/restoration/trainer.h"
 

@@ -1,22 +1,20 @@
-"""Learned generators of motion: particles on motion capture, and on pushes (models/generators/README.md).
+"""Particles on motion capture (models/generators/README.md).
 
 validation   errors on the validation split of the clips: baselines, one network, three averaged and blended
 apart        the choices behind that, judged on whole actions and on whole clips left out in turn; short trainings
 spread       coverage and scores of sampled futures on the same windows
-ablations    one network of 600 steps with something left out, changed or charged besides
-pushes       the published pushes of single people, four folds, beside what physics and restorations score
 
 PUSHID_MOCAP is the folder of the clips (default ../shared/cmu_mocap beside the source). Trainings take two to
-three minutes of one core a network, half of that in the ablations, and twice as long with ATLAS as with OpenBLAS. Needs pushid-train-generator, which is built where LibTorch is found.
+three minutes of one core a network, and twice as long with ATLAS as with OpenBLAS. Needs pushid-train-generator, which is built where LibTorch is found.
 """
 import os
 import sys
 
 import studies
-from studies import number, with_error
+from studies import number
 
 MOCAP = os.path.abspath(os.environ.get("PUSHID_MOCAP", os.path.join(studies.SOURCE, "../shared/cmu_mocap")))
-CLIPS = ["--dataset=cmu", f"--folder={MOCAP}"]
+CLIPS = [f"--folder={MOCAP}"]
 HORIZONS = ["80", "160", "320", "400", "1000"]
 IN_MS = [f"{h} ms" for h in HORIZONS]
 SAMPLES = 39
@@ -24,22 +22,12 @@ APART_ACTIONS = ["soccer", "jumping", "running"]  # each is a fold
 APART_CLIPS = [1]  # likewise the places of clips, counted from the last
 APART_STEPS = os.environ.get("PUSHID_APART_STEPS", "200")
 SHORT = ["--seeds=3", f"--steps={APART_STEPS}", "--noise_steps=0"]
-ALONE = ["--ridge_share=0", "--simlpe_share=0"]
-# What is trained, and how it then forecasts.
-APART = [(SHORT,
-          [("three networks", ALONE),
-           ("three networks, `--project_bones=false`", [*ALONE, "--project_bones=false"]),
-           ("three networks and ridge", ["--simlpe_share=0"]),
-           ("three networks and siMLPe", ["--ridge_share=0"]),
-           ("**three networks, ridge and siMLPe** (default)", [])]),
-         (["--kind=simlpe"], [("siMLPe", [])])]
-ABLATIONS = [("as it is", []),
-             ("without displacements, `--particles=false`", ["--particles=false"]),
-             ("without the sum, `--pose_operator=false`", ["--pose_operator=false"]),
-             ("`--cell=lstm`", ["--cell=lstm"]),
-             ("`--bone_weight=1`", ["--bone_weight=1"]),
-             ("`--critic_weight=0.001`", ["--critic_weight=0.001"]),
-             ("`--squared_weight=10`", ["--squared_weight=10"])]
+ALONE = "--without=ridge,simlpe"
+FORECASTS = [("three networks", [ALONE]),
+             ("three networks, bones as they come", [ALONE + ",bones"]),
+             ("three networks and ridge", ["--without=simlpe"]),
+             ("three networks and siMLPe", ["--without=ridge"]),
+             ("**three networks, ridge and siMLPe** (default)", [])]
 
 
 def train(*flags):
@@ -60,9 +48,9 @@ def validation():
     model = train()
     whole = evaluate(model)
     rows = [("the last pose held", whole["baselines"]["zero_velocity"]),
-            ("three networks, `--project_bones=false`", evaluate(model, *ALONE, "--project_bones=false")),
-            ("three networks", evaluate(model, *ALONE)),
-            ("three networks and ridge", evaluate(model, "--simlpe_share=0")),
+            ("three networks, bones as they come", evaluate(model, ALONE + ",bones")),
+            ("three networks", evaluate(model, ALONE)),
+            ("three networks and ridge", evaluate(model, "--without=simlpe")),
             ("**three networks, ridge and siMLPe** (default)", whole)]
     return studies.table(["mean joint error, mm", *IN_MS],
                          [by_horizon(name, json["mean"]["MPJPE_mm"]) for name, json in rows])
@@ -97,14 +85,11 @@ def apart_folds():
 def apart():
     sums = {}
     for kind, learnt, held in apart_folds():
-        for training, forecasts in APART:
-            model = studies.run("pushid-train-generator", "--dataset=cmu", learnt, "--with_validation", *training,
-                                out="out").path
-            for name, flags in forecasts:
-                errors = studies.run("pushid-generate", f"--model={model}", "--dataset=cmu", held, "--protocol=all",
-                                     "--stride=8", *flags).json
-                kinds = sums.setdefault(name, {"action": [], "clip": []})
-                kinds[kind].append([errors["mean"]["MPJPE_mm"][h] for h in HORIZONS])
+        model = studies.run("pushid-train-generator", learnt, "--hold_out=false", *SHORT, out="out").path
+        for name, flags in FORECASTS:
+            errors = studies.run("pushid-generate", f"--model={model}", held, "--protocol=all", *flags).json
+            kinds = sums.setdefault(name, {"action": [], "clip": []})
+            kinds[kind].append([errors["mean"]["MPJPE_mm"][h] for h in HORIZONS])
     measured = [kind for kind, folds in (("action", APART_ACTIONS), ("clip", APART_CLIPS)) if folds]
     rows = [[name, *(number(sum(of) / len(of)) for kind in measured for of in zip(*kinds[kind]))]
             for name, kinds in sums.items()]
@@ -124,50 +109,5 @@ def spread():
     return studies.table([f"{SAMPLES} sampled futures", *IN_MS], rows)
 
 
-def ablations():
-    rows = []
-    for name, flags in ABLATIONS:
-        model = train("--seeds=1", *ALONE, "--steps=600", "--noise_steps=0", "--correction=false", *flags)
-        rows.append(by_horizon(name, evaluate(model, "--project_bones=false")["mean"]["MPJPE_mm"]))
-    return studies.table(["one network, 600 steps, `--correction=false`; mean joint error, mm", *IN_MS], rows)
-
-
-METRICS = ["hipADE_m", "hipFDE_m", "MBLE_m"]
-
-
-def cells(name, summary):
-    mean = summary["mean"]
-    return [name, with_error(mean["MPJPE_m"], mean["MPJPE_standard_error_m"]),
-            *(number(mean[key]) if mean[key] >= 0.001 else "0.000" for key in METRICS), f"{mean['FSE_cm']:.2f}"]
-
-
-def pushes():
-    rows = []
-    for observed, name in ((20, "20 frames observed"), (1, "1 frame and the push")):
-        json = studies.on_recordings("pushid-train-generator", "single", "--dataset=pushes", "--crossvalidate=4",
-                                     "--seeds=1", "--steps=200", "--noise_steps=0", "--batch=16",
-                                     f"--observed={observed}").json
-        rows.append(cells(f"particles, {name}", json))
-        if observed > 1:
-            rows.append(cells(f"particles, {name}, all frames", json["baselines"]["generator_all_frames"]))
-    rows.append(cells("the first pose held", json["baselines"]["static"]))
-    rows.append(cells("constant velocity after the push", json["baselines"]["constant_velocity"]))
-    model = studies.fit("single").path
-
-    def restored(*flags):
-        return studies.on_recordings("pushid-train-restoration", "single", f"--model={model}", "--crossvalidate=4",
-                                     *flags).json
-
-    seen, plain = restored("--observed=20"), restored()
-    rows.append(cells("physics and `window` bodies, 20 frames observed", seen))
-    simlpe = studies.on_recordings("pushid-train-generator", "single", "--kind=simlpe", "--dataset=pushes",
-                                   "--crossvalidate=4").json
-    rows.append(cells("siMLPe, 12 frames observed", simlpe))
-    rows.append(cells("siMLPe, 12 frames observed, all frames", simlpe["baselines"]["generator_all_frames"]))
-    rows.append(cells("physics and `rigid` bodies, 1 frame and the push", plain["baselines"]["rigid"]))
-    rows.append(cells("physics and `window` bodies, 1 frame and the push", plain))
-    return studies.table(["held out, 4 folds", "MPJPE, m", "hipADE, m", "hipFDE, m", "MBLE, m", "FSE, cm a frame"], rows)
-
-
 if __name__ == "__main__":
-    studies.main(__file__, {"validation": validation, "apart": apart, "spread": spread, "ablations": ablations, "pushes": pushes})
+    studies.main(__file__, {"validation": validation, "apart": apart, "spread": spread})

@@ -1,6 +1,6 @@
 """SDE (Lyu et al., ACM MM 2021) as published, pushid-train-generator --published=sde (models/generators/README.md).
 
-table2   its Table 2's layout: errors per action at five horizons, both readings of Eq. 6, siMLPe on the same windows
+table2   its Table 2's layout: errors per action at five horizons, both readings of Eq. 6
 table3   its Table 3's layout: what is left out, one at a time, of what is published
 fig5     its Fig. 5 without a given end: the most probable of sampled futures, by action
 times    how long the commands of these tables took, one core
@@ -25,21 +25,17 @@ PROTOCOL = f"--protocol={'test' if HAS_TEST else 'validation'}"
 SAMPLES = 39
 NAMED = ["walking", "eating", "smoking", "discussion"]  # Table 3's; all actions of a folder that lacks them
 ABLATIONS = [("as published", []),
-             ("with the determinant, `--noise_loss=likelihood`", ["--noise_loss=likelihood"]),
-             ("without particles, `--particles=false --poses`", ["--particles=false", "--poses"]),
-             ("without noise and Eq. 6, `--together=false --noise_steps=0`", ["--together=false", "--noise_steps=0"]),
-             ("without bone lengths (Eq. 11), `--bone_weight=0`", ["--bone_weight=0"]),
-             ("without the critic (Eq. 12), `--critic_weight=0`", ["--critic_weight=0"])]
+             ("with the determinant, `--without=draw`", ["--without=draw"]),
+             ("without particles, `--without=particles`", ["--without=particles"]),
+             ("without noise and Eq. 6, `--without=noise`", ["--without=noise"]),
+             ("without bone lengths (Eq. 11), `--without=bones`", ["--without=bones"]),
+             ("without the critic (Eq. 12), `--without=critic`", ["--without=critic"])]
 
 
 def train(steps, *flags):
-    return train_any("--published=sde", f"--steps={steps}", *flags)
-
-
-def train_any(*flags):
     if not os.path.isdir(MOCAP):
         sys.exit(f"{MOCAP} holds no clips: PUSHID_MOCAP names their folder")
-    return studies.run("pushid-train-generator", *CLIPS, *flags, out="out")
+    return studies.run("pushid-train-generator", "--published=sde", *CLIPS, f"--steps={steps}", *flags, out="out")
 
 
 def evaluate(model, *flags):
@@ -47,13 +43,11 @@ def evaluate(model, *flags):
 
 
 def readings():
-    return [("as printed", train(STEPS)), ("with the determinant", train(STEPS, "--noise_loss=likelihood"))]
+    return [("as printed", train(STEPS)), ("with the determinant", train(STEPS, "--without=draw"))]
 
 
 def table2():
     published = [(f"SDE, {reading}", evaluate(trained.path).json) for reading, trained in readings()]
-    simlpe = train_any("--kind=simlpe").path
-    published.append(("siMLPe", studies.run("pushid-generate", f"--model={simlpe}", *CLIPS, PROTOCOL).json))
     rows = []
     for action in [*sorted(published[0][1]["actions"]), None]:
         of = (lambda errors: errors["actions"][action]) if action else (lambda errors: errors["mean"])
@@ -79,7 +73,7 @@ def table3():
 
 
 def fig5():
-    errors = evaluate(train(STEPS, "--noise_loss=likelihood").path, f"--samples={SAMPLES}").json
+    errors = evaluate(train(STEPS, "--without=draw").path, f"--samples={SAMPLES}").json
     rows = []
     for action in [*sorted(errors["actions"]), None]:
         scores = errors["actions"][action] if action else errors["mean"]

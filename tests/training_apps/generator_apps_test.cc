@@ -69,43 +69,31 @@ TEST_F(GeneratorAppTest, TrainsForecastsSamplesAndShows) {
 // Clips that pushid-simulate makes, SDE's settings, and the windows of the tables.
 TEST_F(GeneratorAppTest, SdeAsPublishedOnSyntheticClips) {
   Succeeded(RunApp("pushid-simulate", {"--clips=2", "--frames=220", "--out=" + Path("made")}));
-  for (const char* reading : {"--noise_loss=drawn", "--noise_loss=likelihood"}) {
+  for (const char* without : {"--without=", "--without=draw"}) {
     Succeeded(
-        RunApp("pushid-train-generator", {"--published=sde", "--folder=" + Path("made"), reading,
-                                          "--out=" + Path(reading + 2), "--steps=10", "--quiet"}));
-    const auto json = Json(std::string(reading + 2) + "/generator.json");
-    EXPECT_EQ(json["training"]["configuration"]["batch"], "32");
-    EXPECT_EQ(json["training"]["configuration"]["together"], "true");
-    EXPECT_EQ(json["training"]["configuration"]["critic_weight"], "0.001");
-    Succeeded(RunApp("pushid-generate",
-                     {"--published=sde", "--folder=" + Path("made"), "--model=" + Path(reading + 2),
-                      "--json_out=" + Path("e.json")}));
+        RunApp("pushid-train-generator", {"--published=sde", "--folder=" + Path("made"), without,
+                                          "--out=" + Path("s"), "--steps=10", "--quiet"}));
+    const auto settings = Json("s/generator.json")["settings"];
+    EXPECT_EQ(settings["poses"], false);
+    EXPECT_EQ(settings["members"], 1);
+    EXPECT_EQ(settings["simlpe_share"], 0.0);
+    Succeeded(RunApp("pushid-generate", {"--published=sde", "--folder=" + Path("made"),
+                                         "--model=" + Path("s"), "--json_out=" + Path("e.json")}));
     const auto errors = Json("e.json");
-    EXPECT_EQ(errors["configuration"]["protocol"], "test");
+    EXPECT_EQ(errors["configuration"]["published"], "sde");
     EXPECT_EQ(errors["actions"].size(), 4u);
     EXPECT_GT(errors["actions"]["walking"]["MPJPE_mm"]["1000"].get<double>(), 0.0);
   }
+  Succeeded(Train("g", {"--published=sde", "--without=noise,particles,critic"}));
+  EXPECT_EQ(Json("g/generator.json")["settings"]["particles"], false);
   EXPECT_TRUE(Refused(Train("g", {"--published=ode"}), {"--published is 'ode'", "sde"}));
-  EXPECT_TRUE(Refused(Train("g", {"--poses=false", "--particles=false"}), {"--poses=false"}));
+  EXPECT_TRUE(Refused(Train("g", {"--without=bones"}), {"--without needs --published=sde"}));
+  EXPECT_TRUE(Refused(Train("g", {"--published=sde", "--without=legs"}), {"names 'legs'"}));
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--clips=2", "--people=3", "--out=x"}),
                       {"--people says nothing to --clips"}));
 }
 
-TEST_F(GeneratorAppTest, SimlpeOnTheSameWindows) {
-  const std::vector<std::string> simlpe = {"--kind=simlpe",      "--folder=" + Path("clips"),
-                                           "--out=" + Path("g"), "--steps=20",
-                                           "--blocks=2",         "--quiet"};
-  Succeeded(RunApp("pushid-train-generator", simlpe));
-  EXPECT_EQ(Json("g/generator.json")["settings"]["blocks"], 2);
-  Succeeded(Generate({"--json_out=" + Path("e.json"), "--strip_out=" + Path("s.svg")}));
-  EXPECT_GT(Json("e.json")["mean"]["MPJPE_mm"]["1000"].get<double>(), 0.0);
-  EXPECT_TRUE(
-      Refused(Generate({"--samples=19"}), {"--samples has no effect on a generator of simlpe"}));
-  EXPECT_TRUE(Refused(Train("g", {"--kind=simlpe"}), {"--noise_steps needs --kind=particles"}));
-  EXPECT_TRUE(Refused(Train("g", {"--blocks=2"}), {"--blocks needs --kind=simlpe"}));
-}
-
-// Particles hold siMLPe beside them, of the same bits as one that is trained by itself.
+// Particles hold siMLPe beside them.
 TEST_F(GeneratorAppTest, SimlpeIsBlendedWith) {
   Succeeded(Train("g"));
   const auto settings = Json("g/generator.json")["settings"];
@@ -114,12 +102,10 @@ TEST_F(GeneratorAppTest, SimlpeIsBlendedWith) {
     Succeeded(Generate(With({"--json_out=" + Path("e.json")}, flags)));
     return Json("e.json")["mean"]["MPJPE_mm"];
   };
-  const auto without = errors({"--simlpe_share=0"});
-  EXPECT_NE(errors({}), without);
-  Succeeded(Train("g", {"--simlpe_share=0"}));
-  EXPECT_EQ(errors({}), without) << "particles are trained alike";
-  EXPECT_TRUE(Refused(Generate({"--simlpe_share=0.5"}), {"trained without siMLPe"}));
-  EXPECT_TRUE(Refused(Generate({"--simlpe_share=2"}), {"--simlpe_share is 2"}));
+  const auto all = errors({}), without = errors({"--without=simlpe"});
+  EXPECT_NE(all, without);
+  EXPECT_NE(errors({"--without=simlpe,ridge,bones"}), without);
+  EXPECT_TRUE(Refused(Generate({"--without=legs"}), {"names 'legs'"}));
   EXPECT_TRUE(Refused(Train("g", {"--simlpe_steps=0"}), {"--simlpe_steps is 0"}));
 }
 
@@ -176,12 +162,6 @@ TEST_F(GeneratorAppTest, GoesOnWhereItWasKilled) {
 
 TEST_F(GeneratorAppTest, SearchesAPathToAPose) {
   Succeeded(Train("g"));
-  Succeeded(Generate({"--samples=50", "--target_window=3", "--target_distance=10",
-                      "--json_out=" + Path("e.json"), "--poses_out=" + Path("p.bvh")}));
-  EXPECT_EQ(Json("e.json")["path"]["near"], 50);
-  const AppRun far = Generate({"--samples=50", "--target_window=3", "--target_distance=0"});
-  EXPECT_EQ(far.exit_code, 1);
-  EXPECT_TRUE(Contains(far.err, "raise --samples or --target_distance"));
   const AppRun least =
       Succeeded(Generate({"--target_window=3", "--json_out=" + Path("least.json")}));
   EXPECT_TRUE(Contains(least.out, "most probable path to the end of window 3"));
@@ -190,19 +170,14 @@ TEST_F(GeneratorAppTest, SearchesAPathToAPose) {
 
 TEST_F(GeneratorAppTest, MistakesAreNamed) {
   EXPECT_TRUE(Refused(RunApp("pushid-train-generator", {"--out=" + Path("g")}), {"--folder"}));
-  EXPECT_TRUE(Refused(Train("g", {"--cell=rnn"}), {"--cell is 'rnn'", "gru or lstm"}));
   EXPECT_TRUE(Refused(Train("g", {"--kind=waves"}), {"--kind is 'waves'"}));
-  EXPECT_TRUE(
-      Refused(Train("g", {"--crossvalidate=4"}), {"--crossvalidate makes folds of pushes"}));
-  EXPECT_TRUE(Refused(Train("g", {"--observed=1"}), {"--observed needs --dataset=pushes"}));
-  EXPECT_TRUE(Refused(Train("g", {"--jitter=-1"}), {"--jitter is -1"}));
+  for (const char* flag : {"--crossvalidate=4", "--observed=2", "--pooling=none"}) {
+    EXPECT_TRUE(Refused(Train("g", {flag}), {"needs --kind=diffusion"})) << flag;
+  }
   WriteText("clips/train/sway/sway_2.txt", "1,2\n");
   EXPECT_TRUE(Refused(Train("g"), {"sway_2.txt:1:3", "21 numbers"}));
   EXPECT_TRUE(Refused(Generate({}), {"pushid-train-generator --out"}));
   EXPECT_TRUE(Refused(Generate({"--samples=5"}), {"--samples is 5"}));
-  EXPECT_TRUE(Refused(Generate({"--target_window=3", "--target_distance=1"}),
-                      {"--target_distance needs --samples"}));
-  EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id needs --dataset=pushes"}));
   EXPECT_TRUE(Refused(Generate({"--poses_out=" + Path("x.txt")}), {".bvh or .csv"}));
 }
 
@@ -213,90 +188,7 @@ TEST_F(GeneratorAppTest, AnotherSkeletonIsRefused) {
   WriteText("clips/skeleton.json",
             skeleton.replace(skeleton.find(used), used.size(), "\"used\": [1, 3, 4]"));
   EXPECT_TRUE(Refused(Generate({}), {"3 particles", "the 4 particles of the generator"}));
-}
-
-class PushGeneratorAppTest : public AppTest {
- protected:
-  AppRun Train(std::vector<std::string> more) const {
-    more.insert(more.end(), {"--dataset=pushes", Recordings(), "--seeds=1", "--steps=30",
-                             "--noise_steps=10", "--batch=8", "--quiet"});
-    return RunApp("pushid-train-generator", more);
-  }
-};
-
-TEST_F(PushGeneratorAppTest, ForecastsPushes) {
-  for (const char* observed : {"20", "1"}) {
-    Succeeded(Train({"--out=" + Path("g"), std::string("--observed=") + observed}));
-    Succeeded(
-        RunApp("pushid-generate",
-               {"--model=" + Path("g"), "--dataset=pushes", Recordings(), "--id=" + id_,
-                "--samples=19", "--page_out=" + Path("p.html"), "--json_out=" + Path("e.json")}));
-    const auto json = Json(Path("e.json"));
-    for (const char* key : {"MPJPE_m", "hipADE_m", "hipFDE_m", "MBLE_m", "FSE_cm"}) {
-      EXPECT_TRUE(json["mean"].contains(key)) << key;
-    }
-    EXPECT_LT(json["mean"]["MBLE_m"].get<double>(), 5e-3);
-    EXPECT_TRUE(Contains(ReadText(Path("p.html")), id_));
-  }
-}
-
-// It learned from net pushes, and that is told once.
-TEST_F(PushGeneratorAppTest, PushesOfAnotherKindAreToldOf) {
-  Succeeded(Train({"--kind=diffusion", "--observed=1", "--out=" + Path("g")}));
-  const auto generate = [&](const std::string& recordings) {
-    return RunApp("pushid-generate", {"--model=" + Path("g"), recordings, "--averaged=1",
-                                      "--sampling_steps=2", "--quiet"});
-  };
-  EXPECT_EQ(generate(Recordings()).err, "");
-  const AppRun other = generate(ChangedManifest([](nlohmann::ordered_json& json) {
-    for (auto& recording : json["recordings"]) recording["push_kind"] = "external";
-  }));
-  EXPECT_EQ(other.exit_code, 0) << other.err;
-  const size_t told = other.err.find("is applied to pushes of kind external");
-  EXPECT_NE(told, std::string::npos) << other.err;
-  EXPECT_EQ(other.err.find("is applied", told + 20), std::string::npos) << other.err;
-}
-
-TEST_F(PushGeneratorAppTest, SimlpeForecastsPushesFromTwelveFrames) {
-  const std::vector<std::string> simlpe = {"--kind=simlpe", Recordings(), "--dataset=pushes",
-                                           "--steps=20",    "--blocks=2", "--quiet"};
-  std::vector<std::string> train = simlpe, validate = simlpe;
-  train.push_back("--out=" + Path("g"));
-  Succeeded(RunApp("pushid-train-generator", train));
-  EXPECT_EQ(Json(Path("g/generator.json"))["settings"]["observed"], 12);
-  Succeeded(RunApp("pushid-generate",
-                   {"--model=" + Path("g"), Recordings(), "--json_out=" + Path("e.json")}));
-  EXPECT_GT(Json(Path("e.json"))["mean"]["MPJPE_m"].get<double>(), 0.0);
-  validate.insert(validate.end(), {"--crossvalidate=2", "--json_out=" + Path("v.json")});
-  Succeeded(RunApp("pushid-train-generator", validate));
-  EXPECT_EQ(Json(Path("v.json"))["recordings"].size(), 12u);
-  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--simlpe_share=0.5"}),
-                      {"--simlpe_share needs --dataset=cmu"}));
-}
-
-TEST_F(PushGeneratorAppTest, CrossValidates) {
-  const AppRun run = Succeeded(Train({"--crossvalidate=2", "--json_out=" + Path("e.json")}));
-  EXPECT_TRUE(Contains(run.out, "generator all frames"));
-  const auto json = Json(Path("e.json"));
-  EXPECT_EQ(json["recordings"].size(), 12u);
-  EXPECT_GT(json["mean"]["MPJPE_m"].get<double>(),
-            json["baselines"]["generator_all_frames"]["mean"]["MPJPE_m"].get<double>());
-  EXPECT_TRUE(json["baselines"]["static"]["mean"].contains("MPJPE_m"));
-}
-
-TEST_F(PushGeneratorAppTest, MistakesAreNamed) {
-  EXPECT_TRUE(Refused(Train({}), {"--out"}));
-  EXPECT_TRUE(Refused(Train({"--crossvalidate=1"}), {"at least 2 folds"}));
-  Succeeded(Train({"--out=" + Path("g"), "--observed=30"}));
-  const std::string model = "--model=" + Path("g");
-  EXPECT_TRUE(Refused(RunApp("pushid-generate", {model, "--folder=" + Path("x")}),
-                      {"forecasts pushes; give --dataset=pushes"}));
-  EXPECT_TRUE(Refused(
-      RunApp("pushid-generate", {model, "--dataset=pushes", Recordings(), "--protocol=test"}),
-      {"--protocol needs --dataset=cmu"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-generate", {model, "--dataset=pushes", Recordings(),
-                                                 "--page_out=" + Path("p.html")}),
-                      {"--id is missing"}));
+  EXPECT_TRUE(Refused(Generate({"--id=a"}), {"--id has no effect on a generator of particles"}));
 }
 
 }  // namespace

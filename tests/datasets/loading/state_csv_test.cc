@@ -28,20 +28,17 @@ class StateCsvTest : public TempDirTest {
 TEST_F(StateCsvTest, ASymbolHoldsUntilTheNext) {
   const std::string path = WriteText("states.csv", std::string("# by hand\n") + kHead +
                                                        "talk,3,anna,listen\ntalk,0,anna,speak\n\n"
-                                                       "talk,0,ben, rest \ntalk,0,,turn\n"
-                                                       "talk,1,group,pause\n");
+                                                       "talk,0,ben, rest \n");
   const StateTable table = Unwrapped(ReadStates(path));
   const auto states = Unwrapped(StatesOf(table, "talk", kTwo, 5));
   using Names = std::vector<std::string>;
   EXPECT_EQ(states.people[0], (Names{"speak", "speak", "speak", "listen", "listen"}));
   EXPECT_EQ(states.people[1], Names(5, "rest"));
-  EXPECT_EQ(states.group, (Names{"turn", "pause", "pause", "pause", "pause"}));
   EXPECT_TRUE(StatesOf(table, "other", kTwo, 5).value().people.empty());
   ASSERT_FALSE(WriteStates(Path("again.csv"), {states}));
   EXPECT_EQ(ReadText(Path("again.csv")), std::string(kHead) +
                                              "talk,0,anna,speak\ntalk,3,anna,listen\n"
-                                             "talk,0,ben,rest\ntalk,0,group,turn\n"
-                                             "talk,1,group,pause\n");
+                                             "talk,0,ben,rest\n");
 }
 
 TEST_F(StateCsvTest, MistakesAreNamedByLine) {
@@ -60,7 +57,7 @@ TEST_F(StateCsvTest, MistakesAreNamedByLine) {
       {kHead + std::string(",0,anna,a\n"), "the recording is missing", 2},
       {kHead + std::string("talk,0,anna,\n"), "the symbol is missing", 2},
       {kHead + ben + ben, "'ben' of recording 'talk' at frame 0 was given before", 3},
-      {kHead + std::string("talk,0,,a\ntalk,0,group,b\n"), "the group of recording 'talk'", 3},
+      {kHead + std::string("talk,0,,a\n"), "nobody in recording 'talk' is ''", 2},
       {kHead + ben + "talks,0,anna,a\n", "no recording 'talks'", 3},
       {kHead + ben + "talk,0,anne,a\n", "nobody in recording 'talk' is 'anne'", 3},
       {kHead + ben + "talk,5,ben,b\n", "frame 5 is behind the end", 3},

@@ -101,7 +101,7 @@ TEST(PathSearchTest, TakesTheMostProbableThatEndsThere) {
   EXPECT_EQ(path.log_likelihood, -4.0);
   EXPECT_TRUE(Contains(ProblemOf(MostProbablePath(futures, Eigen::VectorXf::Constant(12, 5.0f), 0.1,
                                                   FourParticles())),
-                       "raise --samples or --target_distance"));
+                       "raise --samples"));
 }
 
 }  // namespace

@@ -63,22 +63,14 @@ TEST_F(GeneratorFilesTest, ComeBackToTheLastBit) {
 TEST_F(GeneratorFilesTest, WhatMayChangeChanges) {
   ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
   GeneratorChanges changes;
-  changes.ridge_share = 1.0;
-  changes.simlpe_share = 0.2;
+  changes.ridge = false;
   changes.particles.project_bones = false;
   const auto loaded = Unwrapped(LoadGenerator(Path("g"), changes));
   ParticleGeneratorOptions options;
-  options.ridge_share = 1.0, options.simlpe_share = 0.2, options.project_bones = false;
+  options.ridge_share = 0.0, options.project_bones = false;
   const ParticleGenerator expected(FourParticles(), Particles().members, Particles().partners,
                                    options);
   EXPECT_EQ(loaded.generator->Forecast(people_, 6)[0], expected.Forecast(people_, 6)[0]);
-  Particles().ridge_share = 0.0;
-  ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
-  EXPECT_TRUE(Contains(ErrorOf(Path("g"), changes), "trained without a ridge"));
-  changes.ridge_share.reset();
-  Particles().simlpe_share = 0.0;
-  ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
-  EXPECT_TRUE(Contains(ErrorOf(Path("g"), changes), "trained without siMLPe"));
 }
 
 TEST_F(GeneratorFilesTest, MistakesAreNamed) {
@@ -86,10 +78,9 @@ TEST_F(GeneratorFilesTest, MistakesAreNamed) {
                        "--model names the folder that "
                        "pushid-train-generator --out wrote"));
   EXPECT_TRUE(Contains(ErrorAfter("\"kind\": \"particles\"", "\"kind\": \"waves\""),
-                       "kind is 'waves'; it must be particles, diffusion, simlpe"));
+                       "kind is 'waves'; it must be particles, diffusion"));
   EXPECT_TRUE(Contains(ErrorAfter("\"format\": 1", "\"format\": 2"), "format 2"));
-  EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"rnn\""), "cell is 'rnn'"));
-  EXPECT_TRUE(Contains(ErrorAfter("\"cell\": \"gru\"", "\"cell\": \"lstm\""), "member0.input"));
+  EXPECT_TRUE(Contains(ErrorAfter("\"poses\": true", "\"poses\": false"), "member0.input"));
   EXPECT_TRUE(Contains(ErrorAfter("\"members\": 2", "\"members\": 3"), "member2"));
   EXPECT_TRUE(Contains(ErrorAfter("\"members\": 2", "\"members\": 0"), "1 to 100"));
   EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"observed\": 11"), "simlpe0.block0.mix"));
@@ -104,10 +95,6 @@ TEST_F(GeneratorFilesTest, MistakesAreNamed) {
   Particles().simlpe_share = 0.0;
   EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"observed\": 3"), "more observed frames"));
   EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"seen\": 12"), "observed"));
-  // Files of earlier versions say whether physics go into the network.
-  EXPECT_EQ(ErrorAfter("\"observed\": 12", "\"pendulum\": false,\n\"observed\": 12"), "no error");
-  EXPECT_TRUE(Contains(ErrorAfter("\"observed\": 12", "\"pendulum\": true,\n\"observed\": 12"),
-                       "--pendulum_input"));
   EXPECT_TRUE(Contains(ErrorAfter("\"parent\": 0", "\"parent\": 7"), "particle 1"));
   EXPECT_TRUE(Contains(ErrorAfter("\"up_axis\": 1", "\"up_axis\": 0"), "up_axis"));
 }

@@ -8,7 +8,7 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "ident/bodies/body_recording.h"
-#include "models/restoration/cvae_features.h"
+#include "models/restoration/cvae_restoration.h"
 #include "models/restoration/group_motion.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"

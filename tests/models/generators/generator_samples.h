@@ -46,10 +46,8 @@ inline ParticleNetwork RandomParticles(uint64_t seed, const ParticleStructure& s
   network.pose_mean = SwayingMotion(50, 0.0f).rowwise().mean();
   network.pose_spread = Eigen::VectorXf::Constant(size, 0.1f);
   network.step_spread = Eigen::VectorXf::Constant(size, 0.01f);
-  network.control_spread = Eigen::VectorXf::Constant(structure.controls, 2.0f);
-  const int gates = structure.NumGates() * kParticleHidden;
-  network.input = RandomLayer(gates, structure.NumInputs(size), 0.1, &random);
-  network.recurrent = RandomLayer(gates, kParticleHidden, 0.05, &random);
+  network.input = RandomLayer(kParticleGates, structure.NumInputs(size), 0.1, &random);
+  network.recurrent = RandomLayer(kParticleGates, kParticleHidden, 0.05, &random);
   network.drift = RandomLayer(size, kParticleHidden, 0.03, &random);
   network.noise = RandomLayer(size, kParticleHidden, 0.03, &random);
   if (structure.corrected_frames > 0) {

@@ -1,7 +1,7 @@
 // The numbers that the networks see, by hand and there and back.
 #include <gtest/gtest.h>
 
-#include "models/restoration/cvae_features.h"
+#include "models/restoration/cvae_restoration.h"
 #include "models/restoration/window_restoration.h"
 #include "tests/models/body_samples.h"
 

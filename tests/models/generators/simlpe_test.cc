@@ -1,9 +1,9 @@
 // siMLPe by hand: two coordinates over two frames, D = [1 1; 1 -1] / sqrt(2).
-#include "models/generators/simlpe_network.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "models/generators/particle_generator.h"
 
 namespace pushid {
 namespace {
