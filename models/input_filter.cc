@@ -70,17 +70,12 @@ InputPlane::Correction InputPlane::Update(const Eigen::Vector2d& innovation) {
   Eigen::Matrix2d expected = with_measured.topRows<2>() + with_measured.bottomRows<2>();
   expected.diagonal().array() += kRounding * kRounding;
   const Eigen::Matrix2d information = expected.inverse();
-  deviance_ += innovation.dot(information * innovation) - std::log(information.determinant());
   const Eigen::Matrix<double, 8, 2> gain = with_measured.lazyProduct(information);
   covariance_ -= gain.lazyProduct(with_measured.transpose());
   const Correction moved = gain.lazyProduct(innovation);
   input_ += moved.segment<2>(4);
   error_ += moved.segment<2>(6);
   return moved;
-}
-
-Eigen::Vector2d InputPlane::InputDeviation() const {
-  return covariance_.diagonal().segment<2>(4).cwiseMax(0.0).cwiseSqrt();
 }
 
 InputFilter::InputFilter(const Scene& scene, const ModelOptions& options,
@@ -113,19 +108,8 @@ Vector4<double> InputFilter::FromPlanes(const Eigen::Vector2d& first,
   return {first[0], second[0], first[1], -second[1]};
 }
 
-double InputFilter::Deviance() const {
-  double sum = 0.0;
-  for (const auto& planes : planes_) sum += planes[0].deviance() + planes[1].deviance();
-  return sum;
-}
-
 Vector4<double> InputFilter::Input(int person) const {
   return FromPlanes(planes_[person][0].input(), planes_[person][1].input());
-}
-
-Vector4<double> InputFilter::InputDeviation(int person) const {
-  return FromPlanes(planes_[person][0].InputDeviation(), planes_[person][1].InputDeviation())
-      .cwiseAbs();
 }
 
 RolloutStatus InputFilter::Observe(const std::vector<PendulumState<double>>& measured,

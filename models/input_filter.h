@@ -17,7 +17,6 @@
 #include <array>
 #include <vector>
 
-#include "models/input_noise.h"
 #include "models/rollout.h"
 
 namespace pushid {
@@ -36,10 +35,6 @@ class InputPlane {
   void Predict();
   // measured less expected places; what it moves the states by.
   Correction Update(const Eigen::Vector2d& innovation);
-  // -2 log L of all measurements so far, up to a constant.
-  double deviance() const { return deviance_; }
-  // Standard deviation of d on the cart and on the lean, N and N m.
-  Eigen::Vector2d InputDeviation() const;
   const Eigen::Vector2d& input() const { return input_; }  // d
   const Eigen::Vector2d& error() const { return error_; }  // e
   double input_decay() const { return input_decay_; }      // r
@@ -48,7 +43,7 @@ class InputPlane {
   using Matrix = Eigen::Matrix<double, 8, 8>;
   Matrix step_ = Matrix::Zero(), covariance_ = Matrix::Zero();
   Correction spread_ = Correction::Zero();  // variance that a step adds
-  double input_decay_ = 0.0, error_decay_ = 0.0, deviance_ = 0.0;
+  double input_decay_ = 0.0, error_decay_ = 0.0;
   Eigen::Vector2d input_ = Eigen::Vector2d::Zero(), error_ = Eigen::Vector2d::Zero();
 };
 
@@ -70,11 +65,8 @@ class InputFilter {
   const RolloutStatus& status() const { return status_; }
   // All frames: those observed as filtered, the rest with the force dying out.
   RolloutStatus Forecast(RolloutPath<double>* path) const;
-  // -2 log L of all places that were seen, each given those before it; up to a constant.
-  double Deviance() const;
-  // d, on x, y, theta and phi, and its standard deviation, N and N m.
+  // d, on x, y, theta and phi, N and N m.
   Vector4<double> Input(int person) const;
-  Vector4<double> InputDeviation(int person) const;
 
  private:
   // [x, theta] and [y, -phi] of a vector over q, and back.

@@ -9,14 +9,14 @@ DEFINE_int32(observed, 0,
              "number of observed frames before the predicted ones, including frame 0; without this "
              "flag, only frame 0");
 
-DEFINE_string(forecast, pushid::NameOf(pushid::ForecastUse::kStack),
-              "who forecasts after observed frames: stack (all together), physics (the rollout), "
-              "input (a filter with an unknown force), kinematic (no model)");
+DEFINE_string(forecast, pushid::NameOf(pushid::ForecastUse::kBoth),
+              "who forecasts after observed frames: physics (the rollout), input (a filter with an "
+              "unknown force) or both");
 
 namespace pushid {
 
 ForecastUse ForecastUseFlag() {
-  ForecastUse use = ForecastUse::kStack;
+  ForecastUse use = ForecastUse::kBoth;
   ParseName("--forecast", FLAGS_forecast, &use);  // CheckObservedFlag has told of what is none
   return use;
 }

@@ -107,7 +107,7 @@ void ReadOptions(RestorationRunOptions* options) {
     throw Error{"--crossvalidate must be 0 or at least 2 folds"};
   }
   if (Given("forecast")) {
-    throw Error{"--forecast: restorations are scored on all forecasters together; leave it out"};
+    throw Error{"--forecast: restorations are scored on both forecasters together; leave it out"};
   }
   options->observed = ObservedFrames();
   if (options->observed > 0 && FLAGS_crossvalidate == 0) {

@@ -80,13 +80,11 @@ std::vector<HipPaths> HipsOf(const std::vector<std::vector<std::vector<BandPoint
   return hips;
 }
 
-// Futures by what the model knows of them: after frames that were seen, what recordings differ by
-// and how rollouts err; with process noise, its draws; else parameters drawn from their covariance,
-// with the errors of the fitted recordings.
+// Futures by what the model knows of them: with process noise, its draws; else parameters drawn from
+// their covariance, with the errors of the fitted recordings.
 Result<std::vector<HipPaths>> Drawn(const Model& model, const IdentifiedModel& identified,
-                                    const PendulumRecording& seen, int observed, int frames,
-                                    int samples, uint64_t seed, ForecastUse use) {
-  if (observed > 0) return DrawFrom(identified, seen, observed, samples, seed, frames, use);
+                                    const PendulumRecording& seen, int frames, int samples,
+                                    uint64_t seed) {
   if (identified.options.process_noise != ProcessNoise::kNone) {
     Result<Futures> futures = DrawFutures(identified, seen, samples, seed, frames);
     if (!futures.ok()) return futures.error();
@@ -128,17 +126,20 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
                                "after observed=" +
                                std::to_string(observed)});
   }
-  if (samples > 0 && observed == 0 && !set.empty() &&
-      identified.options.process_noise == ProcessNoise::kNone) {
-    Raise(Fault::kUsage, Error{"samples draws the parameters, which set=... fixes; give one of "
-                               "them, or observed=... too"});
+  if (samples > 0 && observed > 0) {
+    Raise(Fault::kUsage, Error{"samples draws motions from frame 0 on, and observed has seen more; "
+                               "leave one out"});
+  }
+  if (samples > 0 && !set.empty() && identified.options.process_noise == ProcessNoise::kNone) {
+    Raise(Fault::kUsage,
+          Error{"samples draws the parameters, which set=... fixes; give one of them"});
   }
   WarnOfInputs(identified, seen);
   py::dict dict =
       DictOf(Unwrapped(PredictFrom(identified, seen, observed, frames, use), Fault::kUsage), seen);
   if (samples > 0) {
     dict["samples"] = DrawsArray(Unwrapped(
-        Drawn(model, identified, seen, observed, frames, samples, seed, use), Fault::kUsage));
+        Drawn(model, identified, seen, frames, samples, seed), Fault::kUsage));
   }
   return dict;
 }
@@ -192,23 +193,6 @@ class Online {
   py::dict Predict() const { return DictOf(predictor_->Predict(), *recording_); }
   int observed() const { return predictor_->observed(); }
 
-  // The force that nobody measured and its standard deviation, each (people, 4); none without a
-  // filter.
-  py::object UnknownForce() const {
-    const SceneFilter* filter = predictor_->unknown_force();
-    if (filter == nullptr) return py::none();
-    const size_t people = recording_->states.size();
-    Array force(std::vector<size_t>{people, 4}), deviation(std::vector<size_t>{people, 4});
-    for (size_t n = 0; n < people; ++n) {
-      const int person = static_cast<int>(n);
-      for (int i = 0; i < 4; ++i) {
-        force.mutable_at(n, i) = filter->Force(person)[i];
-        deviation.mutable_at(n, i) = filter->ForceDeviation(person)[i];
-      }
-    }
-    return py::make_tuple(force, deviation);
-  }
-
  private:
   std::unique_ptr<IdentifiedModel> model_;
   std::unique_ptr<PendulumRecording> recording_;
@@ -248,8 +232,7 @@ void BindPredictions(py::module_* module) {
       .def(py::init<const Model&, const SharedRecording&, int, const std::string&>())
       .def("observe", &Online::Observe)
       .def("predict", &Online::Predict)
-      .def_property_readonly("observed", &Online::observed)
-      .def_property_readonly("unknown_force", &Online::UnknownForce);
+      .def_property_readonly("observed", &Online::observed);
   py::class_<Restoration, std::shared_ptr<Restoration>>(*module, "Restoration")
       .def("apply", [](const std::shared_ptr<Restoration>& r, const Model& model,
                        const SharedRecording& recording,

@@ -140,7 +140,7 @@ Array StatesOf(const RolloutPath<double>& path, int people);
 
 // Who forecasts after observed frames. Raises on another name.
 inline ForecastUse ForecastFrom(const std::string& name) {
-  ForecastUse use = ForecastUse::kStack;
+  ForecastUse use = ForecastUse::kBoth;
   Check(ParseName("forecast", name, &use), Fault::kUsage);
   return use;
 }

@@ -144,7 +144,7 @@ BodyScore FailedBodies(const BodyRecording& recording, const std::string& failur
 using BodyScores = std::map<std::string, std::vector<BodyScore>>;
 void ScoreRestoration(const IdentifiedModel& model, const Restoration& restoration,
                       const PostprocessOptions& options, const BodyRecording& recording,
-                      BodyScores* scores, int observed = 0, ForecastUse use = ForecastUse::kStack);
+                      BodyScores* scores, int observed = 0, ForecastUse use = ForecastUse::kBoth);
 
 using BodyEvaluation = std::map<std::string, BodySummary>;
 BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings, const BodyScores& scores,

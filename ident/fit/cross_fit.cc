@@ -75,10 +75,10 @@ std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optim
   return folds;
 }
 
-std::optional<ForecastStack> CrossFitForecasts(const FitProblem& problem, const FitPoint& optimum,
-                                               const IdentifiedModel& model,
-                                               const std::vector<PendulumRecording>& recordings,
-                                               int num_threads) {
+std::optional<ForecastRule> CrossFitForecasts(const FitProblem& problem, const FitPoint& optimum,
+                                              const IdentifiedModel& model,
+                                              const std::vector<PendulumRecording>& recordings,
+                                              int num_threads) {
   return LearnForecasts(model, recordings, CrossFit(problem, optimum, model, num_threads),
                         num_threads);
 }

@@ -67,9 +67,9 @@ std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optim
 // What forecasts from first frames are put together by, learned on recordings left out in turn. Of
 // a model with a recording effect; none where no recording stays in its domain. recordings: the
 // problem's, in the axes of their files.
-std::optional<ForecastStack> CrossFitForecasts(const FitProblem& problem, const FitPoint& optimum,
-                                               const IdentifiedModel& model,
-                                               const std::vector<PendulumRecording>& recordings,
-                                               int num_threads);
+std::optional<ForecastRule> CrossFitForecasts(const FitProblem& problem, const FitPoint& optimum,
+                                              const IdentifiedModel& model,
+                                              const std::vector<PendulumRecording>& recordings,
+                                              int num_threads);
 
 }  // namespace pushid

@@ -58,7 +58,7 @@ struct FitResult {
   std::optional<LikelihoodScore> likelihood;  // of a fit by one of single steps
   // None without a push tail, and in older files.
   std::optional<RecordingEffect> recording_effect;
-  std::optional<ForecastStack> forecasts;
+  std::optional<ForecastRule> forecasts;
   Uncertainty uncertainty;
   ModelVerdict verdict;  // not checked in older files
   Diagnostics diagnostics;

@@ -17,11 +17,6 @@ double StepProbability::ErrorAt(double margin) const {
   return p * (1.0 - p) * std::sqrt(std::max(0.0, x.dot(covariance * x)));
 }
 
-std::array<Eigen::Vector3d, kNumForecasters> ForecastStack::DefaultLogits() {
-  return {Eigen::Vector3d(0.0, -1.0, 0.5), Eigen::Vector3d(0.0, 1.0, -0.5),
-          Eigen::Vector3d(-2.0, 0.5, 0.0), Eigen::Vector3d(-2.0, 0.5, -0.5)};
-}
-
 IdentifiedModel ModelOf(const FitResult& result) {
   IdentifiedModel model;
   model.options = result.options.model;

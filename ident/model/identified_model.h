@@ -14,7 +14,6 @@
 #include "ident/parameters/fit_options.h"
 #include "ident/problem/behaviour.h"
 #include "models/enum_names.h"
-#include "models/input_noise.h"
 #include "models/ipm.h"
 #include "models/learned_terms.h"
 #include "models/parameters.h"
@@ -78,58 +77,34 @@ struct RecordingEffect {
   std::vector<EffectOfRecording> recordings = {};  // those that b acts on
 };
 
-// Who forecasts a motion that was seen to begin (observed/first_frames.h).
-enum class Forecaster { kPhysics, kInput, kKinematic, kVelocity };
-inline constexpr int kNumForecasters = 4;
-constexpr EnumNames<Forecaster, kNumForecasters> Names(Forecaster) {
-  return {{{"physics", Forecaster::kPhysics},
-           {"input", Forecaster::kInput},
-           {"kinematic", Forecaster::kKinematic},
-           {"velocity", Forecaster::kVelocity}}};
-}
-
-// Who is to forecast: all together, or one alone.
-enum class ForecastUse { kStack, kPhysics, kInput, kKinematic };
-constexpr EnumNames<ForecastUse, 4> Names(ForecastUse) {
-  return {{{"stack", ForecastUse::kStack},
+// Who is to forecast a motion that was seen to begin (observed/first_frames.h): both together, or one
+// alone.
+enum class ForecastUse { kBoth, kPhysics, kInput };
+constexpr EnumNames<ForecastUse, 3> Names(ForecastUse) {
+  return {{{"both", ForecastUse::kBoth},
            {"physics", ForecastUse::kPhysics},
-           {"input", ForecastUse::kInput},
-           {"kinematic", ForecastUse::kKinematic}}};
+           {"input", ForecastUse::kInput}}};
 }
 
 // Shares at which quantiles of |error| over its scale are kept.
 inline constexpr double kErrorShares[] = {0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5,
                                           0.55, 0.6, 0.65, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 0.99};
 
-// How far hips are from a forecast (observed/forecast_stack.h), on one axis.
+// How far hips are from a forecast (observed/first_frames.h), on one axis.
 struct ErrorScale {
   Eigen::Vector4d coefficients{-2.3, 1.0, 0.0, 0.3};  // of log m
   std::vector<double> quantiles;  // of |error| over that scale; empty: as of a normal distribution
 };
 
-// The mean distance of hips from forecasts after so many seconds were seen, m.
-struct ForecasterErrors {
-  double seconds = 0.0;
-  std::array<double, kNumForecasters> mean{};  // NaN of one that has nothing to say
-  double stack = 0.0;
-  int recordings = 0;
-};
-
-// Forecasts put together (observed/forecast_stack.h).
-struct ForecastStack {
+// How forecasts are put together (observed/first_frames.h).
+struct ForecastRule {
   InputNoise noise;                             // of the filter that forecasts
   double tail_strength = 1.0, tail_time = 1.0;  // its tail over the model's
-  // Of the filter that says which force acted: what makes single steps of the model most likely,
-  // which is not what forecasts best.
-  InputNoise likeliest;
-  std::array<Eigen::Vector3d, kNumForecasters> logits = DefaultLogits();
+  double input_after = 0.35;         // s, after which the filter has half the weight 0.5 s ahead
   std::array<ErrorScale, 3> errors;  // along the push, across, upwards
-  std::vector<ForecasterErrors> scores;
   // Forecasts that all this was learned from were made by models fitted without them: how many
   // such models, and of how many recordings. No folds: the model itself was all there was.
   int folds = 0, recordings = 0;
-
-  static std::array<Eigen::Vector3d, kNumForecasters> DefaultLogits();
 };
 
 struct FitResult;
@@ -145,7 +120,7 @@ struct IdentifiedModel {
   std::optional<PushRange> push_range;                  // that it was fitted to
   std::optional<StepProbability> step_probability;      // of the people it was fitted to
   std::optional<RecordingEffect> recording_effect;      // for what first frames tell
-  std::optional<ForecastStack> forecasts;               // beside it
+  std::optional<ForecastRule> forecasts;                // beside it
   Behaviour behaviour;                                  // whether its people settle
 
   // A unit the model does not know gets the shared values.

@@ -295,16 +295,6 @@ void Fields(Archive& a, ErrorScale& e) {
 }
 
 template <class Archive>
-void Fields(Archive& a, ForecasterErrors& e) {
-  a("seconds", e.seconds);
-  for (int i = 0; i < kNumForecasters; ++i) {
-    a((std::string(NameOf(static_cast<Forecaster>(i))) + "_m").c_str(), e.mean[i]);
-  }
-  a("stack_m", e.stack);
-  a("recordings", e.recordings);
-}
-
-template <class Archive>
 void Fields(Archive& a, InputNoise& n) {
   a("force_time_s", n.force_time);
   a("force_m_s2", n.force);
@@ -315,21 +305,17 @@ void Fields(Archive& a, InputNoise& n) {
 }
 
 template <class Archive>
-void Fields(Archive& a, ForecastStack& f) {
+void Fields(Archive& a, ForecastRule& f) {
   a("input", f.noise);
   PUSHID_FIELDS(a, f, tail_strength, tail_time);
-  a("likeliest_input", f.likeliest);
-  a.Group("logits", [&f](auto& g) {
-    for (int i = 0; i < kNumForecasters; ++i) {
-      g(std::string(NameOf(static_cast<Forecaster>(i))).c_str(), f.logits[i]);
-    }
-  });
+  a("input_after_s", f.input_after);
   a.Group("errors", [&f](auto& g) {
     constexpr const char* kAxes[] = {"along", "across", "upwards"};
     for (int i = 0; i < 3; ++i) g(kAxes[i], f.errors[i]);
   });
-  PUSHID_FIELDS(a, f, scores, folds, recordings);
-  a.Check(f.tail_strength > 0.0 && f.tail_time > 0.0, "forecasts have numbers that cannot be");
+  PUSHID_FIELDS(a, f, folds, recordings);
+  a.Check(f.tail_strength > 0.0 && f.tail_time > 0.0 && f.input_after > 0.0,
+          "forecasts have numbers that cannot be");
 }
 
 template <class Archive>

@@ -1,18 +1,12 @@
-// ident: four forecasters side by side.
+// ident: two forecasters, their blend, and how far hips are from it.
 #include "ident/observed/first_frames.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
-#include "models/decompositions.h"
-
 namespace pushid {
-namespace {
-
-constexpr double kVelocityWindow = 1.0 / 60.0;  // s
-
-}  // namespace
 
 SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
   SeenFrame seen{HipsAt(recording, frame), {}};
@@ -20,142 +14,182 @@ SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
   return seen;
 }
 
-FirstFrames::FirstFrames(const IdentifiedModel& model, const ForecastStack& stack,
+FirstFrames::FirstFrames(const IdentifiedModel& model, const ForecastRule& rule,
                          const PendulumRecording& recording, int frames)
     : recording_(&recording),
       filter_(model, recording, frames),
-      input_(ForecastFilter(model, stack, recording, frames)) {
-  for (const auto& hip : recording.hip) {
-    paths_.push_back({{hip[0]}, {true}});
-    beside_.push_back(Vector3<double>::Zero());
-  }
+      input_(ForecastFilter(model, rule, recording, frames)),
+      beside_(recording.hip.size(), Vector3<double>::Zero()) {
+  for (const auto& hip : recording.hip) last_.push_back(hip[0]);
 }
 
 void FirstFrames::Observe(SeenFrame frame) {
   if (observed() >= frames()) return;
   filter_.Observe(frame.hips);
   std::vector<bool> seen;
-  for (size_t n = 0; n < paths_.size(); ++n) {
+  for (size_t n = 0; n < last_.size(); ++n) {
     seen.push_back(frame.hips.Sees(static_cast<int>(n)));
-    paths_[n].hip.push_back(frame.hips.hip[n]);
-    paths_[n].seen.push_back(seen.back());
+    if (seen.back()) last_[n] = frame.hips.hip[n];
   }
   if (input_) {
     input_->Observe(frame.states, seen);
-    for (size_t n = 0; n < paths_.size(); ++n) {
-      const int person = static_cast<int>(n);
+    for (size_t n = 0; n < last_.size(); ++n) {
       if (!seen[n] || !input_->status().ok) continue;
-      beside_[n] = frame.hips.hip[n] -
-                   HipPosition(recording_->scene.people[n].body, input_->State(person).q);
+      beside_[n] = frame.hips.hip[n] - HipPosition(recording_->scene.people[n].body,
+                                                   input_->State(static_cast<int>(n)).q);
     }
   }
   seen_.push_back(std::move(frame));
 }
 
-std::vector<Vector3<double>> FirstFrames::LastHips() const {
-  std::vector<Vector3<double>> hips;
-  for (const SeenPath& path : paths_) hips.push_back(path.hip[LastSeen(path)]);
-  return hips;
-}
-
-HipPaths FirstFrames::InputHips(InputForecast* forecast) const {
-  HipPaths hips;
-  if (!input_) return hips;
-  forecast->status = input_->Forecast(&forecast->path);
-  if (!forecast->status.ok) return hips;
-  for (size_t n = 0; n < paths_.size(); ++n) {
-    hips.emplace_back();
+TwoForecasts FirstFrames::Forecasts(const HipPaths& rollout) const {
+  TwoForecasts two;
+  if (!rollout.empty()) two.physics = filter_.ForecastOf(rollout);
+  if (!input_) return two;
+  two.input_status = input_->Forecast(&two.input_path);
+  if (!two.input_status.ok) return two;
+  for (size_t n = 0; n < beside_.size(); ++n) {
+    HipPath& hips = two.input.emplace_back();
     for (int t = observed(); t < frames(); ++t) {
-      const Vector4<double>& q = forecast->path.At(t, static_cast<int>(n)).q;
-      hips.back().push_back(beside_[n] + HipPosition(recording_->scene.people[n].body, q));
+      const Vector4<double>& q = two.input_path.At(t, static_cast<int>(n)).q;
+      hips.push_back(beside_[n] + HipPosition(recording_->scene.people[n].body, q));
     }
   }
-  return hips;
-}
-
-ForecastsOfAll FirstFrames::Forecasts(const HipPaths& rollout, InputForecast* input) const {
-  ForecastsOfAll all;
-  const auto of = [&all](Forecaster who) -> HipPaths& { return all[static_cast<int>(who)]; };
-  if (!rollout.empty()) of(Forecaster::kPhysics) = filter_.ForecastOf(rollout);
-  InputForecast own;
-  of(Forecaster::kInput) = InputHips(input != nullptr ? input : &own);
-  const double dt = recording_->scene.dt;
-  const int ahead = frames() - observed();
-  for (const SeenPath& seen : paths_) {
-    of(Forecaster::kKinematic).push_back(GoesOnAccelerating(seen, dt, ahead));
-    of(Forecaster::kVelocity).push_back(GoesOn(seen, kVelocityWindow, dt, ahead));
-  }
-  return all;
+  return two;
 }
 
 namespace {
 
-constexpr double kWindow = 14.0 / 60.0, kFading = 0.25, kDrag = 1.0;  // s, s and 1/s
+constexpr double kSeconds = 0.35, kAhead = 0.5, kLeastSeconds = 0.05, kLeastSpeed = 0.05;
+constexpr int kNumShares = static_cast<int>(std::size(kErrorShares));
+constexpr double kNormal[] = {0.0627, 0.1257, 0.1891, 0.2533, 0.3186, 0.3853, 0.4538,
+                              0.5244, 0.5978, 0.6745, 0.7554, 0.8416, 0.9346, 1.0364,
+                              1.1503, 1.2816, 1.4395, 1.6449, 1.9600, 2.5758};
 
-struct Motion {
-  Vector3<double> place, velocity, acceleration;
-};
-
-// At the last frame that was seen.
-Motion FittedMotion(const SeenPath& path, int last, double dt) {
-  const int window = std::max(3, static_cast<int>(std::lround(kWindow / dt)));
-  std::vector<int> frames;
-  for (int t = std::max(0, last - window + 1); t <= last; ++t) {
-    if (path.seen[t] || t == 0) frames.push_back(t);
-  }
-  Motion motion{path.hip[last], Vector3<double>::Zero(), Vector3<double>::Zero()};
-  const int order = std::min<int>(3, static_cast<int>(frames.size()));
-  if (order < 2) return motion;
-  Eigen::MatrixXd powers(frames.size(), order), places(frames.size(), 3);
-  for (size_t i = 0; i < frames.size(); ++i) {
-    const double s = (frames[i] - last) * dt;
-    for (int j = 0; j < order; ++j) powers(i, j) = j == 0 ? 1.0 : j == 1 ? s : 0.5 * s * s;
-    places.row(i) = path.hip[frames[i]].transpose();
-  }
-  const Eigen::MatrixXd fitted = SolveSymmetric(Eigen::MatrixXd(powers.transpose() * powers),
-                                                Eigen::MatrixXd(powers.transpose() * places));
-  motion.velocity = fitted.row(1).transpose();
-  if (order > 2) motion.acceleration = fitted.row(2).transpose();
-  return motion;
+std::vector<double> QuantilesOf(const ErrorScale& error) {
+  if (static_cast<int>(error.quantiles.size()) == kNumShares) return error.quantiles;
+  return {std::begin(kNormal), std::end(kNormal)};
 }
 
-// frames_ahead places after the last frame there is, from a motion at an earlier one.
-template <typename Step>
-HipPath Continued(Motion motion, int frames_before, int frames_ahead, const Step& step) {
-  HipPath ahead;
-  for (int t = 0; t < frames_before + frames_ahead; ++t) {
-    step(&motion);
-    if (t >= frames_before) ahead.push_back(motion.place);
-  }
-  return ahead;
+// By how much the logarithm of the share above falls between the last two quantiles.
+double LastFall() {
+  return std::log((1.0 - kErrorShares[kNumShares - 2]) / (1.0 - kErrorShares[kNumShares - 1]));
 }
+
+// The share of |z| below a value, and its inverse: straight between the shares, exponential beyond.
+double ShareBelow(const std::vector<double>& quantiles, double z) {
+  double share = 0.0, at = 0.0;
+  for (int i = 0; i < kNumShares; ++i) {
+    if (z <= quantiles[i]) {
+      const double width = quantiles[i] - at;
+      return share + (width > 0.0 ? (z - at) / width : 1.0) * (kErrorShares[i] - share);
+    }
+    share = kErrorShares[i], at = quantiles[i];
+  }
+  const double last = quantiles[kNumShares - 1] - quantiles[kNumShares - 2];
+  return 1.0 - (1.0 - share) * std::exp(-(z - at) * LastFall() / std::max(1e-9, last));
+}
+
+double QuantileAt(const std::vector<double>& quantiles, double share) {
+  double below = 0.0, at = 0.0;
+  for (int i = 0; i < kNumShares; ++i) {
+    if (share <= kErrorShares[i]) {
+      return at + (share - below) / (kErrorShares[i] - below) * (quantiles[i] - at);
+    }
+    below = kErrorShares[i], at = quantiles[i];
+  }
+  const double last = quantiles[kNumShares - 1] - quantiles[kNumShares - 2];
+  return at + last / LastFall() * std::log((1.0 - below) / std::max(1e-12, 1.0 - share));
+}
+
 
 }  // namespace
 
-int LastSeen(const SeenPath& path) {
-  int last = static_cast<int>(path.hip.size()) - 1;
-  while (last > 0 && !path.seen[last]) --last;
-  return last;
+std::vector<double> InputShares(double input_after, const HipPaths& physics, const HipPaths& input,
+                                double seconds, double dt, ForecastUse use) {
+  const bool asks_physics = use != ForecastUse::kInput && !physics.empty();
+  const bool asks_input = use == ForecastUse::kInput
+                              ? !input.empty()
+                              : use == ForecastUse::kBoth && seconds > 0.0 && !input.empty();
+  std::vector<double> shares;
+  if (!asks_physics && !asks_input) return shares;
+  const size_t frames = (asks_physics ? physics : input)[0].size();
+  for (size_t t = 0; t < frames; ++t) {
+    const double doubt =
+        input_after * input_after * (static_cast<double>(t) + 1.0) * dt / kAhead;
+    shares.push_back(!asks_input     ? 0.0
+                     : !asks_physics ? 1.0
+                                     : seconds * seconds / (seconds * seconds + doubt));
+  }
+  return shares;
 }
 
-HipPath GoesOn(const SeenPath& path, double seconds, double dt, int frames_ahead) {
-  const int last = LastSeen(path);
-  int before = std::max(0, last - std::max(1, static_cast<int>(std::lround(seconds / dt))));
-  while (before > 0 && !path.seen[before]) --before;
-  Motion motion{path.hip[last], Vector3<double>::Zero(), Vector3<double>::Zero()};
-  if (last > before) motion.velocity = (path.hip[last] - path.hip[before]) / ((last - before) * dt);
-  return Continued(motion, static_cast<int>(path.hip.size()) - 1 - last, frames_ahead,
-                   [dt](Motion* m) { m->place += dt * m->velocity; });
+HipPaths Blended(const std::vector<double>& shares, const HipPaths& physics,
+                 const HipPaths& input) {
+  HipPaths blended(std::max(physics.size(), input.size()));
+  for (size_t n = 0; n < blended.size(); ++n) {
+    for (size_t t = 0; t < shares.size(); ++t) {
+      Vector3<double> hip = Vector3<double>::Zero();
+      if (shares[t] < 1.0) hip += (1.0 - shares[t]) * physics[n][t];
+      if (shares[t] > 0.0) hip += shares[t] * input[n][t];
+      blended[n].push_back(hip);
+    }
+  }
+  return blended;
 }
 
-HipPath GoesOnAccelerating(const SeenPath& path, double dt, int frames_ahead) {
-  const int last = LastSeen(path);
-  return Continued(FittedMotion(path, last, dt), static_cast<int>(path.hip.size()) - 1 - last,
-                   frames_ahead, [dt](Motion* m) {
-                     m->velocity += dt * (m->acceleration - kDrag * m->velocity);
-                     m->acceleration *= std::exp(-dt / kFading);
-                     m->place += dt * m->velocity;
-                   });
+Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed) {
+  return {1.0, std::log(ahead / kAhead), std::log((seconds + kLeastSeconds) / kSeconds),
+          std::log(speed + kLeastSpeed)};
+}
+
+HipDistribution::HipDistribution(const std::array<ErrorScale, 3>& errors,
+                                 const Eigen::Matrix3d& axes, HipPaths centre,
+                                 const std::vector<Vector3<double>>& from, double seconds,
+                                 double dt)
+    : centre_(std::move(centre)) {
+  // A world axis has the quantiles of the axis of the push that it is nearest to.
+  for (int i = 0; i < 3; ++i) {
+    Eigen::Index nearest = 0;
+    axes.row(i).cwiseAbs().maxCoeff(&nearest);
+    quantiles_[i] = QuantilesOf(errors[nearest]);
+  }
+  for (size_t n = 0; n < centre_.size(); ++n) {
+    scale_.emplace_back();
+    for (size_t t = 0; t < centre_[n].size(); ++t) {
+      const double ahead = (static_cast<double>(t) + 1.0) * dt;
+      const Eigen::Vector4d features =
+          ScaleFeatures(ahead, seconds, (centre_[n][t] - from[n]).norm() / ahead);
+      Vector3<double> variance;
+      for (int i = 0; i < 3; ++i) {
+        variance[i] = std::exp(2.0 * errors[i].coefficients.dot(features));
+      }
+      scale_[n].push_back((axes.cwiseAbs2() * variance).cwiseSqrt());
+    }
+  }
+}
+
+double HipDistribution::Cdf(int person, int frame, int axis, double value) const {
+  const double z = (value - centre_[person][frame][axis]) / Scale(person, frame, axis);
+  const double share = 0.5 * ShareBelow(quantiles_[axis], std::abs(z));
+  return z < 0.0 ? 0.5 - share : 0.5 + share;
+}
+
+double HipDistribution::Quantile(int person, int frame, int axis, double share) const {
+  const double z = QuantileAt(quantiles_[axis], std::abs(2.0 * share - 1.0));
+  return centre_[person][frame][axis] + (share < 0.5 ? -1.0 : 1.0) * z * Scale(person, frame, axis);
+}
+
+double HipDistribution::Crps(int person, int frame, int axis, double value) const {
+  // Twice the mean pinball loss over levels.
+  constexpr int kLevels = 99;
+  double sum = 0.0;
+  for (int i = 1; i <= kLevels; ++i) {
+    const double level = static_cast<double>(i) / (kLevels + 1);
+    const double off = value - Quantile(person, frame, axis, level);
+    sum += 2.0 * off * (off >= 0.0 ? level : level - 1.0) / kLevels;
+  }
+  return sum;
 }
 
 }  // namespace pushid

@@ -1,11 +1,20 @@
-// ident: a motion that was seen to begin, and what each forecaster says of the rest.
+// ident: a motion that was seen to begin, and what comes of it.
 //
+// Two forecast, and one rule says who has the word:
 //   physics    the rollout by what the push and the recording's effect say, and on it what is left
 //              of its error (recording_filter.h)
 //   input      the pendulum from the state that a filter with an unknown force finds
 //              (recording_filter.h), the force dying out; push and tail act as known
-//   kinematic  a quadratic through what was seen last, fading (GoesOnAccelerating)
-//   velocity   the last velocity
+// After s seconds, h seconds ahead, the forecast is (1 - w) physics + w input with
+//   w = s^2 / (s^2 + a^2 h / 0.5 s),
+// a = ForecastRule::input_after: the longer a person was seen, the more is believed of the state,
+// and the farther ahead, the less. With frame 0 alone it is physics; where one of the two has
+// nothing to say it is the other.
+//
+// An error on one axis (along the push, across, upwards) has the scale
+//   exp(coefficients . [1, log(h / 0.5 s), log((s + 0.05 s) / 0.35 s), log(v + 0.05 m/s)]),
+// v the mean speed to which the forecast takes the hip, and over that scale the quantiles of what
+// was found, alike on both sides: the middle of every distribution is the forecast itself.
 #pragma once
 
 #include <array>
@@ -17,23 +26,6 @@
 
 namespace pushid {
 
-// Hips that go on as they were seen to go, without any model.
-
-// What was seen of one hip, frame 0 at least; unseen frames are ignored.
-struct SeenPath {
-  HipPath hip;
-  std::vector<bool> seen;
-};
-int LastSeen(const SeenPath& path);
-
-// From the last frame on: where it was seen last, and on with the mean velocity of so many seconds
-// before (one frame at least). One frame alone stays where it is.
-HipPath GoesOn(const SeenPath& path, double seconds, double dt, int frames_ahead);
-
-// A quadratic through the last 0.23 s, whose acceleration fades with 0.25 s and whose velocity with
-// 1 s.
-HipPath GoesOnAccelerating(const SeenPath& path, double dt, int frames_ahead);
-
 // Everybody at one frame.
 struct SeenFrame {
   SeenHips hips;
@@ -41,20 +33,19 @@ struct SeenFrame {
 };
 SeenFrame FrameAt(const PendulumRecording& recording, int frame);
 
-// Hips to come by forecaster; empty of one that is not available.
-using ForecastsOfAll = std::array<HipPaths, kNumForecasters>;
-
-// What the filter with an unknown force says of all frames.
-struct InputForecast {
-  RolloutStatus status;
-  RolloutPath<double> path;
+// Hips to come, by [person][frame ahead].
+struct TwoForecasts {
+  HipPaths physics, input;  // empty of one that has nothing to say
+  // What the filter with an unknown force says of all frames.
+  RolloutStatus input_status;
+  RolloutPath<double> input_path;
 };
 
 class FirstFrames {
  public:
   // Of the recording only people, pushes and frame 0 are looked at; it and the model must outlive
   // the object. frames: how far to look, in all.
-  FirstFrames(const IdentifiedModel& model, const ForecastStack& stack,
+  FirstFrames(const IdentifiedModel& model, const ForecastRule& rule,
               const PendulumRecording& recording, int frames);
 
   // The next frame; the first is frame 1. Not more than there are.
@@ -66,21 +57,52 @@ class FirstFrames {
   bool HasInput() const { return input_.has_value(); }
   const std::vector<SeenFrame>& seen() const { return seen_; }  // from frame 1 on
   // Where hips were seen last, by person.
-  std::vector<Vector3<double>> LastHips() const;
+  const std::vector<Vector3<double>>& LastHips() const { return last_; }
 
-  // rollout: the model's hips with the effect, over all frames; empty: it left the domain. input:
-  // may be null.
-  ForecastsOfAll Forecasts(const HipPaths& rollout, InputForecast* input = nullptr) const;
+  // rollout: the model's hips with the effect, over all frames; empty: it left the domain.
+  TwoForecasts Forecasts(const HipPaths& rollout) const;
 
  private:
-  HipPaths InputHips(InputForecast* forecast) const;
-
   const PendulumRecording* recording_;
   RecordingFilter filter_;
   std::optional<SceneFilter> input_;
   std::vector<SeenFrame> seen_;
-  std::vector<SeenPath> paths_;          // by person
+  std::vector<Vector3<double>> last_;    // by person
   std::vector<Vector3<double>> beside_;  // by person: hip less the filter's, where last seen
+};
+
+// The weight w of the filter by frame ahead; empty where nobody who is asked has anything to say.
+std::vector<double> InputShares(double input_after, const HipPaths& physics, const HipPaths& input,
+                                double seconds, double dt, ForecastUse use = ForecastUse::kBoth);
+HipPaths Blended(const std::vector<double>& shares, const HipPaths& physics,
+                 const HipPaths& input);
+
+// Of log scale, as above.
+Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed);
+
+// Where hips will be.
+class HipDistribution {
+ public:
+  // centre: the forecast, by person and frame ahead; from: where the hips were at the last frame
+  // seen. axes: columns along the push, across, upwards.
+  HipDistribution(const std::array<ErrorScale, 3>& errors, const Eigen::Matrix3d& axes,
+                  HipPaths centre, const std::vector<Vector3<double>>& from, double seconds,
+                  double dt);
+
+  int num_people() const { return static_cast<int>(centre_.size()); }
+  int num_frames() const { return centre_.empty() ? 0 : static_cast<int>(centre_[0].size()); }
+
+  // frame: 0 is the first that was not seen; axis: 0 x, 1 y, 2 z.
+  double Cdf(int person, int frame, int axis, double value) const;
+  double Quantile(int person, int frame, int axis, double share) const;
+  // Continuous ranked probability score of one value (Gneiting and Raftery 2007), m.
+  double Crps(int person, int frame, int axis, double value) const;
+
+ private:
+  double Scale(int person, int frame, int axis) const { return scale_[person][frame][axis]; }
+
+  std::array<std::vector<double>, 3> quantiles_;  // on the world's axes
+  HipPaths centre_, scale_;
 };
 
 }  // namespace pushid

@@ -39,7 +39,7 @@ namespace pushid {
 //
 // After k frames b has the posterior over the nodes; its mean makes one rollout, to which the
 // expectation of e is added. (The mean, not the mode: the posterior is skewed.) That is one of the
-// forecasts that are put together (forecast_stack.h).
+// two forecasts that are put together (first_frames.h).
 
 inline constexpr int kEffectNodes = 33;
 inline constexpr double kWidestEffect = 1.6;
@@ -107,8 +107,6 @@ class ErrorProcess {
   State Predicted(const State& state) const;
   // `frames` frames on, without seeing any, p is expected to be position + Reach velocity.
   double Reach(int frames) const;
-  // Of y, 1 .. frames frames on from here.
-  std::vector<double> VariancesAhead(int frames) const;
 
  private:
   struct Covariance {
@@ -131,13 +129,6 @@ struct SeenHips {
   bool Sees(int person) const { return seen.empty() || seen[person]; }
 };
 SeenHips HipsAt(const PendulumRecording& recording, int frame);
-
-// Hips to come as a mixture of normal distributions, a component for each node, on the axes of
-// Axes(): by [person][frame].
-struct MixturePoint {
-  std::vector<Vector3<double>> mean;  // of the components
-  Vector3<double> deviation;          // the same for all of them
-};
 
 class RecordingFilter {
  public:
@@ -162,9 +153,6 @@ class RecordingFilter {
   EffectEstimate Effect(const RecordingEffect& effect) const;
   // The frames to come, of a rollout over all frames and what is left of its error.
   HipPaths ForecastOf(const HipPaths& rollout) const;
-  // By [person][frame - observed()]; weights as in EffectWeights.
-  std::vector<std::vector<MixturePoint>> Mixture(const RecordingEffect& effect,
-                                                 std::vector<double>* weights) const;
 
  private:
   using Axis3 = std::array<ErrorProcess::State, 3>;
@@ -214,12 +202,8 @@ class SceneFilter {
                         const std::vector<bool>& seen);
   const RolloutStatus& status() const { return filter_.status(); }
   RolloutStatus Forecast(RolloutPath<double>* path) const;
-  double Deviance() const { return filter_.Deviance(); }
   // At the last frame.
   PendulumState<double> State(int person) const { return TurnedBack(filter_.state(person)); }
-  // Unknown, on x, y, theta and phi, N and N m; and its standard deviation.
-  Vector4<double> Force(int person) const;
-  Vector4<double> ForceDeviation(int person) const;
 
  private:
   PendulumState<double> TurnedBack(PendulumState<double> state) const;
@@ -230,10 +214,7 @@ class SceneFilter {
 };
 
 // The filter that forecasts; none of models with networks, whose memory no measurement corrects.
-std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, const ForecastStack& stack,
+std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, const ForecastRule& rule,
                                           const PendulumRecording& recording, int frames);
-// The filter that says which force acted beside those of the model, with its own gains and tail.
-std::optional<SceneFilter> UnknownForceFilter(const IdentifiedModel& model, const InputNoise& noise,
-                                              const PendulumRecording& recording, int frames);
 
 }  // namespace pushid

@@ -1,13 +1,144 @@
-// ident: scores of recordings; score_groups.cc has their means.
+// ident: static, constant velocity and kinematic predictions; scores of recordings, their groups
+// and clusters.
 #include "ident/prediction/evaluation.h"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <sstream>
 
+#include "datasets/files/number_text.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/uncertainty/clusters.h"
+#include "models/decompositions.h"
 
 namespace pushid {
+namespace {
+
+// What was seen of one hip, frame 0 at least; unseen frames are ignored.
+struct SeenPath {
+  HipPath hip;
+  std::vector<bool> seen;
+};
+
+constexpr double kWindow = 14.0 / 60.0, kFading = 0.25, kDrag = 1.0;  // s, s and 1/s
+
+struct Motion {
+  Vector3<double> place, velocity, acceleration;
+};
+
+// At the last frame that was seen.
+Motion FittedMotion(const SeenPath& path, int last, double dt) {
+  const int window = std::max(3, static_cast<int>(std::lround(kWindow / dt)));
+  std::vector<int> frames;
+  for (int t = std::max(0, last - window + 1); t <= last; ++t) {
+    if (path.seen[t] || t == 0) frames.push_back(t);
+  }
+  Motion motion{path.hip[last], Vector3<double>::Zero(), Vector3<double>::Zero()};
+  const int order = std::min<int>(3, static_cast<int>(frames.size()));
+  if (order < 2) return motion;
+  Eigen::MatrixXd powers(frames.size(), order), places(frames.size(), 3);
+  for (size_t i = 0; i < frames.size(); ++i) {
+    const double s = (frames[i] - last) * dt;
+    for (int j = 0; j < order; ++j) powers(i, j) = j == 0 ? 1.0 : j == 1 ? s : 0.5 * s * s;
+    places.row(i) = path.hip[frames[i]].transpose();
+  }
+  const Eigen::MatrixXd fitted = SolveSymmetric(Eigen::MatrixXd(powers.transpose() * powers),
+                                                Eigen::MatrixXd(powers.transpose() * places));
+  motion.velocity = fitted.row(1).transpose();
+  if (order > 2) motion.acceleration = fitted.row(2).transpose();
+  return motion;
+}
+
+// frames_ahead places after the last frame there is, from a motion at an earlier one.
+template <typename Step>
+HipPath Continued(Motion motion, int frames_before, int frames_ahead, const Step& step) {
+  HipPath ahead;
+  for (int t = 0; t < frames_before + frames_ahead; ++t) {
+    step(&motion);
+    if (t >= frames_before) ahead.push_back(motion.place);
+  }
+  return ahead;
+}
+
+int LastSeen(const SeenPath& path) {
+  int last = static_cast<int>(path.hip.size()) - 1;
+  while (last > 0 && !path.seen[last]) --last;
+  return last;
+}
+
+// The mean velocity since the frame before that was seen.
+HipPath GoesOn(const SeenPath& path, double dt, int frames_ahead) {
+  const int last = LastSeen(path);
+  int before = std::max(0, last - 1);
+  while (before > 0 && !path.seen[before]) --before;
+  Motion motion{path.hip[last], Vector3<double>::Zero(), Vector3<double>::Zero()};
+  if (last > before) motion.velocity = (path.hip[last] - path.hip[before]) / ((last - before) * dt);
+  return Continued(motion, static_cast<int>(path.hip.size()) - 1 - last, frames_ahead,
+                   [dt](Motion* m) { m->place += dt * m->velocity; });
+}
+
+HipPath GoesOnAccelerating(const SeenPath& path, double dt, int frames_ahead) {
+  const int last = LastSeen(path);
+  return Continued(FittedMotion(path, last, dt), static_cast<int>(path.hip.size()) - 1 - last,
+                   frames_ahead, [dt](Motion* m) {
+                     m->velocity += dt * (m->acceleration - kDrag * m->velocity);
+                     m->acceleration *= std::exp(-dt / kFading);
+                     m->place += dt * m->velocity;
+                   });
+}
+
+constexpr int kLeastPredicted = 10;  // frames
+
+// A push may last as long as its recording: something must be left to predict.
+int LastKnown(const PendulumRecording& recording, int observed) {
+  const int frames = recording.num_frames();
+  const int latest = std::max(frames / 2, frames - 1 - kLeastPredicted);
+  const int known = observed > 0 ? observed - 1 : std::min(recording.scene.LastPushEnd(), latest);
+  return std::min(known, frames - 1);
+}
+
+// What is known as it was, and then what `ahead` says of it.
+template <typename Ahead>
+HipPaths GoneOn(const PendulumRecording& recording, int observed, const Ahead& ahead) {
+  const int known = LastKnown(recording, observed) + 1;
+  HipPaths paths;
+  for (int n = 0; n < recording.num_people(); ++n) {
+    const auto& hip = recording.hip[n];
+    SeenPath seen{HipPath(hip.begin(), hip.begin() + known), {}};
+    for (int t = 0; t < known; ++t) seen.seen.push_back(t == 0 || recording.Weight(n, t) > 0.0);
+    const HipPath rest = ahead(seen, recording.num_frames() - known);
+    paths.push_back(std::move(seen.hip));
+    paths.back().insert(paths.back().end(), rest.begin(), rest.end());
+  }
+  return paths;
+}
+
+}  // namespace
+
+HipPaths StaticBaseline(const PendulumRecording& recording, int observed) {
+  HipPaths paths;
+  for (const auto& hip : recording.hip) {
+    HipPath path(hip.begin(), hip.begin() + std::max(1, observed));
+    path.resize(hip.size(), Vector3<double>(path.back()));
+    paths.push_back(std::move(path));
+  }
+  return paths;
+}
+
+HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed) {
+  return GoneOn(recording, observed, [&](const SeenPath& seen, int ahead) {
+    return GoesOn(seen, recording.scene.dt, ahead);
+  });
+}
+
+HipPaths KinematicBaseline(const PendulumRecording& recording, int observed) {
+  return GoneOn(recording, observed, [&](const SeenPath& seen, int ahead) {
+    return GoesOnAccelerating(seen, recording.scene.dt, ahead);
+  });
+}
 
 std::string MetricsText(const HipMetrics& metrics, int digits, int observed) {
   std::string text;
@@ -244,6 +375,166 @@ Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumReco
          })});
   }
   return evaluation;
+}
+
+double ScoreClusters::ErrorOfMean(const std::vector<double>& deviations) const {
+  if (count < 2) return 0.0;
+  std::vector<double> sums(count, 0.0);
+  for (size_t i = 0; i < deviations.size(); ++i) sums[of[i]] += deviations[i];
+  double squares = 0.0;
+  for (double sum : sums) squares += sum * sum;
+  return std::sqrt(squares * count / (count - 1.0));
+}
+
+MeanAndError ScoreClusters::Mean(const std::vector<double>& values) const {
+  const double mean = MeanOf(values).mean, n = static_cast<double>(values.size());
+  std::vector<double> deviations;
+  for (double value : values) deviations.push_back((value - mean) / n);
+  return {mean, ErrorOfMean(deviations)};
+}
+
+ScoreClusters ClustersOf(const std::vector<std::string>& pushed) {
+  ScoreClusters clusters;
+  std::map<std::string, int> people;
+  for (const std::string& person : pushed) {
+    clusters.of.push_back(people.emplace(person, static_cast<int>(people.size())).first->second);
+  }
+  clusters.count = static_cast<int>(people.size());
+  if (clusters.count > 1 && people.size() < pushed.size()) {
+    clusters.by = ClusterBy::kSubject;
+    return clusters;
+  }
+  clusters.count = static_cast<int>(pushed.size());
+  std::iota(clusters.of.begin(), clusters.of.end(), 0);
+  return clusters;
+}
+
+ScoreClusters ClustersOf(const std::vector<PendulumRecording>& recordings) {
+  std::vector<std::string> pushed;
+  for (const PendulumRecording& r : recordings) pushed.push_back(r.subject_ids[r.pushed_person]);
+  return ClustersOf(pushed);
+}
+
+std::string ClustersText(ClusterBy by, int count) {
+  const bool people = by == ClusterBy::kSubject;
+  const char* const what =
+      people ? (count == 1 ? " person" : " people") : (count == 1 ? " recording" : " recordings");
+  return std::to_string(count) + what;
+}
+
+LabelKeys UsualGroups() { return {kMagnitudeLabel, kSubjectUnit, kSettingLabel}; }
+
+LabelKeys ParseLabelKeys(const std::string& list) {
+  LabelKeys keys;
+  std::stringstream words(list);
+  for (std::string key; std::getline(words, key, ',');) keys.emplace_back(Trimmed(key));
+  return keys;
+}
+
+std::string LabelKeysText(const LabelKeys& keys) {
+  std::string text;
+  for (const std::string& key : keys) text += (text.empty() ? "" : ",") + key;
+  return text;
+}
+
+MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const LabelKeys& keys) {
+  if (keys == UsualGroups()) return std::nullopt;  // any of these may be absent
+  std::set<std::string> seen;
+  for (const std::string& key : keys) {
+    const std::string list = "--group_by=" + LabelKeysText(keys);
+    if (key.empty()) return Error{list + " has an empty name; give labels with one comma between"};
+    if (!seen.insert(key).second) return Error{list + " names '" + key + "' twice"};
+    if (MaybeError error = CheckLabel(recordings, "group_by", key, kSubjectUnit)) return error;
+  }
+  return std::nullopt;
+}
+
+std::string WithoutLabelText(const WithoutLabel& counts) {
+  std::string text;
+  for (const auto& [key, count] : counts) {
+    text += std::to_string(count) + " recording" + (count == 1 ? " has" : "s have") + " no " + key +
+            ": " + (count == 1 ? "it is" : "they are") + " in no group by " + key + "\n";
+  }
+  return text;
+}
+
+std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
+                                    const std::string& key) {
+  std::vector<std::string> names;
+  for (const PendulumRecording& r : recordings) {
+    names.push_back(key == kSubjectUnit ? r.subject_ids[r.pushed_person] : r.labels.Of(key));
+  }
+  return names;
+}
+
+namespace {
+
+using Group = std::vector<const RecordingScore*>;
+
+MeanScore Mean(const Group& scores, bool by_frames) {
+  MeanScore mean;
+  const auto weight = [by_frames](const RecordingScore* s) {
+    return by_frames ? s->frames - 1 : 1.0;
+  };
+  double total = 0.0;
+  for (const RecordingScore* s : scores) total += weight(s);
+  mean.recordings = static_cast<int>(scores.size());
+  if (scores.empty()) return mean;
+  std::vector<std::string> pushed;
+  for (const RecordingScore* s : scores) pushed.push_back(s->pushed);
+  const ScoreClusters clusters = ClustersOf(pushed);
+  mean.clustered_by = clusters.by;
+  mean.clusters = clusters.count;
+  for (const HipMetric& metric : AllHipMetrics()) {
+    const auto value = metric.value;
+    for (const RecordingScore* s : scores) mean.*value += weight(s) * s->*value;
+    mean.*value /= total;
+    std::vector<double> deviations;
+    for (const RecordingScore* s : scores) {
+      deviations.push_back(weight(s) / total * (s->*value - mean.*value));
+    }
+    mean.error.*value = clusters.ErrorOfMean(deviations);
+  }
+  return mean;
+}
+
+}  // namespace
+
+ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
+                       std::vector<RecordingScore> scores, int observed, bool bands,
+                       const LabelKeys& group_by) {
+  ScoreSummary summary;
+  summary.observed = observed;
+  summary.bands = bands;
+  summary.recordings = std::move(scores);
+  Group all;
+  std::vector<StepPrediction> steps;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    RecordingScore& score = summary.recordings[i];
+    score.pushed = recordings[i].subject_ids[recordings[i].pushed_person];
+    if (!score.failure.empty()) continue;
+    all.push_back(&score);
+    steps.insert(steps.end(), score.steps.begin(), score.steps.end());
+  }
+  summary.steps = ScoreSteps(steps);
+  const auto propagation = [](const Group& group) {
+    std::vector<const PropagationScore*> of_group;
+    for (const RecordingScore* score : group) of_group.push_back(&score->propagation);
+    return SummarizePropagation(of_group);
+  };
+  summary.propagation = propagation(all);
+  const auto by_setting = GroupScores(recordings, summary.recordings, {kSettingLabel}, propagation);
+  for (const auto& [name, of_setting] : by_setting.at(kSettingLabel)) {
+    if (of_setting.recordings > 0) summary.propagation_by_setting[name] = of_setting;
+  }
+  summary.mean = Mean(all, false);
+  summary.frame_weighted = Mean(all, true);
+  summary.by = GroupScores(recordings, summary.recordings, group_by,
+                           [](const Group& group) { return Mean(group, false); });
+  LabelKeys keys = group_by;
+  if (!summary.propagation_by_setting.empty()) keys.push_back(kSettingLabel);
+  summary.without_label = CountWithoutLabel(recordings, summary.recordings, keys);
+  return summary;
 }
 
 }  // namespace pushid

@@ -118,11 +118,10 @@ std::string WithoutLabelText(const WithoutLabel& counts);
 // observed: frames seen first, frame 0 among them; 0: until the last push ends, or the last frame
 // but ten (half of a short recording); of the static one frame 0 alone.
 HipPaths StaticBaseline(const PendulumRecording& recording, int observed = 0);
-// On with the velocity of the last frame, or the mean of the last three or eight.
+// Of everybody: on from where they were seen last with the velocity since the frame before.
 HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed = 0);
-HipPaths VelocityOfThreeBaseline(const PendulumRecording& recording, int observed = 0);
-HipPaths VelocityOfEightBaseline(const PendulumRecording& recording, int observed = 0);
-// GoesOnAccelerating (observed/first_frames.h).
+// A quadratic through the last 0.23 s, whose acceleration fades with 0.25 s and whose velocity with
+// 1 s.
 HipPaths KinematicBaseline(const PendulumRecording& recording, int observed = 0);
 
 struct Baseline {
@@ -134,8 +133,6 @@ struct Baseline {
 inline constexpr Baseline kBaselines[] = {
     {"static", "static", StaticBaseline, false},
     {"constant velocity", "constant_velocity", ConstantVelocityBaseline, false},
-    {"velocity of 3 frames", "velocity_of_3", VelocityOfThreeBaseline, true},
-    {"velocity of 8 frames", "velocity_of_8", VelocityOfEightBaseline, true},
     {"kinematic", "kinematic", KinematicBaseline, true},
 };
 
@@ -231,7 +228,7 @@ std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
 // Scores in the order of recordings; a failed rollout is a named failure.
 // observed: frames seen first, 0: none; the model must say how recordings differ.
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
-                          int observed = 0, ForecastUse use = ForecastUse::kStack);
+                          int observed = 0, ForecastUse use = ForecastUse::kBoth);
 RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed);
 
@@ -256,6 +253,6 @@ struct Evaluation {
 };
 Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
                     int observed = 0, const LabelKeys& group_by = UsualGroups(),
-                    ForecastUse use = ForecastUse::kStack);
+                    ForecastUse use = ForecastUse::kBoth);
 
 }  // namespace pushid

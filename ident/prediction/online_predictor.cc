@@ -34,10 +34,7 @@ OnlinePredictor::OnlinePredictor(const IdentifiedModel& model, const PendulumRec
     : model_(&model),
       recording_(&recording),
       use_(use),
-      frames_(std::make_unique<FirstFrames>(model, *model.forecasts, recording, num_frames)) {
-  auto filter = UnknownForceFilter(model, model.forecasts->likeliest, recording, num_frames);
-  if (filter) unknown_force_ = std::make_unique<SceneFilter>(*std::move(filter));
-}
+      frames_(std::make_unique<FirstFrames>(model, *model.forecasts, recording, num_frames)) {}
 
 Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
                                               const PendulumRecording& recording, int num_frames,
@@ -55,22 +52,16 @@ Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
                ": people leave the model's domain with any push tail"};
 }
 
-void OnlinePredictor::Observe(SeenFrame frame) {
-  if (unknown_force_) {
-    std::vector<bool> seen = frame.hips.seen;
-    seen.resize(frame.hips.hip.size(), true);
-    unknown_force_->Observe(frame.states, seen);
-  }
-  frames_->Observe(std::move(frame));
-}
+void OnlinePredictor::Observe(SeenFrame frame) { frames_->Observe(std::move(frame)); }
 
 EffectEstimate OnlinePredictor::effect() const {
   return frames_->filter().Effect(*model_->recording_effect);
 }
 
-void OnlinePredictor::SetForecast(const RolloutPath<double>& input_path,
-                                  const std::vector<ForecastWeights>& weights, const HipPaths& hips,
+void OnlinePredictor::SetForecast(const TwoForecasts& two,
+                                  const std::vector<double>& input_shares,
                                   Prediction* prediction) const {
+  const HipPaths hips = Blended(input_shares, two.physics, two.input);
   const std::vector<SeenFrame>& seen = frames_->seen();
   const int from = observed();
   const double dt = recording_->scene.dt;
@@ -92,12 +83,10 @@ void OnlinePredictor::SetForecast(const RolloutPath<double>& input_path,
       hip = hips[n][t - from];
       // The rollout's lean, to which it comes back as an error of velocity dies out, and the
       // filter's.
-      const double physics = weights[t - from][static_cast<int>(Forecaster::kPhysics)];
-      const double input = weights[t - from][static_cast<int>(Forecaster::kInput)];
-      const double share = input > 0.0 ? input / (physics + input) : 0.0;
+      const double share = input_shares[t - from];
       state.q.tail<2>() += std::exp(-(t - from + 1) * dt / kErrorTime) * off;
       if (share > 0.0) {
-        state.q.tail<2>() += share * (input_path.At(t, n).q - state.q).tail<2>();
+        state.q.tail<2>() += share * (two.input_path.At(t, n).q - state.q).tail<2>();
       }
       state.q.head<2>() = CartUnder(prediction->BodyAt(recording_->scene, t, n), hip, state.q);
       state.qd = (state.q - prediction->path.At(t - 1, n).q) / dt;
@@ -110,16 +99,16 @@ Prediction OnlinePredictor::Predict() const {
   prediction.observed = observed();
   prediction.effect = effect();
   if (!prediction.status.ok || observed() == 1) return prediction;
-  InputForecast input;
-  const ForecastsOfAll forecasts = frames_->Forecasts(prediction.hip, &input);
-  const std::vector<ForecastWeights> weights =
-      WeightsAhead(*model_->forecasts, forecasts, frames_->seconds(), recording_->scene.dt, use_);
-  if (weights.empty() && observed() < frames_->frames()) {
-    prediction.status = input.status;  // asked alone, and left the domain
+  const TwoForecasts two = frames_->Forecasts(prediction.hip);
+  const std::vector<double> input_shares =
+      InputShares(model_->forecasts->input_after, two.physics, two.input, frames_->seconds(),
+                  recording_->scene.dt, use_);
+  if (input_shares.empty() && observed() < frames_->frames()) {
+    prediction.status = two.input_status;  // asked alone, and left the domain
     prediction.hip.clear();
     return prediction;
   }
-  SetForecast(input.path, weights, Stacked(weights, forecasts), &prediction);
+  SetForecast(two, input_shares, &prediction);
   return prediction;
 }
 
@@ -128,7 +117,7 @@ HipDistribution OnlinePredictor::Distribution(const Prediction& prediction) cons
   for (const HipPath& hip : prediction.hip) {
     centre.emplace_back(hip.begin() + observed(), hip.end());
   }
-  return HipDistribution(*model_->forecasts, frames_->filter().Axes(), std::move(centre),
+  return HipDistribution(model_->forecasts->errors, frames_->filter().Axes(), std::move(centre),
                          frames_->LastHips(), frames_->seconds(), recording_->scene.dt);
 }
 
@@ -166,27 +155,6 @@ Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecor
     prediction.bands.push_back(std::move(band));
   }
   return prediction;
-}
-
-Result<std::vector<HipPaths>> DrawFrom(const IdentifiedModel& model,
-                                       const PendulumRecording& recording, int observed, int draws,
-                                       uint64_t seed, int num_frames, ForecastUse use) {
-  const Result<OnlinePredictor> made = After(model, recording, observed, num_frames, use);
-  if (!made.ok()) return made.error();
-  const Prediction prediction = made.value().Predict();
-  if (!prediction.status.ok) return Error{OutsideText(prediction.status)};
-  const HipDistribution hips = made.value().Distribution(prediction);
-  Random random(seed);
-  std::vector<HipPaths> futures;
-  for (int i = 0; i < draws; ++i) {
-    HipPaths future = hips.Draw(&random);
-    for (size_t n = 0; n < future.size(); ++n) {
-      const HipPath& seen = prediction.hip[n];
-      future[n].insert(future[n].begin(), seen.begin(), seen.begin() + observed);
-    }
-    futures.push_back(std::move(future));
-  }
-  return futures;
 }
 
 std::string EffectText(const Prediction& prediction) {

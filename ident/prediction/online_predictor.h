@@ -6,20 +6,18 @@
 //     const Prediction prediction = predictor.value().Predict(); // one rollout
 //   }
 //
-// Who forecasts and how forecasts are put together stands in observed/first_frames.h and
-// observed/forecast_stack.h. Frames that were seen are in the prediction as they were. From then on
-// hips are forecast, leans are those of the two forecasters that have one, in the same shares, and
-// the cart is where the rod puts it; forces, steps and a moving rod are the rollout's. Before
+// Who forecasts and how forecasts are put together stands in observed/first_frames.h. Frames that
+// were seen are in the prediction as they were. From then on hips and leans are forecast, and the
+// cart is where the rod puts it; forces, steps and a moving rod are the rollout's. Before
 // anything is seen the prediction is that of Predict, to the bit. Every forecast needs that
 // rollout: where it leaves the domain, nothing is predicted.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "ident/observed/forecast_stack.h"
+#include "ident/observed/first_frames.h"
 #include "ident/prediction/prediction.h"
 
 namespace pushid {
@@ -34,7 +32,7 @@ class OnlinePredictor {
   // whatever the effect.
   static Result<OnlinePredictor> Make(const IdentifiedModel& model,
                                       const PendulumRecording& recording, int num_frames,
-                                      ForecastUse use = ForecastUse::kStack);
+                                      ForecastUse use = ForecastUse::kBoth);
 
   // The next frame, frame 1 first; nothing once all frames were seen.
   void Observe(SeenFrame frame);
@@ -44,38 +42,24 @@ class OnlinePredictor {
   Prediction Predict() const;
   // Of the hips behind those seen in a prediction that did not fail.
   HipDistribution Distribution(const Prediction& prediction) const;
-  // Which forces acted beside those of the model; null of models with networks, and once the filter
-  // has left the domain.
-  const SceneFilter* unknown_force() const {
-    return unknown_force_ && unknown_force_->status().ok ? &*unknown_force_ : nullptr;
-  }
 
  private:
   OnlinePredictor(const IdentifiedModel& model, const PendulumRecording& recording, int num_frames,
                   ForecastUse use);
-  void SetForecast(const RolloutPath<double>& input_path,
-                   const std::vector<ForecastWeights>& weights, const HipPaths& hips,
+  void SetForecast(const TwoForecasts& two, const std::vector<double>& input_shares,
                    Prediction* prediction) const;
 
   const IdentifiedModel* model_;
   const PendulumRecording* recording_;
   ForecastUse use_;
   std::unique_ptr<FirstFrames> frames_;
-  std::unique_ptr<SceneFilter> unknown_force_;
 };
 
 // From the first `observed` frames of a recording, with bands. num_frames: 0 means as many as the
 // recording has, otherwise more than observed. observed 0: as Predict.
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed, int num_frames = 0,
-                               ForecastUse use = ForecastUse::kStack);
-
-// Hips of futures drawn from the distribution behind those bands, by [draw][person][frame]; frames
-// that were seen are as they were. observed: at least 1 (frame 0 alone: what recordings differ by).
-Result<std::vector<HipPaths>> DrawFrom(const IdentifiedModel& model,
-                                       const PendulumRecording& recording, int observed, int draws,
-                                       uint64_t seed, int num_frames = 0,
-                                       ForecastUse use = ForecastUse::kStack);
+                               ForecastUse use = ForecastUse::kBoth);
 
 // "tail 1.2 times that of the mean recording (b 0.18 +- 0.21), from 12 frames"; empty where nothing
 // was seen.

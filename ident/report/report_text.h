@@ -58,12 +58,8 @@ TextTable ContrastTable(const Contrast& contrast);
 // correction says: a line each.
 std::string ContrastText(const FitResult& result);
 
-// How well hips are forecast that were seen to begin, in words and tables.
-
-std::string ForecastSentence(const ForecastStack& forecasts);
-// A row for each time that was seen.
-TextTable ForecastTable(const ForecastStack& forecasts);
-std::string ForecastText(const ForecastStack& forecasts);
+// How hips are forecast that were seen to begin, in words.
+std::string ForecastText(const ForecastRule& forecasts);
 
 // The identified loop in the numbers that a control engineer quotes.
 

@@ -85,7 +85,7 @@ enum class FramesUse { kForecast, kReanchored };
 // as in ScoreModel.
 Predictor ModelPredictor(const std::string& name, FitOptions options, int observed = 0,
                          FramesUse use = FramesUse::kForecast,
-                         ForecastUse forecast = ForecastUse::kStack);
+                         ForecastUse forecast = ForecastUse::kBoth);
 
 // One of kBaselines; nothing is fitted.
 Predictor BaselinePredictor(const Baseline& baseline, int observed = 0);

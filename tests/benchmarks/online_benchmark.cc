@@ -15,7 +15,7 @@ IdentifiedModel ModelOfBenchmark(bool groups) {
   model.parameters = PublishedTailParameters();
   model.recording_effect = RecordingEffect{};
   model.recording_effect->spread = 0.4;
-  model.forecasts = ForecastStack{};
+  model.forecasts = ForecastRule{};
   if (!groups) return model;
   model.options.interaction.spring = model.options.interaction.damping = true;
   model.parameters[kContactStiffness] = 2900.0, model.parameters[kContactDistance] = 0.42;

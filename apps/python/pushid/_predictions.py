@@ -39,10 +39,10 @@ def simulate_formation(result, shape="line", people=10, *, spacing=0.45, pushed=
 class OnlinePredictor:
     """A prediction that is updated with every observed frame; recording: people, pushes and frame 0.
 
-    forecast: "stack" (all forecasters together), "physics", "input" or "kinematic".
+    forecast: "both" together, "physics" (the rollout) or "input" (a filter with an unknown force).
     """
 
-    def __init__(self, result, recording, frames, *, forecast="stack"):
+    def __init__(self, result, recording, frames, *, forecast="both"):
         self._online = _pushid.Online(result._model, *checked(recording), frames, forecast)
 
     def observe(self, hip, left_ankle, right_ankle):
@@ -53,11 +53,6 @@ class OnlinePredictor:
     def observed(self):
         """Number of observed frames, including frame 0."""
         return self._online.observed
-
-    @property
-    def unknown_force(self):
-        """(force, standard deviation): what acts beside the known push, (people, 4) each, N and N m; or None."""
-        return self._online.unknown_force
 
     def predict(self):
         """As Result.predict, from the frames observed so far, without bands."""

@@ -168,16 +168,15 @@ class Result:
         """Finds the further push that would reduce the error of a parameter (or of all together) most; see Design."""
         return Design(_pushid.design(self._model, parameter))
 
-    def predict(self, recording, *, observed=0, forecast="stack", frames=0, samples=0, seed=1, set=None, push_scale=1.0,
+    def predict(self, recording, *, observed=0, forecast="both", frames=0, samples=0, seed=1, set=None, push_scale=1.0,
                 push_again=()):
         """Predicts the motion from the first frame (or `observed` frames) and the push.
 
         {"hip": (frames, people, 3), "states": (frames, people, 8: q and its rate), ...}; with `observed` also the
-        90 % bands "lower90" and "upper90" of the later frames, forecast by "stack" (all forecasters together), "physics",
-        "input" (a filter with an unknown force) or "kinematic". samples: number of futures to draw, as "samples" of
-        shape (samples, frames, people, 3): after `observed` frames from the distribution behind those bands; otherwise
-        from the process noise if the model has one, or from the covariance of the parameters and the errors of the
-        fitted recordings. frames: number of frames (0: as in the recording). set: {name: value} for "what if";
+        90 % bands "lower90" and "upper90" of the later frames, forecast by "physics" (the rollout), "input" (a filter with
+        an unknown force) or "both". samples: number of futures to draw, as "samples" of shape (samples, frames, people,
+        3), without `observed`: from the process noise if the model has one, or from the covariance of the parameters and
+        the errors of the fitted recordings. frames: number of frames (0: as in the recording). set: {name: value} for "what if";
         push_scale multiplies the push, and push_again lists frames at which it comes again. Raises FitError if a
         rollout leaves the model's domain; warns about pushes unlike the fitted ones.
         """
@@ -199,7 +198,7 @@ class Result:
         """Smooths a recording and fills its gaps under the model's process noise: as path_between, for all people."""
         return _pushid.smooth(self._model, *checked(recording))
 
-    def evaluate(self, recordings, *, observed=0, forecast="stack"):
+    def evaluate(self, recordings, *, observed=0, forecast="both"):
         """Errors of the predictions and of two baselines, as pushid-evaluate writes them."""
         return self._model.evaluate(checked(recordings), observed, forecast)
 
@@ -304,7 +303,7 @@ def load(path):
 
 
 def crossvalidate(recordings, candidates=None, *, scheme="stratified", folds=4, repeats=1, seed=1, observed=0,
-                  forecast="stack", baselines=True, num_threads=1, progress=None, **asked):
+                  forecast="both", baselines=True, num_threads=1, progress=None, **asked):
     """Errors on recordings that were not fitted, for the options given and each of `candidates`.
 
     candidates: {name: {option: value}}, in addition to the options given. Returns a list with the scores that

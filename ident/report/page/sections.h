@@ -34,8 +34,14 @@ struct SectionRow {
 };
 
 RenderSection LeadSection, SummarySection, ParameterSection, ContrastSection, UnitSection,
+<<<<<<< HEAD
     IdentifiabilitySection, ProfileSection, BootstrapSection, HorizonCheckSection, BehaviourSection, LoopSection, FrequencySection, SwaySection,
     PopulationSection, ForecastSection, StepSection, GroupSection, FigureSection, MotionSection,
+=======
+    IdentifiabilitySection, ProfileSection, BootstrapSection, PriorCheckSection, PushCheckSection,
+    HorizonCheckSection, BehaviourSection, LoopSection, FrequencySection, SwaySection,
+    PopulationSection, StepSection, GroupSection, FigureSection, MotionSection,
+>>>>>>> 68040e1d (Two forecasters after first frames, physics and unknown input, by one rule; the stack of four, the band of the unknown force and drawn futures of them are gone)
     VisualCheckSection, RecordingSection, LeverageSection, ResidualSection, SolveSection,
     DesignSection, AdviceSection, ProvenanceSection;
 
@@ -55,7 +61,6 @@ inline constexpr SectionRow kSections[] = {
     {"frequency", "Frequency response", FrequencySection},
     {"sway", "Quiet stance", SwaySection},
     {"population", "How recordings differ", PopulationSection},
-    {"forecasts", "Forecasts from first frames", ForecastSection},
     {"steps", "Who steps", StepSection},
     {"groups", "Groups", GroupSection},
     {"figure", "Moving figure", FigureSection},

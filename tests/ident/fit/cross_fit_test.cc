@@ -72,8 +72,8 @@ FitResult FitAndLearn(const std::vector<PendulumRecording>& recordings, const Fi
 }
 
 // Recordings that a model was fitted to are forecast better by it than those that were held out,
-// and scores say the latter.
-TEST(CrossFit, ScoresAreThoseOfOthers) {
+// and error scales are those of the latter.
+TEST(CrossFit, ErrorsAreThoseOfOthers) {
   SyntheticOptions study = DifferingPeople();
   study.subject_spread = 0.3;
   const std::vector<PendulumRecording> recordings = MakePendulums(study);
@@ -84,8 +84,11 @@ TEST(CrossFit, ScoresAreThoseOfOthers) {
   const auto of_itself = LearnForecasts(ModelOf(result), recordings, {}, 1);
   ASSERT_TRUE(of_itself.has_value());
   EXPECT_EQ(of_itself->folds, 0);
-  EXPECT_EQ(of_itself->logits, ForecastStack::DefaultLogits());
-  EXPECT_GT(result.forecasts->scores[0].mean[0], 1.1 * of_itself->scores[0].mean[0]);
+  EXPECT_EQ(of_itself->input_after, ForecastRule().input_after);
+  const auto scale = [](const ForecastRule& rule) {
+    return std::exp(rule.errors[0].coefficients.dot(ScaleFeatures(0.5, 0.0, 0.5)));
+  };
+  EXPECT_GT(scale(*result.forecasts), 1.1 * scale(*of_itself));
 }
 
 TEST(CrossFit, NeedsThreeRecordings) {

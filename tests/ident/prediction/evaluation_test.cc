@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -71,6 +73,33 @@ TEST(Evaluation, BaselinesAfterFirstFramesByHand) {
   EXPECT_NEAR(score.hip_ade, (0.05 + 0.12) / 4.0, 1e-15);
   EXPECT_NEAR(score.after_hip_ade, (0.05 + 0.12) / 2.0, 1e-15);
   EXPECT_NEAR(score.hip_fde, 0.12, 1e-15);
+}
+
+TEST(Evaluation, TheKinematicBaselineFades) {
+  const PendulumRecording r = Parabola("a", 60);
+  const double dt = r.scene.dt;
+  const HipPaths path = KinematicBaseline(r, 20);
+  double place = 0.01 * 19 * 19, velocity = 0.02 * 19 / dt, acceleration = 0.02 / (dt * dt);
+  for (int t = 20; t < 60; ++t) {
+    velocity += dt * (acceleration - velocity);
+    acceleration *= std::exp(-dt / 0.25);
+    place += dt * velocity;
+    EXPECT_NEAR(path[0][t].x(), place, 1e-6) << t;
+  }
+}
+
+// Frames that were not seen may say anything, the last one too.
+TEST(Evaluation, BaselinesLookAtNothingUnseen) {
+  PendulumRecording r = Parabola("a", 30);
+  r.weight = {std::vector<double>(30, 1.0)};
+  r.weight[0][12] = r.weight[0][19] = 0.0;
+  PendulumRecording wild = r;
+  for (int t : {12, 19}) wild.hip[0][t].setConstant(7.0);
+  for (const auto baseline : {ConstantVelocityBaseline, KinematicBaseline}) {
+    const HipPaths a = baseline(r, 20), b = baseline(wild, 20);
+    for (int t = 20; t < 30; ++t) EXPECT_EQ(a[0][t], b[0][t]) << t;
+  }
+  EXPECT_NEAR(ConstantVelocityBaseline(r, 20)[0][20].x(), 0.01 * 18 * 18 + 2 * 0.35, 1e-12);
 }
 
 // The model's own motion goes on from any of its frames as it did.
