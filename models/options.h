@@ -27,8 +27,6 @@ struct InteractionTerms {
   bool Contact() const { return spring || damping || (learned && !learned_in_range); }
   bool AtCarts() const { return ldp_published || (learned && learned_in_range); }
   bool Any() const { return Contact() || AtCarts(); }
-  // A learned force that may do what stiffness and damping of contact should.
-  bool LearnedBesideContact() const { return learned && !learned_in_range && (spring || damping); }
   // What one gets the other gives: contact alone.
   bool Mutual() const { return Any() && !learned && !AtCarts(); }
 };

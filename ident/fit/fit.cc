@@ -13,7 +13,6 @@
 #include "ident/problem/folds.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/model_verdict.h"
-#include "residuals/takeover.h"
 
 namespace pushid {
 namespace {
@@ -67,17 +66,6 @@ FitResult ResultOf(const SolvedFit& fit) {
   result.behaviour = fit.problem.BehaviourAt(best.to);
   AddUnits(fit.problem, best.to, &result);
   return result;
-}
-
-// What learned forces do of the work of physical ones.
-void AddTakeover(const std::vector<PendulumRecording>& recordings, FitResult* result) {
-  const ModelOptions& fitted = result->options.model;
-  if (fitted.learned && fitted.learned->shape.any()) {
-    result->takeover = TakeoverOf(recordings, fitted);
-  }
-  if (fitted.interaction.LearnedBesideContact()) {
-    result->contact_takeover = ContactTakeoverOf(recordings, fitted, result->parameters);
-  }
 }
 
 // What predictions need to know of the recordings.
@@ -152,7 +140,6 @@ FitResult Judge(const SolvedFit& fit) {
 
   // The recordings that it was fitted to: their pushes, steps and effects.
   work.Add("tables");
-  AddTakeover(problem.recordings(), &result);
   AddFittedTo(problem.recordings(), &result);
   work.Add("recording effects");
 

@@ -82,7 +82,7 @@ std::vector<FailedRollout> FailuresAfter(const FitProblem& problem, const SolveS
 // From the optimum under other weights to that under these.
 void SolveOn(const FitProblem& problem, SolveStart* start) {
   SolveStart again =
-      Refit(problem, start->to, false, problem.options().num_threads, std::move(start->recordings));
+      Refit(problem, start->to, problem.options().num_threads, std::move(start->recordings));
   start->stages.insert(start->stages.end(), again.stages.begin(), again.stages.end());
   start->iterations += again.iterations;
   start->to = std::move(again.to);

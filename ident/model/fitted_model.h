@@ -20,7 +20,6 @@
 #include "ident/uncertainty/model_verdict.h"
 #include "ident/uncertainty/profile.h"
 #include "ident/uncertainty/uncertainty.h"
-#include "residuals/takeover.h"
 
 namespace pushid {
 
@@ -42,8 +41,6 @@ struct FitResult {
   FitOptions options;
   // As they act: fixed ones too. Indexed by Parameter.
   ParameterSet<double> parameters{};
-  std::optional<Takeover> takeover;                 // by the network, where there is one
-  std::optional<ContactTakeover> contact_takeover;  // by a learned interaction beside contact
   std::vector<Estimate> estimates;   // one per Parameter that the table shows, fixed ones included
   std::vector<Estimate> nuisance;    // units' deviations and initial velocities
   std::vector<Combination> derived;  // c_x, c_y and per-mass gains

@@ -326,21 +326,6 @@ void Fields(Archive& a, LikelihoodScore& s) {
 }
 
 template <class Archive>
-void Fields(Archive& a, Takeover& t) {
-  a("mu_N_s_m", t.mu);
-  a("Kp_theta_N_m_rad", t.kp_theta);
-  a("Kd_theta_N_m_s_rad", t.kd_theta);
-  a("rms_force_m_s2", t.rms_force);
-}
-
-template <class Archive>
-void Fields(Archive& a, ContactTakeover& t) {
-  a("stiffness_N_m", t.stiffness);
-  a("damping_N_s_m", t.damping);
-  a("rms_force_m_s2", t.rms_force);
-}
-
-template <class Archive>
 void Fields(Archive& a, Finding& f) {
   PUSHID_FIELDS(a, f, kind, recording, about, value);
 }
@@ -542,8 +527,6 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
   if (a.Has("self_network", options.learned != nullptr)) {
     a.Written("self_network", [&] { return ToJson(*options.learned); });
   }
-  a.Optional("network_takeover", fit.takeover);
-  a.Optional("contact_takeover", fit.contact_takeover);
   if (const auto laws = LawNames(options); a.Has("force_laws", !laws.empty())) {
     a.Written("force_laws", [&] { return laws; });
   }

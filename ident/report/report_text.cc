@@ -44,26 +44,8 @@ std::string TrainingText(const FitOptions& o) {
 std::string NetworkText(const FitResult& result) {
   const auto& network = result.options.model.learned;
   if (network == nullptr) return "";
-  std::string text = (network->shape.any() ? "network " : "") + LearnedName(*network) + " (" +
-                     Count(network->num_weights(), "weight") + ", " + TrainingText(result.options) +
-                     ")";
-  const auto signed_number = [](double value) {
-    return (value < 0.0 ? "" : "+") + Rounded(value, 3);
-  };
-  if (const auto& c = result.contact_takeover) {
-    text += ": where people load each other it acts like stiffness " + signed_number(c->stiffness) +
-            " N/m, damping " + signed_number(c->damping) +
-            " N s/m in addition to those above;\n  its force on the cart is then " +
-            Rounded(c->rms_force, 2) + " m/s^2 times the mass (root mean square)";
-  }
-  if (!result.takeover) return text;
-  const Takeover& t = *result.takeover;
-  text +=
-      result.contact_takeover ? ";\n  on the recordings the self force" : ": on the recordings it";
-  return text + " acts like mu " + signed_number(t.mu) + " N s/m, Kp_theta " +
-         signed_number(t.kp_theta) + " N m/rad, Kd_theta " + signed_number(t.kd_theta) +
-         " N m s/rad in addition to those above;\n  its force on the cart is " +
-         Rounded(t.rms_force, 2) + " m/s^2 times the mass (root mean square)";
+  return (network->shape.any() ? "network " : "") + LearnedName(*network) + " (" +
+         Count(network->num_weights(), "weight") + ", " + TrainingText(result.options) + ")";
 }
 
 std::string LikelihoodText(const FitResult& result) {

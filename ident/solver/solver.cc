@@ -247,8 +247,8 @@ bool Contradicted(double rise, size_t units) {
          kImprobable;
 }
 
-SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network,
-                 int num_threads, RecordingSums known) {
+SolveStart Refit(const FitProblem& problem, const FitPoint& from, int num_threads,
+                 RecordingSums known) {
   SolveStart start;
   start.kind = "warm";
   start.from = start.to = from;
@@ -261,12 +261,12 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_netw
     return start;
   }
   start.recordings = std::move(known);
-  const bool network = !from.weights.empty() && !hold_network;
+  const bool network = !from.weights.empty();
   const auto solve = [&] {
     const std::vector<double> at = start.to.Flat();
     const bool all_inside = start.recordings.AreAt(
         Eigen::Map<const Eigen::VectorXd>(at.data(), static_cast<Eigen::Index>(at.size())));
-    FitProblem::Built built = problem.Build(&start.to, 0, hold_network, num_threads, all_inside);
+    FitProblem::Built built = problem.Build(&start.to, 0, false, num_threads, all_inside);
     ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
     if (network) solver.function_tolerance = std::max(kNetworkTolerance, solver.function_tolerance);
     const SolveStage stage =

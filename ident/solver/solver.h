@@ -28,10 +28,10 @@ SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& op
                       RecordingSums* recordings = nullptr);
 
 // All frames, or the likelihood, from a point near the optimum (profiles, bootstrap, leaving
-// recordings out); in one thread where refits run in parallel. hold_network: its weights are
-// constant. known: at `from`, by the weights of the problem.
-SolveStart Refit(const FitProblem& problem, const FitPoint& from, bool hold_network = false,
-                 int num_threads = 1, RecordingSums known = {});
+// recordings out); in one thread where refits run in parallel. known: at `from`, by the
+// weights of the problem.
+SolveStart Refit(const FitProblem& problem, const FitPoint& from, int num_threads = 1,
+                 RecordingSums known = {});
 
 // Whether the recordings contradict a demand to settle: by how much it raises the cost of all else,
 // twice that, against the 95 % point of chi-squared with a degree of freedom for each of the units

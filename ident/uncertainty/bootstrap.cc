@@ -80,7 +80,7 @@ ReplicaValues FitReplica(const FitProblem& problem, const FitPoint& estimate,
   options.num_threads = 1;
   options.function_tolerance = std::max(kReplicaTolerance, options.function_tolerance);
   const FitProblem drawn(problem.recordings(), options, counts);
-  SolveStart fit = Refit(drawn, estimate, false, 1, SumAsDrawn(each, drawn));
+  SolveStart fit = Refit(drawn, estimate, 1, SumAsDrawn(each, drawn));
   if (!fit.usable) fit = SolveFrom(drawn, drawn.NominalPoint(), "nominal", nullptr);
   if (!fit.converged || !fit.failed.empty()) return {};
   return ValuesAt(drawn, fit.to, combinations);

@@ -97,7 +97,6 @@ void AddConfidence(FittedModel* model) {
 
 void AddNetworks(FitResult* result) {
   result->options.model.learned = InitialNetwork({NetworkKind::kGru, 2}, 1, {RodKind::kMlp, {2}});
-  result->takeover = Takeover{1.0, 2.0, 3.0, 0.1};
 }
 
 }  // namespace

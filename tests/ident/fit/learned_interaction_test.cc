@@ -79,9 +79,6 @@ TEST(LearnedInteraction, PredictsUnseenPushesAsTheTruthDoes) {
   EXPECT_GT(without, 0.002);
   EXPECT_LT(rows.HeldOutAde(learned), 0.25 * without);
   EXPECT_TRUE(Contains(NetworkText(learned), "interaction network:3 (49 weights"));
-  ASSERT_TRUE(learned.contact_takeover.has_value());
-  EXPECT_GT(learned.contact_takeover->rms_force, 0.1);
-  EXPECT_TRUE(Contains(NetworkText(learned), "it acts like stiffness "));
 }
 
 // One of too many weights for a Jacobian learns by its gradient, beside what people differ in; the
@@ -158,7 +155,6 @@ TEST(LearnedInteraction, ComesBackFromItsFile) {
   EXPECT_EQ(json.at("model").at("interaction"), "spring,damping,network:2-2");
   const FittedModel read = Unwrapped(FittedModelFromJson(json, "model.json"));
   EXPECT_EQ(rows.HeldOutAde(read.fit), rows.HeldOutAde(fitted));
-  EXPECT_EQ(read.fit.contact_takeover->stiffness, fitted.contact_takeover->stiffness);
   nlohmann::ordered_json without = json;
   without["self_network"].erase("interaction");
   without["self_network"]["rod"]["kind"] = "linear";

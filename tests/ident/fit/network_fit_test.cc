@@ -43,9 +43,7 @@ TEST(NetworkFit, LeavesPhysicsAloneWhereThereIsNothingToLearn) {
   options.model.learned = InitialNetwork({NetworkKind::kMlp, 4}, 1);
   options.network_prior = 0.3;
   const FitResult result = Fit(MakePendulums(synthetic), options);
-  ASSERT_TRUE(result.takeover.has_value());
-  EXPECT_LT(std::abs(result.takeover->mu), 2.0);
-  EXPECT_LT(std::abs(result.takeover->kp_theta), 70.0);
+  ASSERT_TRUE(result.ok()) << result.message;
   EXPECT_NEAR(result.parameters[kKpTheta], synthetic.parameters[kKpTheta],
               0.1 * synthetic.parameters[kKpTheta]);
 }

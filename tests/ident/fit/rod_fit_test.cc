@@ -53,7 +53,6 @@ TEST(RodFit, ResultsComeBackFromJsonWithoutLoss) {
   Study study = PlantedStudy(PlantedRod(), 0.002, kPlantedLift);
   study.options.network_prior = 1.0;
   const FittedModel model{FitRod(study, {RodKind::kMlp, {2}}), {}, {}, {}, {}};
-  EXPECT_FALSE(model.fit.takeover.has_value());
   const nlohmann::ordered_json json = ToJson(model, RunInfo{});
   const FittedModel read = Unwrapped(FittedModelFromJson(json, "model.json"));
   EXPECT_EQ(ToJson(read, RunInfo{}).dump(), json.dump());

@@ -94,7 +94,7 @@ TEST(DataWeight, TellsTheSumsOfRecordings) {
   EXPECT_NEAR(sums.squares, anew.squares, 1e-9 * anew.squares);
 
   // Who knows them takes the same way.
-  const SolveStart plain = Refit(problem, point), knowing = Refit(problem, point, false, 1, sums);
+  const SolveStart plain = Refit(problem, point), knowing = Refit(problem, point, 1, sums);
   EXPECT_EQ(knowing.iterations, plain.iterations);
   EXPECT_NEAR(knowing.cost, plain.cost, 1e-9 * plain.cost);
   const std::vector<double> end = knowing.to.Flat(), same = plain.to.Flat();
