@@ -12,7 +12,6 @@
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/parameter_table.h"
 #include "models/enum_names.h"
-#include "residuals/fit_choices.h"
 #include "residuals/frame_residual.h"
 
 namespace pushid {

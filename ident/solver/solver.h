@@ -52,7 +52,7 @@ std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* poin
 // From the nominal point.
 Solution Solve(const FitProblem& problem, const SolveProgress& progress = nullptr);
 
-// A solve that maximizes a likelihood of single steps (residuals/fit_choices.h).
+// A solve that maximizes a likelihood of single steps (residuals/frame_residual.h).
 //
 // It starts at the optimum of rollouts; the noise starts at the spread of the transitions
 // that it leaves. A few steps of Fisher scoring (residuals/cost_functions/likelihood_residual.h),

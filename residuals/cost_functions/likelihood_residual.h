@@ -27,7 +27,7 @@
 #include "models/options.h"
 #include "models/pendulum_filter.h"
 #include "residuals/cost_functions/rollout_problem.h"
-#include "residuals/fit_choices.h"
+#include "residuals/frame_residual.h"
 #include "residuals/parameter_map.h"
 
 namespace pushid {
