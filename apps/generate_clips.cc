@@ -11,7 +11,6 @@
 #include "datasets/files/random.h"
 #include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/forecast_spread.h"
-#include "ident/forecasts/most_probable_path.h"
 #include "ident/parameters/option_names.h"
 #include "ident/problem/parallel.h"
 
@@ -69,25 +68,9 @@ size_t FindWindow(const std::vector<ForecastWindow>& windows, const std::string&
 }
 
 // The scene's forecast becomes the most probable path to the target; its outcome goes to `json`.
-void SearchPath(const MotionGenerator& generator, const GenerateFlags& flags,
-                const Eigen::VectorXf& target, ForecastScene* scene, Json* json) {
+void SearchPath(const GenerateFlags& flags, const Eigen::VectorXf& target, ForecastScene* scene,
+                Json* json) {
   scene->title += ", towards the end of window " + std::to_string(flags.target_window);
-  if (flags.samples == 0) {
-    const MinimizedPath found =
-        OrFail(PathToPose(generator, {scene->observed}, kForecastFrames, target));
-    (*json)["path"] = {{"distance_m", found.distance},
-                       {"log_likelihood", found.log_likelihood},
-                       {"log_likelihood_of_forecast", found.of_forecast},
-                       {"iterations", found.iterations}};
-    std::printf(
-        "most probable path to the end of window %d, %s m from it: log likelihood %s, that of the "
-        "forecast %s (%d iterations)\n",
-        flags.target_window, Rounded(found.distance, 3).c_str(),
-        Rounded(found.log_likelihood, 4).c_str(), Rounded(found.of_forecast, 4).c_str(),
-        found.iterations);
-    scene->forecast = found.motion;
-    return;
-  }
   const PathChoice choice =
       OrFail(MostProbablePath(scene->futures, target, kTargetDistance, scene->layout));
   (*json)["path"] = {{"future", choice.future + 1},
@@ -122,7 +105,7 @@ ForecastScene SceneOfWindow(const LoadedGenerator& loaded, const GenerateFlags& 
   if (flags.target_window < 0) return scene;
   const size_t target = FindWindow(windows, flags.action, flags.target_window);
   const Eigen::VectorXf end = windows[target].future.rightCols(1);
-  SearchPath(*loaded.generator, flags, end, &scene, json);
+  SearchPath(flags, end, &scene, json);
   return scene;
 }
 

@@ -1,4 +1,4 @@
-// apps: pushid-path: most probable paths under a model's process noise, and smoothed recordings.
+// apps: pushid-path: most probable paths under a model's process noise.
 #include <gflags/gflags.h>
 
 #include <cstdio>
@@ -8,7 +8,6 @@
 
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
-#include "apps/flags/recording_flags.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
@@ -26,9 +25,6 @@ DEFINE_int32(frames, 60, "frames of the path, both ends included");
 DEFINE_double(fps, 60.0, "frames per second");
 DEFINE_double(mass, pushid::kReferenceMass, "the person's mass, kg");
 DEFINE_double(rod, pushid::kReferenceRod, "the person's rod (ankles to hip), m");
-DEFINE_string(id, "",
-              "instead of --from and --to: a recording of --recordings, whose states are smoothed "
-              "and whose gaps are filled");
 DEFINE_string(out, "", "write states, and the forces that drove them, here (CSV)");
 DEFINE_string(json_out, "", "write the actions here (JSON)");
 
@@ -61,12 +57,9 @@ Ends ReadEnds() {
   return ends;
 }
 
-// None where a recording is smoothed.
 Ends CheckedEnds() {
   RequireModel();
-  Ends ends = FLAGS_id.empty() ? ReadEnds() : Ends();
-  CheckExcludes({"from", "to", "frames", "fps", "mass", "rod"}, "id",
-                "--id smooths a recording, which gives both ends; leave --{} out");
+  Ends ends = ReadEnds();
   CheckRange("frames", FLAGS_frames, 6, 100000);
   CheckRange("fps", FLAGS_fps, 10, 10000);
   CheckRange("mass", FLAGS_mass, 5, 500);
@@ -121,31 +114,9 @@ int Between(const Ends& ends, const IdentifiedModel& model) {
   return Write(paths[best], 1.0 / FLAGS_fps, json);
 }
 
-int Smooth(const IdentifiedModel& model) {
-  const std::vector<Recording> recordings = LoadFlaggedRecordings({FLAGS_id});
-  const PendulumRecording recording = MakePendulumRecording(recordings.front());
-  const ProbablePath found = OrFail(SmoothPath(model, recording));
-  double furthest = 0.0;
-  for (int n = 0; n < recording.num_people(); ++n) {
-    for (int t = 0; t < recording.num_frames(); ++t) {
-      if (recording.Weight(n, t) <= 0.0) continue;
-      const Vector4<double> apart = found.states.At(t, n).q - recording.states[n][t].q;
-      furthest = std::max(furthest, apart.head<2>().norm());
-    }
-  }
-  std::printf("%s: %d frames smoothed; action %s, measurements %s; feet moved by up to %s mm\n",
-              recording.id.c_str(), recording.num_frames(), Rounded(found.action(), 4).c_str(),
-              Rounded(found.measurement_cost, 4).c_str(), Rounded(1e3 * furthest, 3).c_str());
-  nlohmann::ordered_json json = ActionJson(found);
-  json["recording"] = recording.id;
-  json["measurement_cost"] = found.measurement_cost;
-  return Write(found, recording.scene.dt, json);
-}
-
 int Run() {
   const Ends ends = CheckedEnds();
-  const IdentifiedModel model = LoadFlaggedModel();
-  return FLAGS_id.empty() ? Between(ends, model) : Smooth(model);
+  return Between(ends, LoadFlaggedModel());
 }
 
 }  // namespace
@@ -153,9 +124,7 @@ int Run() {
 int main(int argc, char** argv) {
   return pushid::RunApp(
       argc, argv,
-      "pushid-path finds the most probable path of a person between two states, and smooths "
-      "recordings.\n\n  pushid-path --model=model.json --from=xd=0.5 --to='x=0.4,xd=0; x=0.8,xd=0' "
-      "--frames=90 --out=path.csv\n  pushid-path --model=model.json "
-      "--recordings=M/manifest.json --id=NAME --out=states.csv",
+      "pushid-path finds the most probable path of a person between two states.\n\n  pushid-path "
+      "--model=model.json --from=xd=0.5 --to='x=0.4,xd=0; x=0.8,xd=0' --frames=90 --out=path.csv",
       Run);
 }

@@ -44,8 +44,8 @@ DEFINE_int32(window, kFlags.window, "particles: which of the action's windows to
 DEFINE_string(id, "", "diffusion: the recording to show");
 DEFINE_int32(
     target_window, kFlags.target_window,
-    "particles: show the most probable path that ends like this window of the action: with "
-    "--samples among those, otherwise by minimization; -1: no search");
+    "particles, --samples: show the most probable of them that ends like this window of the "
+    "action; -1: none");
 DEFINE_string(json_out, "", "write the errors here (JSON)");
 DEFINE_string(poses_out, "",
               "write observed, recorded and forecast poses here (.csv), or observed "
@@ -122,6 +122,9 @@ void CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
     if (!Given(flag)) continue;
     throw Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),
                 FLAGS_model};
+  }
+  if (flags.target_window >= 0 && flags.samples == 0) {
+    throw Error{"--target_window needs --samples, among which it looks"};
   }
   if (!groups) return Require("folder", FLAGS_folder, "name the folder of the clips");
   if (flags.Shows()) Require("id", FLAGS_id, "name the recording to show");

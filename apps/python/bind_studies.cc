@@ -185,18 +185,6 @@ py::dict OnFormation(const Model& model, const std::string& shape, int people, d
   return dict;
 }
 
-py::dict PathDict(const ProbablePath& path, int people) {
-  const int frames = path.states.num_frames();
-  py::dict dict;
-  dict["states"] = StatesOf(path.states, people);
-  dict["noise"] = TableArray(frames, people, 4, [&](int t, int n) { return path.noise.At(t, n); });
-  dict["action"] = path.action();
-  dict["noise_action"] = path.noise_action;
-  dict["divergence_action"] = path.divergence_action;
-  dict["measurement_cost"] = path.measurement_cost;
-  return dict;
-}
-
 py::dict Between(const Model& model, const std::string& start, const std::string& end, int frames,
                  double fps, double mass, double rod) {
   const PathEnd from = Unwrapped(ParsePathEnd("start", start, true), Fault::kUsage);
@@ -205,17 +193,18 @@ py::dict Between(const Model& model, const std::string& start, const std::string
     Raise(Fault::kUsage, Error{"mass, rod and fps must be above 0"});
   }
   const IdentifiedModel identified = IdentifiedOf(model);
-  auto path = WithoutGil([&] {
+  auto found = WithoutGil([&] {
     return PathBetween(identified, {mass, rod, 0.0}, fps, from, to, frames);
   });
-  return PathDict(Unwrapped(std::move(path), Fault::kUsage), 1);
-}
-
-py::dict Smooth(const Model& model, const SharedRecording& recording) {
-  const IdentifiedModel identified = IdentifiedOf(model);
-  const PendulumRecording seen = MakePendulumRecording(*recording);
-  auto path = WithoutGil([&] { return SmoothPath(identified, seen); });
-  return PathDict(Unwrapped(std::move(path), Fault::kUsage), seen.num_people());
+  const ProbablePath path = Unwrapped(std::move(found), Fault::kUsage);
+  py::dict dict;
+  dict["states"] = StatesOf(path.states, 1);
+  dict["noise"] = TableArray(path.states.num_frames(), 1, 4,
+                             [&](int t, int n) { return path.noise.At(t, n); });
+  dict["action"] = path.action();
+  dict["noise_action"] = path.noise_action;
+  dict["divergence_action"] = path.divergence_action;
+  return dict;
 }
 
 }  // namespace
@@ -223,7 +212,6 @@ py::dict Smooth(const Model& model, const SharedRecording& recording) {
 void BindFormations(py::module_* module) {
   module->def("simulate_formation", &OnFormation);
   module->def("path_between", &Between);
-  module->def("smooth", &Smooth);
 }
 
 }  // namespace pushid

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/files/error.h"
 #include "datasets/loading/mocap_folder.h"
 #include "models/generators/motion_generator.h"
 
@@ -76,5 +77,19 @@ ForecastSpread SpreadOf(const std::vector<ForecastWindow>& windows,
 // "best_of_n_MPJPE_mm" by horizon beside the errors that `json` holds.
 void AddSpreadJson(const ForecastSpread& spread, nlohmann::ordered_json* json);
 std::string ForecastSpreadText(const ForecastSpread& spread);
+
+// The most probable way to a pose (SDE's Fig. 5): among futures whose last pose is near a target,
+// the one whose transitions have the largest likelihood.
+struct PathChoice {
+  int future = 0;         // its index
+  int near = 0;           // how many futures ended near enough
+  double distance = 0.0;  // of its last pose from the target, mean of joints, m
+  double log_likelihood = 0.0;
+};
+
+// Errors: no future ends within `distance` (m) of the target; the message says how near they come.
+Result<PathChoice> MostProbablePath(const std::vector<SampledFuture>& futures,
+                                    const Eigen::VectorXf& target, double distance,
+                                    const ParticleLayout& layout);
 
 }  // namespace pushid

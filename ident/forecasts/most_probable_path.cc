@@ -28,7 +28,6 @@ struct PathProblem {
   ModelOptions options;
   std::vector<ParameterSet<double>> parameters;
   ceres::Problem problem;
-  std::vector<ceres::ResidualBlockId> actions, measurements;
 
   void AddActions(Nodes* nodes) {
     const int people = scene->num_people();
@@ -40,8 +39,8 @@ struct PathProblem {
       auto* cost = new Cost(new SceneAction{scene, &options, &parameters, static_cast<int>(t)});
       for (int i = 0; i < 3; ++i) cost->AddParameterBlock(4 * people);
       cost->SetNumResiduals(SceneAction::kRows * people);
-      actions.push_back(problem.AddResidualBlock(
-          cost, nullptr, {(*nodes)[t - 1].data(), (*nodes)[t].data(), (*nodes)[t + 1].data()}));
+      problem.AddResidualBlock(
+          cost, nullptr, {(*nodes)[t - 1].data(), (*nodes)[t].data(), (*nodes)[t + 1].data()});
     }
   }
 
@@ -140,7 +139,7 @@ Result<ProbablePath> PathBetween(const IdentifiedModel& model, const Body& body,
   Scene scene;
   scene.dt = 1.0 / fps;
   scene.people.push_back({body, {}});
-  PathProblem problem{&scene, model.options, {model.parameters}, {}, {}, {}};
+  PathProblem problem{&scene, model.options, {model.parameters}, {}};
   Nodes nodes;
   const double seconds = (num_frames - 1) * scene.dt;
   for (int t = 0; t < num_frames; ++t) {
@@ -159,45 +158,6 @@ Result<ProbablePath> PathBetween(const IdentifiedModel& model, const Body& body,
   if (to.rates_held) hold(num_frames - 2, to.state.q - scene.dt * to.state.qd);
   ProbablePath path;
   if (MaybeError error = problem.Solve(&path)) return *error;
-  EvaluatePath(&problem, nodes, &path);
-  return path;
-}
-
-Result<ProbablePath> SmoothPath(const IdentifiedModel& model, const PendulumRecording& recording) {
-  if (MaybeError error = CheckNoise(model)) return *error;
-  const int people = recording.num_people(), frames = recording.num_frames();
-  if (frames < 6) return Error{"recording " + recording.id + " has fewer than 6 frames"};
-  PathProblem problem{
-      &recording.scene, model.options, PeoplesParameters(model, recording), {}, {}, {}};
-  Nodes nodes(frames, std::vector<double>(4 * people));
-  for (int n = 0; n < people; ++n) {
-    const Vector4<double>* known = &recording.states[n][0].q;
-    for (int t = 0; t < frames; ++t) {
-      if (recording.Weight(n, t) > 0.0) known = &recording.states[n][t].q;
-      for (int i = 0; i < 4; ++i) nodes[t][4 * n + i] = (*known)[i];
-    }
-  }
-  problem.AddActions(&nodes);
-  for (int t = 0; t < frames; ++t) {
-    for (int n = 0; n < people; ++n) {
-      const double weight = recording.Weight(n, t);
-      if (weight <= 0.0) continue;
-      const Matrix4<double> error = CholeskyFactor<double, 4>(MeasurementCovariance(
-                                        recording.scene.people[n].body, problem.parameters[n])) /
-                                    weight;
-      auto* cost = new ceres::DynamicAutoDiffCostFunction<MeasuredPerson, 4>(
-          new MeasuredPerson{n, recording.states[n][t].q, error});
-      cost->AddParameterBlock(4 * people);
-      cost->SetNumResiduals(4);
-      problem.measurements.push_back(
-          problem.problem.AddResidualBlock(cost, nullptr, nodes[t].data()));
-    }
-  }
-  ProbablePath path;
-  if (MaybeError error = problem.Solve(&path)) return *error;
-  ceres::Problem::EvaluateOptions measured;
-  measured.residual_blocks = problem.measurements;
-  problem.problem.Evaluate(measured, &path.measurement_cost, nullptr, nullptr, nullptr);
   EvaluatePath(&problem, nodes, &path);
   return path;
 }

@@ -40,13 +40,6 @@ class MotionGenerator {
   virtual std::vector<std::vector<SampledFuture>> Sample(const std::vector<ObservedMotion>& people,
                                                          int frames, int count,
                                                          const NormalSource& normal) const = 0;
-  // Futures of one person under chosen noise: one for each column, which holds a number for every
-  // coordinate, frame after frame; standard normal numbers where futures are sampled without
-  // memory. Empty where a kind knows no transitions from frame to frame.
-  virtual std::vector<SampledFuture> Driven(const ObservedMotion& /*person*/, int /*frames*/,
-                                            const Eigen::MatrixXf& /*noise*/) const {
-    return {};
-  }
 };
 
 }  // namespace pushid

@@ -142,27 +142,6 @@ std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
   return futures;
 }
 
-std::vector<SampledFuture> ParticleGenerator::Driven(const ObservedMotion& person, int frames,
-                                                     const Eigen::MatrixXf& noise) const {
-  const std::vector<ObservedMotion> people = {person};
-  const std::vector<Trajectories> mean = MeanOfMembers(people, frames);
-  std::vector<Trajectories> blend = mean;
-  Blend(people, &blend);
-  const int copies = static_cast<int>(noise.cols()), coordinates = layout_.num_coordinates();
-  std::vector<SampledFuture> futures(copies, {blend[0] - mean[0]});
-  ParticleRollout rollout(members_.front(), people, copies);
-  for (int t = 0; t < frames; ++t) {
-    const Eigen::MatrixXf own = noise.middleRows(t * coordinates, coordinates);
-    const Eigen::MatrixXf& poses = rollout.Step(&own);
-    for (int i = 0; i < copies; ++i) {
-      futures[i].motion.col(t) += poses.col(i);
-      futures[i].log_likelihood += rollout.log_likelihood()(i);
-    }
-  }
-  for (SampledFuture& future : futures) Finish(person, &future.motion);
-  return futures;
-}
-
 namespace {
 
 // `last`: the column of the last observed frame.

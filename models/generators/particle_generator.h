@@ -121,9 +121,6 @@ class ParticleGenerator : public MotionGenerator {
   std::vector<std::vector<SampledFuture>> Sample(const std::vector<ObservedMotion>& people,
                                                  int frames, int count,
                                                  const NormalSource& normal) const override;
-  // Of the first member, told the pose as it is.
-  std::vector<SampledFuture> Driven(const ObservedMotion& person, int frames,
-                                    const Eigen::MatrixXf& noise) const override;
 
  private:
   // What the members forecast in the mean, without bones.

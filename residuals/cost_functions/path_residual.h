@@ -35,32 +35,6 @@ bool DivergenceRow(const T& divergence, double dt, T* row) {
   return true;
 }
 
-// One step of a general system from S to S'. Drift: Vector<T, N> operator()(Vector<T, N>), for any
-// scalar. Rows: N and one.
-template <int N, typename Drift>
-struct PathStep {
-  Drift drift;
-  Eigen::Matrix<double, N, N> noise;  // g, lower triangular
-  double dt;
-
-  template <typename T>
-  bool operator()(const T* from, const T* to, T* rows) const {
-    using D = Dual<T, N>;
-    Eigen::Matrix<D, N, 1> mid;
-    for (int i = 0; i < N; ++i) mid[i] = D::Input(0.5 * (from[i] + to[i]), i);
-    const Eigen::Matrix<D, N, 1> f = drift(mid);
-    Eigen::Matrix<T, N, 1> v;
-    T divergence(0.0);
-    for (int i = 0; i < N; ++i) {
-      v[i] = (to[i] - from[i]) / dt - f[i].a;
-      divergence += f[i].v[i];
-    }
-    Eigen::Map<Eigen::Matrix<T, N, 1>> white(rows);
-    white = std::sqrt(dt) * SolveLower<T, N, 1>(noise.template cast<T>(), v);
-    return DivergenceRow(divergence, dt, rows + N);
-  }
-};
-
 // Everybody at one frame of a scene; parameters: one entry per person.
 struct SceneAction {
   const Scene* scene = nullptr;
@@ -73,22 +47,6 @@ struct SceneAction {
   // nodes: q of everybody at the frame before, at this one and at the next; each 4 x people long.
   template <typename T>
   bool operator()(T const* const* nodes, T* rows) const;
-};
-
-// What was measured of one person at a node: E^-1 (q - measured), E E' its covariance.
-struct MeasuredPerson {
-  int person = 0;
-  Vector4<double> measured;
-  Matrix4<double> error;
-
-  template <typename T>
-  bool operator()(T const* const* node, T* rows) const {
-    Vector4<T> apart;
-    for (int i = 0; i < 4; ++i) apart[i] = node[0][4 * person + i] - measured[i];
-    Eigen::Map<Vector4<T>> white(rows);
-    white = SolveLower<T, 4, 1>(error.template cast<T>(), apart);
-    return true;
-  }
 };
 
 // Places and velocities of one frame, by the rule of the header.

@@ -91,10 +91,6 @@ TEST_F(LangevinAppTest, TheMostProbablePathAndItsEnds) {
   const nlohmann::ordered_json json = Json(Path("path.json"));
   EXPECT_LT(json.at("paths")[0].at("action").get<double>(),
             json.at("paths")[1].at("action").get<double>());
-
-  Succeeded(
-      RunApp("pushid-path", {model, Recordings(), "--id=" + id_, "--out=" + Path("states.csv")}));
-  EXPECT_EQ(CountLines(ReadText(Path("states.csv"))), 46u);
 }
 
 TEST_F(LangevinAppTest, BadUse) {
@@ -109,7 +105,6 @@ TEST_F(LangevinAppTest, BadUse) {
       {{model, "--to=x=1", "--from=z=1"}, "'z'"},
       {{model, "--to=theta=2"}, "theta"},
       {{model, "--to=x=1", "--frames=3"}, "--frames"},
-      {{model, "--to=x=1", "--id=" + id_, Recordings()}, "--to"},
       {{model, "--to=x=1", "--set=sigma_x=0"}, "sigma_x"},
   };
   for (const auto& [flags, says] : paths) {

@@ -49,12 +49,12 @@ def step(person, state, lean, force, dt):
 
 
 def recording(person, rng, hidden, frames=100, push_frames=12):
-    """Hip and ankles (frames, 3), the measured rows, and the hidden force at the start of every frame, N."""
+    """Hip and ankles (frames, 3), and the measured rows, N."""
     strength = rng.uniform(150, 450)
     rows = [strength * math.sin(math.pi * (t + 0.5) / push_frames) for t in range(push_frames)]
     lean = 0.03 + 0.01 * rng.gauss(0, 1)
     state, unknown = (0.0, lean, 0.0, 0.0), 0.0
-    hip, left, right, truth = [], [], [], []
+    hip, left, right = [], [], []
     keep, error = math.exp(-1 / FPS / 0.1), [rng.gauss(0, 1e-3) for _ in range(3)]
     decay = math.exp(-1 / FPS / HIDDEN_TIME)
     for t in range(frames):
@@ -64,13 +64,12 @@ def recording(person, rng, hidden, frames=100, push_frames=12):
         left.append((x + noise[2], 0.1, 0.08))
         right.append((x + noise[2], -0.1, 0.08))
         error = [keep * e + math.sqrt(1 - keep ** 2) * rng.gauss(0, 1e-3) for e in error]
-        truth.append(unknown)
         force = unknown + (rows[t] if t < push_frames else 0.0)
         for _ in range(SUBSTEPS):
             state = step(person, state, lean, force, 1 / FPS / SUBSTEPS)
         if t >= push_frames // 2:
             unknown = decay * unknown + math.sqrt(1 - decay ** 2) * hidden * person.mass * rng.gauss(0, 1)
-    return hip, left, right, rows, truth
+    return hip, left, right, rows
 
 
 def study(seed, people=4, each=6, hidden=1.0):

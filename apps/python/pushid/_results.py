@@ -194,10 +194,6 @@ class Result:
         """
         return _pushid.path_between(self._model, text_of("start", start), text_of("end", end), frames, fps, mass, rod)
 
-    def smooth(self, recording):
-        """Smooths a recording and fills its gaps under the model's process noise: as path_between, for all people."""
-        return _pushid.smooth(self._model, *checked(recording))
-
     def evaluate(self, recordings, *, observed=0, forecast="both"):
         """Errors of the predictions and of two baselines, as pushid-evaluate writes them."""
         return self._model.evaluate(checked(recordings), observed, forecast)

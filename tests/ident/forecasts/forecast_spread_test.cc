@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "ident/forecasts/most_probable_path.h"
 #include "tests/models/generators/generator_samples.h"
 #include "tests/test_support.h"
 

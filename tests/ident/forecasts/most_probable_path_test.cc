@@ -1,4 +1,4 @@
-// Most probable paths of people, and recordings smoothed.
+// Most probable paths of people.
 #include "ident/forecasts/most_probable_path.h"
 
 #include <gtest/gtest.h>
@@ -70,42 +70,6 @@ TEST(PathBetween, AVelocityThatIsNotNamedIsFree) {
   const auto other = PathBetween(model, body, 60.0, EndAt(""), held.value(), 40);
   ASSERT_TRUE(one.ok() && other.ok());
   EXPECT_LT(one.value().action(), other.value().action());
-}
-
-// A gap is filled nearer to the truth than a straight line does, and noise becomes less.
-TEST(SmoothPath, FillsGapsAndTakesNoiseAway) {
-  SyntheticOptions study = TinyStudy();
-  study.joint_noise_m = 0.004;
-  study.noise_at_first_frame = false;
-  const auto made = Unwrapped(MakeSyntheticRecordings(study));
-  PendulumRecording recording = MakePendulumRecording(made[0].recording);
-  const RolloutPath<double>& truth = made[0].path;
-  constexpr int kFirst = 18, kLast = 30;
-  recording.weight = {std::vector<double>(recording.num_frames(), 1.0)};
-  for (int t = kFirst; t < kLast; ++t) recording.weight[0][t] = 0.0;
-  IdentifiedModel model = NoisyModel();
-  for (int id = 0; id < kFirstNoiseParameter; ++id) model.parameters[id] = study.parameters[id];
-  for (int id = kSigmaX; id <= kSigmaPhi; ++id) model.parameters[id] = 0.5;
-  model.options = study.model;
-  model.options.process_noise = ProcessNoise::kDiagonal;
-  model.parameters[kMeasuredCart] = 0.003, model.parameters[kMeasuredHip] = 0.004;
-  const auto smoothed = Unwrapped(SmoothPath(model, recording));
-  double found = 0.0, line = 0.0, kept = 0.0, measured = 0.0;
-  const Vector4<double>& a = recording.states[0][kFirst - 1].q;
-  const Vector4<double>& b = recording.states[0][kLast].q;
-  for (int t = 1; t < recording.num_frames(); ++t) {
-    const Vector4<double> apart = smoothed.states.At(t, 0).q - truth.At(t, 0).q;
-    if (recording.Weight(0, t) > 0.0) {
-      kept += apart.squaredNorm();
-      measured += (recording.states[0][t].q - truth.At(t, 0).q).squaredNorm();
-    } else {
-      const double share = (t - kFirst + 1.0) / (kLast - kFirst + 1.0);
-      found += apart.squaredNorm();
-      line += ((1.0 - share) * a + share * b - truth.At(t, 0).q).squaredNorm();
-    }
-  }
-  EXPECT_LT(found, 0.3 * line);
-  EXPECT_LT(kept, 0.5 * measured);
 }
 
 TEST(PathBetween, BadEndsAndModels) {

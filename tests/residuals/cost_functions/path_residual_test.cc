@@ -1,90 +1,12 @@
-// Most probable paths: the bridge of an Ornstein-Uhlenbeck process in closed form, and the action
-// of people.
+// Most probable paths: the action of people.
 #include "residuals/cost_functions/path_residual.h"
 
-#include <ceres/autodiff_cost_function.h>
 #include <ceres/dynamic_autodiff_cost_function.h>
-#include <ceres/problem.h>
-#include <ceres/solver.h>
 
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {
 namespace {
-
-constexpr double kRate = 2.0, kMean = 0.3, kNoise = 0.5;
-
-struct OuDrift {
-  template <typename T>
-  Eigen::Matrix<T, 1, 1> operator()(const Eigen::Matrix<T, 1, 1>& s) const {
-    Eigen::Matrix<T, 1, 1> f;
-    f[0] = kRate * (kMean - s[0]);
-    return f;
-  }
-};
-
-// Between a and b in `seconds`: m + ((b - m) sinh(k t) + (a - m) sinh(k (T - t))) / sinh(k T).
-double Bridge(double a, double b, double t, double seconds) {
-  return kMean +
-         ((b - kMean) * std::sinh(kRate * t) + (a - kMean) * std::sinh(kRate * (seconds - t))) /
-             std::sinh(kRate * seconds);
-}
-
-// Largest distance to the closed form.
-double BridgeError(int steps) {
-  constexpr double kFrom = -0.4, kTo = 1.1, kSeconds = 1.5;
-  const double dt = kSeconds / steps;
-  std::vector<double> nodes(steps + 1);
-  for (int i = 0; i <= steps; ++i) nodes[i] = kFrom + (kTo - kFrom) * i / steps;
-  ceres::Problem problem;
-  using Step = PathStep<1, OuDrift>;
-  for (int i = 0; i < steps; ++i) {
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Step, 2, 1, 1>(
-                                 new Step{OuDrift{}, Eigen::Matrix<double, 1, 1>(kNoise), dt}),
-                             nullptr, &nodes[i], &nodes[i + 1]);
-  }
-  problem.SetParameterBlockConstant(&nodes.front());
-  problem.SetParameterBlockConstant(&nodes.back());
-  ceres::Solver::Options options;
-  options.logging_type = ceres::SILENT;
-  options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  options.function_tolerance = 1e-16;
-  options.gradient_tolerance = 1e-14;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &problem, &summary);
-  double largest = 0.0;
-  for (int i = 0; i <= steps; ++i) {
-    largest = std::max(largest, std::abs(nodes[i] - Bridge(kFrom, kTo, i * dt, kSeconds)));
-  }
-  return largest;
-}
-
-TEST(PathStep, TheOrnsteinUhlenbeckBridgeIsApproachedAtLeastInFirstOrder) {
-  const double coarse = BridgeError(10), fine = BridgeError(20), finest = BridgeError(40);
-  EXPECT_LT(coarse, 0.02);
-  EXPECT_GT(std::log2(coarse / fine), 0.95);
-  EXPECT_GT(std::log2(fine / finest), 0.95);
-}
-
-// The divergence is the action's own: of a drift whose divergence differs from place to place the
-// most probable path leaves the one of least noise.
-struct CubicDrift {
-  template <typename T>
-  Eigen::Matrix<T, 1, 1> operator()(const Eigen::Matrix<T, 1, 1>& s) const {
-    Eigen::Matrix<T, 1, 1> f;
-    f[0] = -s[0] * s[0] * s[0];
-    return f;
-  }
-};
-
-TEST(PathStep, ItsDivergenceRowIsHalfTheDivergence) {
-  const double from = 0.4, to = 0.6, dt = 0.1;
-  double rows[2];
-  const PathStep<1, CubicDrift> step{CubicDrift{}, Eigen::Matrix<double, 1, 1>(0.7), dt};
-  ASSERT_TRUE(step(&from, &to, rows));
-  EXPECT_NEAR(rows[0], std::sqrt(dt) / 0.7 * ((to - from) / dt + 0.125), 1e-12);
-  EXPECT_NEAR(0.5 * rows[1] * rows[1] - kDivergenceShift, 0.5 * dt * -3.0 * 0.25, 1e-12);
-}
 
 ParameterSet<double> Noisy() {
   ParameterSet<double> p = RecoveringParameters();
