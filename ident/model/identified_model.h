@@ -100,7 +100,7 @@ struct ErrorScale {
 struct ForecastRule {
   InputNoise noise;                             // of the filter that forecasts
   double tail_strength = 1.0, tail_time = 1.0;  // its tail over the model's
-  double input_after = 0.35;         // s, after which the filter has half the weight 0.5 s ahead
+  double input_share = 0.6;          // weight of the filter once enough was seen
   std::array<ErrorScale, 3> errors;  // along the push, across, upwards
   // Forecasts that all this was learned from were made by models fitted without them: how many
   // such models, and of how many recordings. No folds: the model itself was all there was.

@@ -307,14 +307,13 @@ void Fields(Archive& a, InputNoise& n) {
 template <class Archive>
 void Fields(Archive& a, ForecastRule& f) {
   a("input", f.noise);
-  PUSHID_FIELDS(a, f, tail_strength, tail_time);
-  a("input_after_s", f.input_after);
+  PUSHID_FIELDS(a, f, tail_strength, tail_time, input_share);
   a.Group("errors", [&f](auto& g) {
     constexpr const char* kAxes[] = {"along", "across", "upwards"};
     for (int i = 0; i < 3; ++i) g(kAxes[i], f.errors[i]);
   });
   PUSHID_FIELDS(a, f, folds, recordings);
-  a.Check(f.tail_strength > 0.0 && f.tail_time > 0.0 && f.input_after > 0.0,
+  a.Check(f.tail_strength > 0.0 && f.tail_time > 0.0 && f.input_share >= 0.0 && f.input_share <= 1.0,
           "forecasts have numbers that cannot be");
 }
 

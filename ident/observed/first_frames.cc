@@ -60,6 +60,7 @@ TwoForecasts FirstFrames::Forecasts(const HipPaths& rollout) const {
 
 namespace {
 
+constexpr double kPhysicsAlone = 0.25 - 1e-9;  // s
 constexpr double kSeconds = 0.35, kAhead = 0.5, kLeastSeconds = 0.05, kLeastSpeed = 0.05;
 constexpr int kNumShares = static_cast<int>(std::size(kErrorShares));
 constexpr double kNormal[] = {0.0627, 0.1257, 0.1891, 0.2533, 0.3186, 0.3853, 0.4538,
@@ -105,34 +106,21 @@ double QuantileAt(const std::vector<double>& quantiles, double share) {
 
 }  // namespace
 
-std::vector<double> InputShares(double input_after, const HipPaths& physics, const HipPaths& input,
-                                double seconds, double dt, ForecastUse use) {
+std::optional<double> InputShare(double input_share, const HipPaths& physics,
+                                 const HipPaths& input, double seconds, ForecastUse use) {
   const bool asks_physics = use != ForecastUse::kInput && !physics.empty();
-  const bool asks_input = use == ForecastUse::kInput
-                              ? !input.empty()
-                              : use == ForecastUse::kBoth && seconds > 0.0 && !input.empty();
-  std::vector<double> shares;
-  if (!asks_physics && !asks_input) return shares;
-  const size_t frames = (asks_physics ? physics : input)[0].size();
-  for (size_t t = 0; t < frames; ++t) {
-    const double doubt =
-        input_after * input_after * (static_cast<double>(t) + 1.0) * dt / kAhead;
-    shares.push_back(!asks_input     ? 0.0
-                     : !asks_physics ? 1.0
-                                     : seconds * seconds / (seconds * seconds + doubt));
-  }
-  return shares;
+  const bool asks_input = use != ForecastUse::kPhysics && !input.empty();
+  if (!asks_physics && !asks_input) return std::nullopt;
+  if (!asks_input) return 0.0;
+  if (!asks_physics) return 1.0;
+  return seconds < kPhysicsAlone ? 0.0 : input_share;
 }
 
-HipPaths Blended(const std::vector<double>& shares, const HipPaths& physics,
-                 const HipPaths& input) {
-  HipPaths blended(std::max(physics.size(), input.size()));
-  for (size_t n = 0; n < blended.size(); ++n) {
-    for (size_t t = 0; t < shares.size(); ++t) {
-      Vector3<double> hip = Vector3<double>::Zero();
-      if (shares[t] < 1.0) hip += (1.0 - shares[t]) * physics[n][t];
-      if (shares[t] > 0.0) hip += shares[t] * input[n][t];
-      blended[n].push_back(hip);
+HipPaths Blended(double share, const HipPaths& physics, const HipPaths& input) {
+  HipPaths blended = share > 0.0 ? input : physics;
+  for (size_t n = 0; share > 0.0 && share < 1.0 && n < blended.size(); ++n) {
+    for (size_t t = 0; t < blended[n].size(); ++t) {
+      blended[n][t] = (1.0 - share) * physics[n][t] + share * input[n][t];
     }
   }
   return blended;

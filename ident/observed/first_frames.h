@@ -1,19 +1,17 @@
 // ident: a motion that was seen to begin, and what comes of it.
 //
-// Two forecast, and one rule says who has the word:
+// Two forecast:
 //   physics    the rollout by what the push and the recording's effect say, and on it what is left
 //              of its error (recording_filter.h)
 //   input      the pendulum from the state that a filter with an unknown force finds
 //              (recording_filter.h), the force dying out; push and tail act as known
-// After s seconds, h seconds ahead, the forecast is (1 - w) physics + w input with
-//   w = s^2 / (s^2 + a^2 h / 0.5 s),
-// a = ForecastRule::input_after: the longer a person was seen, the more is believed of the state,
-// and the farther ahead, the less. With frame 0 alone it is physics; where one of the two has
-// nothing to say it is the other.
+// One rule says who has the word: until a quarter of a second was seen physics, from then on
+// (1 - w) physics + w input with w = ForecastRule::input_share. Where one of the two has nothing to
+// say it is the other.
 //
 // An error on one axis (along the push, across, upwards) has the scale
 //   exp(coefficients . [1, log(h / 0.5 s), log((s + 0.05 s) / 0.35 s), log(v + 0.05 m/s)]),
-// v the mean speed to which the forecast takes the hip, and over that scale the quantiles of what
+// s and h the time seen and ahead, v the mean speed to which the forecast takes the hip, and over that scale the quantiles of what
 // was found, alike on both sides: the middle of every distribution is the forecast itself.
 #pragma once
 
@@ -71,11 +69,11 @@ class FirstFrames {
   std::vector<Vector3<double>> beside_;  // by person: hip less the filter's, where last seen
 };
 
-// The weight w of the filter by frame ahead; empty where nobody who is asked has anything to say.
-std::vector<double> InputShares(double input_after, const HipPaths& physics, const HipPaths& input,
-                                double seconds, double dt, ForecastUse use = ForecastUse::kBoth);
-HipPaths Blended(const std::vector<double>& shares, const HipPaths& physics,
-                 const HipPaths& input);
+// The weight w of the filter by the rule; none where nobody who is asked has anything to say.
+std::optional<double> InputShare(double input_share, const HipPaths& physics,
+                                 const HipPaths& input, double seconds,
+                                 ForecastUse use = ForecastUse::kBoth);
+HipPaths Blended(double share, const HipPaths& physics, const HipPaths& input);
 
 // Of log scale, as above.
 Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed);

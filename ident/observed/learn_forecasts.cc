@@ -105,9 +105,9 @@ std::vector<ForecastRule> ChooseInputs(const std::vector<PendulumRecording>& rec
 
 // s after frame 0.
 constexpr double kMoments[] = {0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0};
-constexpr int kFramesAfter = 5;                                             // at least
-constexpr double kInputAfter[] = {0.35, 0.25, 0.5, 0.7, 1.0, 2.0, 10.0};  // s
-constexpr double kLeastError = 1e-3;                                        // m
+constexpr int kFramesAfter = 5;  // at least
+constexpr double kInputShares[] = {0.6, 0.0, 0.2, 0.4, 0.8, 1.0};
+constexpr double kLeastError = 1e-3;  // m
 constexpr size_t kFewestErrors = 100;
 
 ForecastTrial MakeTrial(const PendulumRecording& recording, const FirstFrames& frames,
@@ -148,18 +148,18 @@ std::vector<ForecastTrial> TrialsOf(const IdentifiedModel& model, const Forecast
   return trials;
 }
 
-HipPaths BlendedBy(double input_after, const ForecastTrial& trial) {
-  return Blended(InputShares(input_after, trial.physics, trial.input, trial.seconds, trial.dt),
-                 trial.physics, trial.input);
+HipPaths BlendedBy(double input_share, const ForecastTrial& trial) {
+  const auto share = InputShare(input_share, trial.physics, trial.input, trial.seconds);
+  return share ? Blended(*share, trial.physics, trial.input) : HipPaths();
 }
 
 // Every fold's forecasts with a weight that was learned without it.
 std::vector<HipPaths> NestedForecasts(const std::vector<ForecastTrial>& trials, int folds) {
   std::vector<HipPaths> centre(trials.size());
   for (int f = 0; f < std::max(1, folds); ++f) {
-    const double after = folds > 0 ? LearnInputAfter(trials, f) : ForecastRule().input_after;
+    const double share = folds > 0 ? LearnInputShare(trials, f) : ForecastRule().input_share;
     for (size_t i = 0; i < trials.size(); ++i) {
-      if (trials[i].fold == f) centre[i] = BlendedBy(after, trials[i]);
+      if (trials[i].fold == f) centre[i] = BlendedBy(share, trials[i]);
     }
   }
   return centre;
@@ -220,15 +220,15 @@ std::optional<double> MeanDistance(const ForecastTrial& trial, const HipPaths& h
 
 }  // namespace
 
-double LearnInputAfter(const std::vector<ForecastTrial>& trials, int left_out) {
-  double best = kInputAfter[0], least = HUGE_VAL;
-  for (double after : kInputAfter) {
+double LearnInputShare(const std::vector<ForecastTrial>& trials, int left_out) {
+  double best = kInputShares[0], least = HUGE_VAL;
+  for (double share : kInputShares) {
     double sum = 0.0;
     for (const ForecastTrial& trial : trials) {
-      if (trial.fold == left_out || trial.seconds == 0.0) continue;
-      sum += MeanDistance(trial, BlendedBy(after, trial)).value_or(0.0);
+      if (trial.fold == left_out) continue;
+      sum += MeanDistance(trial, BlendedBy(share, trial)).value_or(0.0);
     }
-    if (sum < least) least = sum, best = after;
+    if (sum < least) least = sum, best = share;
   }
   return best;
 }
@@ -290,7 +290,7 @@ std::optional<ForecastRule> LearnForecasts(const IdentifiedModel& model,
   rule.folds = static_cast<int>(folds.size());
   rule.recordings = static_cast<int>(forecast.size());
   const std::vector<HipPaths> centre = NestedForecasts(trials, rule.folds);
-  if (!folds.empty()) rule.input_after = LearnInputAfter(trials);
+  if (!folds.empty()) rule.input_share = LearnInputShare(trials);
   rule.errors = LearnErrorScales(trials, centre);
   return rule;
 }

@@ -39,9 +39,9 @@ struct ForecastTrial {
   std::vector<Vector3<double>> from;  // hips where they were seen last
 };
 
-// ForecastRule::input_after of the least mean distance over trials of every fold but one (-1: of
+// ForecastRule::input_share of the least mean distance over trials of every fold but one (-1: of
 // all).
-double LearnInputAfter(const std::vector<ForecastTrial>& trials, int left_out = -1);
+double LearnInputShare(const std::vector<ForecastTrial>& trials, int left_out = -1);
 // centre: of each trial.
 std::array<ErrorScale, 3> LearnErrorScales(const std::vector<ForecastTrial>& trials,
                                            const std::vector<HipPaths>& centre);

@@ -58,10 +58,9 @@ EffectEstimate OnlinePredictor::effect() const {
   return frames_->filter().Effect(*model_->recording_effect);
 }
 
-void OnlinePredictor::SetForecast(const TwoForecasts& two,
-                                  const std::vector<double>& input_shares,
+void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
                                   Prediction* prediction) const {
-  const HipPaths hips = Blended(input_shares, two.physics, two.input);
+  const HipPaths hips = Blended(input_share, two.physics, two.input);
   const std::vector<SeenFrame>& seen = frames_->seen();
   const int from = observed();
   const double dt = recording_->scene.dt;
@@ -83,10 +82,9 @@ void OnlinePredictor::SetForecast(const TwoForecasts& two,
       hip = hips[n][t - from];
       // The rollout's lean, to which it comes back as an error of velocity dies out, and the
       // filter's.
-      const double share = input_shares[t - from];
       state.q.tail<2>() += std::exp(-(t - from + 1) * dt / kErrorTime) * off;
-      if (share > 0.0) {
-        state.q.tail<2>() += share * (two.input_path.At(t, n).q - state.q).tail<2>();
+      if (input_share > 0.0) {
+        state.q.tail<2>() += input_share * (two.input_path.At(t, n).q - state.q).tail<2>();
       }
       state.q.head<2>() = CartUnder(prediction->BodyAt(recording_->scene, t, n), hip, state.q);
       state.qd = (state.q - prediction->path.At(t - 1, n).q) / dt;
@@ -100,15 +98,14 @@ Prediction OnlinePredictor::Predict() const {
   prediction.effect = effect();
   if (!prediction.status.ok || observed() == 1) return prediction;
   const TwoForecasts two = frames_->Forecasts(prediction.hip);
-  const std::vector<double> input_shares =
-      InputShares(model_->forecasts->input_after, two.physics, two.input, frames_->seconds(),
-                  recording_->scene.dt, use_);
-  if (input_shares.empty() && observed() < frames_->frames()) {
+  const std::optional<double> input_share = InputShare(
+      model_->forecasts->input_share, two.physics, two.input, frames_->seconds(), use_);
+  if (!input_share) {
     prediction.status = two.input_status;  // asked alone, and left the domain
     prediction.hip.clear();
     return prediction;
   }
-  SetForecast(two, input_shares, &prediction);
+  SetForecast(two, *input_share, &prediction);
   return prediction;
 }
 

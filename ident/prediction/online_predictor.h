@@ -46,8 +46,7 @@ class OnlinePredictor {
  private:
   OnlinePredictor(const IdentifiedModel& model, const PendulumRecording& recording, int num_frames,
                   ForecastUse use);
-  void SetForecast(const TwoForecasts& two, const std::vector<double>& input_shares,
-                   Prediction* prediction) const;
+  void SetForecast(const TwoForecasts& two, double input_share, Prediction* prediction) const;
 
   const IdentifiedModel* model_;
   const PendulumRecording* recording_;

@@ -205,9 +205,9 @@ std::string ForecastText(const ForecastRule& f) {
           ? "by models fitted without them, in " + std::to_string(f.folds) + " folds"
           : "by the model that was fitted to them: too few people or recordings to leave some out, "
             "so weights are not learned, and new ones will err more";
-  return "After first frames (--observed) the rollout and a filter with an unknown force are put "
-         "together; half a second ahead they weigh alike after " +
-         Rounded(f.input_after, 2) + " s. Forecasts of " + std::to_string(f.recordings) +
+  return "From a quarter of a second of first frames on (--observed) the rollout and a filter with an "
+         "unknown force are put together; the filter has the weight " +
+         Rounded(f.input_share, 2) + ". Forecasts of " + std::to_string(f.recordings) +
          " recordings " + judged + ". The unknown force dies out in " +
          Rounded(f.noise.force_time, 2) + " s; the filter's tail is " +
          Rounded(f.tail_strength, 2) + " times as strong and " + Rounded(f.tail_time, 2) +

@@ -128,7 +128,7 @@ def population():
     rows = [["spread w of b", with_error(effect["spread"], effect["spread_standard_error"])],
             ["error scale s, m", number(effect["error_scale_m"])],
             ["share of the squared error that b takes away", number(effect["explained"], 2)],
-            ["seconds after which physics and filter weigh alike, 0.5 s ahead", number(forecasts["input_after_s"], 2)],
+            ["weight of the filter", number(forecasts["input_share"], 2)],
             ["time in which the unknown force dies out, s", number(forecasts["input"]["force_time_s"], 2)],
             ["tail of the filter over the model's: strength, time",
              f"{number(forecasts['tail_strength'], 2)}, {number(forecasts['tail_time'], 2)}"]]

@@ -84,7 +84,7 @@ TEST(CrossFit, ErrorsAreThoseOfOthers) {
   const auto of_itself = LearnForecasts(ModelOf(result), recordings, {}, 1);
   ASSERT_TRUE(of_itself.has_value());
   EXPECT_EQ(of_itself->folds, 0);
-  EXPECT_EQ(of_itself->input_after, ForecastRule().input_after);
+  EXPECT_EQ(of_itself->input_share, ForecastRule().input_share);
   const auto scale = [](const ForecastRule& rule) {
     return std::exp(rule.errors[0].coefficients.dot(ScaleFeatures(0.5, 0.0, 0.5)));
   };

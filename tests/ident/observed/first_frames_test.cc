@@ -14,29 +14,24 @@ constexpr double kFrame = 1.0 / 60.0;
 const HipPaths kPhysics = {HipPath(60, Vector3<double>(0.0, 0.0, 1.0))};
 const HipPaths kInput = {HipPath(60, Vector3<double>(1.0, 0.0, 1.0))};
 
-// By hand: after `a` seconds, half a second ahead, both weigh alike; later and nearer the filter
-// has more.
-TEST(InputShares, AreThoseOfTheRule) {
-  const std::vector<double> shares = InputShares(0.35, kPhysics, kInput, 0.35, kFrame);
-  ASSERT_EQ(shares.size(), 60u);
-  EXPECT_NEAR(shares[29], 0.5, 1e-12);
-  EXPECT_NEAR(shares[0], 30.0 / 31.0, 1e-12);
-  EXPECT_NEAR(InputShares(0.35, kPhysics, kInput, 0.7, kFrame)[29], 0.8, 1e-12);
-  const HipPaths blended = Blended(shares, kPhysics, kInput);
-  EXPECT_NEAR(blended[0][29].x(), 0.5, 1e-12);
+TEST(InputShare, PhysicsHasTheWordFirst) {
+  for (double seconds : {0.0, 0.1, 0.24}) {
+    EXPECT_EQ(InputShare(0.6, kPhysics, kInput, seconds), 0.0);
+  }
+  for (double seconds : {0.25, 1.0}) EXPECT_EQ(InputShare(0.6, kPhysics, kInput, seconds), 0.6);
+  const HipPaths blended = Blended(0.6, kPhysics, kInput);
+  EXPECT_NEAR(blended[0][29].x(), 0.6, 1e-12);
   EXPECT_NEAR(blended[0][29].z(), 1.0, 1e-12);
 }
 
-TEST(InputShares, GiveTheWordToWhoIsThere) {
-  const std::vector<double> none(60, 0.0), all(60, 1.0);
-  EXPECT_EQ(InputShares(0.35, kPhysics, kInput, 0.0, kFrame), none);
-  EXPECT_EQ(InputShares(0.35, kPhysics, {}, 0.4, kFrame), none);
-  EXPECT_EQ(InputShares(0.35, {}, kInput, 0.4, kFrame), all);
-  EXPECT_EQ(InputShares(0.35, kPhysics, kInput, 0.4, kFrame, ForecastUse::kPhysics), none);
-  EXPECT_EQ(InputShares(0.35, kPhysics, kInput, 0.0, kFrame, ForecastUse::kInput), all);
-  EXPECT_TRUE(InputShares(0.35, kPhysics, {}, 0.4, kFrame, ForecastUse::kInput).empty());
-  EXPECT_EQ(Blended(none, kPhysics, {}), kPhysics);
-  EXPECT_EQ(Blended(all, {}, kInput), kInput);
+TEST(InputShare, IsOfWhoIsThere) {
+  EXPECT_EQ(InputShare(0.6, kPhysics, {}, 0.4), 0.0);
+  EXPECT_EQ(InputShare(0.6, {}, kInput, 0.1), 1.0);
+  EXPECT_EQ(InputShare(0.6, kPhysics, kInput, 0.4, ForecastUse::kPhysics), 0.0);
+  EXPECT_EQ(InputShare(0.6, kPhysics, kInput, 0.0, ForecastUse::kInput), 1.0);
+  EXPECT_FALSE(InputShare(0.6, kPhysics, {}, 0.4, ForecastUse::kInput));
+  EXPECT_EQ(Blended(0.0, kPhysics, {}), kPhysics);
+  EXPECT_EQ(Blended(1.0, {}, kInput), kInput);
 }
 
 // The two err alike, one to each side: in the middle is the truth.
@@ -62,19 +57,19 @@ std::vector<ForecastTrial> PlantedTrials() {
   return trials;
 }
 
-// A filter that knows the answers is believed at once, one that knows nothing never; and a fold does
-// not teach its own weight.
-TEST(LearnForecasts, FindsWhenTheFilterIsRight) {
+// A filter that knows the answers is believed, one that knows nothing is not; of two that err alike
+// to both sides the middle is right; and a fold does not teach its own weight.
+TEST(LearnForecasts, FindsHowMuchTheFilterIsRight) {
   std::vector<ForecastTrial> right = PlantedTrials(), wrong = right, leaking = right;
   for (ForecastTrial& trial : right) trial.input = trial.measured;
   for (ForecastTrial& trial : wrong) trial.physics = trial.measured;
-  EXPECT_EQ(LearnInputAfter(right), 0.25);
-  EXPECT_EQ(LearnInputAfter(wrong), 10.0);
   for (ForecastTrial& trial : leaking) {
     (trial.fold == 2 ? trial.input : trial.physics) = trial.measured;
   }
-  EXPECT_EQ(LearnInputAfter(leaking, 2), 10.0);
-  EXPECT_LT(LearnInputAfter(PlantedTrials()), 1.0);
+  EXPECT_EQ(LearnInputShare(right), 1.0);
+  EXPECT_EQ(LearnInputShare(wrong), 0.0);
+  EXPECT_NEAR(LearnInputShare(PlantedTrials()), 0.5, 0.11);
+  EXPECT_EQ(LearnInputShare(leaking, 2), 0.0);
 }
 
 // Errors of known scale: their 50 and 90 % bands hold as many.
