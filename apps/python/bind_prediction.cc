@@ -80,8 +80,8 @@ std::vector<HipPaths> HipsOf(const std::vector<std::vector<std::vector<BandPoint
   return hips;
 }
 
-// Futures by what the model knows of them: with process noise, its draws; else parameters drawn from
-// their covariance, with the errors of the fitted recordings.
+// Futures by what the model knows of them: with process noise, its draws; else parameters drawn
+// from their covariance, with the errors of the fitted recordings.
 Result<std::vector<HipPaths>> Drawn(const Model& model, const IdentifiedModel& identified,
                                     const PendulumRecording& seen, int frames, int samples,
                                     uint64_t seed) {
@@ -138,8 +138,8 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
   py::dict dict =
       DictOf(Unwrapped(PredictFrom(identified, seen, observed, frames, use), Fault::kUsage), seen);
   if (samples > 0) {
-    dict["samples"] = DrawsArray(Unwrapped(
-        Drawn(model, identified, seen, frames, samples, seed), Fault::kUsage));
+    dict["samples"] =
+        DrawsArray(Unwrapped(Drawn(model, identified, seen, frames, samples, seed), Fault::kUsage));
   }
   return dict;
 }

@@ -199,8 +199,8 @@ py::dict Between(const Model& model, const std::string& start, const std::string
   const ProbablePath path = Unwrapped(std::move(found), Fault::kUsage);
   py::dict dict;
   dict["states"] = StatesOf(path.states, 1);
-  dict["noise"] = TableArray(path.states.num_frames(), 1, 4,
-                             [&](int t, int n) { return path.noise.At(t, n); });
+  dict["noise"] =
+      TableArray(path.states.num_frames(), 1, 4, [&](int t, int n) { return path.noise.At(t, n); });
   dict["action"] = path.action();
   dict["noise_action"] = path.noise_action;
   dict["divergence_action"] = path.divergence_action;

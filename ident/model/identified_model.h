@@ -77,8 +77,8 @@ struct RecordingEffect {
   std::vector<EffectOfRecording> recordings = {};  // those that b acts on
 };
 
-// Who is to forecast a motion that was seen to begin (observed/first_frames.h): both together, or one
-// alone.
+// Who is to forecast a motion that was seen to begin (observed/first_frames.h): both together, or
+// one alone.
 enum class ForecastUse { kBoth, kPhysics, kInput };
 constexpr EnumNames<ForecastUse, 3> Names(ForecastUse) {
   return {{{"both", ForecastUse::kBoth},
@@ -100,8 +100,8 @@ struct ErrorScale {
 struct ForecastRule {
   InputNoise noise;                             // of the filter that forecasts
   double tail_strength = 1.0, tail_time = 1.0;  // its tail over the model's
-  double input_share = 0.6;          // weight of the filter once enough was seen
-  std::array<ErrorScale, 3> errors;  // along the push, across, upwards
+  double input_share = 0.6;                     // weight of the filter once enough was seen
+  std::array<ErrorScale, 3> errors;             // along the push, across, upwards
   // Forecasts that all this was learned from were made by models fitted without them: how many
   // such models, and of how many recordings. No folds: the model itself was all there was.
   int folds = 0, recordings = 0;

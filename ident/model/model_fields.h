@@ -313,8 +313,9 @@ void Fields(Archive& a, ForecastRule& f) {
     for (int i = 0; i < 3; ++i) g(kAxes[i], f.errors[i]);
   });
   PUSHID_FIELDS(a, f, folds, recordings);
-  a.Check(f.tail_strength > 0.0 && f.tail_time > 0.0 && f.input_share >= 0.0 && f.input_share <= 1.0,
-          "forecasts have numbers that cannot be");
+  a.Check(
+      f.tail_strength > 0.0 && f.tail_time > 0.0 && f.input_share >= 0.0 && f.input_share <= 1.0,
+      "forecasts have numbers that cannot be");
 }
 
 template <class Archive>

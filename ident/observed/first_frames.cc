@@ -103,11 +103,10 @@ double QuantileAt(const std::vector<double>& quantiles, double share) {
   return at + last / LastFall() * std::log((1.0 - below) / std::max(1e-12, 1.0 - share));
 }
 
-
 }  // namespace
 
-std::optional<double> InputShare(double input_share, const HipPaths& physics,
-                                 const HipPaths& input, double seconds, ForecastUse use) {
+std::optional<double> InputShare(double input_share, const HipPaths& physics, const HipPaths& input,
+                                 double seconds, ForecastUse use) {
   const bool asks_physics = use != ForecastUse::kInput && !physics.empty();
   const bool asks_input = use != ForecastUse::kPhysics && !input.empty();
   if (!asks_physics && !asks_input) return std::nullopt;

@@ -11,8 +11,9 @@
 //
 // An error on one axis (along the push, across, upwards) has the scale
 //   exp(coefficients . [1, log(h / 0.5 s), log((s + 0.05 s) / 0.35 s), log(v + 0.05 m/s)]),
-// s and h the time seen and ahead, v the mean speed to which the forecast takes the hip, and over that scale the quantiles of what
-// was found, alike on both sides: the middle of every distribution is the forecast itself.
+// s and h the time seen and ahead, v the mean speed to which the forecast takes the hip, and over
+// that scale the quantiles of what was found, alike on both sides: the middle of every distribution
+// is the forecast itself.
 #pragma once
 
 #include <array>
@@ -70,9 +71,8 @@ class FirstFrames {
 };
 
 // The weight w of the filter by the rule; none where nobody who is asked has anything to say.
-std::optional<double> InputShare(double input_share, const HipPaths& physics,
-                                 const HipPaths& input, double seconds,
-                                 ForecastUse use = ForecastUse::kBoth);
+std::optional<double> InputShare(double input_share, const HipPaths& physics, const HipPaths& input,
+                                 double seconds, ForecastUse use = ForecastUse::kBoth);
 HipPaths Blended(double share, const HipPaths& physics, const HipPaths& input);
 
 // Of log scale, as above.

@@ -80,7 +80,7 @@ std::vector<std::pair<int, int>> Judged(const std::vector<FoldModel>& folds) {
 // The numbers of the filter of unknown forces that forecast best: of each fold by how the other
 // folds are forecast, each by the model fitted without it; last, by all of them.
 std::vector<ForecastRule> ChooseInputs(const std::vector<PendulumRecording>& recordings,
-                                        const std::vector<FoldModel>& folds, int num_threads) {
+                                       const std::vector<FoldModel>& folds, int num_threads) {
   const std::vector<ForecastRule> candidates = Candidates();
   std::vector<ForecastRule> chosen(folds.size() + 1);
   if (folds.empty() || folds[0].model.options.learned != nullptr) return chosen;
@@ -259,8 +259,8 @@ std::array<ErrorScale, 3> LearnErrorScales(const std::vector<ForecastTrial>& tri
 }
 
 std::optional<ForecastRule> LearnForecasts(const IdentifiedModel& model,
-                                            const std::vector<PendulumRecording>& recordings,
-                                            const std::vector<FoldModel>& folds, int num_threads) {
+                                           const std::vector<PendulumRecording>& recordings,
+                                           const std::vector<FoldModel>& folds, int num_threads) {
   // Who forecasts what: folds, or the model itself.
   std::vector<FoldModel> forecasters = folds;
   if (folds.empty()) {

@@ -98,8 +98,8 @@ Prediction OnlinePredictor::Predict() const {
   prediction.effect = effect();
   if (!prediction.status.ok || observed() == 1) return prediction;
   const TwoForecasts two = frames_->Forecasts(prediction.hip);
-  const std::optional<double> input_share = InputShare(
-      model_->forecasts->input_share, two.physics, two.input, frames_->seconds(), use_);
+  const std::optional<double> input_share =
+      InputShare(model_->forecasts->input_share, two.physics, two.input, frames_->seconds(), use_);
   if (!input_share) {
     prediction.status = two.input_status;  // asked alone, and left the domain
     prediction.hip.clear();

@@ -205,7 +205,8 @@ std::string ForecastText(const ForecastRule& f) {
           ? "by models fitted without them, in " + std::to_string(f.folds) + " folds"
           : "by the model that was fitted to them: too few people or recordings to leave some out, "
             "so weights are not learned, and new ones will err more";
-  return "From a quarter of a second of first frames on (--observed) the rollout and a filter with an "
+  return "From a quarter of a second of first frames on (--observed) the rollout and a filter with "
+         "an "
          "unknown force are put together; the filter has the weight " +
          Rounded(f.input_share, 2) + ". Forecasts of " + std::to_string(f.recordings) +
          " recordings " + judged + ". The unknown force dies out in " +

@@ -35,8 +35,9 @@ struct SectionRow {
 
 RenderSection LeadSection, SummarySection, ParameterSection, ContrastSection, UnitSection,
 <<<<<<< HEAD
-    IdentifiabilitySection, ProfileSection, BootstrapSection, HorizonCheckSection, BehaviourSection, LoopSection, FrequencySection, SwaySection,
-    PopulationSection, ForecastSection, StepSection, GroupSection, FigureSection, MotionSection,
+    IdentifiabilitySection, ProfileSection, BootstrapSection, HorizonCheckSection, BehaviourSection,
+    LoopSection, FrequencySection, SwaySection, PopulationSection, ForecastSection, StepSection,
+    GroupSection, FigureSection, MotionSection,
 =======
     IdentifiabilitySection, ProfileSection, BootstrapSection, PriorCheckSection, PushCheckSection,
     HorizonCheckSection, BehaviourSection, LoopSection, FrequencySection, SwaySection,

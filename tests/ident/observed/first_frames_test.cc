@@ -89,8 +89,8 @@ TEST(LearnForecasts, ScalesHoldTheirShares) {
   const std::array<ErrorScale, 3> errors = LearnErrorScales(trials, centre);
   double inside50[3] = {}, inside90[3] = {}, count = 0.0;
   for (size_t i = 0; i < trials.size(); ++i) {
-    const HipDistribution hips(errors, trials[i].axes, centre[i], trials[i].from,
-                               trials[i].seconds, kFrame);
+    const HipDistribution hips(errors, trials[i].axes, centre[i], trials[i].from, trials[i].seconds,
+                               kFrame);
     for (int t = 0; t < 40; ++t, count += 1.0) {
       for (int axis = 0; axis < 3; ++axis) {
         const double share = hips.Cdf(0, t, axis, trials[i].measured[0][t][axis]);
