@@ -15,7 +15,6 @@
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/formations/formation_files.h"
-#include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/prediction.h"
 
 DEFINE_string(id, "", "the recording to show");

@@ -20,7 +20,6 @@
 #include "ident/model/model_rollout.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/evaluation.h"
-#include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"

@@ -6,8 +6,8 @@
 
 #include "datasets/files/names.h"
 #include "datasets/formats/bvh.h"
-#include "ident/prediction/laboratory_frame.h"
 #include "ident/prediction/predicted_steps.h"
+#include "ident/prediction/prediction.h"
 #include "models/rollout.h"
 
 namespace pushid {

@@ -10,6 +10,7 @@
 #include "ident/model/identified_model.h"
 #include "ident/model/model_rollout.h"
 #include "ident/observed/recording_filter.h"
+#include "models/restoration/body.h"
 #include "models/rollout.h"
 
 namespace pushid {
@@ -101,5 +102,17 @@ PendulumRecording WithPushes(PendulumRecording recording, const ChangedPushes& c
 
 // "1.37 times the recorded push, at frames 0, 40 and 80".
 std::string ChangedPushesText(const ChangedPushes& changed, const PendulumRecording& recording);
+
+// What a model sees from ground that moves, as the laboratory sees it: for files and pictures.
+// Errors are the same in either.
+
+struct PredictiveBands;
+
+// Nothing changes where the ground does not move. Paths, hips; net forces get the part of inertia.
+Prediction InLaboratory(const PendulumRecording& recording, Prediction prediction);
+PendulumRecording InLaboratory(PendulumRecording recording);
+void ToLaboratory(const Scene& scene, std::vector<BodyMotion>* bodies);
+void ToGround(const Scene& scene, std::vector<BodyMotion>* bodies);  // and back
+void ToLaboratory(const Scene& scene, PredictiveBands* bands);
 
 }  // namespace pushid

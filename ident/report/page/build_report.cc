@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "ident/prediction/laboratory_frame.h"
+#include "ident/prediction/prediction.h"
 #include "ident/report/page/sections.h"
 
 namespace pushid {

@@ -2,7 +2,7 @@
 
 #include "ident/bodies/animation.h"
 #include "ident/figures/svg.h"
-#include "ident/prediction/laboratory_frame.h"
+#include "ident/prediction/prediction.h"
 #include "ident/report/page/sections.h"
 
 namespace pushid {

@@ -7,7 +7,7 @@
 #include "datasets/loading/load_recordings.h"
 #include "ident/bodies/body_files.h"
 #include "ident/bodies/body_recording.h"
-#include "ident/prediction/laboratory_frame.h"
+#include "ident/prediction/prediction.h"
 #include "models/restoration/restoration.h"
 #include "tests/datasets/named_skeletons.h"
 #include "tests/datasets/recording_folder.h"
