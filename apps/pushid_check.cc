@@ -30,16 +30,11 @@ DEFINE_int32(bootstrap, 0,
 DEFINE_string(bootstrap_by, pushid::NameOf(pushid::BootstrapOptions{}.by),
               "unit drawn by a bootstrap: subject (all recordings of a person), recording, or auto "
               "(as standard errors are clustered, but recordings where people share them)");
-DEFINE_string(bootstrap_file, "",
-              "file that keeps finished replicas, so that an interrupted run can continue");
 DEFINE_string(
     design, "",
     "find which further push, of whom and with a force sensor or without, would lower the "
     "standard error of this parameter most (all: of all parameters together)");
 
-DEFINE_bool(population, false,
-            "print how recordings differ from the mean: the spread of a factor on tail_gain, and "
-            "each recording's effect");
 DEFINE_bool(
     horizon_check, false,
     "refit the first 8, 16, 32 and 64 frames: a parameter with physical meaning keeps its value");
@@ -58,32 +53,23 @@ uint64_t SeedOf(const FitOptions& options) {
   return given.seed;
 }
 
-// Errors also for flags without the one that they belong to.
 ModelChecks ChecksFromCommandLine(uint64_t seed) {
   ModelChecks checks;
   checks.profile = FLAGS_profile;
   checks.bootstrap.replicas = FLAGS_bootstrap;
-  checks.bootstrap.file = FLAGS_bootstrap_file;
   checks.horizon_check = FLAGS_horizon_check;
   checks.learn_forecasts = FLAGS_learn_forecasts;
-  checks.population = FLAGS_population;
   checks.design = FLAGS_design;
   checks.bootstrap.seed = seed;
   checks.bootstrap.num_threads = checks.num_threads = FLAGS_num_threads;
   OrFail(CheckNumbers(checks));
-  CheckNeeds({"bootstrap_file"}, {"bootstrap"}, "=N");
   OrFail(ParseName("--bootstrap_by", FLAGS_bootstrap_by, &checks.bootstrap.by));
-  OrFail(CheckOutputFiles({FLAGS_bootstrap_file}));
   return checks;
 }
 
-// With a progress line, and the message that Ctrl-C prints about --bootstrap_file.
+// With a progress line.
 void Add(const std::vector<PendulumRecording>& recordings, const ModelChecks& checks,
          FittedModel* model) {
-  if (!checks.bootstrap.file.empty()) {
-    SayWhenInterrupted("finished replicas are in " + checks.bootstrap.file +
-                       "; run the same command to continue");
-  }
   ProgressLine line;
   const auto progress = [&line](const std::string& what) { return line.OfJobs(what); };
   OrFail(AddChecks(recordings, checks, progress, model));
@@ -123,7 +109,7 @@ int Run() {
   if (!checks.Any()) {
     return Fail(
         "nothing is asked; give one of --profile, --bootstrap=199, --horizon_check, "
-        "--learn_forecasts, --design=all or --population");
+        "--learn_forecasts or --design=all");
   }
   const std::string& out = FLAGS_model_out.empty() ? FLAGS_model : FLAGS_model_out;
   const bool writes = checks.Adds() || !FLAGS_model_out.empty();

@@ -1,6 +1,6 @@
-// apps: people who stand, in Python: frequency responses and sway.
+// apps: people who stand, in Python: frequency responses and loops.
 #include "apps/python/bindings.h"
-#include "ident/prediction/visual_check.h"
+#include "ident/prediction/frequency_response.h"
 
 namespace pushid {
 namespace {
@@ -50,32 +50,6 @@ py::dict ResponsesOf(const Model& model, const std::vector<SharedRecording>& rec
   return dict;
 }
 
-py::dict SwayDict(const Model& model, const std::vector<SharedRecording>& recordings, int repeats,
-                  uint64_t seed) {
-  if (repeats < 0) Raise(Fault::kUsage, Error{"repeats must not be negative"});
-  const IdentifiedModel identified = IdentifiedOf(model);
-  const auto people =
-      WithoutGil([&] { return SwayOfPeople(identified, Pendulums(recordings), repeats, seed); });
-  py::dict dict;
-  py::list names, of;
-  for (const PersonSway& one : people) {
-    names.append(one.person);
-    of.append(one.by_plates ? "centre of pressure" : "hip");
-  }
-  dict["persons"] = names;
-  dict["of"] = of;
-  for (int i = 0; i < kNumSwayMeasures; ++i) {
-    const std::string key = kSwayMeasures[i].name;
-    const auto column = [&people](auto value) { return Column(people, value); };
-    dict[py::str(key)] = column([i](const PersonSway& one) { return one.measured[i]; });
-    if (identified.options.process_noise == ProcessNoise::kNone || repeats == 0) continue;
-    dict[py::str("simulated_" + key)] =
-        column([i](const PersonSway& one) { return one.simulated[i]; });
-    dict[py::str("spread_" + key)] = column([i](const PersonSway& one) { return one.spread[i]; });
-  }
-  return dict;
-}
-
 py::dict LoopDict(const Model& model, double mass, double rod) {
   if (!(mass > 0.0) || !(rod > 0.0)) Raise(Fault::kUsage, Error{"mass and rod must be above 0"});
   const IdentifiedModel identified = IdentifiedOf(model);
@@ -105,7 +79,6 @@ py::dict LoopDict(const Model& model, double mass, double rod) {
 
 void BindStanding(py::module_* module) {
   module->def("frequency_response", &ResponsesOf);
-  module->def("sway", &SwayDict);
   module->def("loop", &LoopDict);
 }
 

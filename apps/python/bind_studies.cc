@@ -40,8 +40,8 @@ void ProfilesOf(Model* model, const std::vector<std::string>& names, int num_thr
 }
 
 void BootstrapOf(Model* model, int replicas, uint64_t seed, int num_threads,
-                 const std::string& file, const py::object& progress) {
-  const BootstrapOptions options{replicas, seed, file, num_threads};
+                 const py::object& progress) {
+  const BootstrapOptions options{replicas, seed, num_threads};
   const JobProgress told = JobsOf(progress);
   Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
     return AddBootstrap(recordings, options, told, fitted);

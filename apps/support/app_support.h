@@ -99,13 +99,12 @@ class TrainingLine {
   double made_, start_ = 0.0, done_at_start_ = 0.0;
 };
 
-// Outputs are known by their flags' names (out, *_out, bootstrap_file), inputs by the list in
+// Outputs are known by their flags' names (out, *_out), inputs by the list in
 // app_support.cc; so the check holds for every program at once.
 
 // Whether a flag of this name says where to write. Here, so that plans are read without flags.
 inline bool IsOutputFlag(const std::string& name) {
-  return name == "out" || name == "bootstrap_file" ||
-         (EndsWith(name, "_out") && name != "leave_out" && name != "held_out");
+  return name == "out" || (EndsWith(name, "_out") && name != "leave_out" && name != "held_out");
 }
 
 // Whether the outputs that are named (not empty) can be written, before a long run.

@@ -45,19 +45,6 @@ MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
         "--learn_forecasts needs a push tail, and the model has none; add --push_tail=exponential "
         "(the presets tail and group have it)"};
   }
-  if (checks.population && options.model.push_tail == PushTail::kNone) {
-    return Error{
-        "--population estimates a factor on the push tail, and the model has none; add "
-        "--push_tail=exponential (the presets tail and group have it)"};
-  }
-  if (checks.population &&
-      std::none_of(recordings.begin(), recordings.end(), [&](const PendulumRecording& recording) {
-        return EffectActs(options.model, recording);
-      })) {
-    return Error{
-        "--population compares people who are pushed alone, with net forces, and no recording is "
-        "of that kind; give others, or leave it out"};
-  }
   if (checks.design.empty() || checks.design == "all") return std::nullopt;
   std::string known = "all";
   for (Parameter id : options.table.Free()) {
@@ -146,12 +133,7 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
 Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordings,
                                   const ModelChecks& checks, const FitResult& fit) {
   std::string text;
-  if (checks.population && fit.recording_effect) {
-    text = "\n" + PopulationText(*fit.recording_effect);
-  }
-  if ((checks.population || checks.learn_forecasts) && fit.forecasts) {
-    text += "\n" + ForecastText(*fit.forecasts);
-  }
+  if (checks.learn_forecasts && fit.forecasts) text = "\n" + ForecastText(*fit.forecasts);
   if (checks.design.empty()) return text;
   const Result<std::string> design = DesignText(DesignExperiments(recordings, fit), checks.design);
   if (!design.ok()) return Error{"--design: " + design.error().message};

@@ -16,15 +16,14 @@ struct ModelChecks {
   std::string profile;         // names, comma-separated; all; empty: none
   BootstrapOptions bootstrap;  // of which `replicas` may be 0: none
   bool horizon_check = false, learn_forecasts = false;
-  bool population = false;
   std::string design;  // a parameter, or all; empty: none
   int num_threads = 1;
 
-  // Whether they add to the model; population and design are only printed.
+  // Whether they add to the model; a design is only printed.
   bool Adds() const {
     return !profile.empty() || bootstrap.replicas > 0 || horizon_check || learn_forecasts;
   }
-  bool Any() const { return Adds() || population || !design.empty(); }
+  bool Any() const { return Adds() || !design.empty(); }
 };
 
 // What is wrong with them, before a long fit. Errors name the flag.
@@ -48,7 +47,7 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
                      const std::function<JobProgress(const std::string&)>& progress,
                      FittedModel* model);
 
-// What population and design print; empty where nothing was asked.
+// What forecasts and design print; empty where nothing was asked.
 Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordings,
                                   const ModelChecks& checks, const FitResult& fit);
 

@@ -53,11 +53,6 @@ inline constexpr double EffectNode(int node) {
 std::vector<double> EffectWeights(const std::vector<double>& misfit, double spread,
                                   double error_scale);
 
-// Whether the recording alone would have an effect as far out as is looked, or farther.
-inline bool AtEffectEdge(const EffectOfRecording& effect) {
-  return std::abs(effect.alone) >= kWidestEffect;
-}
-
 struct EffectEstimate {
   double mean = 0.0, error = 0.0;
 };

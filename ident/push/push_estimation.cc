@@ -123,7 +123,6 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
 
   EstimatedPush result;
   result.start_speed = states[window.start].qd.head<2>().norm();
-  result.kind = options.friction_taken_out != 0.0 ? PushKind::kNetWithoutFriction : PushKind::kNet;
   result.push.person = options.person;
   result.push.start_frame = window.start;
   const Body& body = recording.scene.people[options.person].body;
@@ -136,9 +135,8 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
     }
     result.motion.push_back(state);
     if (t == window.end) break;
-    Vector4<double> force =
+    const Vector4<double> force =
         InverseDynamics<double>(body, state, (states[t + 1].qd - state.qd) / dt);
-    force.head<2>() += options.friction_taken_out * state.qd.head<2>();
     result.push.force.push_back(force);
     result.impulse += dt * force;
     result.peak_force = std::max(result.peak_force, force.head<2>().norm());

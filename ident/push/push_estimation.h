@@ -37,9 +37,6 @@ struct PushEstimationOptions {
   // (estimated), of which noise makes a first row as large as any. Not said: estimated where the
   // smoothed hip is faster than onset_speed. At frame 0 the recording's own start velocity.
   std::optional<InitialVelocity> initial_velocity;
-  // N s/m. Not zero: friction of this size is taken out of the force, which then is a push of kind
-  // net_without_friction (kPublishedFriction of models/stance.h).
-  double friction_taken_out = 0.0;
   // Detection: the hip's speed that counts as moving, and its acceleration, as a fraction of the
   // peak, below which the push is over.
   double onset_speed = 0.1;  // m/s

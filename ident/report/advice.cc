@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
-#include "ident/fit/interval_agreement.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/report/fit_command.h"
@@ -18,7 +17,7 @@ constexpr int kFewRecordings = 10;
 constexpr double kTermLevel = 0.001;  // of a score test: seven terms are tested at once
 constexpr double kSomeSettling = 10.0, kMuchSettling = 30.0;  // weights to try
 constexpr int kManyIterations = 1000;
-constexpr int kReplicas = 199, kManyReplicas = 999;
+constexpr int kReplicas = 199;
 
 class Adviser {
  public:
@@ -224,17 +223,6 @@ void Adviser::Intervals() {
   if (!model_.bootstrap && several) {
     Add("A bootstrap checks the standard errors by resampling the recordings.",
         Bootstrap(kReplicas));
-  }
-  const bool few = model_.bootstrap && model_.bootstrap->drawn_from > 0 &&
-                   model_.bootstrap->drawn_from < kFewRecordings;
-  const int had = model_.bootstrap ? model_.bootstrap->replicas : 0;
-  for (const Agreement& row : CompareIntervals(model_)) {
-    if (!several || few) break;  // of few there are no more resamples to draw
-    if (row.ratio <= kDisagreement || !std::isfinite(row.ratio)) continue;
-    Add("The intervals of " + row.name + " differ by a factor of " + Rounded(row.ratio, 2) +
-            " in width: its cost is far from quadratic; report the widest, and draw more replicas.",
-        Bootstrap(std::max(kManyReplicas, 2 * had)));
-    break;  // one command serves all
   }
 }
 

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
-#include "ident/fit/interval_agreement.h"
 #include "ident/parameters/option_names.h"
-#include "ident/problem/statistics.h"
 #include "ident/report/fit_command.h"
 #include "ident/report/report_text.h"
 
@@ -20,16 +17,6 @@ constexpr int kFewUnits = 5;  // of fewer a bootstrap has too few distinct resam
 
 std::string OrDash(double value, const std::optional<Interval>& interval) {
   return interval ? IntervalText(value, interval->lower, interval->upper) : "-";
-}
-
-std::string Disagreements(const std::vector<Agreement>& rows) {
-  std::string names;
-  for (const Agreement& row : rows) {
-    if (row.ratio <= kDisagreement) continue;
-    names += (names.empty() ? "" : ", ") + row.name;
-  }
-  if (names.empty()) return "the widths agree within a factor of 1.5\n";
-  return "widths differ by more than a factor of 1.5, use the widest: " + names + "\n";
 }
 
 std::string StartText(const StartDiagnostics& start) {
@@ -100,25 +87,47 @@ std::string DiagnosticsText(const FittedModel& model) {
   return text;
 }
 
-TextTable AgreementTable(const FittedModel& model) {
+std::optional<Interval> ProfileInterval(const FittedModel& model, const std::string& name) {
+  for (const Profile& p : model.profiles) {
+    if (p.name == name) return Interval{0.0, p.lower95, p.upper95};
+  }
+  return std::nullopt;
+}
+
+std::optional<Interval> BootstrapInterval(const FittedModel& model, const std::string& name) {
+  if (!model.bootstrap) return std::nullopt;
+  const Bootstrap& b = *model.bootstrap;
+  for (size_t i = 0; i < b.names.size(); ++i) {
+    if (b.names[i] == name) return Interval{b.standard_error[i], b.lower95[i], b.upper95[i]};
+  }
+  return std::nullopt;
+}
+
+TextTable IntervalTable(const FittedModel& model) {
   TextTable table({"95 % intervals", "value", "clustered", "profile", "bootstrap", "unit", "class",
                    "by the data alone"},
                   {true, false, true, true, true, true, true, true});
-  for (const Agreement& row : CompareIntervals(model)) {
-    table.Add({row.name, Rounded(row.value, 4), OrDash(row.value, row.clustered),
-               OrDash(row.value, row.profile), OrDash(row.value, row.bootstrap), row.unit,
-               row.classification ? NameOf(*row.classification) : "",
-               row.by_data_alone ? NameOf(*row.by_data_alone) : ""});
+  const auto add = [&](const auto& row) {
+    const auto profile = ProfileInterval(model, row.name);
+    const auto bootstrap = BootstrapInterval(model, row.name);
+    if (!profile && !bootstrap) return;
+    std::string classification, by_data_alone;
+    for (const Profile& p : model.profiles) {
+      if (p.name != row.name) continue;
+      classification = NameOf(p.classification);
+      if (p.by_data_alone) by_data_alone = NameOf(*p.by_data_alone);
+    }
+    table.Add({row.name, Rounded(row.value, 4), IntervalText(row.value, row.lower95, row.upper95),
+               OrDash(row.value, profile), OrDash(row.value, bootstrap), row.unit, classification,
+               by_data_alone});
+  };
+  for (const Estimate& e : model.fit.estimates) {
+    if (e.status != EstimateStatus::kFixed) add(e);
+  }
+  for (const Combination& c : model.fit.derived) {
+    if (c.standard_error != 0.0) add(c);
   }
   return table;
-}
-
-std::string AgreementNote(const FittedModel& model) {
-  const std::vector<Agreement> rows = CompareIntervals(model);
-  if (rows.empty()) return "";
-  std::string text = Disagreements(rows);
-  if (model.bootstrap) text += "bootstrap " + ResamplingText(*model.bootstrap) + "\n";
-  return text;
 }
 
 std::string ResamplingText(const Bootstrap& b) {
@@ -135,81 +144,6 @@ std::string ResamplingText(const Bootstrap& b) {
   if (b.drawn_from > 0 && b.drawn_from < kFewUnits) {
     text += "; of " + number + what + " only " + Rounded(DistinctResamples(b.drawn_from), 3) +
             " distinct resamples exist: its intervals are rough, and usually too narrow";
-  }
-  return text;
-}
-
-namespace {
-
-using Pick = std::string EffectOfRecording::*;
-
-void AddGroups(const RecordingEffect& effect, const char* title, Pick pick, TextTable* table) {
-  std::map<std::string, std::vector<double>> groups;
-  for (const EffectOfRecording& r : effect.recordings) groups[r.*pick].push_back(r.mean);
-  if (groups.size() < 2) return;
-  for (const auto& [name, effects] : groups) {
-    const MeanAndError mean = MeanOf(effects);
-    table->Add({title + (name.empty() ? "none" : name), effects.size(), Rounded(mean.mean, 2),
-                effects.size() > 1 ? "+- " + Rounded(mean.error, 2) : std::string(),
-                Rounded(std::exp(mean.mean), 3)});
-  }
-}
-
-}  // namespace
-
-std::string PopulationSentence(const RecordingEffect& effect) {
-  const std::string scale = "the error of a rollout is " + Rounded(effect.error_scale, 3) +
-                            " m half a second after a push that gives 1 m/s with its tail";
-  if (effect.recordings.empty()) {
-    return "No recording effect: it needs people who are pushed alone and a model with a push "
-           "tail. " +
-           scale + ".";
-  }
-  return "Recordings differ by a factor exp(b) on the push tail, b ~ N(0, w^2): w = " +
-         Rounded(effect.spread, 3) + " +- " + Rounded(effect.spread_error, 2) + " (" +
-         std::to_string(effect.clusters) +
-         " clusters, left out one at a time). Each recording's own b removes " +
-         Rounded(100.0 * effect.explained, 2) +
-         " % of the mean squared error of the hip, divided by the push's speed; without it " +
-         scale +
-         ". Effects are shrunk towards 0 where a recording contains little information; alone: the "
-         "estimate without shrinkage, looked for between -" +
-         Rounded(kWidestEffect, 2) + " and " + Rounded(kWidestEffect, 2) + ".";
-}
-
-std::vector<EffectOfRecording> SortedEffects(const RecordingEffect& effect) {
-  std::vector<EffectOfRecording> sorted = effect.recordings;
-  std::sort(sorted.begin(), sorted.end(),
-            [](const EffectOfRecording& a, const EffectOfRecording& b) {
-              return std::tie(a.person, a.condition, a.mean, a.id) <
-                     std::tie(b.person, b.condition, b.mean, b.id);
-            });
-  return sorted;
-}
-
-TextTable EffectGroupsTable(const RecordingEffect& effect) {
-  TextTable table({"effect of", "recordings", "mean b", "", "factor"},
-                  {true, false, false, true, false});
-  AddGroups(effect, "person ", &EffectOfRecording::person, &table);
-  AddGroups(effect, "condition ", &EffectOfRecording::condition, &table);
-  return table;
-}
-
-TextTable EffectsTable(const RecordingEffect& effect) {
-  TextTable table({"recording", "person", "condition", "b", "", "factor", "alone"},
-                  {true, true, true, false, true, false, false});
-  for (const EffectOfRecording& r : SortedEffects(effect)) {
-    table.Add({r.id, r.person, r.condition, Rounded(r.mean, 2), "+- " + Rounded(r.error, 2),
-               Rounded(std::exp(r.mean), 3),
-               Rounded(r.alone, 2) + (AtEffectEdge(r) ? " or beyond" : "")});
-  }
-  return table;
-}
-
-std::string PopulationText(const RecordingEffect& effect) {
-  std::string text = PopulationSentence(effect) + "\n";
-  for (const TextTable& table : {EffectGroupsTable(effect), EffectsTable(effect)}) {
-    if (!table.empty()) text += table.ToString();
   }
   return text;
 }

@@ -1,17 +1,96 @@
-// ident: tables and sentences of the fitted numbers and their errors.
+// ident: what a result says of parameters, what is derived, who settles, contrasts and the loop, as
+// tables and sentences.
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/presets.h"
+#include "ident/problem/behaviour_text.h"
+#include "ident/problem/fit_problem.h"
+#include "ident/problem/linear_loop.h"
+#include "ident/problem/statistics.h"
 #include "ident/report/report_text.h"
+#include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/clusters.h"
 #include "models/self_terms.h"
 
 namespace pushid {
+namespace {
+
+constexpr char kUndetermined[] = "undetermined";
+constexpr double kOpenFactor = 100.0;  // to either side
+constexpr double kOpenSize = 1e6;      // of intervals that contain zero, in units of the value
+
+}  // namespace
+
+double ShownEnd(double value, double end, double other_end) {
+  const double open = end < value ? -INFINITY : INFINITY;
+  if (!std::isfinite(end)) return end;
+  const double factor = end / value;
+  if (value * end <= 0.0 || value * other_end <= 0.0) {
+    return std::abs(end) > kOpenSize * std::max(1.0, std::abs(value)) ? open : end;
+  }
+  if (factor > kOpenFactor) return open;
+  const bool wide = std::abs(std::log(end / other_end)) > 2.0 * std::log(kOpenFactor);
+  return wide && factor < 1.0 / kOpenFactor ? open : end;
+}
+
+std::string IntervalText(double value, double lower, double upper) {
+  const double from = ShownEnd(value, lower, upper), to = ShownEnd(value, upper, lower);
+  if (!std::isfinite(from) && !std::isfinite(to)) return kUndetermined;
+  const auto side = [](double end) {
+    return std::isfinite(end) ? Rounded(end, 4) : std::string("open");
+  };
+  return "[" + side(from) + ", " + side(to) + "]";
+}
+
+namespace {
+
+// How a derived gain reads; rates as their time constant.
+struct GainWords {
+  const char *derived, *name, *unit;
+  bool inverse;
+};
+constexpr GainWords kGainWords[] = {
+    {"Kp_theta/(m g l)", "ankle stiffness",
+     " times m g l (1 is just enough to hold a pendulum upright)", false},
+    {"Kp_theta/(M g l)", "ankle stiffness",
+     " times M g l (1.06 is just enough to hold a body upright)", false},
+    {"Kp_phi/(M g l)", "to the side", " times M g l", false},
+    {"Kd_theta/(M l^2)", "damping of the lean with a time constant of", " s", true},
+    {"Kp_phi/(m g l)", "to the side", " times m g l", false},
+    {"Kd_theta/(m l^2)", "damping of the lean with a time constant of", " s", true},
+    {"c_x/M", "friction of the feet with a time constant of", " s", true},
+};
+
+std::string GainText(const GainWords& words, const Combination& gain) {
+  const bool held = gain.standard_error == 0.0;
+  const bool known = held || IntervalText(gain.value, gain.lower95, gain.upper95) != kUndetermined;
+  const std::string value = Rounded(words.inverse ? 1.0 / gain.value : gain.value, 2);
+  return words.name + std::string(" ") + value + words.unit +
+         (held    ? " (held)"
+          : known ? ""
+                  : " (undetermined)");
+}
+
+}  // namespace
+
+std::string GainsText(const FitResult& result) {
+  std::string text;
+  for (const GainWords& words : kGainWords) {
+    for (const Combination& gain : result.derived) {
+      if (gain.name != words.derived || !(gain.value > 0.0)) continue;
+      text += (text.empty() ? "" : ", ") + GainText(words, gain);
+    }
+  }
+  return text.empty() ? "" : Capitalized(text) + ".";
+}
+
 namespace {
 
 // What stands where errors about these people are told apart (uncertainty/covariance.h).
@@ -232,6 +311,319 @@ std::string ConventionText(const FitResult& result) {
          (fitted ? std::string("Here Kp is fitted too.")
                  : "Convention: " + held + " N s/m held, mu = c - Kp.") +
          "\n" + quoted;
+}
+
+namespace {
+
+// Settings in which a harder push does not move the line on farther.
+std::string NoFartherText(const Behaviour& b) {
+  if (b.harder_moves_farther) return "";
+  std::string where;
+  const SettlingSimulation* before = nullptr;
+  for (const SettlingSimulation& d : b.simulations) {
+    if (d.people == 1) continue;
+    const std::string name = d.setting.empty() ? "shared values" : d.setting;
+    const bool harder = before != nullptr && before->setting == d.setting;
+    if (harder && d.advance <= before->advance && where.find(name) == std::string::npos) {
+      where += (where.empty() ? ": " : ", ") + name;
+    }
+    before = &d;
+  }
+  return "a harder push does NOT move the line farther" + (SettingsDiffer(b) ? where : "") + "\n";
+}
+
+}  // namespace
+
+std::string CorrelationText(const FitResult& result) {
+  const Uncertainty& u = result.uncertainty;
+  std::string text;
+  for (int i = 0; i < u.correlation.rows(); ++i) {
+    for (int j = i + 1; j < u.correlation.cols(); ++j) {
+      if (std::abs(u.correlation(i, j)) < 0.9) continue;
+      if (u.estimates[j].name.find('[') != std::string::npos) continue;  // a unit's deviation
+      text += "  " + u.estimates[i].name + " and " + u.estimates[j].name + ": " +
+              Rounded(u.correlation(i, j), 2) + "\n";
+    }
+  }
+  return text.empty() ? "" : "correlations beyond 0.9 (the data separate these poorly):\n" + text;
+}
+
+std::string BehaviourText(const FitResult& result) {
+  const Behaviour& b = result.behaviour;
+  return SettlingText(b, result.options.model) + NoFartherText(b) + FreeModeText(b);
+}
+
+TextTable LinesTable(const FitResult& result) {
+  TextTable table = TextTable::OfNumbers(
+      {"line pushed forwards, " + WaitText(result.options.model) + " later", "mean advance, m",
+       "advance of pushed person, m", "mean displacement, m"});
+  const bool differ = SettingsDiffer(result.behaviour);
+  for (const SettlingSimulation& d : result.behaviour.simulations) {
+    if (d.people == 1) continue;
+    table.Add({SettlingSimulationName(d, differ), Rounded(d.advance, 2),
+               Rounded(d.pushed_advance, 2), Rounded(d.distance, 2)});
+  }
+  return table;
+}
+
+namespace {
+
+// What is left of a motion that has died out is 0.
+std::string MotionText(double value) {
+  constexpr double kNothing = 1e-6;
+  return Rounded(std::abs(value) < kNothing ? 0.0 : value, 2);
+}
+
+}  // namespace
+
+TextTable BehaviourTable(const FitResult& result) {
+  TextTable table({"settling simulation", WaitText(result.options.model) + " after the push", "m/s",
+                   "rad from rest", "mean advance, m", "advance of pushed person, m"},
+                  {true, true, false, false, false, false});
+  const bool differ = SettingsDiffer(result.behaviour);
+  for (const SettlingSimulation& d : result.behaviour.simulations) {
+    table.Add({SettlingSimulationName(d, differ),
+               d.fell      ? kFellText
+               : d.settled ? kSettledText
+                           : "still moving",
+               MotionText(d.speed), MotionText(d.lean), MotionText(d.advance),
+               MotionText(d.pushed_advance)});
+  }
+  return table;
+}
+
+TextTable PooledTable(const FitResult& result) {
+  const bool by_setting = !result.settings.empty();
+  std::vector<std::string> header = {result.options.pool_by};
+  std::vector<bool> left = {true};
+  if (!by_setting) header.push_back("kg"), left.push_back(false);
+  header.insert(header.end(), {"parameter", "value", "std error", "95 % interval", "unit"});
+  left.insert(left.end(), {true, false, false, true, true});
+  TextTable table(header, left);
+  const auto add = [&table](const std::vector<std::string>& unit,
+                            const std::map<std::string, Estimate>& pooled) {
+    for (const auto& [name, e] : pooled) {
+      std::vector<std::string> row = unit;
+      row.insert(row.end(), {name, Rounded(e.value, 4), Rounded(e.standard_error, 3),
+                             IntervalText(e.value, e.lower95, e.upper95), e.unit});
+      table.Add(row);
+    }
+  };
+  if (!by_setting) {
+    for (const auto& [id, subject] : result.subjects) {
+      add({id, Rounded(subject.mass_kg, 4)}, subject.pooled);
+    }
+  }
+  for (const auto& [setting, pooled] : result.settings) add({setting}, pooled);
+  return table;
+}
+
+TextTable SpreadTable(const FitResult& result) {
+  const FitOptions& o = result.options;
+  TextTable table(
+      {"pooled", "shared", "std error", "unit", "spread between " + o.pool_by + "s (1 sigma)"},
+      {true, false, false, true, true});
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = o.table.Find(e.name);
+    if (spec == nullptr || !spec->free || !spec->pooled) continue;
+    const double sigma = PoolingSigma(*spec);
+    const std::string spread = spec->transform == Transform::kLog
+                                   ? "a factor of " + Rounded(std::exp(sigma), 3)
+                               : spec->transform == Transform::kLogit
+                                   ? Rounded(sigma * TransformSlope(spec->transform, e.value), 3)
+                                   : Rounded(sigma, 3);
+    const char* source = o.pooling_sigma                             ? ", given"
+                         : spec->pooling_sigma <= kLeastPoolingSigma ? ", estimated: none found"
+                                                                     : ", estimated";
+    table.Add({e.name, Rounded(e.value, 4), Rounded(e.standard_error, 3), e.unit, spread + source});
+  }
+  return table;
+}
+
+namespace {
+
+constexpr double kHolmLevel = 0.05;
+constexpr double kLeastShown = 1e-4;
+
+std::string ProbabilityText(double p) {
+  return p < kLeastShown ? "<" + Rounded(kLeastShown) : Rounded(p, 2);
+}
+
+std::string NumberOfPeople(size_t number) {
+  return std::to_string(number) + (number == 1 ? " person" : " people");
+}
+
+std::string ComparedText(const Contrast& c) {
+  std::string text = c.label + ": " + c.second + " less " + c.first + "; ";
+  if (c.both.empty()) {
+    return text + NumberOfPeople(c.only_first.size()) + " with " + c.first + ", " +
+           NumberOfPeople(c.only_second.size()) + " with " + c.second +
+           ", nobody in both: not paired";
+  }
+  text += NumberOfPeople(c.both.size()) + " in both (" + ListOfNames(c.both, kNamesInErrors) +
+          "), compared with themselves";
+  if (!c.only_first.empty()) {
+    text += "; only with " + c.first + ": " + ListOfNames(c.only_first, kNamesInErrors);
+  }
+  if (!c.only_second.empty()) {
+    text += "; only with " + c.second + ": " + ListOfNames(c.only_second, kNamesInErrors);
+  }
+  return text;
+}
+
+std::string DifferText(const Contrast& c) {
+  std::string found;
+  for (const ContrastRow& row : c.rows) {
+    if (row.p_holm < kHolmLevel) found += (found.empty() ? "" : ", ") + row.name;
+  }
+  const std::string of =
+      std::to_string(c.rows.size()) + (c.rows.size() == 1 ? " parameter" : " parameters");
+  return found.empty() ? "after Holm's correction for " + of + " no difference is told from 0"
+                       : "after Holm's correction for " + of + " these differ: " + found;
+}
+
+std::string EffectNote(const FitResult& result) {
+  const Contrast& c = *result.contrast;
+  std::string untold;
+  for (const ContrastRow& row : c.rows) {
+    if (!row.effect) untold += (untold.empty() ? "" : ", ") + row.name;
+  }
+  const FitOptions& o = result.options;
+  const bool by_person = AnyPooled(o.table) && o.pool_by == kSubjectUnit;
+  std::string text = "effects are in standard deviations between people";
+  if (!by_person) text += ", by a second fit that lets them differ";
+  if (!untold.empty()) {
+    text += "; not told, for want of people, of repeated recordings or of a spread: " + untold;
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+TextTable ContrastTable(const Contrast& c) {
+  TextTable table({"parameter", c.first, c.second, "difference", "95 % interval", "unit",
+                   "effect, sd", "p", "Holm's p", "status"},
+                  {true, false, false, false, true, true, false, false, false, true});
+  for (const ContrastRow& row : c.rows) {
+    table.Add({row.name, Rounded(row.first, 4), Rounded(row.second, 4), Rounded(row.difference, 3),
+               IntervalText(row.difference, row.lower95, row.upper95), row.unit,
+               row.effect ? Rounded(*row.effect, 2) : "-", ProbabilityText(row.p),
+               ProbabilityText(row.p_holm), NameOf(row.status)});
+  }
+  return table;
+}
+
+std::string ContrastText(const FitResult& result) {
+  if (!result.contrast) return "";
+  return ComparedText(*result.contrast) + "\n" + DifferText(*result.contrast) + "\n" +
+         EffectNote(result);
+}
+
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+constexpr double kAlike = 1e-6;  // relative
+
+struct NamedLoop {
+  std::string name;
+  LoopNumbers numbers;
+};
+
+bool Alike(const LoopNumbers& a, const LoopNumbers& b) {
+  const auto same = [](double x, double y) {
+    return std::abs(x - y) <= kAlike * (std::abs(x) + std::abs(y));
+  };
+  return same(a.stiffness_ratio, b.stiffness_ratio) &&
+         same(a.damping_ratio.value_or(0.0), b.damping_ratio.value_or(0.0)) &&
+         same(a.natural_hz.value_or(0.0), b.natural_hz.value_or(0.0)) &&
+         same(a.delay_margin.value_or(0.0), b.delay_margin.value_or(0.0));
+}
+
+std::vector<NamedLoop> LoopsOf(const FitResult& result) {
+  const ModelOptions& options = result.options.model;
+  if (options.stance == Stance::kSlide || !WithoutLinearLoop(options).empty()) return {};
+  const Body person;  // 85 kg, 0.95 m
+  const LoopNumbers along = LinearLoop(options, person, result.parameters, 0).Numbers();
+  const LoopNumbers across = LinearLoop(options, person, result.parameters, 1).Numbers();
+  if (Alike(along, across)) return {{"both directions", along}};
+  return {{"forwards (theta)", along}, {"sideways (phi)", across}};
+}
+
+std::string OrDash(const std::optional<double>& value, int digits, double unit = 1.0) {
+  return value ? Rounded(unit * *value, digits) : "-";
+}
+
+std::string GainRange(const LoopNumbers& numbers) {
+  if (!numbers.gain_down && !numbers.gain_up) return "-";
+  return (numbers.gain_down ? Rounded(*numbers.gain_down, 2) : "0") + " - " +
+         (numbers.gain_up ? Rounded(*numbers.gain_up, 2) : "any");
+}
+
+std::string Sentence(const NamedLoop& loop) {
+  const LoopNumbers& n = loop.numbers;
+  std::string text =
+      "The loop, " + loop.name + ": stiffness " + Rounded(n.stiffness_ratio, 3) + " times m g l";
+  if (!n.stable) {
+    return text + "; UNSTABLE at rest, it grows at " + Rounded(n.fastest_growth, 2) +
+           " 1/s: there are no margins.";
+  }
+  if (n.damping_ratio) {
+    text += ", damping ratio " + Rounded(*n.damping_ratio, 2) + " of the oscillation at " +
+            Rounded(*n.natural_hz, 2) + " Hz that dies out last";
+  } else {
+    text += ", no oscillation";
+  }
+  if (n.phase_margin) {
+    text += "; phase margin " + Rounded(kDegrees * *n.phase_margin, 2) + " degrees at " +
+            Rounded(*n.crossover_hz, 2) + " Hz";
+  }
+  if (n.delay_margin) {
+    text += "; feedback that comes another " + Rounded(*n.delay_margin, 2) +
+            " s later (delay margin) is unstable";
+  }
+  if (n.gain_down || n.gain_up) {
+    text += "; so is feedback " +
+            (n.gain_down ? Rounded(*n.gain_down, 2) + " times as strong or less" : std::string()) +
+            (n.gain_down && n.gain_up ? ", or " : "") +
+            (n.gain_up ? Rounded(*n.gain_up, 2) + " times as strong or more" : std::string());
+  }
+  return text + ".";
+}
+
+}  // namespace
+
+TextTable LoopTable(const FitResult& result) {
+  TextTable table({"loop", "stiffness/(m g l)", "damping ratio", "oscillates at, Hz",
+                   "phase margin, deg", "delay margin, s", "gains stable at, times"},
+                  {true, false, false, false, false, false, true});
+  for (const NamedLoop& loop : LoopsOf(result)) {
+    const LoopNumbers& n = loop.numbers;
+    const auto if_stable = [&n](const std::string& text) { return n.stable ? text : "-"; };
+    table.Add({loop.name + (n.stable ? "" : ": UNSTABLE"), Rounded(n.stiffness_ratio, 3),
+               if_stable(OrDash(n.damping_ratio, 2)), if_stable(OrDash(n.natural_hz, 2)),
+               OrDash(n.phase_margin, 3, kDegrees), OrDash(n.delay_margin, 2), GainRange(n)});
+  }
+  return table;
+}
+
+std::string LoopText(const FitResult& result) {
+  std::string text;
+  for (const NamedLoop& loop : LoopsOf(result)) text += Sentence(loop) + "\n";
+  return text;
+}
+
+std::string LagText(const FitResult& result) {
+  constexpr double kLeastDelay = 0.01, kLevel = 0.05;  // s; of a one-sided test
+  for (const AssumptionTest& test : result.verdict.assumptions) {
+    if (test.name != kReactionDelayName || test.error <= 0.0) continue;
+    // One-sided: nobody reacts before they are pushed.
+    const double p = 0.5 * StudentTail(test.wanted / test.error, result.verdict.freedom);
+    if (test.wanted < kLeastDelay || p > kLevel) continue;
+    return "The response lags (the residuals ask for a reaction delay of " +
+           Rounded(test.wanted, 2) + " +- " + Rounded(test.error, 1) +
+           " s), and damping comes out too low without it; try --delay=one.";
+  }
+  return "";
 }
 
 }  // namespace pushid

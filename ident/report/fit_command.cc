@@ -40,9 +40,8 @@ std::string ShellQuoted(const std::string& value) {
 }  // namespace
 
 const std::vector<std::string>& CheckFlagNames() {
-  static const std::vector<std::string> names = {"profile",        "bootstrap", "bootstrap_file",
-                                                 "horizon_check",  "design",    "population",
-                                                 "learn_forecasts"};
+  static const std::vector<std::string> names = {"profile", "bootstrap",  "horizon_check",
+                                                 "design",  "learn_forecasts"};
   return names;
 }
 

@@ -83,10 +83,10 @@ std::string ReportText(const FittedModel& model) {
   }
   for (const std::string& held : result.uncertainty.held_directions)
     text += "prior-dependent: " + held + "\n";
-  const TextTable agreement = AgreementTable(model);
-  if (!agreement.empty()) {
-    text += agreement.ToString() + AgreementNote(model) + "\n";
-  }
+  const TextTable intervals = IntervalTable(model);
+  if (!intervals.empty()) text += intervals.ToString();
+  if (model.bootstrap) text += "bootstrap " + ResamplingText(*model.bootstrap) + "\n";
+  if (!intervals.empty()) text += "\n";
   if (model.horizon_check) {
     text += HorizonTable(*model.horizon_check).ToString() + DriftText(*model.horizon_check) + "\n";
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -98,10 +99,11 @@ TextTable AssumptionTable(const FitResult& result);
 
 // Profiles, bootstrap and diagnostics in words and tables for a terminal.
 
-// Clustered, profile and bootstrap intervals side by side (only a header when neither was asked
-// for), and whether they agree.
-TextTable AgreementTable(const FittedModel& model);
-std::string AgreementNote(const FittedModel& model);
+// Of the parameter or combination of that name; none where it was not asked for.
+std::optional<Interval> ProfileInterval(const FittedModel& model, const std::string& name);
+std::optional<Interval> BootstrapInterval(const FittedModel& model, const std::string& name);
+// Both beside the clustered interval; only a header when neither was asked for.
+TextTable IntervalTable(const FittedModel& model);
 
 // "resampling 4 people: 199 of 199 replicas, seed 1", and what to think of so few.
 std::string ResamplingText(const Bootstrap& bootstrap);
@@ -109,22 +111,6 @@ std::string ResamplingText(const Bootstrap& bootstrap);
 // What was noted before the solve, the recordings that fit worst or move most, whether residuals
 // are white, and what to try next.
 std::string DiagnosticsText(const FittedModel& model);
-
-// How recordings differ from what the same push does to the mean person, in words and
-// tables.
-
-// "b ~ N(0, w^2) on the log of tail_gain: w 0.43 +- 0.08 (4 clusters) ..."
-std::string PopulationSentence(const RecordingEffect& effect);
-
-// Means of the effects of each person and each condition.
-TextTable EffectGroupsTable(const RecordingEffect& effect);
-// One row a recording, by person, condition and effect: as shrunk, and alone.
-TextTable EffectsTable(const RecordingEffect& effect);
-// The rows' order.
-std::vector<EffectOfRecording> SortedEffects(const RecordingEffect& effect);
-
-// All of it.
-std::string PopulationText(const RecordingEffect& effect);
 
 // What a result says, as tables and sentences: the terminal's report and the page show the
 // same ones. Pure functions of the result; empty where there is nothing to say.

@@ -2,20 +2,20 @@
 #include "ident/uncertainty/bootstrap.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
-#include <mutex>
 
 #include "datasets/files/random.h"
 #include "ident/solver/solver.h"
-#include "ident/uncertainty/bootstrap_file.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
 namespace {
+
+// Of one replica: empty for a fit that failed.
+using ReplicaValues = std::vector<double>;
 
 // Of the cost: what more would bring is a hundredth of what replicas differ by.
 constexpr double kReplicaTolerance = 1e-6;
@@ -193,33 +193,17 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
     bootstrap.units.push_back(spec.unit);
   }
 
-  BootstrapFile file;
-  if (MaybeError error = file.Open(problem, options, bootstrap)) return *error;
   std::vector<ReplicaValues> replicas(options.replicas);
   const std::vector<Draw> draws = DistinctDraws(from, options);
   const std::vector<RecordingSums> each = SumEach(problem, estimate);
-  std::mutex writing;
-  std::atomic<bool> stopped{false};
-  MaybeError failed;
   ParallelFor(
       static_cast<int>(draws.size()), options.num_threads,
       [&](int i) {
-        if (stopped) return;
         const Draw& draw = draws[i];
-        const auto kept = file.finished().find(draw.replicas.front());
-        const ReplicaValues values =
-            kept != file.finished().end()
-                ? kept->second
-                : FitReplica(problem, estimate, each, draw.counts, combinations);
-        const std::lock_guard<std::mutex> lock(writing);
-        for (int k : draw.replicas) {
-          replicas[k] = values;
-          if (!stopped && file.finished().count(k) == 0) failed = file.Append(k, values);
-          stopped = stopped || failed.has_value();
-        }
+        const ReplicaValues values = FitReplica(problem, estimate, each, draw.counts, combinations);
+        for (int k : draw.replicas) replicas[k] = values;
       },
       progress);
-  if (failed) return *failed;
   for (const ReplicaValues& values : replicas) {
     if (values.empty()) {
       ++bootstrap.failed;

@@ -6,9 +6,7 @@
 // Where people share recordings nobody can be drawn alone, and the published groups are all tied
 // together: there recordings are drawn, which leaves out what a person does in all of them.
 //
-// Replica k depends on the seed and k alone, so a run may be interrupted and resumed, in any number
-// of threads, and ends with the same rows. The file holds one line of JSON per replica after a
-// header that says what was fitted; a line cut short by a kill is dropped.
+// Replica k depends on the seed and k alone, so any number of threads ends with the same rows.
 #pragma once
 
 #include <cstdint>
@@ -41,13 +39,11 @@ struct Bootstrap {
 struct BootstrapOptions {
   int replicas = 199;  // 199 for standard errors; 999 where quantiles matter
   uint64_t seed = 1;
-  std::string file;  // keeps finished replicas; empty: nothing is kept
   int num_threads = 1;
   ClusterBy by = ClusterBy::kAuto;  // auto: as standard errors are clustered
 };
 
-// Errors: fewer than two people or recordings to draw, a file that cannot be used or belongs to
-// another fit.
+// Errors: fewer than two people or recordings to draw.
 Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& estimate,
                                    const BootstrapOptions& options,
                                    const JobProgress& progress = nullptr);

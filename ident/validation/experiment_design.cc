@@ -78,20 +78,14 @@ MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
   return jacobian.transpose() * jacobian;
 }
 
-// L with L L' = T of the header, without the directions where noise is all there is.
-MatrixXd SpreadRoot(const MatrixXd& clustered, const MatrixXd& naive, int groups) {
+// T of the header, without the directions where noise is all there is.
+MatrixXd SpreadOf(const MatrixXd& clustered, const MatrixXd& naive, int groups) {
   const Eigen::VectorXd error = clustered.diagonal().cwiseSqrt(), inverse = error.cwiseInverse();
-  const SymmetricEigen root = DecomposeSymmetric(
+  const SymmetricEigen scaled = DecomposeSymmetric(
       groups * (inverse.asDiagonal() * (clustered - naive) * inverse.asDiagonal()));
-  return error.asDiagonal() * root.vectors * root.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
-// (I^-1 + L L')^-1, also where I is singular (Woodbury).
-MatrixXd WithSpread(const MatrixXd& information, const MatrixXd& spread) {
-  const MatrixXd mixed = information * spread;
-  const MatrixXd inner =
-      MatrixXd::Identity(spread.cols(), spread.cols()) + spread.transpose() * mixed;
-  return information - mixed * SolveSymmetricTransposed(inner, mixed);
+  const MatrixXd root =
+      error.asDiagonal() * scaled.vectors * scaled.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  return root * root.transpose();
 }
 
 bool Falls(const PendulumRecording& candidate) {
@@ -189,13 +183,16 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
     return design;
   }
   const MatrixXd now = by_recording.scatter.Covariance()(known, known), present = Inverse(now);
-  const MatrixXd spread = SpreadRoot(now, by_recording.naive(known, known), groups);
+  const MatrixXd spread = SpreadOf(now, by_recording.naive(known, known), groups);
   for (const CandidatePush& push : candidates) {
     const PendulumRecording candidate = MakeCandidate(problem, estimate, push);
     if (Falls(candidate)) continue;
     const MatrixXd information = Information(problem, estimate, candidate, known) /
                                  (by_recording.sigma * by_recording.sigma);
-    const MatrixXd then = Inverse(present + WithSpread(information, spread));
+    // (I^-1 + T)^-1 = (1 + I T)^-1 I, also where I is singular.
+    const MatrixXd told =
+        SolveGeneral(MatrixXd::Identity(size, size) + information * spread, information);
+    const MatrixXd then = Inverse(present + told);
     DesignRow row{push, {}, std::pow(then.determinant() / now.determinant(), 0.5 / size)};
     for (int i = 0; i < size; ++i) row.error_ratio.push_back(std::sqrt(then(i, i) / now(i, i)));
     design.rows.push_back(row);

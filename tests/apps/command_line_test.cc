@@ -68,17 +68,11 @@ TEST_F(CommandLineTest, CtrlCSaysWhatIsKept) {
                                  std::string(PUSHID_BIN_DIR) + "/" + program});
     return RunProgram("/usr/bin/timeout", flags);
   };
-  AppRun run = interrupted("pushid-fit", {Recordings(), "--self_force=mlp:64", "--quiet",
+  const AppRun run = interrupted("pushid-fit", {Recordings(), "--self_force=mlp:64", "--quiet",
                                           "--model_out=" + Path("m.json")});
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_TRUE(Contains(run.err, "pushid-fit: interrupted; no partial file is left"));
   EXPECT_FALSE(std::filesystem::exists(Path("m.json")));
-  const std::string kept = Path("replicas.csv");
-  run = interrupted("pushid-check", {"--model=" + FitModel(), Recordings(), "--bootstrap=1000000",
-                                     "--quiet", "--bootstrap_file=" + kept});
-  EXPECT_EQ(run.exit_code, 130) << run.err;
-  EXPECT_TRUE(
-      Contains(run.err, "finished replicas are in " + kept + "; run the same command to continue"));
 }
 
 TEST_F(CommandLineTest, RepeatedCandidatesAreAllCompared) {

@@ -140,27 +140,6 @@ TEST_F(SmallDiskTest, AResultThatCannotBePrintedIsAFailure) {
   EXPECT_TRUE(Contains(run.err, "stdout cannot be written: No space left on device"));
 }
 
-// Not after all replicas were computed for nothing.
-TEST_F(SmallDiskTest, ABootstrapStopsAtTheFirstReplicaItCannotKeep) {
-  if (!Mount(64)) GTEST_SKIP() << kNoMounts;
-  const std::string file = Path("disk/replicas.jsonl");
-  const std::vector<std::string> few = {"--model=" + FitModel(), "--bootstrap=3", Recordings(),
-                                        "--bootstrap_file=" + file, "--quiet"};
-  Succeeded(RunApp("pushid-check", few));
-  const std::string kept = ReadText(file);
-  Fill(4096);
-  std::vector<std::string> many = few;
-  many[1] = "--bootstrap=100000";
-  const AppRun full = RunApp("pushid-check", many, 60);
-  EXPECT_EQ(full.exit_code, 1) << full.out << full.err;
-  EXPECT_TRUE(Contains(full.err, file + ": "));
-  EXPECT_TRUE(Contains(full.err, "No space left on device"));
-  EXPECT_TRUE(Contains(full.err, "run the same command to continue"));
-  EXPECT_EQ(ReadText(file).rfind(kept, 0), 0u) << "what was kept is gone";
-  fs::remove(Path("disk/filler"));
-  Succeeded(RunApp("pushid-check", few));
-}
-
 TEST_F(SmallDiskTest, ABatchGoesOnWhenThereIsSpaceAgain) {
   if (!Mount(4096)) GTEST_SKIP() << kNoMounts;
   const std::string jobs = "group_by = \"recording\"";

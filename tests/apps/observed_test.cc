@@ -1,4 +1,4 @@
-// --observed in predict, evaluate and crossvalidate; --population of check.
+// --observed in predict, evaluate and crossvalidate.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -102,34 +102,14 @@ TEST_F(ObservedTest, WhatCannotBeIsRefused) {
   EXPECT_TRUE(
       Refused(RunApp("pushid-crossvalidate", {Recordings(), "--preset=ldp", "--observed=9"}),
               {"no push tail", "--push_tail=exponential"}));
-  const std::string external = ChangedManifest([](nlohmann::ordered_json& json) {
-    for (auto& recording : json["recordings"]) recording["push_kind"] = "external";
-  });
-  Succeeded(RunApp("pushid-fit", {external, "--model_out=" + Path("external.json")}));
-  EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + Path("external.json"), external,
-                                              "--population", "--quiet"}),
-                      {"--population", "pushed alone", "no recording is of that kind"}));
   const std::string plain = "--model=" + FitModel("plain.json");
   EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {plain, Recordings(), "--observed=9"}),
                       {"plain.json", "learned no forecasts", "pushid-check --learn_forecasts"}));
   const std::string ldp = "--model=" + FitModel("ldp.json", {"--preset=ldp"});
-  for (const char* check : {"--population", "--learn_forecasts"}) {
-    EXPECT_TRUE(Refused(RunApp("pushid-check", {ldp, Recordings(), check}),
-                        {check, "push tail, and the model has none"}));
-  }
+  EXPECT_TRUE(Refused(RunApp("pushid-check", {ldp, Recordings(), "--learn_forecasts"}),
+                      {"--learn_forecasts", "push tail, and the model has none"}));
   EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {ldp, Recordings(), "--observed=9"}),
                       {"ldp.json", "no push tail"}));
-}
-
-TEST_F(ObservedTest, PopulationIsPrintedAndKept) {
-  const std::string model = FitModel();
-  const AppRun run = Succeeded(RunApp(
-      "pushid-check", {"--model=" + model, Recordings(), "--population", "--learn_forecasts"}));
-  EXPECT_TRUE(Contains(run.out, "Recordings differ by a factor exp(b) on the push tail"));
-  EXPECT_TRUE(Contains(run.out, "alone"));
-  const auto effect = Json(model)["recording_effect"];
-  EXPECT_EQ(effect["recordings"].size(), 12u);
-  EXPECT_GT(effect["error_scale_m"].get<double>(), 0.0);
 }
 
 }  // namespace

@@ -143,12 +143,9 @@ class Result:
         """Results of the last profile(), one dict per parameter."""
         return _numbers(self.json.get("profiles", []))
 
-    def bootstrap(self, replicas=199, *, seed=1, num_threads=1, file="", progress=None):
-        """Refits of people (or recordings) drawn with replacement; returns the JSON's part `bootstrap`.
-
-        file: keeps finished replicas, so that an interrupted run can continue.
-        """
-        _pushid.bootstrap(self._model, replicas, seed, num_threads, os.fspath(file), progress)
+    def bootstrap(self, replicas=199, *, seed=1, num_threads=1, progress=None):
+        """Refits of people (or recordings) drawn with replacement; returns the JSON's part `bootstrap`."""
+        _pushid.bootstrap(self._model, replicas, seed, num_threads, progress)
         return self._part("bootstrap")
 
     def horizon_check(self, *, num_threads=1, progress=None):
@@ -218,16 +215,6 @@ class Result:
         also "persons", "recordings" and "name".
         """
         return _pushid.frequency_response(self._model, checked(recordings))
-
-    def sway(self, recordings, *, repeats=20, seed=1):
-        """Sway of those recordings in which nobody is pushed and the ground rests, person by person.
-
-        "persons", "of" ("centre of pressure" or "hip"), and arrays with one value per person: "path" (m), "speed"
-        (m/s), "rms_x", "rms_y" (m), "frequency_x", "frequency_y" (mean power frequency, Hz), "ellipse" (m^2, 95 %); if the
-        model has process noise also "simulated_path", ... (means over `repeats` rollouts) and "spread_path", ...
-        (their standard deviations).
-        """
-        return _pushid.sway(self._model, checked(recordings), repeats, seed)
 
     def report(self, path):
         """Writes the report as one page of HTML (path ends in .html); returns its path."""

@@ -92,13 +92,8 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   ReportSource source{model};
   source.views = ViewRecordings(result, recordings, options.num_threads, options.progress);
   const IdentifiedModel identified = ModelOf(result);
-  const std::vector<PendulumRecording> on_ground = MakePendulumRecordings(recordings);
-  source.frequency = FrequencyResponses(identified, on_ground);
-  source.sway = SwayOfPeople(identified, on_ground);
+  source.frequency = FrequencyResponses(identified, MakePendulumRecordings(recordings));
   source.propagation = PropagationOf(result, source.views);
-  std::vector<PendulumRecording> shown;
-  for (const RecordingView& view : source.views) shown.push_back(view.run.recording);
-  source.check = CheckVisually(ModelOf(result), shown);
   for (const SectionRow& row : kSections) {
     ReportSection section = row.render(source);
     section.id = row.id;

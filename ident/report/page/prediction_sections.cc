@@ -1,5 +1,7 @@
-// ident: who steps: the probability of a step, how well it holds, and what it says of other pushes.
+// ident: who steps, groups, and people who stand: the loop and its frequency response.
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
@@ -7,6 +9,7 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/prediction.h"
 #include "ident/report/page/sections.h"
+#include "ident/report/report_text.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {
@@ -100,119 +103,117 @@ ReportSection GroupSection(const ReportSource& source) {
 
 namespace {
 
-constexpr char kMiddleBandLook[] = "stroke:none;fill:#d55e00;fill-opacity:.18";
+constexpr double kDegrees = 180.0 / M_PI;
 
-Chart StratumChart(const CheckedStratum& stratum) {
-  Chart chart{stratum.name + " (n = " + std::to_string(stratum.recordings) + ")", "time, s",
-              "hip/push speed, s"};
-  for (int q = 0; q < kNumCheckedShares; ++q) {
-    const bool middle = q == kNumCheckedShares / 2;
-    ChartBand band{{}, {}, middle ? kMiddleBandLook : kWideBandLook};
-    ChartLine line{{}, kMeasuredLook, false};
-    for (const CheckedFrame& frame : stratum.frames) {
-      band.lower.emplace_back(frame.seconds, frame.lower90[q]);
-      band.upper.emplace_back(frame.seconds, frame.upper90[q]);
-      line.points.emplace_back(frame.seconds, frame.observed[q]);
-    }
-    chart.bands.push_back(band);
-    chart.lines.push_back(line);
-  }
-  return chart;
+constexpr char kErrorLook[] = "fill:none;stroke:#8a8f98;stroke-width:1.2";
+
+// The multiple of 360 degrees away that is nearest.
+double Nearest(double phase, double to) { return to + std::remainder(phase - to, 360.0); }
+
+void AddPoint(double x, double value, double error, Chart* chart) {
+  if (error > 0.0) chart->lines.push_back({{{x, value - error}, {x, value + error}}, kErrorLook});
+  chart->lines.push_back({{{x, value}}, kMeasuredLook, true});
 }
 
-ReportFigure StrataFigure(const VisualCheck& check) {
+// Gain, phase and coherence over a logarithmic frequency: measured points with their errors over
+// the model's curve. Phases go on without jumps: of the model from its lowest frequency on, of each
+// point as near to the model as may be, or to the point before where there is no model.
+Figure BodeFigure(const FrequencyResponse& response) {
+  Chart gain{"gain, " + response.OutputUnit() + "/" + response.InputUnit(), "frequency, Hz"};
+  gain.logarithmic_x = true;
+  Chart phase = gain, coherence = gain;
+  phase.title = "phase, degrees";
+  coherence.title = "coherence";
+  gain.logarithmic_y = true;
+  coherence.y_from = 0.0;
+  coherence.y_to = 1.05;
+  double lowest = INFINITY, highest = -INFINITY;
+  const FrequencyCurve& model = response.model;
+  ChartLine gain_line{{}, kPredictedLook}, phase_line{{}, kPredictedLook};
+  for (size_t i = 0; i < model.hz.size(); ++i) {
+    const double x = std::log10(model.hz[i]), log = model.log_gain[i] / M_LN10;
+    const double degrees = kDegrees * model.phase[i];
+    gain_line.points.emplace_back(x, log);
+    phase_line.points.emplace_back(
+        x, i == 0 ? degrees : Nearest(degrees, phase_line.points.back().second));
+    lowest = std::min(lowest, log);
+    highest = std::max(highest, log);
+  }
+  if (!model.hz.empty()) {
+    gain.lines.push_back(gain_line);
+    phase.lines.push_back(phase_line);
+  }
+  std::optional<double> beside;
+  for (const FrequencyBin& bin : response.bins) {
+    const double x = std::log10(bin.hz);
+    const double log = bin.log_gain / M_LN10, error = bin.log_gain_error / M_LN10;
+    if (!model.hz.empty()) {
+      const auto next = std::lower_bound(model.hz.begin(), model.hz.end(), bin.hz);
+      const size_t at = std::min<size_t>(next - model.hz.begin(), model.hz.size() - 1);
+      beside = phase_line.points[at].second;
+    }
+    const double degrees = beside ? Nearest(kDegrees * bin.phase, *beside) : kDegrees * bin.phase;
+    beside = degrees;
+    AddPoint(x, log, error, &gain);
+    AddPoint(x, degrees, kDegrees * bin.phase_error, &phase);
+    AddPoint(x, bin.coherence, 0.0, &coherence);
+    lowest = std::min(lowest, log - error);
+    highest = std::max(highest, log + error);
+  }
+  gain.y_from = std::floor(lowest);  // a power of ten at both ends
+  gain.y_to = std::max(std::ceil(highest), *gain.y_from + 1.0);
   Figure figure;
-  TextTable numbers = TextTable::OfNumbers(
-      {"stratum", "time_s", "recordings", "percentile", "observed_s", "lower90_s", "upper90_s"});
-  for (const CheckedStratum& stratum : check.strata) {
-    figure.panels.push_back(StratumChart(stratum));
-    for (const CheckedFrame& frame : stratum.frames) {
-      for (int q = 0; q < kNumCheckedShares; ++q) {
-        numbers.Add({stratum.name, frame.seconds, frame.recordings, 100.0 * kCheckedShares[q],
-                     frame.observed[q], frame.lower90[q], frame.upper90[q]});
-      }
-    }
+  figure.legend = {{"measured, one standard error", kErrorLook}};
+  if (!model.hz.empty()) figure.legend.push_back({"model", kPredictedLook});
+  figure.panels = {gain, phase, coherence};
+  return figure;
+}
+
+std::string CaptionOf(const FrequencyResponse& response) {
+  const size_t people = response.people.size();
+  std::string text = response.Name() + ": " + std::to_string(response.recordings) +
+                     (response.recordings == 1 ? " recording of " : " recordings of ") +
+                     std::to_string(people) + (people == 1 ? " person" : " people") + "; ";
+  text += response.periodic
+              ? "the excited frequencies, in periods of " + Rounded(response.segment_s, 3) + " s"
+              : "Welch's method, segments of " + Rounded(response.segment_s, 3) + " s";
+  if (response.output == LoopOutput::kTorque) {
+    text += response.by_plates ? "; torque by force platforms" : "; torque by inverse dynamics";
   }
-  return {"visual_predictive_check",
-          "10th, 50th and 90th percentile over recordings of the hip's displacement along the "
-          "push, divided by the speed of the push (lines), and the central 90 % of the same "
-          "percentiles in simulated recordings (blue; of the median orange).",
-          figure, numbers};
-}
-
-TextTable StrataTable(const VisualCheck& check) {
-  TextTable table =
-      TextTable::OfNumbers({"stratum", "recordings", "observed percentiles within their 90 %"});
-  for (const CheckedStratum& stratum : check.strata) {
-    table.Add({stratum.name, stratum.recordings, Rounded(100.0 * stratum.Inside(), 2) + " %"});
-  }
-  return table;
-}
-
-Chart HistogramChart(const std::string& title, const UniformityTest& test) {
-  Chart chart{title, "share of the model's distribution below", "share of frames"};
-  const double bins = static_cast<double>(test.shares.size());
-  double most = 0.0;
-  for (size_t b = 0; b < test.shares.size(); ++b) {
-    const double from = static_cast<double>(b) / bins, to = from + 1.0 / bins;
-    const double share = test.shares[b], middle = 0.5 * (from + to);
-    chart.bands.push_back(
-        {{{from, 0.0}, {to, 0.0}}, {{from, share}, {to, share}}, kNarrowBandLook});
-    chart.lines.push_back({{{middle, share - test.errors[b]}, {middle, share + test.errors[b]}},
-                           kMeasuredLook,
-                           false});
-    most = std::max(most, share + test.errors[b]);
-  }
-  chart.levels = {1.0 / bins};
-  chart.y_from = 0.0;
-  chart.y_to = std::max(2.0 / bins, 1.1 * most);
-  return chart;
-}
-
-ReportFigure HistogramFigure(const VisualCheck& check) {
-  TextTable numbers = TextTable::OfNumbers({"axis", "from", "to", "share", "standard_error"});
-  Figure figure;
-  const auto add = [&](const std::string& axis, const UniformityTest& test) {
-    figure.panels.push_back(HistogramChart(axis + " the push", test));
-    const double bins = static_cast<double>(test.shares.size());
-    for (size_t b = 0; b < test.shares.size(); ++b) {
-      const double from = static_cast<double>(b) / bins;
-      numbers.Add({axis, from, from + 1.0 / bins, test.shares[b], test.errors[b]});
-    }
-  };
-  add("along", check.along);
-  add("across", check.across);
-  return {"probability_integral_transform",
-          "Position of the recorded hip in the model's distribution, with standard errors "
-          "clustered by recording; uniform if the model is correct.",
-          figure, numbers};
-}
-
-std::string TestText(const std::string& axis, const UniformityTest& test) {
-  return axis + " the push: F = " + Rounded(test.f, 3) + ", p = " + Rounded(test.p, 2) + " (" +
-         std::to_string(test.values.size()) + " values of " + std::to_string(test.recordings) +
-         " recordings)" +
-         (test.TooWide() ? ", as the recorded hips are nearer to the prediction than its errors "
-                           "say: predicted intervals are too wide rather than wrong"
-                         : "");
+  return text + (people == 1 ? "; errors by the coherence." : "; errors from person to person.");
 }
 
 }  // namespace
 
-ReportSection VisualCheckSection(const ReportSource& source) {
+ReportSection LoopSection(const ReportSource& source) {
   ReportSection section;
-  const VisualCheck& check = source.check;
-  if (check.strata.empty()) return section;
+  section.Say(LoopText(source.fit));
+  if (section.paragraphs.empty()) return section;
+  section.Say(
+      "Of the linearized model of a person of 85 kg with a rod of 0.95 m at rest. Phase and delay "
+      "margin: how much later feedback may come; the last column: between which factors its gains "
+      "may change.");
+  section.Show("", LoopTable(source.fit));
+  return section;
+}
+
+ReportSection FrequencySection(const ReportSource& source) {
+  ReportSection section;
+  const std::vector<FrequencyResponse>& responses = source.frequency;
+  if (responses.empty()) return section;
   section.paragraphs = {
-      "Simulated recordings have their own recording effects and correlated errors; only the first "
-      "frame and the push of a recording are used. These recordings were fitted: errors on new "
-      "ones are larger.",
-      "Uniformity " + TestText("along", check.along) + "; " + TestText("across", check.across) +
-          ". Values 0.25 s apart, Hotelling's test of five bins, clustered by recording: a small p "
-          "indicates that the distribution is wrong."};
-  section.Show("", StrataTable(check));
-  section.figures.push_back(StrataFigure(check));
-  section.figures.push_back(HistogramFigure(check));
+      "How people answer what disturbs them on and on, frequency by frequency: the cross spectrum "
+      "of the answer and the disturbance over the spectrum of the disturbance, of each person "
+      "first, then the mean of log gain and phase over people. Frequencies whose coherence could "
+      "be chance are left out. The model's curve is the closed form of its linearized loop, with "
+      "the same people's parameters."};
+  section.Say(WithoutLinearLoop(source.fit.options.model).empty()
+                  ? ""
+                  : "There is no curve: " + WithoutLinearLoop(source.fit.options.model) + ".");
+  for (const FrequencyResponse& response : responses) {
+    section.figures.push_back({"frequency_" + response.Key(), CaptionOf(response),
+                               BodeFigure(response), FrequencyTable({response})});
+  }
   return section;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ident/bodies/animation.h"
-#include "ident/prediction/visual_check.h"
+#include "ident/prediction/frequency_response.h"
 #include "ident/report/page/build_report.h"
 
 namespace pushid {
@@ -19,10 +19,8 @@ struct ReportSource {
   const FitResult& fit = model.fit;
   std::vector<RecordingView> views = {};  // of the recordings that are shown; may be none
   PropagationSummary propagation = {};    // of those
-  VisualCheck check = {};                 // with those
-  // Of the recordings that are shown, on the ground that moves (prediction/visual_check.h).
+  // Of the recordings that are shown, on the ground that moves.
   std::vector<FrequencyResponse> frequency = {};
-  std::vector<PersonSway> sway = {};
 };
 
 using RenderSection = ReportSection(const ReportSource& source);
@@ -34,17 +32,10 @@ struct SectionRow {
 };
 
 RenderSection LeadSection, SummarySection, ParameterSection, ContrastSection, UnitSection,
-<<<<<<< HEAD
     IdentifiabilitySection, ProfileSection, BootstrapSection, HorizonCheckSection, BehaviourSection,
-    LoopSection, FrequencySection, SwaySection, PopulationSection, ForecastSection, StepSection,
-    GroupSection, FigureSection, MotionSection,
-=======
-    IdentifiabilitySection, ProfileSection, BootstrapSection, PriorCheckSection, PushCheckSection,
-    HorizonCheckSection, BehaviourSection, LoopSection, FrequencySection, SwaySection,
-    PopulationSection, StepSection, GroupSection, FigureSection, MotionSection,
->>>>>>> 68040e1d (Two forecasters after first frames, physics and unknown input, by one rule; the stack of four, the band of the unknown force and drawn futures of them are gone)
-    VisualCheckSection, RecordingSection, LeverageSection, ResidualSection, SolveSection,
-    DesignSection, AdviceSection, ProvenanceSection;
+    LoopSection, FrequencySection, StepSection, GroupSection, FigureSection, MotionSection,
+    RecordingSection, LeverageSection, ResidualSection, SolveSection, DesignSection, AdviceSection,
+    ProvenanceSection;
 
 // In the order of the report.
 inline constexpr SectionRow kSections[] = {
@@ -60,13 +51,10 @@ inline constexpr SectionRow kSections[] = {
     {"behaviour", "After a push", BehaviourSection},
     {"loop", "The identified loop", LoopSection},
     {"frequency", "Frequency response", FrequencySection},
-    {"sway", "Quiet stance", SwaySection},
-    {"population", "How recordings differ", PopulationSection},
     {"steps", "Who steps", StepSection},
     {"groups", "Groups", GroupSection},
     {"figure", "Moving figure", FigureSection},
     {"motion", "Measured and predicted motion", MotionSection},
-    {"checks", "Visual predictive check", VisualCheckSection},
     {"recordings", "Recording by recording", RecordingSection},
     {"leverage", "Influence of each recording", LeverageSection},
     {"residuals", "Residuals", ResidualSection},

@@ -113,20 +113,6 @@ std::string Travels(const PropagationSummary& p) {
          Rounded(p.movers, 4) + " people who moved.";
 }
 
-// Tests of the model that it fails.
-std::string DoesNotFit(const ReportSource& source) {
-  std::string text;
-  const auto add = [&text](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
-  const std::pair<const char*, const UniformityTest*> axes[] = {{"along", &source.check.along},
-                                                                {"across", &source.check.across}};
-  for (const auto& [axis, test] : axes) {
-    if (!test->Rejects() || test->TooWide()) continue;
-    add(std::string(axis) + " the push, the recorded hips are not distributed as predicted (p = " +
-        Rounded(test->p, 1) + ")");
-  }
-  return text.empty() ? "" : "What does not fit: " + text + ".";
-}
-
 std::string Next(const FittedModel& model) {
   if (model.advice.empty()) return "What to do next: predict a push that was not fitted.";
   return "What to do next: " + model.advice.front().sentence;
@@ -160,7 +146,6 @@ ReportSection LeadSection(const ReportSource& source) {
   section.Say(Known(source.fit) + Brackets(source.fit));
   section.Say(NotKnown(source.fit));
   section.Say(GainsText(source.fit));
-  section.Say(DoesNotFit(source));
   section.Say(Travels(source.propagation));
   section.Say(Next(source.model));
   section.Show("what the names mean", Legend(source.fit));

@@ -39,7 +39,7 @@ TEST(PredictiveBands, SamplesHaveTheStatedSpread) {
 TEST(PredictiveBands, BootstrapRowsAreParameterSets) {
   const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
   FittedModel model{Fit(recordings, UnbiasedFit(TinyStudy())), {}, {}, {}, {}};
-  ASSERT_FALSE(AddBootstrap(recordings, {8, 1, "", 2}, nullptr, &model));
+  ASSERT_FALSE(AddBootstrap(recordings, {8, 1, 2}, nullptr, &model));
   BandOptions options;
   options.bootstrap = &*model.bootstrap;
   for (const ParameterSet<double>& set : SampleParameters(model.fit, options).value()) {

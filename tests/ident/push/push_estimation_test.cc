@@ -75,20 +75,17 @@ TEST(PushEstimation, RolloutReproducesTheMotionExactly) {
       for (const auto& velocity :
            {std::optional<InitialVelocity>(), std::optional(InitialVelocity::kZero),
             std::optional(InitialVelocity::kEstimated)}) {
-        for (double friction : {0.0, 100.0}) {
-          PushEstimationOptions estimation;
-          estimation.smoothing_frames = smoothing;
-          estimation.initial_velocity = velocity;
-          estimation.friction_taken_out = friction;
-          for (const PushWindow& window : {PushWindow{0, 40}, {10, 25}, {40, 41}}) {
-            const EstimatedPush estimated = Estimated(recording, window, estimation);
-            EXPECT_EQ(estimated.push.start_frame, window.start);
-            EXPECT_EQ(estimated.push.EndFrame(), window.end);
-            ExpectReproduced(recording, estimated);
-            if (smoothing == 0) {
-              for (int t = window.start; t <= window.end; ++t) {
-                EXPECT_EQ(estimated.motion[t - window.start].q, recording.states[0][t].q);
-              }
+        PushEstimationOptions estimation;
+        estimation.smoothing_frames = smoothing;
+        estimation.initial_velocity = velocity;
+        for (const PushWindow& window : {PushWindow{0, 40}, {10, 25}, {40, 41}}) {
+          const EstimatedPush estimated = Estimated(recording, window, estimation);
+          EXPECT_EQ(estimated.push.start_frame, window.start);
+          EXPECT_EQ(estimated.push.EndFrame(), window.end);
+          ExpectReproduced(recording, estimated);
+          if (smoothing == 0) {
+            for (int t = window.start; t <= window.end; ++t) {
+              EXPECT_EQ(estimated.motion[t - window.start].q, recording.states[0][t].q);
             }
           }
         }

@@ -1,16 +1,13 @@
-// The bootstrap draws whole recordings, repeats itself, and survives a kill.
+// The bootstrap draws whole recordings and repeats itself.
 #include "ident/uncertainty/bootstrap.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <numeric>
 #include <set>
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
-#include "ident/fit/interval_agreement.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/solver.h"
@@ -98,7 +95,7 @@ TEST(Bootstrap, QuantilesAreThoseOfTheSample) {
   EXPECT_DOUBLE_EQ(Quantile({7.0}, 0.025), 7.0);
 }
 
-class BootstrapRun : public TempDirTest {
+class BootstrapRun : public ::testing::Test {
  protected:
   BootstrapRun()
       : recordings_(MakePendulums(TinyStudy())),
@@ -106,9 +103,8 @@ class BootstrapRun : public TempDirTest {
         problem_(recordings_, options_),
         estimate_(Solve(problem_).start.to) {}
 
-  Result<Bootstrap> Run(int replicas, int threads, const std::string& file = "",
-                        uint64_t seed = 1) const {
-    return ComputeBootstrap(problem_, estimate_, {replicas, seed, file, threads});
+  Result<Bootstrap> Run(int replicas, int threads, uint64_t seed = 1) const {
+    return ComputeBootstrap(problem_, estimate_, {replicas, seed, threads});
   }
 
   std::vector<PendulumRecording> recordings_;
@@ -130,14 +126,11 @@ TEST_F(BootstrapRun, CountsAreCopies) {
   }
 }
 
-TEST_F(BootstrapRun, ThreadsAndFilesChangeNothing) {
+TEST_F(BootstrapRun, ThreadsChangeNothing) {
   const Bootstrap one = Run(12, 1).value();
   ASSERT_EQ(one.values.size(), 12u);
   EXPECT_EQ(one.names.front(), "mu");
-  const Bootstrap two = Run(12, 2, Path("replicas.jsonl")).value();
-  EXPECT_EQ(one.values, two.values);
-  const Bootstrap again = Run(12, 1, Path("replicas.jsonl")).value();
-  EXPECT_EQ(one.values, again.values);
+  EXPECT_EQ(one.values, Run(12, 2).value().values);
   for (size_t i = 0; i < one.names.size(); ++i) {
     EXPECT_GT(one.standard_error[i], 0.0) << one.names[i];
     EXPECT_LT(one.lower95[i], one.upper95[i]) << one.names[i];
@@ -149,7 +142,7 @@ TEST_F(BootstrapRun, EachDrawIsFittedOnce) {
   const std::vector<PendulumRecording> three(recordings_.begin(), recordings_.begin() + 3);
   const FitProblem problem(three, options_);
   int fits = 0;
-  const Bootstrap many = ComputeBootstrap(problem, estimate_, {300, 1, Path("many.jsonl"), 1},
+  const Bootstrap many = ComputeBootstrap(problem, estimate_, {300, 1, 1},
                                           [&fits](int, int total) { fits = total; })
                              .value();
   EXPECT_EQ(fits, 10);
@@ -163,47 +156,6 @@ TEST_F(BootstrapRun, EachDrawIsFittedOnce) {
     ASSERT_TRUE(alone.usable);
     EXPECT_NEAR(many.values[k][0], alone.to.shared[0], 1e-7 * many.values[k][0]);
   }
-  // Those that a file holds are not fitted again, in whatever order it holds them.
-  EXPECT_EQ(ComputeBootstrap(problem, estimate_, {300, 1, Path("many.jsonl"), 2}).value().values,
-            many.values);
-}
-
-TEST_F(BootstrapRun, GoesOnAfterAKill) {
-  const Bootstrap whole = Run(10, 1, Path("whole.jsonl")).value();
-  // Killed in the middle of a line: half of the last one reached the disk.
-  const std::string text = ReadText(Path("whole.jsonl"));
-  const std::string cut = WriteText("cut.jsonl", text.substr(0, text.size() - 40));
-  const Bootstrap resumed = Run(10, 1, cut).value();
-  EXPECT_EQ(resumed.values, whole.values);
-  EXPECT_EQ(ReadText(cut), text);
-  // More replicas build on those that are there.
-  EXPECT_EQ(Run(12, 2, cut).value().values.size(), 12u);
-}
-
-TEST_F(BootstrapRun, ForeignFilesAreRefused) {
-  ASSERT_TRUE(Run(2, 1, Path("a.jsonl")).ok());
-  const std::string other = ProblemOf(Run(2, 1, Path("a.jsonl"), 2));
-  EXPECT_TRUE(Contains(other, "a.jsonl"));
-  EXPECT_TRUE(Contains(other, "another fit"));
-  const std::string poem = WriteText("poem.txt", "a rose is a rose\n");
-  EXPECT_FALSE(Run(2, 1, poem).ok());
-  EXPECT_EQ(ReadText(poem), "a rose is a rose\n");
-}
-
-// Taken for empty, it would be replaced by one that holds nothing.
-TEST_F(BootstrapRun, AFileThatCannotBeReadIsKept) {
-  ASSERT_TRUE(Run(2, 1, Path("a.jsonl")).ok());
-  const std::string before = ReadText(Path("a.jsonl"));
-  const bool root = geteuid() == 0;  // modes bind everybody else
-  std::filesystem::permissions(folder_, std::filesystem::perms::all);
-  std::filesystem::permissions(Path("a.jsonl"), std::filesystem::perms::none);
-  ASSERT_EQ(seteuid(root ? 65534 : geteuid()), 0);
-  const Result<Bootstrap> run = Run(2, 1, Path("a.jsonl"));
-  ASSERT_EQ(seteuid(root ? 0 : geteuid()), 0);
-  std::filesystem::permissions(Path("a.jsonl"), std::filesystem::perms::owner_all);
-  ASSERT_FALSE(run.ok());
-  EXPECT_TRUE(Contains(run.error().ToString(), "a.jsonl: cannot be read: Permission denied"));
-  EXPECT_EQ(ReadText(Path("a.jsonl")), before);
 }
 
 TEST_F(BootstrapRun, NeedsTwoRecordings) {
@@ -212,20 +164,20 @@ TEST_F(BootstrapRun, NeedsTwoRecordings) {
   EXPECT_FALSE(ComputeBootstrap(problem, estimate_, {}).ok());
 }
 
-TEST(Agreement, HasOneRowPerNumberAndFindsDisagreement) {
+TEST(IntervalTable, HasOneRowPerNumber) {
   const std::vector<PendulumRecording> recordings = MakePendulums(TinyStudy());
   FittedModel model{Fit(recordings, UnbiasedFit(TinyStudy())), {}, {}, {}, {}};
-  EXPECT_TRUE(CompareIntervals(model).empty());
+  EXPECT_TRUE(IntervalTable(model).empty());
   ASSERT_FALSE(AddProfiles(recordings, {"mu"}, 1, nullptr, &model));
-  ASSERT_FALSE(AddBootstrap(recordings, {20, 1, "", 2}, nullptr, &model));
-  const std::vector<Agreement> rows = CompareIntervals(model);
-  ASSERT_EQ(rows.front().name, "mu");
-  ASSERT_TRUE(rows.front().profile && rows.front().bootstrap);
-  EXPECT_EQ(rows.front().classification, ProfileClass::kIdentifiable);
-  EXPECT_FALSE(rows[1].profile);
-  EXPECT_TRUE(rows[1].bootstrap);
-  model.profiles[0].upper95 = 1e9;
-  EXPECT_GT(CompareIntervals(model).front().ratio, 100.0);
+  ASSERT_FALSE(AddBootstrap(recordings, {20, 1, 2}, nullptr, &model));
+  const TextTable table = IntervalTable(model);
+  const std::vector<std::string>& mu = table.rows()[1];
+  EXPECT_EQ(mu[0], "mu");
+  EXPECT_NE(mu[3], "-");
+  EXPECT_NE(mu[4], "-");
+  EXPECT_EQ(mu[6], "identifiable");
+  EXPECT_EQ(table.rows()[2][3], "-");
+  EXPECT_NE(table.rows()[2][4], "-");
 }
 
 }  // namespace

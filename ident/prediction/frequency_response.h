@@ -1,20 +1,25 @@
-// ident: cross spectra of two series, from segment to segment: what a frequency response and its
-// coherence are made of.
+// ident: how people answer oscillations of the ground or of a push, frequency by frequency,
+// measured and by the model.
 //
 // With U_k, Y_k the Fourier transforms of the segments k = 1 .. K,
 //   S_uu = sum |U_k|^2,   S_yy = sum |Y_k|^2,   S_yu = sum Y_k conj(U_k),
 //   H = S_yu / S_uu,   coherence = |S_yu|^2 / (S_uu S_yy)
+// of each person, over all recordings of that person; then the mean of log |H| and of the phase
+// over people, with its standard error: from people to people, or of one person by the coherence.
 // An input that repeats itself is cut into its periods, which need no window; anything else into
-// segments with Hann's window that overlap by half, less their means. Sums add up over recordings.
+// segments with Hann's window that overlap by half, less their means. The model's is in closed form
+// (problem/linear_loop.h), averaged over the same people.
 // Sources: Welch, IEEE Trans. Audio Electroacoust. 1967; Bendat and Piersol, Random Data, 2010,
 // section 9.2.4: the random error of log |H| and of the phase is sqrt((1 - c) / (2 c K)).
 #pragma once
 
 #include <complex>
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "datasets/loading/pendulum_recording.h"
+#include "ident/figures/text_table.h"
+#include "ident/model/identified_model.h"
 #include "ident/problem/linear_loop.h"
 
 namespace pushid {
@@ -58,10 +63,6 @@ CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<
 std::vector<int> BinsWithPower(const CrossSpectra& spectra, bool periodic);
 bool IsCoherent(const CrossSpectra& spectra, int bin);
 
-// One-sided power spectral density of a series less its mean, by Welch with segments of so many
-// frames (at most all): unit^2 / Hz, by bin.
-std::vector<double> PowerDensity(const std::vector<double>& series, int segment, double dt);
-
 // What moves people who stand on and on, and how they answer, as series over frames.
 //
 // Input u: of the ground's shift (m) or tilt (rad) and of external pushes (N), in both planes, what
@@ -77,20 +78,51 @@ constexpr EnumNames<LoopOutput, 2> Names(LoopOutput) {
   return {{{"angle", LoopOutput::kAngle}, {"torque", LoopOutput::kTorque}}};
 }
 
-// What moves a person on and on: none where nothing does, as pushes of a fraction of a second.
-struct ContinuousInput {
-  Disturbance kind = Disturbance::kGroundShift;
-  int plane = 0;
-  int person = 0;              // who is pushed
-  double lever = 0.0;          // m, of a force
-  std::vector<double> series;  // one per frame
+// Gains in the output's unit over the input's; phases in rad, negative where the output is late.
+struct FrequencyBin {
+  double hz = 0.0;
+  int people = 0;
+  double coherence = 0.0;                       // of their spectra together
+  double log_gain = 0.0, log_gain_error = 0.0;  // natural logarithm
+  double phase = 0.0, phase_error = 0.0;
+  double model_log_gain = 0.0, model_phase = 0.0;  // 0 without a closed form
 };
-std::optional<ContinuousInput> ContinuousInputOf(const PendulumRecording& recording);
 
-// One value per frame; where the person was not seen, that of the frame before. recording: as the
-// model sees it (own_axes.h).
-std::vector<double> OutputSeries(const PendulumRecording& recording, int person, int plane,
-                                 LoopOutput output, const ModelOptions& options,
-                                 const ParameterSet<double>& p);
+struct FrequencyCurve {
+  std::vector<double> hz, log_gain, phase;
+};
+
+// A kind of disturbance in one plane, and one output.
+struct FrequencyResponse {
+  Disturbance input = Disturbance::kGroundShift;
+  LoopOutput output = LoopOutput::kAngle;
+  int plane = 0;           // 0: x and theta, 1: y and phi
+  bool periodic = false;   // at the frequencies of sums of sines; else by Welch
+  bool by_plates = false;  // torque
+  int recordings = 0;
+  std::vector<std::string> people;
+  double segment_s = 0.0;
+  std::vector<FrequencyBin> bins;
+  FrequencyCurve model;  // as dense as a line needs; empty without a closed form
+
+  std::string InputUnit() const;   // "m", "rad", "N"
+  std::string OutputUnit() const;  // "rad", "N m"
+  std::string Name() const;        // "theta by ground shift along x"
+  std::string Key() const;         // "angle_theta_by_ground_shift_x"
+};
+
+// With each person's own parameters; none where nothing in the recordings is continuous.
+std::vector<FrequencyResponse> FrequencyResponses(const IdentifiedModel& model,
+                                                  const std::vector<PendulumRecording>& recordings);
+// recordings: as the files have them. parameters: [recording][person]. Recordings that last less
+// than 10 s, and those without a continuous input, have none. People whose rollouts would not be
+// linear (who step or slide far) are not told apart from others: their coherence tells.
+std::vector<FrequencyResponse> FrequencyResponses(
+    const std::vector<PendulumRecording>& recordings, const ModelOptions& options,
+    const std::vector<std::vector<ParameterSet<double>>>& parameters);
+
+// A row for each bin: input, output, axis, frequency_hz, gain, gain_lower, gain_upper (one standard
+// error), phase_deg, phase_error_deg, coherence, people, model_gain, model_phase_deg.
+TextTable FrequencyTable(const std::vector<FrequencyResponse>& responses);
 
 }  // namespace pushid
