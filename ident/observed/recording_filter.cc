@@ -135,37 +135,6 @@ HipPaths RecordingFilter::ForecastOf(const HipPaths& rollout) const {
   return forecast;
 }
 
-std::vector<std::vector<MixturePoint>> RecordingFilter::Mixture(
-    const RecordingEffect& effect, std::vector<double>* weights) const {
-  *weights =
-      acts() ? EffectWeights(misfit_, effect.spread, effect.error_scale) : std::vector<double>{1.0};
-  std::vector<std::vector<MixturePoint>> mixture(process_.size());
-  for (size_t n = 0; n < process_.size(); ++n) {
-    const std::vector<double> variances = process_[n].VariancesAhead(frames_ - observed_);
-    for (int t = observed_; t < frames_; ++t) {
-      const double reach = process_[n].Reach(t - observed_ + 1);
-      MixturePoint point;
-      point.deviation =
-          effect.error_scale * unit_ * std::sqrt(variances[t - observed_]) * kAxisScale;
-      for (const Node& node : nodes_) {
-        if (node.hip.empty()) {
-          point.mean.push_back(Vector3<double>::Zero());  // of no weight
-          continue;
-        }
-        Vector3<double> error;
-        for (int i = 0; i < 3; ++i) {
-          const ErrorProcess::State& now = node.error[n][i];
-          error[i] = now.position + reach * now.velocity;
-        }
-        point.mean.push_back(axes_.transpose() * node.hip[n][t] +
-                             unit_ * kAxisScale.cwiseProduct(error));
-      }
-      mixture[n].push_back(std::move(point));
-    }
-  }
-  return mixture;
-}
-
 namespace {
 
 constexpr double kReferenceTime = 31.0 / 60.0;  // s, where var p = 1
@@ -204,16 +173,6 @@ ErrorProcess::State ErrorProcess::Predicted(const State& state) const {
 
 double ErrorProcess::Reach(int frames) const {
   return dt_ * decay_ * (1.0 - std::pow(decay_, frames)) / (1.0 - decay_);  // r + ... + r^frames
-}
-
-std::vector<double> ErrorProcess::VariancesAhead(int frames) const {
-  std::vector<double> variances;
-  Covariance at = now_;
-  for (int t = 0; t < frames; ++t) {
-    at = Advanced(at);
-    variances.push_back(at.pp + kNoise * kNoise);
-  }
-  return variances;
 }
 
 namespace {

@@ -102,8 +102,6 @@ class ErrorProcess {
   State Predicted(const State& state) const;
   // `frames` frames on, without seeing any, p is expected to be position + Reach velocity.
   double Reach(int frames) const;
-  // Of y, 1 .. frames frames on from here.
-  std::vector<double> VariancesAhead(int frames) const;
 
  private:
   struct Covariance {
@@ -126,13 +124,6 @@ struct SeenHips {
   bool Sees(int person) const { return seen.empty() || seen[person]; }
 };
 SeenHips HipsAt(const PendulumRecording& recording, int frame);
-
-// Hips to come as a mixture of normal distributions, a component for each node, on the axes of
-// Axes(): by [person][frame].
-struct MixturePoint {
-  std::vector<Vector3<double>> mean;  // of the components
-  Vector3<double> deviation;          // the same for all of them
-};
 
 class RecordingFilter {
  public:
@@ -157,9 +148,6 @@ class RecordingFilter {
   EffectEstimate Effect(const RecordingEffect& effect) const;
   // The frames to come, of a rollout over all frames and what is left of its error.
   HipPaths ForecastOf(const HipPaths& rollout) const;
-  // By [person][frame - observed()]; weights as in EffectWeights.
-  std::vector<std::vector<MixturePoint>> Mixture(const RecordingEffect& effect,
-                                                 std::vector<double>* weights) const;
 
  private:
   using Axis3 = std::array<ErrorProcess::State, 3>;
