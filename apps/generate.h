@@ -2,14 +2,13 @@
 // shown.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/flags/generate_flags.h"
-#include "ident/forecasts/group_forecasts.h"
 #include "ident/forecasts/social_report.h"
+#include "ident/generators/push_particles.h"
 #include "ident/model/identified_model.h"
 
 namespace pushid {
@@ -20,26 +19,10 @@ int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags)
 // The model of --physics; nothing where none is named.
 std::optional<IdentifiedModel> LoadPhysics(const std::string& file);
 
-// Flags and generator as cross-validation chose them (pushid-train-generator --accuracy=best),
-// where it did and no flag says otherwise; told on stdout.
-void TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded);
-
 // A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
 // the generator gets physics that see as many frames.
 std::vector<BodyMotion> GenerateWith(const LoadedGenerator& loaded, const BodyRecording& recording,
                                      const std::optional<IdentifiedModel>& physics, int frames = 0);
-
-// Whether what was recorded lies among sampled futures.
-GroupSpread SpreadOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
-                     const std::vector<BodyRecording>& recordings,
-                     const std::optional<IdentifiedModel>& physics);
-
-// What all groups do in every second of forecasts of `frames` frames, beside physics where they are
-// given: printed, and as JSON.
-nlohmann::ordered_json ShowSeconds(const LoadedGenerator& loaded,
-                                   const std::vector<BodyRecording>& recordings,
-                                   const std::optional<IdentifiedModel>& physics,
-                                   const SocialCues& cues, int frames);
 
 // The states of --states, or the built-in ones; writes --states_out.
 SocialCues FlaggedCues(const GenerateFlags& flags, const std::vector<BodyRecording>& recordings);

@@ -1,19 +1,13 @@
 // apps: groups forecast and shown.
 #include <cstdio>
-#include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "apps/flags/recording_flags.h"
 #include "apps/generate.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/number_text.h"
-#include "datasets/files/random.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_files.h"
-#include "ident/bodies/restoration_files.h"
-#include "ident/forecasts/group_forecasts.h"
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
@@ -53,75 +47,10 @@ std::optional<IdentifiedModel> LoadPhysics(const std::string& file) {
   return model;
 }
 
-void TakeChoice(GenerateFlags* flags, LoadedGenerator* loaded) {
-  const std::optional<ForecastChoice> choice = loaded->settings.choice;
-  if (!choice || !flags->physics.empty()) return;
-  const std::filesystem::path folder(flags->model);
-  const bool restores = choice->by == ForecastBy::kRestoration;
-  // A choice without physics does not fail where physics do.
-  if (restores || choice->blend > 0.0) flags->physics = (folder / kChosenPhysics).string();
-  flags->changes.diffusion.blend = choice->blend;
-  *loaded = OrFail(LoadGenerator(flags->model, flags->changes));
-  if (restores) {
-    loaded->restoration = OrFail(LoadRestoration((folder / kChosenRestoration).string()));
-  }
-  std::printf(
-      "selected by cross-validation: %s\n",
-      restores ? "physics and restored bodies"
-               : (NameOf(loaded->kind) + ", blended " + Rounded(choice->blend, 3) + " with physics")
-                     .c_str());
-}
-
 std::vector<BodyMotion> GenerateWith(const LoadedGenerator& loaded, const BodyRecording& recording,
                                      const std::optional<IdentifiedModel>& physics, int frames) {
-  if (loaded.restoration) {
-    const Prediction predicted = PredictBeside(loaded, *physics, recording, frames);
-    return RestoreBodies(*loaded.restoration, {}, PredictedPeople(recording, predicted));
-  }
   const GroupHips hips = HipsBeside(loaded, physics, recording, frames);
   return OrFail(GenerateBodies(loaded.settings, *loaded.generator, recording, hips, frames));
-}
-
-GroupSpread SpreadOf(const LoadedGenerator& loaded, const GenerateFlags& flags,
-                     const std::vector<BodyRecording>& recordings,
-                     const std::optional<IdentifiedModel>& physics) {
-  GroupSpread spread;
-  spread.samples = flags.samples;
-  Random random(flags.seed);
-  for (const BodyRecording& recording : recordings) {
-    const GroupHips hips = HipsBeside(loaded, physics, recording, 0);
-    AddSpread(
-        *loaded.generator, recording, hips, loaded.settings.observed,
-        [&random] { return random.Normal(); }, &spread);
-  }
-  return spread;
-}
-
-nlohmann::ordered_json ShowSeconds(const LoadedGenerator& loaded,
-                                   const std::vector<BodyRecording>& recordings,
-                                   const std::optional<IdentifiedModel>& physics,
-                                   const SocialCues& cues, int frames) {
-  std::vector<GroupMotion> recorded, generated, rigid;
-  const int observed = loaded.settings.observed;
-  for (const BodyRecording& recording : recordings) {
-    const double dt = recording.pendulum.scene.dt;
-    const int pushed = recording.pendulum.pushed_person;
-    recorded.push_back(RecordedGroup(recording, cues, recorded.size(), 1));
-    generated.push_back({GenerateWith(loaded, recording, physics, frames), dt, pushed, observed});
-    if (!physics) continue;
-    const auto people =
-        PredictedPeople(recording, PredictBeside(loaded, *physics, recording, frames));
-    rigid.push_back({RigidRestoration().Restore(people), dt, pushed, observed});
-  }
-  nlohmann::ordered_json json;
-  const auto show = [&](const std::string& name, const std::vector<GroupMotion>& motions) {
-    const std::vector<ForecastSecond> seconds = BySecond(recorded, motions, cues.states);
-    std::printf("\n%s", SecondsText(name, seconds).c_str());
-    json[name] = ToJson(seconds);
-  };
-  show("generator", generated);
-  if (physics) show("rigid", rigid);
-  return json;
 }
 
 SocialCues FlaggedCues(const GenerateFlags& flags, const std::vector<BodyRecording>& recordings) {

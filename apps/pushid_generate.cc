@@ -72,14 +72,6 @@ int FromGroups(const LoadedGenerator& loaded, const GenerateFlags& flags) {
   Json json = ResultHead(kScoresSchema);
   AddBodyJson(evaluation, &json);
   if (social) json["social"] = ToJson(*social);
-  if (flags.samples > 0) {
-    const GroupSpread spread = SpreadOf(loaded, flags, bodies, physics);
-    std::printf("\n%s", SpreadText(spread).c_str());
-    json["spread"] = ToJson(spread);
-  }
-  if (flags.frames > 0) {
-    json["seconds"] = ShowSeconds(loaded, bodies, physics, cues, flags.frames);
-  }
   if (flags.json_out.empty()) return kDone;
   json["run"] = {{"seconds_per_recording", seconds}};
   OrFail(WriteJson(flags.json_out, json));
@@ -87,10 +79,9 @@ int FromGroups(const LoadedGenerator& loaded, const GenerateFlags& flags) {
 }
 
 int Run() {
-  GenerateFlags flags = GenerateFlagsFromCommandLine();
+  const GenerateFlags flags = GenerateFlagsFromCommandLine();
   LoadedGenerator loaded = OrFail(LoadGenerator(flags.model, flags.changes));
   CheckKindFlags(flags, loaded.kind);
-  TakeChoice(&flags, &loaded);
   if (flags.observed > 0) loaded.settings.observed = flags.observed;
   return RowOf(loaded.kind).groups ? FromGroups(loaded, flags) : GenerateFromClips(loaded, flags);
 }

@@ -12,10 +12,6 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"
-#include "ident/fit/fit.h"
-#include "ident/fit/fit_setup.h"
-#include "ident/model/model_json.h"
-#include "ident/problem/parallel.h"
 #include "ident/training/generator_crossvalidation.h"
 #include "ident/training/restoration_training.h"
 #include "ident/training/training_run.h"
@@ -32,27 +28,15 @@ std::string Inside(const std::string& folder, const char* name) {
 
 int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecording>& recordings) {
   TrainingLine line;
-  const GeneratorValidation validation = OrFail(
-      CrossValidateGenerator(recordings, flags.options,
-                             {flags.observed,
-                              flags.scheme,
-                              flags.crossvalidate,
-                              flags.physics,
-                              flags.changes,
-                              {},
-                              flags.samples},
-                             [&](const std::string& step, double done) { line.Show(step, done); }));
+  const GeneratorValidation validation = OrFail(CrossValidateGenerator(
+      recordings, flags.options,
+      {flags.observed, flags.scheme, flags.crossvalidate, flags.physics, flags.changes},
+      [&](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
   std::printf("%s", BodyText(validation.evaluation).c_str());
-  const GroupSpread& spread = validation.spread;
-  if (spread.samples > 0) std::printf("\n%s", SpreadText(spread).c_str());
   if (flags.json_out.empty()) return kDone;
   Json json = ResultHead(kScoresSchema);
   AddBodyJson(validation.evaluation, &json);
-  if (spread.samples > 0) {
-    json["spread"] = ToJson(spread);
-    json["spread_of_noise_alone"] = ToJson(validation.noise_alone);
-  }
   json["run"] = {{"training_seconds", validation.training_seconds}};
   OrFail(WriteJson(flags.json_out, json));
   return kDone;
@@ -87,68 +71,6 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
 }
 
 constexpr double kHeldOut = 0.15;  // share of the recordings that only show how the training goes
-constexpr int kFolds = 4;          // of the comparison
-// Networks that are only compared are trained more briefly, by these shares of steps and epochs.
-constexpr double kShareOfSteps = 0.5, kShareOfEpochs = 1.0 / 3.0;
-const std::vector<double> kBlends = {0.25, 0.5, 0.75};
-
-FitOptions PhysicsOf(const TrainGeneratorFlags& flags,
-                     const std::vector<PendulumRecording>& pendulums) {
-  if (flags.physics) return *flags.physics;
-  FitOptions options = OrFail(MakeFitOptions({}, &pendulums));
-  options.num_threads = flags.options.num_threads;
-  OrFail(PrepareFit(pendulums, &options));
-  return options;
-}
-
-void WritePhysics(const std::vector<PendulumRecording>& pendulums, const FitOptions& options,
-                  const std::string& file) {
-  const double begin = Now();
-  FittedModel model;
-  model.fit = Fit(pendulums, options);
-  if (!model.fit.ok()) throw Error{"the pendulum's fit failed: " + model.fit.message};
-  model.provenance = ProvenanceOfRun();
-  OrFail(WriteModelFile(file, model, options.num_threads, begin));
-}
-
-// --accuracy=best: compares, then writes physics of all recordings into --out, and the restoration
-// where that won; the generator itself is still to be trained. Returns what is to forecast.
-ForecastChoice TrainBeside(const TrainGeneratorFlags& flags,
-                           const std::vector<BodyRecording>& recordings) {
-  const std::vector<PendulumRecording> pendulums = PendulumsOf(recordings);
-  RestorationRunOptions chain;
-  chain.fit = PhysicsOf(flags, pendulums);
-  chain.training.seed = flags.options.seed;
-  chain.training.num_threads = flags.options.num_threads;
-  // A generator of few steps, a try, is compared with a restoration of few.
-  chain.training.effort =
-      static_cast<double>(flags.options.diffusion.steps) / DiffusionTrainingOptions{}.steps;
-  BestForecastOptions options;
-  options.chain = chain;
-  options.chain.training.effort *= kShareOfEpochs;
-  options.generator = flags.options;
-  int& steps = options.generator.diffusion.steps;
-  steps = std::max(1, static_cast<int>(kShareOfSteps * steps));
-  options.validation.observed = flags.observed;
-  options.validation.scheme = flags.scheme;
-  options.validation.folds = kFolds;
-  options.validation.changes = flags.changes;
-  options.validation.blends = kBlends;
-  TrainingLine line;
-  const RunProgress show = [&line](const std::string& step, double done) { line.Show(step, done); };
-  const auto candidates = OrFail(CompareForecasts(recordings, options, show));
-  line.Finish();
-  std::printf("%s", CandidatesText(candidates).c_str());
-  OrFail(WriteJson(Inside(flags.out, "candidates.json"), ToJson(candidates)));
-  WritePhysics(pendulums, chain.fit, Inside(flags.out, kChosenPhysics));
-  const ForecastChoice choice = candidates.front().choice;
-  if (choice.by != ForecastBy::kRestoration) return choice;
-  const std::vector<int> all = Others({}, static_cast<int>(recordings.size()));
-  const auto restoration = OrFail(TrainFromRecordings(recordings, all, chain, show));
-  line.Finish();
-  OrFail(WriteRestorationFile(Inside(flags.out, kChosenRestoration), restoration.file));
-  return choice;
-}
 
 int FromClips(const TrainGeneratorFlags& flags) {
   const MocapFolder mocap = OrFail(ReadMocapFolder(flags.folder));
@@ -163,8 +85,7 @@ int FromClips(const TrainGeneratorFlags& flags) {
 
 int FromGroups(const TrainGeneratorFlags& flags) {
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
-  // Groups move without a push too; physics need one.
-  if (flags.physics || flags.accuracy == ForecastAccuracy::kBest) CheckPushed(recordings);
+  if (flags.physics) CheckPushed(recordings);  // groups move without a push too
   const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   if (flags.crossvalidate > 0) return CrossValidate(flags, bodies);
   OrFail(MakeFolder(flags.out));
@@ -177,11 +98,7 @@ int FromGroups(const TrainGeneratorFlags& flags) {
   if (flags.hold_out && all.size() > 1) {
     SplitHeldOut(PendulumsOf(bodies), all, kHeldOut, flags.options.seed, &learnt, &held);
   }
-  GeneratorSamples samples = SamplesOf(bodies, learnt, held, flags.observed);
-  if (flags.accuracy == ForecastAccuracy::kBest) {
-    samples.settings.choice = TrainBeside(flags, bodies);
-  }
-  return Train(flags, samples, data);
+  return Train(flags, SamplesOf(bodies, learnt, held, flags.observed), data);
 }
 
 int Run() {

@@ -24,19 +24,20 @@ DEFINE_string(
     "validation (from the last clip of every action) or all");
 DEFINE_int32(
     samples, kFlags.samples,
-    "number of sampled futures per window, for coverage, CRPS, energy score and the fan in "
-    "pictures; for groups by diffusion, for how often the recorded hips lie among them; 0: none");
+    "particles: number of sampled futures per window, for coverage, CRPS, energy score and "
+    "the fan in pictures; 0: none");
 DEFINE_uint64(seed, kFlags.seed, "seed of the sampled futures");
 DEFINE_int32(
     observed, kFlags.observed,
     "diffusion: number of observed frames, 1 for the first poses and the push; 0: as trained");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote, to blend with and to show");
-DEFINE_int32(frames, kFlags.frames,
-             "diffusion: length of the forecast, frames, also past the recording's end; a table "
-             "shows the motion of all groups second by second; 0: as long as the recording");
+DEFINE_int32(
+    frames, kFlags.frames,
+    "diffusion: length of the shown forecast, frames, also past the recording's end; 0: as "
+    "long as the recording");
 DEFINE_string(states, "",
-              "diffusion: CSV of the states of people and groups that somebody annotated "
+              "diffusion: CSV of the states of people that somebody annotated "
               "(recording,frame,person,symbol), for SSCP and transitions; empty: built-in states");
 DEFINE_string(states_out, "", "diffusion: write the states of the recordings here (CSV)");
 DEFINE_string(action, "", "particles: action of the window to show; empty: the first");

@@ -26,11 +26,6 @@ const std::string kKind = KindHelp();
 DEFINE_string(kind, pushid::NameOf(kOptions.kind), kKind.c_str());
 DEFINE_string(folder, "",
               "particles: the folder of motion-capture clips, with skeleton.json and train/");
-DEFINE_string(
-    accuracy, pushid::NameOf(kFlags.accuracy),
-    "diffusion: best cross-validates it (four folds) against physics with restored "
-    "bodies and against blends of both, and trains it and what else the most accurate needs, "
-    "which pushid-generate uses (if interrupted, the comparison starts again); or usual");
 DEFINE_bool(
     hold_out, kFlags.hold_out,
     "show how the training goes on the validation clips, or on 15 % of the recordings, which "
@@ -45,13 +40,10 @@ DEFINE_int32(crossvalidate, kFlags.crossvalidate,
              "score the held-out recordings; 0: off");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote; its pendulum is refitted to the "
-              "training recordings, for --blend and --accuracy=best");
+              "training recordings, for --blend");
 DEFINE_double(
     blend, kFlags.changes.diffusion.blend,
     "diffusion, --crossvalidate: blend of the hip paths, from 0 (forecast) to 1 (pendulum)");
-DEFINE_int32(samples, kFlags.samples,
-             "diffusion, --crossvalidate: number of sampled futures per held-out recording, for "
-             "how often it lies among them; 0: none");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
 DEFINE_int32(seeds, 0,
              "number of networks of different seeds that are averaged; 0: default of the kind");
@@ -76,8 +68,6 @@ DEFINE_int32(num_threads, kOptions.num_threads,
 
 namespace pushid {
 namespace {
-
-bool Best() { return FLAGS_accuracy == pushid::NameOf(ForecastAccuracy::kBest); }
 
 // Lyu et al., ACM MM 2021: particles alone, f and g trained together by Eq. 6 as printed, Eq.
 // 10-12, one GRU. The paper does not give the weights of its losses in a form that fits metres;
@@ -148,7 +138,6 @@ void ReadNumbers(TrainGeneratorFlags* flags) {
   CheckRange("batch", FLAGS_batch, 0, 4096);
   TakeInRange("observed", FLAGS_observed, 1, 1000, &flags->observed);
   TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &flags->changes.diffusion.blend);
-  TakeInRange("samples", FLAGS_samples, 0, 10000, &flags->samples);
   TakeInRange("num_threads", FLAGS_num_threads, 1, 1024, &options.num_threads);
   TakeInRange("simlpe_steps", FLAGS_simlpe_steps, 1, 1e6, &options.simlpe.steps);
   CheckRange("noise_steps", FLAGS_noise_steps, 0, 1e6);
@@ -179,20 +168,16 @@ void CheckKind(const GeneratorKindRow& kind) {
     refuse({"folder", "noise_steps", "simlpe_steps"},
            "--kind=" + NameOf(GeneratorKind::kParticles));
   } else {
-    refuse({"recordings", "setting", "observed", "crossvalidate", "physics", "blend", "samples",
-            "accuracy", "pooling"},
+    refuse({"recordings", "setting", "observed", "crossvalidate", "physics", "blend", "pooling"},
            "--kind=" + KindsOfGroups());
     Require("folder", FLAGS_folder, "name the folder of the clips");
   }
-  if (FLAGS_crossvalidate == 0) refuse({"blend", "samples"}, "--crossvalidate");
-  if (Best() && FLAGS_crossvalidate > 0) {
-    throw Error{"--accuracy=best makes its own folds; leave out --crossvalidate"};
-  }
+  if (FLAGS_crossvalidate == 0) refuse({"blend", "physics"}, "--crossvalidate");
   if (FLAGS_blend > 0.0 && FLAGS_physics.empty()) {
     throw Error{"--blend needs --physics, the pendulum's model"};
   }
-  if (FLAGS_blend == 0.0 && !Best() && !FLAGS_physics.empty()) {
-    throw Error{"--physics is only used by --blend and --accuracy=best: give one of them"};
+  if (FLAGS_blend == 0.0 && !FLAGS_physics.empty()) {
+    throw Error{"--physics does nothing without --blend; give --blend=0.5"};
   }
   if (kind.groups) CheckRecordingFlags();
   if (FLAGS_crossvalidate != 0 && FLAGS_crossvalidate < 2) {
@@ -207,11 +192,10 @@ TrainGeneratorFlags TrainGeneratorFlagsFromCommandLine() {
   TrainGeneratorFlags flags;
   GeneratorTrainingOptions& options = flags.options;
   OrFail(ParseName("--kind", FLAGS_kind, &options.kind));
-  OrFail(ParseName("--accuracy", FLAGS_accuracy, &flags.accuracy));
   options.seeds = RowOf(options.kind).seeds;
   ReadPublished(&options);
   ReadNumbers(&flags);
-  flags.scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0 || Best());
+  flags.scheme = SchemeFromCommandLine(FLAGS_crossvalidate > 0);
   CheckKind(RowOf(options.kind));
   OrFail(CheckOutputFiles({FLAGS_json_out}));
   flags.folder = FLAGS_folder;

@@ -8,15 +8,8 @@
 
 namespace pushid {
 
-// best: compares everything that may forecast groups, and keeps what it needs for it.
-enum class ForecastAccuracy { kUsual, kBest };
-constexpr EnumNames<ForecastAccuracy, 2> Names(ForecastAccuracy) {
-  return {{{"usual", ForecastAccuracy::kUsual}, {"best", ForecastAccuracy::kBest}}};
-}
-
 struct TrainGeneratorFlags {
   GeneratorTrainingOptions options;
-  ForecastAccuracy accuracy = ForecastAccuracy::kUsual;
   std::string folder;     // of clips
   bool hold_out = true;   // validation clips, or a share of the recordings, show how it goes
   int observed = 1;       // frames of a recording that the generator is shown
@@ -25,7 +18,6 @@ struct TrainGeneratorFlags {
   FoldScheme scheme = FoldScheme::kStratified;
   std::optional<FitOptions> physics;  // of the pendulum
   GeneratorChanges changes;           // how held-out recordings are forecast
-  int samples = 0;                    // futures sampled of them; 0: none
   std::string json_out;               // scores of the cross-validation; empty: none
 };
 TrainGeneratorFlags TrainGeneratorFlagsFromCommandLine();

@@ -214,17 +214,10 @@ void Fields(Archive& a, ParticleLayout& layout) {
 }
 
 template <class Archive>
-void Fields(Archive& a, ForecastChoice& choice) {
-  PUSHID_FIELDS(a, choice, by, blend);
-  a.Check(choice.blend >= 0.0 && choice.blend <= 1.0, "blend must lie between 0 and 1");
-}
-
-template <class Archive>
 void Fields(Archive& a, GeneratorSettings& settings) {
   PUSHID_FIELDS(a, settings, observed, predicted);
   a("rate_hz", settings.rate);
   a("layout", settings.layout);
-  a.Optional("choice", settings.choice);
   a.Check(settings.observed >= 1 && settings.predicted >= 1 && settings.rate > 0.0,
           "observed, predicted and rate_hz must be positive");
 }
@@ -287,8 +280,7 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
   if (!reader.problem().empty()) {
     return Error{reader.problem() + "; train again with this version", path};
   }
-  return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes),
-                         nullptr};
+  return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes)};
 }
 
 }  // namespace pushid

@@ -8,7 +8,6 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +18,6 @@
 #include "models/generators/generator_trainers.h"
 #include "models/generators/particle_generator.h"
 #include "models/push.h"
-#include "models/restoration/restoration.h"
 #include "models/restoration/trainer.h"
 
 namespace pushid {
@@ -110,28 +108,13 @@ inline std::string KindsOfGroups() {
   return AnyName<GeneratorKind>([](const GeneratorKindRow& row) { return row.groups; });
 }
 
-// Who forecasts best, as cross-validation found: the generator, `blend` of the way to physics, or
-// physics with restored bodies.
-enum class ForecastBy { kGenerator, kRestoration };
-constexpr EnumNames<ForecastBy, 2> Names(ForecastBy) {
-  return {{{"generator", ForecastBy::kGenerator}, {"restoration", ForecastBy::kRestoration}}};
-}
-struct ForecastChoice {
-  ForecastBy by = ForecastBy::kGenerator;
-  double blend = 0.0;
-};
-// Beside the generator in its folder, where there was a choice.
-inline constexpr const char* kChosenPhysics = "physics.json";
-inline constexpr const char* kChosenRestoration = "restoration";
-
 struct GeneratorSettings {
   int observed = 25;                      // frames that it is given
   int predicted = 25;                     // frames that it was trained to forecast
   double rate = 25.0;                     // Hz
   std::vector<PushKind> push_kinds = {};  // of the pushes learned from; empty: not known
   ParticleLayout layout;
-  std::optional<ForecastChoice> choice;  // none: nothing was compared
-  KeptJson training{};                   // provenance
+  KeptJson training{};  // provenance
 };
 
 struct TrainedNetworks {
@@ -152,7 +135,6 @@ struct LoadedGenerator {
   GeneratorKind kind = GeneratorKind::kParticles;
   GeneratorSettings settings;
   std::unique_ptr<MotionGenerator> generator;
-  std::unique_ptr<Restoration> restoration;  // that forecasts in its place; usually none
 };
 
 // Errors: no such folder, settings or tensors that are missing or do not fit.

@@ -2,12 +2,8 @@
 #include "ident/training/generator_crossvalidation.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
-#include "datasets/files/number_text.h"
-#include "datasets/files/random.h"
 #include "ident/bodies/body_evaluation.h"
-#include "ident/figures/text_table.h"
 #include "ident/model/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
@@ -15,8 +11,6 @@
 
 namespace pushid {
 namespace {
-
-std::string BlendName(double blend) { return "generator_blend_" + Rounded(blend, 3); }
 
 constexpr int kShown = 20;  // frames, of generator_shown_20
 
@@ -26,27 +20,6 @@ class FoldJudge {
   FoldJudge(const GeneratorValidationOptions& validation, const TrainedNetworks& trained,
             const std::optional<IdentifiedModel>& model)
       : validation_(validation), trained_(trained), model_(model) {}
-
-  MaybeError AddSpreads(const BodyRecording& recording, GeneratorValidation* result) const {
-    GroupHips hips;
-    std::map<std::string, BodyScore> unused;
-    if (validation_.changes.diffusion.blend > 0.0) {
-      Result<GroupHips> predicted = Hips(recording, trained_.settings, &unused);
-      if (!predicted.ok()) return predicted.error();
-      hips = std::move(predicted.value());
-    }
-    GeneratorChanges still = validation_.changes;
-    still.diffusion.push_spread = 0.0;
-    for (const auto& [changes, spread] :
-         {std::pair(&validation_.changes, &result->spread),
-          std::pair<const GeneratorChanges*, GroupSpread*>(&still, &result->noise_alone)}) {
-      Random random(changes->seed);
-      AddSpread(
-          *MakeGenerator(trained_, *changes), recording, hips, validation_.observed,
-          [&random] { return random.Normal(); }, spread);
-    }
-    return std::nullopt;
-  }
 
   MaybeError Score(const BodyRecording& recording, std::map<std::string, BodyScore>* scores) const {
     GeneratorChanges changes = validation_.changes;
@@ -60,14 +33,8 @@ class FoldJudge {
     if (changes.diffusion.blend > 0.0) {
       error = Add("generator_unblended", recording, validation_.observed, alone, scores);
     }
-    for (size_t b = 0; b < validation_.blends.size() && !error; ++b) {
-      alone.diffusion.blend = validation_.blends[b];
-      error = Add(BlendName(validation_.blends[b]), recording, validation_.observed, alone, scores);
-    }
-    alone.diffusion.blend = 0.0;
     alone.diffusion.sampled.reset();
-    if (!error && validation_.observed != kShown && validation_.blends.empty() &&
-        recording.num_frames() > kShown) {
+    if (!error && validation_.observed != kShown && recording.num_frames() > kShown) {
       error = Add("generator_shown_20", recording, kShown, alone, scores);
     }
     const int observed = validation_.observed, seen = SeenByBaselines(observed);
@@ -132,14 +99,11 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
   if (!made.ok()) return made.error();
   const int total = static_cast<int>(recordings.size());
   GeneratorValidation result;
-  result.spread.samples = result.noise_alone.samples = validation.samples;
   std::vector<std::map<std::string, BodyScore>> by_recording(total);
   for (const Fold& fold : made.value()) {
     const std::vector<int> among = Others(fold.held_out, total);
     std::optional<IdentifiedModel> model;
-    if (!validation.pendulums.empty()) {
-      model = validation.pendulums[&fold - made.value().data()];
-    } else if (validation.physics) {
+    if (validation.physics) {
       if (progress) progress(fold.name + ", physics", 0.0);
       Result<FittedFolds> fitted = FitFolds(pendulums, among, *validation.physics, 0, options.seed);
       if (!fitted.ok()) return Error{fold.name + ": " + fitted.error().message};
@@ -158,66 +122,11 @@ Result<GeneratorValidation> CrossValidateGenerator(const std::vector<BodyRecordi
     result.training_seconds.push_back(Now() - before);
     const FoldJudge judge(validation, trained.value().networks, model);
     for (int i : fold.held_out) {
-      MaybeError error = judge.Score(recordings[i], &by_recording[i]);
-      if (!error && validation.samples > 0) {
-        error = judge.AddSpreads(recordings[i], &result);
-      }
-      if (error) return *error;
+      if (MaybeError error = judge.Score(recordings[i], &by_recording[i])) return *error;
     }
   }
   result.evaluation = SummarizeAll(recordings, by_recording);
   return result;
-}
-
-Result<std::vector<ForecastCandidate>> CompareForecasts(
-    const std::vector<BodyRecording>& recordings, const BestForecastOptions& options,
-    const RunProgress& progress) {
-  const auto chain = CrossValidateChain(recordings, options.chain, options.validation.scheme,
-                                        options.validation.folds, progress);
-  if (!chain.ok()) return chain.error();
-  GeneratorValidationOptions of_generator = options.validation;
-  of_generator.pendulums = chain.value().models;
-  const auto generator =
-      CrossValidateGenerator(recordings, options.generator, of_generator, progress);
-  if (!generator.ok()) return generator.error();
-  const BodyEvaluation& scores = generator.value().evaluation;
-  const std::string kind = NameOf(options.generator.kind);
-  std::vector<ForecastCandidate> candidates = {{kind, {}, scores.at("generator")},
-                                               {"physics, restored bodies",
-                                                {ForecastBy::kRestoration, 0.0},
-                                                chain.value().evaluation.at("restoration")}};
-  for (const double blend : of_generator.blends) {
-    candidates.push_back({kind + ", blended " + Rounded(blend, 3) + " with physics",
-                          {ForecastBy::kGenerator, blend},
-                          scores.at(BlendName(blend))});
-  }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-    return a.summary.mean.value[kMpjpe] < b.summary.mean.value[kMpjpe];
-  });
-  return candidates;
-}
-
-std::string CandidatesText(const std::vector<ForecastCandidate>& candidates) {
-  TextTable table =
-      TextTable::OfNumbers({"held out", "MPJPE m", "+-", "hipADE m", "hipFDE m", "FSE cm"});
-  for (const ForecastCandidate& candidate : candidates) {
-    const BodyMean& mean = candidate.summary.mean;
-    table.Add({candidate.name, Rounded(mean.value[kMpjpe], 3), Rounded(mean.error[kMpjpe], 2),
-               Rounded(mean.value[kHipAde], 3), Rounded(mean.value[kHipFde], 3),
-               Rounded(mean.value[kFse], 2)});
-  }
-  return table.ToString() + "chosen: " + candidates.front().name + "\n";
-}
-
-nlohmann::ordered_json ToJson(const std::vector<ForecastCandidate>& candidates) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const ForecastCandidate& candidate : candidates) {
-    rows.push_back({{"name", candidate.name},
-                    {"by", NameOf(candidate.choice.by)},
-                    {"blend", candidate.choice.blend},
-                    {"mean", MeanJson(candidate.summary.mean)}});
-  }
-  return {{"schema", "pushid-candidates/1"}, {"candidates", rows}};
 }
 
 }  // namespace pushid

@@ -89,11 +89,10 @@ Result<TrainedRestoration> TrainOn(const std::vector<BodyRecording>& recordings,
         "are needed"};
   }
   const bool rod_moves = RodMoves(options.fit.model);
-  auto training = MakeSamples(recordings, Picked(among, learnt), Picked(predictions, learnt),
-                              rod_moves, true);
-  for (RestorationSample& sample :
-       MakeSamples(options.more, Others({}, static_cast<int>(options.more.size())), {}, rod_moves,
-                   true)) {
+  auto training =
+      MakeSamples(recordings, Picked(among, learnt), Picked(predictions, learnt), rod_moves, true);
+  for (RestorationSample& sample : MakeSamples(
+           options.more, Others({}, static_cast<int>(options.more.size())), {}, rod_moves, true)) {
     training.push_back(std::move(sample));
   }
   const auto held =
@@ -155,7 +154,7 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
     Result<TrainedChain> chain = TrainChain(recordings, train, options, told);
     if (!chain.ok()) return Error{fold.name + ": " + chain.error().message};
     validation.training_seconds.push_back(Now() - before);
-    IdentifiedModel& model = chain.value().model;
+    const IdentifiedModel& model = chain.value().model;
     if (options.observed > 0) {
       if (MaybeError error = CheckLearnsFromFrames(model)) return *error;
     }
@@ -165,7 +164,6 @@ Result<ChainValidation> CrossValidateChain(const std::vector<BodyRecording>& rec
       if (!scores.ok()) return scores.error();
       for (const auto& [name, of_name] : scores.value()) by_recording[i][name] = of_name.front();
     }
-    validation.models.push_back(std::move(model));
   }
   validation.evaluation = SummarizeAll(recordings, by_recording);
   return validation;

@@ -48,7 +48,6 @@ struct ChainValidation {
   // the mean of the scores of three draws of the latent variable, and restoration is by its mean.
   BodyEvaluation evaluation;
   std::vector<double> training_seconds;  // of pendulum and restoration, by fold
-  std::vector<IdentifiedModel> models;   // of the pendulum, by fold
 };
 // Errors: folds that cannot be made; a fold whose pendulum fit finds no optimum, or which cannot
 // learn from first frames where some are to be seen.

@@ -123,36 +123,6 @@ SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
   return {distance(Transitions::kAll), distance(Transitions::kChanges), std::nullopt};
 }
 
-std::vector<SecondOfStates> CompareStatesBySecond(const std::vector<GroupMotion>& recorded,
-                                                  const std::vector<GroupMotion>& motions,
-                                                  int seconds, const StateFunction& states) {
-  const auto transitions = [&](const std::vector<Symbols>& people) {
-    return CountTransitions(people, states.num_symbols(), Transitions::kAll);
-  };
-  const Eigen::MatrixXd reference = transitions(StatesOf(recorded, states));
-  const std::vector<Symbols> all = StatesOf(motions, states);
-  const auto of_second = static_cast<Symbols::difference_type>(kWordRate);
-  const auto stand = std::find(states.names.begin(), states.names.end(), NameOf(kStand));
-  std::vector<SecondOfStates> rows(seconds);
-  for (int s = 0; s < seconds; ++s) {
-    std::vector<Symbols> within;
-    double standing = 0.0, frames = 0.0;
-    for (const Symbols& person : all) {
-      const auto begin =
-          person.begin() +
-          std::min<std::ptrdiff_t>(s * of_second, std::distance(person.begin(), person.end()));
-      within.emplace_back(begin,
-                          begin + std::min(of_second + 1, std::distance(begin, person.end())));
-      standing += static_cast<double>(
-          std::count(within.back().begin(), within.back().end(), stand - states.names.begin()));
-      frames += static_cast<double>(within.back().size());
-    }
-    rows[s].sscp = JensenShannon(reference, transitions(within));
-    if (stand != states.names.end()) rows[s].standing = standing / std::max(1.0, frames);
-  }
-  return rows;
-}
-
 std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
                                    const std::vector<GroupMotion>& motions) {
   const MotionWords words(CountedMotions(recorded));

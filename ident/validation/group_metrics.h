@@ -67,15 +67,6 @@ struct SocialMetrics {
 SocialMetrics CompareStates(const std::vector<GroupMotion>& recorded,
                             const std::vector<GroupMotion>& motions,
                             const StateFunction& states = SocialStateFunction());
-// Each second of the motions, from the last frame that does not count on, against all that was
-// recorded; the states of a frame count from frame 0 of the whole motion.
-struct SecondOfStates {
-  std::optional<double> standing;  // share of the state that is called so, if any
-  std::optional<double> sscp;      // no value where a second has no frames
-};
-std::vector<SecondOfStates> CompareStatesBySecond(
-    const std::vector<GroupMotion>& recorded, const std::vector<GroupMotion>& motions, int seconds,
-    const StateFunction& states = SocialStateFunction());
 std::optional<double> CompareWords(const std::vector<GroupMotion>& recorded,
                                    const std::vector<GroupMotion>& motions);
 

@@ -159,21 +159,4 @@ std::vector<Trajectories> DiffusionGenerator::Forecast(const std::vector<Observe
   return mean;
 }
 
-std::vector<std::vector<SampledFuture>> DiffusionGenerator::Sample(
-    const std::vector<ObservedMotion>& people, int frames, int count,
-    const NormalSource& normal) const {
-  std::vector<std::vector<SampledFuture>> futures(people.size());
-  if (people.empty()) return futures;
-  for (int k = 0; k < count; ++k) {
-    const double push =
-        options_.push_spread > 0.0 ? std::exp(options_.push_spread * normal()) : 1.0;
-    std::vector<Trajectories> sample =
-        SampleWhole(PushedBy(people, push), Member(k), ObservedFrames(people) + frames, normal);
-    for (size_t n = 0; n < people.size(); ++n) {
-      futures[n].push_back({Finished(people[n], std::move(sample[n]))});
-    }
-  }
-  return futures;
-}
-
 }  // namespace pushid

@@ -6,11 +6,9 @@
 // take turns, sample by sample. The forecast is the mean of several samples, as the mean joint
 // error asks for, half of them of the group in the mirror, where the network errs otherwise.
 // Recordings end before people stand still: past the longest one learnt from, what
-// the network has them go on with fades, and they come to rest. Sampled futures may
-// each be pushed a little harder or less, which stands for what differs between recordings of like
-// pushes. With a pendulum's path its people are moved some of the way to it. Then each body
-// is finished as restored ones are (postprocess.h): the seam at the last frame seen fades, bones
-// keep the length of frame 0, resting feet stay.
+// the network has them go on with fades, and they come to rest. With a pendulum's path its people
+// are moved some of the way to it. Then each body is finished as restored ones are (postprocess.h):
+// the seam at the last frame seen fades, bones keep the length of frame 0, resting feet stay.
 //
 // Noise belongs to people by their place, not by their number, so that their order changes nothing.
 #pragma once
@@ -93,9 +91,8 @@ struct DiffusionGeneratorOptions {
   bool mirrored = true;     // every other one of them of the group in the mirror
   int learnt_frames = 128;  // of the longest motion learnt from; later ones settle
   Settling settle = Settling::kFade;
-  double settling = 0.5;     // s, in which steps of later frames fade to 1/e
-  double blend = 0.0;        // share of the way to the pendulum's hip
-  double push_spread = 0.8;  // of the logarithm of the push, between sampled futures
+  double settling = 0.5;  // s, in which steps of later frames fade to 1/e
+  double blend = 0.0;     // share of the way to the pendulum's hip
   PostprocessOptions postprocess = {true, 20};
   // Keeps what Forecast samples, for forecasts of the same people that differ by what is done to
   // samples afterwards (blend, postprocess).
@@ -111,9 +108,6 @@ class DiffusionGenerator : public MotionGenerator {
   const ParticleLayout& layout() const override { return layout_; }
   std::vector<Trajectories> Forecast(const std::vector<ObservedMotion>& people,
                                      int frames) const override;
-  std::vector<std::vector<SampledFuture>> Sample(const std::vector<ObservedMotion>& people,
-                                                 int frames, int count,
-                                                 const NormalSource& normal) const override;
 
  private:
   // Everybody's motion, with what the network makes of the frames seen, before it is finished.

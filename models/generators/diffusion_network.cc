@@ -221,11 +221,6 @@ std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
   return changed;
 }
 
-std::vector<ObservedMotion> PushedBy(std::vector<ObservedMotion> group, double factor) {
-  for (ObservedMotion& person : group) person.controls *= static_cast<float>(factor);
-  return group;
-}
-
 namespace {
 
 constexpr float kNear = 0.8f, kSide = 0.1f, kAlone = 0.1f;  // m, m, weight of seeing nobody

@@ -98,9 +98,6 @@ struct GroupChange {
 std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
                                     const GroupChange& change);
 
-// Pushed harder or less; what they do stays.
-std::vector<ObservedMotion> PushedBy(std::vector<ObservedMotion> group, double factor);
-
 // local      exp(-(d / 0.8 m)^2), those ahead and those behind apart (a logistic of dx / 0.1 m),
 //            each over their sum + 0.1; d, dx between the places at frame 0. Far people fade out.
 // none       people do not see each other

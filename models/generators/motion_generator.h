@@ -36,10 +36,12 @@ class MotionGenerator {
   virtual const ParticleLayout& layout() const = 0;
   virtual std::vector<Trajectories> Forecast(const std::vector<ObservedMotion>& people,
                                              int frames) const = 0;
-  // [person][future]
-  virtual std::vector<std::vector<SampledFuture>> Sample(const std::vector<ObservedMotion>& people,
-                                                         int frames, int count,
-                                                         const NormalSource& normal) const = 0;
+  // [person][future]; nobody's where a kind samples none.
+  virtual std::vector<std::vector<SampledFuture>> Sample(
+      const std::vector<ObservedMotion>& /*people*/, int /*frames*/, int /*count*/,
+      const NormalSource& /*normal*/) const {
+    return {};
+  }
 };
 
 }  // namespace pushid

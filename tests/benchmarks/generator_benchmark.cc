@@ -45,10 +45,12 @@ void BM_DiffusionSample(benchmark::State& state) {
   constexpr int kGroupFrames = 96;
   std::vector<ObservedMotion> people = PushedGroup(static_cast<int>(state.range(0)), kGroupFrames);
   for (ObservedMotion& person : people) person.frames = Trajectories(person.frames.leftCols(1));
-  const DiffusionGenerator generator({}, {RandomDiffusion(1)}, 1.0 / 60.0, {}, SeededNoise());
+  DiffusionGeneratorOptions one;
+  one.averaged = 1;
+  const DiffusionGenerator generator({}, {RandomDiffusion(1)}, 1.0 / 60.0, one, SeededNoise());
   for (auto _ : state) {
-    const auto sample = generator.Sample(people, kGroupFrames - 1, 1, SeededNoise()());
-    benchmark::DoNotOptimize(sample[0][0].motion.data());
+    const auto sample = generator.Forecast(people, kGroupFrames - 1);
+    benchmark::DoNotOptimize(sample[0].data());
   }
 }
 BENCHMARK(BM_DiffusionSample)->Arg(5)->Arg(13)->Unit(benchmark::kMillisecond);

@@ -3,8 +3,6 @@
 groups     errors of the 49 recordings of groups, four folds, beside physics and baselines
 motion     what groups do: social states, words of motion, who moved first; with the same runs
 crowds     people who were not recorded, ahead of a group and beside it
-spread     whether sampled futures hold what was recorded; with the first run
-seconds    six seconds of every group, beside physics
 poolings   errors by how people see each other; ten minutes of one core each
 
 PUSHID_RECORDINGS is the folder of the recordings. The same runs serve both, a quarter of an hour of one core for
@@ -17,14 +15,12 @@ import studies
 from studies import number, with_error
 
 BLEND = 0.5  # chosen on these folds
-SAMPLES = 19  # their range is a 90 % interval
 FOLDS = ["--crossvalidate=4", "--scheme=interleaved"]
 
 
 def diffused():
     return studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion", *FOLDS,
-                                 f"--physics={studies.fit('groups').path}", f"--blend={BLEND}",
-                                 f"--samples={SAMPLES}").json
+                                 f"--physics={studies.fit('groups').path}", f"--blend={BLEND}").json
 
 
 def restored():
@@ -79,15 +75,6 @@ def motion():
                           "onsets in order", "onset error, s", "false movers", "missed movers"], cells)
 
 
-def spread():
-    json = diffused()
-    rows = [(name, json[key]) for name, key in (("noise alone", "spread_of_noise_alone"),
-                                                ("pushed harder or less (default)", "spread"))]
-    return studies.table([f"{SAMPLES} futures of recordings held out", "recorded hip x among them (0.9 if as people)",
-                          "their width, m"],
-                         [[name, f"{of['hip_x_inside']:.2f}", number(of["hip_x_width_m"])] for name, of in rows])
-
-
 def of_fold(fold):
     """The ids of the recordings of groups that the interleaved fold holds out."""
     with open(studies.MANIFEST, encoding="utf-8") as file:
@@ -113,19 +100,5 @@ def crowds():
                           "way of those aside, m"], [["`local`", *(cell[1] for cell in cells), cells[2][2]]])
 
 
-def seconds():
-    physics = studies.fit("groups").path
-    model = studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion", out="out").path
-    json = studies.on_recordings("pushid-generate", "groups", f"--model={model}", f"--physics={physics}", "--blend=0",
-                                 "--frames=361").json["seconds"]
-    rows = []
-    for name, by in (("diffusion", "generator"), ("physics", "rigid")):
-        for key, title in (("hip_speed_m_s", "hip speed, m/s"), ("hip_way_m", "way of the hip, m"),
-                           ("standing", "share who stand"), ("sscp", "SSCP")):
-            rows.append([f"{name}: {title}", *(f"{row[key]:.2f}" for row in json[by])])
-    return studies.table(["every group for six seconds", *(f"{row['second']}. s" for row in json["generator"])], rows)
-
-
 if __name__ == "__main__":
-    studies.main(__file__, {"groups": groups, "motion": motion, "spread": spread, "crowds": crowds, "seconds": seconds,
-                            "poolings": poolings})
+    studies.main(__file__, {"groups": groups, "motion": motion, "crowds": crowds, "poolings": poolings})

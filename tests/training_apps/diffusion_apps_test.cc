@@ -36,11 +36,7 @@ TEST_F(DiffusionAppTest, TrainsForecastsAndShows) {
   EXPECT_GT(json["run"]["seconds_per_recording"].get<double>(), 0.0);
   EXPECT_TRUE(Contains(ReadText(Path("p.html")), id_ + ", diffusion"));
   EXPECT_TRUE(Contains(ReadText(Path("p.csv")), "\n89,")) << "past the recording's end";
-  Succeeded(Generate({"--observed=20", "--samples=19", "--json_out=" + Path("e.json")}));
-  const auto spread = Json(Path("e.json"))["spread"];
-  EXPECT_GE(spread["hip_x_inside"].get<double>(), 0.0);
-  EXPECT_LE(spread["hip_x_inside"].get<double>(), 1.0);
-  EXPECT_GT(spread["hip_x_width_m"].get<double>(), 0.0);
+  Succeeded(Generate({"--observed=20"}));
 }
 
 TEST_F(DiffusionAppTest, CrossValidatesBesidePhysics) {
@@ -54,36 +50,6 @@ TEST_F(DiffusionAppTest, CrossValidatesBesidePhysics) {
   EXPECT_NE(json["mean"]["hipADE_m"], json["baselines"]["generator_unblended"]["mean"]["hipADE_m"]);
   Succeeded(Train({"--out=" + Path("g")}));
   Succeeded(Generate({"--physics=" + Path("m.json"), "--blend=0.3"}));
-}
-
-// Everything that may forecast is compared and written, and what won is used without being asked.
-TEST_F(DiffusionAppTest, TheBestForecastIsChosenAndUsed) {
-  const AppRun train = Succeeded(Train({"--out=" + Path("g"), "--accuracy=best"}));
-  EXPECT_TRUE(Contains(train.out, "chosen: "));
-  const auto candidates = Json(Path("g/candidates.json"))["candidates"];
-  ASSERT_EQ(candidates.size(), 5u);
-  for (size_t i = 1; i < candidates.size(); ++i) {
-    EXPECT_LE(candidates[i - 1]["mean"]["MPJPE_m"], candidates[i]["mean"]["MPJPE_m"]);
-  }
-  const auto choice = Json(Path("g/generator.json"))["settings"]["choice"];
-  EXPECT_EQ(choice["by"], candidates[0]["by"]);
-  EXPECT_EQ(choice["blend"], candidates[0]["blend"]);
-  const AppRun chosen = Succeeded(Generate({"--json_out=" + Path("e.json")}));
-  EXPECT_TRUE(Contains(chosen.out, "selected by cross-validation: "));
-  // Hardly trained, diffusion loses to the synthetic people's own physics.
-  const AppRun asked = Succeeded(Generate(
-      {"--physics=" + Path("g/physics.json"), "--blend=0", "--json_out=" + Path("a.json")}));
-  EXPECT_FALSE(Contains(asked.out, "selected by cross-validation"));
-  EXPECT_LT(Json(Path("e.json"))["mean"]["MPJPE_m"], Json(Path("a.json"))["mean"]["MPJPE_m"]);
-}
-
-TEST_F(DiffusionAppTest, LongForecastsAreToldBySecond) {
-  Succeeded(Train({"--out=" + Path("g")}));
-  const AppRun run = Succeeded(Generate({"--frames=241", "--json_out=" + Path("e.json")}));
-  EXPECT_TRUE(Contains(run.out, "generator, second"));
-  const auto seconds = Json(Path("e.json"))["seconds"]["generator"];
-  ASSERT_EQ(seconds.size(), 4u);
-  EXPECT_LT(seconds[3]["hip_speed_m_s"].get<double>(), 0.02) << "they have come to rest";
 }
 
 // Nobody is pushed; who speaks is annotated.
@@ -121,9 +87,6 @@ TEST_F(DiffusionAppTest, GroupsWithoutAPushAreForecastAndTheirStatesCompared) {
   WriteText("wrong.csv", "recording,frame,person,symbol\nturns_1,0,T1,speak\n");
   EXPECT_TRUE(Refused(generate({"--states=" + Path("wrong.csv")}),
                       {"wrong.csv:2", "turns_1", "is turns_01 meant?"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-train-generator", {"--kind=diffusion", turns, "--steps=5",
-                                                        "--accuracy=best", "--out=" + Path("h")}),
-                      {"has no push"}));
 }
 
 TEST_F(DiffusionAppTest, AsSdmIsPublished) {
@@ -133,7 +96,6 @@ TEST_F(DiffusionAppTest, AsSdmIsPublished) {
   EXPECT_EQ(settings["pooling_at"], "bottleneck");
   EXPECT_EQ(settings["frame"], "own");
   Succeeded(Generate({"--published=sdm", "--frames=241", "--json_out=" + Path("e.json")}));
-  EXPECT_EQ(Json(Path("e.json"))["seconds"]["generator"].size(), 4u);
   Succeeded(Train({"--out=" + Path("h"), "--published=sdm", "--pooling=heads"}));
   EXPECT_EQ(Json(Path("h/generator.json"))["settings"]["pooling"], "heads")
       << "flags change the preset";
@@ -160,20 +122,19 @@ TEST_F(DiffusionAppTest, PushesOfAnotherKindAreToldOf) {
 }
 
 TEST_F(DiffusionAppTest, MistakesAreNamed) {
-  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--accuracy=best", "--crossvalidate=2"}),
-                      {"makes its own folds"}));
-  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--accuracy=good"}), {"--accuracy is 'good'"}));
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--noise_steps=1"}),
                       {"--noise_steps needs --kind=particles"}));
   EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--pooling=all"}), {"--pooling is 'all'"}));
   EXPECT_TRUE(
       Refused(Train({"--out=" + Path("g"), "--blend=0.3"}), {"--blend needs --crossvalidate"}));
   EXPECT_TRUE(Refused(Train({"--crossvalidate=2", "--blend=0.3"}), {"--blend needs --physics"}));
-  EXPECT_TRUE(
-      Refused(Train({"--out=" + Path("g"), "--physics=" + Path("m.json")}), {"--accuracy=best"}));
+  EXPECT_TRUE(Refused(Train({"--out=" + Path("g"), "--physics=" + Path("m.json")}),
+                      {"--physics needs --crossvalidate"}));
   Succeeded(Train({"--out=" + Path("g")}));
   EXPECT_TRUE(Refused(Generate({"--blend=0.3"}), {"needs --physics"}));
-  EXPECT_TRUE(Refused(Generate({"--without=simlpe"}), {"--without", "of diffusion"}));
+  for (const char* flag : {"--without=simlpe", "--samples=19"}) {
+    EXPECT_TRUE(Refused(Generate({flag}), {"has no effect on a generator of diffusion"})) << flag;
+  }
   EXPECT_TRUE(Refused(Generate({"--sampler=ode"}), {"--sampler is 'ode'"}));
   EXPECT_TRUE(Refused(Generate({"--id=nobody", "--page_out=" + Path("p.html")}), {"nobody"}));
 }

@@ -69,10 +69,6 @@ class StillGenerator : public MotionGenerator {
     }
     return still;
   }
-  std::vector<std::vector<SampledFuture>> Sample(const std::vector<ObservedMotion>&, int, int,
-                                                 const NormalSource&) const override {
-    return {};
-  }
 
  private:
   ParticleLayout layout_;

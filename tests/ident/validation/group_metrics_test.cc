@@ -69,19 +69,6 @@ TEST(GroupMetricsTest, TheRecordingsThemselvesScoreBest) {
   EXPECT_EQ(json["onset_error_s"], 0.0);
 }
 
-TEST(GroupMetricsTest, SecondsAreJudgedEachForItself) {
-  // One second of standing, one of going, both of which the recording has too.
-  const GroupMotion walkers = Walkers(61, 61, 121);
-  const auto seconds = CompareStatesBySecond({walkers}, {walkers}, 2);
-  ASSERT_EQ(seconds.size(), 2u);
-  EXPECT_EQ(*seconds[0].standing, 1.0);
-  EXPECT_LT(*seconds[1].standing, 0.1);
-  // Half of all transitions are standing, and all of the first second: by hand, p = (1, 0) against
-  // q = (1/2, 1/2) has the distance 0.4645.
-  EXPECT_NEAR(*seconds[0].sscp, 0.4645, 0.02);
-  EXPECT_GT(*seconds[1].sscp, 0.3);
-}
-
 // People stand for 30 frames, which are shown, and then go; the forecast goes on standing.
 TEST(GroupMetricsTest, ShownFramesDoNotCount) {
   GroupMotion recorded = Walkers(29, 29, 60), still = Walkers(100, 100, 60);

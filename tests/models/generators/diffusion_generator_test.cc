@@ -101,14 +101,11 @@ TEST_F(DiffusionGeneratorTest, TheSeamFades) {
 TEST_F(DiffusionGeneratorTest, BonesHold) {
   for (const int observed : {1, 12}) {
     const std::vector<ObservedMotion> people = Seen(2, observed);
-    for (const Trajectories& motion :
-         {Generator().Forecast(people, 25)[0],
-          Generator().Sample(people, 25, 1, SeededNoise()())[0][0].motion}) {
-      const Pose first = people[0].frames.col(0).cast<double>().reshaped(3, kBodyJoints);
-      for (const int t : {0, 10, 24}) {
-        const Pose pose = motion.col(t).cast<double>().reshaped(3, kBodyJoints);
-        EXPECT_LT((BoneLengths(pose) - BoneLengths(first)).cwiseAbs().maxCoeff(), 1e-4);
-      }
+    const Trajectories motion = Generator().Forecast(people, 25)[0];
+    const Pose first = people[0].frames.col(0).cast<double>().reshaped(3, kBodyJoints);
+    for (const int t : {0, 10, 24}) {
+      const Pose pose = motion.col(t).cast<double>().reshaped(3, kBodyJoints);
+      EXPECT_LT((BoneLengths(pose) - BoneLengths(first)).cwiseAbs().maxCoeff(), 1e-4);
     }
   }
 }
@@ -151,28 +148,8 @@ TEST_F(DiffusionGeneratorTest, LongForecastsSettle) {
   EXPECT_LT(step(whole, 199), 1e-3f * step(restless, 199) + 1e-6f);
 }
 
-// A future under a push drawn larger is that of a larger push; forecasts are under the push itself.
-TEST_F(DiffusionGeneratorTest, PushesOfSampledFuturesDiffer) {
-  const auto sample = [this](double spread, double first_draw, double push) {
-    options_.push_spread = spread;
-    const auto draws = std::make_shared<int>(0);
-    const NormalSource normal = [draws, first_draw] { return (*draws)++ == 0 ? first_draw : 0.0; };
-    return Generator().Sample(PushedBy(Seen(2, 1), push), 30, 1, normal)[1][0].motion;
-  };
-  const Trajectories drawn = sample(0.5, 1.0, 1.0);
-  EXPECT_EQ(drawn, sample(0.0, 0.0, std::exp(0.5)));
-  EXPECT_NE(drawn, sample(0.0, 0.0, 1.0));
-  const auto forecast = [this](double spread) {
-    options_.push_spread = spread;
-    return Generator().Forecast(Seen(2, 1), 20)[0];
-  };
-  EXPECT_EQ(forecast(0.0), forecast(1.0));
-}
-
 TEST_F(DiffusionGeneratorTest, NobodyHasNoFuture) {
   EXPECT_TRUE(Generator().Forecast({}, 10).empty());
-  EXPECT_TRUE(Generator().Sample({}, 10, 3, SeededNoise()()).empty());
-  EXPECT_EQ(Generator().Sample(Seen(1, 1), 10, 3, SeededNoise()())[0].size(), 3u);
 }
 
 }  // namespace
