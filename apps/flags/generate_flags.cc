@@ -113,8 +113,8 @@ void ReadNumbers(GenerateFlags* flags) {
 
 void CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   const bool groups = RowOf(kind).groups;
-  std::vector<const char*> foreign = {"folder",   "action",        "window",
-                                      "protocol", "target_window", "without"};
+  std::vector<const char*> foreign = {"folder",        "action",  "window", "protocol",
+                                      "target_window", "without", "samples"};
   if (!groups) {
     foreign = {"recordings", "setting",    "id",      "observed",       "physics", "frames",
                "states",     "states_out", "sampler", "sampling_steps", "blend"};
