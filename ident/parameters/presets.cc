@@ -177,6 +177,10 @@ std::string MemoryOf(const ModelOptions& model) {
   return "";
 }
 
+namespace {
+
+// The noise that a likelihood of single steps tells of, without priors: it is seen thousands of
+// times.
 void FreeNoise(FitOptions* o) {
   if (o->likelihood == Likelihood::kTrajectory) return;
   for (int id = kFirstNoiseParameter; id <= kLastNoiseParameter; ++id) {
@@ -185,6 +189,8 @@ void FreeNoise(FitOptions* o) {
     o->table.specs[id].free = Acts(static_cast<Parameter>(id), o->model);
   }
 }
+
+}  // namespace
 
 void SetLikelihood(Likelihood likelihood, FitOptions* options) {
   options->likelihood = likelihood;

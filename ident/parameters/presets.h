@@ -73,10 +73,6 @@ void SetLikelihood(Likelihood likelihood, FitOptions* options);
 // Likelihoods of single steps are for models without.
 std::string MemoryOf(const ModelOptions& model);
 
-// Frees the noise that a likelihood of single steps tells of, without priors: it is seen thousands
-// of times. FreeTerms calls it.
-void FreeNoise(FitOptions* options);
-
 // The self force together with the hinge on the free modes that goes with it: a linear self force
 // can feed a mode that the settling simulations do not excite.
 void SetSelfForce(SelfForceKind self_force, FitOptions* options);
