@@ -127,12 +127,12 @@ RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weight
 //   h_1 = tanh(W_1 u + b_1), h_i = tanh(W_i h_(i-1) + b_i)
 //   F on n = 2 M_n g (O h_last + c),             g = x / (x + w)
 //
-// x: the load of contact, w its onset (contact.h), so that people who do not touch do nothing to
-// each other, whatever the weights, and O = c = 0 is no force at all. Each of the two asks the same
-// network alone: the force is not mutual, and no matter who is numbered first.
+// x: the load of contact, w its onset (interaction.h), so that people who do not touch do nothing
+// to each other, whatever the weights, and O = c = 0 is no force at all. Each of the two asks the
+// same network alone: the force is not mutual, and no matter who is numbered first.
 //
-// `ldp_network` is LDP's interaction network (Yue et al., CVPR 2024: 10-512-512-4; network_
-// interaction.h takes one by file). It acts on every neighbour within the range, touched or not:
+// `ldp_network` is LDP's interaction network (Yue et al., CVPR 2024: 10-512-512-4). It
+// acts on every neighbour within the range, touched or not:
 //   h_i = max(0, W_i h_(i-1) + b_i),  F on n = 2 (85 kg) (O h_last + c),  |r_n - r_j| < range
 //
 // Weights are one flat array: for each layer the rows [W b], then the rows [O c].
