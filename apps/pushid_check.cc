@@ -14,7 +14,7 @@
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"
-#include "ident/report/fit_command.h"
+#include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote; the checks are added to it");

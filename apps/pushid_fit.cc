@@ -16,6 +16,7 @@
 #include "ident/parameters/parameter_table.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/parallel.h"
+#include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/bootstrap.h"
 

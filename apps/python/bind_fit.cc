@@ -12,7 +12,7 @@
 #include "ident/parameters/json_archive.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/option_table.h"
-#include "ident/report/fit_command.h"
+#include "ident/report/advice.h"
 #include "ident/report/page/document.h"
 #include "ident/report/report_text.h"
 #include "ident/validation/crossvalidation.h"

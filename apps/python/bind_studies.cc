@@ -8,6 +8,7 @@
 #include "ident/formations/formation_run.h"
 #include "ident/formations/wave_speed.h"
 #include "ident/parameters/json_archive.h"
+#include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "ident/validation/experiment_design.h"
 #include "models/formation.h"

@@ -8,6 +8,7 @@
 #include "ident/fit/fit.h"
 #include "ident/observed/recording_filter.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/solver.h"
 #include "ident/validation/experiment_design.h"

@@ -44,11 +44,6 @@ Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path
 // truth | identified | 95 % interval | whether it covers the truth, for every fitted parameter.
 std::string TruthTable(const FitResult& result, const std::map<std::string, double>& truth);
 
-// What to try next, in plain words: a pure function of a fitted model.
-
-// Most pressing first. Commands repeat the settings of the fit (fit_command.h).
-std::vector<Advice> Advise(const FittedModel& model);
-
 // The difference between two values of a label, as a table and in words. Pure functions of
 // the result.
 

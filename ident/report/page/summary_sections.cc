@@ -8,7 +8,7 @@
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_names.h"
 #include "ident/problem/behaviour_text.h"
-#include "ident/report/fit_command.h"
+#include "ident/report/advice.h"
 #include "ident/report/page/sections.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/clusters.h"

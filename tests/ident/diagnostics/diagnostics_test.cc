@@ -7,7 +7,7 @@
 
 #include "ident/fit/fit.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/report/fit_command.h"
+#include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"

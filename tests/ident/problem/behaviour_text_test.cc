@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/model/fitted_model.h"
+#include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "tests/test_support.h"
 

@@ -3,7 +3,7 @@
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
-#include "ident/report/fit_command.h"
+#include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

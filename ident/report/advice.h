@@ -47,4 +47,9 @@ std::string CommandFor(const Provenance& provenance, std::string command);
 // Whether it is one of pushid-check, and so needs the model's file.
 bool NamesModel(const std::string& command);
 
+// What to try next, in plain words: a pure function of a fitted model.
+//
+// Most pressing first. Commands repeat the settings of the fit.
+std::vector<Advice> Advise(const FittedModel& model);
+
 }  // namespace pushid
