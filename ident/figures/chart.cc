@@ -1,10 +1,11 @@
-// ident: drawing panels.
+// ident: drawing panels, and panels with their legend as pictures.
 #include "ident/figures/chart.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/figures/svg.h"
 
 namespace pushid {
 namespace {
@@ -295,6 +296,90 @@ double HeightOf(const Chart& chart, double width) {
 
 void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg) {
   Panel(chart, box, svg).Draw();
+}
+
+namespace {
+
+// A panel may get so much narrower than wanted before fewer stand side by side.
+constexpr double kNarrowest = 0.65;
+constexpr double kLegendRow = 18, kHeading = 22;
+
+// Of its line, its name and the room after it.
+double EntryWidth(const LegendEntry& entry) {
+  return 44 + 6.6 * static_cast<double>(entry.name.size());
+}
+
+// Entries by line, so that none is wider than the picture.
+std::vector<std::vector<LegendEntry>> LegendLines(const std::vector<LegendEntry>& entries,
+                                                  double width) {
+  std::vector<std::vector<LegendEntry>> lines;
+  double used = width;
+  for (const LegendEntry& entry : entries) {
+    if (used + EntryWidth(entry) > width) {
+      lines.emplace_back();
+      used = 0.0;
+    }
+    lines.back().push_back(entry);
+    used += EntryWidth(entry);
+  }
+  return lines;
+}
+
+}  // namespace
+
+double LegendWidth(const std::vector<LegendEntry>& entries) {
+  double width = 0.0;
+  for (const LegendEntry& entry : entries) width += EntryWidth(entry);
+  return width;
+}
+
+void DrawLegend(const std::vector<LegendEntry>& entries, double x, double y, SvgPicture* svg) {
+  for (const LegendEntry& entry : entries) {
+    const bool filled = entry.look.find("stroke:none") != std::string::npos ||
+                        entry.look.rfind("band", 0) == 0 || entry.look == kLiftedLook;
+    if (filled) {
+      svg->Rect({x, y - 9, 18, 10}, entry.look);
+    } else {
+      svg->Polyline({{x, y - 4}, {x + 18, y - 4}}, entry.look);
+    }
+    svg->Text(x + 23, y, entry.name, "ink small");
+    x += EntryWidth(entry);
+  }
+}
+
+SvgPicture DrawPanel(const Chart& chart) {
+  const double height = HeightOf(chart, chart.width);
+  SvgPicture svg(chart.width, height, chart.title);
+  DrawChart(chart, {0, 0, chart.width, height}, &svg);
+  return svg;
+}
+
+SvgPicture DrawFigure(const Figure& figure, double width, const std::string& title) {
+  const std::vector<Chart>& panels = figure.panels;
+  double widest = 1.0;
+  for (const Chart& panel : panels) widest = std::max(widest, panel.width);
+  const size_t columns = std::clamp<size_t>(static_cast<size_t>(width / (kNarrowest * widest)), 1,
+                                            std::max<size_t>(1, panels.size()));
+  const double wide = width / static_cast<double>(columns);
+  const auto legend = LegendLines(figure.legend, width - 20);
+  const double top =
+      (figure.heading.empty() ? 0 : kHeading) + kLegendRow * static_cast<double>(legend.size());
+  std::vector<double> tops = {top};
+  for (size_t i = 0; i < panels.size(); ++i) {
+    if (i % columns == 0) tops.push_back(tops.back());
+    const size_t row = i / columns;
+    tops[row + 1] = std::max(tops[row + 1], tops[row] + HeightOf(panels[i], wide));
+  }
+  SvgPicture svg(width, tops.back(), title);
+  svg.Text(10, 15, figure.heading, "ink bold");
+  for (size_t k = 0; k < legend.size(); ++k) {
+    DrawLegend(legend[k], 10, top - kLegendRow * static_cast<double>(legend.size() - k) + 14, &svg);
+  }
+  for (size_t i = 0; i < panels.size(); ++i) {
+    const double x = wide * static_cast<double>(i % columns);
+    DrawChart(panels[i], {x, tops[i / columns], wide, HeightOf(panels[i], wide)}, &svg);
+  }
+  return svg;
 }
 
 }  // namespace pushid
