@@ -52,7 +52,7 @@ def _words(command):
 
 
 def as_call(command):
-    """"pushid-fit --recordings=M/manifest.json --design=mu" -> "result.design('mu')"."""
+    """"pushid-check --recordings=M/manifest.json --design=mu" -> "result.design('mu')"."""
     program, flags = _words(command)
     for name in _CHECKS:
         if name in flags:
