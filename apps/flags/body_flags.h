@@ -8,7 +8,6 @@
 
 #include "datasets/files/error.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/problem/folds.h"
 #include "models/restoration/postprocess.h"
 #include "models/restoration/restoration.h"
 
@@ -16,10 +15,6 @@ namespace pushid {
 
 // postprocess_flags.cc: what makes restored bodies fit, as --postprocess lists it.
 PostprocessOptions PostprocessFromCommandLine();
-
-// scheme_flags.cc: --scheme of the training programs, what the folds of their --crossvalidate hold
-// out. takes_folds: whether there are any. Errors: no such scheme, or one where there are no folds.
-FoldScheme SchemeFromCommandLine(bool takes_folds);
 
 // published_flags.cc: the paper whose settings are asked for, sde or sdm; empty: none.
 std::string PublishedFromCommandLine();
