@@ -62,7 +62,7 @@ DEFINE_string(poses_out, "",
 DEFINE_string(strip_out, "", "a strip of poses (SVG)");
 DEFINE_string(page_out, "", "a page with the forecast over the recorded motion (HTML)");
 DEFINE_string(sampler, pushid::NameOf(kFlags.changes.diffusion.sampler),
-              "diffusion: sampler: renoised, ddpm or ddim");
+              "diffusion: sampler: renoised or ddpm");
 DEFINE_int32(sampling_steps, kFlags.changes.diffusion.steps, "diffusion: number of sampling steps");
 DEFINE_double(blend, kFlags.changes.diffusion.blend,
               "diffusion: blend of the hip paths, from 0 (forecast) to 1 (physics)");

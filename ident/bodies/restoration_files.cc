@@ -77,8 +77,7 @@ Result<std::unique_ptr<Restoration>> MakeCvae(const RestorationFile& file, const
   const Result<RestorationView> view = ViewOf(file, path);
   if (!view.ok()) return view.error();
   const CvaeLayout layout = {coordinates, view.value() == RestorationView::kPendulum,
-                             file.settings->value(kCvaeHalvesKey, true),
-                             file.settings->value(kCvaeSigmaKey, false)};
+                             file.settings->value(kCvaeHalvesKey, true)};
   return std::unique_ptr<Restoration>(
       new CvaeRestoration(TakeCvae(layout, reader), NormalsOf(kDrawsSeed)));
 }
@@ -86,15 +85,10 @@ Result<std::unique_ptr<Restoration>> MakeCvae(const RestorationFile& file, const
 MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration) {
   if (choice.latent == CvaeLatent::kMean) return std::nullopt;
   auto* cvae = dynamic_cast<CvaeRestoration*>(restoration);
-  if (cvae == nullptr || !cvae->weights().layout.pendulum) {
+  if (cvae == nullptr || !cvae->CanDraw()) {
     return Error{
         "--latent=draw needs a restoration of --kind=cvae and --sees=pendulum: others "
         "have no sampler to draw from"};
-  }
-  if (!cvae->CanDraw()) {
-    return Error{
-        "--latent=draw needs the sigma of the samplers, which an earlier version did not "
-        "keep; train again with this version, or give --latent=mean"};
   }
   cvae->DrawLatent(NormalsOf(choice.seed));
   return std::nullopt;
@@ -116,9 +110,9 @@ Result<std::unique_ptr<Restoration>> MakeRestoration(const RestorationFile& file
     }
     return made;
   }
-  return Error{"the kind is " + Quoted(NameOf(file.kind)) + "; it must be " +
-                   TrainedRestorationKinds(),
-               path};
+  return Error{
+      "the kind is " + Quoted(NameOf(file.kind)) + "; it must be " + TrainedRestorationKinds(),
+      path};
 }
 
 Result<bool> LearnedAlone(const std::string& folder) {

@@ -21,12 +21,11 @@ namespace pushid {
 
 inline constexpr int kRestorationFormat = 1;
 // In RestorationFile::settings: a name of RestorationView (of kWindow and kCvae), of
-// CvaeCoordinates, whether the body has two networks, whether samplers kept their sigma, and a name
-// of CvaeTraining (of kCvae). Files of before have none of them.
+// CvaeCoordinates, whether the body has two networks, and a name of CvaeTraining (of kCvae). Files
+// of before have none of them.
 inline constexpr char kViewKey[] = "sees";
 inline constexpr char kCvaeCoordinatesKey[] = "coordinates";
 inline constexpr char kCvaeHalvesKey[] = "halves";
-inline constexpr char kCvaeSigmaKey[] = "sigma";
 inline constexpr char kCvaeTrainingKey[] = "training";
 
 // In RestorationFile::training: the most people of one recording that it learned from.
@@ -64,7 +63,7 @@ struct LatentChoice {
   CvaeLatent latent = CvaeLatent::kMean;
   uint64_t seed = 1;  // of kDraw
 };
-// Errors: kDraw of another kind, without samplers, or with samplers whose sigma was not kept.
+// Errors: kDraw of another kind, or without samplers.
 MaybeError ChooseLatent(const LatentChoice& choice, Restoration* restoration);
 
 // What makes and trains each kind of restoration, one row each; RestorationKindRow has what

@@ -40,8 +40,8 @@ std::string KeyOfTraining(const std::vector<RestorationSample>& training,
                           const RestorationTrainingOptions& options) {
   return "2 " + NameOf(options.kind) + " " + NameOf(options.coordinates) + " " +
          NameOf(options.view) + (options.halves ? " halves " : " whole ") +
-         NameOf(options.training) + " " + std::to_string(options.effort) + " " + std::to_string(options.seed) + " " +
-         KeyOfSamples(training) + KeyOfSamples(held);
+         NameOf(options.training) + " " + std::to_string(options.effort) + " " +
+         std::to_string(options.seed) + " " + KeyOfSamples(training) + KeyOfSamples(held);
 }
 
 // All frames of all samples side by side; scaled with `scaling`, which is set first if it is empty.
@@ -157,7 +157,6 @@ Result<RestorationTraining> TrainCvae(const std::vector<RestorationSample>& trai
     *file->settings = {{kViewKey, NameOf(options.view)},
                        {kCvaeCoordinatesKey, NameOf(options.coordinates)},
                        {kCvaeHalvesKey, options.halves},
-                       {kCvaeSigmaKey, true},
                        {kCvaeTrainingKey, NameOf(options.training)}};
   };
   return RestorationTraining{trainer, finish, SizesOf(*trainer, scalings.layout)};

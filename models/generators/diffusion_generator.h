@@ -34,13 +34,10 @@ namespace pushid {
 //
 //   renoised   x_u = sqrt(a_u) x_0 + sqrt(1 - a_u) e, e drawn anew (Eq. 5 of SDM)
 //   ddpm       the posterior of x_u given x_t and x_0
-//   ddim       x_u = sqrt(a_u) x_0 + sqrt(1 - a_u) e, e = what of x_t is noise by the estimate
 
-enum class DiffusionSampler { kRenoised, kDdpm, kDdim };
-constexpr EnumNames<DiffusionSampler, 3> Names(DiffusionSampler) {
-  return {{{"renoised", DiffusionSampler::kRenoised},
-           {"ddpm", DiffusionSampler::kDdpm},
-           {"ddim", DiffusionSampler::kDdim}}};
+enum class DiffusionSampler { kRenoised, kDdpm };
+constexpr EnumNames<DiffusionSampler, 2> Names(DiffusionSampler) {
+  return {{{"renoised", DiffusionSampler::kRenoised}, {"ddpm", DiffusionSampler::kDdpm}}};
 }
 
 inline constexpr int kDiffusionTime = 1000;  // T
@@ -68,10 +65,6 @@ inline BackwardStep StepBack(DiffusionSampler sampler, double t, double u) {
       const double left = (1.0 - b) / (1.0 - a), step = a / b;  // of x_u in x_t
       return {std::sqrt(b) * (1.0 - step) / (1.0 - a), std::sqrt(step) * left,
               std::sqrt(left * (1.0 - step))};
-    }
-    case DiffusionSampler::kDdim: {
-      const double share = std::sqrt((1.0 - b) / (1.0 - a));
-      return {std::sqrt(b) - share * std::sqrt(a), share, 0.0};
     }
   }
   return {};

@@ -314,13 +314,13 @@ void StepUpper(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
 
 namespace {
 
-void ListSampler(const std::string& name, int condition, bool sigma, CvaeSampler* sampler,
+void ListSampler(const std::string& name, int condition, CvaeSampler* sampler,
                  TensorFields* fields) {
   fields->Layer(name + ".first", condition + kPendulumFrame, kCvaeHidden, &sampler->first);
   fields->Layer(name + ".second", kCvaeHidden + kPendulumFrame, kCvaeHidden, &sampler->second);
   const int last = kCvaeHidden + kPendulumFrame;
   fields->Layer(name + ".mean", last, kLatent, &sampler->mean);
-  if (sigma) fields->Layer(name + ".log_variance", last, kLatent, &sampler->log_variance);
+  fields->Layer(name + ".log_variance", last, kLatent, &sampler->log_variance);
 }
 
 void ListDecoder(const std::string& name, int condition, int frame, CvaeDecoder* decoder,
@@ -339,10 +339,8 @@ void ListTensors(CvaeWeights* weights, TensorFields* fields) {
   if (layout.halves) fields->Scales("upper", upper, &weights->upper);
   if (layout.pendulum) {
     fields->Scales("pendulum", kPendulumFrame, &weights->pendulum);
-    ListSampler("lower_sampler", lower, layout.sigma, &weights->lower_sampler, fields);
-    if (layout.halves) {
-      ListSampler("upper_sampler", condition, layout.sigma, &weights->upper_sampler, fields);
-    }
+    ListSampler("lower_sampler", lower, &weights->lower_sampler, fields);
+    if (layout.halves) ListSampler("upper_sampler", condition, &weights->upper_sampler, fields);
   }
   ListDecoder("lower_decoder", lower, lower, &weights->lower_decoder, fields);
   if (!layout.halves) return;

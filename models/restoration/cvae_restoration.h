@@ -38,7 +38,6 @@ struct CvaeLayout {
   CvaeCoordinates coordinates = CvaeCoordinates::kTip;
   bool pendulum = true;  // false: the next pose from the pose alone; the network carries the hip
   bool halves = true;    // false: one network for all joints, in the place of the lower body's
-  bool sigma = true;     // false: samplers of earlier versions, of which only the mean was kept
 
   const std::vector<int>& LowerJoints() const;
   const std::vector<int>& UpperJoints() const;  // none without halves
@@ -116,7 +115,7 @@ constexpr EnumNames<CvaeLatent, 2> Names(CvaeLatent) {
 
 // Three layers, the pendulum concatenated at each: [x, p] -> 256 -> 256 -> mean and log-variance.
 struct CvaeSampler {
-  DenseLayer first, second, mean, log_variance;  // the last: of layouts with sigma
+  DenseLayer first, second, mean, log_variance;
   // eps: a column for everybody; none: the mean.
   Eigen::MatrixXf Evaluate(const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum,
                            const Eigen::MatrixXf& eps) const;
@@ -161,7 +160,7 @@ class CvaeRestoration : public Restoration {
   std::string_view kind() const override { return RowOf(RestorationKind::kCvae).name; }
   std::vector<BodyMotion> Restore(const std::vector<RestorationInput>& people) const override;
   const CvaeWeights& weights() const { return weights_; }
-  bool CanDraw() const { return weights_.layout.pendulum && weights_.layout.sigma; }
+  bool CanDraw() const { return weights_.layout.pendulum; }
   // From here on z is drawn from the samplers' Gaussians (CanDraw); every call of Restore takes its
   // normal numbers from `draws` anew.
   void DrawLatent(std::function<NormalSource()> draws) {
