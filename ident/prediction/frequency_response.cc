@@ -16,9 +16,9 @@
 namespace pushid {
 namespace {
 
-constexpr double kRepeats = 0.02, kAway = 0.5;      // of the standard deviation
-constexpr double kSegments = 9.0;                   // that overlap by half
-constexpr double kShortest = 4.0, kLongest = 30.0;  // s
+constexpr double kRepeats = 0.02, kAway = 0.5;             // of the standard deviation
+constexpr double kSegments = 9.0;                          // that overlap by half
+constexpr double kShortestSegment = 4.0, kLongest = 30.0;  // s
 // Overlapping by half under Hann's window, segments are as good as so many independent ones.
 constexpr double kOverlapWorth = 9.0 / 11.0;
 constexpr double kLeastPower = 1e-6, kLeastLine = 1e-4, kLeastCoherence = 0.3, kChance = 0.05;
@@ -90,7 +90,8 @@ Segmenting SegmentsOf(const std::vector<double>& input, double dt) {
     segments = {period, frames - used, twice ? period / 2 : period, true};
     return segments;
   }
-  const double seconds = std::clamp(2.0 * frames * dt / (kSegments + 1.0), kShortest, kLongest);
+  const double seconds =
+      std::clamp(2.0 * frames * dt / (kSegments + 1.0), kShortestSegment, kLongest);
   segments.frames = static_cast<int>(std::lround(seconds / dt));
   segments.step = segments.frames / 2;
   if (frames < 2 * segments.frames) segments.frames = 0;  // three segments
@@ -367,7 +368,7 @@ struct PersonSpectra {
   bool by_plates = false;
 };
 
-struct Group {
+struct SegmentGroup {
   bool periodic = false;
   int recordings = 0;
   double segment_s = 0.0;
@@ -417,8 +418,8 @@ struct MeanResponse {
 
 // all: everybody's spectra, by which a bin is taken or left: to take those people alone whose
 // coherence is high would take those whose noise happens to be along their answer.
-std::optional<FrequencyBin> BinOf(const Group& group, const GroupKey& key, const CrossSpectra& all,
-                                  int bin) {
+std::optional<FrequencyBin> BinOf(const SegmentGroup& group, const GroupKey& key,
+                                  const CrossSpectra& all, int bin) {
   if (!IsCoherent(all, bin)) return std::nullopt;
   FrequencyBin result;
   result.hz = bin * all.step_hz;
@@ -446,7 +447,7 @@ std::optional<FrequencyBin> BinOf(const Group& group, const GroupKey& key, const
   return result;
 }
 
-FrequencyCurve CurveOf(const Group& group, const GroupKey& key, double from, double to) {
+FrequencyCurve CurveOf(const SegmentGroup& group, const GroupKey& key, double from, double to) {
   FrequencyCurve curve;
   for (const auto& [name, person] : group.people) {
     if (!person.loop) return curve;
@@ -462,7 +463,7 @@ FrequencyCurve CurveOf(const Group& group, const GroupKey& key, double from, dou
   return curve;
 }
 
-FrequencyResponse ResponseOf(const Group& group, const GroupKey& key) {
+FrequencyResponse ResponseOf(const SegmentGroup& group, const GroupKey& key) {
   FrequencyResponse response;
   std::tie(response.input, response.plane, response.output) = key;
   response.periodic = group.periodic;
@@ -505,7 +506,7 @@ class Gathering {
   std::vector<FrequencyResponse> Responses() const {
     std::vector<FrequencyResponse> responses;
     for (const auto& [key, groups] : groups_) {
-      for (const Group& group : groups) {
+      for (const SegmentGroup& group : groups) {
         responses.push_back(ResponseOf(group, key));
         if (responses.back().bins.empty()) responses.pop_back();
       }
@@ -515,8 +516,8 @@ class Gathering {
 
  private:
   // The group of segments that last as long.
-  Group& GroupFor(const GroupKey& key, const Segmenting& segments, double seconds) {
-    for (Group& group : groups_[key]) {
+  SegmentGroup& GroupFor(const GroupKey& key, const Segmenting& segments, double seconds) {
+    for (SegmentGroup& group : groups_[key]) {
       if (group.periodic == segments.periodic &&
           std::abs(group.segment_s - seconds) < kSameDuration * seconds) {
         return group;
@@ -530,7 +531,7 @@ class Gathering {
                  const ContinuousInput& input, const Segmenting& segments, LoopOutput output) {
     const double dt = recording.scene.dt;
     const GroupKey key{input.kind, input.plane, output};
-    Group& group = GroupFor(key, segments, segments.frames * dt);
+    SegmentGroup& group = GroupFor(key, segments, segments.frames * dt);
     const bool plates = output == LoopOutput::kTorque && recording.HasPlates(n);
     const std::vector<double> series = OutputSeries(recording, n, input.plane, output, options_, p);
     PersonSpectra& person = group.people[recording.subject_ids[n]];
@@ -545,7 +546,7 @@ class Gathering {
 
   const ModelOptions& options_;
   bool has_loop_;
-  std::map<GroupKey, std::vector<Group>> groups_;
+  std::map<GroupKey, std::vector<SegmentGroup>> groups_;
 };
 
 std::string AngleName(int plane) { return plane == 0 ? "theta" : "phi"; }
