@@ -1,5 +1,5 @@
 // apps: fits in Python: options by the names of the flags, results with everything the programs
-// say.
+// say, refits that check them, and the report's figures as data for matplotlib.
 #include <algorithm>
 #include <ctime>
 #include <nlohmann/json.hpp>
@@ -9,17 +9,44 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
+#include "ident/checks/model_checks.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/option_table.h"
 #include "ident/report/advice.h"
+#include "ident/report/page/build_report.h"
 #include "ident/report/page/document.h"
 #include "ident/report/report_text.h"
 #include "ident/validation/crossvalidation.h"
+#include "ident/validation/experiment_design.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {
+
+// A document as Python has it; the texts that stand for numbers JSON does not know are numbers.
+py::object FromJson(const nlohmann::ordered_json& json) {
+  if (json.is_null()) return py::none();
+  if (json.is_boolean()) return py::bool_(json.get<bool>());
+  if (json.is_number_integer()) return py::int_(json.get<std::int64_t>());
+  if (json.is_number()) return py::float_(json.get<double>());
+  if (json.is_string()) {
+    const std::string text = json.get<std::string>();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (text == "infinity") return py::float_(kInfinity);
+    if (text == "-infinity") return py::float_(-kInfinity);
+    if (text == "nan") return py::float_(std::nan(""));
+    return py::str(text);
+  }
+  if (json.is_array()) {
+    py::list list;
+    for (const auto& item : json) list.append(FromJson(item));
+    return std::move(list);
+  }
+  py::dict dict;
+  for (const auto& [key, value] : json.items()) dict[py::str(key)] = FromJson(value);
+  return std::move(dict);
+}
 
 using Advised = std::vector<std::pair<std::string, std::string>>;
 
@@ -143,6 +170,19 @@ void Save(const Model& model, const std::string& path) {
   Check(WriteJson(path, ToJson(*model.fitted, run)), Fault::kData);
 }
 
+// With the figures of the recordings that the model has, if any. Releases the GIL.
+Report ReportOf(const FittedModel& fitted, const Model& model) {
+  const std::shared_ptr<const FittedTo> to = model.to;
+  BuildReportOptions options;
+  options.progress = JobsOf(py::none());
+  const py::gil_scoped_release no_gil;
+  std::vector<Recording> drawn;
+  if (to) {
+    for (const SharedRecording& one : to->recordings) drawn.push_back(*one);
+  }
+  return BuildReport(fitted, drawn, options);
+}
+
 // Of a model that pushid-fit made the page has commands, as the program's own.
 void WriteReport(const Model& model, const std::string& path, const Advised& calls) {
   Check(CheckPageName("report", path), Fault::kUsage);
@@ -208,6 +248,136 @@ py::list OptionList() {
   return list;
 }
 
+// Adds something to a copy of the model, without the GIL, and puts the copy in its place.
+template <typename Add>
+void Extend(Model* model, Add add) {
+  const std::shared_ptr<const FittedTo> to = DataOf(*model);
+  FittedModel extended = *model->fitted;
+  const MaybeError error = WithoutGil([&] {
+    MaybeError failed = add(to->pendulums, &extended);
+    if (!failed) extended.advice = Advise(extended);
+    return failed;
+  });
+  Check(error, Fault::kUsage);
+  model->fitted = std::make_shared<const FittedModel>(std::move(extended));
+}
+
+using PendulumRecordings = std::vector<PendulumRecording>;
+
+void ProfilesOf(Model* model, const std::vector<std::string>& names, int num_threads,
+                const py::object& progress) {
+  const JobProgress told = JobsOf(progress);
+  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
+    return AddProfiles(recordings, names, num_threads, told, fitted);
+  });
+}
+
+void BootstrapOf(Model* model, int replicas, uint64_t seed, int num_threads,
+                 const py::object& progress) {
+  const BootstrapOptions options{replicas, seed, num_threads};
+  const JobProgress told = JobsOf(progress);
+  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
+    return AddBootstrap(recordings, options, told, fitted);
+  });
+}
+
+void CheckHorizonsOf(Model* model, int num_threads, const py::object& progress) {
+  const JobProgress told = JobsOf(progress);
+  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
+    AddHorizonCheck(recordings, num_threads, told, fitted);
+    return MaybeError();
+  });
+}
+
+void LearnForecastsOf(Model* model, int num_threads) {
+  Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
+    return AddForecasts(recordings, num_threads, fitted);
+  });
+}
+
+using Json = nlohmann::ordered_json;
+
+// A number for each name; none where there are none.
+Json ByName(const std::vector<std::string>& names, const std::vector<double>& numbers) {
+  Json json = Json::object();
+  for (size_t i = 0; i < numbers.size(); ++i) json[names[i]] = NumberJson(numbers[i]);
+  return json;
+}
+
+Json PushesJson(const ExperimentDesign& design, const std::string& parameter) {
+  Json rows = Json::array();
+  if (!design.refused.empty()) return rows;
+  for (const DesignRow& row : Unwrapped(RankedRows(design, parameter), Fault::kUsage)) {
+    rows.push_back({{"direction_deg", row.push.direction_deg},
+                    {"acceleration", row.push.acceleration},
+                    {"height", row.push.height},
+                    {"duration_s", row.push.duration_s},
+                    {"mass_kg", row.push.mass_kg},
+                    {"sensor", row.push.sensor},
+                    {"error_ratio", ByName(design.parameters, row.error_ratio)},
+                    {"mean_error_ratio", NumberJson(row.volume_ratio)}});
+  }
+  return rows;
+}
+
+py::object DesignOf(const Model& model, const std::string& parameter) {
+  const std::shared_ptr<const FittedTo> to = DataOf(model);
+  const std::shared_ptr<const FittedModel> fitted = model.fitted;
+  const ExperimentDesign design =
+      WithoutGil([&] { return DesignExperiments(to->pendulums, fitted->fit); });
+  const Json json = {{"text", Unwrapped(DesignText(design, parameter), Fault::kUsage)},
+                     {"standard_error", ByName(design.parameters, design.standard_error)},
+                     {"pushes", PushesJson(design, parameter)},
+                     {"no_push", design.refused}};
+  return FromJson(json);
+}
+
+// fields(item) of each as a tuple.
+template <typename Item, typename Fields>
+py::list Tuples(const std::vector<Item>& items, Fields fields) {
+  py::list list;
+  for (const Item& item : items) list.append(fields(item));
+  return list;
+}
+
+py::dict DictOf(const Chart& chart) {
+  using namespace py::literals;
+  const auto tuple = [](const auto&... fields) { return py::make_tuple(fields...); };
+  return py::dict(
+      "title"_a = chart.title, "x_label"_a = chart.x_label, "y_label"_a = chart.y_label,
+      "lines"_a =
+          Tuples(chart.lines, [&](const ChartLine& l) { return tuple(l.points, l.look, l.dots); }),
+      "bands"_a =
+          Tuples(chart.bands, [&](const ChartBand& b) { return tuple(b.lower, b.upper, b.look); }),
+      "lanes"_a =
+          Tuples(chart.lanes, [&](const ChartLane& l) { return tuple(l.name, l.bars, l.look); }),
+      "bars"_a =
+          Tuples(chart.bars, [&](const ChartBar& b) { return tuple(b.row, b.from, b.to, b.look); }),
+      "labels"_a =
+          Tuples(chart.labels, [&](const ChartLabel& l) { return tuple(l.x, l.y, l.text); }),
+      "is_map"_a = chart.is_map, "levels"_a = chart.levels, "marks"_a = chart.marks,
+      "x_range"_a = tuple(chart.x_from, chart.x_to), "y_range"_a = tuple(chart.y_from, chart.y_to),
+      "logarithmic"_a = tuple(chart.logarithmic_x, chart.logarithmic_y), "bare_y"_a = chart.bare_y,
+      "y_categories"_a = chart.y_categories, "y_notes"_a = chart.y_notes,
+      "x_categories"_a = chart.x_categories, "cells"_a = chart.cells,
+      "full_cell"_a = chart.full_cell);
+}
+
+// {name: {caption, legend, panels}}, in the report's order.
+py::dict Figures(const Model& model) {
+  using namespace py::literals;
+  const Report report = ReportOf(*model.fitted, model);
+  py::dict figures;
+  for (const ReportFigure* figure : FiguresOf(report)) {
+    const auto entry = [](const LegendEntry& e) { return py::make_tuple(e.name, e.look); };
+    figures[py::str(figure->name)] =
+        py::dict("caption"_a = figure->caption, "legend"_a = Tuples(figure->figure.legend, entry),
+                 "panels"_a = Tuples(figure->figure.panels,
+                                     [](const Chart& panel) { return DictOf(panel); }));
+  }
+  return figures;
+}
+
 }  // namespace
 
 std::shared_ptr<const FittedTo> DataOf(const Model& model) {
@@ -243,7 +413,16 @@ void BindFits(py::module_* module) {
   module->def("from_json", &FromText);
   module->def("crossvalidate", &CrossValidateAll);
   module->def("options", &OptionList);
-  module->def("interval_text", &IntervalText);
+  module->def("profile", &ProfilesOf);
+  module->def("bootstrap", &BootstrapOf);
+  module->def("horizon_check", &CheckHorizonsOf);
+  module->def("learn_forecasts", &LearnForecastsOf);
+  module->def("design", &DesignOf);
+  module->def("figures", &Figures);
+  // Looks are classes of this style sheet, or declarations of their own.
+  module->def("svg_style", &SvgStyle);
+  module->attr("level_look") = kLimitLook;
+  module->attr("mark_look") = kMarkLook;
 }
 
 }  // namespace pushid

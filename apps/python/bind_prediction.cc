@@ -1,16 +1,35 @@
-// apps: predictions in Python: from the first frame and the push, from frames as they come, and as
-// whole bodies.
+// apps: predictions in Python: from the first frame and the push, from frames as they come, as
+// whole bodies, on formations, as most probable paths, and of people who stand.
+#include <array>
+
 #include "apps/python/bindings.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/bodies/restoration_files.h"
+#include "ident/forecasts/most_probable_path.h"
+#include "ident/formations/formation_run.h"
+#include "ident/formations/wave_speed.h"
+#include "ident/prediction/frequency_response.h"
 #include "ident/prediction/futures.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"
 #include "ident/prediction/predictive_bands.h"
+#include "models/formation.h"
 #include "models/rollout.h"
 
 namespace pushid {
+namespace {
+
+using namespace py::literals;
+
+// paths[person][frame] as (frames, people, 3).
+Array PathsArray(const std::vector<std::vector<Vector3<double>>>& paths) {
+  const int people = static_cast<int>(paths.size());
+  const int frames = people == 0 ? 0 : static_cast<int>(paths[0].size());
+  return TableArray(frames, people, 3, [&](int t, int n) { return paths[n][t]; });
+}
+
+// (frames, people, 8): q, then qd.
 
 Array StatesOf(const RolloutPath<double>& path, int people) {
   return TableArray(path.num_frames(), people, 8, [&](int t, int n) {
@@ -20,14 +39,14 @@ Array StatesOf(const RolloutPath<double>& path, int people) {
   });
 }
 
+// hip, states, observed, and bands where there are any. Raises where the rollout left the domain.
 py::dict DictOf(const Prediction& prediction, const PendulumRecording& recording) {
   if (!prediction.status.ok) {
     Raise(Fault::kFit, Error{"recording " + recording.id + ": " + OutsideText(prediction.status)});
   }
-  py::dict dict;
-  dict["hip"] = PathsArray(prediction.hip);
-  dict["states"] = StatesOf(prediction.path, recording.num_people());
-  dict["observed"] = prediction.observed;
+  py::dict dict("hip"_a = PathsArray(prediction.hip),
+                "states"_a = StatesOf(prediction.path, recording.num_people()),
+                "observed"_a = prediction.observed);
   if (prediction.bands.empty()) return dict;
   std::vector<HipPath> lower, upper;
   for (const HipBand& band : prediction.bands) {
@@ -39,33 +58,26 @@ py::dict DictOf(const Prediction& prediction, const PendulumRecording& recording
   return dict;
 }
 
+// The model with some of its values replaced: "Kp_theta=1500,...".
 IdentifiedModel With(const Model& model, const std::string& set) {
   IdentifiedModel identified = IdentifiedOf(model);
   Check(SetValues(set, &identified), Fault::kUsage);
   return identified;
 }
 
+// Warns of pushes beyond those that the model was fitted to.
 void WarnOfInputs(const IdentifiedModel& model, const PendulumRecording& recording) {
   for (const Warning& warning : InputWarnings(model, {recording})) Warn(warning.text);
 }
 
-namespace {
-
 // Hips of drawn futures, (samples, frames, people, 3).
 Array DrawsArray(const std::vector<HipPaths>& futures) {
-  const size_t people = futures.empty() ? 0 : futures[0].size();
-  const size_t frames = people == 0 ? 0 : futures[0][0].size();
-  Array array({futures.size(), frames, people, size_t{3}});
-  auto cells = array.mutable_unchecked<4>();
-  for (size_t s = 0; s < futures.size(); ++s) {
-    for (size_t n = 0; n < people; ++n) {
-      for (size_t t = 0; t < frames; ++t) {
-        for (int i = 0; i < 3; ++i) cells(s, t, n, i) = futures[s][n][t][i];
-      }
-    }
-  }
-  array.attr("flags").attr("writeable") = false;
-  return array;
+  const int samples = static_cast<int>(futures.size());
+  const int people = samples == 0 ? 0 : static_cast<int>(futures[0].size());
+  const int frames = people == 0 ? 0 : static_cast<int>(futures[0][0].size());
+  return Reshaped(TableArray(samples * frames, people, 3,
+                             [&](int i, int n) { return futures[i / frames][n][i % frames]; }),
+                  {samples, frames, people, 3});
 }
 
 std::vector<HipPaths> HipsOf(const std::vector<std::vector<std::vector<BandPoint>>>& paths) {
@@ -211,23 +223,175 @@ Array Restored(const Restoration& restoration, const Model& model, const SharedR
     Raise(Fault::kFit, Error{"recording " + recording->id + ": " + OutsideText(predicted.status)});
   }
   const auto motions = RestoreBodies(restoration, {}, PredictedPeople(bodies, predicted));
-  const size_t frames = motions.empty() ? 0 : motions[0].size();
-  Array array(std::vector<size_t>{frames, motions.size(), static_cast<size_t>(kBodyJoints), 3});
-  auto cells = array.mutable_unchecked<4>();
-  for (size_t n = 0; n < motions.size(); ++n) {
-    for (size_t t = 0; t < frames; ++t) {
-      for (int j = 0; j < kBodyJoints; ++j) {
-        for (int i = 0; i < 3; ++i) cells(t, n, j, i) = motions[n][t](i, j);
-      }
-    }
+  const int people = static_cast<int>(motions.size());
+  const int frames = people == 0 ? 0 : static_cast<int>(motions[0].size());
+  // A joint is a column.
+  return Reshaped(TableArray(frames, people, 3 * kBodyJoints,
+                             [&](int t, int n) { return motions[n][t].data(); }),
+                  {frames, people, kBodyJoints, 3});
+}
+
+struct FormationAsked {
+  std::string shape;
+  int people, pushed;
+  double spacing, push, push_duration, push_direction, mass, rod, duration, fps;
+};
+
+Scene SceneOf(const FormationAsked& asked) {
+  const auto shape = Named<FormationShape>("shape", asked.shape);
+  if (asked.people < 1 || asked.people > 1000 || asked.pushed < 0 || asked.pushed >= asked.people ||
+      !(asked.spacing > 0.0) || !(asked.mass > 0.0) || !(asked.rod > 0.0) ||
+      !(asked.duration > 0.0) || !(asked.push_duration > 0.0) || !(asked.fps >= 1.0)) {
+    Raise(Fault::kUsage, Error{"a formation has 1 to 1000 people, one of whom is pushed, and "
+                               "spacing, mass, rod, durations and fps above 0"});
   }
-  return array;
+  Scene scene = FormationScene(FormationPositions(shape, asked.people, asked.spacing),
+                               {asked.mass, asked.rod}, 1.0 / asked.fps);
+  AddHipPush(asked.pushed,
+             {asked.push, 0.0, asked.push_duration, asked.push_direction * M_PI / 180.0}, &scene);
+  return scene;
+}
+
+// What the picture of a wave shows, and the table beside it.
+void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dict) {
+  py::list onset, displacement, outcome, onset_band;
+  for (int n = 0; n < run.num_people(); ++n) {
+    const PersonSummary& person = run.summaries[n];
+    std::optional<double> onset_s;
+    if (person.onset_frame >= 0) onset_s = run.Seconds(person.onset_frame);
+    onset.append(onset_s);
+    displacement.append(person.displacement);
+    outcome.append(NameOf(person.outcome));
+    if (waves.onsets.empty()) continue;
+    const OnsetBand& band = waves.onsets[n];
+    onset_band.append(band.moved > 0.0 ? py::object(py::make_tuple(band.from, band.to))
+                                       : py::object(py::none()));
+  }
+  (*dict)["speed"] = Reshaped(
+      TableArray(run.num_frames(), run.num_people(), 1,
+                 [&](int t, int n) { return std::array<double, 1>{SignedHipSpeed(run, n, t)}; }),
+      {run.num_frames(), run.num_people()});
+  (*dict)["onset_s"] = onset;
+  (*dict)["displacement"] = displacement;
+  (*dict)["outcome"] = outcome;
+  const std::optional<WaveSpeed> wave = SpeedOfWave(run);
+  (*dict)["wave_speed"] = wave ? py::object(py::float_(wave->MetresPerSecond())) : py::none();
+  if (!waves.onsets.empty()) (*dict)["onset_band90"] = onset_band;
+  if (waves.speed.known()) {
+    (*dict)["wave_speed_band90"] = py::make_tuple(waves.speed.from, waves.speed.to);
+  }
+  (*dict)["fps"] = 1.0 / run.recording.scene.dt;
+}
+
+py::dict OnFormation(const Model& model, const std::string& shape, int people, double spacing,
+                     int pushed, double push, double push_duration, double push_direction,
+                     double mass, double rod, double duration, double fps, const std::string& set,
+                     bool bands) {
+  const Scene scene = SceneOf({shape, people, pushed, spacing, push, push_duration, push_direction,
+                               mass, rod, duration, fps});
+  const IdentifiedModel identified = With(model, set);
+  const std::shared_ptr<const FittedModel> fitted = model.fitted;
+  FormationRun run;
+  WaveBands waves;
+  {
+    const py::gil_scoped_release no_gil;
+    run = RunFormation(identified, scene, static_cast<int>(duration * fps) + 1);
+    if (bands && run.prediction.status.ok) waves = BandsOfWave(*fitted, set, run);
+  }
+  WarnOfInputs(identified, run.recording);
+  py::dict dict = DictOf(run.prediction, run.recording);
+  AddSummaries(run, waves, &dict);
+  return dict;
+}
+
+py::dict Between(const Model& model, const std::string& start, const std::string& end, int frames,
+                 double fps, double mass, double rod) {
+  const PathEnd from = Unwrapped(ParsePathEnd("start", start, true), Fault::kUsage);
+  const PathEnd to = Unwrapped(ParsePathEnd("end", end, false), Fault::kUsage);
+  if (!(mass > 0.0) || !(rod > 0.0) || !(fps > 0.0)) {
+    Raise(Fault::kUsage, Error{"mass, rod and fps must be above 0"});
+  }
+  const IdentifiedModel identified = IdentifiedOf(model);
+  auto found = WithoutGil([&] {
+    return PathBetween(identified, {mass, rod, 0.0}, fps, from, to, frames);
+  });
+  const ProbablePath path = Unwrapped(std::move(found), Fault::kUsage);
+  const auto noise = [&](int t, int n) { return path.noise.At(t, n); };
+  return py::dict("states"_a = StatesOf(path.states, 1),
+                  "noise"_a = TableArray(path.states.num_frames(), 1, 4, noise),
+                  "action"_a = path.action(), "noise_action"_a = path.noise_action,
+                  "divergence_action"_a = path.divergence_action);
+}
+
+// One number of each bin.
+template <typename Value>
+Array Column(const std::vector<FrequencyBin>& bins, Value value) {
+  const int size = static_cast<int>(bins.size());
+  return Reshaped(
+      TableArray(size, 1, 1, [&](int i, int) { return std::array<double, 1>{value(bins[i])}; }),
+      {size});
+}
+
+py::dict ResponseDict(const FrequencyResponse& response) {
+  const auto column = [&response](auto value) { return Column(response.bins, value); };
+  py::dict dict(
+      "name"_a = response.Name(), "input_unit"_a = response.InputUnit(),
+      "output_unit"_a = response.OutputUnit(), "persons"_a = response.people,
+      "recordings"_a = response.recordings,
+      "frequency"_a = column([](const FrequencyBin& bin) { return bin.hz; }),
+      "gain"_a = column([](const FrequencyBin& bin) { return std::exp(bin.log_gain); }),
+      "log_gain_error"_a = column([](const FrequencyBin& bin) { return bin.log_gain_error; }),
+      "phase"_a = column([](const FrequencyBin& bin) { return bin.phase; }),
+      "phase_error"_a = column([](const FrequencyBin& bin) { return bin.phase_error; }),
+      "coherence"_a = column([](const FrequencyBin& bin) { return bin.coherence; }),
+      "people"_a = column([](const FrequencyBin& bin) { return double(bin.people); }));
+  if (response.model.hz.empty()) return dict;
+  dict["model_gain"] = column([](const FrequencyBin& bin) { return std::exp(bin.model_log_gain); });
+  dict["model_phase"] = column([](const FrequencyBin& bin) { return bin.model_phase; });
+  return dict;
+}
+
+py::dict ResponsesOf(const Model& model, const std::vector<SharedRecording>& recordings) {
+  const IdentifiedModel identified = IdentifiedOf(model);
+  const auto responses =
+      WithoutGil([&] { return FrequencyResponses(identified, Pendulums(recordings)); });
+  py::dict dict;
+  for (const FrequencyResponse& response : responses) {
+    // Recordings whose segments last differently long are apart.
+    std::string key = response.Key();
+    for (int i = 2; dict.contains(key); ++i) key = response.Key() + "_" + std::to_string(i);
+    dict[py::str(key)] = ResponseDict(response);
+  }
+  return dict;
+}
+
+py::dict LoopDict(const Model& model, double mass, double rod) {
+  if (!(mass > 0.0) || !(rod > 0.0)) Raise(Fault::kUsage, Error{"mass and rod must be above 0"});
+  const IdentifiedModel identified = IdentifiedOf(model);
+  const std::string without = WithoutLinearLoop(identified.options);
+  if (!without.empty()) Raise(Fault::kUsage, Error{"the model has no linear loop: " + without});
+  py::dict dict;
+  for (int plane = 0; plane < 2; ++plane) {
+    const LoopNumbers n =
+        LinearLoop(identified.options, {mass, rod, 0.0}, identified.parameters, plane).Numbers();
+    dict[plane == 0 ? "theta" : "phi"] =
+        py::dict("stiffness_ratio"_a = n.stiffness_ratio, "stable"_a = n.stable,
+                 "fastest_growth"_a = n.fastest_growth, "damping_ratio"_a = n.damping_ratio,
+                 "natural_hz"_a = n.natural_hz, "phase_margin"_a = n.phase_margin,
+                 "delay_margin"_a = n.delay_margin, "crossover_hz"_a = n.crossover_hz,
+                 "gain_up"_a = n.gain_up, "gain_down"_a = n.gain_down);
+  }
+  return dict;
 }
 
 }  // namespace
 
 void BindPredictions(py::module_* module) {
   module->def("predict", &PredictOn);
+  module->def("simulate_formation", &OnFormation);
+  module->def("path_between", &Between);
+  module->def("frequency_response", &ResponsesOf);
+  module->def("loop", &LoopDict);
   py::class_<Online>(*module, "Online")
       .def(py::init<const Model&, const SharedRecording&, int, const std::string&>())
       .def("observe", &Online::Observe)

@@ -1,14 +1,66 @@
-// apps: recordings in Python: read from manifests, made by the model itself, as arrays.
+// apps: recordings in Python: from manifests, from arrays, of synthetic people; as arrays and
+// bytes.
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "apps/python/bindings.h"
 #include "datasets/inspection/findings.h"
+#include "datasets/loading/recording_from_tracks.h"
 #include "datasets/manifest/recording.h"
+#include "datasets/sensors/force_platform.h"
+#include "ident/parameters/json_archive.h"
 #include "ident/push/push_estimation.h"
+#include "ident/push/push_from_sensor.h"
 #include "ident/validation/synthetic_truth.h"
 
 namespace pushid {
+
+// For pickle, copy and other processes.
+template <class Archive>
+void Fields(Archive& a, Push& p) {
+  PUSHID_FIELDS(a, p, person, start_frame, force, file);
+}
+
+template <class Archive>
+void Fields(Archive& a, PlateSample& sample) {
+  PUSHID_FIELDS(a, sample, force, centre, weight);
+}
+
+// Roles are of the joints, and go with them. A BVH file's skeleton stays behind: only the programs
+// write motions back into such files.
+template <class Archive>
+void Fields(Archive& a, RecordedPerson& p) {
+  PUSHID_FIELDS(a, p, subject_id, mass_kg);
+  a("numbers", p.known.numbers);
+  a("texts", p.known.texts);
+  PUSHID_FIELDS(a, p, file, file_clock_s, skipped_s, file_up, file_forward, hip, left_ankle,
+                right_ankle, left_toe, right_toe, left_heel, right_heel, weight, plates, joints,
+                joint_names, joint_parents);
+  std::vector<std::vector<int>> roles(p.roles.joints.begin(), p.roles.joints.end());
+  a("roles", roles);
+  std::copy_n(roles.begin(), std::min(roles.size(), p.roles.joints.size()), p.roles.joints.begin());
+  a("left_asis", p.roles.left_asis);
+  a("right_asis", p.roles.right_asis);
+  a("back", p.roles.back);
+}
+
+template <class Archive>
+void Fields(Archive& a, StatedErrors& s) {
+  for (const StatedErrorRow& row : kStatedErrors) a(row.key, s.*row.value);
+}
+
+template <class Archive>
+void Fields(Archive& a, Recording& r) {
+  a("id", r.id);
+  std::map<std::string, std::string> labels;
+  for (const std::string& key : r.labels.Keys()) labels[key] = r.labels.Of(key);
+  a("labels", labels);
+  for (const auto& [key, text] : labels) r.labels.Set(key, text);
+  PUSHID_FIELDS(a, r, fps, pushed_person, push_kind, initial_velocity, people, pushes, ground,
+                stated_errors, content_hash);
+}
+
 namespace {
 
 using namespace py::literals;
@@ -52,15 +104,15 @@ Array PushArray(const SharedRecording& recording) {
   return TableArray(recording->num_frames(), people, 4, [&](int t, int n) { return force[n][t]; });
 }
 
+// (frames, 4).
+Array RowsArray(const std::vector<Eigen::Vector4d>& rows) {
+  const int frames = static_cast<int>(rows.size());
+  return Reshaped(TableArray(frames, 1, 4, [&](int t, int) { return rows[t]; }), {frames, 4});
+}
+
 py::object GroundArray(const SharedRecording& recording) {
   if (recording->ground.empty()) return py::none();
-  Array array({static_cast<py::ssize_t>(recording->ground.size()), py::ssize_t{4}});
-  auto cells = array.mutable_unchecked<2>();
-  for (size_t t = 0; t < recording->ground.size(); ++t) {
-    for (int i = 0; i < 4; ++i) cells(t, i) = recording->ground[t][i];
-  }
-  array.attr("flags").attr("writeable") = false;
-  return std::move(array);
+  return RowsArray(recording->ground);
 }
 
 // NaN where nothing was measured.
@@ -170,12 +222,7 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
   const PushWindow window =
       Unwrapped(PushWindowFrom({first_frame, end_frame}, seen, options), Fault::kData);
   const EstimatedPush push = Unwrapped(EstimatePush(seen, window, options), Fault::kData);
-  Array rows({static_cast<py::ssize_t>(push.push.force.size()), py::ssize_t{4}});
-  auto cells = rows.mutable_unchecked<2>();
-  for (size_t t = 0; t < push.push.force.size(); ++t) {
-    for (int i = 0; i < 4; ++i) cells(t, i) = push.push.force[t][i];
-  }
-  return py::make_tuple(rows, window.start, NameOf(push.kind));
+  return py::make_tuple(RowsArray(push.push.force), window.start, NameOf(push.kind));
 }
 
 // What of recordings cannot be right, a dict each.
@@ -194,90 +241,238 @@ py::list FindingsIn(const std::vector<SharedRecording>& recordings) {
   return list;
 }
 
+Error WrongShape(const std::string& what, const Array& array, const std::string& must) {
+  std::string shape;
+  for (int i = 0; i < array.ndim(); ++i) {
+    shape += (i > 0 ? ", " : "") + std::to_string(array.shape(i));
+  }
+  return Error{what + " has the shape (" + shape + "); it must be " + must};
+}
+
+// rows[person][frame] of an array (frames, people, N), whatever its strides.
+template <int N>
+std::vector<std::vector<Eigen::Matrix<double, N, 1>>> RowsOf(const std::string& what,
+                                                             const Array& array,
+                                                             const std::string& must) {
+  if (array.ndim() != 3 || array.shape(2) != N) Raise(Fault::kData, WrongShape(what, array, must));
+  std::vector<std::vector<Eigen::Matrix<double, N, 1>>> rows(array.shape(1));
+  for (py::ssize_t n = 0; n < array.shape(1); ++n) {
+    rows[n].resize(array.shape(0));
+    for (py::ssize_t t = 0; t < array.shape(0); ++t) {
+      for (int i = 0; i < N; ++i) rows[n][t][i] = array.at(t, n, i);
+    }
+  }
+  return rows;
+}
+
+// (frames, 2) of shifts in m, or (frames, 4) with tilts in rad.
+std::vector<GroundPose> GroundFrom(const py::object& given) {
+  if (given.is_none()) return {};
+  const Array array = py::cast<Array>(given);
+  if (array.ndim() != 2 || (array.shape(1) != 2 && array.shape(1) != 4)) {
+    Raise(Fault::kData, WrongShape("ground", array,
+                                   "(frames, 2) of x and y in m, or (frames, 4) with theta and phi "
+                                   "in rad"));
+  }
+  std::vector<GroundPose> poses(array.shape(0), GroundPose::Zero());
+  for (py::ssize_t t = 0; t < array.shape(0); ++t) {
+    for (py::ssize_t i = 0; i < array.shape(1); ++i) poses[t][i] = array.at(t, i);
+  }
+  return poses;
+}
+
+// (frames, people, 5) of fx, fy, fz in N and px, py in m; NaN: not measured.
+void AddPlates(const py::object& given, std::vector<TrackedPerson>* people) {
+  if (given.is_none()) return;
+  const char* must = "(frames, 5), or (frames, people, 5), of fx, fy, fz in N and px, py in m";
+  const Array array = py::cast<Array>(given);
+  const auto rows = RowsOf<5>("plates", array, must);
+  if (rows.size() != people->size()) Raise(Fault::kData, WrongShape("plates", array, must));
+  for (size_t n = 0; n < rows.size(); ++n) {
+    std::vector<PlateSample>& plates = (*people)[n].plates;
+    for (const auto& row : rows[n]) {
+      PlateSample sample;
+      if (!row.hasNaN()) {
+        sample.force = row.template head<3>();
+        sample.centre = {row[3], row[4], 0.0};
+        sample.weight = row[2] >= kPressed ? 1.0 : 0.0;
+      }
+      plates.push_back(sample);
+    }
+    const auto measured = [](const PlateSample& sample) { return sample.weight > 0.0; };
+    if (std::none_of(plates.begin(), plates.end(), measured)) plates.clear();
+  }
+}
+
+// Where a push acts: a fraction of the way from the ankles to the hip, or metres.
+struct PushHeight {
+  double fraction = 1.0;
+  std::optional<double> metres;
+};
+
+void CheckHeight(const PushHeight& height) {
+  if (!height.metres && !(height.fraction >= 0.0 && height.fraction <= 1.0)) {
+    Raise(Fault::kUsage, Error{"push_height is " + Rounded(height.fraction) +
+                               "; it is a fraction of the way from the ankles (0) to the hip (1); "
+                               "give metres above the ground as push_height_m"});
+  }
+  if (height.metres && !(*height.metres >= 0.0 && *height.metres <= 3.0)) {
+    Raise(Fault::kUsage, Error{"push_height_m is " + Rounded(*height.metres) +
+                               "; it must be a height between 0 and 3 m"});
+  }
+}
+
+// Rows of a push as it was given: (fx), (fx, fy), (fx, fy, fz), or generalized forces.
+void AddPush(const Array& rows, int person, int start, const PushHeight& height,
+             Recording* recording) {
+  const py::ssize_t columns = rows.ndim() == 2 ? rows.shape(1) : 0;
+  if (columns < 1 || columns > 4) {
+    Raise(Fault::kData,
+          WrongShape("push", rows,
+                     "(rows,) or (rows, 2 or 3) of forces in N, or (rows, 4) of generalized forces "
+                     "in N and N m"));
+  }
+  const PendulumRecording seen = MakePendulumRecording(*recording);
+  Push push;
+  push.person = person;
+  push.start_frame = start;
+  const Body& body = seen.scene.people[person].body;
+  const auto& states = seen.states[person];
+  const auto state = [&states](size_t frame) {
+    return states[std::min(frame, states.size() - 1)].q;
+  };
+  const double fraction =
+      height.metres ? HeightFraction(body, state(start), *height.metres) : height.fraction;
+  for (py::ssize_t t = 0; t < rows.shape(0); ++t) {
+    Eigen::Vector4d row = Eigen::Vector4d::Zero();
+    for (py::ssize_t i = 0; i < columns; ++i) row[i] = rows.at(t, i);
+    if (columns < 4) {
+      row = GeneralizedForce<double>(body, state(start + t), Vector3<double>(row.head<3>()),
+                                     fraction);
+    }
+    push.force.push_back(row);
+  }
+  recording->pushes.push_back(std::move(push));
+}
+
+SharedRecording FromArrays(const Array& hip, const Array& left_ankle, const Array& right_ankle,
+                           const std::vector<double>& mass, double fps, const py::object& push,
+                           const std::string& id, const std::vector<std::string>& subjects,
+                           int pushed_person, int push_start, double push_height,
+                           std::optional<double> push_height_m, const std::string& push_kind,
+                           const std::string& initial_velocity, const std::string& setting,
+                           const std::string& magnitude, const std::string& condition,
+                           const py::object& ground, const py::object& plates) {
+  TrackedRecording tracks;
+  tracks.id = id;
+  tracks.fps = fps;
+  tracks.labels.Set(kSettingLabel, setting);
+  tracks.labels.Set(kMagnitudeLabel, magnitude);
+  tracks.labels.Set(kConditionLabel, condition);
+  tracks.pushed_person = pushed_person;
+  tracks.push_kind = Named<PushKind>("push_kind", push_kind);
+  tracks.initial_velocity = Named<InitialVelocity>("initial_velocity", initial_velocity);
+  const char* must = "(frames, 3) or (frames, people, 3), in m";
+  const auto hips = RowsOf<3>("hip", hip, must), left = RowsOf<3>("left_ankle", left_ankle, must),
+             right = RowsOf<3>("right_ankle", right_ankle, must);
+  if (left.size() != hips.size() || right.size() != hips.size() || mass.size() != hips.size() ||
+      (!subjects.empty() && subjects.size() != hips.size())) {
+    Raise(Fault::kData, Error{"hip has " + std::to_string(hips.size()) +
+                              " people; ankles, mass and subjects must have as many"});
+  }
+  if (pushed_person < 0 || pushed_person >= static_cast<int>(hips.size())) {
+    Raise(Fault::kUsage, Error{"pushed_person is " + std::to_string(pushed_person) +
+                               "; there are " + std::to_string(hips.size()) + " people"});
+  }
+  for (size_t n = 0; n < hips.size(); ++n) {
+    tracks.people.push_back({subjects.empty() ? "person " + std::to_string(n) : subjects[n],
+                             mass[n], hips[n], left[n], right[n]});
+  }
+  tracks.ground = GroundFrom(ground);
+  AddPlates(plates, &tracks.people);
+  const PushHeight height{push_height, push_height_m};
+  CheckHeight(height);
+  // The rod and the angles, which turn forces into generalized ones, come with the motion.
+  Warnings warnings;
+  Recording recording = Unwrapped(RecordingFromTracks(tracks, {}, &warnings), Fault::kData);
+  const Warnings ankles = FindingWarnings(FacingFindings(recording));
+  warnings.insert(warnings.end(), ankles.begin(), ankles.end());
+  Warn(warnings);
+  if (push.is_none()) return std::make_shared<const Recording>(std::move(recording));
+  if (push_start < 0) Raise(Fault::kUsage, Error{"push_start counts frames from 0"});
+  AddPush(py::cast<Array>(push), pushed_person, push_start, height, &recording);
+  tracks.pushes = recording.pushes;
+  return std::make_shared<const Recording>(Unwrapped(RecordingFromTracks(tracks), Fault::kData));
+}
+
 }  // namespace
 
 void BindRecordings(py::module_* module) {
+  using Shared = std::shared_ptr<Recording>;
   const auto track = [](auto part) {
-    return [part](const std::shared_ptr<Recording>& r) { return TrackArray(r, part); };
+    return [part](const Shared& r) { return TrackArray(r, part); };
   };
-  py::class_<Recording, std::shared_ptr<Recording>>(*module, "Recording")
-      .def_readonly("id", &Recording::id, "Name, unique among the recordings of a fit.")
-      .def_property_readonly(
-          "setting", [](const Recording& r) { return r.labels.setting(); },
-          "Label of the arrangement, as in the manifest.")
-      .def_property_readonly(
-          "magnitude", [](const Recording& r) { return r.labels.magnitude(); },
-          "Label of the push strength, as in the manifest.")
-      .def_property_readonly(
-          "condition", [](const Recording& r) { return r.labels.condition(); },
-          "Label of the protocol condition, as in the manifest.")
-      .def_readonly("fps", &Recording::fps, "Frames per second.")
-      .def_readonly("pushed_person", &Recording::pushed_person,
-                    "Index of the person who is pushed.")
-      .def_readonly("content_hash", &Recording::content_hash,
-                    "Hash of everything that a fit reads from the recording.")
-      .def_property_readonly("num_frames", &Recording::num_frames, "Number of frames.")
-      .def_property_readonly(
-          "num_people", [](const Recording& r) { return r.people.size(); }, "Number of people.")
-      .def_property_readonly(
-          "push_kind", [](const Recording& r) { return NameOf(r.push_kind); },
-          "What the push means: \"external\", \"net\" or \"net_without_friction\".")
-      .def_property_readonly(
-          "initial_velocity", [](const Recording& r) { return NameOf(r.initial_velocity); },
-          "\"zero\", \"estimated\" or \"free\".")
-      .def_property_readonly(
-          "subjects",
-          [](const Recording& r) {
-            std::vector<std::string> ids;
-            for (const RecordedPerson& p : r.people) ids.push_back(p.subject_id);
-            return ids;
-          },
-          "Id of each person.")
-      .def_property_readonly(
-          "mass",
-          [](const Recording& r) {
-            std::vector<double> masses;
-            for (const RecordedPerson& p : r.people) masses.push_back(p.mass_kg);
-            return masses;
-          },
-          "Mass of each person, kg.")
-      .def_property_readonly(
-          "known",
-          [](const Recording& r) {
-            py::list people;
-            for (const RecordedPerson& p : r.people) {
-              py::dict known;
-              for (const auto& [key, number] : p.known.numbers) known[py::str(key)] = number;
-              for (const auto& [key, text] : p.known.texts) known[py::str(key)] = text;
-              people.append(known);
-            }
-            return people;
-          },
-          "Of each person: what the manifest says beside the mass, {key: number or text}.")
-      .def_property_readonly("hip", track(&RecordedPerson::hip),
-                             "(frames, people, 3), m; NaN where missing.")
-      .def_property_readonly("left_ankle", track(&RecordedPerson::left_ankle),
-                             "(frames, people, 3), m.")
-      .def_property_readonly("right_ankle", track(&RecordedPerson::right_ankle),
-                             "(frames, people, 3), m.")
-      .def_property_readonly(
-          "states", [](const std::shared_ptr<Recording>& r) { return StatesArray(r); },
-          "(frames, people, 8): cart x, y (m), theta, phi (rad), and their rates (m/s, rad/s).")
-      .def_property_readonly(
-          "push", [](const std::shared_ptr<Recording>& r) { return PushArray(r); },
-          "(frames, people, 4): generalized forces along x, y (N), theta, phi (N m).")
-      .def_property_readonly(
-          "ground", [](const std::shared_ptr<Recording>& r) { return GroundArray(r); },
-          "(frames, 4): x, y (m), theta, phi (rad) of ground that moves; None where it rests.")
-      .def_property_readonly(
-          "plates", [](const std::shared_ptr<Recording>& r) { return PlatesArray(r); },
-          "(frames, people, 5): force on the person fx, fy, fz (N) and centre of pressure px, py "
-          "(m); None without.");
+  const auto of_people = [](auto part) {
+    return [part](const Recording& r) {
+      py::list values;
+      for (const RecordedPerson& person : r.people) values.append(part(person));
+      return values;
+    };
+  };
+  py::class_<Recording, Shared>(*module, "Recording", R"(A recording; its arrays are read-only.
+
+id, unique among the recordings of a fit; setting, magnitude, condition: labels as in the manifest; fps; pushed_person: index;
+num_frames, num_people; push_kind: "external", "net" or "net_without_friction"; initial_velocity: "zero", "estimated" or "free";
+content_hash: of everything that a fit reads. subjects, mass (kg), known ({key: number or text}, what the manifest says beside the
+mass): one of each person. hip, left_ankle, right_ankle: (frames, people, 3), m, NaN where missing. states: (frames, people, 8),
+cart x, y (m), theta, phi (rad) and their rates. push: (frames, people, 4), generalized forces along x, y (N), theta, phi (N m).
+ground: (frames, 4), x, y (m), theta, phi (rad), None where it rests. plates: (frames, people, 5), force on the person fx, fy, fz
+(N) and centre of pressure px, py (m), or None.)")
+      .def_readonly("id", &Recording::id)
+      .def_readonly("fps", &Recording::fps)
+      .def_readonly("pushed_person", &Recording::pushed_person)
+      .def_readonly("content_hash", &Recording::content_hash)
+      .def_property_readonly("setting", [](const Recording& r) { return r.labels.setting(); })
+      .def_property_readonly("magnitude", [](const Recording& r) { return r.labels.magnitude(); })
+      .def_property_readonly("condition", [](const Recording& r) { return r.labels.condition(); })
+      .def_property_readonly("num_frames", &Recording::num_frames)
+      .def_property_readonly("num_people", [](const Recording& r) { return r.people.size(); })
+      .def_property_readonly("push_kind", [](const Recording& r) { return NameOf(r.push_kind); })
+      .def_property_readonly("initial_velocity",
+                             [](const Recording& r) { return NameOf(r.initial_velocity); })
+      .def_property_readonly("subjects",
+                             of_people([](const RecordedPerson& p) { return p.subject_id; }))
+      .def_property_readonly("mass", of_people([](const RecordedPerson& p) { return p.mass_kg; }))
+      .def_property_readonly("known", of_people([](const RecordedPerson& p) {
+                               py::dict known;
+                               for (const auto& [key, n] : p.known.numbers) known[py::str(key)] = n;
+                               for (const auto& [key, s] : p.known.texts) known[py::str(key)] = s;
+                               return known;
+                             }))
+      .def_property_readonly("hip", track(&RecordedPerson::hip))
+      .def_property_readonly("left_ankle", track(&RecordedPerson::left_ankle))
+      .def_property_readonly("right_ankle", track(&RecordedPerson::right_ankle))
+      .def_property_readonly("states", [](const Shared& r) { return StatesArray(r); })
+      .def_property_readonly("push", [](const Shared& r) { return PushArray(r); })
+      .def_property_readonly("ground", [](const Shared& r) { return GroundArray(r); })
+      .def_property_readonly("plates", [](const Shared& r) { return PlatesArray(r); });
   module->attr("defaults") = Defaults();
   module->def("read", &Read);
+  module->def("from_arrays", &FromArrays);
   module->def("simulate", &Simulate);
   module->def("estimate_push", &EstimatePushOf);
   module->def("findings", &FindingsIn);
+  module->def("metres_per", [](const std::string& unit) {
+    return MetresPer(Named<LengthUnit>("length_unit", unit));
+  });
+  module->def("to_bytes", [](const Recording& recording) {
+    const std::vector<std::uint8_t> cbor = nlohmann::ordered_json::to_cbor(JsonOf(recording));
+    return py::bytes(reinterpret_cast<const char*>(cbor.data()), cbor.size());
+  });
+  module->def("from_bytes", [](const std::string& bytes) {
+    return std::make_shared<const Recording>(
+        FromJson<Recording>(nlohmann::ordered_json::from_cbor(bytes)));
+  });
 }
 
 }  // namespace pushid

@@ -42,12 +42,22 @@ auto WithoutGil(Compute compute) {
   return compute();
 }
 
-// A fit's progress: looks for signals, so that Ctrl-C ends it, and tells `callable` (phase,
-// iteration, cost). Called without the GIL.
-SolveProgress ProgressOf(const py::object& callable);
-
-// Progress of many jobs: the same, `callable` (done, total).
-JobProgress JobsOf(const py::object& callable);
+// Progress of something long: looks for signals, so that Ctrl-C ends it, and tells `callable`.
+// Called without the GIL.
+template <typename... Told>
+auto Telling(const py::object& callable) {
+  return [callable = callable.ptr()](Told... told) {
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (callable != Py_None) py::reinterpret_borrow<py::object>(callable)(told...);
+  };
+}
+// Of a fit: (phase, iteration, cost).
+inline SolveProgress ProgressOf(const py::object& callable) {
+  return Telling<const std::string&, int, double>(callable);
+}
+// Of many jobs: (done, total).
+inline JobProgress JobsOf(const py::object& callable) { return Telling<int, int>(callable); }
 
 // Flags and programs as options and calls: "--fix=mu=0" -> "fix={"mu": 0}", "pushid-push" ->
 // "pushid.estimate_push".
@@ -64,7 +74,6 @@ Warnings WarningsOf(const Told& told);
 
 // Recordings are shared, so that results and arrays outlive the list they came from.
 using SharedRecording = std::shared_ptr<const Recording>;
-std::vector<Recording> Copies(const std::vector<SharedRecording>& recordings);
 std::vector<PendulumRecording> Pendulums(const std::vector<SharedRecording>& recordings);
 
 // A choice by its name.
@@ -76,8 +85,6 @@ E Named(const char* argument, const std::string& name) {
 }
 
 using Array = py::array_t<double>;
-// paths[person][frame] as (frames, people, 3), read-only.
-Array PathsArray(const std::vector<std::vector<Vector3<double>>>& paths);
 // value(frame, person) of so many numbers, as (frames, people, size), read-only.
 template <typename Value>
 Array TableArray(int frames, int people, int size, Value value) {
@@ -93,25 +100,14 @@ Array TableArray(int frames, int people, int size, Value value) {
   return array;
 }
 
-// A document as Python has it; the texts that stand for numbers JSON does not know are numbers.
-py::object FromJson(const nlohmann::ordered_json& json);
+// The same numbers in another shape.
+inline Array Reshaped(const Array& array, const std::vector<int>& shape) {
+  return array.attr("reshape")(shape);
+}
 
-// "push has the shape (3, 7); it must be ...".
-Error WrongShape(const std::string& what, const Array& array, const std::string& must);
-
-// Ground and platforms from arrays, or None.
-struct TrackedRecording;
-void TakeLaboratory(const py::object& ground, const py::object& plates, TrackedRecording* tracks);
-
-void BindArrays(py::module_* module);
 void BindRecordings(py::module_* module);
-void BindPickle(py::module_* module);
 void BindFits(py::module_* module);
-void BindStudies(py::module_* module);
 void BindPredictions(py::module_* module);
-void BindFormations(py::module_* module);
-void BindStanding(py::module_* module);
-void BindFigures(py::module_* module);
 
 // What a model was fitted to.
 struct FittedTo {
@@ -131,27 +127,11 @@ std::shared_ptr<const FittedTo> DataOf(const Model& model);
 
 IdentifiedModel IdentifiedOf(const Model& model);
 
-// With the figures of the recordings that the model has, if any. Releases the GIL.
-struct Report;
-Report ReportOf(const FittedModel& fitted, const Model& model);
-
-// (frames, people, 8): q, then qd.
-Array StatesOf(const RolloutPath<double>& path, int people);
-
 // Who forecasts after observed frames. Raises on another name.
 inline ForecastUse ForecastFrom(const std::string& name) {
   ForecastUse use = ForecastUse::kBoth;
   Check(ParseName("forecast", name, &use), Fault::kUsage);
   return use;
 }
-
-// hip, states, observed, and bands where there are any. Raises where the rollout left the domain.
-py::dict DictOf(const Prediction& prediction, const PendulumRecording& recording);
-
-// The model with some of its values replaced: "Kp_theta=1500,...".
-IdentifiedModel With(const Model& model, const std::string& set);
-
-// Warns of pushes beyond those that the model was fitted to.
-void WarnOfInputs(const IdentifiedModel& model, const PendulumRecording& recording);
 
 }  // namespace pushid

@@ -171,16 +171,14 @@ def random_push(frames, fps, seed):
     return np.stack([slow, 0 * slow, 0.95 * slow, 0 * slow], axis=1)
 
 
-def stood(push=None, seconds=30.0, fps=50.0):
-    """One person who stands, or answers as a spring would: hip 0.95 m above the ankles."""
-    frames = int(seconds * fps) + 1
-    time = np.arange(frames) / fps
-    x = 0.005 * np.sin(np.pi * time) if push is None else 1e-4 * np.concatenate([[0.0], np.cumsum(push[:, 0]) / fps])
+def stood(push, fps=50.0):
+    """One person whose hip, 0.95 m above the ankles, answers a push as a spring would."""
+    frames = len(push) + 1
+    x = 1e-4 * np.concatenate([[0.0], np.cumsum(push[:, 0]) / fps])
     hip = np.stack([x, np.zeros(frames), np.full(frames, 1.03)], axis=1)
     ankle = np.tile([0.0, 0.0, 0.08], (frames, 1))
-    given = {} if push is None else {"push": push, "push_kind": "external"}
     return pushid.Recording(hip=hip, left_ankle=ankle + [0, 0.1, 0], right_ankle=ankle - [0, 0.1, 0], mass=80.0, fps=fps,
-                            **given)
+                            push=push, push_kind="external")
 
 
 def test_loop(made, result):

@@ -1,5 +1,4 @@
 """Matplotlib figures of results."""
-import html
 import math
 import re
 
@@ -11,10 +10,6 @@ def _axes(axes):
         return axes
     import matplotlib.pyplot
     return matplotlib.pyplot.subplots(layout="constrained")[1]  # labels of any length lie within the figure
-
-
-def _free(result):
-    return [result[name] for name in result.names if not result[name].fixed]
 
 
 def _looks():
@@ -182,24 +177,3 @@ def wave(formation, axes=None):
     axes.set_xlabel("time, s")
     axes.set_ylabel("person")
     return axes
-
-
-def _bar(p):
-    """The interval relative to the value, from 0 to 2, as a small picture."""
-    if not p.interval or p.value == 0:
-        return ""
-    low, high = (max(0.0, min(2.0, end / p.value)) for end in p.interval)
-    low, high = sorted((60 * low, 60 * high))
-    return ('<svg width="120" height="12"><line x1="60" x2="60" y1="0" y2="12" stroke="#999"/>'
-            f'<line x1="{low:.1f}" x2="{high:.1f}" y1="6" y2="6" stroke="#0072b2" stroke-width="4"/></svg>')
-
-
-def html_table(result):
-    rows = []
-    for p in _free(result):
-        cells = [p.name, f"{p.value:.4g}", _pushid.interval_text(p.value, *p.interval) if p.interval else "",
-                 p.unit, p.status or ""]
-        rows.append("<tr>" + "".join(f"<td>{html.escape(str(cell))}</td>" for cell in cells) +
-                    f"<td>{_bar(p)}</td></tr>")
-    head = "".join(f"<th>{name}</th>" for name in ("parameter", "value", "95 % interval", "unit", "status", ""))
-    return f"<table><tr>{head}</tr>{''.join(rows)}</table>"

@@ -4,7 +4,7 @@ import os
 import numpy as np
 
 from . import _pushid
-from ._options import text_of
+from ._options import in_python, text_of
 
 
 class Recordings(list):
@@ -18,7 +18,7 @@ class Recordings(list):
     @property
     def warnings(self):
         """Warnings about the files; equal ones once."""
-        return _pushid.in_python(self._told)
+        return [in_python(text) for text in _pushid.grouped(self._told)]
 
     def __repr__(self):
         people = {subject for recording in self for subject in recording.subjects}
@@ -56,7 +56,12 @@ def _positions(name, values, metres):
         raise _pushid.DataError(f"{name} holds {array.dtype}; it must hold numbers")
     if isinstance(array, np.ma.MaskedArray):  # masked: not seen
         array = array.astype(float).filled(np.nan)
-    return array * metres if metres != 1.0 else array.astype(float, copy=False)
+    return _by_person(array * metres if metres != 1.0 else array.astype(float, copy=False), 3)
+
+
+def _by_person(array, columns):
+    """(frames, columns) of one person as (frames, 1, columns)."""
+    return array[:, None] if array.ndim == 2 and array.shape[1] == columns else array
 
 
 def _numbers(values):
@@ -83,13 +88,13 @@ def Recording(hip, left_ankle, right_ankle, mass, fps, push=None, *, id="recordi
     None. id: of this recording alone among those of a fit. Raises DataError; warns where much of hip or ankles is
     missing, and where the ankles look exchanged.
     """
-    rows = _numbers(push)
+    rows, plates = _numbers(push), _numbers(plates)
     metres = _pushid.metres_per(length_unit)
     return _pushid.from_arrays(_positions("hip", hip, metres), _positions("left_ankle", left_ankle, metres),
                                _positions("right_ankle", right_ankle, metres), [float(m) for m in np.atleast_1d(mass)],
-                               float(fps), rows, str(id), _listed(subjects), pushed_person, push_start, push_height,
+                               float(fps), rows[:, None] if rows is not None and rows.ndim == 1 else rows, str(id), _listed(subjects), pushed_person, push_start, push_height,
                                push_height_m, push_kind, initial_velocity, setting, magnitude, condition,
-                               _numbers(ground), _numbers(plates))
+                               _numbers(ground), plates if plates is None else _by_person(plates, 5))
 
 
 def simulate(*, people=_DEFAULT["people"], recordings_per_person=_DEFAULT["recordings_per_person"],

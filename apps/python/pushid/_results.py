@@ -257,10 +257,6 @@ class Result:
         free = [self[name] for name in self.names if not self[name].fixed]
         return "<pushid result: " + ", ".join(f"{p.name} {p.value:.4g}" for p in free) + ">"
 
-    def _repr_html_(self):
-        from . import _plots
-        return _plots.html_table(self)
-
     def __reduce__(self):
         return _from_json, (self._model.json(),)
 
