@@ -261,8 +261,8 @@ Eigen::MatrixXf Below(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) {
   return both;
 }
 
-Eigen::MatrixXf Perceived(const DenseLayer& first, const DenseLayer& second,
-                          const Eigen::MatrixXf& values) {
+Eigen::MatrixXf Perceptron(const DenseLayer& first, const DenseLayer& second,
+                           const Eigen::MatrixXf& values) {
   Eigen::MatrixXf hidden = Applied(first, values);
   ApplySilu(&hidden);
   return Applied(second, hidden);
@@ -327,7 +327,7 @@ GroupDenoiser::GroupDenoiser(const DiffusionNetwork& network, GroupFeatures feat
     : network_(network),
       features_(std::move(features)),
       frames_((features_.frames + kDiffusionFrames - 1) / kDiffusionFrames * kDiffusionFrames) {
-  statics_ = Perceived(network.first_static, network.second_static, features_.statics);
+  statics_ = Perceptron(network.first_static, network.second_static, features_.statics);
   views_ = PoolingWeights(network.structure.pooling, features_.places);
 }
 
@@ -414,7 +414,7 @@ Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) 
     person.bottomRows(features_.given.rows()) = features_.given.middleCols(n * frames, frames);
   }
   const Eigen::VectorXf time =
-      Perceived(network_.first_time, network_.second_time, TimeFeatures(t));
+      Perceptron(network_.first_time, network_.second_time, TimeFeatures(t));
   Eigen::MatrixXf conditions = statics_.colwise() + time;
   ApplySilu(&conditions);
   std::vector<Values> levels;
