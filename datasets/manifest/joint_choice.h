@@ -85,7 +85,7 @@ bool IsFzjSkeleton(const BvhSkeleton& skeleton);
 JointMapping Overlaid(const JointMapping& first, const JointMapping& second);
 
 // The joints of the roles: hip, ankles and toes are those of the pendulum and its feet; for the
-// rest the words of the naming that knows most of the file's names (role_choice.cc has the table),
+// rest the words of the naming that knows most of the file's names (joint_choice.cc has the table),
 // and for the spine of a skeleton the joints between hip and shoulders. A skeleton of the FZJ push
 // recordings plays the roles as it stands. What `mapping` names wins; a name there that the file
 // has not is the only Error: roles that nothing plays stay empty. skeleton: null for points,

@@ -1,6 +1,7 @@
 // datasets: force sensors in any file, and lists of them.
 #include "datasets/sensors/sensor_choice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -230,6 +231,145 @@ Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
     sensors.push_back(sensor);
   }
   return sensors;
+}
+
+namespace {
+
+constexpr double kLeastRest = 0.1;    // s before the pull
+constexpr double kMargin = 0.02;      // s before it that do not count: it begins softly
+constexpr double kPullBegins = 0.05;  // of the peak
+constexpr double kNoiseOfPull = 5.0;  // standard deviations
+constexpr double kLoad = 0.3;         // of the peak
+constexpr double kSurely = 4.0;       // standard errors of the reading
+constexpr double kWorthwhile = 1e-3;  // of the peak
+constexpr int kFewestAtRest = 5, kSustained = 3;
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The median of the first samples, and the standard deviation about it of their largest component.
+Eigen::Vector3d ReadingOf(const SensorRecord& record, int samples, double* noise) {
+  Eigen::Vector3d reading;
+  *noise = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (int i = 0; i < samples; ++i) values.push_back(record.force[i][axis]);
+    reading[axis] = Median(values);
+    double squares = 0.0;
+    for (double value : values) squares += (value - reading[axis]) * (value - reading[axis]);
+    *noise = std::max(*noise, std::sqrt(squares / samples));
+  }
+  return reading;
+}
+
+// The last sample before which nobody pulls, judged from a first guess of the reading.
+int SamplesAtRest(const SensorRecord& record, const Eigen::Vector3d& guess, double noise,
+                  double peak) {
+  const double pull = std::max(kPullBegins * peak, kNoiseOfPull * noise);
+  int sustained = 0;
+  for (int i = 0; i < record.num_samples(); ++i) {
+    sustained = (record.force[i] - guess).norm() > pull ? sustained + 1 : 0;
+    if (sustained < kSustained) continue;
+    const double until = record.time_s[i - kSustained + 1] - kMargin;
+    return static_cast<int>(std::lower_bound(record.time_s.begin(), record.time_s.end(), until) -
+                            record.time_s.begin());
+  }
+  return 0;
+}
+
+}  // namespace
+
+void SubtractRest(SensorRecord* record) {
+  const std::vector<double>& time = record->time_s;
+  const auto first = static_cast<int>(
+      std::upper_bound(time.begin(), time.end(), time.front() + kLeastRest) - time.begin());
+  if (first < kFewestAtRest || first == record->num_samples()) return;
+  double noise = 0.0, peak = 0.0;
+  const Eigen::Vector3d guess = ReadingOf(*record, first, &noise);
+  for (const Eigen::Vector3d& force : record->force) peak = std::max(peak, (force - guess).norm());
+  const int samples = SamplesAtRest(*record, guess, noise, peak);
+  if (samples < kFewestAtRest || time[samples - 1] - time[0] < kLeastRest - kMargin) return;
+  const Eigen::Vector3d rest = ReadingOf(*record, samples, &noise);
+  if (!(rest.norm() < kLoad * peak)) return;
+  record->noise = noise;
+  if (rest.norm() < std::max(kSurely * noise / std::sqrt(samples), kWorthwhile * peak)) return;
+  record->subtracted = rest;
+  for (Eigen::Vector3d& force : record->force) force -= rest;
+}
+
+Result<TimedColumns> ReadTimedColumns(
+    const std::string& path,
+    const std::function<Result<std::vector<int>>(const std::vector<std::string>&)>& choose) {
+  const MotionFormat format = MotionFormatOfFile(path).value_or(MotionFormat::kCsv);
+  std::vector<int> columns;
+  int time = -1;
+  TableReadOptions options;
+  options.keep_lines = true;
+  options.choose = [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+    time = FindTimeColumn(names, "");
+    if (time < 0) return Error{"there is no column called time", path};
+    const Result<std::vector<int>> chosen = choose(names);
+    if (!chosen.ok()) return chosen.error();
+    columns = chosen.value();
+    std::vector<int> wanted;
+    for (int column : columns) {
+      if (column >= 0) wanted.push_back(column);
+    }
+    wanted.push_back(time);
+    return wanted;
+  };
+  const Result<NumericTable> table =
+      ReadNumericTable(path, RowOf(format).table.value_or(TableFormat::kCsv), options);
+  if (!table.ok()) return table.error();
+  TimedColumns read;
+  read.file = path;
+  read.lines = table.value().lines;
+  if (table.value().num_rows() < 3) {
+    return Error{
+        "it has " + std::to_string(table.value().num_rows()) + " rows; three or more are needed",
+        path};
+  }
+  const Result<double> step = EvenTimeStep(table.value(), time);
+  if (!step.ok()) return step.error();
+  read.rate_hz = 1.0 / step.value();
+  read.first_s = table.value().data.back()[0];
+  size_t next = 0;
+  for (int column : columns) {
+    read.values.push_back(column >= 0 ? table.value().data[next++] : std::vector<double>());
+  }
+  return read;
+}
+
+MaybeError CheckLasts(const RecordTimes& times, const std::string& file, int line) {
+  const double frame = 1.0 / times.fps, end_s = times.start_s + times.seconds;
+  const bool begins = times.first_s <= times.start_s + 0.5 * frame;
+  if (begins && times.last_s >= end_s - times.spare * frame) return {};
+  return Error{std::string(times.lasts) + " from " + Rounded(times.first_s, 4) + " to " +
+                   Rounded(times.last_s, 4) + " s, but the motion from " +
+                   Rounded(times.start_s, 4) + " to " + Rounded(end_s, 4) +
+                   " s of that clock; record it longer, cut the motion (end_frame), or give the "
+                   "right clock at frame 0 as \"start\"",
+               file, line};
+}
+
+Eigen::Vector3d ValueBetween(const std::vector<Eigen::Vector3d>& track, double at) {
+  const int last = static_cast<int>(track.size()) - 1;
+  if (at <= 0.0) return track[0];
+  if (at >= last) return track[last];
+  const int nodes = std::min(4, last + 1);
+  const int first = std::clamp(static_cast<int>(at) - 1, 0, last + 1 - nodes);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int i = 0; i < nodes; ++i) {
+    double weight = 1.0;
+    for (int k = 0; k < nodes; ++k) {
+      if (k != i) weight *= (at - first - k) / (i - k);
+    }
+    sum += weight * track[first + i];
+  }
+  return sum;
 }
 
 }  // namespace pushid

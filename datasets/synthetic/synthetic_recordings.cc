@@ -1,9 +1,13 @@
-// datasets: drawing people and pushes, and rolling them out.
+// datasets: synthetic people with known parameters: options, skeleton, ground and motion.
 #include "datasets/synthetic/synthetic_recordings.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 
+#include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "models/ground_reaction.h"
 
@@ -275,6 +279,248 @@ std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthet
   std::vector<Recording> recordings;
   for (const SyntheticRecording& made : synthetic) recordings.push_back(made.recording);
   return recordings;
+}
+
+namespace {
+
+constexpr double kStepStart = 0.3, kStepSeconds = 0.4;       // s
+constexpr double kSine = 0.5;                                // Hz
+constexpr double kSines[] = {0.15, 0.35, 0.65, 1.05, 1.55};  // Hz
+
+// From 0 to 1 with velocity and acceleration zero at both ends (minimum jerk).
+double Smooth(double u) {
+  const double v = std::clamp(u, 0.0, 1.0);
+  return v * v * v * (10.0 - 15.0 * v + 6.0 * v * v);
+}
+
+}  // namespace
+
+std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt,
+                                        const Eigen::Vector2d& along) {
+  std::vector<GroundPose> poses(frames, GroundPose::Zero());
+  for (int t = 0; t < frames; ++t) {
+    const double s = t * dt;
+    double shift = 0.0;
+    if (kind == GroundKind::kStep) shift = Smooth((s - kStepStart) / kStepSeconds);
+    if (kind == GroundKind::kSine) shift = Smooth(s) * std::sin(2.0 * M_PI * kSine * s);
+    if (kind == GroundKind::kSumOfSines) {
+      for (double f : kSines) shift += Smooth(s) * std::sin(2.0 * M_PI * f * s);
+    }
+    poses[t].head<2>() = size * shift * along;
+  }
+  return poses;
+}
+
+ParameterSet<double> PublishedTailParameters() {
+  ParameterSet<double> p{};
+  p[kMu] = 30.0;
+  p[kKpTheta] = 1800.0;
+  p[kKpPhi] = 1500.0;
+  p[kKdTheta] = p[kKdPhi] = 70.0;
+  p[kAx] = -10.0;
+  p[kTailGain] = 1.0;
+  p[kTailTorque] = 0.4;
+  p[kTailTime] = 0.25;
+  return p;
+}
+
+ParameterSet<double> PublishedGroupParameters() {
+  ParameterSet<double> p = PublishedTailParameters();
+  p[kTailExponent] = 1.5;
+  p[kContactStiffness] = 2800.0;
+  p[kContactDistance] = 0.42;
+  p[kContactKappa] = 0.58;
+  p[kContactDamping] = 270.0;
+  return p;
+}
+
+ParameterSet<double> PublishedStanceParameters() {
+  ParameterSet<double> p{};
+  p[kKpTheta] = 900.0, p[kKpPhi] = 950.0;
+  p[kKdTheta] = 200.0, p[kKdPhi] = 320.0;
+  p[kTailGain] = 0.3, p[kTailTime] = 0.35, p[kTailBase] = 0.4;
+  p[kSupportFront] = 0.12, p[kSupportBack] = 0.08, p[kSupportSide] = 0.03;
+  p[kFootFront] = 0.2;
+  p[kStepGain] = 0.95, p[kStepOnset] = 0.5, p[kStepSwing] = 0.31;
+  return p;
+}
+
+MaybeError CheckSyntheticOptions(const SyntheticOptions& o) {
+  const auto range = [](const std::string& what, double low, double high, double min,
+                        double max) -> MaybeError {
+    if (low >= min && low <= high && high <= max) return {};  // false for NaN
+    const std::string within = Rounded(min) + " to " + Rounded(max);
+    if (!(low < high || low > high))
+      return Error{what + " is " + Rounded(low) + "; it must be " + within};
+    return Error{what + " from " + Rounded(low) + " to " + Rounded(high) +
+                 ": must be an ascending range within " + within};
+  };
+  const auto one = [&range](const char* what, double value, double min, double max) {
+    return range(what, value, value, min, max);
+  };
+  constexpr double kMany = 100000;
+  if (o.strengths.empty()) return Error{"no push strengths given: name at least one"};
+  for (const PushStrength& strength : o.strengths) {
+    // It becomes part of ids and file names.
+    const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
+    if (!std::all_of(strength.name.begin(), strength.name.end(), plain) || strength.name.empty()) {
+      return Error{"push strength '" + strength.name + "': use letters, digits, - and _"};
+    }
+    if (!(std::abs(strength.acceleration) <= 100.0)) {
+      return Error{"push strength '" + strength.name + "' of " +
+                   std::to_string(strength.acceleration) + " m/s^2: must be within +-100"};
+    }
+  }
+  if (o.ground == GroundKind::kFile && static_cast<int>(o.ground_poses.size()) < o.frames) {
+    return Error{"the ground's file has " + std::to_string(o.ground_poses.size()) + " poses for " +
+                 std::to_string(o.frames) + " frames; give one for each"};
+  }
+  if (o.push_start_frame > o.frames - 2) {
+    return Error{"push_start_frame " + std::to_string(o.push_start_frame) +
+                 " leaves no frame to push: must be at most frames - 2"};
+  }
+  for (const MaybeError& wrong : {one("subjects", o.subjects, 1, kMany),
+                                  one("recordings_per_subject", o.recordings_per_subject, 1, kMany),
+                                  one("frames", o.frames, 3, 10 * kMany),
+                                  one("fps", o.fps, 1, 10000),
+                                  range("mass_kg", o.min_mass_kg, o.max_mass_kg, 1, 400),
+                                  range("rod_m", o.min_rod_m, o.max_rod_m, 0.1, 3),
+                                  one("lean_sigma_rad", o.lean_sigma_rad, 0, 1),
+                                  range("push_s", o.min_push_s, o.max_push_s, 0, 1000),
+                                  one("push_start_frame", o.push_start_frame, 0, 10 * kMany),
+                                  one("direction_sigma_rad", o.direction_sigma_rad, 0, 10),
+                                  range("height", o.min_height, o.max_height, -1, 3),
+                                  one("recording_spread", o.recording_spread, 0, 2),
+                                  one("subject_spread", o.subject_spread, 0, 2),
+                                  one("people_in_row", o.people_in_row, 1, o.subjects),
+                                  range("spacing_m", o.min_spacing_m, o.max_spacing_m, 0.05, 100),
+                                  one("sideways_sigma_m", o.sideways_sigma_m, 0, 10),
+                                  one("ground_size_m", o.ground_size_m, -1, 1),
+                                  one("plate_noise_m", o.plate_noise_m, 0, 0.1),
+                                  one("plate_noise_n", o.plate_noise_n, 0, 1000),
+                                  one("joint_noise_m", o.joint_noise_m, 0, 0.1)}) {
+    if (wrong) return wrong;
+  }
+  return {};
+}
+
+namespace {
+
+// Everything is quoted as a fraction of the rod: pelvis centre to ankles, about 0.52 of a person's
+// height (Winter, Biomechanics and Motor Control of Human Movement, segment lengths).
+constexpr double kHalfStance = 0.10;   // hip joint to the side of the pelvis centre
+constexpr double kAnkleHeight = 0.08;  // above the ground
+constexpr double kBone = 0.502;        // thigh, shank: a standing knee is never quite straight
+
+struct JointShape {
+  const char* name;
+  int parent;
+  double x, y, z;  // offset from the parent, rods
+};
+
+constexpr std::array<JointShape, kSkeletonJoints> kShapes = {{
+    {"Hips", -1, 0, 0, 0},
+    {"Spine", 0, 0, 0, 0.11},
+    {"Spine1", 1, 0, 0, 0.11},
+    {"Spine2", 2, 0, 0, 0.11},
+    {"Neck", 3, 0, 0, 0.17},
+    {"Head", 4, 0.02, 0, 0.09},
+    {"RightClavicle", 3, 0, -0.03, 0.10},
+    {"RightShoulder", 6, 0, -0.16, -0.02},
+    {"RightElbow", 7, 0, 0, -0.34},
+    {"RightWrist", 8, 0, 0, -0.28},
+    {"LeftClavicle", 3, 0, 0.03, 0.10},
+    {"LeftShoulder", 10, 0, 0.16, -0.02},
+    {"LeftElbow", 11, 0, 0, -0.34},
+    {"LeftWrist", 12, 0, 0, -0.28},
+    {"RightHip", 0, 0, -kHalfStance, 0},
+    {"RightKnee", 14, 0, 0, -kBone},
+    {"RightAnkle", 15, 0, 0, -kBone},
+    {"RightToe", 16, 0.16, 0, -0.9 * kAnkleHeight},
+    {"LeftHip", 0, 0, kHalfStance, 0},
+    {"LeftKnee", 18, 0, 0, -kBone},
+    {"LeftAnkle", 19, 0, 0, -kBone},
+    {"LeftToe", 20, 0.16, 0, -0.9 * kAnkleHeight},
+}};
+
+// The order of rotations that each leg joint's pose is a product of, so that the channels are the
+// angles themselves: hip Rx(phi) Ry(theta - bend), knee Ry(2 bend), ankle Ry(..) Rx(-phi).
+std::vector<BvhChannel> LegChannels(bool is_thigh, bool with_position) {
+  std::vector<BvhChannel> channels;
+  if (with_position) {
+    channels = {BvhChannel::kXposition, BvhChannel::kYposition, BvhChannel::kZposition};
+  }
+  const BvhChannel x = BvhChannel::kXrotation, y = BvhChannel::kYrotation;
+  channels.push_back(is_thigh ? x : y);
+  channels.push_back(is_thigh ? y : x);
+  channels.push_back(BvhChannel::kZrotation);
+  return channels;
+}
+
+double Degrees(double radians) { return radians * 180.0 / M_PI; }
+
+Eigen::Matrix3d RotationXY(double about_x, double about_y) {
+  return (Eigen::AngleAxisd(about_x, Eigen::Vector3d::UnitX()) *
+          Eigen::AngleAxisd(about_y, Eigen::Vector3d::UnitY()))
+      .toRotationMatrix();
+}
+
+}  // namespace
+
+// A leg of two equal bones, each tilted by `bend` against the rod: 2 bone cos(bend) = rod.
+SyntheticSkeleton::SyntheticSkeleton(double rod_length)
+    : rod_(rod_length), bone_(kBone * rod_length), bend_(std::acos(0.5 / kBone)) {}
+
+double SyntheticSkeleton::cart_height() const { return kAnkleHeight * rod_; }
+
+Eigen::Vector3d SyntheticSkeleton::HalfStance() const { return {0.0, kHalfStance * rod_, 0.0}; }
+
+BvhSkeleton SyntheticSkeleton::Bvh(LengthUnit unit) const {
+  BvhSkeleton skeleton;
+  for (int j = 0; j < kSkeletonJoints; ++j) {
+    const JointShape& shape = kShapes[j];
+    BvhJoint joint;
+    joint.name = shape.name;
+    joint.parent = shape.parent;
+    const double scale = ConvertLength(rod_, LengthUnit::kMetre, unit);
+    joint.offset = scale * Eigen::Vector3d(shape.x, shape.y, shape.z);
+    const bool is_leg = j >= 14 && j != 17 && j != 21;
+    const bool is_ankle = j == kRightAnkleJoint || j == kLeftAnkleJoint;
+    joint.channels =
+        is_leg ? LegChannels(j == 14 || j == 18, is_ankle) : DefaultBvhChannels(j == kHipJoint);
+    const bool is_leaf = j + 1 == kSkeletonJoints || kShapes[j + 1].parent != j;
+    if (is_leaf) joint.end_sites = {scale * Eigen::Vector3d(0.03, 0.0, 0.0)};
+    skeleton.joints.push_back(joint);
+  }
+  return skeleton;
+}
+
+void SyntheticSkeleton::AppendFrame(const SkeletonPose& pose, LengthUnit unit,
+                                    std::vector<double>* values) const {
+  const auto append = [&](const Eigen::Vector3d& v) {
+    values->insert(values->end(), v.data(), v.data() + 3);
+  };
+  const auto position = [&](const Eigen::Vector3d& metres) {
+    for (double value : {metres.x(), metres.y(), metres.z()}) {
+      values->push_back(ConvertLength(value, LengthUnit::kMetre, unit));
+    }
+  };
+  const Eigen::Matrix3d thigh = RotationXY(pose.phi, pose.theta - bend_);
+  const Eigen::Matrix3d shank = RotationXY(pose.phi, pose.theta + bend_);
+  const Eigen::Vector3d bone(0.0, 0.0, -bone_);
+
+  position(pose.hip);
+  for (int j = kHipJoint; j < 14; ++j) append(Eigen::Vector3d::Zero());
+  for (const bool left : {false, true}) {
+    const Eigen::Vector3d hip_joint = pose.hip + (left ? 1.0 : -1.0) * HalfStance();
+    const Eigen::Vector3d knee = hip_joint + thigh * bone;
+    const Eigen::Vector3d& ankle = left ? pose.left_ankle : pose.right_ankle;
+    append({Degrees(pose.phi), Degrees(pose.theta - bend_), 0.0});
+    append({Degrees(2.0 * bend_), 0.0, 0.0});
+    position(shank.transpose() * (ankle - knee));
+    append({Degrees(-pose.theta - bend_), Degrees(-pose.phi), 0.0});
+    append(Eigen::Vector3d::Zero());  // toe
+  }
 }
 
 }  // namespace pushid

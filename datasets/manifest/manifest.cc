@@ -1,0 +1,624 @@
+// datasets: manifests read and written, and the recordings that a run takes of them.
+#include "datasets/manifest/manifest.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+
+#include "datasets/files/input_file.h"
+#include "datasets/files/json_fields.h"
+#include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
+#include "datasets/formats/units.h"
+#include "datasets/manifest/body_roles.h"
+#include "datasets/manifest/column_mapping.h"
+#include "datasets/manifest/laboratory_keys.h"
+#include "datasets/manifest/recording.h"
+
+namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kAnyFrame = 1 << 30;
+
+// Numbers and texts under keys that no program knows.
+PersonFacts FactsOf(const Json& object, const JsonFields& fields) {
+  PersonFacts facts;
+  if (!object.is_object()) return facts;
+  const std::vector<std::string>& asked = fields.asked();
+  for (const auto& [key, value] : object.items()) {
+    if (std::find(asked.begin(), asked.end(), key) != asked.end()) continue;
+    if (value.is_number()) facts.numbers[key] = value.get<double>();
+    if (value.is_string()) facts.texts[key] = value.get<std::string>();
+  }
+  return facts;
+}
+
+void ReadSubjects(const JsonDocument& document, JsonFields* fields, ManifestRecording* recording) {
+  if (!fields->Require("subjects", "a list of {\"id\", \"mass_kg\"}")) return;
+  int index = 0;
+  for (const Json& item : fields->List("subjects")) {
+    JsonFields subject(document, item, fields->Pointer("subjects/" + std::to_string(index)),
+                       fields->label() + ", subject " + std::to_string(index));
+    ManifestSubject read{subject.Text("id", "text that names the person"),
+                         subject.Number("mass_kg", "the person's mass in kg")};
+    if (!subject.failed() && !(read.mass_kg > 0.0 && read.mass_kg <= kHeaviestPerson)) {
+      subject.Fail("mass_kg", "is " + Rounded(read.mass_kg) +
+                                  "; a mass in kg is above 0 and at most " +
+                                  Rounded(kHeaviestPerson));
+    }
+    if (recording->plates_alone) {
+      read.rod_m = subject.Number("rod_m", "the distance between ankles and hips in m");
+      read.ankle_height_m =
+          subject.OptionalNumber("ankle_height_m", "the ankles' height in m", kUsualAnkleHeight);
+    }
+    read.joints = ReadJointMapping(document, &subject);
+    read.known = FactsOf(item, subject);
+    fields->Add(subject);
+    recording->subjects.push_back(read);
+    ++index;
+  }
+  if (index == 0) fields->Fail("subjects", "is empty; name at least one person");
+}
+
+void ReadMotionNames(JsonFields* fields, ManifestRecording* recording) {
+  if (recording->plates_alone) return;
+  std::string key;
+  for (const MotionFormatRow& row : kMotionFormats) {
+    if (!fields->Has(row.name)) continue;
+    if (!key.empty()) {
+      fields->Fail(row.name, "is given together with " + key + "; the motion is in one of them");
+    }
+    key = row.name;
+    recording->motion_format = row.value;
+  }
+  if (key.empty()) {
+    fields->Require(kMotionFormats[0].name,
+                    "a list of motion files, one per subject, under the "
+                    "key of their format: " +
+                        MotionKeys());
+    return;
+  }
+  std::vector<std::string>& files = recording->motion;
+  for (const Json& item : fields->List(key.c_str())) {
+    if (!item.is_string() || item.get<std::string>().empty()) {
+      fields->Fail(key + "/" + std::to_string(files.size()),
+                   "must be a file name, not " + Shown(item));
+      return;
+    }
+    files.push_back(item.get<std::string>());
+  }
+  if (!fields->failed() && files.size() != recording->subjects.size()) {
+    fields->Fail(key, "lists " + std::to_string(files.size()) + " files for " +
+                          std::to_string(recording->subjects.size()) +
+                          " subjects; there must be one per subject, in the same order");
+  }
+}
+
+void ReadPushes(const JsonDocument& document, JsonFields* fields, ManifestRecording* recording) {
+  const int people = static_cast<int>(recording->subjects.size());
+  for (const Json& item : fields->List("pushes")) {
+    const std::string index = std::to_string(recording->pushes.size());
+    JsonFields push(document, item, fields->Pointer("pushes/" + index),
+                    fields->label() + ", push " + index);
+    ManifestPush read{push.Whole("person", "the index of a subject, from 0", 0, people - 1),
+                      push.Text("csv", "the name of a push CSV file")};
+    if (!push.failed() && read.csv.empty()) push.Fail("csv", "is empty");
+    read.start_frame =
+        push.OptionalWhole("start_frame", "the frame the push starts at, from 0", 0, kAnyFrame, 0);
+    if (!push.failed() && read.csv == recording->push_csv && read.start_frame == 0 &&
+        read.person == recording->pushed_person) {
+      push.Fail("csv", "is also given as push_csv; the push would count twice");
+    }
+    fields->Add(push);
+    recording->pushes.push_back(read);
+  }
+}
+
+// A label of published recordings, which is like the key of a format.
+constexpr char kSplitLabel[] = "split";
+
+// A text under a key that no program knows is a label as well.
+void AddLabels(const Json& object, const JsonFields& fields, RecordingLabels* labels) {
+  if (!object.is_object()) return;
+  const std::vector<std::string>& known = fields.asked();
+  for (const auto& [key, value] : object.items()) {
+    const bool used = std::find(known.begin(), known.end(), key) != known.end();
+    if (!used && value.is_string()) labels->Set(key, value.get<std::string>());
+  }
+}
+
+// of: the object's. stated: the errors that the manifest states for all.
+ManifestRecording ReadRecording(const JsonDocument& document, const Json& object,
+                                const StatedErrors& stated, JsonFields* of) {
+  JsonFields& fields = *of;
+  ManifestRecording recording;
+  recording.id = fields.Text("id", "text that names the recording");
+  if (!fields.failed() && recording.id.empty()) fields.Fail("id", "is empty");
+  if (!fields.failed()) fields.set_label("recording " + Quoted(recording.id));
+  if (!fields.failed() && recording.id.find(',') != std::string::npos) {
+    fields.Fail("id", "must have no comma: commas separate ids in lists");
+  }
+
+  recording.labels.Set(kSettingLabel, fields.Text(kSettingLabel, "text, for instance single"));
+  recording.labels.Set(kMagnitudeLabel, fields.OptionalText(kMagnitudeLabel, ""));
+  recording.labels.Set(
+      kConditionLabel,
+      fields.OptionalText(kConditionLabel, fields.OptionalText(kOldConditionKey, "")));
+  if (fields.Has("fps")) {
+    recording.fps = fields.Number("fps", "the frames per second");
+    const std::string problem = FrameRateProblem(recording.fps);
+    if (!problem.empty()) fields.Fail("fps", problem);
+  }
+  recording.plates_alone = ReadPlatesAlone(&fields);
+  ReadSubjects(document, &fields, &recording);
+  const int people = static_cast<int>(recording.subjects.size());
+  recording.pushed_person =
+      fields.Whole("pushed_person",
+                   "the index of the pushed subject, " +
+                       (people > 1 ? "0 to " + std::to_string(people - 1) : std::string("0")),
+                   0, people - 1);
+  ReadMotionNames(&fields, &recording);
+  recording.mapping = fields.OptionalText("mapping", "");
+  recording.push_csv = fields.OptionalText("push_csv", "");
+  recording.push_kind = fields.Choice("push_kind", PushKind::kExternal);
+  recording.joints = ReadJointMapping(document, &fields);
+  recording.up = fields.OptionalText("up", recording.up);
+  recording.forward = fields.OptionalText("forward", recording.forward);
+  const Result<Eigen::Matrix3d> axes = AxesRotation(recording.up, recording.forward);
+  if (!axes.ok())
+    fields.Fail(document.ErrorAt(fields.Pointer(fields.Has("up") ? "up" : "forward"),
+                                 fields.label() + ": " + axes.error().message));
+  recording.length_unit = ReadLengthUnit(&fields, "length_unit");
+  recording.length_scale = ReadLengthScale(&fields);
+  ReadPushes(document, &fields, &recording);
+  recording.initial_velocity = fields.Choice("initial_velocity", InitialVelocity::kZero);
+  recording.ground = ReadGroundKey(document, &fields);
+  recording.plates = ReadPlatesKey(document, &fields, people);
+  CheckPlatesAlone(recording, &fields);
+  recording.stated_errors = ReadStatedErrors(document, &fields, stated);
+  if (fields.Has("frames")) {
+    recording.frames = fields.Whole("frames", "the number of frames", 0, kAnyFrame);
+  }
+  recording.first_frame =
+      fields.OptionalWhole("first_frame", "the file's frame that becomes frame 0", 0, kAnyFrame, 0);
+  if (fields.Has("end_frame")) {
+    recording.end_frame =
+        fields.Whole("end_frame", "the frame after the last one used, after first_frame",
+                     recording.first_frame + 1, kAnyFrame);
+  }
+  AddLabels(object, fields, &recording.labels);
+  recording.json = object;
+  return recording;
+}
+
+}  // namespace
+
+// Those that the reader asks for, here of a recording that has none of them.
+const std::vector<std::string>& ManifestKeys() {
+  static const std::vector<std::string> keys = [] {
+    JsonDocument empty;
+    empty.content = Json::object();
+    JsonFields fields(empty, empty.content, "", "");
+    ReadRecording(empty, empty.content, {}, &fields);
+    std::vector<std::string> asked = fields.asked();
+    asked.push_back(kSplitLabel);
+    return asked;
+  }();
+  return keys;
+}
+
+std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
+  std::vector<std::string> found;
+  if (!entry.json->is_object()) return found;
+  for (const auto& [key, value] : entry.json->items()) {
+    if (MeantBy(key, ManifestKeys()).empty()) continue;
+    found.push_back("has the key " + Quoted(key) + ", which is not known and not used" +
+                    MeantText(key, ManifestKeys()));
+  }
+  return found;
+}
+
+Result<Manifest> ReadManifest(const std::string& path) {
+  Result<JsonDocument> read = ReadJsonDocument(path);
+  if (!read.ok()) return read.error();
+  const JsonDocument& document = read.value();
+  JsonFields top(document, document.content, "", "manifest");
+  Manifest manifest;
+  manifest.path = path;
+  if (top.Has("format") && !top.Has("recordings")) {
+    return document.ErrorAt("/format", "this is a " + top.OptionalText("format", "file") +
+                                           ", no manifest of recordings");
+  }
+  top.Require("recordings", "a list of recordings");
+  const Json& recordings = top.List("recordings");
+  if (!top.failed() && recordings.empty()) {
+    top.Fail("recordings", "is empty: the manifest lists no recordings");
+  }
+  if (top.Has("units") && top.At("units").is_object()) {
+    JsonFields units(document, top.At("units"), "/units", "manifest, units");
+    manifest.length_unit = ReadLengthUnit(&units, "bvh_length");
+    top.Fail(units.error());
+  }
+  if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
+  manifest.length_scale = ReadLengthScale(&top);
+  if (manifest.length_scale && manifest.length_unit && !top.failed()) {
+    top.Fail("length_scale", "is given together with units.bvh_length; give one of them");
+  }
+  manifest.stated_errors = ReadStatedErrors(document, &top, {});
+  if (top.error()) return *top.error();
+
+  const std::vector<int> lines = document.ElementLines("/recordings");
+  std::unordered_map<std::string, int> line_of_id;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    JsonFields fields(document, recordings[i], "/recordings/" + std::to_string(i),
+                      "recording " + std::to_string(i));
+    ManifestRecording recording =
+        ReadRecording(document, recordings[i], manifest.stated_errors, &fields);
+    top.Add(fields);
+    if (top.is_wrong()) return *top.error();
+    recording.manifest = path;
+    recording.line = lines[i];
+    const auto [earlier, is_new] = line_of_id.emplace(recording.id, recording.line);
+    if (!is_new && !top.failed()) {
+      return document.ErrorAt("/recordings/" + std::to_string(i) + "/id",
+                              "recording " + Quoted(recording.id) +
+                                  ": this id was given before, in line " +
+                                  std::to_string(earlier->second) + "; ids must be unique");
+    }
+    manifest.recordings.push_back(std::move(recording));
+  }
+  if (top.failed()) return *top.error();
+  manifest.json = document.content;
+  manifest.json->erase("recordings");
+  return manifest;
+}
+
+namespace {
+
+// Sets an optional key: written when it says something or was there already and still may; removed
+// when it was emptied.
+template <typename T>
+void SetUnless(bool is_default, const char* key, const T& value, Json* object) {
+  if (!is_default) {
+    (*object)[key] = value;
+  } else {
+    object->erase(key);
+  }
+}
+
+// The same for keys whose default value may as well be spelled out.
+template <typename T>
+void SetOrKeep(bool is_default, const char* key, const T& value, Json* object) {
+  if (!is_default || object->contains(key)) (*object)[key] = value;
+}
+
+Json JointJson(const JointReference& joint) {
+  if (!joint.mean_of.empty()) {
+    Json list = Json::array();
+    for (const JointReference& one : joint.mean_of) list.push_back(JointJson(one));
+    return list;
+  }
+  return joint.name.empty() ? Json(joint.index) : Json(joint.name);
+}
+
+// What was under `key` when it is a list of `size` objects, so that their other keys stay;
+// otherwise a list of that many empty ones.
+Json ObjectsUnder(const Json& object, const char* key, std::size_t size) {
+  Json list = object.contains(key) ? object.at(key) : Json();
+  bool usable = list.is_array() && list.size() == size;
+  if (usable) {
+    for (const Json& item : list) usable = usable && item.is_object();
+  }
+  return usable ? list : Json(size, Json::object());
+}
+
+// The pendulum's first, as people write them.
+std::vector<int> WrittenRoles() {
+  std::vector<int> roles = {kBodyHip, kLeftAnkle, kRightAnkle};
+  for (int role = 0; role < kBodyJoints; ++role) {
+    if (std::find(roles.begin(), roles.end(), role) == roles.end()) roles.push_back(role);
+  }
+  return roles;
+}
+
+Json JointsJson(const JointMapping& joints, const Json& object) {
+  Json json = object.contains("joints") ? object.at("joints") : Json::object();
+  for (int role : WrittenRoles()) {
+    const std::optional<JointReference> joint = joints.Of(role);
+    SetUnless(!joint.has_value(), RoleName(role).c_str(), joint ? JointJson(*joint) : Json(),
+              &json);
+  }
+  return json;
+}
+
+Json RecordingJson(const ManifestRecording& recording) {
+  Json json = recording.json->is_object() ? *recording.json : Json::object();
+  json["id"] = recording.id;
+  const RecordingLabels& labels = recording.labels;
+  json[kSettingLabel] = labels.setting();
+  // Left out again where the file says it.
+  const bool whole_fps = recording.fps == std::floor(recording.fps) && recording.fps < 1e6;
+  SetUnless(recording.fps == 0.0, "fps",
+            whole_fps ? Json(static_cast<int>(recording.fps)) : Json(recording.fps), &json);
+  Json subjects = ObjectsUnder(json, "subjects", recording.subjects.size());
+  for (std::size_t i = 0; i < recording.subjects.size(); ++i) {
+    subjects[i]["id"] = recording.subjects[i].id;
+    subjects[i]["mass_kg"] = recording.subjects[i].mass_kg;
+    const Json joints = JointsJson(recording.subjects[i].joints, subjects[i]);
+    SetUnless(joints.empty(), "joints", joints, &subjects[i]);
+  }
+  json["subjects"] = subjects;
+  json["pushed_person"] = recording.pushed_person;
+  if (recording.plates_alone) {
+    json["motion"] = "none";
+  } else {
+    json[NameOf(recording.motion_format)] = recording.motion;
+  }
+  SetUnless(recording.mapping.empty(), "mapping", recording.mapping, &json);
+  SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
+  json["push_kind"] = NameOf(recording.push_kind);
+  SetUnless(labels.magnitude().empty(), kMagnitudeLabel, labels.magnitude(), &json);
+  // A file that has both keeps both; one that has the old key alone gets the new one.
+  if (!json.contains(kConditionLabel)) json.erase(kOldConditionKey);
+  SetOrKeep(labels.condition().empty(), kConditionLabel, labels.condition(), &json);
+  for (const std::string& key : labels.Keys()) json[key] = labels.Of(key);
+  const Json joints = JointsJson(recording.joints, json);
+  SetUnless(joints.empty(), "joints", joints, &json);
+  SetOrKeep(recording.up == "z", "up", recording.up, &json);
+  SetOrKeep(recording.forward == "x", "forward", recording.forward, &json);
+  SetUnless(!recording.length_unit, "length_unit",
+            recording.length_unit ? NameOf(*recording.length_unit) : "", &json);
+  SetUnless(!recording.length_scale, "length_scale", recording.length_scale.value_or(0.0), &json);
+  Json pushes = ObjectsUnder(json, "pushes", recording.pushes.size());
+  for (std::size_t i = 0; i < recording.pushes.size(); ++i) {
+    pushes[i]["person"] = recording.pushes[i].person;
+    pushes[i]["csv"] = recording.pushes[i].csv;
+    pushes[i]["start_frame"] = recording.pushes[i].start_frame;
+  }
+  SetOrKeep(recording.pushes.empty(), "pushes", pushes, &json);
+  SetOrKeep(recording.initial_velocity == InitialVelocity::kZero, "initial_velocity",
+            NameOf(recording.initial_velocity), &json);
+  SetUnless(!recording.frames, "frames", recording.frames.value_or(0), &json);
+  SetOrKeep(recording.first_frame == 0, "first_frame", recording.first_frame, &json);
+  SetUnless(!recording.end_frame, "end_frame", recording.end_frame.value_or(0), &json);
+  return json;
+}
+
+}  // namespace
+
+ManifestRecording EntryOf(const Recording& recording) {
+  ManifestRecording entry;
+  entry.id = recording.id;
+  entry.labels = recording.labels;
+  entry.fps = recording.fps;
+  entry.frames = recording.num_frames();
+  entry.pushed_person = recording.pushed_person;
+  entry.push_kind = recording.push_kind;
+  entry.initial_velocity = recording.initial_velocity;
+  return entry;
+}
+
+MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
+  Json json = Json::object();
+  if (manifest.path.empty()) json["schema"] = "pushid-manifest/1";  // what was read stays as it was
+  if (manifest.json->is_object()) json.update(*manifest.json);
+  if (manifest.length_unit) {
+    const std::string name = NameOf(*manifest.length_unit);
+    const bool in_units =
+        json.contains("units") && json["units"].is_object() && json["units"].contains("bvh_length");
+    if (in_units) json["units"]["bvh_length"] = name;
+    if (!in_units || json.contains("length_unit")) json["length_unit"] = name;
+  }
+  if (manifest.length_scale) json["length_scale"] = *manifest.length_scale;
+  Json recordings = Json::array();
+  for (const ManifestRecording& recording : manifest.recordings) {
+    bool finite = std::isfinite(recording.fps);
+    for (const ManifestSubject& subject : recording.subjects) {
+      finite = finite && std::isfinite(subject.mass_kg);
+    }
+    if (!finite) {
+      return Error{
+          "recording " + recording.id + " cannot be written: its fps or a mass is not finite", path,
+          0};
+    }
+    recordings.push_back(RecordingJson(recording));
+  }
+  json["recordings"] = recordings;
+  return WriteJson(path, json, 1);
+}
+
+std::string ResolvePath(const std::string& manifest_path, const std::string& file) {
+  // operator/ takes an absolute right-hand side as it is.
+  return (std::filesystem::path(manifest_path).parent_path() / file).string();
+}
+
+namespace {
+
+// "group_1 (9), row_1 (13), single (32)"
+std::string SettingsOf(const Manifest& manifest) {
+  std::map<std::string, int> counts;
+  for (const ManifestRecording& recording : manifest.recordings)
+    ++counts[recording.labels.setting()];
+  std::vector<std::string> texts;
+  for (const auto& [setting, count] : counts) {
+    texts.push_back(setting + " (" + std::to_string(count) + ")");
+  }
+  return ListOfNames(texts);
+}
+
+std::string SomeIdsOf(const Manifest& manifest) {
+  std::vector<std::string> ids;
+  for (const ManifestRecording& recording : manifest.recordings) ids.push_back(recording.id);
+  return ListOfNames(ids, 6, "recordings");
+}
+
+MaybeError LeaveOut(const Manifest& manifest, const std::vector<std::string>& ids,
+                    std::vector<int>* selected) {
+  for (const std::string& id : ids) {
+    const auto at = std::find_if(selected->begin(), selected->end(),
+                                 [&](int index) { return manifest.recordings[index].id == id; });
+    if (at == selected->end()) {
+      return Error{"leave_out: there is no recording " + Quoted(id) + " among the selected ones",
+                   manifest.path, 0};
+    }
+    selected->erase(at);
+  }
+  if (!selected->empty() || ids.empty()) return std::nullopt;
+  return Error{"leave_out leaves no recording", manifest.path, 0};
+}
+
+}  // namespace
+
+Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::string& setting,
+                                          const std::vector<std::string>& ids,
+                                          const std::vector<std::string>& leave_out) {
+  const std::size_t count = manifest.recordings.size();
+  std::vector<bool> in_setting(count, false);
+  for (std::size_t begin = 0; begin <= setting.size();) {
+    const std::size_t comma = std::min(setting.find(',', begin), setting.size());
+    const std::string_view name = Trimmed(std::string_view(setting).substr(begin, comma - begin));
+    begin = comma + 1;
+    bool found = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      const ManifestRecording& recording = manifest.recordings[i];
+      if (name != recording.labels.setting() && name != "all" &&
+          !(name == "groups" && recording.subjects.size() > 1)) {
+        continue;
+      }
+      found = in_setting[i] = true;
+    }
+    if (!found) {
+      return Error{"--setting=" + setting + ": " +
+                       (name == "groups" ? "no recording has more than one person"
+                                         : "no recording has the setting " + Quoted(name)) +
+                       "; there are " + SettingsOf(manifest) + ", besides all and groups",
+                   manifest.path, 0};
+    }
+  }
+
+  const std::unordered_set<std::string> wanted(ids.begin(), ids.end());
+  std::unordered_set<std::string> seen;
+  std::vector<int> selected;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& id = manifest.recordings[i].id;
+    if (!wanted.empty() && wanted.count(id) == 0) continue;
+    seen.insert(id);
+    if (in_setting[i]) {
+      selected.push_back(static_cast<int>(i));
+    } else if (!wanted.empty()) {
+      return Error{"recording " + Quoted(id) + " has the setting " +
+                       Quoted(manifest.recordings[i].labels.setting()) +
+                       ", which --setting=" + setting + " leaves out",
+                   manifest.recordings[i].manifest, manifest.recordings[i].line};
+    }
+  }
+  for (const std::string& id : ids) {
+    if (seen.count(id) == 0) {
+      return Error{"there is no recording " + Quoted(id) + "; it has " + SomeIdsOf(manifest),
+                   manifest.path, 0};
+    }
+  }
+  if (MaybeError error = LeaveOut(manifest, leave_out, &selected)) return *error;
+  return selected;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where something was first said.
+struct Said {
+  std::string path;
+  int line = 0;
+  double mass_kg = 0.0;
+  std::string Where() const { return path + ":" + std::to_string(line); }
+};
+
+class Merger {
+ public:
+  MaybeError Add(Manifest manifest) {
+    merged_.path += (merged_.path.empty() ? "" : ",") + manifest.path;
+    (*merged_.json)["manifests"].push_back(std::move(*manifest.json));
+    for (ManifestRecording& entry : manifest.recordings) {
+      if (MaybeError error = Check(manifest.path, entry)) return error;
+      if (!entry.length_unit && !entry.length_scale) {
+        entry.length_unit = manifest.length_unit;
+        entry.length_scale = manifest.length_scale;
+      }
+      merged_.recordings.push_back(std::move(entry));
+    }
+    return std::nullopt;
+  }
+
+  Manifest Take() { return std::move(merged_); }
+
+ private:
+  MaybeError Check(const std::string& path, const ManifestRecording& entry) {
+    const auto [id, new_id] = ids_.emplace(entry.id, Said{path, entry.line});
+    if (!new_id) {
+      return Error{"recording " + Quoted(entry.id) + ": this id is in " + id->second.Where() +
+                       " too; give one of them another, or leave one manifest out",
+                   path, entry.line};
+    }
+    for (const ManifestSubject& subject : entry.subjects) {
+      const auto [said, is_new] =
+          subjects_.emplace(subject.id, Said{path, entry.line, subject.mass_kg});
+      // Within a manifest people may gain weight; two studies' "S01" are hardly one person.
+      if (is_new || said->second.path == path || said->second.mass_kg == subject.mass_kg) continue;
+      return Error{"recording " + Quoted(entry.id) + ": " + Quoted(subject.id) + " weighs " +
+                       Rounded(subject.mass_kg) + " kg here and " + Rounded(said->second.mass_kg) +
+                       " kg in " + said->second.Where() + "; other people need other ids",
+                   path, entry.line};
+    }
+    return std::nullopt;
+  }
+
+  Manifest merged_;
+  std::map<std::string, Said> ids_, subjects_;
+};
+
+}  // namespace
+
+std::vector<std::string> ManifestPaths(const std::string& list) {
+  std::error_code ignored;
+  if (list.find(',') == std::string::npos || fs::exists(list, ignored)) return {list};
+  std::vector<std::string> paths;
+  for (const std::string& path : SplitList(list)) {
+    if (!path.empty()) paths.push_back(path);
+  }
+  return paths;
+}
+
+Result<Manifest> ReadManifests(const std::string& list) {
+  const std::vector<std::string> paths = ManifestPaths(list);
+  if (paths.size() == 1) return ReadManifest(paths[0]);
+  Merger merger;
+  for (const std::string& path : paths) {
+    Result<Manifest> manifest = ReadManifest(path);
+    if (!manifest.ok()) return manifest;
+    if (MaybeError error = merger.Add(std::move(manifest.value()))) return *error;
+  }
+  return merger.Take();
+}
+
+Result<std::string> HashManifests(const std::string& list) {
+  const std::vector<std::string> paths = ManifestPaths(list);
+  if (paths.size() == 1) return HashFile(paths[0]);
+  ContentHash hashes;
+  for (const std::string& path : paths) {
+    const Result<std::string> hash = HashFile(path);
+    if (!hash.ok()) return hash;
+    hashes.Add(hash.value());
+  }
+  return hashes.Hex();
+}
+
+}  // namespace pushid
