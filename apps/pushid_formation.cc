@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -453,48 +452,35 @@ void CheckOutputFlags(int people, bool bodies) {
   if (!FLAGS_bvh_out.empty()) OrFail(CheckOutputFolder("bvh_out", FLAGS_bvh_out));
 }
 
-// A file that a flag names, or does not, and what writes it.
-struct NamedOutput {
-  std::string file;
-  std::function<MaybeError(const std::string& file)> write;
-};
-
-// bodies: none where pages show pendulums.
+// Up to the first that fails. bodies: none where pages show pendulums.
 void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
                   std::vector<BodyMotion> bodies, const std::string& title) {
+  const auto write = [](const std::string& file, auto writer) {
+    if (!file.empty()) OrFail(writer(file));
+  };
+  write(FLAGS_bvh_out, [&](auto& file) { return WriteFormationRecording(file, run); });
+  write(FLAGS_csv_out,
+        [&](auto& file) { return WriteTrajectoryCsv(file, run.recording, run.prediction); });
+  write(FLAGS_trajectories_out, [&](auto& file) { return WriteFormationTrajectories(file, run); });
+  write(FLAGS_forces_out, [&](auto& file) { return WriteForcesCsv(file, run); });
+  write(FLAGS_svg_out,
+        [&](auto& file) { return WriteFileAtomically(file, WaveSvg(run, title, onsets)); });
   BodyScene scene;
   scene.id = run.recording.id;
   scene.dt = run.recording.scene.dt;
   scene.subject_ids = run.recording.subject_ids;
   scene.bodies = std::move(bodies);
-  using File = const std::string&;
-  const NamedOutput outputs[] = {
-      {FLAGS_bvh_out, [&](File file) { return WriteFormationRecording(file, run); }},
-      {FLAGS_csv_out,
-       [&](File file) { return WriteTrajectoryCsv(file, run.recording, run.prediction); }},
-      {FLAGS_trajectories_out, [&](File file) { return WriteFormationTrajectories(file, run); }},
-      {FLAGS_forces_out, [&](File file) { return WriteForcesCsv(file, run); }},
-      {FLAGS_svg_out,
-       [&](File file) { return WriteFileAtomically(file, WaveSvg(run, title, onsets)); }},
-      {FLAGS_html_out,
-       [&](File file) {
-         Animation animation;
-         animation.title = title;
-         animation.dt = scene.dt;
-         AddPrediction(run.recording, run.prediction, scene.bodies, &animation);
-         AddPushes(run.recording, &animation);
-         animation.figures = FeetSvg(run);
-         return WriteFileAtomically(file, AnimationHtml({animation}));
-       }},
-      {FLAGS_joints_out, [&](File file) { return WriteJointsCsv(file, scene); }},
-      {FLAGS_bodies_out, [&](File file) {
-         OrFail(WriteBodyBvh(file, scene));
-         return MaybeError();
-       }}};
-  // Up to the first that fails.
-  for (const NamedOutput& output : outputs) {
-    if (!output.file.empty()) OrFail(output.write(output.file));
-  }
+  write(FLAGS_html_out, [&](auto& file) {
+    Animation animation;
+    animation.title = title;
+    animation.dt = scene.dt;
+    AddPrediction(run.recording, run.prediction, scene.bodies, &animation);
+    AddPushes(run.recording, &animation);
+    animation.figures = FeetSvg(run);
+    return WriteFileAtomically(file, AnimationHtml({animation}));
+  });
+  write(FLAGS_joints_out, [&](auto& file) { return WriteJointsCsv(file, scene); });
+  if (!FLAGS_bodies_out.empty()) OrFail(WriteBodyBvh(FLAGS_bodies_out, scene));
 }
 
 int Run() {
