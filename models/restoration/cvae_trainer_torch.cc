@@ -12,6 +12,11 @@ namespace pushid {
 
 namespace {
 
+// As CvaeSkateFrames, but a row per sample.
+struct SkateTensors {
+  torch::Tensor output, before, first, pendulum, first_pendulum;
+};
+
 constexpr double kTouch = 0.025;          // m: H
 constexpr double kCentimetresOf = 100.0;  // per m
 // Rows of a pendulum's frame (cvae_restoration.h).
@@ -22,8 +27,6 @@ torch::Tensor RowsOf(const Eigen::MatrixXd& columns) {
                           torch::kFloat64)
       .clone();
 }
-
-}  // namespace
 
 torch::Tensor FootSkateOf(const CvaeLayout& layout, const SkateTensors& frames) {
   const bool tip = layout.Origin() == CvaeCoordinates::kTip;
@@ -47,6 +50,8 @@ torch::Tensor FootSkateOf(const CvaeLayout& layout, const SkateTensors& frames) 
   return kCentimetresOf * sum / contacts.clamp_min(1.0);
 }
 
+}  // namespace
+
 double CvaeFootSkate(const CvaeLayout& layout, const CvaeSkateFrames& frames,
                      Eigen::MatrixXd* by_output) {
   SkateTensors rows = {RowsOf(frames.output), RowsOf(frames.before), RowsOf(frames.first),
@@ -62,11 +67,6 @@ double CvaeFootSkate(const CvaeLayout& layout, const CvaeSkateFrames& frames,
 
 // The foot-skate error on LibTorch's tensors. For *_torch.cc files alone.
 
-// As CvaeSkateFrames, but a row per sample.
-struct SkateTensors {
-  torch::Tensor output, before, first, pendulum, first_pendulum;
-};
-torch::Tensor FootSkateOf(const CvaeLayout& layout, const SkateTensors& frames);
 
 // The modules of LDP's chain in LibTorch, for cvae_trainer_torch.cc and its likes alone.
 

@@ -1,0 +1,129 @@
+"""How much of everything there is: lines and files of the product by feature, flags by program.
+
+    python3 tests/studies/inventory.py            the two tables
+    python3 tests/studies/inventory.py --check    fails where a feature has more than 5 % above its bound, a file has no
+                                                  feature, or files or flags are too many; ctest runs it
+
+The bound of a feature is what it had when it was last made smaller; the goal is what it should have. A change that takes
+lines away lowers the bound, and no bound rises. PUSHID_BIN: the programs that are asked for their flags.
+"""
+import os
+import re
+import subprocess
+import sys
+
+import studies
+
+ENDINGS = (".h", ".cc", ".py", ".sh", ".json", ".cmake", ".toml", "CMakeLists.txt")
+MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 84000, 620, 160, 45, 1.05
+# Feature, goal, bound, and the files of it: the first row that matches a file has it.
+FEATURES = [
+    ("contrasts", 660, 660, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
+    ("verdict", 1200, 1200, r"ident/(uncertainty/(model_verdict|assumptions|motion_check|rows_by_horizon|drifts)|report/verdict_text)"),
+    ("steps and stance", 1900, 2125, r"models/(stance|standing|support)|datasets/loading/foot_steps|ident/(parameters/pushed_feet|fit/step_probability|prediction/predicted_steps|validation/steps_report|report/page/standing)|residuals/(sensitivities/stance|lanes/stance)"),
+    ("laboratory", 2700, 2700, r"models/(ground|reaction_delay|turn)|datasets/(loading/(ground|plate|person_on_plates|segment_masses)|sensors/force_platform|manifest/laboratory_keys|inspection/inspect_laboratory)|residuals/(cost_functions/plate_residual|sensitivities/delay)|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
+    ("interaction", 450, 536, r"models/(contact|pair|interaction|ldp_interaction|neighbours)"),
+    ("learned terms", 1200, 1200, r"models/(learned_terms|self_network)|ident/parameters/(learned_terms|self_network)|residuals/takeover"),
+    ("large networks", 1500, 1500, r"ident/(large_networks|solver/network_training)|residuals/adjoint"),
+    ("derivatives, lanes, kernels", 2300, 4796, r"models/dual|residuals/(packed|lanes|sensitivities|autodiff_force_law|normal_equations|cost_functions/(lane_|scene_rollouts|condensed))"),
+    ("noise, likelihoods, paths", 1600, 1752, r"models/(process_noise|input_|pendulum_filter)|residuals/cost_functions/(likelihood|path)|ident/(solver/likelihood|forecasts/(most_probable|path))|apps/pushid_path"),
+    ("diffusion", 1500, 1662, r"models/generators/diffusion|apps/flags/.*diffusion"),
+    ("particles", 2400, 2400, r"models/(particles|generators/(particle|row_maps))|apps/flags/.*particle"),
+    ("peers", 0, 0, r"models/peers|ident/(peers|training/peer)|models/generators/simlpe|apps/flags/.*simlpe"),
+    ("generators' files, training, programs", 1600, 2263, r"models/generators|ident/(generators|training/generator)|apps/(generate|pushid_generate|pushid_train_generator|flags/(generate|train_generator|published))"),
+    ("group metrics", 1400, 1400, r"ident/(validation/(group_|hip_group)|forecasts/social|diagnostics/social)|models/restoration/(group_motion|state_classifier|social)"),
+    ("restoration", 3500, 4723, r"models/restoration|ident/(training|bodies/(restoration_files|tensor_folder))|apps/(pushid_train_restoration|flags/(.*restoration|postprocess|body))"),
+    ("bodies, animation", 2000, 2209, r"ident/bodies|apps/pushid_animate|ident/figures/moving"),
+    ("first frames", 1300, 2791, r"ident/(observed|forecasts|prediction/(online|futures)|report/page/forecast)|apps/flags/(futures|observed)"),
+    ("formations", 1600, 1754, r"ident/formations|models/crowd|apps/(formation|pushid_formation|flags/formation)"),
+    ("pushes", 2000, 2405, r"models/push|ident/(push|model/push_range)|datasets/(sensors|formats/(push_csv|force_csv))|apps/(pushid_push|flags/push)"),
+    ("design", 260, 354, r"ident/(validation/(experiment_design|study_plan|laboratory_plan|design)|report/design)"),
+    ("prediction, evaluation, cross-validation", 2700, 5015, r"ident/(prediction|validation)|apps/pushid_(predict|evaluate|crossvalidate)|apps/flags/scheme"),
+    ("loop and frequency", 800, 800, r"ident/(diagnostics/(frequency|loop|spectra|sway)|problem/linear_loop|report/loop|figures/bode)|models/modal"),
+    ("uncertainty", 3200, 3856, r"ident/(uncertainty|checks|fit/interval)|apps/(pushid_check|flags/check)"),
+    ("reports", 2800, 4100, r"ident/report|apps/pushid_report"),
+    ("charts", 1000, 1069, r"ident/figures"),
+    ("exchange", 350, 350, r"datasets/(exchange|formats/(trajector|motion_bids))|apps/pushid_export"),
+    ("formats", 3900, 4374, r"datasets/(formats|files/(numeric_table|input_file|number_text|name_pattern|names|atomic|error|npy|random))"),
+    ("JSON, schemas", 1000, 1749, r"datasets/files|apps/schemas|ident/(parameters/json|model/.*(json|fields))"),
+    ("manifest and loading", 3300, 4635, r"datasets/(manifest|loading)"),
+    ("inspection", 1700, 2377, r"datasets/inspection|apps/pushid_(inspect|manifest)"),
+    ("synthetic", 900, 2164, r"datasets/synthetic|apps/pushid_simulate"),
+    ("batches", 1500, 1869, r"apps/(batch|pushid_batch|workflow)"),
+    ("Python", 2600, 2875, r"apps/python"),
+    ("packaging, site", 500, 500, r"apps/(packaging|site|explore|quickstart|laboratory|mkdocs)|(models|residuals|datasets|ident|apps)/CMakeLists.txt"),
+    ("flags", 900, 1736, r"apps/(flags|support|pushid\.cc|completion)"),
+    ("fit, options, solver", 5500, 8052, r"ident/(fit|model|parameters|problem|solver|diagnostics)|apps/pushid_fit"),
+    ("core model", 3200, 4261, r"models|residuals"),
+]
+
+
+def sources():
+    for room in ("models", "residuals", "datasets", "ident", "apps"):
+        for folder, folders, names in os.walk(os.path.join(studies.SOURCE, room)):
+            folders.sort()
+            for name in sorted(names):
+                if name.endswith(ENDINGS):
+                    yield os.path.relpath(os.path.join(folder, name), studies.SOURCE)
+
+
+def lines(path):
+    with open(os.path.join(studies.SOURCE, path), encoding="utf-8") as file:
+        return sum(1 for _ in file)
+
+
+def by_feature():
+    """Feature -> files; files of no feature under ""."""
+    found = {name: [] for name, *_ in FEATURES} | {"": []}
+    for path in sources():
+        found[next((name for name, _, _, pattern in FEATURES if re.match(pattern, path)), "")].append(path)
+    return found
+
+
+def flags():
+    """Program -> its flags by --help, without those that every program has."""
+    programs = sorted(name for name in os.listdir(studies.BIN) if re.match(r"pushid-(?!benchmarks|.*study)", name))
+    own = {}
+    for name in programs:
+        text = subprocess.run([os.path.join(studies.BIN, name), "--help"], capture_output=True, text=True).stdout
+        own[name] = set(re.findall(r"^ *--(\w+)", text, re.M))
+    shared = set.intersection(*own.values()) if own else set()
+    return {name: found - shared for name, found in own.items()}, shared
+
+
+def tables(found):
+    rows, total = [], [0, 0]
+    for name, goal, bound, _ in FEATURES:
+        n = sum(lines(path) for path in found[name])
+        total = [total[0] + n, total[1] + len(found[name])]
+        rows.append([name, len(found[name]), n, bound, goal])
+    rows.append(["**all**", total[1], total[0], MOST_LINES, sum(goal for _, goal, *_ in FEATURES)])
+    return studies.table(["feature", "files", "lines", "bound", "goal"], rows), total
+
+
+def main():
+    found = by_feature()
+    text, (all_lines, all_files) = tables(found)
+    print(text + "\n")
+    wrong = [f"{path}: of no feature in {os.path.basename(__file__)}" for path in found[""]]
+    for name, _, bound, _ in FEATURES:
+        n = sum(lines(path) for path in found[name])
+        if n > SLACK * bound:
+            wrong.append(f"{name}: {n} lines, more than 5 % above {bound}")
+    counts = [("lines", all_lines, MOST_LINES), ("C++ files", sum(p.endswith((".h", ".cc")) for p in sum(found.values(), [])), MOST_FILES)]
+    if os.path.isdir(studies.BIN):
+        own, shared = flags()
+        print(studies.table(["program", "flags"], [[name, len(names)] for name, names in own.items()]))
+        print(f"\n{len(set.union(shared, *own.values()))} different flags, {len(shared)} of them of every program\n")
+        counts += [("flags", len(set.union(shared, *own.values())), MOST_FLAGS),
+                   ("flags of pushid-fit", len(own.get("pushid-fit", ())), MOST_FIT_FLAGS)]
+    for what, number, most in counts:
+        print(f"{what}: {number}, at most {most}")
+        if number > most:
+            wrong.append(f"{what}: {number}, at most {most}")
+    if "--check" in sys.argv[1:]:
+        sys.exit("\n".join(wrong) or None)
+
+
+if __name__ == "__main__":
+    main()
