@@ -20,11 +20,9 @@
 DEFINE_string(id, "", "the recording to show");
 DEFINE_string(out, "", "the page to write (HTML), for any browser");
 DEFINE_string(strip_out, "", "a strip of poses (SVG)");
-DEFINE_int32(poses, 7, "poses of the strip");
 DEFINE_string(explain, "",
               "describe the forces on this person in words and plot them beside the motion: a "
               "person's id, or auto (the bystander with the most events)");
-DEFINE_bool(recorded, true, "also show what was recorded");
 
 namespace {
 
@@ -35,7 +33,6 @@ void CheckFlags() {
   if (FLAGS_out.empty() && FLAGS_strip_out.empty()) {
     throw Error{"--out and --strip_out are missing: name a page (HTML) or a picture (SVG)"};
   }
-  if (FLAGS_poses < 2 || FLAGS_poses > 40) throw Error{"--poses must lie between 2 and 40"};
   OrFail(CheckOutputFiles({FLAGS_out, FLAGS_strip_out}));
 }
 
@@ -89,12 +86,10 @@ int Run() {
   animation.dt = pendulum.scene.dt;
   AddPushes(pendulum, &animation);
   if (recording.ok()) animation.title += ", " + std::string(restoration->kind());
-  if (FLAGS_recorded) {
-    std::vector<BodyMotion> seen;
-    if (recording.ok()) seen = recording.value().bodies;
-    ToLaboratory(pendulum.scene, &seen);
-    AddRecorded(InLaboratory(pendulum), seen, &animation);
-  }
+  std::vector<BodyMotion> seen;
+  if (recording.ok()) seen = recording.value().bodies;
+  ToLaboratory(pendulum.scene, &seen);
+  AddRecorded(InLaboratory(pendulum), seen, &animation);
   for (const WhatIf& one : what_ifs) {
     const Prediction prediction = Predict(one.model, pendulum);
     if (!prediction.status.ok) return LeftDomain(prediction.status, one.what);
@@ -112,9 +107,8 @@ int Run() {
                   one.what);
   }
   if (!FLAGS_out.empty()) Write(FLAGS_out, AnimationHtml({animation}));
-  if (!FLAGS_strip_out.empty()) {
-    Write(FLAGS_strip_out, PoseStrip(animation, FLAGS_poses).ToString());
-  }
+  constexpr int kPoses = 7;
+  if (!FLAGS_strip_out.empty()) Write(FLAGS_strip_out, PoseStrip(animation, kPoses).ToString());
   return kDone;
 }
 

@@ -25,16 +25,10 @@ DEFINE_bool(dry_run, false, "only print the commands of the unfinished jobs");
 DEFINE_int32(jobs, 1, "number of jobs run in parallel");
 DEFINE_string(shard, "", "i/n: only every n-th job, starting with the i-th (from 1)");
 DEFINE_string(job, "", "only the job with this id (or the start of its id)");
-DEFINE_bool(resume, true,
-            "skip finished jobs; false runs all jobs again and discards earlier results");
-DEFINE_bool(keep_going, true, "continue after a failed job");
 DEFINE_bool(summary, true,
             "write summary.csv, summary.json and summary.html; set to false for shards that run at "
             "the same time");
 DEFINE_bool(gather, false, "run nothing; only write the summary of existing results");
-DEFINE_double(time_limit, 0.0, "time limit of one job, s, instead of the plan's; 0: none");
-DEFINE_int32(memory_limit, 0,
-             "limit of one job's address space, MB, instead of the plan's; 0: none");
 
 namespace {
 
@@ -55,10 +49,6 @@ void CheckFlags() {
   Require("plan", FLAGS_plan, "name the TOML file of the batch");
   ReadShard();
   if (FLAGS_jobs < 1) throw Error{"--jobs must be at least 1"};
-  if (!(FLAGS_time_limit >= 0.0)) {
-    throw Error{"--time_limit must be a number of seconds, 0 for none"};
-  }
-  if (FLAGS_memory_limit < 0) throw Error{"--memory_limit must be a number of MB, 0 for none"};
 }
 
 // The last line on stderr of a command that fails, without the name of who says it; nothing when
@@ -140,7 +130,7 @@ int List(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
 
 int PrintCommands(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
   for (const BatchJob& job : jobs) {
-    if (FLAGS_resume && ReadResult(plan, job).done()) continue;
+    if (ReadResult(plan, job).done()) continue;
     const std::string folder = JobFolder(plan, job);
     std::string before = ShellText({"mkdir", "-p", folder}) + " && ";
     for (const auto& command : JobCommands(job, plan, folder, OwnFolder())) {
@@ -177,8 +167,6 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
             const std::vector<BatchJob>& jobs) {
   BatchRunOptions options;
   options.jobs = FLAGS_jobs;
-  options.resume = FLAGS_resume;
-  options.keep_going = FLAGS_keep_going;
   options.bin = OwnFolder();
   ProgressLine line;
   const BatchOutcome o = OrFail(RunBatch(plan, jobs, options, [&line](const BatchProgress& p) {
@@ -205,9 +193,7 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
 
 int Run() {
   CheckFlags();
-  BatchPlan plan = OrFail(ReadPlan(FLAGS_plan));
-  if (Given("time_limit")) plan.time_limit_s = FLAGS_time_limit;
-  if (Given("memory_limit")) plan.memory_limit_mb = FLAGS_memory_limit;
+  const BatchPlan plan = OrFail(ReadPlan(FLAGS_plan));
   const Result<Manifest> manifest = ReadManifests(plan.manifest);
   if (!manifest.ok()) return Fail(plan.ErrorAt("recordings", manifest.error()));
   const std::vector<BatchJob> all = ExpandPlan(plan, manifest.value());

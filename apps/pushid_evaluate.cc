@@ -76,7 +76,7 @@ int Run() {
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   json.update(ToJson(evaluation));
   if (const int draws = drawn.samples; draws > 0) {
-    const auto futures = OrFail(EvaluateFutures(model, pendulums, draws, drawn.seed));
+    const auto futures = OrFail(EvaluateFutures(model, pendulums, draws, kFuturesSeed));
     std::printf("\n%s", FuturesText(std::vector<FuturesSummary>{futures}).c_str());
     json["futures"] = ToJson(futures);
   }

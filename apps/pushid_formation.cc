@@ -65,7 +65,6 @@ DEFINE_string(push, "80",
 DEFINE_double(push_duration, pushid::HipPush{}.duration, "duration of each push (a half-sine), s");
 DEFINE_double(push_direction, 0.0, "direction of all pushes, degrees from +x to the left");
 DEFINE_double(mass, 80.0, "mass of each person, kg");
-DEFINE_double(rod_length, pushid::kReferenceRod, "rod length (ankles to hip) of each person, m");
 DEFINE_string(people_from, "",
               "manifest.json of recordings whose people stand in the formation, each once and in "
               "their order, then from the first again: their masses, and the postures (rod length, "
@@ -207,11 +206,9 @@ void CheckFormationNumbers() {
   CheckRange("push_duration", FLAGS_push_duration, 0.001, 60);
   CheckRange("push_direction", FLAGS_push_direction, -360, 360);
   CheckRange("mass", FLAGS_mass, 1, 400);
-  CheckRange("rod_length", FLAGS_rod_length, 0.2, 2);
   CheckRange("duration", FLAGS_duration, 0, 3600);
-  CheckExcludes({"mass", "rod_length"}, "people_from",
-                "--people_from gives the recorded people's mass and rod length; leave out "
-                "--{}");
+  CheckExcludes({"mass"}, "people_from",
+                "--people_from gives the recorded people's mass and rod length; leave out --{}");
 }
 
 // Their first poses; nobody without the flag.
@@ -291,7 +288,7 @@ FormationFlags FormationFlagsFromCommandLine() {
   FormationFlags flags;
   flags.title = RunTitle(people, pushes);
   flags.names = placed.names;
-  flags.scene = FormationScene(positions, {FLAGS_mass, FLAGS_rod_length, 0.0}, 1.0 / FLAGS_fps);
+  flags.scene = FormationScene(positions, {FLAGS_mass, kReferenceRod, 0.0}, 1.0 / FLAGS_fps);
   flags.first_poses = PlaceFlaggedPeople(&flags.scene);
   for (const HipPush& push : pushes) {
     for (int person : pushed) AddHipPush(person, push, &flags.scene);

@@ -25,12 +25,8 @@ DEFINE_string(masses, "", "masses of the subjects: a CSV file id,mass_kg");
 DEFINE_double(mass_kg, pushid::ManifestOptions{}.mass_kg,
               "mass of everybody not listed in --masses");
 DEFINE_double(fps, pushid::ManifestOptions{}.fps, "frames per second; 0: from each file");
-DEFINE_int32(pushed_person, pushid::ManifestOptions{}.pushed_person,
-             "index of the pushed person in recordings of several people, from 0");
 DEFINE_string(setting, pushid::ManifestOptions{}.setting,
               "setting, if the pattern does not give it");
-DEFINE_string(magnitude, pushid::ManifestOptions{}.magnitude,
-              "strength of the push, if the pattern does not give it");
 DEFINE_string(push_kind, pushid::NameOf(pushid::ManifestOptions{}.push_kind),
               kPushKindHelp.c_str());
 DEFINE_string(mapping, "", "mapping file for all recordings: joints, columns, unit, axes, rate");
@@ -57,7 +53,6 @@ void CheckManifestFlags() {
   if (FLAGS_fps != 0.0 && !(FLAGS_fps >= 1.0 && FLAGS_fps <= 1e4)) {
     throw Error{"--fps must be from 1 to 10000 frames per second"};
   }
-  if (FLAGS_pushed_person < 0) throw Error{"--pushed_person counts from 0"};
   if (!FLAGS_update) {
     OrFail(CheckNew("out", FLAGS_out, ", --update adds what is new and keeps its entries"));
   }
@@ -82,9 +77,7 @@ ManifestOptions OptionsFromFlags() {
   options.manifest_path = FLAGS_out;
   options.mass_kg = FLAGS_mass_kg;
   options.fps = FLAGS_fps;
-  options.pushed_person = FLAGS_pushed_person;
   options.setting = FLAGS_setting;
-  options.magnitude = FLAGS_magnitude;
   options.mapping = FLAGS_mapping;
   options.up = FLAGS_up;
   options.forward = FLAGS_forward;

@@ -29,9 +29,6 @@ DEFINE_bool(into_manifest, false, "write the push's entry into the manifest");
 
 DEFINE_int32(first_frame, -1, "inverse dynamics: first frame of the window; -1: detected");
 DEFINE_int32(end_frame, -1, "inverse dynamics: frame after the window; -1: detected");
-DEFINE_int32(smoothing, 9,
-             "inverse dynamics: Savitzky-Golay window in frames, odd, at least 5; 0: none (2 mm of "
-             "noise then cause 600 N)");
 
 DEFINE_string(initial_velocity, "auto",
               "inverse dynamics: velocity of the person at the start of the window: zero, "
@@ -41,36 +38,20 @@ DEFINE_string(sensor, "",
               "force sensor: CSV file time,force or time,fx,fy,fz (s, N); any CSV, STO, MOT or C3D "
               "with --sensor_column");
 DEFINE_string(sensors, "",
-              "several force sensors that act together: a JSON list, see datasets/README.md");
+              "several force sensors that act together, or one of which more is to be said: a JSON list, "
+              "see datasets/README.md");
 DEFINE_string(sensor_column, "",
               "force sensor: the column, the common part of three (ground_force_v), the analog "
               "channel, or platform:1");
-DEFINE_double(sensor_gain, pushid::SensorChoice{}.gain, "force sensor: N per unit of the column");
-DEFINE_string(
-    sensor_up, "",
-    "force sensor: its axis that points up, for vectors; empty: that of the motion when it "
-    "is the same file, otherwise z");
-DEFINE_double(sensor_zero, 0.0,
-              "force sensor: its offset (reading at rest), N, subtracted; default: what it reads "
-              "before the pull; 0: keep that");
-DEFINE_string(sensor_forward, "",
-              "force sensor: its axis that points forward, for vectors; empty: that of the motion, "
-              "or x");
 DEFINE_string(direction, "1,0,0", "force sensor: direction of the force on the person, x,y,z");
 DEFINE_double(height, pushid::SensorChoice{}.height_fraction,
               "force sensor: contact height as a fraction of the rod (1: the hip)");
-DEFINE_double(height_m, 0.0,
-              "force sensor: contact height in m above the recording's zero, instead of --height");
 DEFINE_double(sensor_start, 0.0,
               "force sensor: its clock at frame 0, s; default: that of the motion if both are in "
               "one file, otherwise 0");
-DEFINE_double(idle_force, pushid::SensorChoice{}.idle_force,
-              "force sensor: forces up to this value, N, do not count as a push");
 DEFINE_bool(estimate_offset, pushid::SensorSetup{}.estimate_offset,
             "force sensors: estimate the offset of their clocks from the motion's, of people "
             "whose feet move; offsets within their error are zero");
-DEFINE_double(max_offset_s, pushid::SensorSetup{}.max_offset_s,
-              "search range of --estimate_offset on either side, s");
 
 namespace {
 
@@ -85,23 +66,15 @@ struct PushFlags {
 
 bool SensorGiven() { return !FLAGS_sensor.empty() || !FLAGS_sensors.empty(); }
 
-const std::vector<std::string> kOfOneSensor = {
-    "sensor_zero", "sensor_column", "sensor_gain", "sensor_up",    "sensor_forward",
-    "direction",   "height",        "height_m",    "sensor_start", "idle_force"};
+const std::vector<std::string> kOfOneSensor = {"sensor_column", "direction", "height", "sensor_start"};
 
 std::vector<SensorChoice> SensorsFromFlags() {
   if (!FLAGS_sensors.empty()) return OrFail(ReadSensorList(FLAGS_sensors));
   SensorChoice sensor;
   sensor.file = FLAGS_sensor;
   sensor.column = FLAGS_sensor_column;
-  sensor.gain = FLAGS_sensor_gain;
-  if (Given("sensor_zero")) sensor.zero_n = FLAGS_sensor_zero;
-  sensor.up = FLAGS_sensor_up;
-  sensor.forward = FLAGS_sensor_forward;
   sensor.height_fraction = FLAGS_height;
-  if (Given("height_m")) sensor.height_m = FLAGS_height_m;
   if (Given("sensor_start")) sensor.start_s = FLAGS_sensor_start;
-  sensor.idle_force = FLAGS_idle_force;
   std::istringstream text(FLAGS_direction);
   char comma1 = 0, comma2 = 0, rest = 0;
   Eigen::Vector3d& d = sensor.direction;
@@ -115,16 +88,9 @@ std::vector<SensorChoice> SensorsFromFlags() {
 void CheckSensors() {
   CheckExcludes({"sensor"}, "sensors", "give --sensor or --sensors, not both");
   CheckNeeds(kOfOneSensor, {"sensor"}, ": name the file of its forces");
-  CheckNeeds({"estimate_offset", "max_offset_s"}, {"sensor", "sensors"});
-  if (Given("height") && Given("height_m")) throw Error{"give --height or --height_m, not both"};
+  CheckNeeds({"estimate_offset"}, {"sensor", "sensors"});
   if (!(FLAGS_height >= 0.0 && FLAGS_height <= 2.0)) {
-    throw Error{"--height must be a fraction of the rod between 0 and 2; --height_m takes metres"};
-  }
-  if (!(FLAGS_height_m >= 0.0 && FLAGS_height_m <= 3.0)) {
-    throw Error{"--height_m must be a height between 0 and 3 m"};
-  }
-  if (!(FLAGS_idle_force >= 0.0) || !std::isfinite(FLAGS_idle_force)) {
-    throw Error{"--idle_force must be a force of at least 0 N"};
+    throw Error{"--height must be a fraction of the rod between 0 and 2"};
   }
 }
 
@@ -133,7 +99,6 @@ SensorSetup SensorsFromCommandLine() {
   SensorSetup setup;
   if (SensorGiven()) setup.sensors = SensorsFromFlags();
   setup.estimate_offset = FLAGS_estimate_offset;
-  setup.max_offset_s = FLAGS_max_offset_s;
   return setup;
 }
 
@@ -150,7 +115,7 @@ std::string OutOf(const std::string& id) { return WithId(FLAGS_out, id); }
 
 // A flag of the other way would be taken and do nothing.
 void CheckInverseDynamics() {
-  for (const char* flag : {"first_frame", "end_frame", "smoothing", "initial_velocity"}) {
+  for (const char* flag : {"first_frame", "end_frame", "initial_velocity"}) {
     if (SensorGiven() && Given(flag)) {
       throw Error{std::string("--") + flag + " applies to inverse dynamics, not to --sensor"};
     }
@@ -240,10 +205,11 @@ MadePush FromSensor(const PushFlags& flags, const Recording& recorded,
 }
 
 MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& recording) {
-  const PushEstimationOptions options{FLAGS_person, FLAGS_smoothing, flags.initial_velocity};
-  if (FLAGS_smoothing > recording.num_frames()) {
-    throw Error{"--smoothing is longer than recording " + recording.id + ", which has " +
-                std::to_string(recording.num_frames()) + " frames"};
+  constexpr int kSmoothing = 9;  // frames; unsmoothed, 2 mm of noise cause 600 N
+  const PushEstimationOptions options{FLAGS_person, kSmoothing, flags.initial_velocity};
+  if (recording.num_frames() < kSmoothing) {
+    throw Error{"recording " + recording.id + " has fewer than " + std::to_string(kSmoothing) +
+                " frames, over which a push is smoothed"};
   }
   const PushWindow window =
       OrFail(PushWindowFrom({FLAGS_first_frame, FLAGS_end_frame}, recording, options));
@@ -256,9 +222,7 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
   }
   return MadePush{
       push.push, push.kind,
-      "by inverse dynamics, " +
-          (FLAGS_smoothing > 0 ? "smoothed over " + std::to_string(FLAGS_smoothing) + " frames"
-                               : std::string("unsmoothed")),
+      "by inverse dynamics, smoothed over " + std::to_string(kSmoothing) + " frames",
       push.start_speed};
 }
 

@@ -37,12 +37,7 @@ DEFINE_string(
     ground, "none",
     "motion of the ground along x: none, step (within 0.4 s), sine (0.5 Hz), sum_of_sines (five "
     "of 0.15 to 1.55 Hz), or a CSV file time,x,y,theta,phi (m, rad)");
-DEFINE_double(ground_size, pushid::SyntheticOptions{}.ground_size_m,
-              "displacement of a step, or of each sine, m; of sum_of_sines 0.0036 where it is not "
-              "given, 25 mm from peak to peak");
 DEFINE_bool(plates, false, "also write what force platforms under the feet measure");
-DEFINE_double(plate_noise, pushid::SyntheticOptions{}.plate_noise_m,
-              "with --plates, standard deviation of the centre of pressure, m");
 DEFINE_string(truth_stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
               "without --model: behaviour of the synthetic people's feet: slide, steps "
               "(hold, then step) or fixed (hold)");
@@ -53,11 +48,9 @@ DEFINE_string(
 DEFINE_string(truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
               "without --model: process noise of the synthetic people: none or diagonal "
               "(--set=sigma_x=...)");
-DEFINE_double(recording_spread, pushid::SyntheticOptions{}.recording_spread,
-              "variation of all parameters between recordings (standard deviation of the "
-              "logarithm; 0.1 is about 10 %)");
 DEFINE_double(subject_spread, pushid::SyntheticOptions{}.subject_spread,
-              "variation of all parameters between people, as in --recording_spread");
+              "variation of all parameters between people (standard deviation of the logarithm; 0.1 is "
+              "about 10 %)");
 DEFINE_int32(clips, 0,
              "write motion-capture clips of a walking stick figure instead, for "
              "pushid-train-generator: so many of each of four actions, and one more "
@@ -84,9 +77,6 @@ void CheckRecordingNumbers() {
   CheckRange("frames", FLAGS_frames, 3, 100000);
   CheckRange("fps", FLAGS_fps, 10, 10000);
   CheckRange("noise", FLAGS_noise, 0, 0.1);
-  CheckRange("ground_size", FLAGS_ground_size, 0, 1);
-  CheckRange("plate_noise", FLAGS_plate_noise, 0, 0.1);
-  CheckRange("recording_spread", FLAGS_recording_spread, 0, 2);
   CheckRange("subject_spread", FLAGS_subject_spread, 0, 2);
 }
 
@@ -97,9 +87,7 @@ void SetGround(SyntheticOptions* study) {
     study->ground = *kind;
     // As platforms sway in experiments: 20 to 30 mm from peak to peak, five sines together.
     constexpr double kSwayOfEach = 0.0036;
-    if (*kind == GroundKind::kSumOfSines && !Given("ground_size")) {
-      study->ground_size_m = kSwayOfEach;
-    }
+    if (*kind == GroundKind::kSumOfSines) study->ground_size_m = kSwayOfEach;
     if (study->pushes || study->ground != GroundKind::kNone) return;
     throw Error{"--push_kind=none leaves nothing that moves anybody; add --ground=step"};
   }
@@ -138,12 +126,9 @@ SyntheticOptions StudyFromCommandLine() {
   study.fps = FLAGS_fps;
   study.joint_noise_m = FLAGS_noise;
   study.push_kind = *kind;
-  study.recording_spread = FLAGS_recording_spread;
   study.subject_spread = FLAGS_subject_spread;
   study.seed = FLAGS_seed;
   study.plates = FLAGS_plates;
-  study.plate_noise_m = FLAGS_plate_noise;
-  study.ground_size_m = FLAGS_ground_size;
   SetGround(&study);
   return study;
 }
@@ -158,11 +143,9 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
       table.Add({spec.name, Rounded(value, 4), spec.unit});
   }
   std::printf("%s", table.ToString().c_str());
-  if (options.recording_spread > 0.0 || options.subject_spread > 0.0) {
-    std::printf(
-        "(the centre: every parameter varies about it by %s between recordings, %s "
-        "between people)\n",
-        Rounded(options.recording_spread, 3).c_str(), Rounded(options.subject_spread, 3).c_str());
+  if (options.subject_spread > 0.0) {
+    std::printf("(the centre: every parameter varies about it by %s between people)\n",
+                Rounded(options.subject_spread, 3).c_str());
   }
 }
 

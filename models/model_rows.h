@@ -18,7 +18,7 @@
 //
 // Law(id, name, first, last, mode_weight, note): a law of closed form (self_terms.h).
 //   first, last  its parameters, which are zero where it does not act and are freed where it does
-//   mode_weight  default of --mode_weight with it
+//   mode_weight  weight with it of the demand that free modes decay
 //   note         for the help
 // Network(id, name, gates, recurrent, cell, biased, Kind): a kind of network (self_network.h).
 //   gates      rows [W U C] per hidden unit

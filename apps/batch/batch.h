@@ -150,10 +150,8 @@ JobResult ReadResult(const BatchPlan& plan, const BatchJob& job);
 // lock of its folder, so that batches may run in one output folder at the same time.
 
 struct BatchRunOptions {
-  int jobs = 1;            // at a time
-  bool resume = true;      // skip those that are done; failed ones are tried again
-  bool keep_going = true;  // after a failure
-  std::string bin;         // where the programs are
+  int jobs = 1;     // at a time
+  std::string bin;  // where the programs are
 };
 
 struct BatchProgress {
@@ -165,7 +163,6 @@ struct BatchOutcome {
   int skipped = 0, done = 0, failed = 0;
   int elsewhere = 0;         // left to another process that was at work on them
   bool interrupted = false;  // Ctrl-C or a polite kill: started jobs were ended, and will be redone
-  bool stopped = false;      // by the first failure
   std::vector<std::string> unrecorded;  // why jobs failed whose folders could not take a status
 };
 

@@ -169,7 +169,7 @@ class Pool {
     outcome_.skipped = skipped;
     size_t next = 0;
     while (!error_) {
-      while (!outcome_.stopped && !signals_.interrupted() && !error_ && next < waiting.size() &&
+      while (!signals_.interrupted() && !error_ && next < waiting.size() &&
              static_cast<int>(running_.size()) < options_.jobs) {
         Begin(*waiting[next++]);
       }
@@ -197,7 +197,7 @@ class Pool {
       return;
     }
     // Another process may have done it since this one began.
-    if (options_.resume && ReadResult(plan_, job).done()) {
+    if (ReadResult(plan_, job).done()) {
       ++outcome_.skipped;
       return;
     }
@@ -291,7 +291,6 @@ class Pool {
   // Costs this job only, unless nothing can be written at all.
   void Fail(const Running& running, const std::string& reason) {
     ++outcome_.failed;
-    if (!options_.keep_going) outcome_.stopped = true;
     if (!WriteStatus(running, reason)) return;
     outcome_.unrecorded.push_back(reason);
     CheckOutput(reason);
@@ -356,7 +355,7 @@ Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>
   int skipped = 0;
   for (const BatchJob& job : jobs) {
     if (!seen.insert(job.id).second) continue;
-    if (options.resume && ReadResult(plan, job).done()) {
+    if (ReadResult(plan, job).done()) {
       ++skipped;
       continue;
     }

@@ -12,7 +12,6 @@ DEFINE_int32(
     samples, pushid::FuturesFlags{}.samples,
     "number of futures drawn from the model's process noise, or of --stance=steps from the "
     "spread of supports; 0: none");
-DEFINE_uint64(samples_seed, pushid::FuturesFlags{}.seed, "with --samples: seed of the draws");
 DEFINE_string(samples_out, "",
               "with --samples: write every future here (CSV: draw, frame, person, hip, angles)");
 
@@ -32,21 +31,21 @@ void CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model) {
 FuturesFlags FuturesFlagsFromCommandLine(bool writes) {
   CheckRange("samples", FLAGS_samples, 0, 100000);
   if (FLAGS_samples == 1) throw Error{"--samples is 1; one draw has no spread: give 2 or more"};
-  CheckNeeds({"samples_seed", "samples_out"}, {"samples"}, ", the number of futures");
+  CheckNeeds({"samples_out"}, {"samples"}, ", the number of futures");
   if (!writes && Given("samples_out")) {
     throw Error{
         "--samples_out is for pushid-predict and pushid-formation; this program only scores "
         "futures"};
   }
   OrFail(CheckOutputFiles({FLAGS_samples_out}));
-  return FuturesFlags{FLAGS_samples, FLAGS_samples_seed, FLAGS_samples_out};
+  return FuturesFlags{FLAGS_samples, FLAGS_samples_out};
 }
 
 int PrintFutures(const FuturesFlags& flags, const IdentifiedModel& model,
                  const PendulumRecording& recording, int num_frames) {
   if (flags.samples == 0) return kDone;
   const Futures futures =
-      OrFail(DrawFutures(model, recording, flags.samples, flags.seed, num_frames));
+      OrFail(DrawFutures(model, recording, flags.samples, kFuturesSeed, num_frames));
   if (futures.paths.empty()) {
     std::fprintf(stderr, "every drawn future leaves the model's domain\n");
     return kFitFailed;

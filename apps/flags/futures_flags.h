@@ -11,9 +11,10 @@
 
 namespace pushid {
 
+inline constexpr std::uint64_t kFuturesSeed = 1;  // of all draws
+
 struct FuturesFlags {
   int samples = 0;  // 0: none are drawn
-  std::uint64_t seed = 1;
   std::string out;  // all of them (CSV); empty: not written
 };
 // writes: whether the program has --samples_out.

@@ -38,7 +38,7 @@ MaybeError CheckGivenAct(const GivenOptions& given, const FitOptions& options) {
     return Error{
         "--network_prior acts on networks, but there is none; add one, as in --self_force=mlp:4"};
   }
-  for (const char* name : {"marker_noise", "loss", "settling_weight", "mode_weight"}) {
+  for (const char* name : {"marker_noise", "loss", "settling_weight"}) {
     if (options.likelihood == Likelihood::kTrajectory || Find(given, name) == nullptr) continue;
     return Error{std::string("--") + name + " acts on fits of whole rollouts; --likelihood=" +
                  NameOf(options.likelihood) + " fits single steps and does not use it"};

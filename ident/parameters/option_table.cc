@@ -440,10 +440,7 @@ std::vector<Row> WeightRows() {
           NumberRow("settling_weight", "/settling_weight", &O::settling_weight, kNotNegative,
                     "weight of the settling constraint (pushed people must settle in the settling "
                     "simulations); 0: off")),
-      Decided(NumberRow("mode_weight", "/mode_weight", &O::mode_weight, kNotNegative,
-                        "weight of the hinge penalty that makes a person's free modes at rest "
-                        "decay by 0.2 1/s (it "
-                        "ignores networks); 0: off; set with a linear self force")),
+      Stored(NumberRow("mode_weight", "/mode_weight", &O::mode_weight, kNotNegative, "")),
       Decided(PoolByRow()),
       PoolingSigmaRow(),
   };

@@ -114,11 +114,9 @@ void FreeByTerm(const ModelOptions& model, ParameterTable* table) {
 
 }  // namespace
 
-double DefaultModeWeight(SelfForceKind self_force) { return RowOf(self_force).mode_weight; }
-
 void SetSelfForce(SelfForceKind self_force, FitOptions* options) {
   options->self_force = self_force;
-  options->mode_weight = DefaultModeWeight(self_force);
+  options->mode_weight = RowOf(self_force).mode_weight;
 }
 
 namespace {

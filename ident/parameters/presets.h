@@ -76,7 +76,6 @@ std::string MemoryOf(const ModelOptions& model);
 // The self force together with the hinge on the free modes that goes with it: a linear self force
 // can feed a mode that the settling simulations do not excite.
 void SetSelfForce(SelfForceKind self_force, FitOptions* options);
-double DefaultModeWeight(SelfForceKind self_force);
 
 // What a laboratory's model frees: reaction delays, bodies of their own.
 

@@ -129,7 +129,7 @@ std::string VerdictRemedy(Verdict verdict, const ModelOptions& options) {
     case Verdict::kUnstableThoughSettled:
       // The hinge on the modes sees no network; one between people has no part in them.
       return LearnsAlone(options) ? "a smaller --network_prior stabilizes it"
-                                  : "--mode_weight makes the free modes decay";
+                                  : "--self_force=linear makes the free modes decay, or none does";
     case Verdict::kRodRunsAway:
       return "a smaller --network_prior or --rod=constant stabilizes it";
     case Verdict::kNegativeDrag:

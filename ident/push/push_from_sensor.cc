@@ -68,7 +68,7 @@ MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& 
     return Error{
         Rounded(lost) + " N s of the push lie outside recording " + recording.id + " (" +
             Rounded(inside.norm()) + " N s inside), whose frame 0 is at " + Rounded(zero) +
-            " s of the sensor's clock; check that time, and what it reads at rest (--sensor_zero)",
+            " s of the sensor's clock; check that time, and what it reads at rest (zero, in --sensors)",
         record.file};
   }
   if (!empty) return std::nullopt;
@@ -167,7 +167,7 @@ std::string CutShort(const SensorRecord& record) {
     if (!(force > kCutShort * peak)) continue;
     return record.file + ": the record " + (first ? "begins" : "ends") + " with " +
            Rounded(force, 3) + " N, with a maximum of " + Rounded(peak, 3) +
-           " N: part of the push is missing, or the sensor has an offset (--sensor_zero)";
+           " N: part of the push is missing, or the sensor has an offset (zero, in --sensors)";
   }
   return "";
 }
@@ -214,7 +214,7 @@ Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded,
     if (rest.norm() > 0.0) {
       const double size = record.value().is_vector ? rest.norm() : rest.x();
       read.how +=
-          "; " + Rounded(size, 3) + " N before the pull subtracted (--sensor_zero=0 keeps them)";
+          "; " + Rounded(size, 3) + " N before the pull subtracted (zero: 0, in --sensors, keeps them)";
     }
     read.choices.push_back(sensor);
     read.records.push_back(std::move(record.value()));
@@ -288,7 +288,7 @@ Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& re
     options.idle_force =
         sensor.idle_force > 0.0 ? sensor.idle_force : IdleForce(record, recording.scene.dt);
     if (!options.height_m && options.height_fraction == SensorChoice{}.height_fraction) {
-      result.how += "; contact at the hip's height (--height and --height_m change it)";
+      result.how += "; contact at the hip's height (--height changes it)";
     }
     const Result<Push> push = PushFromSensor(record, recording, options);
     if (!push.ok()) return push.error();
@@ -513,7 +513,7 @@ Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces
   if (best == -steps || best == steps) {
     return Error{"recording " + recording.id + ": force and motion do not fit together within " +
                  Rounded(max_offset_s) +
-                 " s; give the sensor's time at frame 0, or a larger --max_offset_s"};
+                 " s; give the sensor's time at frame 0"};
   }
   SensorOffset result;
   result.offset_s = best * max_offset_s / steps;

@@ -262,9 +262,8 @@ FitCommand Adviser::DecayingModes() const {
     const double prior = o.network_prior > 0.0 ? 0.5 * o.network_prior : FitOptions{}.network_prior;
     return Same().Set("network_prior", Rounded(prior, 6));
   }
-  return Same().Set(
-      "mode_weight",
-      Rounded(std::max(DefaultModeWeight(SelfForceKind::kLinear), 2.0 * o.mode_weight), 6));
+  // The fit of a linear one holds the modes; where that did not, its terms drive them.
+  return Same().Set("self_force", o.self_force == SelfForceKind::kLinear ? "none" : "linear");
 }
 
 void Adviser::Person() {

@@ -284,7 +284,7 @@ TEST_F(AnyRecordingTest, ASensorInTheFileOfTheMotion) {
   WriteText("other.json", json.dump(1));
   const AppRun run = Succeeded(RunApp(
       "pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(), "--sensor=" + file,
-                      "--sensor_column=rod", "--idle_force=5", "--out=" + Path("p.csv")}));
+                      "--sensor_column=rod", "--out=" + Path("p.csv")}));
   // Five frames long, from one frame to another: half of it is in the rows of each.
   EXPECT_TRUE(Contains(run.out, "6 rows from frame 15")) << run.out;
   EXPECT_TRUE(Contains(run.out, "its clock at frame 0 is 0.1667 s")) << run.out;
@@ -299,7 +299,7 @@ TEST_F(AnyRecordingTest, ASensorInTheFileOfTheMotion) {
   const AppRun beside =
       Succeeded(RunApp("pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(),
                                        "--overwrite", "--sensor=" + Path("force.csv"),
-                                       "--idle_force=5", "--out=" + Path("p.csv")}));
+                                       "--out=" + Path("p.csv")}));
   EXPECT_TRUE(Contains(beside.out, "6 rows from frame 15")) << beside.out;
   EXPECT_TRUE(Contains(beside.out, "by the motion's times, its clock at frame 0 is 0.1667 s"));
   EXPECT_TRUE(Contains(beside.out, "2.3 N before the pull subtracted")) << beside.out;

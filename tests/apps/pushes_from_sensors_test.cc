@@ -48,7 +48,12 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
     return RunApp("pushid-push", With(flags, common));
   };
   const std::string c3d_flag = "--sensor=" + Path("rod.c3d");
-  AppRun run = Succeeded(with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50"}));
+  const auto listed = [this](const std::string& file, const std::string& more = "") {
+    return "--sensors=" + WriteText("list.json", "[{\"file\": \"" + file +
+                                                     "\", \"column\": \"rod\", \"gain\": -50" +
+                                                     more + "}]");
+  };
+  AppRun run = Succeeded(with({listed("rod.c3d")}));
   double impulse = 0.0;
   for (const Eigen::Vector4d& row : push.force) impulse += row.x() / 60.0;
   char said[64];
@@ -65,15 +70,14 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   EXPECT_TRUE(Contains(run.out, "from 2 sensors together"));
 
   // Its clock a fifth of a second late: found from the motion.
-  run = with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50", "--sensor_start=-0.2",
-              "--estimate_offset"});
+  run = with({listed("rod.c3d", ", \"start\": -0.2"), "--estimate_offset"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const std::size_t at = run.out.find("clock at frame 0 moved by ");
   ASSERT_NE(at, std::string::npos) << run.out;
   EXPECT_NEAR(std::stod(run.out.substr(at + 26)), 0.2, 0.6 / 60.0) << run.out;
 
   // On clocks that agree nothing is moved.
-  run = with({c3d_flag, "--sensor_column=rod", "--sensor_gain=-50", "--estimate_offset"});
+  run = with({listed("rod.c3d"), "--estimate_offset"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(Contains(run.out, "the clocks agree")) << run.out;
   EXPECT_EQ(ReadText(Path("p.csv")), alone);
@@ -86,8 +90,7 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   samples.resize(20 * (push.start_frame + push.force.size() / 2));
   c3d.points[0].resize(samples.size() / 20);
   ASSERT_FALSE(WriteC3d(Path(recording.id + ".c3d"), c3d));
-  run = Succeeded(RunApp("pushid-push", {common[0], "--ids=" + recording.id, "--sensor_column=rod",
-                                         "--sensor_gain=-50", "--sensor=" + Path("{id}.c3d"),
+  run = Succeeded(RunApp("pushid-push", {common[0], "--ids=" + recording.id, listed("{id}.c3d"),
                                          "--out=" + Path("made/{id}.csv")}));
   EXPECT_TRUE(std::filesystem::exists(Path("made/" + recording.id + ".csv")));
   EXPECT_TRUE(Contains(run.err, "part of the push is missing"));

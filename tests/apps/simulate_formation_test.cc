@@ -229,7 +229,6 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--spacing=-1"}, {"--spacing is -1"}},
       {{"--formation=line", "--spacing=nan"}, {"--spacing is nan"}},
       {{"--formation=line", "--mass=0"}, {"--mass is 0"}},
-      {{"--formation=line", "--rod_length=95"}, {"--rod_length is 95"}},
       {{"--formation=line", "--duration=-1"}, {"--duration is -1"}},
       {{"--formation=line", "--duration=0.01"}, {"--duration", "two frames"}},
       {{"--formation=line", "--push_duration=0"}, {"--push_duration is 0"}},

@@ -119,7 +119,7 @@ name = "physics"
 flags = ["--self_force=none"]
 [[variant]]
 name = "linear"
-flags = ["--self_force=linear", "--mode_weight=10"]
+flags = ["--self_force=linear", "--settling_weight=10"]
 restoration = ["--kind=window", "--sees=pose"]
 [output]
 dir = "out"

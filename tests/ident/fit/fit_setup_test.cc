@@ -36,8 +36,6 @@ TEST(FitSetup, OptionsOverThePreset) {
   EXPECT_TRUE(o.table[kBx].free);
   EXPECT_FALSE(o.table[kBx].prior);
   EXPECT_EQ(o.table[kAx].prior->mean, -9.0);  // an edit comes after the preset's priors went
-  EXPECT_EQ(MakeFitOptions({{"self_force", "linear"}, {"mode_weight", "0"}}).value().mode_weight,
-            0.0);
 }
 
 TEST(FitSetup, PoolingFollowsTheTerms) {
