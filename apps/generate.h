@@ -30,9 +30,9 @@ struct GenerateFlags {
   std::string states, states_out;  // files of states of people; empty: none
   std::string physics;             // file of a model; empty: none
   int target_window = -1;          // whose end is the target of the path search; -1: none
-  std::string json_out, poses_out, strip_out, page_out;
+  std::string json_out, poses_out, svg_out, html_out;
 
-  bool Shows() const { return !poses_out.empty() || !strip_out.empty() || !page_out.empty(); }
+  bool Shows() const { return !poses_out.empty() || !svg_out.empty() || !html_out.empty(); }
 };
 
 // Poses of the strip.
@@ -49,10 +49,10 @@ std::optional<IdentifiedModel> LoadPhysics(const std::string& file);
 std::vector<BodyMotion> GenerateWith(const LoadedGenerator& loaded, const BodyRecording& recording,
                                      const std::optional<IdentifiedModel>& physics, int frames = 0);
 
-// The states of --states, or the built-in ones; writes --states_out.
+// The states of --states, or the built-in ones; writes --csv_out.
 SocialCues FlaggedCues(const GenerateFlags& flags, const std::vector<BodyRecording>& recordings);
 
-// What --poses_out, --strip_out and --page_out ask for: everybody recorded, forecast, and the
+// What --poses_out, --svg_out and --html_out ask for: everybody recorded, forecast, and the
 // pendulums of the physics beside them; the page shows the figures too. Returns the files' names.
 std::vector<std::string> ShowGroup(const LoadedGenerator& loaded, const GenerateFlags& flags,
                                    const BodyRecording& recording,

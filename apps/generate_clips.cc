@@ -109,7 +109,7 @@ ForecastScene SceneOfWindow(const LoadedGenerator& loaded, const GenerateFlags& 
   return scene;
 }
 
-// What --poses_out, --strip_out and --page_out ask for; their names go to stdout.
+// What --poses_out, --svg_out and --html_out ask for; their names go to stdout.
 void ShowForecast(const ForecastScene& scene, const GenerateFlags& flags) {
   if (!flags.poses_out.empty()) {
     const auto files = OrFail(WritePoses(flags.poses_out, scene));
@@ -119,8 +119,8 @@ void ShowForecast(const ForecastScene& scene, const GenerateFlags& flags) {
     OrFail(WriteFileAtomically(file, content));
     std::printf("%s\n", file.c_str());
   };
-  if (!flags.strip_out.empty()) write(flags.strip_out, ForecastStripSvg(scene, kStripPoses));
-  if (!flags.page_out.empty()) write(flags.page_out, ForecastPageHtml(scene));
+  if (!flags.svg_out.empty()) write(flags.svg_out, ForecastStripSvg(scene, kStripPoses));
+  if (!flags.html_out.empty()) write(flags.html_out, ForecastPageHtml(scene));
 }
 
 }  // namespace

@@ -88,13 +88,13 @@ std::vector<std::string> ShowGroup(const LoadedGenerator& loaded, const Generate
   if (!flags.poses_out.empty()) {
     files = WriteGroup(flags.poses_out, SceneOf(recording, bodies));
   }
-  if (!flags.strip_out.empty()) {
-    OrFail(WriteFileAtomically(flags.strip_out, PoseStrip(animation, kStripPoses).ToString()));
-    files.push_back(flags.strip_out);
+  if (!flags.svg_out.empty()) {
+    OrFail(WriteFileAtomically(flags.svg_out, PoseStrip(animation, kStripPoses).ToString()));
+    files.push_back(flags.svg_out);
   }
-  if (!flags.page_out.empty()) {
-    OrFail(WriteFileAtomically(flags.page_out, AnimationHtml({animation})));
-    files.push_back(flags.page_out);
+  if (!flags.html_out.empty()) {
+    OrFail(WriteFileAtomically(flags.html_out, AnimationHtml({animation})));
+    files.push_back(flags.html_out);
   }
   return files;
 }

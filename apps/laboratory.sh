@@ -10,7 +10,7 @@ ids=$(cd "$out/force" && printf '%s,' *.csv | sed 's/\.csv,/,/g; s/,$//')
 
 say "Pushes from the load cell, whose reading at rest is subtracted"
 "$bin/pushid-push" --recordings="$manifest" --ids="$ids" --sensor="$out/force/{id}.csv" --out="$out/push/{id}.csv" \
-  --into_manifest --overwrite | tail -n 1
+  --update --overwrite | tail -n 1
 
 say "Who stands: feet that hold and a reaction delay, from markers and platforms"
 "$bin/pushid-fit" --recordings="$manifest" --setting=standing --stance=fixed --delay=one --model_out="$out/standing.json" \

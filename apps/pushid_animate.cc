@@ -19,7 +19,7 @@
 
 DEFINE_string(id, "", "the recording to show");
 DEFINE_string(out, "", "the page to write (HTML), for any browser");
-DEFINE_string(strip_out, "", "a strip of poses (SVG)");
+DEFINE_string(svg_out, "", "a strip of poses (SVG)");
 DEFINE_string(explain, "",
               "describe the forces on this person in words and plot them beside the motion: a "
               "person's id, or auto (the bystander with the most events)");
@@ -30,10 +30,10 @@ using namespace pushid;
 
 void CheckFlags() {
   Require("id", FLAGS_id, "name a recording of the manifest");
-  if (FLAGS_out.empty() && FLAGS_strip_out.empty()) {
-    throw Error{"--out and --strip_out are missing: name a page (HTML) or a picture (SVG)"};
+  if (FLAGS_out.empty() && FLAGS_svg_out.empty()) {
+    throw Error{"--out and --svg_out are missing: name a page (HTML) or a picture (SVG)"};
   }
-  OrFail(CheckOutputFiles({FLAGS_out, FLAGS_strip_out}));
+  OrFail(CheckOutputFiles({FLAGS_out, FLAGS_svg_out}));
 }
 
 void Write(const std::string& file, const std::string& content) {
@@ -108,7 +108,7 @@ int Run() {
   }
   if (!FLAGS_out.empty()) Write(FLAGS_out, AnimationHtml({animation}));
   constexpr int kPoses = 7;
-  if (!FLAGS_strip_out.empty()) Write(FLAGS_strip_out, PoseStrip(animation, kPoses).ToString());
+  if (!FLAGS_svg_out.empty()) Write(FLAGS_svg_out, PoseStrip(animation, kPoses).ToString());
   return kDone;
 }
 
@@ -120,7 +120,7 @@ int main(int argc, char** argv) {
       argc, argv,
       "pushid-animate shows recorded and predicted people, pendulums and net forces.\n\n"
       "  pushid-animate --model=model.json --restoration=restoration --recordings=M/manifest.json "
-      "--id=NAME --out=motion.html --strip_out=poses.svg\n\n"
+      "--id=NAME --out=motion.html --svg_out=poses.svg\n\n"
       "Several what-ifs are shown over the fitted model: --set=Kp_theta=1200 --set=Kp_theta=1800",
       Run);
 }

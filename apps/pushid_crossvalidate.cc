@@ -189,7 +189,7 @@ int Run() {
   FoldScheme scheme;
   ReadScheme(&scheme);
   const Setups setups = SetupsFromFlags();
-  const FuturesFlags drawn = FuturesFlagsFromCommandLine(false);
+  const int drawn = DrawnFutures();
   CheckFlags(setups);
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   CheckPushed(recordings);
@@ -201,7 +201,7 @@ int Run() {
   for (const std::string& warning : OptionWarnings(GivenFitFlags(), options)) Warn(warning);
   const Predictors predictors = MakePredictors(candidates);
   CheckNames(predictors);
-  const Candidates noisy = drawn.samples > 0 ? NoisyModels(candidates) : Candidates();
+  const Candidates noisy = drawn > 0 ? NoisyModels(candidates) : Candidates();
   const std::vector<Fold> folds = OrFail(
       FLAGS_folds_file.empty() ? MakeFolds(pendulums, scheme, FLAGS_folds, FLAGS_repeats, Seed())
                                : ReadFolds(FLAGS_folds_file, pendulums));
@@ -216,7 +216,7 @@ int Run() {
   }
   std::vector<HeldOutFutures> futures;
   for (const auto& [name, model] : noisy) {
-    futures.push_back(CrossValidateFutures(name, pendulums, folds, model, drawn.samples,
+    futures.push_back(CrossValidateFutures(name, pendulums, folds, model, drawn,
                                            kFuturesSeed, NumThreads(), line.OfJobs(name + ", futures: fold")));
   }
   std::vector<BandCoverage> bands;

@@ -57,10 +57,10 @@ std::optional<BodyEvaluation> Bodies(const RestorationFlags& flags, const Identi
 
 int Run() {
   const RestorationFlags restoration = CheckedFlags();
-  const FuturesFlags drawn = FuturesFlagsFromCommandLine(false);
+  const int drawn = DrawnFutures();
   CheckObservedFlag();
   const IdentifiedModel model = LoadFlaggedModel();
-  CheckDraws(drawn, model);
+  CheckDraws(model);
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({}, restoration.given() || NeedsJoints(model.options));
   const std::vector<PendulumRecording> pendulums = MakePendulumRecordings(recordings);
@@ -75,8 +75,8 @@ int Run() {
   std::printf("\n%s", StepsReport(pendulums, FLAGS_per_recording).c_str());
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   json.update(ToJson(evaluation));
-  if (const int draws = drawn.samples; draws > 0) {
-    const auto futures = OrFail(EvaluateFutures(model, pendulums, draws, kFuturesSeed));
+  if (drawn > 0) {
+    const auto futures = OrFail(EvaluateFutures(model, pendulums, drawn, kFuturesSeed));
     std::printf("\n%s", FuturesText(std::vector<FuturesSummary>{futures}).c_str());
     json["futures"] = ToJson(futures);
   }

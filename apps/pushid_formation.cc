@@ -36,12 +36,12 @@
 #include "models/restoration/body.h"
 
 DEFINE_string(csv_out, "", "trajectories, one row per frame and person (CSV)");
-DEFINE_string(trajectories_out, "", "trajectories of the hips (.txt)");
+DEFINE_string(out, "", "trajectories of the hips (.txt)");
 DEFINE_string(forces_out, "", "net forces, one row per frame, person and part (CSV)");
 DEFINE_string(bvh_out, "", "folder for the pendulums as BVH, with manifest.json and the pushes");
 DEFINE_string(svg_out, "", "picture of the wave (SVG): time across, person down, colour speed");
 DEFINE_string(html_out, "", "page of the moving people (HTML)");
-DEFINE_string(joints_out, "", "with bodies: joint positions (CSV)");
+DEFINE_string(poses_out, "", "with bodies: joint positions (CSV)");
 DEFINE_string(bodies_out, "",
               "with bodies: the bodies (BVH, one file per person, named after this one)");
 
@@ -63,14 +63,14 @@ DEFINE_string(push, "80",
               "pushes at the hip, comma-separated, N s or N s@start in s, as "
               "in 80@0,80@1,112@2; every push acts on all of --pushed");
 DEFINE_double(push_duration, pushid::HipPush{}.duration, "duration of each push (a half-sine), s");
-DEFINE_double(push_direction, 0.0, "direction of all pushes, degrees from +x to the left");
+DEFINE_double(direction, 0.0, "direction of all pushes, degrees from +x to the left");
 DEFINE_double(mass, 80.0, "mass of each person, kg");
-DEFINE_string(people_from, "",
+DEFINE_string(recordings, "",
               "manifest.json of recordings whose people stand in the formation, each once and in "
               "their order, then from the first again: their masses, and the postures (rod length, "
               "lean, skeleton) in which their first recordings begin");
 DEFINE_double(duration, 0.0, "duration, s; 0: until 6 s after the last push");
-DEFINE_string(as_setting, "",
+DEFINE_string(setting, "",
               "use the parameters of this setting, for models with parameters by "
               "setting (default: the shared ones)");
 
@@ -83,7 +83,7 @@ struct FormationFlags {
   Scene scene;                     // people and pushes
   std::vector<std::string> names;  // of people who come from a file; otherwise empty
   int frames = 0;
-  std::vector<Pose> first_poses;  // of the recorded people of --people_from; otherwise empty
+  std::vector<Pose> first_poses;  // of the recorded people of --recordings; otherwise empty
 };
 constexpr double kMostPersonFrames = 2e6;  // half a gigabyte of forces
 constexpr double kWatchSeconds = 6.0;      // after the last push
@@ -172,7 +172,7 @@ std::vector<int> PushedPeople(const Places& places) {
 HipPush ParsePush(const std::string& word) {
   HipPush push;
   push.duration = FLAGS_push_duration;
-  push.direction = FLAGS_push_direction * M_PI / 180.0;
+  push.direction = FLAGS_direction * M_PI / 180.0;
   const size_t at = word.find('@');
   const std::string start = at == std::string::npos ? "0" : word.substr(at + 1);
   if (!ParseDouble(word.substr(0, at), &push.impulse) || !ParseDouble(start, &push.start)) {
@@ -181,7 +181,7 @@ HipPush ParsePush(const std::string& word) {
   }
   if (push.impulse <= 0.0 || push.impulse > 2000.0) {
     throw Error{"--push: " + Quoted(word) +
-                " has an impulse outside 0 to 2000 N s; --push_direction turns it"};
+                " has an impulse outside 0 to 2000 N s; --direction turns it"};
   }
   if (push.start < 0.0 || push.start > 3600.0) {
     throw Error{"--push: " + Quoted(word) + " starts at a time outside 0 to 3600 s"};
@@ -204,19 +204,19 @@ void CheckFormationNumbers() {
   CheckRange("fps", FLAGS_fps, 10, 10000);
   CheckRange("spacing", FLAGS_spacing, 0.05, 100);
   CheckRange("push_duration", FLAGS_push_duration, 0.001, 60);
-  CheckRange("push_direction", FLAGS_push_direction, -360, 360);
+  CheckRange("direction", FLAGS_direction, -360, 360);
   CheckRange("mass", FLAGS_mass, 1, 400);
   CheckRange("duration", FLAGS_duration, 0, 3600);
-  CheckExcludes({"mass"}, "people_from",
-                "--people_from gives the recorded people's mass and rod length; leave out --{}");
+  CheckExcludes({"mass"}, "recordings",
+                "--recordings gives the recorded people's mass and rod length; leave out --{}");
 }
 
 // Their first poses; nobody without the flag.
 std::vector<Pose> PlaceFlaggedPeople(Scene* scene) {
-  if (FLAGS_people_from.empty()) return std::vector<Pose>();
+  if (FLAGS_recordings.empty()) return std::vector<Pose>();
   LoadOptions options;
   options.keep_all_joints = true;
-  const std::vector<Recording> recordings = OrFail(LoadRecordings(FLAGS_people_from, options));
+  const std::vector<Recording> recordings = OrFail(LoadRecordings(FLAGS_recordings, options));
   const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
   return PlacePeople(DistinctPeople(bodies), scene);
 }
@@ -224,7 +224,7 @@ std::vector<Pose> PlaceFlaggedPeople(Scene* scene) {
 // "10 people in a line, 0.45 m apart".
 std::string PeopleText(int people) {
   std::ostringstream text;
-  text << people << (FLAGS_people_from.empty() ? "" : " recorded")
+  text << people << (FLAGS_recordings.empty() ? "" : " recorded")
        << (people == 1 ? " person" : " people");
   if (FromFile()) {
     text << " of " << FLAGS_formation;
@@ -247,9 +247,9 @@ std::string RunTitle(int people, const std::vector<HipPush>& pushes) {
   }
   text << (FLAGS_pushed.find(',') == std::string::npos ? " on person " : " on people ")
        << FLAGS_pushed;
-  if (FLAGS_push_direction != 0.0) {
-    text << ", " << std::abs(FLAGS_push_direction) << " degrees to the "
-         << (FLAGS_push_direction > 0.0 ? "left" : "right");
+  if (FLAGS_direction != 0.0) {
+    text << ", " << std::abs(FLAGS_direction) << " degrees to the "
+         << (FLAGS_direction > 0.0 ? "left" : "right");
   }
   return text.str();
 }
@@ -380,7 +380,7 @@ std::string SpeedText(const WaveSpeed& wave, const WaveBands& bands) {
 
 // held: what no draw moves.
 void PrintWave(const FormationRun& run, const WaveBands& bands, const std::string& held,
-               bool as_setting) {
+               bool setting) {
   const auto moved =
       std::count_if(run.summaries.begin(), run.summaries.end(),
                     [](const PersonSummary& person) { return person.onset_frame >= 0; });
@@ -392,7 +392,7 @@ void PrintWave(const FormationRun& run, const WaveBands& bands, const std::strin
   if (bands.speed.draws > 0 && !held.empty()) {
     std::printf("held by hand or by the preset, and so not in these intervals: %s\n", held.c_str());
   }
-  if (as_setting) {
+  if (setting) {
     std::printf("no intervals: a model has no covariance of the values of one setting\n");
   }
 }
@@ -428,7 +428,7 @@ void ActAsIn(const std::string& setting, IdentifiedModel* model) {
   if (HoldsForRecording(model->pool_by)) {
     for (const auto& [name, values] : model->by_unit) known += (known.empty() ? "" : ", ") + name;
   }
-  throw Error{"--as_setting names '" + setting + "'; " + model->source + " has " +
+  throw Error{"--setting names '" + setting + "'; " + model->source + " has " +
               (known.empty() ? "no settings (--pool_by=setting fits them)" : known)};
 }
 
@@ -437,15 +437,14 @@ void CheckOutputFlags(int people, bool bodies) {
     throw Error{"--svg_out shows at most " + std::to_string(kMostPeopleInWave) +
                 " people; leave it out or lower --people"};
   }
-  if (!FLAGS_trajectories_out.empty() && !EndsWith(FLAGS_trajectories_out, ".txt")) {
-    throw Error{"--trajectories_out names " + FLAGS_trajectories_out +
-                "; trajectories end in .txt"};
+  if (!FLAGS_out.empty() && !EndsWith(FLAGS_out, ".txt")) {
+    throw Error{"--out names " + FLAGS_out + "; trajectories end in .txt"};
   }
-  for (const char* flag : {"joints_out", "bodies_out"}) {
+  for (const char* flag : {"poses_out", "bodies_out"}) {
     if (!bodies && Given(flag)) throw NeedsRestoration(flag);
   }
-  OrFail(CheckOutputFiles({FLAGS_csv_out, FLAGS_trajectories_out, FLAGS_forces_out, FLAGS_svg_out,
-                           FLAGS_html_out, FLAGS_joints_out, FLAGS_bodies_out}));
+  OrFail(CheckOutputFiles({FLAGS_csv_out, FLAGS_out, FLAGS_forces_out, FLAGS_svg_out,
+                           FLAGS_html_out, FLAGS_poses_out, FLAGS_bodies_out}));
   if (!FLAGS_bvh_out.empty()) OrFail(CheckOutputFolder("bvh_out", FLAGS_bvh_out));
 }
 
@@ -458,7 +457,7 @@ void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
   write(FLAGS_bvh_out, [&](auto& file) { return WriteFormationRecording(file, run); });
   write(FLAGS_csv_out,
         [&](auto& file) { return WriteTrajectoryCsv(file, run.recording, run.prediction); });
-  write(FLAGS_trajectories_out, [&](auto& file) { return WriteFormationTrajectories(file, run); });
+  write(FLAGS_out, [&](auto& file) { return WriteFormationTrajectories(file, run); });
   write(FLAGS_forces_out, [&](auto& file) { return WriteForcesCsv(file, run); });
   write(FLAGS_svg_out,
         [&](auto& file) { return WriteFileAtomically(file, WaveSvg(run, title, onsets)); });
@@ -476,7 +475,7 @@ void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
     animation.figures = FeetSvg(run);
     return WriteFileAtomically(file, AnimationHtml({animation}));
   });
-  write(FLAGS_joints_out, [&](auto& file) { return WriteJointsCsv(file, scene); });
+  write(FLAGS_poses_out, [&](auto& file) { return WriteJointsCsv(file, scene); });
   if (!FLAGS_bodies_out.empty()) OrFail(WriteBodyBvh(FLAGS_bodies_out, scene));
 }
 
@@ -488,7 +487,7 @@ int Run() {
   const RestorationFlags body_flags = RestorationFlagsFromCommandLine();
   CheckOutputFlags(scene.num_people(), body_flags.given());
 
-  const FuturesFlags drawn = FuturesFlagsFromCommandLine(true);
+  DrawnFutures();  // refuses what is out of range
   IdentifiedModel model = LoadFlaggedModel();
   std::unique_ptr<Restoration> restoration;
   if (body_flags.given()) {
@@ -497,17 +496,17 @@ int Run() {
       flags.first_poses = TakePoses({SyntheticPose(scene.people.front().body.rod_length)}, &scene);
     }
   }
-  CheckDraws(drawn, model);
-  ActAsIn(FLAGS_as_setting, &model);
+  CheckDraws(model);
+  ActAsIn(FLAGS_setting, &model);
   const FormationRun run = RunFormation(model, scene, flags.frames, flags.names);
   WarnGrouped(InputWarnings(model, {run.recording}));
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, scene.dt);
   const ModelFlags named = ModelFlagsFromCommandLine();
   const FittedModel fitted = OrFail(ReadFittedModel(named.file));
   // What a setting's own parameters leave open is no part of a model.
-  const bool as_setting = !FLAGS_as_setting.empty();
+  const bool setting = !FLAGS_setting.empty();
   const bool banded =
-      !as_setting && (!FLAGS_svg_out.empty() || scene.num_people() <= kMostPeopleForBands);
+      !setting && (!FLAGS_svg_out.empty() || scene.num_people() <= kMostPeopleForBands);
   const WaveBands bands = banded ? BandsOfWave(fitted, named.set, run) : WaveBands();
   std::vector<BodyMotion> bodies;
   if (restoration) {
@@ -516,9 +515,9 @@ int Run() {
   WriteOutputs(run, bands.onsets, std::move(bodies), title);
   std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
   PrintPeople(run, !flags.names.empty());
-  PrintWave(run, bands, HeldInDraws(fitted, named.set), as_setting);
+  PrintWave(run, bands, HeldInDraws(fitted, named.set), setting);
   PrintFitWarnings(fitted);
-  return PrintFutures(drawn, model, run.recording, run.num_frames());
+  return PrintFutures(model, run.recording, run.num_frames());
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ DEFINE_int32(
 DEFINE_string(states, "",
               "diffusion: CSV of the states of people that somebody annotated "
               "(recording,frame,person,symbol), for SSCP and transitions; empty: built-in states");
-DEFINE_string(states_out, "", "diffusion: write the states of the recordings here (CSV)");
+DEFINE_string(csv_out, "", "diffusion: write the states of the recordings here (CSV)");
 DEFINE_string(action, "", "particles: action of the window to show; empty: the first");
 DEFINE_int32(window, kFlags.window, "particles: which of the action's windows to show, from 0 on");
 DEFINE_string(id, "", "diffusion: the recording to show");
@@ -59,11 +59,11 @@ DEFINE_string(json_out, "", "write the errors here (JSON)");
 DEFINE_string(poses_out, "",
               "write observed, recorded and forecast poses here (.csv), or observed "
               "and forecast ones (.bvh)");
-DEFINE_string(strip_out, "", "a strip of poses (SVG)");
-DEFINE_string(page_out, "", "a page with the forecast over the recorded motion (HTML)");
+DEFINE_string(svg_out, "", "a strip of poses (SVG)");
+DEFINE_string(html_out, "", "a page with the forecast over the recorded motion (HTML)");
 DEFINE_string(sampler, pushid::NameOf(kFlags.changes.diffusion.sampler),
               "diffusion: sampler: renoised or ddpm");
-DEFINE_int32(sampling_steps, kFlags.changes.diffusion.steps, "diffusion: number of sampling steps");
+DEFINE_int32(steps, kFlags.changes.diffusion.steps, "diffusion: number of sampling steps");
 DEFINE_double(blend, kFlags.changes.diffusion.blend,
               "diffusion: blend of the hip paths, from 0 (forecast) to 1 (physics)");
 DEFINE_string(without, "",
@@ -78,7 +78,7 @@ using Json = nlohmann::ordered_json;
 void ReadChanges(GeneratorChanges* changes) {
   DiffusionGeneratorOptions& diffusion = changes->diffusion;
   OrFail(ParseName("--sampler", FLAGS_sampler, &diffusion.sampler));
-  TakeInRange("sampling_steps", FLAGS_sampling_steps, 1, kDiffusionTime, &diffusion.steps);
+  TakeInRange("steps", FLAGS_steps, 1, kDiffusionTime, &diffusion.steps);
   TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &diffusion.blend);
   for (const std::string& part : SplitList(FLAGS_without)) {
     if (part == "ridge") {
@@ -103,7 +103,7 @@ void SetPublished(GenerateFlags* flags) {
   } else if (paper == "sdm") {
     DiffusionGeneratorOptions& sdm = flags->changes.diffusion;
     if (!Given("sampler")) sdm.sampler = DiffusionSampler::kDdpm;
-    if (!Given("sampling_steps")) sdm.steps = kDiffusionTime;
+    if (!Given("steps")) sdm.steps = kDiffusionTime;
     sdm.averaged = 8;
     sdm.mirrored = false;
     sdm.settle = Settling::kNone;
@@ -126,7 +126,7 @@ void CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
                                       "target_window", "without", "samples"};
   if (!groups) {
     foreign = {"recordings", "setting",    "id",      "observed",       "physics", "frames",
-               "states",     "states_out", "sampler", "sampling_steps", "blend"};
+               "states",     "csv_out", "sampler", "steps", "blend"};
   }
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
@@ -156,17 +156,17 @@ GenerateFlags GenerateFlagsFromCommandLine() {
   flags.changes.seed = FLAGS_seed;
   flags.physics = FLAGS_physics;
   flags.states = FLAGS_states;
-  flags.states_out = FLAGS_states_out;
+  flags.states_out = FLAGS_csv_out;
   flags.samples = FLAGS_samples;
   flags.seed = FLAGS_seed;
   flags.action = FLAGS_action;
   flags.id = FLAGS_id;
   flags.json_out = FLAGS_json_out;
   flags.poses_out = FLAGS_poses_out;
-  flags.strip_out = FLAGS_strip_out;
-  flags.page_out = FLAGS_page_out;
+  flags.svg_out = FLAGS_svg_out;
+  flags.html_out = FLAGS_html_out;
   OrFail(CheckOutputFiles(
-      {flags.json_out, flags.poses_out, flags.strip_out, flags.page_out, flags.states_out}));
+      {flags.json_out, flags.poses_out, flags.svg_out, flags.html_out, flags.states_out}));
   return flags;
 }
 

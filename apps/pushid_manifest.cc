@@ -22,7 +22,7 @@ DEFINE_string(pattern, "",
               "other {name} only tells recordings apart, * matches anything");
 DEFINE_string(push_pattern, "", "paths of the push CSV files, with {names} from --pattern");
 DEFINE_string(masses, "", "masses of the subjects: a CSV file id,mass_kg");
-DEFINE_double(mass_kg, pushid::ManifestOptions{}.mass_kg,
+DEFINE_double(mass, pushid::ManifestOptions{}.mass_kg,
               "mass of everybody not listed in --masses");
 DEFINE_double(fps, pushid::ManifestOptions{}.fps, "frames per second; 0: from each file");
 DEFINE_string(setting, pushid::ManifestOptions{}.setting,
@@ -47,8 +47,8 @@ void CheckManifestFlags() {
   Require("pattern", FLAGS_pattern,
           "give the pattern of the file names, as in {subject}_{take}.bvh");
   Require("out", FLAGS_out, "name the manifest to write");
-  if (!(FLAGS_mass_kg >= 0.0 && FLAGS_mass_kg <= 400.0)) {
-    throw Error{"--mass_kg must be a mass of at most 400 kg"};
+  if (!(FLAGS_mass >= 0.0 && FLAGS_mass <= 400.0)) {
+    throw Error{"--mass must be a mass of at most 400 kg"};
   }
   if (FLAGS_fps != 0.0 && !(FLAGS_fps >= 1.0 && FLAGS_fps <= 1e4)) {
     throw Error{"--fps must be from 1 to 10000 frames per second"};
@@ -75,7 +75,7 @@ ManifestOptions OptionsFromFlags() {
   options.pattern = FLAGS_pattern;
   options.push_pattern = FLAGS_push_pattern;
   options.manifest_path = FLAGS_out;
-  options.mass_kg = FLAGS_mass_kg;
+  options.mass_kg = FLAGS_mass;
   options.fps = FLAGS_fps;
   options.setting = FLAGS_setting;
   options.mapping = FLAGS_mapping;

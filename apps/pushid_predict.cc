@@ -34,7 +34,7 @@ DEFINE_double(push_scale, pushid::ChangedPushes{}.scale,
 DEFINE_string(push_again, "",
               "what-if: frames at which the recorded push comes again, comma-separated, as in "
               "40,80; --frames gives it time");
-DEFINE_string(joints_out, "",
+DEFINE_string(poses_out, "",
               "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");
 DEFINE_string(json_out, "", "--restoration: joint positions of every person and frame (JSON)");
 
@@ -46,7 +46,7 @@ constexpr int kMostFrames = 1000000;  // hours of motion
 
 // The first output that holds bodies; empty where there is none.
 std::string BodyOutput() {
-  if (!FLAGS_joints_out.empty()) return "joints_out";
+  if (!FLAGS_poses_out.empty()) return "poses_out";
   if (!FLAGS_json_out.empty()) return "json_out";
   return IsBodyFile(FLAGS_out) ? "out=" + FLAGS_out : "";
 }
@@ -95,7 +95,7 @@ RestorationFlags CheckedFlags() {
   CheckExcludes({"push_scale", "push_again"}, "observed",
                 "--observed is for the recorded motion, and --{} for "
                 "another push than made it; leave one out");
-  OrFail(CheckOutputFiles({FLAGS_joints_out, FLAGS_json_out, FLAGS_out}));
+  OrFail(CheckOutputFiles({FLAGS_poses_out, FLAGS_json_out, FLAGS_out}));
   return restoration;
 }
 
@@ -107,9 +107,9 @@ std::vector<std::string> WriteScene(const BodyScene& scene, const BodyRecording&
   } else {
     OrFail(WriteTrajectoryCsv(FLAGS_out, recording.pendulum, prediction));
   }
-  if (!FLAGS_joints_out.empty()) {
-    OrFail(WriteJointsCsv(FLAGS_joints_out, scene));
-    files.push_back(FLAGS_joints_out);
+  if (!FLAGS_poses_out.empty()) {
+    OrFail(WriteJointsCsv(FLAGS_poses_out, scene));
+    files.push_back(FLAGS_poses_out);
   }
   if (!FLAGS_json_out.empty()) {
     OrFail(WriteJson(FLAGS_json_out, ToJson(scene), -1));
@@ -157,9 +157,9 @@ int WritePendulums(const PendulumRecording& recording, const Prediction& predict
 
 int Run() {
   const RestorationFlags restoration = CheckedFlags();
-  const FuturesFlags futures = FuturesFlagsFromCommandLine(true);
+  DrawnFutures();  // refuses what is out of range
   const IdentifiedModel model = LoadFlaggedModel();
-  CheckDraws(futures, model);
+  CheckDraws(model);
   const std::vector<Recording> recordings =
       LoadFlaggedRecordings({FLAGS_id}, restoration.given() || NeedsJoints(model.options));
   const PendulumRecording recording = PushedRecording(recordings.front());
@@ -187,7 +187,7 @@ int Run() {
   }
   std::printf("%s%s", PredictedStepsText(recording, prediction).c_str(),
               EffectText(prediction).c_str());
-  return PrintFutures(futures, model, recording, FLAGS_frames);
+  return PrintFutures(model, recording, FLAGS_frames);
 }
 
 }  // namespace

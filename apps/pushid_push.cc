@@ -25,21 +25,20 @@
 DEFINE_string(id, "", "the recording; or several by --ids");
 DEFINE_int32(person, 0, "number of the pushed person, counted from 0");
 DEFINE_string(out, "", "write the push here (CSV); {id} is replaced by the recording's id");
-DEFINE_bool(into_manifest, false, "write the push's entry into the manifest");
+DEFINE_bool(update, false, "write the push's entry into the manifest");
 
-DEFINE_int32(first_frame, -1, "inverse dynamics: first frame of the window; -1: detected");
-DEFINE_int32(end_frame, -1, "inverse dynamics: frame after the window; -1: detected");
 
+DEFINE_string(frames, "",
+              "inverse dynamics: the window, its first frame and the frame after it, as in 25:40; "
+              "default: detected");
 DEFINE_string(initial_velocity, "auto",
               "inverse dynamics: velocity of the person at the start of the window: zero, "
               "estimated, or auto (estimated where the hip moves faster than 0.1 m/s)");
 
 DEFINE_string(sensor, "",
               "force sensor: CSV file time,force or time,fx,fy,fz (s, N); any CSV, STO, MOT or C3D "
-              "with --sensor_column");
-DEFINE_string(sensors, "",
-              "several force sensors that act together, or one of which more is to be said: a JSON list, "
-              "see datasets/README.md");
+              "with --sensor_column; or several that act together, or one of which more is to be "
+              "said: a JSON list, see datasets/README.md");
 DEFINE_string(sensor_column, "",
               "force sensor: the column, the common part of three (ground_force_v), the analog "
               "channel, or platform:1");
@@ -64,12 +63,12 @@ struct PushFlags {
   std::optional<InitialVelocity> initial_velocity;
 };
 
-bool SensorGiven() { return !FLAGS_sensor.empty() || !FLAGS_sensors.empty(); }
+bool SensorsListed() { return EndsWith(FLAGS_sensor, ".json"); }
 
 const std::vector<std::string> kOfOneSensor = {"sensor_column", "direction", "height", "sensor_start"};
 
 std::vector<SensorChoice> SensorsFromFlags() {
-  if (!FLAGS_sensors.empty()) return OrFail(ReadSensorList(FLAGS_sensors));
+  if (SensorsListed()) return OrFail(ReadSensorList(FLAGS_sensor));
   SensorChoice sensor;
   sensor.file = FLAGS_sensor;
   sensor.column = FLAGS_sensor_column;
@@ -86,9 +85,12 @@ std::vector<SensorChoice> SensorsFromFlags() {
 }
 
 void CheckSensors() {
-  CheckExcludes({"sensor"}, "sensors", "give --sensor or --sensors, not both");
   CheckNeeds(kOfOneSensor, {"sensor"}, ": name the file of its forces");
-  CheckNeeds({"estimate_offset"}, {"sensor", "sensors"});
+  CheckNeeds({"estimate_offset"}, {"sensor"});
+  for (const std::string& flag : kOfOneSensor) {
+    if (!SensorsListed() || !Given(flag.c_str())) continue;
+    throw Error{"--" + flag + " is said by the list, " + FLAGS_sensor + "; leave it out"};
+  }
   if (!(FLAGS_height >= 0.0 && FLAGS_height <= 2.0)) {
     throw Error{"--height must be a fraction of the rod between 0 and 2"};
   }
@@ -97,7 +99,7 @@ void CheckSensors() {
 SensorSetup SensorsFromCommandLine() {
   CheckSensors();
   SensorSetup setup;
-  if (SensorGiven()) setup.sensors = SensorsFromFlags();
+  if (!FLAGS_sensor.empty()) setup.sensors = SensorsFromFlags();
   setup.estimate_offset = FLAGS_estimate_offset;
   return setup;
 }
@@ -115,14 +117,22 @@ std::string OutOf(const std::string& id) { return WithId(FLAGS_out, id); }
 
 // A flag of the other way would be taken and do nothing.
 void CheckInverseDynamics() {
-  for (const char* flag : {"first_frame", "end_frame", "initial_velocity"}) {
-    if (SensorGiven() && Given(flag)) {
+  for (const char* flag : {"frames", "initial_velocity"}) {
+    if (!FLAGS_sensor.empty() && Given(flag)) {
       throw Error{std::string("--") + flag + " applies to inverse dynamics, not to --sensor"};
     }
   }
-  if (FLAGS_first_frame < -1 || FLAGS_end_frame < -1) {
-    throw Error{"--first_frame and --end_frame are frames, counted from 0"};
-  }
+}
+
+// That of --frames; -1: detected.
+PushWindow FlaggedWindow() {
+  PushWindow window = {-1, -1};
+  if (FLAGS_frames.empty()) return window;
+  char rest = 0;
+  const int read =
+      std::sscanf(FLAGS_frames.c_str(), "%d:%d%c", &window.start, &window.end, &rest);
+  if (read == 2 && window.start >= 0 && window.end >= 0) return window;
+  throw Error{"--frames is '" + FLAGS_frames + "'; write first:end, counted from 0, as in 25:40"};
 }
 
 // Inputs and outputs of one recording, or of several.
@@ -142,8 +152,8 @@ void CheckRecordings(const PushFlags& flags) {
         "file, as in force/{id}.csv"};
   }
   const std::string manifest = RecordingFlagsFromCommandLine().manifest;
-  if (FLAGS_into_manifest && ManifestPaths(manifest).size() > 1) {
-    throw Error{"--into_manifest writes into one manifest; --recordings names several"};
+  if (FLAGS_update && ManifestPaths(manifest).size() > 1) {
+    throw Error{"--update writes into one manifest; --recordings names several"};
   }
   for (const std::string& id : ids) {
     OrFail(CheckNew("out", OutOf(id)));
@@ -159,6 +169,7 @@ PushFlags PushFlagsFromCommandLine() {
     throw Error{"--id is missing: name a recording of the manifest, or several by --ids"};
   Require("out", FLAGS_out, "name the CSV file to write");
   CheckInverseDynamics();
+  FlaggedWindow();
   if (Given("resample_fps")) {
     throw Error{
         "a push has a row for each of the recording's own frames; leave --resample_fps out"};
@@ -197,7 +208,7 @@ MadePush FromSensor(const PushFlags& flags, const Recording& recorded,
   SensorSetup setup = flags.sensor;
   for (SensorChoice& sensor : setup.sensors) sensor.file = WithId(sensor.file, recorded.id);
   for (const SensorChoice& sensor : setup.sensors) {
-    OrFail(OutputFiles().CheckNotRead("--sensors", sensor.file));
+    OrFail(OutputFiles().CheckNotRead("--sensor", sensor.file));
   }
   const SensorPush made = OrFail(PushFromSensors(setup, recorded, recording, FLAGS_person));
   for (const std::string& warning : made.warnings) Warn(warning);
@@ -212,7 +223,7 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
                 " frames, over which a push is smoothed"};
   }
   const PushWindow window =
-      OrFail(PushWindowFrom({FLAGS_first_frame, FLAGS_end_frame}, recording, options));
+      OrFail(PushWindowFrom(FlaggedWindow(), recording, options));
   const EstimatedPush push = OrFail(EstimatePush(recording, window, options));
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(FLAGS_person, t) > 0.0) continue;
@@ -231,7 +242,7 @@ void WarnOfFirstRow(const std::string& id, const MadePush& made) {
   const std::string force = Rounded(made.push.force[0].head<2>().norm(), 3);
   Warn("recording " + id + ": the first row, " + force +
        " N, stands out: the person already moves when the window begins; begin earlier "
-       "(--first_frame), or set --initial_velocity=estimated" +
+       "(--frames), or set --initial_velocity=estimated" +
        (made.push.start_frame == 0 ? " in the manifest" : ""));
 }
 
@@ -264,7 +275,7 @@ void PrintPush(const RecordingsPush& of, double dt) {
 void PrintEntry(const RecordingsPush& of) {
   std::printf(
       "to use it, add these lines to the recording's entry of the manifest, in place of any "
-      "push_csv (--into_manifest does this):\n");
+      "push_csv (--update does this):\n");
   std::printf("  \"push_kind\": \"%s\",\n", NameOf(of.made.kind).c_str());
   std::printf("  \"pushes\": [{\"person\": %d, \"csv\": %s, \"start_frame\": %d}]\n",
               of.made.push.person, nlohmann::json(PathFromManifest(of.file)).dump().c_str(),
@@ -328,13 +339,13 @@ int Run() {
   for (const std::string& warning : FindingTexts(FitFindings(std::move(findings)))) Warn(warning);
   // Every refusal comes before the first file is written.
   Manifest manifest;
-  if (FLAGS_into_manifest) manifest = WithPushes(pushes, OverwriteGiven());
+  if (FLAGS_update) manifest = WithPushes(pushes, OverwriteGiven());
   for (size_t i = 0; i < pushes.size(); ++i) {
     OrFail(WritePushCsv(pushes[i].file, pushes[i].made.push.force));
     PrintPush(pushes[i], 1.0 / recordings[i].fps);
-    if (!FLAGS_into_manifest) PrintEntry(pushes[i]);
+    if (!FLAGS_update) PrintEntry(pushes[i]);
   }
-  if (!FLAGS_into_manifest) return kDone;
+  if (!FLAGS_update) return kDone;
   OrFail(WriteManifest(manifest.path, manifest));
   std::printf("%zu %s written to %s\n", pushes.size(), pushes.size() == 1 ? "entry" : "entries",
               manifest.path.c_str());

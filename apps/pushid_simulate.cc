@@ -38,11 +38,11 @@ DEFINE_string(
     "motion of the ground along x: none, step (within 0.4 s), sine (0.5 Hz), sum_of_sines (five "
     "of 0.15 to 1.55 Hz), or a CSV file time,x,y,theta,phi (m, rad)");
 DEFINE_bool(plates, false, "also write what force platforms under the feet measure");
-DEFINE_string(truth_stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
+DEFINE_string(stance, pushid::NameOf(pushid::SyntheticOptions{}.model.stance),
               "without --model: behaviour of the synthetic people's feet: slide, steps "
               "(hold, then step) or fixed (hold)");
 DEFINE_string(
-    truth_delay, pushid::NameOf(pushid::SyntheticOptions{}.model.delay),
+    delay, pushid::NameOf(pushid::SyntheticOptions{}.model.delay),
     "without --model: reaction delay of the synthetic people: none, one or ankle_and_step "
     "(--set=reaction_delay=0.13)");
 DEFINE_string(truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
@@ -106,7 +106,7 @@ SyntheticOptions StudyFromCommandLine() {
   Require("out", FLAGS_out, "name the folder to write");
   OrFail(CheckOutputFolder("out", FLAGS_out));
   CheckRecordingNumbers();
-  CheckExcludes({"truth_stance", "truth_delay", "truth_noise"}, "model",
+  CheckExcludes({"stance", "delay", "truth_noise"}, "model",
                 "--model sets the parameters of the people; leave --{} out");
   SyntheticOptions study;
   study.pushes = FLAGS_push_kind != "none";
@@ -116,8 +116,8 @@ SyntheticOptions StudyFromCommandLine() {
     throw Error{"--push_kind is '" + FLAGS_push_kind +
                 "'; it must be net or external, or none with --ground"};
   }
-  OrFail(ParseName("--truth_stance", FLAGS_truth_stance, &study.model.stance));
-  OrFail(ParseName("--truth_delay", FLAGS_truth_delay, &study.model.delay));
+  OrFail(ParseName("--stance", FLAGS_stance, &study.model.stance));
+  OrFail(ParseName("--delay", FLAGS_delay, &study.model.delay));
   OrFail(ParseName("--truth_noise", FLAGS_truth_noise, &study.model.process_noise));
   study.subjects = FLAGS_people;
   study.people_in_row = FLAGS_group_size;

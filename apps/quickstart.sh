@@ -67,7 +67,7 @@ say "Writing the report as a page, and the same prediction as an animation"
 "$bin/pushid-report" --model="$out/model.json" --recordings="$out/recordings/manifest.json" \
   --html_out="$out/report.html" 2>/dev/null
 "$bin/pushid-animate" --model="$out/model.json" --recordings="$out/held-out/manifest.json" \
-  --id=S01_00_weak --out="$out/motion.html" --strip_out="$out/poses.svg" >/dev/null
+  --id=S01_00_weak --out="$out/motion.html" --svg_out="$out/poses.svg" >/dev/null
 echo "  $(realpath "$out")/report.html"
 echo "  $(realpath "$out")/motion.html"
 

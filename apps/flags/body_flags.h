@@ -36,7 +36,7 @@ RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise = 
 // to make one.
 std::unique_ptr<Restoration> LoadFlaggedRestoration(const RestorationFlags& flags, int people);
 
-// "--joints_out needs bodies: name the folder ...".
+// "--poses_out needs bodies: name the folder ...".
 Error NeedsRestoration(const std::string& flag);
 
 }  // namespace pushid

@@ -13,20 +13,15 @@ namespace pushid {
 
 inline constexpr std::uint64_t kFuturesSeed = 1;  // of all draws
 
-struct FuturesFlags {
-  int samples = 0;  // 0: none are drawn
-  std::string out;  // all of them (CSV); empty: not written
-};
-// writes: whether the program has --samples_out.
-FuturesFlags FuturesFlagsFromCommandLine(bool writes);
+// --samples; 0: none are drawn.
+int DrawnFutures();
 
 // What is wrong with drawing from a model: no process noise, or frames that were seen.
-void CheckDraws(const FuturesFlags& flags, const IdentifiedModel& model);
+void CheckDraws(const IdentifiedModel& model);
 
-// Draws them, prints where everybody is at the end, writes --samples_out; nothing without
-// --samples. num_frames: 0 means as many as the recording has. Returns an exit code.
-int PrintFutures(const FuturesFlags& flags, const IdentifiedModel& model,
-                 const PendulumRecording& recording, int num_frames);
+// Draws them and prints where everybody is at the end; nothing without --samples. num_frames: 0
+// means as many as the recording has. Returns an exit code.
+int PrintFutures(const IdentifiedModel& model, const PendulumRecording& recording, int num_frames);
 
 // --observed, of every program that predicts recordings.
 

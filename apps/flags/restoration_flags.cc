@@ -5,6 +5,8 @@
 #include "apps/flags/body_flags.h"
 #include "apps/flags/command_line.h"
 #include "apps/support/app_support.h"
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/parameters/option_names.h"
 
@@ -12,21 +14,26 @@ DEFINE_string(restoration, "",
               "whole bodies: the folder that pushid-train-restoration --out wrote, or rigid");
 DEFINE_string(latent, pushid::NameOf(pushid::LatentChoice{}.latent),
               "cvae: the latent variable is the sampler's mean (mean), or drawn from its Gaussian "
-              "in every frame (draw)");
-DEFINE_uint64(latent_seed, pushid::LatentChoice{}.seed, "with --latent=draw: seed of the draws");
+              "in every frame (draw, or draw:2 of seed 2)");
 
 namespace pushid {
 
 RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise) {
   RestorationFlags flags;
   flags.name = FLAGS_restoration.empty() ? otherwise : FLAGS_restoration;
-  OrFail(ParseName("--latent", FLAGS_latent, &flags.latent.latent));
-  flags.latent.seed = FLAGS_latent_seed;
+  const size_t colon = FLAGS_latent.find(':');
+  OrFail(ParseName("--latent", FLAGS_latent.substr(0, colon), &flags.latent.latent));
   const bool draws = flags.latent.latent == CvaeLatent::kDraw;
   if (draws && FLAGS_restoration.empty()) {
     throw Error{"--latent=draw needs --restoration, the folder of a cvae"};
   }
-  if (!draws && Given("latent_seed")) throw Error{"--latent_seed needs --latent=draw"};
+  if (colon != std::string::npos) {
+    std::int64_t seed = 0;
+    if (!draws || !ParseInteger(FLAGS_latent.substr(colon + 1), &seed) || seed < 0) {
+      throw Error{"--latent is " + Quoted(FLAGS_latent) + "; a seed is for draws, as in draw:2"};
+    }
+    flags.latent.seed = static_cast<std::uint64_t>(seed);
+  }
   if (!flags.given()) return flags;
   flags.postprocess = PostprocessFromCommandLine();
   return flags;

@@ -118,7 +118,7 @@ class OutputFiles {
  public:
   OutputFiles();
 
-  // For an input that no flag names: `reader` says what does ("--sensors", "the command line").
+  // For an input that no flag names: `reader` says what does ("--sensor", "the command line").
   MaybeError CheckNotRead(const std::string& reader, const std::string& path) const;
 
  private:

@@ -381,7 +381,7 @@ MaybeError LookAtSensor(Inspection* found) {
   if (const Eigen::Vector3d& rest = record.value().subtracted; rest.norm() > 0.0) {
     found->Fact("at rest", Rounded(record.value().is_vector ? rest.norm() : rest.x(), 3) +
                                " N before the pull, subtracted below and by pushid-push "
-                               "(zero: 0, in --sensors of pushid-push, keeps them)");
+                               "(zero: 0, in a list of sensors, keeps them)");
   }
   for (int axis = 0; axis < (record.value().is_vector ? 3 : 1); ++axis) {
     std::vector<double> values;

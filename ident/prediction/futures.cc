@@ -264,20 +264,6 @@ std::string LastFrameText(const Futures& futures) {
   return table.ToString();
 }
 
-MaybeError WriteFuturesCsv(const std::string& file, const Futures& futures) {
-  std::string text = "draw,frame,person,hip_x,hip_y,hip_z,theta,phi\n";
-  for (size_t d = 0; d < futures.paths.size(); ++d) {
-    for (size_t n = 0; n < futures.paths[d].size(); ++n) {
-      for (size_t t = 0; t < futures.paths[d][n].size(); ++t) {
-        text += std::to_string(d) + "," + std::to_string(t) + "," + std::to_string(n);
-        for (double value : futures.paths[d][n][t]) text += "," + DoubleText(value);
-        text += "\n";
-      }
-    }
-  }
-  return WriteFileAtomically(file, text);
-}
-
 std::string FuturesText(const std::vector<FuturesSummary>& summaries) {
   std::vector<std::string> titles = {"drawn futures"};
   std::vector<bool> left = {true};

@@ -68,7 +68,8 @@ MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& 
     return Error{
         Rounded(lost) + " N s of the push lie outside recording " + recording.id + " (" +
             Rounded(inside.norm()) + " N s inside), whose frame 0 is at " + Rounded(zero) +
-            " s of the sensor's clock; check that time, and what it reads at rest (zero, in --sensors)",
+            " s of the sensor's clock; check that time, and what it reads at rest (zero, in a "
+            "list of sensors)",
         record.file};
   }
   if (!empty) return std::nullopt;
@@ -167,7 +168,8 @@ std::string CutShort(const SensorRecord& record) {
     if (!(force > kCutShort * peak)) continue;
     return record.file + ": the record " + (first ? "begins" : "ends") + " with " +
            Rounded(force, 3) + " N, with a maximum of " + Rounded(peak, 3) +
-           " N: part of the push is missing, or the sensor has an offset (zero, in --sensors)";
+           " N: part of the push is missing, or the sensor has an offset (zero, "
+           "in a list of sensors)";
   }
   return "";
 }
@@ -214,7 +216,8 @@ Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded,
     if (rest.norm() > 0.0) {
       const double size = record.value().is_vector ? rest.norm() : rest.x();
       read.how +=
-          "; " + Rounded(size, 3) + " N before the pull subtracted (zero: 0, in --sensors, keeps them)";
+          "; " + Rounded(size, 3) + " N before the pull subtracted (zero: 0, "
+          "in a list of sensors, keeps them)";
     }
     read.choices.push_back(sensor);
     read.records.push_back(std::move(record.value()));

@@ -176,13 +176,13 @@ TEST_F(AnyRecordingTest, Manifest) {
   const std::string push = "--push_pattern=push/{subject}_{take}.csv";
   AppRun run =
       Succeeded(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
-                                           "--mass_kg=80", "--push_kind=net", "--length_unit=mm",
+                                           "--mass=80", "--push_kind=net", "--length_unit=mm",
                                            "--length_scale=0", "--out=" + Path("made.json")}));
   EXPECT_TRUE(Contains(run.out, "12 recordings from 12 files"));
   run = Succeeded(RunApp("pushid-fit", {"--recordings=" + Path("made.json")}));
   // Measured pushes, the default, have no tail to fit.
   Succeeded(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
-                                       "--mass_kg=80", "--out=" + Path("measured.json")}));
+                                       "--mass=80", "--out=" + Path("measured.json")}));
   const std::string measured = "--recordings=" + Path("measured.json");
   run = Succeeded(RunApp("pushid-fit", {measured}));
   EXPECT_TRUE(Contains(run.out, "warning: every push is external"));
@@ -193,10 +193,10 @@ TEST_F(AnyRecordingTest, Manifest) {
       {{pattern}, {"--folder is missing"}},
       {{"--folder=" + folder_.string()}, {"--pattern is missing"}},
       {{"--folder=" + folder_.string(), pattern}, {"no mass is given for"}},
-      {{"--folder=" + folder_.string(), pattern, "--mass_kg=-1"}, {"--mass_kg"}},
-      {{"--folder=" + folder_.string(), pattern, "--mass_kg=70", "--fps=0.1"}, {"--fps"}},
-      {{"--folder=" + folder_.string(), pattern, "--mass_kg=70", "--push_kind=soft"}, {"'soft'"}},
-      {{"--folder=" + folder_.string(), pattern, "--mass_kg=70", "--length_unit=inch"}, {"'inch'"}},
+      {{"--folder=" + folder_.string(), pattern, "--mass=-1"}, {"--mass"}},
+      {{"--folder=" + folder_.string(), pattern, "--mass=70", "--fps=0.1"}, {"--fps"}},
+      {{"--folder=" + folder_.string(), pattern, "--mass=70", "--push_kind=soft"}, {"'soft'"}},
+      {{"--folder=" + folder_.string(), pattern, "--mass=70", "--length_unit=inch"}, {"'inch'"}},
       {{"--folder=" + folder_.string(), pattern, "--masses=" + Path("none.csv")}, {"none.csv"}},
   };
   for (const auto& [flags, says] : bad) {
@@ -209,7 +209,7 @@ TEST_F(AnyRecordingTest, Manifest) {
 
 // What was edited by hand stays.
 TEST_F(AnyRecordingTest, ManifestsAreUpdatedOrKept) {
-  const std::vector<std::string> flags = {"--folder=" + folder_.string(), "--mass_kg=80",
+  const std::vector<std::string> flags = {"--folder=" + folder_.string(), "--mass=80",
                                           "--pattern=bvh/{subject}_{take}.bvh",
                                           "--out=" + Path("made.json")};
   Succeeded(RunApp("pushid-manifest", flags));

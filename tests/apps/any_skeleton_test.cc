@@ -14,7 +14,7 @@ TEST_F(AnySkeletonTest, PredictedBodiesComeInTheHierarchyThatWentIn) {
     return RunApp(
         "pushid-predict",
         {model, recordings_, kScale, "--id=" + id_, "--restoration=rigid", "--out=" + Path(out),
-         "--joints_out=" + Path("joints.csv"), "--json_out=" + Path("joints.json")});
+         "--poses_out=" + Path("joints.csv"), "--json_out=" + Path("joints.json")});
   };
   const AppRun run = Succeeded(predict("motion.bvh"));
   EXPECT_EQ(run.err, "") << "nothing had to be filled";

@@ -127,7 +127,7 @@ TEST_F(BadUsageTest, OutputsNeverReplaceInputs) {
   // --overwrite replaces no input either.
   const std::vector<std::string> make = {"--folder=" + folder_.string(), "--pattern={take}.bvh",
                                          "--overwrite"};
-  const std::vector<std::string> found = {"--folder=" + folder_.string(), "--mass_kg=70",
+  const std::vector<std::string> found = {"--folder=" + folder_.string(), "--mass=70",
                                           "--pattern=bvh/{take}.bvh", "--overwrite"};
   struct Use {
     std::string program, input;
@@ -138,8 +138,8 @@ TEST_F(BadUsageTest, OutputsNeverReplaceInputs) {
   const std::vector<Use> uses = {
       {"pushid-inspect", bvh, {bvh, "--svg_out=" + bvh}},
       {"pushid-push", force, With(push, {"--sensor=" + force, "--out=" + force})},
-      {"pushid-push", force, With(push, {"--sensors=" + sensors, "--out=" + force})},
-      {"pushid-push", sensors, With(push, {"--sensors=" + sensors, "--out=" + sensors})},
+      {"pushid-push", force, With(push, {"--sensor=" + sensors, "--out=" + force})},
+      {"pushid-push", sensors, With(push, {"--sensor=" + sensors, "--out=" + sensors})},
       {"pushid-push", manifest_, With(push, {"--out=" + manifest_})},
       {"pushid-manifest", masses, With(make, {"--masses=" + masses, "--out=" + masses})},
       {"pushid-manifest", mapping, With(make, {"--mapping=" + mapping, "--out=" + mapping})},
@@ -268,8 +268,8 @@ TEST_F(BadUsageTest, PushFlags) {
       "--sensor=" + WriteText("good.csv", "time,force\n0,1\n0.2,90\n0.5,1\n");
   const std::string sensor = "--sensor=" + WriteText("sensor.csv", "time,force\n0,1\n0.5,nan\n");
   const std::vector<UsageCase> cases = {
-      {{"--first_frame=5", "--end_frame=3"}, {id_, "from frame 5 to 3"}},
-      {{"--first_frame=500", "--end_frame=600"}, {id_, "frames 0 to"}},
+      {{"--frames=5:3"}, {id_, "from frame 5 to 3"}},
+      {{"--frames=500:600"}, {id_, "frames 0 to"}},
       {{"--person=4"}, {id_, "no person 4"}},
       {{"--sensor=" + Path("none.csv")}, {"none.csv", "no such file"}},
       {{sensor}, {"sensor.csv:3", "'nan'"}},

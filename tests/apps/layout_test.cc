@@ -96,7 +96,7 @@ TEST_F(LayoutTest, AnAnimationOfSeveralWhatIfs) {
   const std::string model = FitModel();
   Succeeded(RunApp("pushid-animate", {"--model=" + model, Recordings(), "--id=" + id_,
                                       "--set=mu=10", "--set=mu=60,a_x=-8",
-                                      "--out=" + Path("a.html"), "--strip_out=" + Path("a.svg")}));
+                                      "--out=" + Path("a.html"), "--svg_out=" + Path("a.svg")}));
   for (const std::string& file : {ReadText(Path("a.html")), ReadText(Path("a.svg"))}) {
     for (const char* entry : {"recorded", "as fitted", "mu=10", "mu=60,a_x=-8"}) {
       EXPECT_TRUE(Contains(file, entry));

@@ -71,7 +71,7 @@ TEST_F(NetworkAppTest, BodiesFollowARodThatMoves) {
       RunApp("pushid-animate", {model, Recordings(), "--id=" + id_, "--out=" + Path("a.html")}));
   Succeeded(RunApp("pushid-formation",
                    {model, "--formation=line", "--people=3", "--duration=1", "--restoration=rigid",
-                    "--people_from=" + manifest_, "--bodies_out=" + Path("f.bvh")}));
+                    "--recordings=" + manifest_, "--bodies_out=" + Path("f.bvh")}));
 }
 
 TEST_F(NetworkAppTest, FlagsThatCannotBeAreNamed) {

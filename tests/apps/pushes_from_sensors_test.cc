@@ -49,7 +49,7 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   };
   const std::string c3d_flag = "--sensor=" + Path("rod.c3d");
   const auto listed = [this](const std::string& file, const std::string& more = "") {
-    return "--sensors=" + WriteText("list.json", "[{\"file\": \"" + file +
+    return "--sensor=" + WriteText("list.json", "[{\"file\": \"" + file +
                                                      "\", \"column\": \"rod\", \"gain\": -50" +
                                                      more + "}]");
   };
@@ -64,7 +64,7 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   WriteText("halves.json",
             "[{\"file\": \"rod.c3d\", \"column\": \"rod\", \"gain\": -25},"
             " {\"file\": \"rod.c3d\", \"column\": \"rod\", \"gain\": -25}]");
-  run = with({"--sensors=" + Path("halves.json")});
+  run = with({"--sensor=" + Path("halves.json")});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(ReadText(Path("p.csv")), alone);
   EXPECT_TRUE(Contains(run.out, "from 2 sensors together"));
@@ -99,7 +99,7 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   EXPECT_TRUE(Refused(with({c3d_flag, "--sensor_column=x"}), {"no analog channel 'x'", "rod"}));
   EXPECT_TRUE(Refused(with({"--sensor_column=rod"}), {"--sensor_column needs --sensor"}));
   EXPECT_TRUE(Refused(with({"--estimate_offset"}), {"--estimate_offset needs --sensor"}));
-  EXPECT_TRUE(Refused(with({c3d_flag, "--sensors=x.json"}), {"not both"}));
+  EXPECT_TRUE(Refused(with({listed("rod.c3d"), "--height=1"}), {"--height", "the list"}));
   EXPECT_TRUE(Refused(with({c3d_flag, "--resample_fps=30"}), {"leave --resample_fps out"}));
 }
 }  // namespace

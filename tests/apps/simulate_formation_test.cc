@@ -55,7 +55,7 @@ TEST_F(SimulateFormationTest, TheShippedModelIsOfSyntheticPeople) {
   const AppRun run =
       Succeeded(RunApp("pushid-formation",
                        {"--model=pushid:synthetic_group", "--formation=line", "--set=mu=60",
-                        "--people=4", "--spacing=0.42", "--trajectories_out=" + Path("line.txt")},
+                        "--people=4", "--spacing=0.42", "--out=" + Path("line.txt")},
                        60));
   EXPECT_TRUE(Contains(run.err, "was fitted to synthetic people"));
   EXPECT_TRUE(Contains(run.out, "not in these intervals: "));
@@ -104,7 +104,7 @@ TEST_F(SimulateFormationTest, APushToTheLeftAndWhatTheFeetDo) {
   const auto pushed = [](const std::string& model, const std::string& impulse, int degrees) {
     return RunApp("pushid-formation",
                   {"--model=" + model, "--formation=line", "--people=1", "--push=" + impulse,
-                   "--push_duration=0.7", "--push_direction=" + std::to_string(degrees)});
+                   "--push_duration=0.7", "--direction=" + std::to_string(degrees)});
   };
   const AppRun weak = pushed(steps, "3", 0), hard = pushed(steps, "60", 0);
   const AppRun left = pushed(alone_, "60", 90);
@@ -119,7 +119,7 @@ TEST_F(SimulateFormationTest, APushToTheLeftAndWhatTheFeetDo) {
   row >> person >> x >> y >> onset >> peak >> displaced;
   EXPECT_GT(std::stod(displaced), 0.03) << left.out;
   EXPECT_TRUE(
-      Refused(Simulate({"--formation=line", "--push_direction=400"}), {"--push_direction", "360"}));
+      Refused(Simulate({"--formation=line", "--direction=400"}), {"--direction", "360"}));
 }
 
 TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {
@@ -132,7 +132,7 @@ TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {
 // The two people of the fixture in turn, and not the formation's own.
 TEST_F(SimulateFormationTest, TenRecordedPeopleInALine) {
   const AppRun run =
-      Succeeded(Simulate({"--formation=line", "--people=10", "--people_from=" + manifest_,
+      Succeeded(Simulate({"--formation=line", "--people=10", "--recordings=" + manifest_,
                           "--bvh_out=" + Path("line"), "--duration=1"}));
   EXPECT_TRUE(Contains(run.out, "10 recorded people in a line"));
   std::vector<double> masses;
@@ -145,10 +145,10 @@ TEST_F(SimulateFormationTest, TenRecordedPeopleInALine) {
   const auto people = Json(Path("line/manifest.json"))["recordings"][0]["subjects"];
   ASSERT_EQ(people.size(), 10u);
   for (int n = 0; n < 10; ++n) EXPECT_EQ(people[n]["mass_kg"], masses[n % 2]) << n;
-  EXPECT_TRUE(Refused(Simulate({"--formation=line", "--people_from=" + manifest_, "--mass=70"}),
-                      {"--people_from gives", "leave out --mass"}));
+  EXPECT_TRUE(Refused(Simulate({"--formation=line", "--recordings=" + manifest_, "--mass=70"}),
+                      {"--recordings gives", "leave out --mass"}));
   EXPECT_TRUE(
-      Refused(Simulate({"--formation=line", "--people_from=" + Path("none.json")}), {"none.json"}));
+      Refused(Simulate({"--formation=line", "--recordings=" + Path("none.json")}), {"none.json"}));
 }
 
 TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
@@ -251,7 +251,7 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--noise=0.1"}, {"no flag --noise"}},
       {{"--formation=line", "--svg_out=/none/wave.svg"}, {"/none/wave.svg"}},
       {{"--formation=line", "--people=301", "--svg_out=x"}, {"--svg_out", "300"}},
-      {{"--formation=line", "--joints_out=x"}, {"--joints_out needs bodies", "--restoration"}},
+      {{"--formation=line", "--poses_out=x"}, {"--poses_out needs bodies", "--restoration"}},
       {{"--formation=line", "--bvh_out=" + alone_}, {"--bvh_out", "file"}},
       {{"--spacing=1"}, {"--formation is missing", "line, diamond or grid"}},
       {{"--formation=line", "--push=80@0,80@3", "--duration=2"}, {"--duration", "at 3 s"}},
@@ -273,14 +273,14 @@ TEST_F(SimulateFormationTest, ACrowdIsAFormation) {
                                       "30 1 0.5 0.02\n44 1 1.0 -0.01\n");
   const AppRun run =
       Succeeded(Simulate({"--formation=" + crowd, "--formation_frame=1", "--pushed=1", "--push=20",
-                          "--duration=2", "--trajectories_out=" + Path("out.txt")}));
+                          "--duration=2", "--out=" + Path("out.txt")}));
   EXPECT_TRUE(Contains(run.out, "3 people of " + crowd + ", frame 1"));
   const std::string out = ReadText(Path("out.txt"));
   EXPECT_TRUE(Contains(out, "\n30\t0\t0.5\t0.02\t"));
   EXPECT_FALSE(Contains(out, "person")) << "ids are the file's own";
   // The result is itself a crowd.
   Succeeded(Simulate({"--formation=" + Path("out.txt"), "--push=20", "--formation_frame=60",
-                      "--trajectories_out=" + Path("next.txt")}));
+                      "--out=" + Path("next.txt")}));
   const auto refused = [&](const std::vector<std::string>& more, const std::string& says) {
     return Refused(Simulate(With({"--formation=" + crowd}, more)), {says});
   };
@@ -288,8 +288,8 @@ TEST_F(SimulateFormationTest, ACrowdIsAFormation) {
   EXPECT_TRUE(refused({"--people=3"}, "--people is for line, diamond and grid"));
   EXPECT_TRUE(refused({"--formation_frame=1", "--pushed=3"}, "the 3 people of the file count"));
   EXPECT_TRUE(refused({"--formation_frame=1", "--pushed=44"}, "the file's id 44 is person 2"));
-  EXPECT_TRUE(refused({"--trajectories_out=" + crowd}, "both name"));
-  EXPECT_TRUE(refused({"--trajectories_out=a.csv"}, "trajectories end in .txt"));
+  EXPECT_TRUE(refused({"--out=" + crowd}, "both name"));
+  EXPECT_TRUE(refused({"--out=a.csv"}, "trajectories end in .txt"));
   EXPECT_TRUE(Refused(Simulate({"--formation=line", "--formation_frame=1"}),
                       {"--formation_frame needs a trajectory file"}));
 }

@@ -68,7 +68,7 @@ TEST_F(SimulateAppTest, TheTruthOfGroupsIsFound) {
 
 // Feet that hold and step, with default flags: errors of the fit hold the truth of most parameters.
 TEST_F(SimulateAppTest, TheTruthMayStand) {
-  const std::string manifest = Simulate("made", {"--truth_stance=steps", "--people=5"});
+  const std::string manifest = Simulate("made", {"--stance=steps", "--people=5"});
   EXPECT_EQ(Json(manifest)["synthetic"]["stance"], "steps");
   Succeeded(RunApp("pushid-fit", {"--recordings=" + manifest, "--stance=steps",
                                   "--model_out=" + Path("model.json")}));
@@ -78,8 +78,8 @@ TEST_F(SimulateAppTest, TheTruthMayStand) {
   ASSERT_TRUE(covered != std::string::npos && covered > 2) << report.out;
   EXPECT_GE(std::stoi(report.out.substr(covered - 2, 2)), 10) << report.out;
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--model=" + Path("model.json"),
-                                                 "--truth_stance=slide", "--out=" + Path("again")}),
-                      {"--truth_stance"}));
+                                                 "--stance=slide", "--out=" + Path("again")}),
+                      {"--stance"}));
 }
 
 TEST_F(SimulateAppTest, TheSameSeedWritesTheSameFiles) {
@@ -143,7 +143,7 @@ TEST_F(PushAppTest, InverseDynamicsGivesLinesForTheManifest) {
 }
 
 TEST_F(PushAppTest, TheWindowMayBeNamed) {
-  const AppRun made = Succeeded(MakePush({"--first_frame=2", "--end_frame=9"}));
+  const AppRun made = Succeeded(MakePush({"--frames=2:9"}));
   EXPECT_TRUE(Contains(made.out, "7 rows from frame 2"));
   EXPECT_TRUE(Contains(made.out, "\"start_frame\": 2"));
 }
@@ -172,7 +172,7 @@ TEST_F(PushAppTest, ASensorsForceGivesLinesForTheManifest) {
 TEST_F(PushAppTest, FlagsOfTheOtherWayAreRefused) {
   const std::string sensor = "--sensor=" + WriteText("f.csv", "time,force\n0.1,0\n0.2,9\n0.3,0\n");
   EXPECT_TRUE(Refused(MakePush({"--height=0.9"}), {"--height", "--sensor"}));
-  EXPECT_TRUE(Refused(MakePush({sensor, "--first_frame=5"}), {"--first_frame", "--sensor"}));
+  EXPECT_TRUE(Refused(MakePush({sensor, "--frames=5:9"}), {"--frames", "--sensor"}));
   EXPECT_TRUE(Refused(MakePush({sensor, "--height=50"}), {"--height"}));
   EXPECT_FALSE(std::filesystem::exists(Path("made/push.csv")));
 }
@@ -180,18 +180,18 @@ TEST_F(PushAppTest, FlagsOfTheOtherWayAreRefused) {
 TEST_F(PushAppTest, APushIsNotReplacedUnasked) {
   ASSERT_EQ(MakePush({}).exit_code, 0);
   const std::string before = ReadText(Path("made/push.csv"));
-  EXPECT_TRUE(Refused(MakePush({"--first_frame=2", "--end_frame=9"}),
+  EXPECT_TRUE(Refused(MakePush({"--frames=2:9"}),
                       {Path("made/push.csv"), "--overwrite"}));
   EXPECT_EQ(ReadText(Path("made/push.csv")), before);
 }
 
 // Inside a motion: who is taken to be at rest there needs a blow.
 TEST_F(PushAppTest, AWindowInsideAMotionStartsWithItsVelocity) {
-  const AppRun usual = Succeeded(MakePush({"--first_frame=15", "--end_frame=30"}));
+  const AppRun usual = Succeeded(MakePush({"--frames=15:30"}));
   EXPECT_TRUE(Contains(usual.out, "m/s at its start"));
   EXPECT_FALSE(Contains(usual.err, "stands out")) << usual.err;
   const AppRun at_rest = Succeeded(
-      MakePush({"--first_frame=15", "--end_frame=30", "--initial_velocity=zero", "--overwrite"}));
+      MakePush({"--frames=15:30", "--initial_velocity=zero", "--overwrite"}));
   EXPECT_TRUE(Contains(at_rest.err, "the first row"));
   EXPECT_TRUE(Contains(at_rest.err, "stands out"));
   EXPECT_TRUE(
@@ -202,7 +202,7 @@ TEST_F(PushAppTest, EntriesOfSeveralRecordings) {
   const auto before = Json(manifest_)["recordings"];
   const std::string ids =
       before[0]["id"].get<std::string>() + "," + before[1]["id"].get<std::string>();
-  const std::vector<std::string> flags = {Recordings(), "--ids=" + ids, "--into_manifest",
+  const std::vector<std::string> flags = {Recordings(), "--ids=" + ids, "--update",
                                           "--out=" + Path("made/{id}.csv")};
   std::filesystem::create_directories(Path("made"));
   // Both have a push already.

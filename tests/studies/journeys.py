@@ -164,7 +164,7 @@ def sensor(journey):
                 "--masses=data/masses.csv", "--up=y", "--forward=x", "--out=manifest.json")
     for r in recordings:
         journey.run("pushid-push", "--recordings=manifest.json", f"--id={r['id']}", f"--sensor=data/{r['id']}_force.csv",
-                    f"--sensor_start={CLOCK}", "--height=0.9", f"--out=push/{r['id']}.csv", "--into_manifest")
+                    f"--sensor_start={CLOCK}", "--height=0.9", f"--out=push/{r['id']}.csv", "--update")
     doubts = journey.run("pushid-inspect", "manifest.json")
     need(" case" not in doubts, "pushid-inspect doubts recordings that are sound")
     journey.run("pushid-fit", "--recordings=manifest.json", "--model_out=model.json")
@@ -221,11 +221,11 @@ def bvh(journey):
         write_cmu(journey.path(f"truth/{r['bvh'][0]}"), journey.path(f"cmu/{r['id']}.bvh"))
     first = recordings[0]["id"]
     need("LeftFoot" in journey.run("pushid-inspect", f"cmu/{first}.bvh"), "pushid-inspect does not see CMU's ankles")
-    journey.run("pushid-manifest", "--folder=cmu", "--pattern={subject}_{take}_{magnitude}.bvh", "--mass_kg=75",
+    journey.run("pushid-manifest", "--folder=cmu", "--pattern={subject}_{take}_{magnitude}.bvh", "--mass=75",
                 "--out=manifest.json")
     read = ["--recordings=manifest.json", f"--length_scale={CMU_UNIT}"]
     journey.run("pushid-push", *read, "--ids=" + ",".join(r["id"] for r in recordings), "--out=push/{id}.csv",
-                "--into_manifest")
+                "--update")
     journey.run("pushid-fit", *read, "--model_out=model.json")
     predict = ["--model=model.json", *read, f"--id={first}", "--restoration=rigid"]
     journey.run("pushid-predict", *predict, "--out=motion.bvh")

@@ -273,7 +273,7 @@ def people():
         for name, flags in [("ten in a line", ["--formation=line", "--people=10"]),
                             ("13 in a diamond", ["--formation=diamond", "--people=13"])]:
             done = studies.run("pushid-formation", f"--model={trained.fitted.path}", *flags,
-                               f"--people_from={trained.train}", f"--restoration={trained.restoration}", "--push=80",
+                               f"--recordings={trained.train}", f"--restoration={trained.restoration}", "--push=80",
                                "--duration=4", out="csv_out", ending="csv", may_fail=True)
             if done.failed:
                 rows.append([system, name, "left the domain", None, None])

@@ -58,7 +58,7 @@ def train(data, pooling):
 
 
 def forecast(data, pooling, chosen=None):
-    return data.run("pushid-generate", f"--model={train(data, pooling).path}", "--published=sdm", "--sampling_steps=25",
+    return data.run("pushid-generate", f"--model={train(data, pooling).path}", "--published=sdm", "--steps=25",
                     "--observed=20", *data.given, chosen or f"--ids={data.left_out()}", "--quiet").json
 
 

@@ -26,7 +26,7 @@ def pushes():
     rows = []
     for setting in ("", "row_1"):
         for push in (30, 80, 157):
-            text = simulate(f"--push={push}", *([f"--as_setting={setting}"] if setting else []))
+            text = simulate(f"--push={push}", *([f"--setting={setting}"] if setting else []))
             lines = text.splitlines()
             moved, _, wave = next(line for line in lines if "people moved by" in line).partition("; ")
             header = next(line for line in lines if line.startswith("person "))

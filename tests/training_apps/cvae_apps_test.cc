@@ -44,14 +44,14 @@ TEST_F(CvaeAppTest, ThePublishedCvaeSaysItsSizesAndDraws) {
   const auto joints = [&](const std::vector<std::string>& more) {
     Succeeded(RunApp("pushid-predict",
                      With({model_, Recordings(), "--restoration=" + Path("v"), "--id=" + id_,
-                           "--out=" + Path("m.bvh"), "--joints_out=" + Path("j.csv")},
+                           "--out=" + Path("m.bvh"), "--poses_out=" + Path("j.csv")},
                           more)));
     return ReadText(Path("j.csv"));
   };
   const std::string mean = joints({}), drawn = joints({"--latent=draw"});
   EXPECT_NE(mean, drawn);
-  EXPECT_EQ(drawn, joints({"--latent=draw", "--latent_seed=1"}));
-  EXPECT_NE(drawn, joints({"--latent=draw", "--latent_seed=2"}));
+  EXPECT_EQ(drawn, joints({"--latent=draw:1"}));
+  EXPECT_NE(drawn, joints({"--latent=draw:2"}));
 }
 
 TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {

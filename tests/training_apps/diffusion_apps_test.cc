@@ -19,7 +19,7 @@ class DiffusionAppTest : public AppTest {
   }
   AppRun Generate(std::vector<std::string> more) const {
     more.insert(more.end(),
-                {"--model=" + Path("g"), Recordings(), "--sampling_steps=2", "--quiet"});
+                {"--model=" + Path("g"), Recordings(), "--steps=2", "--quiet"});
     return RunApp("pushid-generate", more);
   }
 };
@@ -27,8 +27,8 @@ class DiffusionAppTest : public AppTest {
 TEST_F(DiffusionAppTest, TrainsForecastsAndShows) {
   Succeeded(Train({"--out=" + Path("g")}));
   EXPECT_TRUE(Contains(ReadText(Path("g/curve.svg")), "<svg"));
-  Succeeded(Generate({"--id=" + id_, "--frames=90", "--page_out=" + Path("p.html"),
-                      "--poses_out=" + Path("p.csv"), "--strip_out=" + Path("s.svg"),
+  Succeeded(Generate({"--id=" + id_, "--frames=90", "--html_out=" + Path("p.html"),
+                      "--poses_out=" + Path("p.csv"), "--svg_out=" + Path("s.svg"),
                       "--json_out=" + Path("e.json")}));
   const auto json = Json(Path("e.json"));
   EXPECT_GT(json["mean"]["MPJPE_m"].get<double>(), 0.0);
@@ -60,12 +60,12 @@ TEST_F(DiffusionAppTest, GroupsWithoutAPushAreForecastAndTheirStatesCompared) {
                    {"--published=sdm", turns, "--steps=5", "--batch=2", "--quiet",
                     "--hold_out=false", "--observed=20", "--out=" + Path("g")}));
   const auto generate = [&](std::vector<std::string> more) {
-    more.insert(more.end(), {"--model=" + Path("g"), turns, "--sampling_steps=2", "--quiet",
+    more.insert(more.end(), {"--model=" + Path("g"), turns, "--steps=2", "--quiet",
                              "--json_out=" + Path("e.json")});
     return RunApp("pushid-generate", more);
   };
   const AppRun run = Succeeded(generate(
-      {"--states=" + Path("t/states.csv"), "--id=turns_01", "--page_out=" + Path("p.html")}));
+      {"--states=" + Path("t/states.csv"), "--id=turns_01", "--html_out=" + Path("p.html")}));
   EXPECT_TRUE(Contains(run.out, "root 1 s"));
   auto json = Json(Path("e.json"));
   EXPECT_EQ(json["errors_at"][0]["recordings"], 4);
@@ -77,7 +77,7 @@ TEST_F(DiffusionAppTest, GroupsWithoutAPushAreForecastAndTheirStatesCompared) {
   EXPECT_EQ(by_frame["ndms"].size(), 52u);
   EXPECT_TRUE(Contains(ReadText(Path("p.html")), "people: changes of state a minute"));
   // The built-in states from a file are the built-in ones.
-  ASSERT_EQ(generate({"--states_out=" + Path("s.csv")}).exit_code, 0);
+  ASSERT_EQ(generate({"--csv_out=" + Path("s.csv")}).exit_code, 0);
   auto built_in = Json(Path("e.json"));
   ASSERT_EQ(generate({"--states=" + Path("s.csv")}).exit_code, 0);
   auto from_file = Json(Path("e.json"));
@@ -109,7 +109,7 @@ TEST_F(DiffusionAppTest, PushesOfAnotherKindAreToldOf) {
   Succeeded(Train({"--out=" + Path("g")}));
   const auto generate = [&](const std::string& recordings) {
     return RunApp("pushid-generate",
-                  {"--model=" + Path("g"), recordings, "--sampling_steps=2", "--quiet"});
+                  {"--model=" + Path("g"), recordings, "--steps=2", "--quiet"});
   };
   EXPECT_EQ(generate(Recordings()).err, "");
   const AppRun other = generate(ChangedManifest([](nlohmann::ordered_json& json) {
@@ -136,7 +136,7 @@ TEST_F(DiffusionAppTest, MistakesAreNamed) {
     EXPECT_TRUE(Refused(Generate({flag}), {"has no effect on a generator of diffusion"})) << flag;
   }
   EXPECT_TRUE(Refused(Generate({"--sampler=ode"}), {"--sampler is 'ode'"}));
-  EXPECT_TRUE(Refused(Generate({"--id=nobody", "--page_out=" + Path("p.html")}), {"nobody"}));
+  EXPECT_TRUE(Refused(Generate({"--id=nobody", "--html_out=" + Path("p.html")}), {"nobody"}));
 }
 
 }  // namespace

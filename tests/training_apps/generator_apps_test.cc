@@ -52,7 +52,7 @@ TEST_F(GeneratorAppTest, TrainsForecastsSamplesAndShows) {
   const AppRun run =
       Succeeded(Generate({"--samples=19", "--json_out=" + Path("e.json"), "--action=sway",
                           "--window=1", "--poses_out=" + Path("p.csv"),
-                          "--strip_out=" + Path("s.svg"), "--page_out=" + Path("p.html")}));
+                          "--svg_out=" + Path("s.svg"), "--html_out=" + Path("p.html")}));
   EXPECT_TRUE(Contains(run.out, "mean of actions"));
   const auto json = Json("e.json");
   for (const char* horizon : {"80", "160", "320", "400", "1000"}) {
@@ -136,7 +136,7 @@ constexpr char kProbe[] = R"js(  const picture = () => document.getElementById('
 TEST_F(GeneratorAppTest, ThePageWorksInABrowser) {
   if (Browser().empty()) GTEST_SKIP() << "chromium is not installed";
   Succeeded(Train("g"));
-  Succeeded(Generate({"--samples=19", "--page_out=" + Path("fan.html")}));
+  Succeeded(Generate({"--samples=19", "--html_out=" + Path("fan.html")}));
   std::string page = ReadText(Path("fan.html"));
   EXPECT_FALSE(Contains(page, "http")) << "opens from disk";
   const AppRun seen =

@@ -50,7 +50,7 @@ TEST_F(RestorationAppTest, TrainsEvaluatesAndPredicts) {
   EXPECT_GT(json["recordings"][0]["MPJPE_m"].get<double>(), 0.0);
   const AppRun predict = Succeeded(RunApp(
       "pushid-predict", {model_, Recordings(), restoration, "--id=" + id_, "--out=" + Path("m.bvh"),
-                         "--joints_out=" + Path("j.csv"), "--json_out=" + Path("j.json")}));
+                         "--poses_out=" + Path("j.csv"), "--json_out=" + Path("j.json")}));
   EXPECT_TRUE(Contains(predict.out, "MPJPE"));
   const auto bvh = Unwrapped(ReadBvhPositions(Path("m.bvh"), {LengthUnit::kMillimetre, {}, {}}));
   EXPECT_EQ(bvh.num_frames(), 45);
@@ -87,13 +87,13 @@ TEST_F(RestorationAppTest, AnimatesAndPosesFormations) {
   const std::string restoration = Trained();
   const AppRun animate = Succeeded(
       RunApp("pushid-animate", {model_, Recordings(), restoration, "--id=" + id_,
-                                "--out=" + Path("a.html"), "--strip_out=" + Path("a.svg")}));
+                                "--out=" + Path("a.html"), "--svg_out=" + Path("a.svg")}));
   const std::string html = ReadText(Path("a.html"));
   EXPECT_TRUE(Contains(html, "</html>"));
   EXPECT_FALSE(Contains(html, "http")) << "the page must stand alone";
   const AppRun simulate = Succeeded(RunApp(
       "pushid-formation", {model_, restoration, "--formation=line", "--people=3", "--duration=1",
-                           "--people_from=" + manifest_, "--html_out=" + Path("f.html"),
+                           "--recordings=" + manifest_, "--html_out=" + Path("f.html"),
                            "--bodies_out=" + Path("f.bvh")}));
   EXPECT_TRUE(std::filesystem::exists(Path("f_2_p02.bvh")));
   EXPECT_TRUE(Contains(simulate.err, "--more_settings=groups")) << "it saw people alone";
@@ -201,11 +201,11 @@ TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
           {"--postprocess", "magic", "fade"});
   refused("pushid-animate", {"--id=" + id_}, {"--out"});
   refused("pushid-evaluate", {"--latent=draw"}, {"--latent", "--restoration"});
-  refused("pushid-evaluate", {"--restoration=rigid", "--latent_seed=2"}, {"--latent=draw"});
+  refused("pushid-evaluate", {"--restoration=rigid", "--latent=mean:2"}, {"draw:2"});
   refused("pushid-evaluate", {"--restoration=rigid", "--latent=draw"}, {"--kind=cvae"});
   EXPECT_TRUE(
-      Refused(RunApp("pushid-formation", {model_, "--formation=line", "--joints_out=x.csv"}),
-              {"--joints_out", "--restoration"}));
+      Refused(RunApp("pushid-formation", {model_, "--formation=line", "--poses_out=x.csv"}),
+              {"--poses_out", "--restoration"}));
 }
 
 }  // namespace

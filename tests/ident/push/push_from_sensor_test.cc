@@ -182,7 +182,8 @@ TEST(PushFromSensor, UnsoundInputsAreErrors) {
   options.clock_error_s = 0.0;
   SensorRecord resting = record;  // it never reads nothing
   for (Vector3<double>& force : resting.force) force.x() += 30.0;
-  EXPECT_TRUE(Contains(problem(resting, options), "what it reads at rest (zero, in --sensors)"));
+  EXPECT_TRUE(
+      Contains(problem(resting, options), "what it reads at rest (zero, in a list of sensors)"));
   options.frame_zero_time_s = 5.0;  // all of it
   EXPECT_TRUE(Contains(problem(record, options), "outside recording"));
   options = {};
