@@ -14,6 +14,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/recording_flags.h"
 #include "datasets/files/atomic_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/inspection/findings.h"
@@ -26,7 +27,6 @@ DEFINE_string(id, "", "the recording; or several by --ids");
 DEFINE_int32(person, 0, "number of the pushed person, counted from 0");
 DEFINE_string(out, "", "write the push here (CSV); {id} is replaced by the recording's id");
 DEFINE_bool(update, false, "write the push's entry into the manifest");
-
 
 DEFINE_string(frames, "",
               "inverse dynamics: the window, its first frame and the frame after it, as in 25:40; "
@@ -65,7 +65,8 @@ struct PushFlags {
 
 bool SensorsListed() { return EndsWith(FLAGS_sensor, ".json"); }
 
-const std::vector<std::string> kOfOneSensor = {"sensor_column", "direction", "height", "sensor_start"};
+const std::vector<std::string> kOfOneSensor = {"sensor_column", "direction", "height",
+                                               "sensor_start"};
 
 std::vector<SensorChoice> SensorsFromFlags() {
   if (SensorsListed()) return OrFail(ReadSensorList(FLAGS_sensor));
