@@ -216,8 +216,8 @@ int Run() {
   }
   std::vector<HeldOutFutures> futures;
   for (const auto& [name, model] : noisy) {
-    futures.push_back(CrossValidateFutures(name, pendulums, folds, model, drawn,
-                                           kFuturesSeed, NumThreads(), line.OfJobs(name + ", futures: fold")));
+    futures.push_back(CrossValidateFutures(name, pendulums, folds, model, drawn, kFuturesSeed,
+                                           NumThreads(), line.OfJobs(name + ", futures: fold")));
   }
   std::vector<BandCoverage> bands;
   if (FLAGS_bands) {

@@ -125,8 +125,8 @@ void CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
   std::vector<const char*> foreign = {"folder",        "action",  "window", "protocol",
                                       "target_window", "without", "samples"};
   if (!groups) {
-    foreign = {"recordings", "setting",    "id",      "observed",       "physics", "frames",
-               "states",     "csv_out", "sampler", "steps", "blend"};
+    foreign = {"recordings", "setting", "id",      "observed", "physics", "frames",
+               "states",     "csv_out", "sampler", "steps",    "blend"};
   }
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;

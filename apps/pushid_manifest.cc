@@ -22,8 +22,7 @@ DEFINE_string(pattern, "",
               "other {name} only tells recordings apart, * matches anything");
 DEFINE_string(push_pattern, "", "paths of the push CSV files, with {names} from --pattern");
 DEFINE_string(masses, "", "masses of the subjects: a CSV file id,mass_kg");
-DEFINE_double(mass, pushid::ManifestOptions{}.mass_kg,
-              "mass of everybody not listed in --masses");
+DEFINE_double(mass, pushid::ManifestOptions{}.mass_kg, "mass of everybody not listed in --masses");
 DEFINE_double(fps, pushid::ManifestOptions{}.fps, "frames per second; 0: from each file");
 DEFINE_string(setting, pushid::ManifestOptions{}.setting,
               "setting, if the pattern does not give it");

@@ -34,8 +34,7 @@ DEFINE_double(push_scale, pushid::ChangedPushes{}.scale,
 DEFINE_string(push_again, "",
               "what-if: frames at which the recorded push comes again, comma-separated, as in "
               "40,80; --frames gives it time");
-DEFINE_string(poses_out, "",
-              "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");
+DEFINE_string(poses_out, "", "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");
 DEFINE_string(json_out, "", "--restoration: joint positions of every person and frame (JSON)");
 
 namespace {

@@ -130,8 +130,7 @@ PushWindow FlaggedWindow() {
   PushWindow window = {-1, -1};
   if (FLAGS_frames.empty()) return window;
   char rest = 0;
-  const int read =
-      std::sscanf(FLAGS_frames.c_str(), "%d:%d%c", &window.start, &window.end, &rest);
+  const int read = std::sscanf(FLAGS_frames.c_str(), "%d:%d%c", &window.start, &window.end, &rest);
   if (read == 2 && window.start >= 0 && window.end >= 0) return window;
   throw Error{"--frames is '" + FLAGS_frames + "'; write first:end, counted from 0, as in 25:40"};
 }
@@ -223,8 +222,7 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
     throw Error{"recording " + recording.id + " has fewer than " + std::to_string(kSmoothing) +
                 " frames, over which a push is smoothed"};
   }
-  const PushWindow window =
-      OrFail(PushWindowFrom(FlaggedWindow(), recording, options));
+  const PushWindow window = OrFail(PushWindowFrom(FlaggedWindow(), recording, options));
   const EstimatedPush push = OrFail(EstimatePush(recording, window, options));
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(FLAGS_person, t) > 0.0) continue;
@@ -232,10 +230,9 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
          " of the push: the force there is computed from interpolated positions");
     break;
   }
-  return MadePush{
-      push.push, push.kind,
-      "by inverse dynamics, smoothed over " + std::to_string(kSmoothing) + " frames",
-      push.start_speed};
+  return MadePush{push.push, push.kind,
+                  "by inverse dynamics, smoothed over " + std::to_string(kSmoothing) + " frames",
+                  push.start_speed};
 }
 
 void WarnOfFirstRow(const std::string& id, const MadePush& made) {

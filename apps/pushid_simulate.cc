@@ -48,9 +48,10 @@ DEFINE_string(
 DEFINE_string(truth_noise, pushid::NameOf(pushid::SyntheticOptions{}.model.process_noise),
               "without --model: process noise of the synthetic people: none or diagonal "
               "(--set=sigma_x=...)");
-DEFINE_double(subject_spread, pushid::SyntheticOptions{}.subject_spread,
-              "variation of all parameters between people (standard deviation of the logarithm; 0.1 is "
-              "about 10 %)");
+DEFINE_double(
+    subject_spread, pushid::SyntheticOptions{}.subject_spread,
+    "variation of all parameters between people (standard deviation of the logarithm; 0.1 is "
+    "about 10 %)");
 DEFINE_int32(clips, 0,
              "write motion-capture clips of a walking stick figure instead, for "
              "pushid-train-generator: so many of each of four actions, and one more "

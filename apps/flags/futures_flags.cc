@@ -32,8 +32,7 @@ int DrawnFutures() {
   return FLAGS_samples;
 }
 
-int PrintFutures(const IdentifiedModel& model, const PendulumRecording& recording,
-                 int num_frames) {
+int PrintFutures(const IdentifiedModel& model, const PendulumRecording& recording, int num_frames) {
   if (FLAGS_samples == 0) return kDone;
   const Futures futures =
       OrFail(DrawFutures(model, recording, FLAGS_samples, kFuturesSeed, num_frames));

@@ -166,8 +166,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kInputs[] = {"recordings", "model",   "physics",   "truth",
-                                   "sensor",     "masses",  "mapping",   "generator",
+constexpr const char* kInputs[] = {"recordings", "model",    "physics",  "truth",
+                                   "sensor",     "masses",   "mapping",  "generator",
                                    "plan",       "flagfile", "formation"};
 
 // Through symbolic and hard links too. One file that exists is never another that does not.

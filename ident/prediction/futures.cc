@@ -1,4 +1,4 @@
-// ident: draws, proper scores of them, words and files.
+// ident: draws, proper scores of them, and words.
 #include "ident/prediction/futures.h"
 
 #include <algorithm>
@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 
-#include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "ident/figures/text_table.h"

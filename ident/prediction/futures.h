@@ -88,9 +88,6 @@ FuturesSummary SummarizeFutures(const std::string& name,
 // number of steps.
 std::string LastFrameText(const Futures& futures);
 
-// draw, frame, person, hip x, y, z (m), theta, phi (rad).
-MaybeError WriteFuturesCsv(const std::string& file, const Futures& futures);
-
 // A row for each metric, a column for each summary.
 std::string FuturesText(const std::vector<FuturesSummary>& summaries);
 

@@ -215,9 +215,9 @@ Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded,
     const Vector3<double>& rest = record.value().subtracted;
     if (rest.norm() > 0.0) {
       const double size = record.value().is_vector ? rest.norm() : rest.x();
-      read.how +=
-          "; " + Rounded(size, 3) + " N before the pull subtracted (zero: 0, "
-          "in a list of sensors, keeps them)";
+      read.how += "; " + Rounded(size, 3) +
+                  " N before the pull subtracted (zero: 0, "
+                  "in a list of sensors, keeps them)";
     }
     read.choices.push_back(sensor);
     read.records.push_back(std::move(record.value()));
@@ -515,8 +515,7 @@ Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces
   }
   if (best == -steps || best == steps) {
     return Error{"recording " + recording.id + ": force and motion do not fit together within " +
-                 Rounded(max_offset_s) +
-                 " s; give the sensor's time at frame 0"};
+                 Rounded(max_offset_s) + " s; give the sensor's time at frame 0"};
   }
   SensorOffset result;
   result.offset_s = best * max_offset_s / steps;

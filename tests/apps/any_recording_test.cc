@@ -181,8 +181,8 @@ TEST_F(AnyRecordingTest, Manifest) {
   EXPECT_TRUE(Contains(run.out, "12 recordings from 12 files"));
   run = Succeeded(RunApp("pushid-fit", {"--recordings=" + Path("made.json")}));
   // Measured pushes, the default, have no tail to fit.
-  Succeeded(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push,
-                                       "--mass=80", "--out=" + Path("measured.json")}));
+  Succeeded(RunApp("pushid-manifest", {"--folder=" + folder_.string(), pattern, push, "--mass=80",
+                                       "--out=" + Path("measured.json")}));
   const std::string measured = "--recordings=" + Path("measured.json");
   run = Succeeded(RunApp("pushid-fit", {measured}));
   EXPECT_TRUE(Contains(run.out, "warning: every push is external"));
@@ -282,9 +282,9 @@ TEST_F(AnyRecordingTest, ASensorInTheFileOfTheMotion) {
   entry.erase("frames");
   entry["first_frame"] = 10;
   WriteText("other.json", json.dump(1));
-  const AppRun run = Succeeded(RunApp(
-      "pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(), "--sensor=" + file,
-                      "--sensor_column=rod", "--out=" + Path("p.csv")}));
+  const AppRun run = Succeeded(
+      RunApp("pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(),
+                             "--sensor=" + file, "--sensor_column=rod", "--out=" + Path("p.csv")}));
   // Five frames long, from one frame to another: half of it is in the rows of each.
   EXPECT_TRUE(Contains(run.out, "6 rows from frame 15")) << run.out;
   EXPECT_TRUE(Contains(run.out, "its clock at frame 0 is 0.1667 s")) << run.out;
@@ -296,10 +296,9 @@ TEST_F(AnyRecordingTest, ASensorInTheFileOfTheMotion) {
     text += std::to_string(i / c3d.analog_rate_hz) + "," + std::to_string(force) + "\n";
   }
   WriteText("force.csv", text);
-  const AppRun beside =
-      Succeeded(RunApp("pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(),
-                                       "--overwrite", "--sensor=" + Path("force.csv"),
-                                       "--out=" + Path("p.csv")}));
+  const AppRun beside = Succeeded(
+      RunApp("pushid-push", {recordings, "--id=" + entry["id"].get<std::string>(), "--overwrite",
+                             "--sensor=" + Path("force.csv"), "--out=" + Path("p.csv")}));
   EXPECT_TRUE(Contains(beside.out, "6 rows from frame 15")) << beside.out;
   EXPECT_TRUE(Contains(beside.out, "by the motion's times, its clock at frame 0 is 0.1667 s"));
   EXPECT_TRUE(Contains(beside.out, "2.3 N before the pull subtracted")) << beside.out;

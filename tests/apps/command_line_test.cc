@@ -69,7 +69,7 @@ TEST_F(CommandLineTest, CtrlCSaysWhatIsKept) {
     return RunProgram("/usr/bin/timeout", flags);
   };
   const AppRun run = interrupted("pushid-fit", {Recordings(), "--self_force=mlp:64", "--quiet",
-                                          "--model_out=" + Path("m.json")});
+                                                "--model_out=" + Path("m.json")});
   EXPECT_EQ(run.exit_code, 130) << run.err;
   EXPECT_TRUE(Contains(run.err, "pushid-fit: interrupted; no partial file is left"));
   EXPECT_FALSE(std::filesystem::exists(Path("m.json")));

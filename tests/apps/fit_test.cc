@@ -125,12 +125,11 @@ Words ShellWords(const std::string& line) {
 }
 
 TEST_F(FitAppTest, AdviceRepeatsTheVeryFit) {
-  const std::string first =
-      FitModel("first.json",
-               {"--preset=group", "--interaction=none", "--pool=mu,a_x", "--pool_by=subject",
-                "--posture=upright", "--gain_scaling=mass", "--preset_priors=false",
-                "--prior=a_x:-11:3", "--settling_weight=3", "--fix=c_q,d_q=0.1",
-                "--marker_noise=0.002", "--seed=3", "--leave_out=" + id_});
+  const std::string first = FitModel(
+      "first.json", {"--preset=group", "--interaction=none", "--pool=mu,a_x", "--pool_by=subject",
+                     "--posture=upright", "--gain_scaling=mass", "--preset_priors=false",
+                     "--prior=a_x:-11:3", "--settling_weight=3", "--fix=c_q,d_q=0.1",
+                     "--marker_noise=0.002", "--seed=3", "--leave_out=" + id_});
   const std::string out = fit_.out;
   const size_t begin = out.find("\n  pushid-fit ", out.find("alone changes"));
   ASSERT_NE(begin, std::string::npos) << out;

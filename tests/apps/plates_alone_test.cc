@@ -17,10 +17,10 @@ class PlatesAloneApp : public AppTest {
   // Three people on ground that sways, whom plates alone measure.
   std::string Simulated() {
     const AppRun run = RunApp(
-        "pushid-simulate", {"--out=" + Path("swaying"), "--people=3", "--recordings_per_person=2",
-                            "--stance=fixed", "--ground=sum_of_sines", "--push_kind=none",
-                            "--plates", "--frames=1000", "--fps=50",
-                            "--set=Kp_theta=1600,Kd_theta=400"});  // off the priors
+        "pushid-simulate",
+        {"--out=" + Path("swaying"), "--people=3", "--recordings_per_person=2", "--stance=fixed",
+         "--ground=sum_of_sines", "--push_kind=none", "--plates", "--frames=1000", "--fps=50",
+         "--set=Kp_theta=1600,Kd_theta=400"});  // off the priors
     EXPECT_EQ(run.exit_code, 0) << run.err;
     nlohmann::ordered_json json = Json(Path("swaying/manifest.json"));
     truth_ = json["synthetic"]["truth"];

@@ -49,9 +49,9 @@ TEST_F(PushesFromSensorsTest, OfAChannelOrAListAndWithAWrongClock) {
   };
   const std::string c3d_flag = "--sensor=" + Path("rod.c3d");
   const auto listed = [this](const std::string& file, const std::string& more = "") {
-    return "--sensor=" + WriteText("list.json", "[{\"file\": \"" + file +
-                                                     "\", \"column\": \"rod\", \"gain\": -50" +
-                                                     more + "}]");
+    return "--sensor=" +
+           WriteText("list.json", "[{\"file\": \"" + file +
+                                      "\", \"column\": \"rod\", \"gain\": -50" + more + "}]");
   };
   AppRun run = Succeeded(with({listed("rod.c3d")}));
   double impulse = 0.0;

@@ -118,8 +118,7 @@ TEST_F(SimulateFormationTest, APushToTheLeftAndWhatTheFeetDo) {
   std::string person, x, y, onset, peak, displaced;
   row >> person >> x >> y >> onset >> peak >> displaced;
   EXPECT_GT(std::stod(displaced), 0.03) << left.out;
-  EXPECT_TRUE(
-      Refused(Simulate({"--formation=line", "--direction=400"}), {"--direction", "360"}));
+  EXPECT_TRUE(Refused(Simulate({"--formation=line", "--direction=400"}), {"--direction", "360"}));
 }
 
 TEST_F(SimulateFormationTest, ThirteenInADiamondThreePushed) {

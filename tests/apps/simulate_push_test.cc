@@ -77,8 +77,8 @@ TEST_F(SimulateAppTest, TheTruthMayStand) {
   const size_t covered = report.out.find(" of 12 intervals cover the truth");
   ASSERT_TRUE(covered != std::string::npos && covered > 2) << report.out;
   EXPECT_GE(std::stoi(report.out.substr(covered - 2, 2)), 10) << report.out;
-  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--model=" + Path("model.json"),
-                                                 "--stance=slide", "--out=" + Path("again")}),
+  EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--model=" + Path("model.json"), "--stance=slide",
+                                                 "--out=" + Path("again")}),
                       {"--stance"}));
 }
 
@@ -180,8 +180,7 @@ TEST_F(PushAppTest, FlagsOfTheOtherWayAreRefused) {
 TEST_F(PushAppTest, APushIsNotReplacedUnasked) {
   ASSERT_EQ(MakePush({}).exit_code, 0);
   const std::string before = ReadText(Path("made/push.csv"));
-  EXPECT_TRUE(Refused(MakePush({"--frames=2:9"}),
-                      {Path("made/push.csv"), "--overwrite"}));
+  EXPECT_TRUE(Refused(MakePush({"--frames=2:9"}), {Path("made/push.csv"), "--overwrite"}));
   EXPECT_EQ(ReadText(Path("made/push.csv")), before);
 }
 
@@ -190,8 +189,8 @@ TEST_F(PushAppTest, AWindowInsideAMotionStartsWithItsVelocity) {
   const AppRun usual = Succeeded(MakePush({"--frames=15:30"}));
   EXPECT_TRUE(Contains(usual.out, "m/s at its start"));
   EXPECT_FALSE(Contains(usual.err, "stands out")) << usual.err;
-  const AppRun at_rest = Succeeded(
-      MakePush({"--frames=15:30", "--initial_velocity=zero", "--overwrite"}));
+  const AppRun at_rest =
+      Succeeded(MakePush({"--frames=15:30", "--initial_velocity=zero", "--overwrite"}));
   EXPECT_TRUE(Contains(at_rest.err, "the first row"));
   EXPECT_TRUE(Contains(at_rest.err, "stands out"));
   EXPECT_TRUE(
