@@ -96,6 +96,9 @@ std::string OwnFolder() {
   return failed ? "." : self.parent_path().string();
 }
 
+namespace {
+
+// Empty: nowhere.
 std::string FindProgram(const std::string& name) {
   const char* const path = std::getenv("PATH");
   for (const std::string& folder :
@@ -105,6 +108,8 @@ std::string FindProgram(const std::string& name) {
   }
   return "";
 }
+
+}  // namespace
 
 Error RunInstead(const std::string& name, const std::vector<std::string>& arguments) {
   const std::string file = FindProgram(name);

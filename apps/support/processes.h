@@ -28,9 +28,8 @@ Result<pid_t> StartChild(const ChildSpec& spec);
 
 // The folder of the running program.
 std::string OwnFolder();
-// Where a program of pushid is: beside the running one, else on the PATH; empty: nowhere.
-std::string FindProgram(const std::string& name);
-// Runs it instead of the running one, with these arguments. Returns only where that fails.
+// Runs a program of pushid, beside the running one or else on the PATH, instead of it, with these
+// arguments. Returns only where that fails.
 Error RunInstead(const std::string& name, const std::vector<std::string>& arguments);
 
 // A command as a shell takes it, every word quoted.

@@ -108,18 +108,20 @@ std::string TheirInterval(double value, const std::optional<Interval>& these) {
   return these->standard_error > 0.0 ? IntervalText(value, these->lower, these->upper) : "-";
 }
 
-}  // namespace
-
+// "97/3/0"
 std::string SharesText(const Shares& s) {
   const auto percent = [](double share) { return Rounded(std::round(100.0 * share), 3); };
   return percent(s.data) + "/" + percent(s.prior) + "/" + percent(s.settling);
 }
 
+// What priors and settling together moved the value by, in its standard errors.
 std::string PullText(const Estimate& e) {
   if (e.standard_error <= 0.0) return "-";
   const double pull = (e.shares.prior_pull + e.shares.settling_pull) / e.standard_error;
   return (pull > 0.0 ? "+" : "") + Rounded(pull, 2);
 }
+
+}  // namespace
 
 TextTable EstimateTable(const FitResult& result) {
   TextTable table({"parameter", "value", "std error", "95 % interval", kTotalColumn,
@@ -182,6 +184,9 @@ std::string SharesNote() {
          "standard errors. Prior-held: the data account for less than half.";
 }
 
+namespace {
+
+// Whom errors and status are about: these people, or people like them.
 std::string TargetText(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   if (u.num_people == 0) return "";  // a model of an older version
@@ -199,14 +204,8 @@ std::string TargetText(const FitResult& result) {
          (told_apart
               ? "; the columns of these people are about their mean: recordings are the units"
               : "") +
-         "\n" +
-         (u.num_people < kFewestPeople
-              ? "fewer than " + std::to_string(kFewestPeople) +
-                    " people: nothing is identified about people like them\n"
-              : "");
+         "\n";
 }
-
-namespace {
 
 std::string Freedom(double least, double most) {
   const std::string from = Rounded(least, 2), to = Rounded(most, 2);

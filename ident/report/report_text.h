@@ -110,10 +110,6 @@ std::string DiagnosticsText(const FittedModel& model);
 // What a result says, as tables and sentences: the terminal's report and the page show the
 // same ones. Pure functions of the result; empty where there is nothing to say.
 
-// "97/3/0", and what priors and settling together moved the value by, in its standard errors.
-std::string SharesText(const Shares& shares);
-std::string PullText(const Estimate& estimate);
-
 TextTable EstimateTable(const FitResult& result);
 // Which of the free parameters the data identify: "All 7 free parameters are identified by the
 // data.", or how many, and which are not and why.
@@ -121,8 +117,6 @@ std::string IdentifiedText(const FitResult& result);
 // What the columns of shares and pulls mean.
 std::string SharesNote();
 
-// Whom errors and status are about: these people, or people like them.
-std::string TargetText(const FitResult& result);
 // How errors were estimated, and whom they are about.
 std::string HowSure(const FitResult& result);
 

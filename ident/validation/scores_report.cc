@@ -125,6 +125,25 @@ void AddGroups(const std::vector<const ScoreSummary*>& summaries, const ShownMet
   }
 }
 
+std::string OnsetText(int frame) { return frame < 0 ? "-" : std::to_string(frame); }
+
+// A line per recording of several people.
+std::string OnsetsText(const std::vector<RecordingScore>& scores) {
+  TextTable table({"onset frames", "measured / predicted, from the pushed person on"});
+  for (const RecordingScore& score : scores) {
+    std::vector<std::string> by_rank(score.propagation.people.size());
+    for (const PersonPropagation& person : score.propagation.people) {
+      by_rank[person.rank] =
+          OnsetText(person.onset_measured) + "/" + OnsetText(person.onset_predicted);
+    }
+    std::string line;
+    for (const std::string& cell : by_rank)
+      line += cell + std::string(9 - std::min<size_t>(8, cell.size()), ' ');
+    if (!line.empty()) table.Add({score.id, line});
+  }
+  return table.ToString();
+}
+
 }  // namespace
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
@@ -206,8 +225,6 @@ std::string CountsText(double part, double whole) {
   return Rounded(part, 3) + " of " + Rounded(whole, 4);
 }
 
-std::string OnsetText(int frame) { return frame < 0 ? "-" : std::to_string(frame); }
-
 }  // namespace
 
 std::string SpeedText(const PropagationMean& slowness) {
@@ -256,22 +273,6 @@ std::vector<std::string> FoldPropagationCells(const PropagationSummary& s) {
   const bool says = onset.known() && !MostMissed(s);
   return {says ? Rounded(onset.value, 3) : "-", CountsText(s.missed_movers, s.movers),
           CountsText(s.false_movers, s.bystanders)};
-}
-
-std::string OnsetsText(const std::vector<RecordingScore>& scores) {
-  TextTable table({"onset frames", "measured / predicted, from the pushed person on"});
-  for (const RecordingScore& score : scores) {
-    std::vector<std::string> by_rank(score.propagation.people.size());
-    for (const PersonPropagation& person : score.propagation.people) {
-      by_rank[person.rank] =
-          OnsetText(person.onset_measured) + "/" + OnsetText(person.onset_predicted);
-    }
-    std::string line;
-    for (const std::string& cell : by_rank)
-      line += cell + std::string(9 - std::min<size_t>(8, cell.size()), ' ');
-    if (!line.empty()) table.Add({score.id, line});
-  }
-  return table.ToString();
 }
 
 namespace {

@@ -38,8 +38,6 @@ std::string PropagationText(const std::vector<PropagationColumn>& columns);
 std::string SpeedText(const PropagationMean& slowness);
 // Onset error, missed and false movers of one fold.
 std::vector<std::string> FoldPropagationCells(const PropagationSummary& summary);
-// A line per recording of several people.
-std::string OnsetsText(const std::vector<RecordingScore>& scores);
 
 std::string CrossValidationText(const std::vector<CrossValidation>& candidates);
 
