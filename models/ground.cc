@@ -2,7 +2,6 @@
 #include "models/ground.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 namespace pushid {

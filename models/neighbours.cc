@@ -1,8 +1,6 @@
 // models: the neighbour grid and the canonical order.
 #include "models/neighbours.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 

@@ -1,8 +1,6 @@
 // models: local cubic least squares.
 #include "models/skeleton_mapping.h"
 
-#include <algorithm>
-
 #include "models/decompositions.h"
 
 namespace pushid {

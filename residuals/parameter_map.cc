@@ -2,7 +2,6 @@
 #include "residuals/parameter_map.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace pushid {
 

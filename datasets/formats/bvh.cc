@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <unordered_set>
-#include <utility>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"

@@ -10,7 +10,6 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/c3d_parameters.h"
-#include "datasets/formats/point_motion.h"
 
 namespace pushid {
 namespace {

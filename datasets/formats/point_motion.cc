@@ -10,8 +10,6 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/files/numeric_table.h"
-#include "datasets/formats/units.h"
 
 namespace pushid {
 MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion) {

@@ -7,7 +7,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <utility>
 
 #include "datasets/files/input_file.h"
 #include "datasets/files/names.h"

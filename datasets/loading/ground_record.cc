@@ -1,7 +1,6 @@
 // datasets: ground that moves, from columns or from markers on it.
 #include "datasets/loading/ground_record.h"
 
-#include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>

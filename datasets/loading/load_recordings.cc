@@ -8,14 +8,11 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
-#include "datasets/formats/units.h"
 #include "datasets/loading/ground_record.h"
-#include "datasets/loading/motion_preparation.h"
 #include "datasets/loading/plate_record.h"
 #include "datasets/loading/recording_from_tracks.h"
 #include "datasets/manifest/column_mapping.h"
 #include "datasets/manifest/joint_choice.h"
-#include "datasets/manifest/manifest.h"
 
 namespace pushid {
 namespace {

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <regex>
-#include <vector>
 
 #include "datasets/files/input_file.h"
 #include "datasets/files/json_fields.h"

@@ -9,11 +9,8 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
-#include "datasets/formats/units.h"
 #include "datasets/loading/ground_record.h"
-#include "datasets/loading/motion_preparation.h"
 #include "datasets/loading/plate_record.h"
-#include "datasets/manifest/joint_choice.h"
 #include "datasets/manifest/manifest.h"
 #include "models/enum_names.h"
 

@@ -5,7 +5,6 @@
 
 #include "datasets/files/json_fields.h"
 #include "datasets/files/json_file.h"
-#include "datasets/formats/units.h"
 #include "datasets/manifest/body_roles.h"
 
 namespace pushid {

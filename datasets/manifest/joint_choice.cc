@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/manifest/body_roles.h"
 
 namespace pushid {
 bool IsFzjSkeleton(const BvhSkeleton& skeleton) {

@@ -2,8 +2,6 @@
 #include "datasets/manifest/laboratory_keys.h"
 
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include "datasets/files/json_fields.h"
 #include "datasets/files/number_text.h"

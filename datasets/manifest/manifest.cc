@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
 #include <unordered_set>
@@ -15,11 +14,8 @@
 #include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/units.h"
 #include "datasets/manifest/body_roles.h"
 #include "datasets/manifest/column_mapping.h"
-#include "datasets/manifest/laboratory_keys.h"
-#include "datasets/manifest/recording.h"
 
 namespace pushid {
 namespace {

@@ -2,12 +2,10 @@
 #include "datasets/synthetic/synthetic_clips.h"
 
 #include <array>
-#include <cmath>
 #include <filesystem>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/files/random.h"
 
 namespace pushid {
 namespace {

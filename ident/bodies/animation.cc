@@ -5,14 +5,12 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <utility>
 
 #include "datasets/files/number_text.h"
 #include "ident/figures/chart.h"
 #include "ident/figures/moving_page.h"
-#include "ident/figures/svg.h"
 
 namespace pushid {
 namespace {

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "ident/figures/text_table.h"
 #include "ident/model/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
 #include "models/learned_terms.h"

@@ -8,7 +8,6 @@
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/bvh.h"
 
 namespace pushid {
 namespace {

@@ -7,7 +7,6 @@
 #include "datasets/files/names.h"
 #include "datasets/formats/bvh.h"
 #include "ident/prediction/predicted_steps.h"
-#include "ident/prediction/prediction.h"
 #include "models/rollout.h"
 
 namespace pushid {

@@ -7,7 +7,6 @@
 #include "datasets/files/random.h"
 #include "ident/bodies/tensor_folder.h"
 #include "ident/parameters/option_names.h"
-#include "models/restoration/cvae_restoration.h"
 #include "models/restoration/window_restoration.h"
 
 namespace pushid {

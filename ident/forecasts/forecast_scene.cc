@@ -12,7 +12,6 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
-#include "ident/bodies/body_files.h"
 #include "ident/figures/moving_page.h"
 #include "ident/figures/svg.h"
 

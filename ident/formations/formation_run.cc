@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <string>
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/prediction/propagation.h"
-#include "ident/problem/behaviour_text.h"
 #include "ident/uncertainty/clusters.h"
 #include "models/skeleton_mapping.h"
 

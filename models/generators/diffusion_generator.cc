@@ -1,8 +1,6 @@
 // models: groups sampled and finished.
 #include "models/generators/diffusion_generator.h"
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <utility>
 

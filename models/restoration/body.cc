@@ -1,7 +1,6 @@
 // models: symmetry and measures of the body.
 #include "models/restoration/body.h"
 
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 // models: frames of LDP's chain and back, and the chain, forward.
 #include "models/restoration/cvae_restoration.h"
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numeric>

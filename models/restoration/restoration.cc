@@ -1,9 +1,6 @@
 // models: what all restorations share, and the rigid one.
 #include "models/restoration/restoration.h"
 
-#include <algorithm>
-#include <vector>
-
 namespace pushid {
 
 Vector3<double> TipAt(const RestorationInput& person, int frame) {

@@ -7,7 +7,6 @@
 #include <limits>
 #include <type_traits>
 
-#include "residuals/cost_functions/rollout_problem.h"
 #include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {

@@ -6,7 +6,6 @@
 
 #include "residuals/packed/packed_matrix.h"
 #include "residuals/sensitivities/delay_sensitivities.h"
-#include "residuals/sensitivities/net_force_jacobian.h"
 #include "residuals/sensitivities/network_sensitivities.h"
 #include "residuals/sensitivities/received_sensitivities.h"
 
