@@ -179,6 +179,12 @@ std::string StoryHtml(const Animation& animation) {
   return html + "</div>\n";
 }
 
+// A skeleton's motion where it is all there is of a person.
+const std::vector<Eigen::Matrix3Xd>& JointsAlone(const AnimatedPerson& person) {
+  static const std::vector<Eigen::Matrix3Xd> kNone;
+  return person.body.empty() && person.tip.empty() ? person.joints : kNone;
+}
+
 int Whole(double value) { return static_cast<int>(std::lround(value)); }
 
 // Every so many frames the places of all points, mm, each less that of the sample before: small
@@ -293,7 +299,7 @@ std::string AnimationHtml(const std::vector<Animation>& animations, double sampl
 int Animation::num_frames() const {
   size_t frames = 0;
   for (const AnimatedPerson& person : people) {
-    frames = std::max({frames, person.body.size(), person.tip.size()});
+    frames = std::max({frames, person.body.size(), person.tip.size(), JointsAlone(person).size()});
   }
   return static_cast<int>(frames);
 }
@@ -385,10 +391,9 @@ std::string ColourOfWhat(int what) {
   return kAnimationColours[static_cast<size_t>(what) % std::size(kAnimationColours)];
 }
 
-std::string BoneLook(const AnimatedPerson& person, int what, int joint) {
+std::string BoneLook(const AnimatedPerson& person, int what, bool paler) {
   if (person.recorded) return kRecordedLook;
-  return "stroke:" + ColourOfWhat(what) + ";stroke-width:2.2" +
-         (OnRight(joint) ? "" : ";opacity:0.6");
+  return "stroke:" + ColourOfWhat(what) + ";stroke-width:2.2" + (paler ? ";opacity:0.6" : "");
 }
 
 // One moment: offset puts x = 0 m at a pixel.
@@ -402,11 +407,18 @@ class Panel {
     if (t < static_cast<int>(person.body.size())) {
       const Pose& pose = person.body[t];
       for (int j = 1; j < kBodyJoints; ++j) {
-        Bone(pose.col(kBodyParents[j]), pose.col(j), BoneLook(person, what, j));
+        Bone(pose.col(kBodyParents[j]), pose.col(j), BoneLook(person, what, !OnRight(j)));
       }
       const Eigen::Vector3d head = pose.col(kBodyHead);
       svg_->Circle(X(head), Y(head), 0.085 * scale_,
                    person.recorded ? "fill:#9a9a9a;opacity:0.6" : "fill:" + ColourOfWhat(what));
+    }
+    if (t < static_cast<int>(JointsAlone(person).size())) {
+      for (size_t j = 0; j < person.parents.size(); ++j) {
+        if (person.parents[j] < 0) continue;
+        Bone(person.joints[t].col(person.parents[j]), person.joints[t].col(j),
+             BoneLook(person, what, true));
+      }
     }
     const bool hidden = person.recorded && !person.body.empty();  // the body says it all
     if (t < static_cast<int>(person.cart.size()) && !hidden) {
@@ -479,6 +491,8 @@ double MotionTo(const Animation& animation, int t) {
       sum += (person.body[t] - person.body[t - 1]).colwise().norm().mean();
     } else if (t < static_cast<int>(person.tip.size())) {
       sum += (person.tip[t] - person.tip[t - 1]).norm();
+    } else if (t < static_cast<int>(JointsAlone(person).size())) {
+      sum += (person.joints[t] - person.joints[t - 1]).colwise().norm().mean();
     }
   }
   return sum;
@@ -559,6 +573,7 @@ std::pair<double, double> ExtentX(const Animation& animation) {
   for (const AnimatedPerson& person : animation.people) {
     for (const Pose& pose : person.body) see(pose.row(0).minCoeff()), see(pose.row(0).maxCoeff());
     for (const auto& tip : person.tip) see(tip.x());
+    for (const auto& p : JointsAlone(person)) see(p.row(0).minCoeff()), see(p.row(0).maxCoeff());
   }
   return low > high ? std::make_pair(-1.0, 1.0) : std::make_pair(low - 0.1, high + 0.1);
 }

@@ -1,185 +1,72 @@
-// ident: a forecast as a page, a strip of poses, BVH and CSV. Positions in pages and BVH are
-// millimetres.
+// ident: a forecast as a page, a strip of poses, BVH (millimetres) and CSV.
 #include "ident/forecasts/forecast_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "datasets/files/atomic_file.h"
-#include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
-#include "ident/figures/moving_page.h"
-#include "ident/figures/svg.h"
+#include "ident/bodies/animation.h"
 
 namespace pushid {
 namespace {
 
-constexpr char kChoices[] =
-    R"html(<label><input type="checkbox" id="recorded" checked> recorded (grey)</label>
-<label><input type="checkbox" id="forecast" checked> forecast (blue)</label>
-<label><input type="checkbox" id="futures" checked> sampled futures (faint)</label>
-<label><input type="checkbox" id="trails" checked> paths of hands and feet</label>)html";
+constexpr size_t kMostFutures = 20;   // more of them hide one another
+constexpr double kPageSample = 0.04;  // s, between positions that are written
 
-constexpr char kScript[] = R"html(let frame,turn=0.7,tilt=0.15,zoom=1;
-const lo=[1e9,1e9,1e9],hi=[-1e9,-1e9,-1e9];
-for(const f of data.observed_motion.concat(data.forecast))for(let i=0;i<f.length;i++){lo[i%3]=Math.min(lo[i%3],f[i]);hi[i%3]=Math.max(hi[i%3],f[i]);}
-const up=data.up,a=(up+1)%3,b=(up+2)%3,centre=lo.map((l,i)=>(l+hi[i])/2),size=Math.max(...hi.map((h,i)=>h-lo[i]))*1.25;
-function open(){frame=data.observed-1;}
-function project(p){const x=p[a]-centre[a],y=p[b]-centre[b],z=p[up]-centre[up],c=Math.cos(turn),s=Math.sin(turn);
- const k=zoom*Math.min(view.width,view.height)/size,d=s*x+c*y;
- return [view.width/2+k*(c*x-s*y),view.height/2-k*(Math.cos(tilt)*z+Math.sin(tilt)*d)];}
-function line(p,q){const u=project(p),v=project(q);pen.beginPath();pen.moveTo(...u);pen.lineTo(...v);pen.stroke();}
-const at=(f,j)=>f.slice(3*j,3*j+3);
-function body(f,colour,width,alpha){if(!f)return;pen.strokeStyle=colour;pen.lineWidth=width;pen.globalAlpha=alpha;
- data.parents.forEach((p,j)=>{if(p===-2)return;line(p===-1?data.fixed[j]:at(f,p),at(f,j));if(p===-1)line([0,0,0],data.fixed[j]);});pen.globalAlpha=1;}
-function trail(motion,until,colour,alpha){pen.strokeStyle=colour;pen.lineWidth=1.5;pen.globalAlpha=alpha;
- for(const j of data.ends){let before=at(data.observed_motion[data.observed-1],j);
-  for(let t=0;t<=until&&t<motion.length;t++){const here=at(motion[t],j);line(before,here);before=here;}}pen.globalAlpha=1;}
-function draw(){const d=devicePixelRatio||1;view.width=view.clientWidth*d;view.height=view.clientHeight*d;
- pen.lineCap='round';pen.clearRect(0,0,view.width,view.height);const t=frame-data.observed;
- if($('futures').checked)for(const f of data.futures){body(f[t],style('--future'),d,0.3);if($('trails').checked)trail(f,t,style('--future'),0.5);}
- if($('recorded').checked){body(t<0?data.observed_motion[frame]:data.recorded[t],style('--recorded'),4*d,0.8);if($('trails').checked)trail(data.recorded,t,style('--recorded'),1);}
- if($('forecast').checked){body(data.forecast[t],style('--forecast'),3*d,1);if($('trails').checked)trail(data.forecast,t,style('--forecast'),1);}
- $('clock').textContent=((t+1)*data.dt).toFixed(2)+' s, '+(t<0?'observed':'forecast');$('time').value=frame;}
-)html";
-
-nlohmann::json Frames(const Trajectories& motion) {
-  nlohmann::json frames = nlohmann::json::array();
-  for (Eigen::Index t = 0; t < motion.cols(); ++t) {
-    nlohmann::json numbers = nlohmann::json::array();
-    for (Eigen::Index i = 0; i < motion.rows(); ++i) {
-      numbers.push_back(std::lround(kMillimetres * motion(i, t)));
-    }
-    frames.push_back(std::move(numbers));
-  }
-  return frames;
-}
-
-// What ends a limb: nothing hangs on it.
-std::vector<int> Ends(const ParticleLayout& layout) {
-  std::vector<int> ends;
-  for (int i = 0; i < layout.num_particles(); ++i) {
-    if (std::count(layout.parents.begin(), layout.parents.end(), i) == 0) ends.push_back(i);
-  }
-  return ends;
-}
-
-}  // namespace
-
-std::string ForecastPageHtml(const ForecastScene& scene) {
-  nlohmann::json data = {{"title", scene.title},
-                         {"dt", scene.dt},
-                         {"observed", scene.num_observed()},
-                         {"frames", scene.num_frames()},
-                         {"up", scene.layout.up_axis},
-                         {"parents", scene.layout.parents},
-                         {"ends", Ends(scene.layout)},
-                         {"observed_motion", Frames(scene.observed)},
-                         {"recorded", Frames(scene.recorded)},
-                         {"forecast", Frames(scene.forecast)},
-                         {"fixed", nlohmann::json::array()},
-                         {"futures", nlohmann::json::array()}};
-  for (Eigen::Index i = 0; i < scene.layout.fixed.cols(); ++i) {
-    const Eigen::Vector3f place = kMillimetres * scene.layout.fixed.col(i);
-    data["fixed"].push_back(
-        {std::lround(place.x()), std::lround(place.y()), std::lround(place.z())});
-  }
-  for (const SampledFuture& future : scene.futures) {
-    data["futures"].push_back(Frames(future.motion));
-  }
-  return ToHtml({"A forecast over the recorded motion",
-                 "--recorded:#777;--forecast:#1f6fc0;--future:#5fa3e0",
-                 "--recorded:#aaa;--forecast:#6db3ff;--future:#3f7fc0", kChoices,
-                 nlohmann::json::array({std::move(data)}), kScript});
-}
-
-namespace {
-
-constexpr double kStripHeight = 260, kTop = 40, kBottom = 26, kSide = 16;
-constexpr size_t kMostFutures = 20;  // more of them hide one another
-
-struct View {
-  int across, up;  // axes of the picture
-  double low_across, high_across, low_up, high_up;
-};
-
-View ViewOf(const ForecastScene& scene) {
+// The observed frames from one on and what follows them; axes: of the picture's x, y and z.
+AnimatedPerson PersonOf(const ForecastScene& scene, const Trajectories& next, int from,
+                        const std::string& what) {
   const ParticleLayout& layout = scene.layout;
-  View view{3 - layout.up_axis - layout.mirrored_axis, layout.up_axis, 1e9, -1e9, 1e9, -1e9};
-  const auto see = [&view](const Trajectories& motion) {
-    for (Eigen::Index t = 0; t < motion.cols(); ++t) {
-      for (Eigen::Index i = 0; i + 2 < motion.rows(); i += 3) {
-        view.low_across = std::min<double>(view.low_across, motion(i + view.across, t));
-        view.high_across = std::max<double>(view.high_across, motion(i + view.across, t));
-        view.low_up = std::min<double>(view.low_up, motion(i + view.up, t));
-        view.high_up = std::max<double>(view.high_up, motion(i + view.up, t));
+  const int particles = layout.num_particles();
+  const int axes[] = {3 - layout.up_axis - layout.mirrored_axis, layout.mirrored_axis,
+                      layout.up_axis};
+  AnimatedPerson person;
+  person.what = what;
+  person.parents = layout.parents;
+  // Behind the particles the fixed points, which hang on the origin.
+  for (int& parent : person.parents) {
+    if (parent == kFixedPoint) parent = particles + static_cast<int>(&parent - &person.parents[0]);
+  }
+  for (int i = 0; i < particles; ++i) {
+    person.parents.push_back(layout.parents[i] == kFixedPoint ? 2 * particles : -1);
+  }
+  person.parents.push_back(-1);
+  for (int t = from; t < scene.num_observed() + static_cast<int>(next.cols()); ++t) {
+    const bool seen = t < scene.num_observed();
+    const Eigen::VectorXf now = seen ? scene.observed.col(t) : next.col(t - scene.num_observed());
+    Eigen::Matrix3Xd joints = Eigen::Matrix3Xd::Zero(3, 2 * particles + 1);
+    for (int i = 0; i < particles; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        joints(k, i) = now[3 * i + axes[k]];
+        if (layout.fixed.cols() > 0) joints(k, particles + i) = layout.fixed(axes[k], i);
       }
     }
-  };
-  for (const Trajectories* motion : {&scene.observed, &scene.recorded, &scene.forecast}) {
-    see(*motion);
+    person.joints.push_back(std::move(joints));
   }
+  return person;
+}
+
+// From one of the observed frames on; the lowest point stands on the ground.
+Animation ToAnimation(const ForecastScene& scene, int from) {
+  Animation animation{scene.title, scene.dt, {}, {}, {}, {}};
+  animation.people.push_back(PersonOf(scene, scene.recorded, from, ""));
+  animation.people.back().recorded = true;
   for (size_t i = 0; i < std::min(kMostFutures, scene.futures.size()); ++i) {
-    see(scene.futures[i].motion);
+    animation.people.push_back(PersonOf(scene, scene.futures[i].motion, from, "sampled futures"));
   }
-  return view;
-}
-
-}  // namespace
-
-std::string ForecastStripSvg(const ForecastScene& scene, int poses) {
-  const View view = ViewOf(scene);
-  const double scale = (kStripHeight - kTop - kBottom) / std::max(0.1, view.high_up - view.low_up);
-  const double panel = scale * (view.high_across - view.low_across) + kSide;
-  const double width = std::max(520.0, poses * panel + kSide);
-  SvgPicture svg(width, kStripHeight, scene.title);
-  svg.Text(kSide, 18, scene.title, "ink bold");
-  svg.Text(kSide, 32, "recorded grey, sampled futures faint, forecast blue", "faint small");
-  const auto draw = [&](const Trajectories& motion, Eigen::Index t, double left,
-                        const std::string& look) {
-    if (t < 0 || t >= motion.cols()) return;
-    const auto x = [&](const Eigen::Vector3f& p) {
-      return left + scale * (p(view.across) - view.low_across);
-    };
-    const auto y = [&](const Eigen::Vector3f& p) {
-      return kStripHeight - kBottom - scale * (p(view.up) - view.low_up);
-    };
-    for (int i = 0; i < scene.layout.num_particles(); ++i) {
-      const int parent = scene.layout.parents[i];
-      if (parent == kNoBone) continue;
-      const Eigen::Vector3f end = motion.col(t).segment<3>(3 * i);
-      const Eigen::Vector3f start = parent == kFixedPoint
-                                        ? Eigen::Vector3f(scene.layout.fixed.col(i))
-                                        : Eigen::Vector3f(motion.col(t).segment<3>(3 * parent));
-      svg.Line(x(start), y(start), x(end), y(end), look);
-      // All fixed points hang on the root, which is the origin.
-      const Eigen::Vector3f root = Eigen::Vector3f::Zero();
-      if (parent == kFixedPoint) svg.Line(x(root), y(root), x(start), y(start), look);
-    }
-  };
-  const int observed = scene.num_observed(), last = scene.num_frames() - 1;
-  for (int k = 0; k < poses; ++k) {
-    const double share = poses > 1 ? static_cast<double>(k) / (poses - 1) : 1.0;
-    const int frame = static_cast<int>(std::lround(observed - 1 + share * (last - (observed - 1))));
-    const int t = frame - observed;
-    const double left = kSide + k * panel;
-    for (size_t i = 0; i < std::min(kMostFutures, scene.futures.size()); ++i) {
-      draw(scene.futures[i].motion, t, left, "stroke:#7fb3e6;stroke-width:1;opacity:0.35");
-    }
-    draw(t < 0 ? scene.observed : scene.recorded, t < 0 ? frame : t, left,
-         "stroke:#8a8a8a;stroke-width:3");
-    draw(scene.forecast, t, left, "stroke:#2a78c8;stroke-width:2");
-    svg.Text(left + 0.5 * (panel - kSide), kStripHeight - 8, Rounded((t + 1) * scene.dt, 3) + " s",
-             "axis middle");
+  animation.people.push_back(PersonOf(scene, scene.forecast, from, "forecast"));
+  double low = 0.0;
+  for (const AnimatedPerson& person : animation.people) {
+    for (const auto& joints : person.joints) low = std::min(low, joints.row(2).minCoeff());
   }
-  return svg.ToString();
+  for (AnimatedPerson& person : animation.people) {
+    for (auto& joints : person.joints) joints.row(2).array() -= low;
+  }
+  return animation;
 }
-
-namespace {
 
 constexpr LengthUnit kUnit = LengthUnit::kMillimetre;
 
@@ -233,6 +120,14 @@ MaybeError WriteOneBvh(const std::string& path, const ForecastScene& scene,
 }
 
 }  // namespace
+
+std::string ForecastPageHtml(const ForecastScene& scene) {
+  return AnimationHtml({ToAnimation(scene, 0)}, kPageSample);
+}
+
+std::string ForecastStripSvg(const ForecastScene& scene, int poses) {
+  return PoseStrip(ToAnimation(scene, scene.num_observed() - 1), poses).ToString();
+}
 
 BvhMotion ToBvh(const Trajectories& motion, const ParticleLayout& layout, double dt) {
   BvhMotion bvh;

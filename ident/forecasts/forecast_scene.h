@@ -35,11 +35,9 @@ Result<std::vector<std::string>> WritePoses(const std::string& path, const Forec
 // Whether the ending is one of these.
 MaybeError CheckPosesPath(const std::string& flag, const std::string& path);
 
-// `poses` moments from the last observed to the last frame, from the side: recorded grey, futures
-// faint, the forecast blue.
+// As bodies are shown (ident/bodies/animation.h): recorded grey, the forecast and up to 20 of the
+// futures in a colour each; the strip from the last observed frame on.
 std::string ForecastStripSvg(const ForecastScene& scene, int poses);
-
-// One self-contained page: play, time slider, orbit, and what is shown by check boxes.
 std::string ForecastPageHtml(const ForecastScene& scene);
 
 }  // namespace pushid

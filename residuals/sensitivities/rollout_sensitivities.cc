@@ -4,13 +4,178 @@
 #include <algorithm>
 #include <optional>
 
+#include "models/reaction_delay.h"
+#include "models/scene_forces.h"
 #include "residuals/packed/packed_matrix.h"
-#include "residuals/sensitivities/delay_sensitivities.h"
+#include "residuals/sensitivities/learned_pair_jacobian.h"
 #include "residuals/sensitivities/network_sensitivities.h"
-#include "residuals/sensitivities/received_sensitivities.h"
 
 namespace pushid {
 namespace {
+
+// d [q, qd] of a delayed state / d columns. Before frame 0 people are at rest where they started.
+void DelayedBlock(const RolloutSensitivities& sensitivities, int now, int person,
+                  const DelayedPlace<double>& place, RolloutSensitivities::Block* block) {
+  block->setZero();
+  for (int i = 0; i < DelayedFrames<double>::kCount; ++i) {
+    const int pose = now - place.of_pose.back - i, rate = now - place.of_rate.back - i;
+    // A start's pose has no derivatives.
+    if (pose >= 0) {
+      block->topRows<4>() += place.of_pose.weight[i] * sensitivities.At(pose, person).topRows<4>();
+    }
+    if (rate >= 0) {
+      block->bottomRows<4>() +=
+          place.of_rate.weight[i] * sensitivities.At(rate, person).bottomRows<4>();
+    }
+  }
+}
+
+// Derivatives of what control perceives (models/reaction_delay.h), of one person at one frame. With
+// S(t) = d [q, qd] / d columns and w_i the weights of a delayed state,
+//   S_p = s S(t) + (1 - s) sum_i w_i S(t_i)  row by row, s the passive shares,
+// and in the columns of the delays and of the shares, what these change.
+class PerceivedSensitivities {
+ public:
+  explicit PerceivedSensitivities(int num_columns)
+      : ankle_(8, num_columns), step_(RolloutSensitivities::Block::Zero(8, num_columns)) {}
+
+  // entries: of the person's parameters.
+  void Update(const ModelOptions& options, const ParameterSet<double>& p,
+              const std::vector<ColumnEntry>& entries, const DelayedPlaces<double>& delayed,
+              const RolloutPath<double>& path, const RolloutSensitivities& sensitivities, int frame,
+              int person) {
+    using State = Eigen::Matrix<double, 8, 1>;
+    const auto add = [&entries](Parameter id, const State& by, RolloutSensitivities::Block* to) {
+      for (const ColumnEntry& entry : entries) {
+        if (entry.parameter == id) to->col(entry.column) += entry.derivative * by;
+      }
+    };
+    const PendulumState<double>& now = path.At(frame, person);
+    const DelayedState<double> then(path, frame, person, delayed.ankle);
+    DelayedBlock(sensitivities, frame, person, delayed.ankle, &ankle_);
+    const double stiffness = p[kPassiveStiffness], damping = p[kPassiveDamping];
+    const auto of_now = sensitivities.At(frame, person);
+    ankle_.middleRows<2>(2) =
+        (1.0 - stiffness) * ankle_.middleRows<2>(2) + stiffness * of_now.middleRows<2>(2);
+    ankle_.bottomRows<2>() = (1.0 - damping) * ankle_.bottomRows<2>() +
+                             damping * (frame > 0 ? kRateAhead : 1.0) * of_now.bottomRows<2>();
+    if (frame > 0) {
+      ankle_.bottomRows<2>() +=
+          damping * (1.0 - kRateAhead) * sensitivities.At(frame - 1, person).bottomRows<2>();
+    }
+    State by_delay, by_stiffness = State::Zero(), by_damping = State::Zero();
+    by_delay << then.q_by_delay, then.qd_by_delay;
+    by_delay.segment<2>(2) *= 1.0 - stiffness;
+    by_delay.tail<2>() *= 1.0 - damping;
+    by_stiffness.segment<2>(2) = now.q.tail<2>() - then.q.tail<2>();
+    by_damping.tail<2>() = (PresentRate(path, frame, person) - then.qd).tail<2>();
+    add(kReactionDelay, by_delay, &ankle_);
+    add(kPassiveStiffness, by_stiffness, &ankle_);
+    add(kPassiveDamping, by_damping, &ankle_);
+    if (options.stance == Stance::kFixed) return;
+    const DelayedState<double> then_step(path, frame, person, delayed.step);
+    DelayedBlock(sensitivities, frame, person, delayed.step, &step_);
+    by_delay << then_step.q_by_delay, then_step.qd_by_delay;
+    add(StepDelayOf(options.delay), by_delay, &step_);
+  }
+
+  // Of [q, qd] as ankles and steps perceive it, by the columns. Feet that hold ask for no steps.
+  const RolloutSensitivities::Block& ankle() const { return ankle_; }
+  const RolloutSensitivities::Block& step() const { return step_; }
+
+ private:
+  RolloutSensitivities::Block ankle_, step_;
+};
+
+// A force's derivative by a parameter, onto the column that depends on it: most parameters act on
+// one row or two.
+template <typename Vector>
+void AddWhereAny(const ColumnEntry& entry, const Vector& by_parameter, ForceColumns* by_column) {
+  for (int row = 0; row < 4; ++row) {
+    if (by_parameter[row] == 0.0) continue;
+    (*by_column)(row, entry.column) += entry.derivative * by_parameter[row];
+  }
+}
+
+// Of all that is learned: those given, or the options' own.
+const double* LearnedWeights(const ModelOptions& options, const SensitivityInputs& inputs) {
+  return inputs.network_weights != nullptr ? inputs.network_weights
+                                           : options.learned->weights.data();
+}
+
+// Derivatives of what everybody gets from others.
+class ReceivedSensitivities {
+ public:
+  ReceivedSensitivities(const Scene& scene, const ModelOptions& options,
+                        const SensitivityInputs& inputs)
+      : options_(options),
+        inputs_(inputs),
+        weights_(options.interaction.learned ? LearnedWeights(options, inputs) : nullptr),
+        now_(scene.people.size(), ForceColumns::Zero(4, inputs.num_columns)) {
+    for (const ColumnEntry& entry : inputs.entries[0]) {
+      if (IsPairParameter(entry.parameter)) pair_entries_.push_back(entry);
+    }
+    if (weights_ == nullptr || inputs.weight_column >= 0) return;
+    held_.emplace(options.learned->pair, weights_ + options.learned->pair_at());
+  }
+
+  // Of the interaction at one frame; forces: prepared for it.
+  void Update(const RolloutSensitivities& sensitivities, int frame,
+              const SceneForces<double>& forces) {
+    if (!options_.interaction.Any()) return;
+    for (ForceColumns& columns : now_) columns.setZero();
+    if (held_) held_->Ask(forces);
+    for (size_t k = 0; k < forces.acting().size(); ++k) {
+      const auto& [n, j] = forces.acting()[k];
+      const PairJacobian jacobian = Of(k, forces);
+      for (int side = 0; side < 2; ++side) {
+        ForceColumns& target = now_[side == 0 ? n : j];
+        const auto by_states = jacobian.by_states.middleRows<4>(4 * side);
+        AddNarrowProduct(by_states.leftCols<8>(), sensitivities.At(frame, n), target);
+        AddNarrowProduct(by_states.rightCols<8>(), sensitivities.At(frame, j), target);
+        for (const ColumnEntry& entry : pair_entries_) {
+          AddWhereAny(
+              entry,
+              jacobian.by_parameter.block<4, 1>(4 * side, entry.parameter - kFirstPairParameter),
+              &target);
+        }
+        if (weights_ == nullptr || held_) continue;
+        target.middleCols(inputs_.weight_column + options_.learned->pair_at(), by_weight_.cols()) +=
+            by_weight_.middleRows<4>(4 * side);
+      }
+    }
+  }
+
+  // Adds what person n feels of it.
+  void AddTo(int n, ForceColumns* by_column) const {
+    if (options_.interaction.Any()) *by_column += now_[n];
+  }
+
+ private:
+  // Of the k-th two who act on each other; by_weight_ as well where weights are fitted.
+  PairJacobian Of(size_t k, const SceneForces<double>& forces) {
+    const auto& [n, j] = forces.acting()[k];
+    const Pair pair = forces.pairs().Of(n, j);
+    PairJacobian jacobian = ComputePairJacobian(options_.interaction, pair, forces.Parameters(0),
+                                                forces.state(n), forces.state(j));
+    if (held_) {
+      held_->AddTo(k, forces, &jacobian);
+    } else if (weights_ != nullptr) {
+      const LearnedTerms& learned = *options_.learned;
+      AddLearnedPairJacobian(learned.pair, weights_ + learned.pair_at(), pair, forces.Parameters(0),
+                             forces.state(n), forces.state(j), &jacobian, &by_weight_);
+    }
+    return jacobian;
+  }
+
+  const ModelOptions& options_;
+  const SensitivityInputs& inputs_;
+  std::vector<ColumnEntry> pair_entries_;
+  const double* weights_;  // of what is learned; null where no interaction is
+  PairByWeight by_weight_;
+  std::optional<HeldPairs> held_;  // where weights are, and are not fitted
+  std::vector<ForceColumns> now_;
+};
 
 // Without what a person alone does not have.
 std::vector<std::vector<ColumnEntry>> WithoutPairs(std::vector<std::vector<ColumnEntry>> entries) {

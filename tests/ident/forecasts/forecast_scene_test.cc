@@ -68,11 +68,13 @@ TEST_F(ForecastSceneTest, ACsvHasARowPerSourceFrameAndJoint) {
 TEST_F(ForecastSceneTest, PicturesShowTheFan) {
   const std::string strip = ForecastStripSvg(SwayingScene(), 4);
   EXPECT_TRUE(Contains(strip, "sway &lt;1&gt;"));
-  EXPECT_TRUE(Contains(strip, "opacity:0.35"));
+  for (const char* shown : {">recorded<", ">sampled futures<", ">forecast<"}) {
+    EXPECT_TRUE(Contains(strip, shown)) << shown;
+  }
   EXPECT_TRUE(Contains(strip, "0.24 s"));
   const std::string page = ForecastPageHtml(SwayingScene());
   EXPECT_TRUE(Contains(page, "<title>sway &lt;1&gt;</title>"));
-  EXPECT_TRUE(Contains(page, "\"observed\":12"));
+  EXPECT_TRUE(Contains(page, "\"frames\":18"));
   EXPECT_FALSE(Contains(page, "http")) << "the page needs no network";
 }
 
