@@ -11,6 +11,8 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace pushid {
 
@@ -33,7 +35,7 @@ inline constexpr double kReferenceRod = 0.95;  // m
 // vector of the processor (residuals/lanes).
 //
 // The rod is what is seen, from the ankles to the hip. A body that is no point at the hip
-// (mass_distribution.h) moves like a pendulum of another length and mass.
+// (Distributed) moves like a pendulum of another length and mass.
 template <typename L>
 struct BodyOf {
   L mass = L(kReferenceMass);           // kg
@@ -268,5 +270,60 @@ inline Eigen::Matrix<double, 4, 2> InverseDynamicsByBody(const BodyOf<double>& b
   by.col(1).tail<2>() += by_mass.tail<2>() - once;
   return by;
 }
+
+// Bodies that are no point of nine tenths at the hip.
+//
+// A body with the share s of the mass M above the ankles, whose centre is c l up the rod (l: the
+// rod) and whose radius of gyration about that centre is r l, moves exactly like a point
+//   m' = M s c^2 / (c^2 + r^2)   on a rod   l' = l (c^2 + r^2) / c:
+// m' l' = M s c l is its first moment and m' l'^2 = M s (c^2 + r^2) l^2 its inertia about the
+// ankles, and the cart's row holds M in either case.
+
+// In shares of the body's mass, and in lengths of the rod.
+template <typename T>
+struct MassDistributionOf {
+  T cart_share = T(kCartShare);
+  T com = T(1.0);       // c
+  T gyration = T(0.0);  // r
+};
+using MassDistribution = MassDistributionOf<double>;
+
+// The body with its mass so distributed.
+template <typename T, typename L>
+BodyOf<T> Distributed(const BodyOf<L>& body, const MassDistributionOf<T>& distribution) {
+  const T c2 = distribution.com * distribution.com;
+  const T inertia = c2 + distribution.gyration * distribution.gyration;
+  return {T(body.mass), T(body.rod_length), T(body.cart_height),
+          (1.0 - distribution.cart_share) * c2 / inertia, inertia / distribution.com};
+}
+
+// One value for everybody at every frame of a rollout.
+
+// Frames 0 .. num_frames - 1, stored frame by frame.
+template <typename Value>
+class FrameTable {
+ public:
+  FrameTable() = default;
+  FrameTable(int num_frames, int num_people)
+      : num_people_(num_people), values_(static_cast<size_t>(num_frames) * num_people) {}
+  Value& At(int frame, int person) { return values_[Index(frame, person)]; }
+  const Value& At(int frame, int person) const { return values_[Index(frame, person)]; }
+  // Everybody at one frame, in a row.
+  const Value* Frame(int frame) const { return values_.data() + Index(frame, 0); }
+  int num_people() const { return num_people_; }
+  int num_frames() const {
+    return num_people_ == 0 ? 0 : static_cast<int>(values_.size()) / num_people_;
+  }
+
+ private:
+  size_t Index(int frame, int person) const {
+    return static_cast<size_t>(frame) * num_people_ + person;
+  }
+  int num_people_ = 0;
+  std::vector<Value> values_;
+};
+
+template <typename T>
+using RolloutPath = FrameTable<PendulumState<T>>;
 
 }  // namespace pushid

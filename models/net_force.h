@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "models/interaction.h"
-#include "models/mass_distribution.h"
+#include "models/ipm.h"
 #include "models/options.h"
 #include "models/parameters.h"
 #include "models/reaction_delay.h"

@@ -176,7 +176,7 @@ constexpr EnumNames<Delay, 3> Names(Delay) {
   return {{{"none", Delay::kNone}, {"one", Delay::kOne}, {"ankle_and_step", Delay::kAnkleAndStep}}};
 }
 
-// Where a body's mass is (mass_distribution.h).
+// Where a body's mass is (ipm.h).
 enum class BodyModel {
   kLdp,             // nine tenths at the hip; of who stands, that of an average body (standing.h)
   kAnthropometric,  // where the recorded segments have it (de Leva 1996)

@@ -23,7 +23,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "models/frame_table.h"
+#include "models/ipm.h"
 #include "models/parameters.h"
 
 namespace pushid {

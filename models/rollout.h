@@ -7,13 +7,21 @@
 #include <string_view>
 #include <vector>
 
-#include "models/frame_table.h"
 #include "models/ipm.h"
 #include "models/process_noise.h"
-#include "models/rollout_status.h"
 #include "models/scene_forces.h"
 
 namespace pushid {
+
+// How a rollout ended.
+
+// Whether a rollout stayed in the model's domain, and if not, where it left it.
+struct RolloutStatus {
+  bool ok = true;
+  int frame = 0;
+  int person = 0;
+  std::string_view quantity;  // theta, phi, rod or "state" (not finite)
+};
 
 // The parts of the net force that drove a rollout, for reports; the last frame's drive no step.
 using ForceTrace = FrameTable<NetForce<double>>;

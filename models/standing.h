@@ -13,7 +13,7 @@
 //   -K t du/dq_i - Kd_i |du/dq_i|^2 q_i' + hold_i,   t = (a / sin a) (u cos a - u0), |t| = a,
 //   K = diag(Kp_theta, Kp_phi, their mean),   hold_i: of a force that balances gravity at u0,
 // which is the same in all directions where the gains are. Where the mass of a body is known by
-// its segments (mass_distribution.h), that is what turns, and k / 1.09 scales its height.
+// its segments (ipm.h), that is what turns, and k / 1.09 scales its height.
 // Rejected: the mass at the hip (0.9 M, no inertia of its own): of one simulated rigid body whose
 // pushes are known Kp comes out 10 to 16 % too low, and Kd as much too high.
 #pragma once

@@ -9,7 +9,7 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "models/ground_reaction.h"
+#include "models/ground.h"
 
 namespace pushid {
 namespace {

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
-#include "datasets/loading/segment_masses.h"
+#include "datasets/loading/pendulum_recording.h"
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/covariates.h"
 #include "ident/fit/fit.h"

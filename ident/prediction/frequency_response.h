@@ -69,7 +69,7 @@ bool IsCoherent(const CrossSpectra& spectra, int bin);
 // accelerates a person most. Output y: the angle of the body in the laboratory (rad), and the
 // ankles' torque (N m),
 //   about theta  tau = -F_z (p_x - x) - h F_x,   about phi  tau = F_z (p_y - y) + h F_y
-// by platforms where these measured (ground_reaction.h; less that at rest, F_z = M g_n), else by
+// by platforms where these measured (ground.h; less that at rest, F_z = M g_n), else by
 // inverse dynamics of the recorded motion with the model's body,
 //   tau = [M (a + A) + C + (g_n / g) G - Q_push] in the angle's row.
 

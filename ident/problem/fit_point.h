@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "models/rollout_status.h"
+#include "models/rollout.h"
 
 namespace pushid {
 

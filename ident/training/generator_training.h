@@ -14,7 +14,7 @@ namespace pushid {
 struct GeneratorTrainingOptions : TrainerOptions, CheckpointOptions, KindTrainingOptions {
   GeneratorKind kind = GeneratorKind::kParticles;
   int seeds = RowOf(GeneratorKind::kParticles).seeds;  // networks that are averaged
-  // Of particles: of the whole forecast at once (models/generators/particle_network.h), and the
+  // Of particles: of the whole forecast at once (models/generators/particle_generator.h), and the
   // shares of the blend that they are part of.
   bool correction = true;
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;

@@ -8,7 +8,7 @@
 
 #include "ident/problem/parallel.h"
 #include "ident/uncertainty/covariance.h"
-#include "residuals/cost_functions/lane_group.h"
+#include "residuals/cost_functions/lane_tables.h"
 #include "residuals/cost_functions/plate_residual.h"
 #include "residuals/normal_equations.h"
 

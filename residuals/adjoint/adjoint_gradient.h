@@ -11,7 +11,7 @@
 // moves, l' = l + dt v(s, F_self, l), its adjoint goes back through v (packed_layers.h) to s,
 // F_self and p:
 //   L_l <- L_l + dt v_l L_l - (d(M a + C + G)/dl)' f
-// What people do to each other: touching_people.cc.
+// What people do to each other: adjoint_batch.cc.
 // One gradient costs about as much as three rollouts, whatever the number of weights.
 //
 //   auto gradient = AdjointGradient::Create({{&recording, weight}}, options, map, sigmas);

@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "residuals/cost_functions/lane_group.h"
+#include "residuals/cost_functions/lane_tables.h"
 #include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
@@ -66,7 +66,7 @@ class CondensedRows : public ceres::CostFunction {
 };
 
 // A whole recording against its rollout: the rows of rollout_problem.h. Those of people alone are
-// summed up side by side (lane_group.h), in a group of their own where Ceres asks for one
+// summed up side by side (lane_tables.h), in a group of their own where Ceres asks for one
 // recording.
 class CondensedRollout : public CondensedRows {
  public:

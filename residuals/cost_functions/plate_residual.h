@@ -1,6 +1,6 @@
 // residuals: what force platforms measured against what a rollout asks of the ground.
 //
-// The shear and the centre of pressure of models/ground_reaction.h, a = (qd(t+1) - qd(t)) / dt, the
+// The shear and the centre of pressure of models/ground.h, a = (qd(t+1) - qd(t)) / dt, the
 // centre less that of the start posture at rest:
 //   r = w [ (shear - measured) / s_shear, (centre - measured) / s_centre ]
 // with the robust weight of frames (frame_residual.h), of these four rows alone. Nothing of the
@@ -8,7 +8,7 @@
 #pragma once
 
 #include "datasets/loading/pendulum_recording.h"
-#include "models/ground_reaction.h"
+#include "models/ground.h"
 #include "models/net_force.h"
 #include "residuals/frame_residual.h"
 #include "residuals/sensitivities/net_force_jacobian.h"

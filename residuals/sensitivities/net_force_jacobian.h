@@ -70,7 +70,7 @@ PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair
                                  const PosedPendulum<double>& j);
 
 // Derivatives by what decides a body's masses: the height of the centre of mass of who
-// stands, and the masses that the table gives (models/mass_distribution.h).
+// stands, and the masses that the table gives (models/ipm.h).
 
 // Parameters that decide the body of a step (DynamicBody).
 inline constexpr Parameter kBodyParameters[] = {kComHeight, kCartMassShare, kGyrationRadius};

@@ -5,7 +5,7 @@
 // resistance, which is constant,
 //   (M + dt D E) da = d(F - C - G) at fixed a - D (dv - du),   E = diag(1, 1, 0, 0).
 // The torques, u and the feet after the step are a long formula of few numbers: jets over the
-// columns themselves (residuals/lanes/stance_jet.h). Which foot steps has no derivative
+// columns themselves (residuals/lanes/stance_jet_loops.h). Which foot steps has no derivative
 // (models/stance.h). Rejected: jets over the numbers, and products with their derivatives, which
 // take half as long again.
 #pragma once
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "models/net_force.h"
-#include "residuals/lanes/stance_jet.h"
+#include "residuals/lanes/person_lanes.h"
 #include "residuals/normal_equations.h"
 #include "residuals/parameter_map.h"
 

@@ -14,7 +14,7 @@
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
-#include "residuals/cost_functions/lane_group.h"
+#include "residuals/cost_functions/lane_tables.h"
 #include "residuals/packed/vector_kernels.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 

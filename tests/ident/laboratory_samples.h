@@ -9,7 +9,7 @@
 
 #include "datasets/files/random.h"
 #include "datasets/loading/pendulum_recording.h"
-#include "models/ground_reaction.h"
+#include "models/ground.h"
 #include "models/rollout.h"
 
 namespace pushid {

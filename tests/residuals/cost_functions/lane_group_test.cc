@@ -1,9 +1,8 @@
 // People side by side: the sums of every recording are those of its rows, at every width of
 // vectors and whatever other people are there.
-#include "residuals/cost_functions/lane_group.h"
-
 #include <cmath>
 
+#include "residuals/cost_functions/lane_tables.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {

@@ -1,6 +1,4 @@
 // One step of feet that step, in the vectors of every width that the processor has, against Jets.
-#include "residuals/lanes/stance_jet.h"
-
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
