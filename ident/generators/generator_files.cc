@@ -6,7 +6,7 @@
 
 #include "datasets/files/random.h"
 #include "datasets/manifest/recording.h"
-#include "ident/bodies/tensor_folder.h"
+#include "ident/bodies/restoration_files.h"
 #include "ident/parameters/json_archive.h"
 
 namespace pushid {

@@ -1,5 +1,5 @@
 // ident: a generator in a folder: generator.json (what it is, what it was trained on) and
-// weights.npy. Both load without the training code and without LibTorch; tensor_folder.h has the
+// weights.npy. Both load without the training code and without LibTorch; restoration_files.h has the
 // layout. Settings of every kind: frames observed and forecast, the rate, the particles; then its
 // own.
 #pragma once

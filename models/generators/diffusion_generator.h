@@ -20,10 +20,214 @@
 #include <vector>
 
 #include "models/enum_names.h"
-#include "models/generators/diffusion_network.h"
+#include "models/generators/motion_generator.h"
+#include "models/restoration/body.h"
+#include "models/restoration/dense_network.h"
 #include "models/restoration/postprocess.h"
 
 namespace pushid {
+
+// The network that estimates a group's motion from a noisy one (after Tanke et al., "Social
+// Diffusion", ICCV 2023, called SDM), without its training.
+//
+//   level 0        x_t and what is given, T frames
+//   down 1..4      blocks of 64, 64, 96, 96 channels, each with half the frames
+//   middle         a block of 96
+//   up 3..1        blocks of 96, 64, 64: the frames doubled, beside the level's own of the way down
+//   out            the frames doubled once more: conv3, and a linear map of level 0
+//
+//   block(x)  = SiLU(conv3(FiLM(SiLU(conv3(x))))) + conv1(x)
+//   FiLM(y)   = y (1 + g) + b, [g, b] linear in SiLU(MLP(sines of t) + MLP(the person's statics))
+//   pooled(y) = [y, sums over the others of a y_other], of every level on the way down, in what the
+//               middle and the way up are given: all that people see of each other
+//
+// Convolutions over time are causal (frames t-2, t-1, t), and so is the doubling, so that later
+// frames never change earlier ones and a motion may go on past the frames of the training.
+// People are a set: weights `a` depend on the two alone. Rejected: a column of all people's
+// features at once, which fixes their number.
+
+// A group of people as the diffusion network sees them, and back.
+//
+//   motion    66 rows: hip(t) - hip(0), then (joint - hip)(t) - (joint - hip)(0), each over the
+//             joint's scale; no rotation is taken out: all face the way of the push
+//             or, in people's own frames (SDM): hip(t) - hip(0), joint - hip turned to face +x, and
+//             cosine and sine of where they face, each to zero mean and unit variance
+//   given     a row of each: the observed motion (0 where nothing was seen), 1 where it was, the
+//             push on the group over 10 m of the pushed, and where physics have the hip
+//   statics   of a person: joints seen from the hip at frame 0, to half of unit variance, place
+//             seen from the pushed, height of the hip above 1 m, mass over 80 kg less 1, whether
+//             pushed, the push's impulse per mass, its length
+//
+// Columns of motion and given: the frames of the first person, then those of the next.
+
+inline constexpr int kMotionRows = 3 * kBodyJoints;
+inline constexpr int kPushRows = 4;
+inline constexpr int kFirstPoseRows = 3 * (kBodyJoints - 1);
+inline constexpr int kStaticRows = kFirstPoseRows + 2 + 1 + 1 + 1 + kPushRows + 1;
+inline constexpr int kOwnFrameRows = kMotionRows + 2;
+inline int GivenRows(int motion_rows = kMotionRows) { return motion_rows + 1 + kPushRows; }
+
+// m, by joint: what a unit of a motion's row is.
+using JointScales = Eigen::Matrix<float, kBodyJoints, 1>;
+JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups);
+
+// What a unit of a motion's row is, and in which frame rows are.
+struct MotionScales {
+  MotionScales() = default;
+  // Of the group's frame.
+  template <typename OfJoints>
+  MotionScales(const Eigen::MatrixBase<OfJoints>& of_joints) : joints(of_joints) {}
+
+  JointScales joints = JointScales::Ones();
+  // Of joints seen from the hip at frame 0.
+  Scaling first_pose = {Eigen::VectorXf::Zero(kFirstPoseRows),
+                        Eigen::VectorXf::Ones(kFirstPoseRows)};
+  Eigen::VectorXf mean, spread;  // of people's own frames, kOwnFrameRows; otherwise empty
+
+  bool own_frames() const { return mean.size() > 0; }
+  int rows() const { return own_frames() ? kOwnFrameRows : kMotionRows; }
+};
+Scaling FirstPoseScalingOf(const std::vector<std::vector<ObservedMotion>>& groups);
+// Mean and standard deviation of every row over all frames and people of the groups.
+MotionScales OwnFrameScalesOf(const std::vector<std::vector<ObservedMotion>>& groups);
+
+struct GroupFeatures {
+  int people = 0, frames = 0;
+  Eigen::MatrixXf given;    // GivenRows x (people * frames)
+  Eigen::MatrixXf statics;  // kStaticRows x people
+  Eigen::Matrix2Xf places;  // m
+};
+
+// observed: the frames of each person that are shown, frames: of the whole motion. The push is that
+// of all people together.
+GroupFeatures FeaturesOf(const std::vector<ObservedMotion>& group, const MotionScales& scales,
+                         int observed, int frames, double dt);
+
+Eigen::MatrixXf MotionRows(const ObservedMotion& person, const MotionScales& scales);
+// The motion that begins as the person's does.
+Trajectories FromMotionRows(const Eigen::MatrixXf& rows, const ObservedMotion& person,
+                            const MotionScales& scales);
+
+// A group as it may as well have been: in the mirror, turned about z, of another size.
+struct GroupChange {
+  bool mirrored = false;
+  double turn = 0.0;  // rad
+  double size = 1.0;
+};
+std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
+                                    const GroupChange& change);
+
+// local      exp(-(d / 0.8 m)^2), those ahead and those behind apart (a logistic of dx / 0.1 m),
+//            each over their sum + 0.1; d, dx between the places at frame 0. Far people fade out.
+// none       people do not see each other
+// mean_all   the mean over everybody, oneself included (SDM)
+// heads      attention of four heads with values of their own, oneself included (SDM)
+enum class SocialPooling { kLocal, kNone, kMeanAll, kHeads };
+constexpr EnumNames<SocialPooling, 4> Names(SocialPooling) {
+  return {{{"local", SocialPooling::kLocal},
+           {"none", SocialPooling::kNone},
+           {"mean_all", SocialPooling::kMeanAll},
+           {"heads", SocialPooling::kHeads}}};
+}
+
+// Where people see each other: in the middle and on the whole way up, or in the middle alone, as
+// SDM has it.
+enum class SocialJoin { kLevels, kBottleneck };
+constexpr EnumNames<SocialJoin, 2> Names(SocialJoin) {
+  return {{{"levels", SocialJoin::kLevels}, {"bottleneck", SocialJoin::kBottleneck}}};
+}
+
+// The frame of the motion's rows (above).
+enum class MotionFrame { kGroup, kOwn };
+constexpr EnumNames<MotionFrame, 2> Names(MotionFrame) {
+  return {{{"group", MotionFrame::kGroup}, {"own", MotionFrame::kOwn}}};
+}
+
+struct DiffusionStructure {
+  SocialPooling pooling = SocialPooling::kLocal;
+  SocialJoin join = SocialJoin::kLevels;
+  MotionFrame frame = MotionFrame::kGroup;
+
+  int NumViews() const { return pooling == SocialPooling::kLocal ? 2 : 1; }
+  bool Pools() const { return pooling != SocialPooling::kNone; }
+  bool PoolsAfter(int block) const;
+  bool AttendsAfter(int block) const {
+    return pooling == SocialPooling::kHeads && PoolsAfter(block);
+  }
+  int NumMotion() const { return frame == MotionFrame::kOwn ? kOwnFrameRows : kMotionRows; }
+  int NumInputs() const { return NumMotion() + GivenRows(NumMotion()); }
+};
+
+inline constexpr int kDiffusionLevels = 4, kDiffusionBlocks = 8;  // four down, middle, three up
+inline constexpr int kDiffusionFrames = 1 << kDiffusionLevels;    // frames come in multiples
+inline constexpr int kDownWidths[kDiffusionLevels] = {64, 64, 96, 96};
+inline constexpr int kTimeWidth = 64, kConditionWidth = 96;
+inline constexpr int kHeads = 4;  // of SocialPooling::kHeads
+inline constexpr int kTaps = 3;   // frames that a convolution sees
+// Channels in and out of a block.
+struct BlockWidths {
+  int in = 0, out = 0;
+};
+BlockWidths WidthsOf(int block, const DiffusionStructure& structure);
+
+inline bool DiffusionStructure::PoolsAfter(int block) const {
+  if (!Pools() || block >= kDiffusionLevels) return false;
+  return join == SocialJoin::kLevels || block == kDiffusionLevels - 1;
+}
+
+// Weights of a convolution: outputs x (3 inputs), the oldest frame first.
+struct DiffusionBlock {
+  DenseLayer first, second, skip, film;
+};
+struct DiffusionPool {
+  DenseLayer query, key, value, mixed;
+};
+
+struct DiffusionNetwork {
+  DiffusionStructure structure;
+  MotionScales scales;
+  DenseLayer first_time, second_time, first_static, second_static;
+  std::vector<DiffusionBlock> blocks;
+  std::vector<DiffusionPool> pools;  // of the blocks after which people attend to each other
+  DenseLayer out, direct;
+};
+
+// How much person i (a row) sees of person j (a column), a matrix for each view; not of attention.
+std::vector<Eigen::MatrixXf> PoolingWeights(SocialPooling pooling, const Eigen::Matrix2Xf& places);
+
+// Sines and cosines of t at 32 frequencies.
+Eigen::VectorXf TimeFeatures(double t);
+
+// One group; what does not depend on t or x_t is computed once.
+class GroupDenoiser {
+ public:
+  GroupDenoiser(const DiffusionNetwork& network, GroupFeatures features);
+  // The estimate of x_0; both NumMotion() x (people * frames).
+  Eigen::MatrixXf Estimate(const Eigen::MatrixXf& noisy, double t) const;
+
+ private:
+  // channels x (people * frames)
+  struct Values {
+    Eigen::MatrixXf data;
+    int frames = 0;
+  };
+  // conditions: of FiLM, a column per person.
+  Values Block(int index, const Values& in, const Eigen::MatrixXf& conditions) const;
+  // With what people see of each other below it.
+  Values Pooled(int index, const Values& values) const;
+  Eigen::MatrixXf Attended(const DiffusionPool& pool, const Values& values) const;
+  Values Doubled(const Values& values) const;
+
+  const DiffusionNetwork& network_;
+  GroupFeatures features_;
+  int frames_;               // padded
+  Eigen::MatrixXf statics_;  // kConditionWidth x people
+  std::vector<Eigen::MatrixXf> views_;
+};
+
+void AddTensors(const std::string& name, const DiffusionNetwork& network, TensorList* tensors);
+DiffusionNetwork TakeDiffusion(const std::string& name, const DiffusionStructure& structure,
+                               TensorReader* reader);
 
 // How much of a motion is left after t of T steps of forward noise, and the way back.
 //

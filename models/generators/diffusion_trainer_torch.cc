@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "models/generators/diffusion_generator.h"
-#include "models/generators/diffusion_network.h"
 #include "models/generators/generator_trainers.h"
 #include "models/restoration/support_torch.h"
 

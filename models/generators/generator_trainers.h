@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "models/generators/diffusion_network.h"
+#include "models/generators/diffusion_generator.h"
 #include "models/generators/particle_generator.h"
 #include "models/restoration/trainer.h"
 

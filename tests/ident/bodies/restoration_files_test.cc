@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "ident/bodies/body_files.h"
-#include "ident/bodies/tensor_folder.h"
 #include "models/restoration/body.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"
