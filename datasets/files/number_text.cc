@@ -24,6 +24,14 @@ std::string_view WithoutPlus(std::string_view token) {
   return token;
 }
 
+// Where the end of the first cell may be looked for: behind its quotes, if it has any.
+std::size_t BehindQuotes(std::string_view row) {
+  const std::size_t opens = row.find_first_not_of(' ');
+  if (opens == std::string_view::npos || row[opens] != '"') return 0;
+  const std::size_t closes = row.find('"', opens + 1);
+  return closes == std::string_view::npos ? 0 : closes + 1;
+}
+
 }  // namespace
 
 std::string_view Trimmed(std::string_view text) {
@@ -114,18 +122,6 @@ std::string Rounded(double value, int digits) {
   }
   return buffer;
 }
-
-namespace {
-
-// Where the end of the first cell may be looked for: behind its quotes, if it has any.
-std::size_t BehindQuotes(std::string_view row) {
-  const std::size_t opens = row.find_first_not_of(' ');
-  if (opens == std::string_view::npos || row[opens] != '"') return 0;
-  const std::size_t closes = row.find('"', opens + 1);
-  return closes == std::string_view::npos ? 0 : closes + 1;
-}
-
-}  // namespace
 
 char SeparatorOf(std::string_view names) {
   constexpr std::string_view kSeparators = "\t;,", kOpening = "\"([", kClosing = "\")]";

@@ -11,40 +11,6 @@
 #include "datasets/files/number_text.h"
 
 namespace pushid {
-std::vector<BvhChannel> DefaultBvhChannels(bool with_position) {
-  std::vector<BvhChannel> channels;
-  if (with_position) {
-    channels = {BvhChannel::kXposition, BvhChannel::kYposition, BvhChannel::kZposition};
-  }
-  channels.insert(channels.end(),
-                  {BvhChannel::kZrotation, BvhChannel::kYrotation, BvhChannel::kXrotation});
-  return channels;
-}
-
-int BvhSkeleton::num_channels() const {
-  std::size_t count = 0;
-  for (const BvhJoint& joint : joints) count += joint.channels.size();
-  return static_cast<int>(count);
-}
-
-std::vector<std::string> BvhSkeleton::Names() const {
-  std::vector<std::string> names;
-  for (const BvhJoint& joint : joints) names.push_back(joint.name);
-  return names;
-}
-
-int BvhSkeleton::Find(const std::string& name) const {
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (joints[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
-
-int BvhMotion::num_frames() const {
-  const int channels = skeleton.num_channels();
-  return channels > 0 ? static_cast<int>(values.size() / channels) : 0;
-}
-
 namespace {
 
 constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
@@ -58,101 +24,6 @@ void RotateAbout(int axis, double radians, Eigen::Matrix3d* rotation) {
   rotation->col(i) = c * column_i + s * column_j;
   rotation->col(j) = c * column_j - s * column_i;
 }
-
-}  // namespace
-
-void RotateByChannels(const BvhJoint& joint, const double* values, Eigen::Matrix3d* rotation) {
-  for (std::size_t i = 0; i < joint.channels.size(); ++i) {
-    const BvhChannel channel = joint.channels[i];
-    if (IsRotation(channel)) {
-      RotateAbout(AxisOf(channel), values[i] * kRadiansPerDegree, rotation);
-    }
-  }
-}
-
-// R = R_i(a) R_j(b) R_k(c) with e = 1 where i, j, k are cyclic and -1 otherwise: R_ik = e sin b,
-// R_ii = cos b cos c, R_ij = -e cos b sin c, R_jk = -e sin a cos b, R_kk = cos a cos b. At b = +-90
-// degrees only one turn is left of a and c, and a takes it.
-void SetRotationChannels(const BvhJoint& joint, const Eigen::Matrix3d& rotation, double* values) {
-  std::vector<int> places;
-  for (std::size_t c = 0; c < joint.channels.size(); ++c) {
-    if (IsRotation(joint.channels[c])) places.push_back(static_cast<int>(c));
-  }
-  const int i = AxisOf(joint.channels[places[0]]), j = AxisOf(joint.channels[places[1]]),
-            k = AxisOf(joint.channels[places[2]]);
-  const double e = j == (i + 1) % 3 ? 1.0 : -1.0;
-  const double cos_b = std::hypot(rotation(i, i), rotation(i, j));
-  double a = 0.0, c = 0.0;
-  if (cos_b > kUpright) {
-    a = std::atan2(-e * rotation(j, k), rotation(k, k));
-    c = std::atan2(-e * rotation(i, j), rotation(i, i));
-  } else {
-    a = std::atan2(e * rotation(k, j), rotation(j, j));
-  }
-  const double angles[] = {a, std::atan2(e * rotation(i, k), cos_b), c};
-  for (int n = 0; n < 3; ++n) values[places[n]] = angles[n] / kRadiansPerDegree;
-}
-
-BvhKinematics::BvhKinematics(const BvhSkeleton& skeleton, double metres_per_unit,
-                             std::vector<int> joints)
-    : skeleton_(skeleton),
-      metres_per_unit_(metres_per_unit),
-      joints_(std::move(joints)),
-      world_position_(skeleton.joints.size()),
-      world_rotation_(skeleton.joints.size()) {
-  const int count = static_cast<int>(skeleton_.joints.size());
-  std::vector<bool> needed(count, false), rotates(count, false);
-  for (int joint : joints_) needed[joint] = true;
-  for (int joint = count - 1; joint >= 0; --joint) {
-    const int parent = skeleton_.joints[joint].parent;
-    if (needed[joint] && parent >= 0) needed[parent] = rotates[parent] = true;
-  }
-  int first_channel = 0;
-  for (int joint = 0; joint < count; ++joint) {
-    if (needed[joint]) {
-      steps_.push_back({joint, skeleton_.joints[joint].parent, rotates[joint], first_channel});
-    }
-    first_channel += static_cast<int>(skeleton_.joints[joint].channels.size());
-  }
-}
-
-std::vector<bool> BvhKinematics::UsedValues() const {
-  std::vector<bool> used(skeleton_.num_channels(), false);
-  for (const Step& step : steps_) {
-    const std::vector<BvhChannel>& channels = skeleton_.joints[step.joint].channels;
-    for (std::size_t i = 0; i < channels.size(); ++i) {
-      used[step.first_channel + i] = step.rotates_something || !IsRotation(channels[i]);
-    }
-  }
-  return used;
-}
-
-void BvhKinematics::Positions(const double* row, Eigen::Vector3d* positions) {
-  for (const Step& step : steps_) {
-    const BvhJoint& joint = skeleton_.joints[step.joint];
-    const double* values = row + step.first_channel;
-    Eigen::Matrix3d& rotation = world_rotation_[step.joint];
-    if (step.parent >= 0) {
-      rotation = world_rotation_[step.parent];
-    } else {
-      rotation.setIdentity();
-    }
-    Eigen::Vector3d translation = joint.offset;
-    for (std::size_t i = 0; i < joint.channels.size(); ++i) {
-      const BvhChannel channel = joint.channels[i];
-      if (!IsRotation(channel)) translation[AxisOf(channel)] = values[i];
-    }
-    world_position_[step.joint] = rotation * translation;
-    if (step.parent >= 0) world_position_[step.joint] += world_position_[step.parent];
-    if (!step.rotates_something) continue;
-    RotateByChannels(joint, values, &rotation);
-  }
-  for (std::size_t i = 0; i < joints_.size(); ++i) {
-    positions[i] = metres_per_unit_ * world_position_[joints_[i]];
-  }
-}
-
-namespace {
 
 // What would make the file unreadable; "" when nothing does.
 std::string SkeletonProblem(const BvhSkeleton& skeleton) {
@@ -265,37 +136,6 @@ class HierarchyWriter {
   const LengthUnit unit_;
   std::string text_;
 };
-
-}  // namespace
-
-MaybeError WriteBvh(const std::string& path, const BvhMotion& motion, LengthUnit unit) {
-  const std::string problem = MotionProblem(motion);
-  if (!problem.empty()) return Error{"the motion cannot be written: " + problem, path, 0};
-
-  std::vector<bool> is_length;  // per channel
-  for (const BvhJoint& joint : motion.skeleton.joints) {
-    for (BvhChannel channel : joint.channels) is_length.push_back(!IsRotation(channel));
-  }
-  AtomicFile file;
-  if (MaybeError failed = file.Open(path)) return failed;
-  file.Append(HierarchyWriter(motion, unit).Write());
-  file.Append("MOTION\nFrames: " + std::to_string(motion.num_frames()) +
-              "\nFrame Time: " + DoubleText(motion.frame_time_s) + "\n");
-  std::string row;
-  for (std::size_t i = 0; i < motion.values.size(); ++i) {
-    const std::size_t channel = i % is_length.size();
-    const double value = motion.values[i];
-    AppendDouble(is_length[channel] ? ConvertLength(value, motion.length_unit, unit) : value, &row);
-    row += channel + 1 == is_length.size() ? '\n' : ' ';
-    if (channel + 1 == is_length.size()) {
-      file.Append(row);
-      row.clear();
-    }
-  }
-  return file.Commit();
-}
-
-namespace {
 
 // Which joint and channel the value at `index` of a row belongs to, for messages.
 std::string ChannelName(const BvhSkeleton& skeleton, int index) {
@@ -414,6 +254,158 @@ Result<std::vector<int>> ChooseJoints(const std::string& path, const BvhSkeleton
 }
 
 }  // namespace
+
+std::vector<BvhChannel> DefaultBvhChannels(bool with_position) {
+  std::vector<BvhChannel> channels;
+  if (with_position) {
+    channels = {BvhChannel::kXposition, BvhChannel::kYposition, BvhChannel::kZposition};
+  }
+  channels.insert(channels.end(),
+                  {BvhChannel::kZrotation, BvhChannel::kYrotation, BvhChannel::kXrotation});
+  return channels;
+}
+
+int BvhSkeleton::num_channels() const {
+  std::size_t count = 0;
+  for (const BvhJoint& joint : joints) count += joint.channels.size();
+  return static_cast<int>(count);
+}
+
+std::vector<std::string> BvhSkeleton::Names() const {
+  std::vector<std::string> names;
+  for (const BvhJoint& joint : joints) names.push_back(joint.name);
+  return names;
+}
+
+int BvhSkeleton::Find(const std::string& name) const {
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+int BvhMotion::num_frames() const {
+  const int channels = skeleton.num_channels();
+  return channels > 0 ? static_cast<int>(values.size() / channels) : 0;
+}
+
+void RotateByChannels(const BvhJoint& joint, const double* values, Eigen::Matrix3d* rotation) {
+  for (std::size_t i = 0; i < joint.channels.size(); ++i) {
+    const BvhChannel channel = joint.channels[i];
+    if (IsRotation(channel)) {
+      RotateAbout(AxisOf(channel), values[i] * kRadiansPerDegree, rotation);
+    }
+  }
+}
+
+// R = R_i(a) R_j(b) R_k(c) with e = 1 where i, j, k are cyclic and -1 otherwise: R_ik = e sin b,
+// R_ii = cos b cos c, R_ij = -e cos b sin c, R_jk = -e sin a cos b, R_kk = cos a cos b. At b = +-90
+// degrees only one turn is left of a and c, and a takes it.
+void SetRotationChannels(const BvhJoint& joint, const Eigen::Matrix3d& rotation, double* values) {
+  std::vector<int> places;
+  for (std::size_t c = 0; c < joint.channels.size(); ++c) {
+    if (IsRotation(joint.channels[c])) places.push_back(static_cast<int>(c));
+  }
+  const int i = AxisOf(joint.channels[places[0]]), j = AxisOf(joint.channels[places[1]]),
+            k = AxisOf(joint.channels[places[2]]);
+  const double e = j == (i + 1) % 3 ? 1.0 : -1.0;
+  const double cos_b = std::hypot(rotation(i, i), rotation(i, j));
+  double a = 0.0, c = 0.0;
+  if (cos_b > kUpright) {
+    a = std::atan2(-e * rotation(j, k), rotation(k, k));
+    c = std::atan2(-e * rotation(i, j), rotation(i, i));
+  } else {
+    a = std::atan2(e * rotation(k, j), rotation(j, j));
+  }
+  const double angles[] = {a, std::atan2(e * rotation(i, k), cos_b), c};
+  for (int n = 0; n < 3; ++n) values[places[n]] = angles[n] / kRadiansPerDegree;
+}
+
+BvhKinematics::BvhKinematics(const BvhSkeleton& skeleton, double metres_per_unit,
+                             std::vector<int> joints)
+    : skeleton_(skeleton),
+      metres_per_unit_(metres_per_unit),
+      joints_(std::move(joints)),
+      world_position_(skeleton.joints.size()),
+      world_rotation_(skeleton.joints.size()) {
+  const int count = static_cast<int>(skeleton_.joints.size());
+  std::vector<bool> needed(count, false), rotates(count, false);
+  for (int joint : joints_) needed[joint] = true;
+  for (int joint = count - 1; joint >= 0; --joint) {
+    const int parent = skeleton_.joints[joint].parent;
+    if (needed[joint] && parent >= 0) needed[parent] = rotates[parent] = true;
+  }
+  int first_channel = 0;
+  for (int joint = 0; joint < count; ++joint) {
+    if (needed[joint]) {
+      steps_.push_back({joint, skeleton_.joints[joint].parent, rotates[joint], first_channel});
+    }
+    first_channel += static_cast<int>(skeleton_.joints[joint].channels.size());
+  }
+}
+
+std::vector<bool> BvhKinematics::UsedValues() const {
+  std::vector<bool> used(skeleton_.num_channels(), false);
+  for (const Step& step : steps_) {
+    const std::vector<BvhChannel>& channels = skeleton_.joints[step.joint].channels;
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      used[step.first_channel + i] = step.rotates_something || !IsRotation(channels[i]);
+    }
+  }
+  return used;
+}
+
+void BvhKinematics::Positions(const double* row, Eigen::Vector3d* positions) {
+  for (const Step& step : steps_) {
+    const BvhJoint& joint = skeleton_.joints[step.joint];
+    const double* values = row + step.first_channel;
+    Eigen::Matrix3d& rotation = world_rotation_[step.joint];
+    if (step.parent >= 0) {
+      rotation = world_rotation_[step.parent];
+    } else {
+      rotation.setIdentity();
+    }
+    Eigen::Vector3d translation = joint.offset;
+    for (std::size_t i = 0; i < joint.channels.size(); ++i) {
+      const BvhChannel channel = joint.channels[i];
+      if (!IsRotation(channel)) translation[AxisOf(channel)] = values[i];
+    }
+    world_position_[step.joint] = rotation * translation;
+    if (step.parent >= 0) world_position_[step.joint] += world_position_[step.parent];
+    if (!step.rotates_something) continue;
+    RotateByChannels(joint, values, &rotation);
+  }
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    positions[i] = metres_per_unit_ * world_position_[joints_[i]];
+  }
+}
+
+MaybeError WriteBvh(const std::string& path, const BvhMotion& motion, LengthUnit unit) {
+  const std::string problem = MotionProblem(motion);
+  if (!problem.empty()) return Error{"the motion cannot be written: " + problem, path, 0};
+
+  std::vector<bool> is_length;  // per channel
+  for (const BvhJoint& joint : motion.skeleton.joints) {
+    for (BvhChannel channel : joint.channels) is_length.push_back(!IsRotation(channel));
+  }
+  AtomicFile file;
+  if (MaybeError failed = file.Open(path)) return failed;
+  file.Append(HierarchyWriter(motion, unit).Write());
+  file.Append("MOTION\nFrames: " + std::to_string(motion.num_frames()) +
+              "\nFrame Time: " + DoubleText(motion.frame_time_s) + "\n");
+  std::string row;
+  for (std::size_t i = 0; i < motion.values.size(); ++i) {
+    const std::size_t channel = i % is_length.size();
+    const double value = motion.values[i];
+    AppendDouble(is_length[channel] ? ConvertLength(value, motion.length_unit, unit) : value, &row);
+    row += channel + 1 == is_length.size() ? '\n' : ' ';
+    if (channel + 1 == is_length.size()) {
+      file.Append(row);
+      row.clear();
+    }
+  }
+  return file.Commit();
+}
 
 Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options) {
   LineReader reader;

@@ -136,6 +136,20 @@ std::vector<Entry> Joined(const C3dParameters& parameters, std::string_view grou
   }
 }
 
+double FromIeee(std::uint32_t bits) {
+  float value;
+  std::memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+double FromVax(std::uint32_t bits) {
+  const int exponent = static_cast<int>(bits >> 23 & 0xff);
+  if (exponent == 0) return 0.0;
+  const double fraction = static_cast<double>((bits & 0x7fffff) | 0x800000);
+  const double size = std::ldexp(fraction, exponent - kVaxBias - kFractionBits);
+  return (bits >> 31) != 0 ? -size : size;
+}
+
 }  // namespace
 
 Error C3dError(const std::string& path, std::size_t at, const std::string& message) {
@@ -178,24 +192,6 @@ std::vector<std::string> C3dParameters::Texts(std::string_view group,
                                               const std::string& name) const {
   return Joined(*this, group, name, &C3dParameter::texts);
 }
-
-namespace {
-
-double FromIeee(std::uint32_t bits) {
-  float value;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
-
-double FromVax(std::uint32_t bits) {
-  const int exponent = static_cast<int>(bits >> 23 & 0xff);
-  if (exponent == 0) return 0.0;
-  const double fraction = static_cast<double>((bits & 0x7fffff) | 0x800000);
-  const double size = std::ldexp(fraction, exponent - kVaxBias - kFractionBits);
-  return (bits >> 31) != 0 ? -size : size;
-}
-
-}  // namespace
 
 std::uint16_t C3dBytes::Word(std::size_t at) const {
   const std::uint16_t first = Byte(at), second = Byte(at + 1);

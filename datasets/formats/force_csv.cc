@@ -54,6 +54,47 @@ MaybeError ParsePushRow(const LineReader& reader, std::string_view line,
   return std::nullopt;
 }
 
+constexpr int kMinSamples = 3;
+
+MaybeError ParseSensorRow(const LineReader& reader, std::string_view line,
+                          const std::vector<std::string>& columns, std::vector<double>* row) {
+  const std::vector<std::string_view> fields = CellsOf(line, ',');
+  if (fields.size() != columns.size()) {
+    return reader.ErrorHere("the row has " + std::to_string(fields.size()) + " values, not " +
+                            std::to_string(columns.size()));
+  }
+  for (size_t i = 0; i < columns.size(); ++i) {
+    if (fields[i].empty()) {
+      return reader.ErrorHere(columns[i] + " is missing; fill the gap or cut the record there");
+    }
+    if (!ParseDouble(fields[i], &(*row)[i])) {
+      return reader.ErrorHere(columns[i] + ": " + NumberProblem(fields[i]));
+    }
+  }
+  return {};
+}
+
+// The first pause that is no sampling interval any more. `lines` holds each sample's line.
+MaybeError FindGap(const SensorRecord& record, const std::vector<int>& lines) {
+  std::vector<double> pauses;
+  for (int i = 1; i < record.num_samples(); ++i) {
+    pauses.push_back(record.time_s[i] - record.time_s[i - 1]);
+  }
+  std::vector<double> sorted = pauses;
+  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
+  const double usual = sorted[sorted.size() / 2];
+  for (size_t i = 0; i < pauses.size(); ++i) {
+    if (pauses[i] > kMaxSensorPause * usual) {
+      return Error{"no samples for " + Rounded(pauses[i]) + " s, from " +
+                       Rounded(record.time_s[i]) + " s to " + Rounded(record.time_s[i + 1]) +
+                       " s, where " + Rounded(usual) +
+                       " s is usual; fill the gap or cut the record there",
+                   record.file, lines[i + 1]};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<std::vector<Eigen::Vector4d>> ReadPushCsv(const std::string& path) {
@@ -100,51 +141,6 @@ MaybeError WritePushCsv(const std::string& path, const std::vector<Eigen::Vector
   }
   return WriteFileAtomically(path, text);
 }
-
-namespace {
-
-constexpr int kMinSamples = 3;
-
-MaybeError ParseSensorRow(const LineReader& reader, std::string_view line,
-                          const std::vector<std::string>& columns, std::vector<double>* row) {
-  const std::vector<std::string_view> fields = CellsOf(line, ',');
-  if (fields.size() != columns.size()) {
-    return reader.ErrorHere("the row has " + std::to_string(fields.size()) + " values, not " +
-                            std::to_string(columns.size()));
-  }
-  for (size_t i = 0; i < columns.size(); ++i) {
-    if (fields[i].empty()) {
-      return reader.ErrorHere(columns[i] + " is missing; fill the gap or cut the record there");
-    }
-    if (!ParseDouble(fields[i], &(*row)[i])) {
-      return reader.ErrorHere(columns[i] + ": " + NumberProblem(fields[i]));
-    }
-  }
-  return {};
-}
-
-// The first pause that is no sampling interval any more. `lines` holds each sample's line.
-MaybeError FindGap(const SensorRecord& record, const std::vector<int>& lines) {
-  std::vector<double> pauses;
-  for (int i = 1; i < record.num_samples(); ++i) {
-    pauses.push_back(record.time_s[i] - record.time_s[i - 1]);
-  }
-  std::vector<double> sorted = pauses;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const double usual = sorted[sorted.size() / 2];
-  for (size_t i = 0; i < pauses.size(); ++i) {
-    if (pauses[i] > kMaxSensorPause * usual) {
-      return Error{"no samples for " + Rounded(pauses[i]) + " s, from " +
-                       Rounded(record.time_s[i]) + " s to " + Rounded(record.time_s[i + 1]) +
-                       " s, where " + Rounded(usual) +
-                       " s is usual; fill the gap or cut the record there",
-                   record.file, lines[i + 1]};
-    }
-  }
-  return {};
-}
-
-}  // namespace
 
 Result<SensorRecord> ReadSensorCsv(const std::string& path) {
   LineReader reader;

@@ -12,23 +12,6 @@
 #include "datasets/files/number_text.h"
 
 namespace pushid {
-MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion) {
-  if (!options.choose) {
-    motion->chosen.resize(motion->names.size());
-    std::iota(motion->chosen.begin(), motion->chosen.end(), 0);
-    return std::nullopt;
-  }
-  Result<std::vector<int>> chosen = options.choose(motion->names);
-  if (!chosen.ok()) return chosen.error();
-  motion->chosen = std::move(chosen.value());
-  return std::nullopt;
-}
-
-Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position) {
-  const bool seen = position.allFinite() && !position.isZero(0.0);
-  return seen ? position : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-}
-
 namespace {
 
 // "hip_x" -> "hip_"; empty when the name does not end in the axis.
@@ -64,53 +47,6 @@ Result<std::vector<TablePoint>> NamedPoints(const std::string& path,
   }
   return points;
 }
-
-}  // namespace
-
-std::vector<TablePoint> PointsOf(const std::vector<std::string>& names) {
-  std::unordered_map<std::string, int> index;
-  for (std::size_t i = 0; i < names.size(); ++i) index.emplace(names[i], static_cast<int>(i));
-  std::vector<TablePoint> points;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string stem = Stem(names[i], 'x');
-    if (stem.empty()) continue;
-    const bool upper = names[i].back() == 'X';
-    const auto y = index.find(stem + (upper ? 'Y' : 'y'));
-    const auto z = index.find(stem + (upper ? 'Z' : 'z'));
-    if (y == index.end() || z == index.end()) continue;
-    TablePoint point;
-    point.name = WithoutSeparator(stem);
-    if (point.name.empty()) continue;
-    point.columns[0] = static_cast<int>(i);
-    point.columns[1] = y->second;
-    point.columns[2] = z->second;
-    points.push_back(point);
-  }
-  return points;
-}
-
-bool IsForceColumn(const std::string& name) {
-  if (!Holds(name, "force")) return false;
-  const std::size_t end = name.size();
-  return end < 3 || name[end - 3] != '_' || name[end - 2] != 'p';
-}
-
-PointMotion WithoutForces(const PointMotion& motion) {
-  PointMotion points = motion;
-  points.names.clear();
-  points.chosen.clear();
-  points.positions.clear();
-  for (std::size_t i = 0; i < motion.names.size(); ++i) {
-    const std::string& name = motion.names[i];
-    if (Holds(name, "force") || Holds(name, "torque") || Holds(name, "moment")) continue;
-    points.chosen.push_back(static_cast<int>(points.names.size()));
-    points.names.push_back(name);
-    points.positions.push_back(motion.positions[i]);
-  }
-  return points;
-}
-
-namespace {
 
 // Columns x, y and z of each of the chosen points.
 std::vector<int> ColumnsOf(const std::vector<TablePoint>& points, const std::vector<int>& chosen) {
@@ -173,18 +109,6 @@ Result<PointMotion> ReadTablePoints(const std::string& path, TableFormat format,
   TakeTracks(table.value(), &motion);
   return motion;
 }
-
-}  // namespace
-
-Result<PointMotion> ReadCsvPoints(const std::string& path, const PointReadOptions& options) {
-  return ReadTablePoints(path, TableFormat::kCsv, options);
-}
-
-Result<PointMotion> ReadStoragePoints(const std::string& path, const PointReadOptions& options) {
-  return ReadTablePoints(path, TableFormat::kStorage, options);
-}
-
-namespace {
 
 constexpr double kRateTolerance = 0.01;
 constexpr std::int64_t kMostMarkers = 100000;
@@ -393,6 +317,74 @@ class TrcReader {
 };
 
 }  // namespace
+
+MaybeError ChoosePoints(const PointReadOptions& options, PointMotion* motion) {
+  if (!options.choose) {
+    motion->chosen.resize(motion->names.size());
+    std::iota(motion->chosen.begin(), motion->chosen.end(), 0);
+    return std::nullopt;
+  }
+  Result<std::vector<int>> chosen = options.choose(motion->names);
+  if (!chosen.ok()) return chosen.error();
+  motion->chosen = std::move(chosen.value());
+  return std::nullopt;
+}
+
+Eigen::Vector3d SeenPosition(const Eigen::Vector3d& position) {
+  const bool seen = position.allFinite() && !position.isZero(0.0);
+  return seen ? position : Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+}
+
+std::vector<TablePoint> PointsOf(const std::vector<std::string>& names) {
+  std::unordered_map<std::string, int> index;
+  for (std::size_t i = 0; i < names.size(); ++i) index.emplace(names[i], static_cast<int>(i));
+  std::vector<TablePoint> points;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const std::string stem = Stem(names[i], 'x');
+    if (stem.empty()) continue;
+    const bool upper = names[i].back() == 'X';
+    const auto y = index.find(stem + (upper ? 'Y' : 'y'));
+    const auto z = index.find(stem + (upper ? 'Z' : 'z'));
+    if (y == index.end() || z == index.end()) continue;
+    TablePoint point;
+    point.name = WithoutSeparator(stem);
+    if (point.name.empty()) continue;
+    point.columns[0] = static_cast<int>(i);
+    point.columns[1] = y->second;
+    point.columns[2] = z->second;
+    points.push_back(point);
+  }
+  return points;
+}
+
+bool IsForceColumn(const std::string& name) {
+  if (!Holds(name, "force")) return false;
+  const std::size_t end = name.size();
+  return end < 3 || name[end - 3] != '_' || name[end - 2] != 'p';
+}
+
+PointMotion WithoutForces(const PointMotion& motion) {
+  PointMotion points = motion;
+  points.names.clear();
+  points.chosen.clear();
+  points.positions.clear();
+  for (std::size_t i = 0; i < motion.names.size(); ++i) {
+    const std::string& name = motion.names[i];
+    if (Holds(name, "force") || Holds(name, "torque") || Holds(name, "moment")) continue;
+    points.chosen.push_back(static_cast<int>(points.names.size()));
+    points.names.push_back(name);
+    points.positions.push_back(motion.positions[i]);
+  }
+  return points;
+}
+
+Result<PointMotion> ReadCsvPoints(const std::string& path, const PointReadOptions& options) {
+  return ReadTablePoints(path, TableFormat::kCsv, options);
+}
+
+Result<PointMotion> ReadStoragePoints(const std::string& path, const PointReadOptions& options) {
+  return ReadTablePoints(path, TableFormat::kStorage, options);
+}
 
 Result<PointMotion> ReadTrc(const std::string& path, const PointReadOptions& options) {
   return TrcReader(path, options).Read();

@@ -268,39 +268,6 @@ Eigen::Vector2d MeanForce(const ScenePush& push, size_t from, size_t to) {
   return sum / static_cast<double>(to - from);
 }
 
-}  // namespace
-
-std::optional<PushAndMotion> ComparePush(const PendulumRecording& recording, int person) {
-  return Comparison(recording, person, FirstPush(recording, person)).Compare();
-}
-
-double RestingForce(const ScenePush& push, double dt) {
-  const size_t rows = push.force.size();
-  const auto at_rest = static_cast<size_t>(std::ceil(kRestTime / dt));
-  if (push.kind != PushKind::kExternal || at_rest < 4 || rows < 2 * at_rest) return 0.0;
-  const size_t from = rows - at_rest, middle = rows - at_rest / 2;
-  const Eigen::Vector2d mean = MeanForce(push, from, rows);
-  const double peak = Peak(push);
-  double largest = 0.0, squares = 0.0;
-  for (size_t t = from; t < rows; ++t) {
-    largest = std::max(largest, Length(push.force[t]));
-    squares += (push.force[t].head<2>() - mean).squaredNorm();
-  }
-  const double error = std::sqrt(squares) / static_cast<double>(at_rest);
-  const double drift = (MeanForce(push, from, middle) - MeanForce(push, middle, rows)).norm(),
-               rest = mean.norm();
-  const bool some = rest > kLeastShare * peak && rest > kNoise * error;
-  return some && drift <= kSteady * rest && largest < kRestShare * peak ? rest : 0.0;
-}
-
-bool HasNoEnd(const ScenePush& push, int num_frames) {
-  if (push.kind != PushKind::kExternal || push.force.size() < kFewestRows) return false;
-  const double peak = Peak(push);
-  if (!(Length(push.force.back()) > kStillOn * peak)) return false;
-  return push.EndFrame() >= num_frames - 1 || Length(push.force.front()) < kSlowStart * peak;
-}
-namespace {
-
 constexpr double kDegree = M_PI / 180.0;
 constexpr double kAside = 60.0 * kDegree, kAgainst = 120.0 * kDegree;
 constexpr double kTooMuch = 3.0, kTooLittle = 0.25;           // of an external push
@@ -419,6 +386,36 @@ std::string Case(const Finding& finding, const char* unit) {
 }
 
 }  // namespace
+
+std::optional<PushAndMotion> ComparePush(const PendulumRecording& recording, int person) {
+  return Comparison(recording, person, FirstPush(recording, person)).Compare();
+}
+
+double RestingForce(const ScenePush& push, double dt) {
+  const size_t rows = push.force.size();
+  const auto at_rest = static_cast<size_t>(std::ceil(kRestTime / dt));
+  if (push.kind != PushKind::kExternal || at_rest < 4 || rows < 2 * at_rest) return 0.0;
+  const size_t from = rows - at_rest, middle = rows - at_rest / 2;
+  const Eigen::Vector2d mean = MeanForce(push, from, rows);
+  const double peak = Peak(push);
+  double largest = 0.0, squares = 0.0;
+  for (size_t t = from; t < rows; ++t) {
+    largest = std::max(largest, Length(push.force[t]));
+    squares += (push.force[t].head<2>() - mean).squaredNorm();
+  }
+  const double error = std::sqrt(squares) / static_cast<double>(at_rest);
+  const double drift = (MeanForce(push, from, middle) - MeanForce(push, middle, rows)).norm(),
+               rest = mean.norm();
+  const bool some = rest > kLeastShare * peak && rest > kNoise * error;
+  return some && drift <= kSteady * rest && largest < kRestShare * peak ? rest : 0.0;
+}
+
+bool HasNoEnd(const ScenePush& push, int num_frames) {
+  if (push.kind != PushKind::kExternal || push.force.size() < kFewestRows) return false;
+  const double peak = Peak(push);
+  if (!(Length(push.force.back()) > kStillOn * peak)) return false;
+  return push.EndFrame() >= num_frames - 1 || Length(push.force.front()) < kSlowStart * peak;
+}
 
 const std::vector<FindingRow>& Names(FindingKind) {
   using Kind = FindingKind;

@@ -118,87 +118,6 @@ MaybeError CheckAtRest(const GroundTracks& tracks, bool displacement, double sta
                tracks.file, tracks.lines.empty() ? 0 : tracks.lines.front()};
 }
 
-}  // namespace
-
-double GroundSpeedAtFirst(const std::vector<GroundPose>& poses, double dt) {
-  const int n = static_cast<int>(poses.size());
-  if (n < 2) return 0.0;
-  const Eigen::RowVector4d first = (poses[1] - poses[0]).cwiseAbs().transpose() / dt;
-  if (n < 5) return first.maxCoeff();
-  Eigen::MatrixX3d by(n, 3);
-  Eigen::MatrixX4d values(n, 4);
-  for (int i = 0; i < n; ++i) {
-    by.row(i) << 1.0, i * dt, i * dt * i * dt;
-    values.row(i) = poses[i].transpose();
-  }
-  const Eigen::Matrix<double, 3, 4> parabola =
-      SolveLeastNorm(Eigen::MatrixXd(by), Eigen::MatrixXd(values));
-  const Eigen::RowVector4d variance =
-      (values - by * parabola).colwise().squaredNorm() / static_cast<double>(n - 3);
-  const double by_scatter = std::sqrt((by.transpose() * by).inverse()(1, 1));
-  const Eigen::RowVector4d slope =
-      parabola.row(1).cwiseAbs() - 3.0 * by_scatter * variance.cwiseSqrt();
-  return slope.cwiseMin(first).maxCoeff();
-}
-
-Result<GroundTracks> GroundOfCsv(const ManifestRecording& entry) {
-  const ManifestGround& ground = entry.ground;
-  const std::string path = ResolvePath(entry.manifest, ground.csv);
-  const Eigen::Matrix3d axes = AxesRotation(ground.up.empty() ? "z" : ground.up,
-                                            ground.forward.empty() ? "x" : ground.forward)
-                                   .value();
-  Eigen::Index up;  // the column of the file's axis that points up: lifting is not read
-  axes.row(2).cwiseAbs().maxCoeff(&up);
-  const Result<TimedColumns> read = ReadTimedColumns(
-      path, [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
-        return GroundColumns(path, static_cast<int>(up), names);
-      });
-  if (!read.ok()) return read.error();
-  const TimedColumns& table = read.value();
-  GroundTracks tracks{path, table.rate_hz, table.first_s, {}, {}, table.lines};
-  for (int row = 0; row < table.num_rows(); ++row) {
-    double value[kNumColumns];
-    for (int i = 0; i < kNumColumns; ++i) {
-      value[i] = table.values[i].empty() ? 0.0 : table.values[i][row];
-      if (std::isfinite(value[i])) continue;
-      return Error{std::string(kColumns[i]) + " of the ground is missing; fill the gap", path,
-                   table.lines[row]};
-    }
-    tracks.shift.push_back(axes * Eigen::Vector3d(value[0], value[1], value[2]));
-    tracks.tilt.emplace_back(value[3], value[4], 0.0);
-  }
-  return tracks;
-}
-
-Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
-                                           const Recording& recording, const GroundReading& reading,
-                                           Warnings* warnings) {
-  const ManifestGround& ground = entry.ground;
-  Result<GroundTracks> read = ground.csv.empty()
-                                  ? GroundOfMarkers(entry, recording, reading, warnings)
-                                  : GroundOfCsv(entry);
-  if (!read.ok()) return read.error();
-  GroundTracks& tracks = read.value();
-  const Result<double> start = GroundStart(tracks, entry, recording);
-  if (!start.ok()) return start.error();
-  const double fps = recording.fps;
-  LowPassTo(fps, reading.lowpass_hz, &tracks);
-  std::vector<GroundPose> poses;
-  for (int t = 0; t < recording.num_frames(); ++t) {
-    poses.push_back(Sampled(tracks, (start.value() + t / fps - tracks.first_s) * tracks.rate_hz));
-  }
-  Integrate(ground.quantity, 1.0 / fps, &poses);
-  const GroundPose first = poses[0];
-  for (GroundPose& pose : poses) pose -= first;
-  const bool displacement = ground.quantity == GroundQuantity::kDisplacement;
-  if (MaybeError moves = CheckAtRest(tracks, displacement, start.value(), fps, poses)) {
-    return *std::move(moves);
-  }
-  return poses;
-}
-
-namespace {
-
 using Track = std::vector<Eigen::Vector3d>;
 
 constexpr double kGroundGap = 0.1;      // s, of a marker: longer ones are not filled
@@ -310,6 +229,83 @@ Result<std::vector<Track>> ReadMarkers(const ManifestRecording& entry, const std
 }
 
 }  // namespace
+
+double GroundSpeedAtFirst(const std::vector<GroundPose>& poses, double dt) {
+  const int n = static_cast<int>(poses.size());
+  if (n < 2) return 0.0;
+  const Eigen::RowVector4d first = (poses[1] - poses[0]).cwiseAbs().transpose() / dt;
+  if (n < 5) return first.maxCoeff();
+  Eigen::MatrixX3d by(n, 3);
+  Eigen::MatrixX4d values(n, 4);
+  for (int i = 0; i < n; ++i) {
+    by.row(i) << 1.0, i * dt, i * dt * i * dt;
+    values.row(i) = poses[i].transpose();
+  }
+  const Eigen::Matrix<double, 3, 4> parabola =
+      SolveLeastNorm(Eigen::MatrixXd(by), Eigen::MatrixXd(values));
+  const Eigen::RowVector4d variance =
+      (values - by * parabola).colwise().squaredNorm() / static_cast<double>(n - 3);
+  const double by_scatter = std::sqrt((by.transpose() * by).inverse()(1, 1));
+  const Eigen::RowVector4d slope =
+      parabola.row(1).cwiseAbs() - 3.0 * by_scatter * variance.cwiseSqrt();
+  return slope.cwiseMin(first).maxCoeff();
+}
+
+Result<GroundTracks> GroundOfCsv(const ManifestRecording& entry) {
+  const ManifestGround& ground = entry.ground;
+  const std::string path = ResolvePath(entry.manifest, ground.csv);
+  const Eigen::Matrix3d axes = AxesRotation(ground.up.empty() ? "z" : ground.up,
+                                            ground.forward.empty() ? "x" : ground.forward)
+                                   .value();
+  Eigen::Index up;  // the column of the file's axis that points up: lifting is not read
+  axes.row(2).cwiseAbs().maxCoeff(&up);
+  const Result<TimedColumns> read = ReadTimedColumns(
+      path, [&](const std::vector<std::string>& names) -> Result<std::vector<int>> {
+        return GroundColumns(path, static_cast<int>(up), names);
+      });
+  if (!read.ok()) return read.error();
+  const TimedColumns& table = read.value();
+  GroundTracks tracks{path, table.rate_hz, table.first_s, {}, {}, table.lines};
+  for (int row = 0; row < table.num_rows(); ++row) {
+    double value[kNumColumns];
+    for (int i = 0; i < kNumColumns; ++i) {
+      value[i] = table.values[i].empty() ? 0.0 : table.values[i][row];
+      if (std::isfinite(value[i])) continue;
+      return Error{std::string(kColumns[i]) + " of the ground is missing; fill the gap", path,
+                   table.lines[row]};
+    }
+    tracks.shift.push_back(axes * Eigen::Vector3d(value[0], value[1], value[2]));
+    tracks.tilt.emplace_back(value[3], value[4], 0.0);
+  }
+  return tracks;
+}
+
+Result<std::vector<GroundPose>> LoadGround(const ManifestRecording& entry,
+                                           const Recording& recording, const GroundReading& reading,
+                                           Warnings* warnings) {
+  const ManifestGround& ground = entry.ground;
+  Result<GroundTracks> read = ground.csv.empty()
+                                  ? GroundOfMarkers(entry, recording, reading, warnings)
+                                  : GroundOfCsv(entry);
+  if (!read.ok()) return read.error();
+  GroundTracks& tracks = read.value();
+  const Result<double> start = GroundStart(tracks, entry, recording);
+  if (!start.ok()) return start.error();
+  const double fps = recording.fps;
+  LowPassTo(fps, reading.lowpass_hz, &tracks);
+  std::vector<GroundPose> poses;
+  for (int t = 0; t < recording.num_frames(); ++t) {
+    poses.push_back(Sampled(tracks, (start.value() + t / fps - tracks.first_s) * tracks.rate_hz));
+  }
+  Integrate(ground.quantity, 1.0 / fps, &poses);
+  const GroundPose first = poses[0];
+  for (GroundPose& pose : poses) pose -= first;
+  const bool displacement = ground.quantity == GroundQuantity::kDisplacement;
+  if (MaybeError moves = CheckAtRest(tracks, displacement, start.value(), fps, poses)) {
+    return *std::move(moves);
+  }
+  return poses;
+}
 
 Result<GroundTracks> GroundOfMarkers(const ManifestRecording& entry, const Recording& recording,
                                      const GroundReading& reading, Warnings* warnings) {

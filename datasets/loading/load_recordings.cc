@@ -74,104 +74,6 @@ MaybeError LoadLaboratory(const ManifestRecording& entry, const GroundReading& r
   return std::nullopt;
 }
 
-}  // namespace
-
-Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
-                                const LoadOptions& options, Warnings* warnings) {
-  Recording recording;
-  recording.id = entry.id;
-  recording.labels = entry.labels;
-  recording.pushed_person = entry.pushed_person;
-  recording.push_kind = entry.push_kind;
-  recording.initial_velocity = entry.initial_velocity;
-  recording.stated_errors = entry.stated_errors;
-
-  for (const std::string& misspelt : MisspeltKeys(entry)) {
-    if (warnings == nullptr) continue;
-    warnings->emplace_back("recording " + Quoted(entry.id) + " " + misspelt, entry.id, misspelt);
-  }
-
-  GroundReading reading;
-  ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
-  if (entry.plates_alone && !options.plates_alone) {
-    return OfRecording(entry, {"was measured by force plates alone (\"motion\": \"none\"), which "
-                               "only pushid-fit (--stance=fixed) and pushid-inspect can use; leave "
-                               "it out (--leave_out), or name the files of its motion",
-                               entry.manifest, entry.line});
-  }
-  for (std::size_t i = 0; i < entry.subjects.size(); ++i) {
-    Result<LoadedPerson> loaded = entry.plates_alone
-                                      ? LoadPersonOnPlates(entry)
-                                      : LoadPerson(manifest, entry, i, options, warnings);
-    if (!loaded.ok()) return OfRecording(entry, loaded.error());
-    hash.Add(loaded.value().file_hash);
-    RecordedPerson& person = loaded.value().person;
-    if (i == 0) {
-      recording.fps = loaded.value().fps;
-      reading = {loaded.value().metres_per_unit, recording.fps, options.preparation.lowpass_hz};
-    }
-    if (loaded.value().fps != recording.fps) {
-      return OfRecording(
-          entry, {"the file gives " + Rounded(loaded.value().fps) + " frames per second, but " +
-                      recording.people[0].file + " gives " + Rounded(recording.fps) +
-                      "; give the right one as fps in the manifest",
-                  person.file});
-    }
-    if (i > 0 && person.hip.size() != recording.people[0].hip.size()) {
-      return OfRecording(entry, {"the file has " + std::to_string(person.hip.size()) +
-                                     " frames, but " + recording.people[0].file + " has " +
-                                     std::to_string(recording.people[0].hip.size()) +
-                                     "; the people of one recording share their frames",
-                                 person.file, 0});
-    }
-    recording.people.push_back(std::move(person));
-  }
-
-  std::vector<ManifestPush> pushes = entry.pushes;
-  if (!entry.push_csv.empty()) {
-    pushes.insert(pushes.begin(), ManifestPush{entry.pushed_person, entry.push_csv, 0});
-  }
-  for (const ManifestPush& push : pushes) {
-    if (MaybeError failed = LoadPush(entry.manifest, push, &hash, &recording)) {
-      return OfRecording(entry, *std::move(failed));
-    }
-  }
-  recording.content_hash = hash.Hex();
-  if (MaybeError failed = PrepareMotion(options.preparation, &recording)) {
-    return OfRecording(entry, *std::move(failed));
-  }
-  if (MaybeError failed = LoadLaboratory(entry, reading, &recording, warnings)) {
-    return OfRecording(entry, *std::move(failed));
-  }
-  return recording;
-}
-
-Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
-                                              const LoadOptions& options, Warnings* warnings) {
-  if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
-  const Result<Manifest> manifest = ReadManifests(manifests);
-  if (!manifest.ok()) return manifest.error();
-  return LoadRecordings(manifest.value(), options, warnings);
-}
-
-Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const LoadOptions& options,
-                                              Warnings* warnings) {
-  if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
-  const Result<std::vector<int>> selected =
-      SelectRecordings(manifest, options.setting, options.ids, options.leave_out);
-  if (!selected.ok()) return selected.error();
-  std::vector<Recording> recordings;
-  for (int index : selected.value()) {
-    Result<Recording> recording =
-        LoadRecording(manifest, manifest.recordings[index], options, warnings);
-    if (!recording.ok()) return recording.error();
-    recordings.push_back(std::move(recording.value()));
-  }
-  return recordings;
-}
-
-namespace {
-
 using Track = std::vector<Eigen::Vector3d>;
 
 // fps and a BVH's rounded frame time agree within this: 0.016667 s against 60 Hz is 0.002 %.
@@ -425,18 +327,108 @@ class PersonLoader {
   double fps_ = 0.0;
 };
 
+constexpr double kUnseenStance = 0.1;  // m, of ankles that nobody saw
+
 }  // namespace
+
+Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,
+                                const LoadOptions& options, Warnings* warnings) {
+  Recording recording;
+  recording.id = entry.id;
+  recording.labels = entry.labels;
+  recording.pushed_person = entry.pushed_person;
+  recording.push_kind = entry.push_kind;
+  recording.initial_velocity = entry.initial_velocity;
+  recording.stated_errors = entry.stated_errors;
+
+  for (const std::string& misspelt : MisspeltKeys(entry)) {
+    if (warnings == nullptr) continue;
+    warnings->emplace_back("recording " + Quoted(entry.id) + " " + misspelt, entry.id, misspelt);
+  }
+
+  GroundReading reading;
+  ContentHash hash;  // of the files' hashes, so that contents cannot slide from one into the next
+  if (entry.plates_alone && !options.plates_alone) {
+    return OfRecording(entry, {"was measured by force plates alone (\"motion\": \"none\"), which "
+                               "only pushid-fit (--stance=fixed) and pushid-inspect can use; leave "
+                               "it out (--leave_out), or name the files of its motion",
+                               entry.manifest, entry.line});
+  }
+  for (std::size_t i = 0; i < entry.subjects.size(); ++i) {
+    Result<LoadedPerson> loaded = entry.plates_alone
+                                      ? LoadPersonOnPlates(entry)
+                                      : LoadPerson(manifest, entry, i, options, warnings);
+    if (!loaded.ok()) return OfRecording(entry, loaded.error());
+    hash.Add(loaded.value().file_hash);
+    RecordedPerson& person = loaded.value().person;
+    if (i == 0) {
+      recording.fps = loaded.value().fps;
+      reading = {loaded.value().metres_per_unit, recording.fps, options.preparation.lowpass_hz};
+    }
+    if (loaded.value().fps != recording.fps) {
+      return OfRecording(
+          entry, {"the file gives " + Rounded(loaded.value().fps) + " frames per second, but " +
+                      recording.people[0].file + " gives " + Rounded(recording.fps) +
+                      "; give the right one as fps in the manifest",
+                  person.file});
+    }
+    if (i > 0 && person.hip.size() != recording.people[0].hip.size()) {
+      return OfRecording(entry, {"the file has " + std::to_string(person.hip.size()) +
+                                     " frames, but " + recording.people[0].file + " has " +
+                                     std::to_string(recording.people[0].hip.size()) +
+                                     "; the people of one recording share their frames",
+                                 person.file, 0});
+    }
+    recording.people.push_back(std::move(person));
+  }
+
+  std::vector<ManifestPush> pushes = entry.pushes;
+  if (!entry.push_csv.empty()) {
+    pushes.insert(pushes.begin(), ManifestPush{entry.pushed_person, entry.push_csv, 0});
+  }
+  for (const ManifestPush& push : pushes) {
+    if (MaybeError failed = LoadPush(entry.manifest, push, &hash, &recording)) {
+      return OfRecording(entry, *std::move(failed));
+    }
+  }
+  recording.content_hash = hash.Hex();
+  if (MaybeError failed = PrepareMotion(options.preparation, &recording)) {
+    return OfRecording(entry, *std::move(failed));
+  }
+  if (MaybeError failed = LoadLaboratory(entry, reading, &recording, warnings)) {
+    return OfRecording(entry, *std::move(failed));
+  }
+  return recording;
+}
+
+Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
+                                              const LoadOptions& options, Warnings* warnings) {
+  if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
+  const Result<Manifest> manifest = ReadManifests(manifests);
+  if (!manifest.ok()) return manifest.error();
+  return LoadRecordings(manifest.value(), options, warnings);
+}
+
+Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const LoadOptions& options,
+                                              Warnings* warnings) {
+  if (MaybeError wrong = CheckPreparation(options.preparation)) return *std::move(wrong);
+  const Result<std::vector<int>> selected =
+      SelectRecordings(manifest, options.setting, options.ids, options.leave_out);
+  if (!selected.ok()) return selected.error();
+  std::vector<Recording> recordings;
+  for (int index : selected.value()) {
+    Result<Recording> recording =
+        LoadRecording(manifest, manifest.recordings[index], options, warnings);
+    if (!recording.ok()) return recording.error();
+    recordings.push_back(std::move(recording.value()));
+  }
+  return recordings;
+}
 
 Result<LoadedPerson> LoadPerson(const Manifest& manifest, const ManifestRecording& entry,
                                 std::size_t index, const LoadOptions& options, Warnings* warnings) {
   return PersonLoader(manifest, entry, index, options, warnings).Load();
 }
-
-namespace {
-
-constexpr double kUnseenStance = 0.1;  // m, of ankles that nobody saw
-
-}  // namespace
 
 Result<LoadedPerson> LoadPersonOnPlates(const ManifestRecording& entry) {
   const ManifestPlates& plates = entry.plates[0];

@@ -130,37 +130,6 @@ Result<MocapClip> ReadClip(const fs::path& folder, const std::string& name,
   return clip;
 }
 
-}  // namespace
-
-Result<MocapFolder> ReadMocapFolder(const std::string& folder) {
-  const Result<std::string> skeleton_file = FindSkeleton(folder);
-  if (!skeleton_file.ok()) return skeleton_file.error();
-  Result<MocapSkeleton> skeleton = ReadMocapSkeleton(skeleton_file.value());
-  if (!skeleton.ok()) return skeleton.error();
-  MocapFolder mocap;
-  mocap.skeleton = std::move(skeleton.value());
-  const Result<std::vector<std::string>> files = FilesBelow(folder);
-  if (!files.ok()) return files.error();
-  for (const std::string& name : files.value()) {
-    const fs::path path(name);
-    if (path.extension() != ".txt" || !path.has_parent_path()) continue;
-    Result<MocapClip> clip = ReadClip(folder, name, mocap.skeleton);
-    if (!clip.ok()) return clip.error();
-    mocap.clips.push_back(std::move(clip.value()));
-  }
-  if (mocap.clips.empty()) {
-    return Error{
-        "there are no clips below this folder; they are text files in a folder per "
-        "action (train/walking/walking_1.txt)",
-        folder};
-  }
-  std::stable_sort(mocap.clips.begin(), mocap.clips.end(),
-                   [](const auto& a, const auto& b) { return OrderOf(a) < OrderOf(b); });
-  return mocap;
-}
-
-namespace {
-
 constexpr int kWindow = kObservedFrames + kForecastFrames;
 constexpr int kTestWindows = 8, kTestSeed = 1234567890;
 constexpr int kManyWindows = 1000, kWideStride = 8, kNarrowStride = 2;
@@ -169,40 +138,6 @@ ForecastWindow WindowAt(const MocapClip& clip, const Trajectories& motion, int s
   return {clip.action, motion.middleCols(start, kObservedFrames),
           motion.middleCols(start + kObservedFrames, kForecastFrames)};
 }
-
-}  // namespace
-
-Trajectories EverySecond(const Trajectories& motion, int phase) {
-  Trajectories half(motion.rows(), (motion.cols() - phase + 1) / 2);
-  for (Eigen::Index t = 0; t < half.cols(); ++t) half.col(t) = motion.col(2 * t + phase);
-  return half;
-}
-
-std::vector<int> TestWindowStarts(int frames) {
-  const int largest = frames - kObservedFrames - kWindow - 1;
-  std::vector<int> starts;
-  if (largest < 0) return starts;
-  uint32_t mask = 0;
-  while (mask < static_cast<uint32_t>(largest)) mask = 2 * mask + 1;
-  std::mt19937 random(kTestSeed);
-  while (starts.size() < kTestWindows) {
-    const uint32_t word = static_cast<uint32_t>(random()) & mask;
-    if (word <= static_cast<uint32_t>(largest)) starts.push_back(static_cast<int>(word));
-  }
-  return starts;
-}
-
-bool IsValidationClip(const MocapFolder& mocap, const MocapClip& clip) {
-  if (clip.is_test) return false;
-  if (clip.subject > 0) return clip.subject == kValidationSubject;
-  const MocapClip* last = nullptr;
-  for (const MocapClip& other : mocap.clips) {
-    if (other.action == clip.action && !other.is_test) last = &other;
-  }
-  return last == &clip;
-}
-
-namespace {
 
 // Of Human3.6M: the clip's share of the windows that it has with the other one of its action; none
 // where there is no such pair.
@@ -221,47 +156,6 @@ std::vector<int> PairedStarts(const MocapFolder& mocap, const MocapClip& clip) {
   }
   return starts;
 }
-
-}  // namespace
-
-std::vector<ForecastWindow> MakeForecastWindows(const MocapFolder& mocap, ForecastProtocol protocol,
-                                                int stride) {
-  const bool has_test = std::any_of(mocap.clips.begin(), mocap.clips.end(),
-                                    [](const MocapClip& clip) { return clip.is_test; });
-  std::vector<ForecastWindow> windows;
-  for (const MocapClip& clip : mocap.clips) {
-    const Trajectories motion = EverySecond(clip.motion, 0);
-    const int frames = static_cast<int>(motion.cols());
-    if (protocol == ForecastProtocol::kTest) {
-      if (clip.is_test != has_test) continue;
-      const bool paired = clip.is_test && clip.subject > 0;
-      for (int start : paired ? PairedStarts(mocap, clip) : TestWindowStarts(frames)) {
-        windows.push_back(WindowAt(clip, motion, start + kObservedFrames));
-      }
-      continue;
-    }
-    if (protocol == ForecastProtocol::kValidation && !IsValidationClip(mocap, clip)) continue;
-    const int starts = frames - kWindow + 1;
-    const int step = stride > 0 ? stride : starts > kManyWindows ? kWideStride : kNarrowStride;
-    for (int start = 0; start < starts; start += step) {
-      windows.push_back(WindowAt(clip, motion, start));
-    }
-  }
-  return windows;
-}
-
-std::vector<LearntMotion> LearntMotions(const MocapFolder& mocap, bool with_validation) {
-  std::vector<LearntMotion> motions;
-  for (const MocapClip& clip : mocap.clips) {
-    if (clip.is_test || (!with_validation && IsValidationClip(mocap, clip))) continue;
-    for (int phase : {0, 1}) {
-      motions.push_back({clip.action, EverySecond(clip.motion, phase), phase});
-    }
-  }
-  return motions;
-}
-
-namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr int kMostJoints = 1000;
@@ -380,7 +274,104 @@ void SetLayout(const std::vector<int>& mirrored, const std::vector<int>& same, J
   }
 }
 
+constexpr int kTestSeed36 = 1234567890, kPairs = 4;
+constexpr int kFirstStart = 16, kPrefix = 50, kSuffix = 100;  // frames
+
 }  // namespace
+
+Result<MocapFolder> ReadMocapFolder(const std::string& folder) {
+  const Result<std::string> skeleton_file = FindSkeleton(folder);
+  if (!skeleton_file.ok()) return skeleton_file.error();
+  Result<MocapSkeleton> skeleton = ReadMocapSkeleton(skeleton_file.value());
+  if (!skeleton.ok()) return skeleton.error();
+  MocapFolder mocap;
+  mocap.skeleton = std::move(skeleton.value());
+  const Result<std::vector<std::string>> files = FilesBelow(folder);
+  if (!files.ok()) return files.error();
+  for (const std::string& name : files.value()) {
+    const fs::path path(name);
+    if (path.extension() != ".txt" || !path.has_parent_path()) continue;
+    Result<MocapClip> clip = ReadClip(folder, name, mocap.skeleton);
+    if (!clip.ok()) return clip.error();
+    mocap.clips.push_back(std::move(clip.value()));
+  }
+  if (mocap.clips.empty()) {
+    return Error{
+        "there are no clips below this folder; they are text files in a folder per "
+        "action (train/walking/walking_1.txt)",
+        folder};
+  }
+  std::stable_sort(mocap.clips.begin(), mocap.clips.end(),
+                   [](const auto& a, const auto& b) { return OrderOf(a) < OrderOf(b); });
+  return mocap;
+}
+
+Trajectories EverySecond(const Trajectories& motion, int phase) {
+  Trajectories half(motion.rows(), (motion.cols() - phase + 1) / 2);
+  for (Eigen::Index t = 0; t < half.cols(); ++t) half.col(t) = motion.col(2 * t + phase);
+  return half;
+}
+
+std::vector<int> TestWindowStarts(int frames) {
+  const int largest = frames - kObservedFrames - kWindow - 1;
+  std::vector<int> starts;
+  if (largest < 0) return starts;
+  uint32_t mask = 0;
+  while (mask < static_cast<uint32_t>(largest)) mask = 2 * mask + 1;
+  std::mt19937 random(kTestSeed);
+  while (starts.size() < kTestWindows) {
+    const uint32_t word = static_cast<uint32_t>(random()) & mask;
+    if (word <= static_cast<uint32_t>(largest)) starts.push_back(static_cast<int>(word));
+  }
+  return starts;
+}
+
+bool IsValidationClip(const MocapFolder& mocap, const MocapClip& clip) {
+  if (clip.is_test) return false;
+  if (clip.subject > 0) return clip.subject == kValidationSubject;
+  const MocapClip* last = nullptr;
+  for (const MocapClip& other : mocap.clips) {
+    if (other.action == clip.action && !other.is_test) last = &other;
+  }
+  return last == &clip;
+}
+
+std::vector<ForecastWindow> MakeForecastWindows(const MocapFolder& mocap, ForecastProtocol protocol,
+                                                int stride) {
+  const bool has_test = std::any_of(mocap.clips.begin(), mocap.clips.end(),
+                                    [](const MocapClip& clip) { return clip.is_test; });
+  std::vector<ForecastWindow> windows;
+  for (const MocapClip& clip : mocap.clips) {
+    const Trajectories motion = EverySecond(clip.motion, 0);
+    const int frames = static_cast<int>(motion.cols());
+    if (protocol == ForecastProtocol::kTest) {
+      if (clip.is_test != has_test) continue;
+      const bool paired = clip.is_test && clip.subject > 0;
+      for (int start : paired ? PairedStarts(mocap, clip) : TestWindowStarts(frames)) {
+        windows.push_back(WindowAt(clip, motion, start + kObservedFrames));
+      }
+      continue;
+    }
+    if (protocol == ForecastProtocol::kValidation && !IsValidationClip(mocap, clip)) continue;
+    const int starts = frames - kWindow + 1;
+    const int step = stride > 0 ? stride : starts > kManyWindows ? kWideStride : kNarrowStride;
+    for (int start = 0; start < starts; start += step) {
+      windows.push_back(WindowAt(clip, motion, start));
+    }
+  }
+  return windows;
+}
+
+std::vector<LearntMotion> LearntMotions(const MocapFolder& mocap, bool with_validation) {
+  std::vector<LearntMotion> motions;
+  for (const MocapClip& clip : mocap.clips) {
+    if (clip.is_test || (!with_validation && IsValidationClip(mocap, clip))) continue;
+    for (int phase : {0, 1}) {
+      motions.push_back({clip.action, EverySecond(clip.motion, phase), phase});
+    }
+  }
+  return motions;
+}
 
 Result<MocapSkeleton> ReadMocapSkeleton(const std::string& path) {
   Result<JsonDocument> document = JsonDocument{path, Human36mSkeleton(), {}};
@@ -411,13 +402,6 @@ Result<MocapSkeleton> ReadMocapSkeleton(const std::string& path) {
   if (fields.error()) return *fields.error();
   return skeleton;
 }
-
-namespace {
-
-constexpr int kTestSeed36 = 1234567890, kPairs = 4;
-constexpr int kFirstStart = 16, kPrefix = 50, kSuffix = 100;  // frames
-
-}  // namespace
 
 // Parents and offsets as the literature's forward kinematics has them. Of 32 joints ten are hips'
 // roots, or stand where another does.

@@ -40,6 +40,91 @@ void ForEachTrack(RecordedPerson* person, const Change& change) {
 
 bool IsRate(double value) { return FrameRateProblem(value).empty(); }
 
+constexpr double kShortestRod = 0.12, kLongestRod = 3.0;  // m; a small humanoid robot has 0.3
+constexpr double kLargestLean = 1.0;                      // rad; beyond it the person has fallen
+constexpr double kFarthest = 1e5;                         // m
+constexpr int kFewestFrames = 3;                          // an acceleration takes three
+
+constexpr double kShortestAdult = 0.5, kLongestAdult = 1.5;  // m, of rods
+
+MaybeError CheckTrack(const RecordedPerson& person, const char* what,
+                      const std::vector<Eigen::Vector3d>& track) {
+  for (std::size_t frame = 0; frame < track.size(); ++frame) {
+    // Written so that NaN fails.
+    if (!(track[frame].cwiseAbs().maxCoeff() < kFarthest) || !track[frame].allFinite()) {
+      return Error{std::string("the ") + what + " is " + Rounded(track[frame].norm(), 3) +
+                       " m from the origin at frame " + std::to_string(frame) +
+                       ": a number is damaged, or the unit is wrong (--length_unit)",
+                   person.file, 0};
+    }
+  }
+  return std::nullopt;
+}
+
+using Eigen::Vector3d;
+
+// Per frame, from the neighbour beyond where it was seen; otherwise that of the straight line.
+Vector3d Slope(const std::vector<Vector3d>& track, int at, int beyond, const Vector3d& line) {
+  const bool seen =
+      beyond >= 0 && beyond < static_cast<int>(track.size()) && track[beyond].allFinite();
+  return seen ? Vector3d((track[at] - track[beyond]) / (at - beyond)) : line;
+}
+
+// Between the seen frames `before` and `after`.
+void FillInside(int before, int after, bool curved, std::vector<Vector3d>* track) {
+  const Vector3d from = (*track)[before], to = (*track)[after];
+  const double span = after - before;
+  const Vector3d line = (to - from) / span;
+  const Vector3d m0 = curved ? Slope(*track, before, before - 1, line) : line;
+  const Vector3d m1 = curved ? Slope(*track, after, after + 1, line) : line;
+  for (int i = before + 1; i < after; ++i) {
+    const double s = (i - before) / span, r = 1.0 - s;
+    (*track)[i] = r * r * (1.0 + 2.0 * s) * from + s * r * r * span * m0 +
+                  s * s * (3.0 - 2.0 * s) * to - s * s * r * span * m1;
+  }
+}
+
+constexpr double kManyInterpolated = 0.1;  // of the frames that count
+
+bool Many(int interpolated, int counting) {
+  return interpolated > kManyInterpolated * static_cast<double>(counting);
+}
+
+double TwoPassCorrection() { return std::pow(std::sqrt(2.0) - 1.0, 0.25); }
+
+// y_i = b (x_i + 2 x_{i-1} + x_{i-2}) - a1 y_{i-1} - a2 y_{i-2}
+struct Biquad {
+  double b, a1, a2;
+};
+
+// Of which two passes have lost 3 dB at the cut-off.
+Biquad Butterworth(double cutoff_hz, double rate_hz) {
+  const double k = std::tan(M_PI * cutoff_hz / rate_hz) / TwoPassCorrection();
+  const double q = std::sqrt(2.0) * k;
+  const double norm = 1.0 / (1.0 + q + k * k);
+  return {k * k * norm, 2.0 * (k * k - 1.0) * norm, (1.0 - q + k * k) * norm};
+}
+
+// In place, from the steady state at the first value.
+void Pass(const Biquad& filter, std::vector<Vector3d>* x) {
+  Vector3d x1 = x->front(), x2 = x1, y1 = x1, y2 = x1;
+  for (Vector3d& value : *x) {
+    const Vector3d y = filter.b * (value + 2.0 * x1 + x2) - filter.a1 * y1 - filter.a2 * y2;
+    x2 = x1;
+    x1 = value;
+    y2 = y1;
+    y1 = y;
+    value = y;
+  }
+}
+
+using Position = Eigen::Vector3d;
+
+constexpr double kRounding = 1e-9;  // of a frame
+
+// Where new frame i lies on the old frames.
+double OldFrame(int i, double from_hz, double to_hz) { return i * from_hz / to_hz; }
+
 }  // namespace
 
 MaybeError CheckPreparation(const PreparationOptions& options) {
@@ -95,31 +180,6 @@ MaybeError PrepareMotion(const PreparationOptions& options, Recording* recording
   return std::nullopt;
 }
 
-namespace {
-
-constexpr double kShortestRod = 0.12, kLongestRod = 3.0;  // m; a small humanoid robot has 0.3
-constexpr double kLargestLean = 1.0;                      // rad; beyond it the person has fallen
-constexpr double kFarthest = 1e5;                         // m
-constexpr int kFewestFrames = 3;                          // an acceleration takes three
-
-constexpr double kShortestAdult = 0.5, kLongestAdult = 1.5;  // m, of rods
-
-MaybeError CheckTrack(const RecordedPerson& person, const char* what,
-                      const std::vector<Eigen::Vector3d>& track) {
-  for (std::size_t frame = 0; frame < track.size(); ++frame) {
-    // Written so that NaN fails.
-    if (!(track[frame].cwiseAbs().maxCoeff() < kFarthest) || !track[frame].allFinite()) {
-      return Error{std::string("the ") + what + " is " + Rounded(track[frame].norm(), 3) +
-                       " m from the origin at frame " + std::to_string(frame) +
-                       ": a number is damaged, or the unit is wrong (--length_unit)",
-                   person.file, 0};
-    }
-  }
-  return std::nullopt;
-}
-
-}  // namespace
-
 MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit) {
   if (person.hip.size() < kFewestFrames) {
     return Error{"the motion has " + std::to_string(person.hip.size()) +
@@ -152,33 +212,6 @@ MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit) {
   return CheckTrack(person, "right ankle", person.right_ankle);
 }
 
-namespace {
-
-using Eigen::Vector3d;
-
-// Per frame, from the neighbour beyond where it was seen; otherwise that of the straight line.
-Vector3d Slope(const std::vector<Vector3d>& track, int at, int beyond, const Vector3d& line) {
-  const bool seen =
-      beyond >= 0 && beyond < static_cast<int>(track.size()) && track[beyond].allFinite();
-  return seen ? Vector3d((track[at] - track[beyond]) / (at - beyond)) : line;
-}
-
-// Between the seen frames `before` and `after`.
-void FillInside(int before, int after, bool curved, std::vector<Vector3d>* track) {
-  const Vector3d from = (*track)[before], to = (*track)[after];
-  const double span = after - before;
-  const Vector3d line = (to - from) / span;
-  const Vector3d m0 = curved ? Slope(*track, before, before - 1, line) : line;
-  const Vector3d m1 = curved ? Slope(*track, after, after + 1, line) : line;
-  for (int i = before + 1; i < after; ++i) {
-    const double s = (i - before) / span, r = 1.0 - s;
-    (*track)[i] = r * r * (1.0 + 2.0 * s) * from + s * r * r * span * m0 +
-                  s * s * (3.0 - 2.0 * s) * to - s * s * r * span * m1;
-  }
-}
-
-}  // namespace
-
 GapCount FillGaps(int max_gap, std::vector<Vector3d>* track, std::vector<double>* weight) {
   GapCount count;
   const int frames = static_cast<int>(track->size());
@@ -206,16 +239,6 @@ GapCount FillGaps(int max_gap, std::vector<Vector3d>* track, std::vector<double>
   }
   return count;
 }
-
-namespace {
-
-constexpr double kManyInterpolated = 0.1;  // of the frames that count
-
-bool Many(int interpolated, int counting) {
-  return interpolated > kManyInterpolated * static_cast<double>(counting);
-}
-
-}  // namespace
 
 FilledTracks FillTracks(int max_gap, const std::vector<std::vector<Vector3d>*>& tracks) {
   FilledTracks filled;
@@ -259,38 +282,6 @@ std::string FilledTracks::Warning(double max_gap_s) const {
   return text;
 }
 
-namespace {
-
-double TwoPassCorrection() { return std::pow(std::sqrt(2.0) - 1.0, 0.25); }
-
-// y_i = b (x_i + 2 x_{i-1} + x_{i-2}) - a1 y_{i-1} - a2 y_{i-2}
-struct Biquad {
-  double b, a1, a2;
-};
-
-// Of which two passes have lost 3 dB at the cut-off.
-Biquad Butterworth(double cutoff_hz, double rate_hz) {
-  const double k = std::tan(M_PI * cutoff_hz / rate_hz) / TwoPassCorrection();
-  const double q = std::sqrt(2.0) * k;
-  const double norm = 1.0 / (1.0 + q + k * k);
-  return {k * k * norm, 2.0 * (k * k - 1.0) * norm, (1.0 - q + k * k) * norm};
-}
-
-// In place, from the steady state at the first value.
-void Pass(const Biquad& filter, std::vector<Vector3d>* x) {
-  Vector3d x1 = x->front(), x2 = x1, y1 = x1, y2 = x1;
-  for (Vector3d& value : *x) {
-    const Vector3d y = filter.b * (value + 2.0 * x1 + x2) - filter.a1 * y1 - filter.a2 * y2;
-    x2 = x1;
-    x1 = value;
-    y2 = y1;
-    y1 = y;
-    value = y;
-  }
-}
-
-}  // namespace
-
 double HighestCutoff(double rate_hz) { return 0.499 * rate_hz; }
 
 void LowPass(double cutoff_hz, double rate_hz, std::vector<Vector3d>* track) {
@@ -311,17 +302,6 @@ void LowPass(double cutoff_hz, double rate_hz, std::vector<Vector3d>* track) {
   std::reverse(x.begin(), x.end());
   std::copy(x.begin() + wing, x.begin() + wing + frames, track->begin());
 }
-
-namespace {
-
-using Position = Eigen::Vector3d;
-
-constexpr double kRounding = 1e-9;  // of a frame
-
-// Where new frame i lies on the old frames.
-double OldFrame(int i, double from_hz, double to_hz) { return i * from_hz / to_hz; }
-
-}  // namespace
 
 int ResampledFrames(int frames, double from_hz, double to_hz) {
   return static_cast<int>(std::floor((frames - 1) * to_hz / from_hz + kRounding)) + 1;

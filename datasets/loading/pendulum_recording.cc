@@ -113,6 +113,46 @@ std::vector<PlateFrame> PlateFrames(const Recording& recording, const RecordedPe
   return frames;
 }
 
+// A share of the body's mass, its centre on the way from one joint to another, and its radius of
+// gyration over that way.
+struct Segment {
+  int from, to;
+  double mass, centre, gyration;
+};
+constexpr double kFoot = 0.0133;  // each
+constexpr Segment kSegments[] = {{kNeck, kBodyHead, 0.0681, 0.5, 0.29},
+                                 {kNeck, kBodyHip, 0.4302, 0.432, 0.365},
+                                 {kRightShoulder, kRightElbow, 0.0263, 0.576, 0.28},
+                                 {kLeftShoulder, kLeftShoulder + 1, 0.0263, 0.576, 0.28},
+                                 {kRightElbow, kRightWrist, 0.0209, 0.6, 0.35},  // with the hand
+                                 {kLeftShoulder + 1, kLeftWrist, 0.0209, 0.6, 0.35},
+                                 {kRightHip, kRightKnee, 0.1447, 0.385, 0.35},
+                                 {kLeftHip, kLeftKnee, 0.1447, 0.385, 0.35},
+                                 {kRightKnee, kRightAnkle, 0.0457, 0.444, 0.26},
+                                 {kLeftKnee, kLeftAnkle, 0.0457, 0.444, 0.26}};
+
+// Of an average body, over the rod: thigh and shank together, their first moment, and what is
+// above.
+constexpr double kLegs = 0.3808, kLegsMoment = 0.2595, kAbove = 0.5926, kOfShoulders = 0.6;
+
+MassDistribution Average() {
+  const double r = kComOverHip * std::sqrt(kInertiaRatio - 1.0);
+  return {1.0 - kMassAboveAnkles, kComOverHip, r};
+}
+
+// How far the shoulders are above the hip, m; 0: not seen.
+double ShouldersAboveHip(const RecordedPerson& person) {
+  double height = 0.0;
+  int seen = 0;
+  for (int role : {static_cast<int>(kRightShoulder), static_cast<int>(kLeftShoulder)}) {
+    for (int joint : person.roles.joints[role]) {
+      height += person.joints[0][joint].z() - person.hip[0].z();
+      ++seen;
+    }
+  }
+  return seen > 0 ? height / seen : 0.0;
+}
+
 }  // namespace
 
 PendulumRecording MakePendulumRecording(const Recording& recording) {
@@ -254,50 +294,6 @@ MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const st
   return Error{"--" + flag + " is '" + key + "', a label that no recording has; there are " +
                Listed({known.begin(), known.end()}, ",")};
 }
-
-namespace {
-
-// A share of the body's mass, its centre on the way from one joint to another, and its radius of
-// gyration over that way.
-struct Segment {
-  int from, to;
-  double mass, centre, gyration;
-};
-constexpr double kFoot = 0.0133;  // each
-constexpr Segment kSegments[] = {{kNeck, kBodyHead, 0.0681, 0.5, 0.29},
-                                 {kNeck, kBodyHip, 0.4302, 0.432, 0.365},
-                                 {kRightShoulder, kRightElbow, 0.0263, 0.576, 0.28},
-                                 {kLeftShoulder, kLeftShoulder + 1, 0.0263, 0.576, 0.28},
-                                 {kRightElbow, kRightWrist, 0.0209, 0.6, 0.35},  // with the hand
-                                 {kLeftShoulder + 1, kLeftWrist, 0.0209, 0.6, 0.35},
-                                 {kRightHip, kRightKnee, 0.1447, 0.385, 0.35},
-                                 {kLeftHip, kLeftKnee, 0.1447, 0.385, 0.35},
-                                 {kRightKnee, kRightAnkle, 0.0457, 0.444, 0.26},
-                                 {kLeftKnee, kLeftAnkle, 0.0457, 0.444, 0.26}};
-
-// Of an average body, over the rod: thigh and shank together, their first moment, and what is
-// above.
-constexpr double kLegs = 0.3808, kLegsMoment = 0.2595, kAbove = 0.5926, kOfShoulders = 0.6;
-
-MassDistribution Average() {
-  const double r = kComOverHip * std::sqrt(kInertiaRatio - 1.0);
-  return {1.0 - kMassAboveAnkles, kComOverHip, r};
-}
-
-// How far the shoulders are above the hip, m; 0: not seen.
-double ShouldersAboveHip(const RecordedPerson& person) {
-  double height = 0.0;
-  int seen = 0;
-  for (int role : {static_cast<int>(kRightShoulder), static_cast<int>(kLeftShoulder)}) {
-    for (int joint : person.roles.joints[role]) {
-      height += person.joints[0][joint].z() - person.hip[0].z();
-      ++seen;
-    }
-  }
-  return seen > 0 ? height / seen : 0.0;
-}
-
-}  // namespace
 
 MassDistribution MassesOf(const RecordedPerson& person) {
   MassDistribution average = Average();

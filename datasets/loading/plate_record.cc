@@ -117,38 +117,6 @@ std::vector<PlateSample> SampledAt(const PlateTracks& tracks, double start, doub
   return samples;
 }
 
-}  // namespace
-
-MaybeError CheckPlates(const std::string& file, const Recording& recording, int person) {
-  if (MaybeError error = CheckWeight(file, recording.people[person])) return error;
-  return CheckPerson(file, recording, person);
-}
-
-MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
-                      double lowpass_hz, Recording* recording) {
-  if (plates.use == PlateUse::kNone) return std::nullopt;
-  RecordedPerson& person = recording->people[plates.person];
-  Result<PlateTracks> read = ReadPlates(entry, plates, person);
-  if (!read.ok()) return read.error();
-  PlateTracks& tracks = read.value();
-  const double fps = recording->fps, seconds = (recording->num_frames() - 1) / fps;
-  const Result<double> start = PlatesStart(tracks, plates, person, fps, seconds);
-  if (!start.ok()) return start.error();
-  double cutoff = plates.lowpass_hz > 0.0 ? plates.lowpass_hz : 0.4 * fps;
-  if (lowpass_hz > 0.0) cutoff = std::min(cutoff, lowpass_hz);
-  if (cutoff < HighestCutoff(tracks.rate_hz)) {
-    LowPass(cutoff, tracks.rate_hz, &tracks.force);
-    LowPass(cutoff, tracks.rate_hz, &tracks.moment);
-  }
-  person.plates = SampledAt(tracks, start.value(), fps, recording->num_frames());
-  if (MaybeError error = CheckPlates(tracks.file, *recording, plates.person)) return error;
-  // Of platforms alone the feet are not seen; on ground that moves they go with it.
-  const bool feet_seen = recording->ground.empty() && !entry.plates_alone;
-  return feet_seen ? CheckCentre(tracks, person) : std::nullopt;
-}
-
-namespace {
-
 // How far outside of the corners a point is, m; in the file's axes and on the surface.
 double Beyond(const Eigen::Matrix<double, 3, 4>& corners, const Eigen::Vector3d& point) {
   const Eigen::Vector3d centre = corners.rowwise().mean();
@@ -162,74 +130,6 @@ double Beyond(const Eigen::Matrix<double, 3, 4>& corners, const Eigen::Vector3d&
   }
   return most;
 }
-
-}  // namespace
-
-Result<PlateTracks> PlatesOfC3d(const std::string& path, const ManifestPlates& plates,
-                                const Eigen::Matrix3d& axes) {
-  const Result<C3dFile> read = ReadC3d(path);
-  if (!read.ok()) return read.error();
-  const C3dFile& file = read.value();
-  std::vector<std::string> known, wanted = plates.plates;
-  for (size_t i = 0; i < file.platforms.size(); ++i) {
-    known.push_back("platform:" + std::to_string(i + 1));
-  }
-  if (known.empty()) return Error{"it has no force platform; name another \"file\"", path};
-  if (wanted.empty()) wanted = known;
-  const LengthUnit unit = FromName<LengthUnit>(file.point_unit).value_or(LengthUnit::kMillimetre);
-  PlateTracks tracks;
-  tracks.file = path;
-  tracks.rate_hz = file.analog_rate_hz;
-  tracks.platforms = static_cast<int>(wanted.size());
-  for (const std::string& name : wanted) {
-    const auto found = std::find(known.begin(), known.end(), name);
-    if (found == known.end()) return UnknownNameError(path, "platform", known, name);
-    const int index = static_cast<int>(found - known.begin());
-    const Result<PlatformRecord> platform = EvaluatePlatform(file, index, unit);
-    if (!platform.ok()) return platform.error();
-    const Eigen::Matrix<double, 3, 4> corners = file.platforms[index].corners * MetresPer(unit);
-    int pressed = 0, outside = 0;
-    double farthest = 0.0;
-    for (size_t i = 0; i < platform.value().force.size(); ++i) {
-      const Eigen::Vector3d& centre = platform.value().centre[i];
-      tracks.Add(i, axes * platform.value().force[i], axes * centre);
-      if (!centre.allFinite()) continue;
-      const double beyond = Beyond(corners, centre);
-      farthest = std::max(farthest, beyond);
-      ++pressed;
-      outside += beyond > kOffPlate;
-    }
-    if (2 * outside > pressed && pressed > 0) {
-      return Error{"the centre of pressure of " + name + " is up to " + Rounded(farthest, 2) +
-                       " m outside of its corners: are the channels' units (N mm, N m), the "
-                       "corners, or a foot off the platform the reason?",
-                   path};
-    }
-  }
-  return tracks;
-}
-
-Result<PlateTracks> ReadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
-                               const RecordedPerson& person) {
-  const bool of_motion = plates.file.empty();
-  const std::string path = of_motion ? person.file : ResolvePath(entry.manifest, plates.file);
-  const std::optional<MotionFormat> format = MotionFormatOfFile(path);
-  if (format == MotionFormat::kBvh || format == MotionFormat::kTrc) {
-    return Error{std::string("a ") + RowOf(*format).title +
-                     " file holds no force platforms; name the one that does as \"file\" of "
-                     "force_plates (C3D, CSV, OpenSim storage)",
-                 path};
-  }
-  const bool own_axes = of_motion && plates.up.empty() && plates.forward.empty();
-  const std::string up = own_axes ? person.file_up : plates.up.empty() ? "z" : plates.up;
-  const std::string forward = own_axes                 ? person.file_forward
-                              : plates.forward.empty() ? "x"
-                                                       : plates.forward;
-  const Eigen::Matrix3d axes = AxesRotation(up, forward).value();
-  return (format == MotionFormat::kC3d ? PlatesOfC3d : PlatesOfTable)(path, plates, axes);
-}
-
-namespace {
 
 // Columns of one platform: fx, fy, fz, then px, py, pz or mx, my, mz.
 struct PlateColumns {
@@ -319,6 +219,98 @@ Eigen::Vector3d CentreByMoment(const Eigen::Vector3d& force, const Eigen::Vector
 }
 
 }  // namespace
+
+MaybeError CheckPlates(const std::string& file, const Recording& recording, int person) {
+  if (MaybeError error = CheckWeight(file, recording.people[person])) return error;
+  return CheckPerson(file, recording, person);
+}
+
+MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
+                      double lowpass_hz, Recording* recording) {
+  if (plates.use == PlateUse::kNone) return std::nullopt;
+  RecordedPerson& person = recording->people[plates.person];
+  Result<PlateTracks> read = ReadPlates(entry, plates, person);
+  if (!read.ok()) return read.error();
+  PlateTracks& tracks = read.value();
+  const double fps = recording->fps, seconds = (recording->num_frames() - 1) / fps;
+  const Result<double> start = PlatesStart(tracks, plates, person, fps, seconds);
+  if (!start.ok()) return start.error();
+  double cutoff = plates.lowpass_hz > 0.0 ? plates.lowpass_hz : 0.4 * fps;
+  if (lowpass_hz > 0.0) cutoff = std::min(cutoff, lowpass_hz);
+  if (cutoff < HighestCutoff(tracks.rate_hz)) {
+    LowPass(cutoff, tracks.rate_hz, &tracks.force);
+    LowPass(cutoff, tracks.rate_hz, &tracks.moment);
+  }
+  person.plates = SampledAt(tracks, start.value(), fps, recording->num_frames());
+  if (MaybeError error = CheckPlates(tracks.file, *recording, plates.person)) return error;
+  // Of platforms alone the feet are not seen; on ground that moves they go with it.
+  const bool feet_seen = recording->ground.empty() && !entry.plates_alone;
+  return feet_seen ? CheckCentre(tracks, person) : std::nullopt;
+}
+
+Result<PlateTracks> PlatesOfC3d(const std::string& path, const ManifestPlates& plates,
+                                const Eigen::Matrix3d& axes) {
+  const Result<C3dFile> read = ReadC3d(path);
+  if (!read.ok()) return read.error();
+  const C3dFile& file = read.value();
+  std::vector<std::string> known, wanted = plates.plates;
+  for (size_t i = 0; i < file.platforms.size(); ++i) {
+    known.push_back("platform:" + std::to_string(i + 1));
+  }
+  if (known.empty()) return Error{"it has no force platform; name another \"file\"", path};
+  if (wanted.empty()) wanted = known;
+  const LengthUnit unit = FromName<LengthUnit>(file.point_unit).value_or(LengthUnit::kMillimetre);
+  PlateTracks tracks;
+  tracks.file = path;
+  tracks.rate_hz = file.analog_rate_hz;
+  tracks.platforms = static_cast<int>(wanted.size());
+  for (const std::string& name : wanted) {
+    const auto found = std::find(known.begin(), known.end(), name);
+    if (found == known.end()) return UnknownNameError(path, "platform", known, name);
+    const int index = static_cast<int>(found - known.begin());
+    const Result<PlatformRecord> platform = EvaluatePlatform(file, index, unit);
+    if (!platform.ok()) return platform.error();
+    const Eigen::Matrix<double, 3, 4> corners = file.platforms[index].corners * MetresPer(unit);
+    int pressed = 0, outside = 0;
+    double farthest = 0.0;
+    for (size_t i = 0; i < platform.value().force.size(); ++i) {
+      const Eigen::Vector3d& centre = platform.value().centre[i];
+      tracks.Add(i, axes * platform.value().force[i], axes * centre);
+      if (!centre.allFinite()) continue;
+      const double beyond = Beyond(corners, centre);
+      farthest = std::max(farthest, beyond);
+      ++pressed;
+      outside += beyond > kOffPlate;
+    }
+    if (2 * outside > pressed && pressed > 0) {
+      return Error{"the centre of pressure of " + name + " is up to " + Rounded(farthest, 2) +
+                       " m outside of its corners: are the channels' units (N mm, N m), the "
+                       "corners, or a foot off the platform the reason?",
+                   path};
+    }
+  }
+  return tracks;
+}
+
+Result<PlateTracks> ReadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
+                               const RecordedPerson& person) {
+  const bool of_motion = plates.file.empty();
+  const std::string path = of_motion ? person.file : ResolvePath(entry.manifest, plates.file);
+  const std::optional<MotionFormat> format = MotionFormatOfFile(path);
+  if (format == MotionFormat::kBvh || format == MotionFormat::kTrc) {
+    return Error{std::string("a ") + RowOf(*format).title +
+                     " file holds no force platforms; name the one that does as \"file\" of "
+                     "force_plates (C3D, CSV, OpenSim storage)",
+                 path};
+  }
+  const bool own_axes = of_motion && plates.up.empty() && plates.forward.empty();
+  const std::string up = own_axes ? person.file_up : plates.up.empty() ? "z" : plates.up;
+  const std::string forward = own_axes                 ? person.file_forward
+                              : plates.forward.empty() ? "x"
+                                                       : plates.forward;
+  const Eigen::Matrix3d axes = AxesRotation(up, forward).value();
+  return (format == MotionFormat::kC3d ? PlatesOfC3d : PlatesOfTable)(path, plates, axes);
+}
 
 Result<PlateTracks> PlatesOfTable(const std::string& path, const ManifestPlates& plates,
                                   const Eigen::Matrix3d& axes) {

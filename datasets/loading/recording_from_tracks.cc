@@ -126,57 +126,6 @@ MaybeError TakeLaboratory(std::vector<GroundPose> ground, const PreparationOptio
   return std::nullopt;
 }
 
-}  // namespace
-
-Result<Recording> RecordingFromTracks(TrackedRecording tracks,
-                                      const PreparationOptions& preparation, Warnings* warnings) {
-  const std::string rate = FrameRateProblem(tracks.fps);
-  if (!rate.empty()) return Of(tracks.id, "fps " + rate);
-  if (tracks.people.empty()) return Of(tracks.id, "it contains no people");
-  Recording recording;
-  recording.id = tracks.id;
-  recording.fps = tracks.fps;
-  recording.labels = std::move(tracks.labels);
-  if (recording.labels.setting().empty()) recording.labels.Set(kSettingLabel, "single");
-  recording.pushed_person = tracks.pushed_person;
-  recording.push_kind = tracks.push_kind;
-  recording.initial_velocity = tracks.initial_velocity;
-  ContentHash hash;
-  const int max_gap = static_cast<int>(std::floor(preparation.max_gap_s * tracks.fps + 1e-9));
-  for (TrackedPerson& one : tracks.people) {
-    for (const auto* track : {&one.hip, &one.left_ankle, &one.right_ankle}) AddRows(*track, &hash);
-    const std::string who = one.id;
-    FilledTracks filled;
-    Result<RecordedPerson> person = PersonFrom(std::move(one), max_gap, tracks.id, &filled);
-    if (!person.ok()) return person.error();
-    const std::string gaps = filled.Warning(preparation.max_gap_s);
-    if (!gaps.empty() && warnings != nullptr) {
-      warnings->emplace_back("recording " + Quoted(tracks.id) + ": " + who + " " + gaps, tracks.id,
-                             "a person " + gaps);
-    }
-    recording.people.push_back(std::move(person.value()));
-    if (recording.people.back().hip.size() != recording.people[0].hip.size()) {
-      return Of(tracks.id, "its people have different numbers of frames");
-    }
-  }
-  for (const Push& push : tracks.pushes) {
-    if (MaybeError wrong = CheckPush(tracks, push, recording.num_frames())) return *wrong;
-    AddRows(push.force, &hash);
-  }
-  if (MaybeError wrong = TakeLaboratory(std::move(tracks.ground), preparation, &recording, &hash)) {
-    return *std::move(wrong);
-  }
-  recording.pushes = std::move(tracks.pushes);
-  recording.content_hash = hash.Hex();
-  if (MaybeError failed = CheckPreparation(preparation)) return *failed;
-  if (MaybeError failed = PrepareMotion(preparation, &recording)) {
-    return Of(recording.id, failed->message);
-  }
-  return recording;
-}
-
-namespace {
-
 // Turns indices into the file's joints to indices into the list of those that are read.
 std::vector<int> Among(const std::vector<int>& wanted, std::vector<int>* read) {
   std::vector<int> places;
@@ -291,6 +240,53 @@ Result<FileMotion> ReadPoints(const FileMotionRequest& request) {
 }
 
 }  // namespace
+
+Result<Recording> RecordingFromTracks(TrackedRecording tracks,
+                                      const PreparationOptions& preparation, Warnings* warnings) {
+  const std::string rate = FrameRateProblem(tracks.fps);
+  if (!rate.empty()) return Of(tracks.id, "fps " + rate);
+  if (tracks.people.empty()) return Of(tracks.id, "it contains no people");
+  Recording recording;
+  recording.id = tracks.id;
+  recording.fps = tracks.fps;
+  recording.labels = std::move(tracks.labels);
+  if (recording.labels.setting().empty()) recording.labels.Set(kSettingLabel, "single");
+  recording.pushed_person = tracks.pushed_person;
+  recording.push_kind = tracks.push_kind;
+  recording.initial_velocity = tracks.initial_velocity;
+  ContentHash hash;
+  const int max_gap = static_cast<int>(std::floor(preparation.max_gap_s * tracks.fps + 1e-9));
+  for (TrackedPerson& one : tracks.people) {
+    for (const auto* track : {&one.hip, &one.left_ankle, &one.right_ankle}) AddRows(*track, &hash);
+    const std::string who = one.id;
+    FilledTracks filled;
+    Result<RecordedPerson> person = PersonFrom(std::move(one), max_gap, tracks.id, &filled);
+    if (!person.ok()) return person.error();
+    const std::string gaps = filled.Warning(preparation.max_gap_s);
+    if (!gaps.empty() && warnings != nullptr) {
+      warnings->emplace_back("recording " + Quoted(tracks.id) + ": " + who + " " + gaps, tracks.id,
+                             "a person " + gaps);
+    }
+    recording.people.push_back(std::move(person.value()));
+    if (recording.people.back().hip.size() != recording.people[0].hip.size()) {
+      return Of(tracks.id, "its people have different numbers of frames");
+    }
+  }
+  for (const Push& push : tracks.pushes) {
+    if (MaybeError wrong = CheckPush(tracks, push, recording.num_frames())) return *wrong;
+    AddRows(push.force, &hash);
+  }
+  if (MaybeError wrong = TakeLaboratory(std::move(tracks.ground), preparation, &recording, &hash)) {
+    return *std::move(wrong);
+  }
+  recording.pushes = std::move(tracks.pushes);
+  recording.content_hash = hash.Hex();
+  if (MaybeError failed = CheckPreparation(preparation)) return *failed;
+  if (MaybeError failed = PrepareMotion(preparation, &recording)) {
+    return Of(recording.id, failed->message);
+  }
+  return recording;
+}
 
 Result<FileMotion> ReadFileMotion(const FileMotionRequest& request) {
   return HasSkeleton(request.format) ? ReadSkeleton(request) : ReadPoints(request);

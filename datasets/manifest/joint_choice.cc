@@ -9,32 +9,6 @@
 #include "datasets/files/number_text.h"
 
 namespace pushid {
-bool IsFzjSkeleton(const BvhSkeleton& skeleton) {
-  return std::equal(kBodyParents.begin(), kBodyParents.end(), skeleton.joints.begin(),
-                    skeleton.joints.end(),
-                    [](int parent, const BvhJoint& joint) { return joint.parent == parent; });
-}
-
-std::string SimplifiedName(const std::string& name) {
-  std::string simple;
-  const std::size_t prefix = name.rfind(':');
-  for (char c : prefix == std::string::npos ? name : name.substr(prefix + 1)) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) simple += c;
-  }
-  return simple;
-}
-
-std::string PrefixOf(const std::string& name) {
-  const std::size_t colon = name.rfind(':');
-  return colon == std::string::npos ? "" : name.substr(0, colon);
-}
-
-std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part) {
-  const std::string letter = side.substr(0, 1);
-  return {side + part, letter + part, part + side, part + letter};
-}
-
 namespace {
 
 // What differs between the joints of a skeleton and the points of other files.
@@ -263,35 +237,6 @@ Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
   return joints;
 }
 
-}  // namespace
-
-Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
-                                            const JointMapping& mapping) {
-  return ChooseFrom({path, skeleton.Names(), &skeleton}, mapping);
-}
-
-Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
-                                            const std::vector<std::string>& names,
-                                            const JointMapping& mapping) {
-  return ChooseFrom({path, names}, mapping);
-}
-
-Result<std::vector<int>> JointsMeant(const std::string& path, const std::vector<std::string>& names,
-                                     const BvhSkeleton* skeleton, const std::string& key,
-                                     const JointReference& reference) {
-  return Meant({path, names, skeleton}, key, reference);
-}
-
-JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
-  JointMapping overlaid = second;
-  for (int role = 0; role < kBodyJoints; ++role) {
-    if (const auto joint = first.Of(role)) overlaid.Set(role, *joint);
-  }
-  return overlaid;
-}
-
-namespace {
-
 constexpr int kNamings = 4;
 
 // One word per role and naming, as SimplifiedName has it; '|' before the next best one, '+' between
@@ -486,6 +431,57 @@ std::string CommonPrefix(const std::vector<std::string>& names, const PendulumJo
 }
 
 }  // namespace
+
+bool IsFzjSkeleton(const BvhSkeleton& skeleton) {
+  return std::equal(kBodyParents.begin(), kBodyParents.end(), skeleton.joints.begin(),
+                    skeleton.joints.end(),
+                    [](int parent, const BvhJoint& joint) { return joint.parent == parent; });
+}
+
+std::string SimplifiedName(const std::string& name) {
+  std::string simple;
+  const std::size_t prefix = name.rfind(':');
+  for (char c : prefix == std::string::npos ? name : name.substr(prefix + 1)) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) simple += c;
+  }
+  return simple;
+}
+
+std::string PrefixOf(const std::string& name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string::npos ? "" : name.substr(0, colon);
+}
+
+std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part) {
+  const std::string letter = side.substr(0, 1);
+  return {side + part, letter + part, part + side, part + letter};
+}
+
+Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
+                                            const JointMapping& mapping) {
+  return ChooseFrom({path, skeleton.Names(), &skeleton}, mapping);
+}
+
+Result<PendulumJoints> ChoosePendulumPoints(const std::string& path,
+                                            const std::vector<std::string>& names,
+                                            const JointMapping& mapping) {
+  return ChooseFrom({path, names}, mapping);
+}
+
+Result<std::vector<int>> JointsMeant(const std::string& path, const std::vector<std::string>& names,
+                                     const BvhSkeleton* skeleton, const std::string& key,
+                                     const JointReference& reference) {
+  return Meant({path, names, skeleton}, key, reference);
+}
+
+JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
+  JointMapping overlaid = second;
+  for (int role = 0; role < kBodyJoints; ++role) {
+    if (const auto joint = first.Of(role)) overlaid.Set(role, *joint);
+  }
+  return overlaid;
+}
 
 Result<BodyRoles> ChooseRoles(const std::string& path, const std::vector<std::string>& names,
                               const BvhSkeleton* skeleton, const PendulumJoints& pendulum,

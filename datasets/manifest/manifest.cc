@@ -195,90 +195,6 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   return recording;
 }
 
-}  // namespace
-
-// Those that the reader asks for, here of a recording that has none of them.
-const std::vector<std::string>& ManifestKeys() {
-  static const std::vector<std::string> keys = [] {
-    JsonDocument empty;
-    empty.content = Json::object();
-    JsonFields fields(empty, empty.content, "", "");
-    ReadRecording(empty, empty.content, {}, &fields);
-    std::vector<std::string> asked = fields.asked();
-    asked.push_back(kSplitLabel);
-    return asked;
-  }();
-  return keys;
-}
-
-std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
-  std::vector<std::string> found;
-  if (!entry.json->is_object()) return found;
-  for (const auto& [key, value] : entry.json->items()) {
-    if (MeantBy(key, ManifestKeys()).empty()) continue;
-    found.push_back("has the key " + Quoted(key) + ", which is not known and not used" +
-                    MeantText(key, ManifestKeys()));
-  }
-  return found;
-}
-
-Result<Manifest> ReadManifest(const std::string& path) {
-  Result<JsonDocument> read = ReadJsonDocument(path);
-  if (!read.ok()) return read.error();
-  const JsonDocument& document = read.value();
-  JsonFields top(document, document.content, "", "manifest");
-  Manifest manifest;
-  manifest.path = path;
-  if (top.Has("format") && !top.Has("recordings")) {
-    return document.ErrorAt("/format", "this is a " + top.OptionalText("format", "file") +
-                                           ", no manifest of recordings");
-  }
-  top.Require("recordings", "a list of recordings");
-  const Json& recordings = top.List("recordings");
-  if (!top.failed() && recordings.empty()) {
-    top.Fail("recordings", "is empty: the manifest lists no recordings");
-  }
-  if (top.Has("units") && top.At("units").is_object()) {
-    JsonFields units(document, top.At("units"), "/units", "manifest, units");
-    manifest.length_unit = ReadLengthUnit(&units, "bvh_length");
-    top.Fail(units.error());
-  }
-  if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
-  manifest.length_scale = ReadLengthScale(&top);
-  if (manifest.length_scale && manifest.length_unit && !top.failed()) {
-    top.Fail("length_scale", "is given together with units.bvh_length; give one of them");
-  }
-  manifest.stated_errors = ReadStatedErrors(document, &top, {});
-  if (top.error()) return *top.error();
-
-  const std::vector<int> lines = document.ElementLines("/recordings");
-  std::unordered_map<std::string, int> line_of_id;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    JsonFields fields(document, recordings[i], "/recordings/" + std::to_string(i),
-                      "recording " + std::to_string(i));
-    ManifestRecording recording =
-        ReadRecording(document, recordings[i], manifest.stated_errors, &fields);
-    top.Add(fields);
-    if (top.is_wrong()) return *top.error();
-    recording.manifest = path;
-    recording.line = lines[i];
-    const auto [earlier, is_new] = line_of_id.emplace(recording.id, recording.line);
-    if (!is_new && !top.failed()) {
-      return document.ErrorAt("/recordings/" + std::to_string(i) + "/id",
-                              "recording " + Quoted(recording.id) +
-                                  ": this id was given before, in line " +
-                                  std::to_string(earlier->second) + "; ids must be unique");
-    }
-    manifest.recordings.push_back(std::move(recording));
-  }
-  if (top.failed()) return *top.error();
-  manifest.json = document.content;
-  manifest.json->erase("recordings");
-  return manifest;
-}
-
-namespace {
-
 // Sets an optional key: written when it says something or was there already and still may; removed
 // when it was emptied.
 template <typename T>
@@ -388,56 +304,6 @@ Json RecordingJson(const ManifestRecording& recording) {
   return json;
 }
 
-}  // namespace
-
-ManifestRecording EntryOf(const Recording& recording) {
-  ManifestRecording entry;
-  entry.id = recording.id;
-  entry.labels = recording.labels;
-  entry.fps = recording.fps;
-  entry.frames = recording.num_frames();
-  entry.pushed_person = recording.pushed_person;
-  entry.push_kind = recording.push_kind;
-  entry.initial_velocity = recording.initial_velocity;
-  return entry;
-}
-
-MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
-  Json json = Json::object();
-  if (manifest.path.empty()) json["schema"] = "pushid-manifest/1";  // what was read stays as it was
-  if (manifest.json->is_object()) json.update(*manifest.json);
-  if (manifest.length_unit) {
-    const std::string name = NameOf(*manifest.length_unit);
-    const bool in_units =
-        json.contains("units") && json["units"].is_object() && json["units"].contains("bvh_length");
-    if (in_units) json["units"]["bvh_length"] = name;
-    if (!in_units || json.contains("length_unit")) json["length_unit"] = name;
-  }
-  if (manifest.length_scale) json["length_scale"] = *manifest.length_scale;
-  Json recordings = Json::array();
-  for (const ManifestRecording& recording : manifest.recordings) {
-    bool finite = std::isfinite(recording.fps);
-    for (const ManifestSubject& subject : recording.subjects) {
-      finite = finite && std::isfinite(subject.mass_kg);
-    }
-    if (!finite) {
-      return Error{
-          "recording " + recording.id + " cannot be written: its fps or a mass is not finite", path,
-          0};
-    }
-    recordings.push_back(RecordingJson(recording));
-  }
-  json["recordings"] = recordings;
-  return WriteJson(path, json, 1);
-}
-
-std::string ResolvePath(const std::string& manifest_path, const std::string& file) {
-  // operator/ takes an absolute right-hand side as it is.
-  return (std::filesystem::path(manifest_path).parent_path() / file).string();
-}
-
-namespace {
-
 // "group_1 (9), row_1 (13), single (32)"
 std::string SettingsOf(const Manifest& manifest) {
   std::map<std::string, int> counts;
@@ -470,63 +336,6 @@ MaybeError LeaveOut(const Manifest& manifest, const std::vector<std::string>& id
   if (!selected->empty() || ids.empty()) return std::nullopt;
   return Error{"leave_out leaves no recording", manifest.path, 0};
 }
-
-}  // namespace
-
-Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::string& setting,
-                                          const std::vector<std::string>& ids,
-                                          const std::vector<std::string>& leave_out) {
-  const std::size_t count = manifest.recordings.size();
-  std::vector<bool> in_setting(count, false);
-  for (std::size_t begin = 0; begin <= setting.size();) {
-    const std::size_t comma = std::min(setting.find(',', begin), setting.size());
-    const std::string_view name = Trimmed(std::string_view(setting).substr(begin, comma - begin));
-    begin = comma + 1;
-    bool found = false;
-    for (std::size_t i = 0; i < count; ++i) {
-      const ManifestRecording& recording = manifest.recordings[i];
-      if (name != recording.labels.setting() && name != "all" &&
-          !(name == "groups" && recording.subjects.size() > 1)) {
-        continue;
-      }
-      found = in_setting[i] = true;
-    }
-    if (!found) {
-      return Error{"--setting=" + setting + ": " +
-                       (name == "groups" ? "no recording has more than one person"
-                                         : "no recording has the setting " + Quoted(name)) +
-                       "; there are " + SettingsOf(manifest) + ", besides all and groups",
-                   manifest.path, 0};
-    }
-  }
-
-  const std::unordered_set<std::string> wanted(ids.begin(), ids.end());
-  std::unordered_set<std::string> seen;
-  std::vector<int> selected;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::string& id = manifest.recordings[i].id;
-    if (!wanted.empty() && wanted.count(id) == 0) continue;
-    seen.insert(id);
-    if (in_setting[i]) {
-      selected.push_back(static_cast<int>(i));
-    } else if (!wanted.empty()) {
-      return Error{"recording " + Quoted(id) + " has the setting " +
-                       Quoted(manifest.recordings[i].labels.setting()) +
-                       ", which --setting=" + setting + " leaves out",
-                   manifest.recordings[i].manifest, manifest.recordings[i].line};
-    }
-  }
-  for (const std::string& id : ids) {
-    if (seen.count(id) == 0) {
-      return Error{"there is no recording " + Quoted(id) + "; it has " + SomeIdsOf(manifest),
-                   manifest.path, 0};
-    }
-  }
-  if (MaybeError error = LeaveOut(manifest, leave_out, &selected)) return *error;
-  return selected;
-}
-
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -582,6 +391,185 @@ class Merger {
 };
 
 }  // namespace
+
+// Those that the reader asks for, here of a recording that has none of them.
+const std::vector<std::string>& ManifestKeys() {
+  static const std::vector<std::string> keys = [] {
+    JsonDocument empty;
+    empty.content = Json::object();
+    JsonFields fields(empty, empty.content, "", "");
+    ReadRecording(empty, empty.content, {}, &fields);
+    std::vector<std::string> asked = fields.asked();
+    asked.push_back(kSplitLabel);
+    return asked;
+  }();
+  return keys;
+}
+
+std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
+  std::vector<std::string> found;
+  if (!entry.json->is_object()) return found;
+  for (const auto& [key, value] : entry.json->items()) {
+    if (MeantBy(key, ManifestKeys()).empty()) continue;
+    found.push_back("has the key " + Quoted(key) + ", which is not known and not used" +
+                    MeantText(key, ManifestKeys()));
+  }
+  return found;
+}
+
+Result<Manifest> ReadManifest(const std::string& path) {
+  Result<JsonDocument> read = ReadJsonDocument(path);
+  if (!read.ok()) return read.error();
+  const JsonDocument& document = read.value();
+  JsonFields top(document, document.content, "", "manifest");
+  Manifest manifest;
+  manifest.path = path;
+  if (top.Has("format") && !top.Has("recordings")) {
+    return document.ErrorAt("/format", "this is a " + top.OptionalText("format", "file") +
+                                           ", no manifest of recordings");
+  }
+  top.Require("recordings", "a list of recordings");
+  const Json& recordings = top.List("recordings");
+  if (!top.failed() && recordings.empty()) {
+    top.Fail("recordings", "is empty: the manifest lists no recordings");
+  }
+  if (top.Has("units") && top.At("units").is_object()) {
+    JsonFields units(document, top.At("units"), "/units", "manifest, units");
+    manifest.length_unit = ReadLengthUnit(&units, "bvh_length");
+    top.Fail(units.error());
+  }
+  if (top.Has("length_unit")) manifest.length_unit = ReadLengthUnit(&top, "length_unit");
+  manifest.length_scale = ReadLengthScale(&top);
+  if (manifest.length_scale && manifest.length_unit && !top.failed()) {
+    top.Fail("length_scale", "is given together with units.bvh_length; give one of them");
+  }
+  manifest.stated_errors = ReadStatedErrors(document, &top, {});
+  if (top.error()) return *top.error();
+
+  const std::vector<int> lines = document.ElementLines("/recordings");
+  std::unordered_map<std::string, int> line_of_id;
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    JsonFields fields(document, recordings[i], "/recordings/" + std::to_string(i),
+                      "recording " + std::to_string(i));
+    ManifestRecording recording =
+        ReadRecording(document, recordings[i], manifest.stated_errors, &fields);
+    top.Add(fields);
+    if (top.is_wrong()) return *top.error();
+    recording.manifest = path;
+    recording.line = lines[i];
+    const auto [earlier, is_new] = line_of_id.emplace(recording.id, recording.line);
+    if (!is_new && !top.failed()) {
+      return document.ErrorAt("/recordings/" + std::to_string(i) + "/id",
+                              "recording " + Quoted(recording.id) +
+                                  ": this id was given before, in line " +
+                                  std::to_string(earlier->second) + "; ids must be unique");
+    }
+    manifest.recordings.push_back(std::move(recording));
+  }
+  if (top.failed()) return *top.error();
+  manifest.json = document.content;
+  manifest.json->erase("recordings");
+  return manifest;
+}
+
+ManifestRecording EntryOf(const Recording& recording) {
+  ManifestRecording entry;
+  entry.id = recording.id;
+  entry.labels = recording.labels;
+  entry.fps = recording.fps;
+  entry.frames = recording.num_frames();
+  entry.pushed_person = recording.pushed_person;
+  entry.push_kind = recording.push_kind;
+  entry.initial_velocity = recording.initial_velocity;
+  return entry;
+}
+
+MaybeError WriteManifest(const std::string& path, const Manifest& manifest) {
+  Json json = Json::object();
+  if (manifest.path.empty()) json["schema"] = "pushid-manifest/1";  // what was read stays as it was
+  if (manifest.json->is_object()) json.update(*manifest.json);
+  if (manifest.length_unit) {
+    const std::string name = NameOf(*manifest.length_unit);
+    const bool in_units =
+        json.contains("units") && json["units"].is_object() && json["units"].contains("bvh_length");
+    if (in_units) json["units"]["bvh_length"] = name;
+    if (!in_units || json.contains("length_unit")) json["length_unit"] = name;
+  }
+  if (manifest.length_scale) json["length_scale"] = *manifest.length_scale;
+  Json recordings = Json::array();
+  for (const ManifestRecording& recording : manifest.recordings) {
+    bool finite = std::isfinite(recording.fps);
+    for (const ManifestSubject& subject : recording.subjects) {
+      finite = finite && std::isfinite(subject.mass_kg);
+    }
+    if (!finite) {
+      return Error{
+          "recording " + recording.id + " cannot be written: its fps or a mass is not finite", path,
+          0};
+    }
+    recordings.push_back(RecordingJson(recording));
+  }
+  json["recordings"] = recordings;
+  return WriteJson(path, json, 1);
+}
+
+std::string ResolvePath(const std::string& manifest_path, const std::string& file) {
+  // operator/ takes an absolute right-hand side as it is.
+  return (std::filesystem::path(manifest_path).parent_path() / file).string();
+}
+
+Result<std::vector<int>> SelectRecordings(const Manifest& manifest, const std::string& setting,
+                                          const std::vector<std::string>& ids,
+                                          const std::vector<std::string>& leave_out) {
+  const std::size_t count = manifest.recordings.size();
+  std::vector<bool> in_setting(count, false);
+  for (std::size_t begin = 0; begin <= setting.size();) {
+    const std::size_t comma = std::min(setting.find(',', begin), setting.size());
+    const std::string_view name = Trimmed(std::string_view(setting).substr(begin, comma - begin));
+    begin = comma + 1;
+    bool found = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      const ManifestRecording& recording = manifest.recordings[i];
+      if (name != recording.labels.setting() && name != "all" &&
+          !(name == "groups" && recording.subjects.size() > 1)) {
+        continue;
+      }
+      found = in_setting[i] = true;
+    }
+    if (!found) {
+      return Error{"--setting=" + setting + ": " +
+                       (name == "groups" ? "no recording has more than one person"
+                                         : "no recording has the setting " + Quoted(name)) +
+                       "; there are " + SettingsOf(manifest) + ", besides all and groups",
+                   manifest.path, 0};
+    }
+  }
+
+  const std::unordered_set<std::string> wanted(ids.begin(), ids.end());
+  std::unordered_set<std::string> seen;
+  std::vector<int> selected;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string& id = manifest.recordings[i].id;
+    if (!wanted.empty() && wanted.count(id) == 0) continue;
+    seen.insert(id);
+    if (in_setting[i]) {
+      selected.push_back(static_cast<int>(i));
+    } else if (!wanted.empty()) {
+      return Error{"recording " + Quoted(id) + " has the setting " +
+                       Quoted(manifest.recordings[i].labels.setting()) +
+                       ", which --setting=" + setting + " leaves out",
+                   manifest.recordings[i].manifest, manifest.recordings[i].line};
+    }
+  }
+  for (const std::string& id : ids) {
+    if (seen.count(id) == 0) {
+      return Error{"there is no recording " + Quoted(id) + "; it has " + SomeIdsOf(manifest),
+                   manifest.path, 0};
+    }
+  }
+  if (MaybeError error = LeaveOut(manifest, leave_out, &selected)) return *error;
+  return selected;
+}
 
 std::vector<std::string> ManifestPaths(const std::string& list) {
   std::error_code ignored;

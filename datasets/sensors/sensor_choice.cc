@@ -140,47 +140,6 @@ Result<SensorRecord> FromC3d(const SensorChoice& choice, const Eigen::Vector3d& 
   return record;
 }
 
-}  // namespace
-
-void FillFromMotion(const RecordedPerson& person, SensorChoice* choice) {
-  std::error_code failed;
-  if (!std::filesystem::equivalent(person.file, choice->file, failed) || failed) return;
-  if (!choice->start_s) choice->start_s = person.file_clock_s;
-  if (!choice->up.empty() || !choice->forward.empty()) return;
-  choice->up = person.file_up;
-  choice->forward = person.file_forward;
-}
-
-Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
-  const Result<Eigen::Matrix3d> rotation = AxesRotation(
-      choice.up.empty() ? "z" : choice.up, choice.forward.empty() ? "x" : choice.forward);
-  if (!rotation.ok()) return rotation.error();
-  const MotionFormat format = MotionFormatOfFile(choice.file).value_or(MotionFormat::kCsv);
-  const bool several = format == MotionFormat::kC3d || format == MotionFormat::kStorage;
-  if (choice.column.empty() && several) return WhichColumn(choice, format);
-  if (!std::isfinite(choice.gain) || choice.gain == 0.0) {
-    return Error{"the gain of a sensor must be a number of N per unit other than 0"};
-  }
-  Result<SensorRecord> record = format == MotionFormat::kC3d
-                                    ? FromC3d(choice, rotation.value().row(2).transpose())
-                                : choice.column.empty() ? ReadSensorCsv(choice.file)
-                                                        : FromTable(choice);
-  if (!record.ok()) return record;
-  record.value().file = choice.file;
-  if (choice.zero_n.value_or(0.0) != 0.0 && record.value().is_vector) {
-    return Error{"an offset can only be subtracted from a sensor with a single axis", choice.file};
-  }
-  for (Eigen::Vector3d& force : record.value().force) {
-    force *= choice.gain;
-    force.x() -= choice.zero_n.value_or(0.0);
-    if (record.value().is_vector) force = rotation.value() * force;
-  }
-  if (!choice.zero_n) SubtractRest(&record.value());
-  return record;
-}
-
-namespace {
-
 using Json = nlohmann::ordered_json;
 
 void ReadDirection(JsonFields* fields, SensorChoice* sensor) {
@@ -194,46 +153,6 @@ void ReadDirection(JsonFields* fields, SensorChoice* sensor) {
   }
   for (int i = 0; i < 3; ++i) sensor->direction[i] = value[i].get<double>();
 }
-
-}  // namespace
-
-Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
-  const Result<JsonDocument> document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  const Json& content = document.value().content;
-  if (!content.is_array() || content.empty()) {
-    return document.value().ErrorAt("", "a list of sensors is expected, [{\"file\": ...}, ...]");
-  }
-  std::vector<SensorChoice> sensors;
-  for (std::size_t i = 0; i < content.size(); ++i) {
-    JsonFields fields(document.value(), content[i], "/" + std::to_string(i),
-                      "sensor " + std::to_string(i));
-    SensorChoice sensor;
-    sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
-    sensor.column = fields.OptionalText("column", "");
-    sensor.gain = fields.OptionalNumber("gain", "the N per unit", 1.0);
-    sensor.up = fields.OptionalText("up", "");
-    sensor.forward = fields.OptionalText("forward", "");
-    ReadDirection(&fields, &sensor);
-    sensor.height_fraction = fields.OptionalNumber("height", "a fraction of the rod", 1.0);
-    if (fields.Has("height_m")) sensor.height_m = fields.Number("height_m", "a height in m");
-    if (fields.Has("height") && fields.Has("height_m")) {
-      fields.Fail("height", "is given together with height_m; give one of them");
-    }
-    if (fields.Has("start")) sensor.start_s = fields.Number("start", "its clock at frame 0 in s");
-    sensor.idle_force = fields.OptionalNumber("idle_force", "a force in N", 0.0);
-    if (fields.Has("zero")) sensor.zero_n = fields.Number("zero", "what it reads at rest in N");
-    if (!fields.error() && !(sensor.idle_force >= 0.0)) {
-      fields.Fail("idle_force", "must be a force of at least 0 N");
-    }
-    fields.OnlyAsked();
-    if (fields.error()) return *fields.error();
-    sensors.push_back(sensor);
-  }
-  return sensors;
-}
-
-namespace {
 
 constexpr double kLeastRest = 0.1;    // s before the pull
 constexpr double kMargin = 0.02;      // s before it that do not count: it begins softly
@@ -281,6 +200,79 @@ int SamplesAtRest(const SensorRecord& record, const Eigen::Vector3d& guess, doub
 }
 
 }  // namespace
+
+void FillFromMotion(const RecordedPerson& person, SensorChoice* choice) {
+  std::error_code failed;
+  if (!std::filesystem::equivalent(person.file, choice->file, failed) || failed) return;
+  if (!choice->start_s) choice->start_s = person.file_clock_s;
+  if (!choice->up.empty() || !choice->forward.empty()) return;
+  choice->up = person.file_up;
+  choice->forward = person.file_forward;
+}
+
+Result<SensorRecord> ReadSensor(const SensorChoice& choice) {
+  const Result<Eigen::Matrix3d> rotation = AxesRotation(
+      choice.up.empty() ? "z" : choice.up, choice.forward.empty() ? "x" : choice.forward);
+  if (!rotation.ok()) return rotation.error();
+  const MotionFormat format = MotionFormatOfFile(choice.file).value_or(MotionFormat::kCsv);
+  const bool several = format == MotionFormat::kC3d || format == MotionFormat::kStorage;
+  if (choice.column.empty() && several) return WhichColumn(choice, format);
+  if (!std::isfinite(choice.gain) || choice.gain == 0.0) {
+    return Error{"the gain of a sensor must be a number of N per unit other than 0"};
+  }
+  Result<SensorRecord> record = format == MotionFormat::kC3d
+                                    ? FromC3d(choice, rotation.value().row(2).transpose())
+                                : choice.column.empty() ? ReadSensorCsv(choice.file)
+                                                        : FromTable(choice);
+  if (!record.ok()) return record;
+  record.value().file = choice.file;
+  if (choice.zero_n.value_or(0.0) != 0.0 && record.value().is_vector) {
+    return Error{"an offset can only be subtracted from a sensor with a single axis", choice.file};
+  }
+  for (Eigen::Vector3d& force : record.value().force) {
+    force *= choice.gain;
+    force.x() -= choice.zero_n.value_or(0.0);
+    if (record.value().is_vector) force = rotation.value() * force;
+  }
+  if (!choice.zero_n) SubtractRest(&record.value());
+  return record;
+}
+
+Result<std::vector<SensorChoice>> ReadSensorList(const std::string& path) {
+  const Result<JsonDocument> document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  const Json& content = document.value().content;
+  if (!content.is_array() || content.empty()) {
+    return document.value().ErrorAt("", "a list of sensors is expected, [{\"file\": ...}, ...]");
+  }
+  std::vector<SensorChoice> sensors;
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    JsonFields fields(document.value(), content[i], "/" + std::to_string(i),
+                      "sensor " + std::to_string(i));
+    SensorChoice sensor;
+    sensor.file = ResolvePath(path, fields.Text("file", "the name of a file with forces"));
+    sensor.column = fields.OptionalText("column", "");
+    sensor.gain = fields.OptionalNumber("gain", "the N per unit", 1.0);
+    sensor.up = fields.OptionalText("up", "");
+    sensor.forward = fields.OptionalText("forward", "");
+    ReadDirection(&fields, &sensor);
+    sensor.height_fraction = fields.OptionalNumber("height", "a fraction of the rod", 1.0);
+    if (fields.Has("height_m")) sensor.height_m = fields.Number("height_m", "a height in m");
+    if (fields.Has("height") && fields.Has("height_m")) {
+      fields.Fail("height", "is given together with height_m; give one of them");
+    }
+    if (fields.Has("start")) sensor.start_s = fields.Number("start", "its clock at frame 0 in s");
+    sensor.idle_force = fields.OptionalNumber("idle_force", "a force in N", 0.0);
+    if (fields.Has("zero")) sensor.zero_n = fields.Number("zero", "what it reads at rest in N");
+    if (!fields.error() && !(sensor.idle_force >= 0.0)) {
+      fields.Fail("idle_force", "must be a force of at least 0 N");
+    }
+    fields.OnlyAsked();
+    if (fields.error()) return *fields.error();
+    sensors.push_back(sensor);
+  }
+  return sensors;
+}
 
 void SubtractRest(SensorRecord* record) {
   const std::vector<double>& time = record->time_s;

@@ -210,38 +210,6 @@ class Walker {
   Swing swing_[2];
 };
 
-}  // namespace
-
-double LaboratoryPush::ForceAt(double t) const {
-  const double u = (t - start_s) / duration_s;
-  return u > 0.0 && u < 1.0 ? peak_N * std::sin(M_PI * u) : 0.0;
-}
-
-Result<LaboratoryTrial> SimulateLaboratoryTrial(const LaboratoryPerson& person,
-                                                const LaboratoryPush& push, double seconds,
-                                                double sway, uint64_t seed, int substeps) {
-  LaboratoryTrial trial;
-  Walker walker(person, push, substeps);
-  Random random(seed);
-  const int samples = static_cast<int>(std::lround(seconds * kLaboratoryHz)) + 1;
-  const double memory = std::exp(-1.0 / (kSwayMemory * kLaboratoryHz));
-  double noise = 0.0;
-  for (int i = 0; i < samples; ++i) {
-    noise = memory * noise + std::sqrt(1.0 - memory * memory) * sway * random.Normal();
-    walker.SetSway(noise);
-    walker.Decide(&trial);
-    trial.samples.push_back(walker.Sample());
-    if (walker.Falls()) {
-      return Error{"the person falls after " + Rounded(walker.time(), 3) + " s, pushed by " +
-                   Rounded(push.peak_N, 3) + " N"};
-    }
-    for (int k = 0; k < substeps; ++k) walker.Advance();
-  }
-  return trial;
-}
-
-namespace {
-
 constexpr int kCameraHz = 100;
 constexpr double kMarkerNoise = 0.001, kPlateNoise = 1.0, kCentreNoise = 0.0015, kCellNoise = 0.5;
 constexpr double kSway = 1.0;                       // N m at the ankles
@@ -435,6 +403,34 @@ MaybeError WriteTrial(const std::string& folder, const Made& made, const Laborat
 }
 
 }  // namespace
+
+double LaboratoryPush::ForceAt(double t) const {
+  const double u = (t - start_s) / duration_s;
+  return u > 0.0 && u < 1.0 ? peak_N * std::sin(M_PI * u) : 0.0;
+}
+
+Result<LaboratoryTrial> SimulateLaboratoryTrial(const LaboratoryPerson& person,
+                                                const LaboratoryPush& push, double seconds,
+                                                double sway, uint64_t seed, int substeps) {
+  LaboratoryTrial trial;
+  Walker walker(person, push, substeps);
+  Random random(seed);
+  const int samples = static_cast<int>(std::lround(seconds * kLaboratoryHz)) + 1;
+  const double memory = std::exp(-1.0 / (kSwayMemory * kLaboratoryHz));
+  double noise = 0.0;
+  for (int i = 0; i < samples; ++i) {
+    noise = memory * noise + std::sqrt(1.0 - memory * memory) * sway * random.Normal();
+    walker.SetSway(noise);
+    walker.Decide(&trial);
+    trial.samples.push_back(walker.Sample());
+    if (walker.Falls()) {
+      return Error{"the person falls after " + Rounded(walker.time(), 3) + " s, pushed by " +
+                   Rounded(push.peak_N, 3) + " N"};
+    }
+    for (int k = 0; k < substeps; ++k) walker.Advance();
+  }
+  return trial;
+}
 
 std::vector<LaboratoryPerson> DrawLaboratoryPeople(const LaboratoryOptions& options) {
   Random random(options.seed);

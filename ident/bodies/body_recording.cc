@@ -47,6 +47,50 @@ void AddSeen(const BodyRecording& recording, int observed, std::vector<Restorati
   }
 }
 
+std::vector<FootPath> FeetOf(const RolloutPath<double>& path, int person) {
+  std::vector<FootPath> feet(path.num_frames());
+  for (int t = 0; t < path.num_frames(); ++t) {
+    const PendulumState<double>& state = path.At(t, person);
+    for (const bool left : {false, true}) {
+      const Foot foot = left ? Foot::kLeft : Foot::kRight;
+      feet[t].moved[left] = PlaceOf(foot, state) - PlaceOf(foot, path.At(0, person));
+      feet[t].flies[left] = state.feet.swings == (left ? 1 : -1);
+    }
+  }
+  return feet;
+}
+
+// Toes and head that were filled, as further joints behind those that play the role before them.
+void AddFilledEnds(const BodyRoles& roles, const Pose& first, BodySkeleton* skeleton) {
+  for (int role :
+       {static_cast<int>(kBodyHead), static_cast<int>(kRightToe), static_cast<int>(kLeftToe)}) {
+    const int parent = roles.Single(kBodyParents[role]);
+    if (roles.Has(role) || parent < 0) continue;
+    skeleton->tree.parents.push_back(parent);
+    skeleton->wanted_roles.push_back(role);
+    skeleton->rest.conservativeResize(3, skeleton->rest.cols() + 1);
+    skeleton->rest.rightCols<1>() = first.col(role);
+  }
+}
+
+// Names, parents, roles and rest are set: every joint that a place is wanted of is an aim of the
+// next one towards the root that turns.
+void SetTree(BodySkeleton* skeleton) {
+  const std::vector<int>& wanted = skeleton->wanted_roles;
+  const std::vector<int>& parents = skeleton->tree.parents;
+  const int columns = static_cast<int>(wanted.size());
+  const bool hip_is_one = std::count(skeleton->roles.begin(), skeleton->roles.end(), kBodyHip) > 0;
+  std::vector<int> turning(columns, -1);  // the joint itself, or the next one above that turns
+  skeleton->tree.aims.assign(columns, {});
+  for (int j = 0; j < columns; ++j) {
+    const int above = parents[j] < 0 ? -1 : turning[parents[j]];
+    // Where the hip is a mean of several joints, the root turns for it.
+    const bool turns = wanted[j] >= 0 || (parents[j] < 0 && !hip_is_one);
+    turning[j] = turns ? j : above;
+    if (wanted[j] >= 0 && above >= 0) skeleton->tree.aims[above].push_back(j);
+  }
+}
+
 }  // namespace
 
 Result<BodyRecording> MakeBodyRecording(const Recording& recording) {
@@ -93,23 +137,6 @@ std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& rec
   return pendulums;
 }
 
-namespace {
-
-std::vector<FootPath> FeetOf(const RolloutPath<double>& path, int person) {
-  std::vector<FootPath> feet(path.num_frames());
-  for (int t = 0; t < path.num_frames(); ++t) {
-    const PendulumState<double>& state = path.At(t, person);
-    for (const bool left : {false, true}) {
-      const Foot foot = left ? Foot::kLeft : Foot::kRight;
-      feet[t].moved[left] = PlaceOf(foot, state) - PlaceOf(foot, path.At(0, person));
-      feet[t].flies[left] = state.feet.swings == (left ? 1 : -1);
-    }
-  }
-  return feet;
-}
-
-}  // namespace
-
 void FollowPrediction(const Prediction& prediction, std::vector<RestorationInput>* people) {
   for (int n = 0; n < static_cast<int>(people->size()); ++n) {
     RestorationInput& person = (*people)[n];
@@ -145,41 +172,6 @@ std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, boo
   }
   return people;
 }
-
-namespace {
-
-// Toes and head that were filled, as further joints behind those that play the role before them.
-void AddFilledEnds(const BodyRoles& roles, const Pose& first, BodySkeleton* skeleton) {
-  for (int role :
-       {static_cast<int>(kBodyHead), static_cast<int>(kRightToe), static_cast<int>(kLeftToe)}) {
-    const int parent = roles.Single(kBodyParents[role]);
-    if (roles.Has(role) || parent < 0) continue;
-    skeleton->tree.parents.push_back(parent);
-    skeleton->wanted_roles.push_back(role);
-    skeleton->rest.conservativeResize(3, skeleton->rest.cols() + 1);
-    skeleton->rest.rightCols<1>() = first.col(role);
-  }
-}
-
-// Names, parents, roles and rest are set: every joint that a place is wanted of is an aim of the
-// next one towards the root that turns.
-void SetTree(BodySkeleton* skeleton) {
-  const std::vector<int>& wanted = skeleton->wanted_roles;
-  const std::vector<int>& parents = skeleton->tree.parents;
-  const int columns = static_cast<int>(wanted.size());
-  const bool hip_is_one = std::count(skeleton->roles.begin(), skeleton->roles.end(), kBodyHip) > 0;
-  std::vector<int> turning(columns, -1);  // the joint itself, or the next one above that turns
-  skeleton->tree.aims.assign(columns, {});
-  for (int j = 0; j < columns; ++j) {
-    const int above = parents[j] < 0 ? -1 : turning[parents[j]];
-    // Where the hip is a mean of several joints, the root turns for it.
-    const bool turns = wanted[j] >= 0 || (parents[j] < 0 && !hip_is_one);
-    turning[j] = turns ? j : above;
-    if (wanted[j] >= 0 && above >= 0) skeleton->tree.aims[above].push_back(j);
-  }
-}
-
-}  // namespace
 
 std::vector<std::string> DefaultJointNames() {
   return {"Hips",         "Spine",         "Spine1",        "Spine2",     "Neck",

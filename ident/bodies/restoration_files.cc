@@ -51,6 +51,51 @@ MaybeError ReadTensors(const JsonDocument& document, const std::vector<float>& n
                                           " numbers of the weights file");
 }
 
+constexpr char kMagic[] = "\x93NUMPY\x01\x00";
+constexpr size_t kMagicSize = 8, kPrefix = 10;  // magic, then the header's length in two bytes
+
+Error NotNpy(const std::string& path, const std::string& problem) {
+  return {problem +
+              "; expected is a one-dimensional little-endian float32 array as numpy.save "
+              "writes it",
+          path};
+}
+
+std::string NpyBytes(const std::vector<float>& values) {
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
+                       std::to_string(values.size()) + ",), }";
+  header.append(64 - (kPrefix + header.size() + 1) % 64, ' ');
+  header += '\n';
+  std::string bytes(kMagic, kMagicSize);
+  bytes += static_cast<char>(header.size() & 0xff);
+  bytes += static_cast<char>(header.size() >> 8);
+  bytes += header;
+  const size_t at = bytes.size();
+  bytes.resize(at + values.size() * sizeof(float));
+  if (!values.empty()) std::memcpy(&bytes[at], values.data(), values.size() * sizeof(float));
+  return bytes;
+}
+
+constexpr uint64_t kDrawsSeed = 1;  // of a chain without a pendulum
+
+// Begun anew with every call.
+std::function<NormalSource()> NormalsOf(uint64_t seed) {
+  return [seed] {
+    const auto random = std::make_shared<Random>(seed);
+    return NormalSource([random] { return random->Normal(); });
+  };
+}
+
+constexpr TensorFolderKind kRestorationFolder = {
+    "restoration", "--restoration", "pushid-train-restoration --out", kRestorationFormat};
+
+Result<RestorationView> ViewOf(const RestorationFile& file, const std::string& path) {
+  RestorationView view = RestorationView::kPendulum;
+  const std::string name = file.settings->value(kViewKey, NameOf(view));
+  if (MaybeError error = ParseName(kViewKey, name, &view)) return Error{error->message, path};
+  return view;
+}
+
 }  // namespace
 
 std::string JsonFileOf(const TensorFolderKind& kind, const std::string& folder) {
@@ -132,35 +177,6 @@ Result<TensorFolder> ReadTensorFolder(const TensorFolderKind& kind, const std::s
   return content;
 }
 
-namespace {
-
-constexpr char kMagic[] = "\x93NUMPY\x01\x00";
-constexpr size_t kMagicSize = 8, kPrefix = 10;  // magic, then the header's length in two bytes
-
-Error NotNpy(const std::string& path, const std::string& problem) {
-  return {problem +
-              "; expected is a one-dimensional little-endian float32 array as numpy.save "
-              "writes it",
-          path};
-}
-
-std::string NpyBytes(const std::vector<float>& values) {
-  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
-                       std::to_string(values.size()) + ",), }";
-  header.append(64 - (kPrefix + header.size() + 1) % 64, ' ');
-  header += '\n';
-  std::string bytes(kMagic, kMagicSize);
-  bytes += static_cast<char>(header.size() & 0xff);
-  bytes += static_cast<char>(header.size() >> 8);
-  bytes += header;
-  const size_t at = bytes.size();
-  bytes.resize(at + values.size() * sizeof(float));
-  if (!values.empty()) std::memcpy(&bytes[at], values.data(), values.size() * sizeof(float));
-  return bytes;
-}
-
-}  // namespace
-
 MaybeError WriteNpy(const std::string& path, const std::vector<float>& values) {
   return WriteFileAtomically(path, NpyBytes(values));
 }
@@ -195,23 +211,6 @@ Result<std::vector<float>> ReadNpy(const std::string& path) {
   return values;
 }
 
-namespace {
-
-constexpr uint64_t kDrawsSeed = 1;  // of a chain without a pendulum
-
-// Begun anew with every call.
-std::function<NormalSource()> NormalsOf(uint64_t seed) {
-  return [seed] {
-    const auto random = std::make_shared<Random>(seed);
-    return NormalSource([random] { return random->Normal(); });
-  };
-}
-
-constexpr TensorFolderKind kRestorationFolder = {
-    "restoration", "--restoration", "pushid-train-restoration --out", kRestorationFormat};
-
-}  // namespace
-
 MaybeError WriteRestorationFile(const std::string& folder, const RestorationFile& file) {
   return WriteTensorFolder(kRestorationFolder, folder,
                            {NameOf(file.kind), file.settings, file.training, file.tensors});
@@ -226,17 +225,6 @@ Result<RestorationFile> ReadRestorationFile(const std::string& folder) {
   return RestorationFile{*FromName<RestorationKind>(content.kind), std::move(content.settings),
                          std::move(content.training), std::move(content.tensors)};
 }
-
-namespace {
-
-Result<RestorationView> ViewOf(const RestorationFile& file, const std::string& path) {
-  RestorationView view = RestorationView::kPendulum;
-  const std::string name = file.settings->value(kViewKey, NameOf(view));
-  if (MaybeError error = ParseName(kViewKey, name, &view)) return Error{error->message, path};
-  return view;
-}
-
-}  // namespace
 
 Result<std::unique_ptr<Restoration>> MakeWindow(const RestorationFile& file,
                                                 const std::string& path, TensorReader* reader) {

@@ -90,6 +90,8 @@ nlohmann::ordered_json ByHorizon(const HorizonErrors& values, double unit) {
   return json;
 }
 
+constexpr Metric kMpjpeMm = {"MPJPE", "mm"};
+
 }  // namespace
 
 double SampleQuantile(const std::vector<double>& sorted, double p) {
@@ -146,12 +148,6 @@ std::string ForecastSpreadText(const ForecastSpread& spread) {
   for (const SpreadRow& row : kSpreadRows) add(row, "mean of actions", spread.mean);
   return table.ToString();
 }
-
-namespace {
-
-constexpr Metric kMpjpeMm = {"MPJPE", "mm"};
-
-}  // namespace
 
 ForecastErrors ErrorsOf(const std::vector<ForecastWindow>& windows,
                         const std::vector<Trajectories>& forecasts, const ParticleLayout& layout) {

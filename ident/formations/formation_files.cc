@@ -79,71 +79,6 @@ ManifestRecording Entry(const FormationRun& run) {
   return entry;
 }
 
-}  // namespace
-
-MaybeError WriteForcesCsv(const std::string& path, const FormationRun& run) {
-  AtomicFile file;
-  if (MaybeError failed = file.Open(path)) return failed;
-  file.Append("frame,time_s,person,part,fx_N,fy_N,ftheta_Nm,fphi_Nm\n");
-  const std::vector<ForcePart> parts = ActingParts(run);
-  const auto row = [&](int t, int n, std::string_view part, const Vector4<double>& f) {
-    char text[256];
-    std::snprintf(text, sizeof text, "%d,%.9g,%d,%.*s,%.9g,%.9g,%.9g,%.9g\n", t, run.Seconds(t), n,
-                  static_cast<int>(part.size()), part.data(), f[0] + 0.0, f[1] + 0.0, f[2] + 0.0,
-                  f[3] + 0.0);  // no -0
-    file.Append(text);
-  };
-  for (int t = 0; t < run.num_frames(); ++t) {
-    for (int n = 0; n < run.num_people(); ++n) {
-      const NetForce<double>& force = run.Force(n, t);
-      for (ForcePart part : parts) row(t, n, NameOf(part), force[part]);
-      row(t, n, "net", force.Total());
-    }
-  }
-  return file.Commit();
-}
-
-MaybeError WriteFormationTrajectories(const std::string& path, const FormationRun& run) {
-  PointMotion motion;
-  motion.rate_hz = 1.0 / run.recording.scene.dt;
-  motion.names = run.recording.subject_ids;
-  motion.positions = run.prediction.hip;
-  return WriteTrajectoryText(path, motion);
-}
-
-MaybeError WriteFormationRecording(const std::string& folder, const FormationRun& run) {
-  for (const char* sub : {"/bvh", "/push"}) {
-    if (MaybeError failed = MakeFolder(folder + sub)) return failed;
-  }
-  // An earlier run's manifest must not describe a mixture of both, should this one break off.
-  std::error_code ignored;
-  std::filesystem::remove(folder + "/manifest.json", ignored);
-  const Scene& scene = run.recording.scene;
-  ManifestRecording entry = Entry(run);
-  for (int n = 0; n < run.num_people(); ++n) {
-    const std::string& name = run.recording.subject_ids[n];
-    entry.subjects.push_back({name, scene.people[n].body.mass});
-    entry.motion.push_back("bvh/" + name + ".bvh");
-    const MaybeError failed =
-        WriteBvh(folder + "/" + entry.motion.back(), PendulumMotion(run, n), kUnit);
-    if (failed) return failed;
-  }
-  for (size_t i = 0; i < scene.pushes.size(); ++i) {
-    const ScenePush& push = scene.pushes[i];
-    entry.pushes.push_back({push.person, "push/" + std::to_string(i) + ".csv", push.start_frame});
-    if (MaybeError failed = WritePushCsv(folder + "/" + entry.pushes.back().csv, push.force)) {
-      return failed;
-    }
-  }
-  Manifest manifest;
-  manifest.length_unit = kUnit;
-  (*manifest.json)["synthetic"]["formation"] = true;  // made by a model: may be overwritten
-  manifest.recordings = {entry};
-  return WriteManifest(folder + "/manifest.json", manifest);
-}
-
-namespace {
-
 constexpr double kWaveLeft = 112, kWaveTop = 40, kMapWidth = 610, kWaveWidth = 960, kSide = 770;
 constexpr double kFastWalk = 2.5;  // m/s; faster than that somebody falls, and colours saturate
 constexpr int kColours = 48;       // levels of speed that are told apart, either way
@@ -297,15 +232,6 @@ class WavePicture {
   SvgPicture svg_;
 };
 
-}  // namespace
-
-std::string WaveSvg(const FormationRun& run, const std::string& title,
-                    const std::vector<OnsetBand>& onsets) {
-  return WavePicture(run, title, onsets).Draw();
-}
-
-namespace {
-
 constexpr double kSoleWidth = 0.09;                 // m
 constexpr double kAir = 0.15, kShortestFeet = 1.2;  // m
 constexpr double kPixelsPerMetre = 300, kWidestFeet = 1000, kSmallestFigure = 640;
@@ -391,6 +317,72 @@ void FitMap(Chart* chart) {
 }
 
 }  // namespace
+
+MaybeError WriteForcesCsv(const std::string& path, const FormationRun& run) {
+  AtomicFile file;
+  if (MaybeError failed = file.Open(path)) return failed;
+  file.Append("frame,time_s,person,part,fx_N,fy_N,ftheta_Nm,fphi_Nm\n");
+  const std::vector<ForcePart> parts = ActingParts(run);
+  const auto row = [&](int t, int n, std::string_view part, const Vector4<double>& f) {
+    char text[256];
+    std::snprintf(text, sizeof text, "%d,%.9g,%d,%.*s,%.9g,%.9g,%.9g,%.9g\n", t, run.Seconds(t), n,
+                  static_cast<int>(part.size()), part.data(), f[0] + 0.0, f[1] + 0.0, f[2] + 0.0,
+                  f[3] + 0.0);  // no -0
+    file.Append(text);
+  };
+  for (int t = 0; t < run.num_frames(); ++t) {
+    for (int n = 0; n < run.num_people(); ++n) {
+      const NetForce<double>& force = run.Force(n, t);
+      for (ForcePart part : parts) row(t, n, NameOf(part), force[part]);
+      row(t, n, "net", force.Total());
+    }
+  }
+  return file.Commit();
+}
+
+MaybeError WriteFormationTrajectories(const std::string& path, const FormationRun& run) {
+  PointMotion motion;
+  motion.rate_hz = 1.0 / run.recording.scene.dt;
+  motion.names = run.recording.subject_ids;
+  motion.positions = run.prediction.hip;
+  return WriteTrajectoryText(path, motion);
+}
+
+MaybeError WriteFormationRecording(const std::string& folder, const FormationRun& run) {
+  for (const char* sub : {"/bvh", "/push"}) {
+    if (MaybeError failed = MakeFolder(folder + sub)) return failed;
+  }
+  // An earlier run's manifest must not describe a mixture of both, should this one break off.
+  std::error_code ignored;
+  std::filesystem::remove(folder + "/manifest.json", ignored);
+  const Scene& scene = run.recording.scene;
+  ManifestRecording entry = Entry(run);
+  for (int n = 0; n < run.num_people(); ++n) {
+    const std::string& name = run.recording.subject_ids[n];
+    entry.subjects.push_back({name, scene.people[n].body.mass});
+    entry.motion.push_back("bvh/" + name + ".bvh");
+    const MaybeError failed =
+        WriteBvh(folder + "/" + entry.motion.back(), PendulumMotion(run, n), kUnit);
+    if (failed) return failed;
+  }
+  for (size_t i = 0; i < scene.pushes.size(); ++i) {
+    const ScenePush& push = scene.pushes[i];
+    entry.pushes.push_back({push.person, "push/" + std::to_string(i) + ".csv", push.start_frame});
+    if (MaybeError failed = WritePushCsv(folder + "/" + entry.pushes.back().csv, push.force)) {
+      return failed;
+    }
+  }
+  Manifest manifest;
+  manifest.length_unit = kUnit;
+  (*manifest.json)["synthetic"]["formation"] = true;  // made by a model: may be overwritten
+  manifest.recordings = {entry};
+  return WriteManifest(folder + "/manifest.json", manifest);
+}
+
+std::string WaveSvg(const FormationRun& run, const std::string& title,
+                    const std::vector<OnsetBand>& onsets) {
+  return WavePicture(run, title, onsets).Draw();
+}
 
 std::optional<Figure> FeetFigure(const FormationRun& run) {
   Chart chart{"feet from above", "forward, m", "to the left, m"};

@@ -15,29 +15,6 @@
 #include "models/self_terms.h"
 
 namespace pushid {
-
-std::optional<WaveSpeed> SpeedOfWave(const Scene& scene, const std::vector<int>& onsets) {
-  if (scene.pushes.size() != 1) return std::nullopt;
-  int first = -1, foremost = -1;
-  for (int n = 0; n < scene.num_people(); ++n) {
-    if (onsets[n] < 0) continue;
-    if (first < 0 || onsets[n] < onsets[first]) first = n;
-    foremost = n;
-  }
-  if (first < 0) return std::nullopt;
-  const WaveSpeed wave{first, foremost,
-                       scene.people[foremost].start.q[0] - scene.people[first].start.q[0],
-                       (onsets[foremost] - onsets[first]) * scene.dt};
-  if (!(wave.metres > 0.0) || !(wave.seconds > 0.0)) return std::nullopt;
-  return wave;
-}
-
-std::optional<WaveSpeed> SpeedOfWave(const FormationRun& run) {
-  std::vector<int> onsets;
-  for (const PersonSummary& person : run.summaries) onsets.push_back(person.onset_frame);
-  return SpeedOfWave(run.recording.scene, onsets);
-}
-
 namespace {
 
 constexpr int kDraws = 60;
@@ -88,39 +65,6 @@ SpeedBand BandOfSpeed(const std::vector<std::vector<int>>& draws, const Scene& s
   if (band.known()) band.from = Quantile(speeds, kLower), band.to = Quantile(speeds, kUpper);
   return band;
 }
-
-}  // namespace
-
-std::string HeldInDraws(const FittedModel& model, const std::string& set) {
-  std::string held;
-  const auto add = [&held](const std::string& text) { held += (held.empty() ? "" : ", ") + text; };
-  const Result<std::vector<NamedValue>> values = ParseAssignments(set, "--set");
-  const std::vector<NamedValue> replaced = values.ok() ? values.value() : std::vector<NamedValue>();
-  for (const Estimate& e : model.fit.estimates) {
-    const ParameterSpec* spec = model.fit.options.table.Find(e.name);
-    const bool again = std::any_of(replaced.begin(), replaced.end(),
-                                   [&e](const NamedValue& one) { return one.name == e.name; });
-    const bool convention = spec != nullptr && HeldByConvention(spec->id);
-    if (e.status != EstimateStatus::kFixed || again || convention) continue;
-    add(e.name + " = " + Rounded(e.value, 4));
-  }
-  for (const NamedValue& one : replaced) add(one.name + " = " + Rounded(one.value, 4) + " (--set)");
-  return held;
-}
-
-WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run) {
-  const std::vector<std::vector<int>> draws = DrawnOnsets(model, set, run);
-  WaveBands bands;
-  if (draws.empty()) return bands;
-  bands.failed = static_cast<int>(std::count_if(
-      draws.begin(), draws.end(), [](const std::vector<int>& onsets) { return onsets.empty(); }));
-  const Scene& scene = run.recording.scene;
-  for (int n = 0; n < run.num_people(); ++n) bands.onsets.push_back(BandOf(draws, n, scene.dt));
-  bands.speed = BandOfSpeed(draws, scene);
-  return bands;
-}
-
-namespace {
 
 constexpr int kSpeedFrames = 6;
 
@@ -225,6 +169,57 @@ PointMotion HipTrajectories(const Recording& recording) {
 }
 
 }  // namespace
+
+std::optional<WaveSpeed> SpeedOfWave(const Scene& scene, const std::vector<int>& onsets) {
+  if (scene.pushes.size() != 1) return std::nullopt;
+  int first = -1, foremost = -1;
+  for (int n = 0; n < scene.num_people(); ++n) {
+    if (onsets[n] < 0) continue;
+    if (first < 0 || onsets[n] < onsets[first]) first = n;
+    foremost = n;
+  }
+  if (first < 0) return std::nullopt;
+  const WaveSpeed wave{first, foremost,
+                       scene.people[foremost].start.q[0] - scene.people[first].start.q[0],
+                       (onsets[foremost] - onsets[first]) * scene.dt};
+  if (!(wave.metres > 0.0) || !(wave.seconds > 0.0)) return std::nullopt;
+  return wave;
+}
+
+std::optional<WaveSpeed> SpeedOfWave(const FormationRun& run) {
+  std::vector<int> onsets;
+  for (const PersonSummary& person : run.summaries) onsets.push_back(person.onset_frame);
+  return SpeedOfWave(run.recording.scene, onsets);
+}
+
+std::string HeldInDraws(const FittedModel& model, const std::string& set) {
+  std::string held;
+  const auto add = [&held](const std::string& text) { held += (held.empty() ? "" : ", ") + text; };
+  const Result<std::vector<NamedValue>> values = ParseAssignments(set, "--set");
+  const std::vector<NamedValue> replaced = values.ok() ? values.value() : std::vector<NamedValue>();
+  for (const Estimate& e : model.fit.estimates) {
+    const ParameterSpec* spec = model.fit.options.table.Find(e.name);
+    const bool again = std::any_of(replaced.begin(), replaced.end(),
+                                   [&e](const NamedValue& one) { return one.name == e.name; });
+    const bool convention = spec != nullptr && HeldByConvention(spec->id);
+    if (e.status != EstimateStatus::kFixed || again || convention) continue;
+    add(e.name + " = " + Rounded(e.value, 4));
+  }
+  for (const NamedValue& one : replaced) add(one.name + " = " + Rounded(one.value, 4) + " (--set)");
+  return held;
+}
+
+WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run) {
+  const std::vector<std::vector<int>> draws = DrawnOnsets(model, set, run);
+  WaveBands bands;
+  if (draws.empty()) return bands;
+  bands.failed = static_cast<int>(std::count_if(
+      draws.begin(), draws.end(), [](const std::vector<int>& onsets) { return onsets.empty(); }));
+  const Scene& scene = run.recording.scene;
+  for (int n = 0; n < run.num_people(); ++n) bands.onsets.push_back(BandOf(draws, n, scene.dt));
+  bands.speed = BandOfSpeed(draws, scene);
+  return bands;
+}
 
 MeasuredWave MeasureWave(const std::string& name, const PointMotion& motion) {
   MeasuredWave wave;

@@ -93,6 +93,142 @@ Eigen::MatrixXf PushOf(const std::vector<ObservedMotion>& group, int frames) {
   return push;
 }
 
+constexpr float kNear = 0.8f, kSide = 0.1f, kAlone = 0.1f;  // m, m, weight of seeing nobody
+
+void ApplySilu(Eigen::MatrixXf* values) {
+  auto v = values->array();
+  v /= 1.0f + (-v).exp();
+}
+
+// The three frames that a convolution sees below one another; every `stride`-th of them.
+Eigen::MatrixXf Unfolded(const Eigen::MatrixXf& values, int frames, int stride) {
+  const Eigen::Index channels = values.rows(), people = values.cols() / frames;
+  const int count = frames / stride;
+  Eigen::MatrixXf unfolded(kTaps * channels, people * count);
+  for (Eigen::Index n = 0; n < people; ++n) {
+    for (int k = 0; k < count; ++k) {
+      for (int tap = 0; tap < kTaps; ++tap) {
+        const int t = stride * k + tap - (kTaps - 1);
+        auto to = unfolded.col(n * count + k).segment(tap * channels, channels);
+        if (t < 0) {
+          to.setZero();
+        } else {
+          to = values.col(n * frames + t);
+        }
+      }
+    }
+  }
+  return unfolded;
+}
+
+Eigen::MatrixXf EverySecond(const Eigen::MatrixXf& values) {
+  return values(Eigen::all, Eigen::seq(0, Eigen::last, 2));
+}
+
+Eigen::MatrixXf Below(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) {
+  Eigen::MatrixXf both(a.rows() + b.rows(), a.cols());
+  both << a, b;
+  return both;
+}
+
+Eigen::MatrixXf Perceptron(const DenseLayer& first, const DenseLayer& second,
+                           const Eigen::MatrixXf& values) {
+  Eigen::MatrixXf hidden = Applied(first, values);
+  ApplySilu(&hidden);
+  return Applied(second, hidden);
+}
+
+int StrideOf(int block) { return block < kDiffusionLevels ? 2 : 1; }
+
+void ListTensors(const std::string& name, DiffusionNetwork* network, TensorFields* fields) {
+  const DiffusionStructure& structure = network->structure;
+  fields->Positive(name + ".scales", kBodyJoints, &network->scales.joints);
+  fields->Scales(name + ".first_pose", kFirstPoseRows, &network->scales.first_pose);
+  if (structure.frame == MotionFrame::kOwn) {
+    fields->Matrix(name + ".row_mean", kOwnFrameRows, 1, &network->scales.mean);
+    fields->Positive(name + ".row_spread", kOwnFrameRows, &network->scales.spread);
+  }
+  fields->Layer(name + ".time0", kTimeWidth, kConditionWidth, &network->first_time);
+  fields->Layer(name + ".time1", kConditionWidth, kConditionWidth, &network->second_time);
+  fields->Layer(name + ".static0", kStaticRows, kConditionWidth, &network->first_static);
+  fields->Layer(name + ".static1", kConditionWidth, kConditionWidth, &network->second_static);
+  network->blocks.resize(kDiffusionBlocks);
+  for (int b = 0; b < kDiffusionBlocks; ++b) {
+    const BlockWidths widths = WidthsOf(b, structure);
+    const std::string of_block = name + ".block" + std::to_string(b);
+    DiffusionBlock& block = network->blocks[b];
+    fields->Layer(of_block + ".first", kTaps * widths.in, widths.out, &block.first);
+    fields->Layer(of_block + ".second", kTaps * widths.out, widths.out, &block.second);
+    fields->Layer(of_block + ".skip", widths.in, widths.out, &block.skip);
+    fields->Layer(of_block + ".film", kConditionWidth, 2 * widths.out, &block.film);
+  }
+  size_t p = 0;
+  for (int b = 0; b < kDiffusionLevels; ++b) {
+    if (!structure.AttendsAfter(b)) continue;
+    const int width = WidthsOf(b, structure).out;
+    const std::string of_pool = name + ".pool" + std::to_string(b);
+    if (network->pools.size() <= p) network->pools.emplace_back();
+    DiffusionPool& pool = network->pools[p++];
+    fields->Layer(of_pool + ".query", width, width, &pool.query);
+    fields->Layer(of_pool + ".key", width, width, &pool.key);
+    fields->Layer(of_pool + ".value", width, width, &pool.value);
+    fields->Layer(of_pool + ".mixed", width, width, &pool.mixed);
+  }
+  fields->Layer(name + ".out", kTaps * kDownWidths[0], structure.NumMotion(), &network->out);
+  fields->Layer(name + ".direct", structure.NumInputs(), structure.NumMotion(), &network->direct);
+}
+
+// Who comes first, second, ... from the left to the right, and from the back to the front.
+std::vector<int> ByPlace(const std::vector<ObservedMotion>& people) {
+  std::vector<int> order(people.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&people](int a, int b) {
+    const Eigen::Vector2f &p = people[a].place, &q = people[b].place;
+    return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
+  });
+  return order;
+}
+
+void Draw(const std::vector<int>& order, const NormalSource& normal, Eigen::MatrixXf* noise) {
+  const Eigen::Index frames = noise->cols() / static_cast<Eigen::Index>(order.size());
+  for (const int n : order) {
+    for (float& value : noise->middleCols(n * frames, frames).reshaped()) {
+      value = static_cast<float>(normal());
+    }
+  }
+}
+
+constexpr double kLastTime = 1.0;  // of the last estimate: hardly any noise is left
+
+Pose PoseOf(const Trajectories& frames, Eigen::Index t) {
+  return frames.col(t).cast<double>().reshaped(3, kBodyJoints);
+}
+
+// From frame `first` on, steps fade to 1/e in so many frames.
+void Settle(int first, double frames, Trajectories* motion) {
+  const Trajectories before = *motion;
+  for (Eigen::Index t = first; t < motion->cols(); ++t) {
+    const double fade = std::exp(-static_cast<double>(t - first) / frames);
+    motion->col(t) =
+        motion->col(t - 1) + static_cast<float>(fade) * (before.col(t) - before.col(t - 1));
+  }
+}
+
+const GroupChange kMirror = {true};
+
+std::vector<Trajectories> InMirror(const std::vector<Trajectories>& motions) {
+  std::vector<ObservedMotion> people(motions.size());
+  for (size_t n = 0; n < motions.size(); ++n) people[n].frames = motions[n];
+  people = Changed(people, kMirror);
+  std::vector<Trajectories> mirrored;
+  for (ObservedMotion& person : people) mirrored.push_back(std::move(person.frames));
+  return mirrored;
+}
+
+int ObservedFrames(const std::vector<ObservedMotion>& people) {
+  return static_cast<int>(people.front().frames.cols());
+}
+
 }  // namespace
 
 JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups) {
@@ -221,57 +357,6 @@ std::vector<ObservedMotion> Changed(const std::vector<ObservedMotion>& group,
   }
   return changed;
 }
-
-namespace {
-
-constexpr float kNear = 0.8f, kSide = 0.1f, kAlone = 0.1f;  // m, m, weight of seeing nobody
-
-void ApplySilu(Eigen::MatrixXf* values) {
-  auto v = values->array();
-  v /= 1.0f + (-v).exp();
-}
-
-// The three frames that a convolution sees below one another; every `stride`-th of them.
-Eigen::MatrixXf Unfolded(const Eigen::MatrixXf& values, int frames, int stride) {
-  const Eigen::Index channels = values.rows(), people = values.cols() / frames;
-  const int count = frames / stride;
-  Eigen::MatrixXf unfolded(kTaps * channels, people * count);
-  for (Eigen::Index n = 0; n < people; ++n) {
-    for (int k = 0; k < count; ++k) {
-      for (int tap = 0; tap < kTaps; ++tap) {
-        const int t = stride * k + tap - (kTaps - 1);
-        auto to = unfolded.col(n * count + k).segment(tap * channels, channels);
-        if (t < 0) {
-          to.setZero();
-        } else {
-          to = values.col(n * frames + t);
-        }
-      }
-    }
-  }
-  return unfolded;
-}
-
-Eigen::MatrixXf EverySecond(const Eigen::MatrixXf& values) {
-  return values(Eigen::all, Eigen::seq(0, Eigen::last, 2));
-}
-
-Eigen::MatrixXf Below(const Eigen::MatrixXf& a, const Eigen::MatrixXf& b) {
-  Eigen::MatrixXf both(a.rows() + b.rows(), a.cols());
-  both << a, b;
-  return both;
-}
-
-Eigen::MatrixXf Perceptron(const DenseLayer& first, const DenseLayer& second,
-                           const Eigen::MatrixXf& values) {
-  Eigen::MatrixXf hidden = Applied(first, values);
-  ApplySilu(&hidden);
-  return Applied(second, hidden);
-}
-
-int StrideOf(int block) { return block < kDiffusionLevels ? 2 : 1; }
-
-}  // namespace
 
 BlockWidths WidthsOf(int block, const DiffusionStructure& structure) {
   const int* down = kDownWidths;
@@ -438,48 +523,6 @@ Eigen::MatrixXf GroupDenoiser::Estimate(const Eigen::MatrixXf& noisy, double t) 
   return estimate;
 }
 
-namespace {
-
-void ListTensors(const std::string& name, DiffusionNetwork* network, TensorFields* fields) {
-  const DiffusionStructure& structure = network->structure;
-  fields->Positive(name + ".scales", kBodyJoints, &network->scales.joints);
-  fields->Scales(name + ".first_pose", kFirstPoseRows, &network->scales.first_pose);
-  if (structure.frame == MotionFrame::kOwn) {
-    fields->Matrix(name + ".row_mean", kOwnFrameRows, 1, &network->scales.mean);
-    fields->Positive(name + ".row_spread", kOwnFrameRows, &network->scales.spread);
-  }
-  fields->Layer(name + ".time0", kTimeWidth, kConditionWidth, &network->first_time);
-  fields->Layer(name + ".time1", kConditionWidth, kConditionWidth, &network->second_time);
-  fields->Layer(name + ".static0", kStaticRows, kConditionWidth, &network->first_static);
-  fields->Layer(name + ".static1", kConditionWidth, kConditionWidth, &network->second_static);
-  network->blocks.resize(kDiffusionBlocks);
-  for (int b = 0; b < kDiffusionBlocks; ++b) {
-    const BlockWidths widths = WidthsOf(b, structure);
-    const std::string of_block = name + ".block" + std::to_string(b);
-    DiffusionBlock& block = network->blocks[b];
-    fields->Layer(of_block + ".first", kTaps * widths.in, widths.out, &block.first);
-    fields->Layer(of_block + ".second", kTaps * widths.out, widths.out, &block.second);
-    fields->Layer(of_block + ".skip", widths.in, widths.out, &block.skip);
-    fields->Layer(of_block + ".film", kConditionWidth, 2 * widths.out, &block.film);
-  }
-  size_t p = 0;
-  for (int b = 0; b < kDiffusionLevels; ++b) {
-    if (!structure.AttendsAfter(b)) continue;
-    const int width = WidthsOf(b, structure).out;
-    const std::string of_pool = name + ".pool" + std::to_string(b);
-    if (network->pools.size() <= p) network->pools.emplace_back();
-    DiffusionPool& pool = network->pools[p++];
-    fields->Layer(of_pool + ".query", width, width, &pool.query);
-    fields->Layer(of_pool + ".key", width, width, &pool.key);
-    fields->Layer(of_pool + ".value", width, width, &pool.value);
-    fields->Layer(of_pool + ".mixed", width, width, &pool.mixed);
-  }
-  fields->Layer(name + ".out", kTaps * kDownWidths[0], structure.NumMotion(), &network->out);
-  fields->Layer(name + ".direct", structure.NumInputs(), structure.NumMotion(), &network->direct);
-}
-
-}  // namespace
-
 void AddTensors(const std::string& name, const DiffusionNetwork& network, TensorList* tensors) {
   DiffusionNetwork written = network;
   TensorFields fields(tensors);
@@ -494,61 +537,6 @@ DiffusionNetwork TakeDiffusion(const std::string& name, const DiffusionStructure
   ListTensors(name, &network, &fields);
   return network;
 }
-
-namespace {
-
-// Who comes first, second, ... from the left to the right, and from the back to the front.
-std::vector<int> ByPlace(const std::vector<ObservedMotion>& people) {
-  std::vector<int> order(people.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&people](int a, int b) {
-    const Eigen::Vector2f &p = people[a].place, &q = people[b].place;
-    return std::pair(p.x(), p.y()) < std::pair(q.x(), q.y());
-  });
-  return order;
-}
-
-void Draw(const std::vector<int>& order, const NormalSource& normal, Eigen::MatrixXf* noise) {
-  const Eigen::Index frames = noise->cols() / static_cast<Eigen::Index>(order.size());
-  for (const int n : order) {
-    for (float& value : noise->middleCols(n * frames, frames).reshaped()) {
-      value = static_cast<float>(normal());
-    }
-  }
-}
-
-constexpr double kLastTime = 1.0;  // of the last estimate: hardly any noise is left
-
-Pose PoseOf(const Trajectories& frames, Eigen::Index t) {
-  return frames.col(t).cast<double>().reshaped(3, kBodyJoints);
-}
-
-// From frame `first` on, steps fade to 1/e in so many frames.
-void Settle(int first, double frames, Trajectories* motion) {
-  const Trajectories before = *motion;
-  for (Eigen::Index t = first; t < motion->cols(); ++t) {
-    const double fade = std::exp(-static_cast<double>(t - first) / frames);
-    motion->col(t) =
-        motion->col(t - 1) + static_cast<float>(fade) * (before.col(t) - before.col(t - 1));
-  }
-}
-
-const GroupChange kMirror = {true};
-
-std::vector<Trajectories> InMirror(const std::vector<Trajectories>& motions) {
-  std::vector<ObservedMotion> people(motions.size());
-  for (size_t n = 0; n < motions.size(); ++n) people[n].frames = motions[n];
-  people = Changed(people, kMirror);
-  std::vector<Trajectories> mirrored;
-  for (ObservedMotion& person : people) mirrored.push_back(std::move(person.frames));
-  return mirrored;
-}
-
-int ObservedFrames(const std::vector<ObservedMotion>& people) {
-  return static_cast<int>(people.front().frames.cols());
-}
-
-}  // namespace
 
 DiffusionGenerator::DiffusionGenerator(ParticleLayout layout, std::vector<DiffusionNetwork> members,
                                        double dt, const DiffusionGeneratorOptions& options,

@@ -8,6 +8,27 @@
 #include "models/decompositions.h"
 
 namespace pushid {
+namespace {
+
+// Every joint of the body turns towards its children.
+const JointAims& BodyTree() {
+  static const JointAims body = [] {
+    JointAims tree;
+    tree.parents.assign(kBodyParents.begin(), kBodyParents.end());
+    tree.aims.resize(kBodyJoints);
+    for (int j = 1; j < kBodyJoints; ++j) tree.aims[kBodyParents[j]].push_back(j);
+    return tree;
+  }();
+  return body;
+}
+
+// A stretched knee has no direction to bend in, hence never quite stretched.
+constexpr double kMostStretched = 0.9995;
+constexpr double kStraight = 1e-4;  // m
+
+constexpr double kNoLength = 1e-9;
+
+}  // namespace
 
 int MirroredJoint(int joint) {
   if (joint < 6) return joint;
@@ -42,26 +63,6 @@ double Heading(const Pose& pose) {
       pose.col(kLeftHip) - pose.col(kRightHip) + pose.col(kLeftShoulder) - pose.col(kRightShoulder);
   return std::atan2(-left.x(), left.y());
 }
-
-namespace {
-
-// Every joint of the body turns towards its children.
-const JointAims& BodyTree() {
-  static const JointAims body = [] {
-    JointAims tree;
-    tree.parents.assign(kBodyParents.begin(), kBodyParents.end());
-    tree.aims.resize(kBodyJoints);
-    for (int j = 1; j < kBodyJoints; ++j) tree.aims[kBodyParents[j]].push_back(j);
-    return tree;
-  }();
-  return body;
-}
-
-// A stretched knee has no direction to bend in, hence never quite stretched.
-constexpr double kMostStretched = 0.9995;
-constexpr double kStraight = 1e-4;  // m
-
-}  // namespace
 
 FittedTree FitTree(const JointAims& tree, const Eigen::Matrix3Xd& rest,
                    const Eigen::Matrix3Xd& wanted) {
@@ -130,10 +131,6 @@ double ReachWithLeg(bool left, const Eigen::Vector3d& target, Pose* pose) {
   pose->col(ankle) = reached;
   return (target - reached).norm();
 }
-
-namespace {
-constexpr double kNoLength = 1e-9;
-}  // namespace
 
 Rotation6d ToRotation6d(const Eigen::Matrix3d& rotation) {
   Rotation6d numbers;

@@ -8,25 +8,6 @@
 #include "models/restoration/body.h"
 
 namespace pushid {
-
-const std::vector<int>& CvaeLayout::LowerJoints() const {
-  static const std::vector<int> lower(std::begin(kLowerJoints), std::end(kLowerJoints));
-  static const std::vector<int> all = [] {
-    std::vector<int> joints(kBodyJoints);
-    std::iota(joints.begin(), joints.end(), 0);
-    return joints;
-  }();
-  return halves ? lower : all;
-}
-
-const std::vector<int>& CvaeLayout::UpperJoints() const {
-  static const std::vector<int> upper(std::begin(kUpperJoints), std::end(kUpperJoints));
-  static const std::vector<int> none;
-  return halves ? upper : none;
-}
-
-int CvaeLayout::PendulumFrame() const { return pendulum ? kPendulumFrame : 0; }
-
 namespace {
 
 // Where positions are measured from.
@@ -68,7 +49,111 @@ void TakePositions(const Eigen::MatrixXf& frames, const std::vector<int>& joints
 
 bool SameRate(double a, double b) { return std::abs(a / b - 1.0) < 1e-3; }
 
+// No rows without a pendulum; a column per frame all the same.
+Eigen::MatrixXf ScaledPendulum(const CvaeWeights& weights, const RestorationInput& person) {
+  const Eigen::MatrixXf frames = PendulumFrames(person, weights.layout);
+  return weights.layout.pendulum ? weights.pendulum.Scaled(frames) : frames;
+}
+
+Eigen::MatrixXf Stacked(const Eigen::MatrixXf& above, const Eigen::MatrixXf& below) {
+  Eigen::MatrixXf both(above.rows() + below.rows(), above.cols());
+  both << above, below;
+  return both;
+}
+
+Eigen::MatrixXf Apply(const DenseLayer& layer, const Eigen::MatrixXf& inputs) {
+  Eigen::MatrixXf out(layer.weights.rows(), inputs.cols());
+  out.noalias() = layer.weights * inputs;
+  out.colwise() += layer.bias;
+  return out;
+}
+
+// Sum over the experts of share x output.
+Eigen::MatrixXf Blend(const DenseLayer& experts, const Eigen::MatrixXf& inputs,
+                      const Eigen::MatrixXf& shares) {
+  const Eigen::MatrixXf all = Apply(experts, inputs);
+  const Eigen::Index rows = all.rows() / kExperts;
+  Eigen::MatrixXf mixed = Eigen::MatrixXf::Zero(rows, inputs.cols());
+  for (int e = 0; e < kExperts; ++e) {
+    mixed.array() += all.middleRows(e * rows, rows).array().rowwise() * shares.row(e).array();
+  }
+  return mixed;
+}
+
+// e^x over the sum, column by column.
+Eigen::MatrixXf Softmax(const Eigen::MatrixXf& values) {
+  Eigen::MatrixXf shares = values.rowwise() - values.colwise().maxCoeff();
+  shares = shares.array().exp();
+  const Eigen::RowVectorXf sums = shares.colwise().sum();
+  shares.array().rowwise() /= sums.array();
+  return shares;
+}
+
+// The next frame by the sampler, or the mean over draws of z where there is no pendulum.
+Eigen::MatrixXf NextFrame(const CvaeSampler& sampler, const CvaeDecoder& decoder,
+                          const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum,
+                          const Eigen::MatrixXf& draws) {
+  if (pendulum.rows() > 0)
+    return decoder.Evaluate(sampler.Evaluate(condition, pendulum, draws), condition);
+  Eigen::MatrixXf sum = decoder.Evaluate(draws.col(0).replicate(1, condition.cols()), condition);
+  for (Eigen::Index k = 1; k < draws.cols(); ++k) {
+    sum += decoder.Evaluate(draws.col(k).replicate(1, condition.cols()), condition);
+  }
+  return sum / static_cast<float>(draws.cols());
+}
+
+void ListSampler(const std::string& name, int condition, CvaeSampler* sampler,
+                 TensorFields* fields) {
+  fields->Layer(name + ".first", condition + kPendulumFrame, kCvaeHidden, &sampler->first);
+  fields->Layer(name + ".second", kCvaeHidden + kPendulumFrame, kCvaeHidden, &sampler->second);
+  const int last = kCvaeHidden + kPendulumFrame;
+  fields->Layer(name + ".mean", last, kLatent, &sampler->mean);
+  fields->Layer(name + ".log_variance", last, kLatent, &sampler->log_variance);
+}
+
+void ListDecoder(const std::string& name, int condition, int frame, CvaeDecoder* decoder,
+                 TensorFields* fields) {
+  fields->Network(name + ".gate", 3, kLatent + condition, kExperts, &decoder->gate);
+  fields->Layer(name + ".first", kLatent + condition, kExperts * kCvaeHidden, &decoder->first);
+  fields->Layer(name + ".second", kLatent + kCvaeHidden, kExperts * kCvaeHidden, &decoder->second);
+  fields->Layer(name + ".last", kLatent + kCvaeHidden, kExperts * frame, &decoder->last);
+}
+
+void ListTensors(CvaeWeights* weights, TensorFields* fields) {
+  const CvaeLayout& layout = weights->layout;
+  const int lower = layout.LowerFrame(), upper = layout.UpperFrame();
+  const int condition = layout.UpperCondition();
+  fields->Scales("lower", lower, &weights->lower);
+  if (layout.halves) fields->Scales("upper", upper, &weights->upper);
+  if (layout.pendulum) {
+    fields->Scales("pendulum", kPendulumFrame, &weights->pendulum);
+    ListSampler("lower_sampler", lower, &weights->lower_sampler, fields);
+    if (layout.halves) ListSampler("upper_sampler", condition, &weights->upper_sampler, fields);
+  }
+  ListDecoder("lower_decoder", lower, lower, &weights->lower_decoder, fields);
+  if (!layout.halves) return;
+  ListDecoder("upper_decoder", condition, upper, &weights->upper_decoder, fields);
+}
+
 }  // namespace
+
+const std::vector<int>& CvaeLayout::LowerJoints() const {
+  static const std::vector<int> lower(std::begin(kLowerJoints), std::end(kLowerJoints));
+  static const std::vector<int> all = [] {
+    std::vector<int> joints(kBodyJoints);
+    std::iota(joints.begin(), joints.end(), 0);
+    return joints;
+  }();
+  return halves ? lower : all;
+}
+
+const std::vector<int>& CvaeLayout::UpperJoints() const {
+  static const std::vector<int> upper(std::begin(kUpperJoints), std::end(kUpperJoints));
+  static const std::vector<int> none;
+  return halves ? upper : none;
+}
+
+int CvaeLayout::PendulumFrame() const { return pendulum ? kPendulumFrame : 0; }
 
 Eigen::MatrixXf PendulumFrames(const RestorationInput& person, const CvaeLayout& layout) {
   const double heading = Heading(person.first_pose);
@@ -157,16 +242,6 @@ BodyMotion Resampled(const BodyMotion& motion, double motion_dt, double dt, int 
   return ResampledPath(motion, motion_dt, dt, frames);
 }
 
-namespace {
-
-// No rows without a pendulum; a column per frame all the same.
-Eigen::MatrixXf ScaledPendulum(const CvaeWeights& weights, const RestorationInput& person) {
-  const Eigen::MatrixXf frames = PendulumFrames(person, weights.layout);
-  return weights.layout.pendulum ? weights.pendulum.Scaled(frames) : frames;
-}
-
-}  // namespace
-
 int CvaeRestoration::NumDraws() const {
   if (!weights_.layout.pendulum) return kCvaeDraws;
   return latent_ == CvaeLatent::kDraw ? 1 : 0;
@@ -222,57 +297,6 @@ std::vector<BodyMotion> CvaeRestoration::Restore(
   return motions;
 }
 
-namespace {
-
-Eigen::MatrixXf Stacked(const Eigen::MatrixXf& above, const Eigen::MatrixXf& below) {
-  Eigen::MatrixXf both(above.rows() + below.rows(), above.cols());
-  both << above, below;
-  return both;
-}
-
-Eigen::MatrixXf Apply(const DenseLayer& layer, const Eigen::MatrixXf& inputs) {
-  Eigen::MatrixXf out(layer.weights.rows(), inputs.cols());
-  out.noalias() = layer.weights * inputs;
-  out.colwise() += layer.bias;
-  return out;
-}
-
-// Sum over the experts of share x output.
-Eigen::MatrixXf Blend(const DenseLayer& experts, const Eigen::MatrixXf& inputs,
-                      const Eigen::MatrixXf& shares) {
-  const Eigen::MatrixXf all = Apply(experts, inputs);
-  const Eigen::Index rows = all.rows() / kExperts;
-  Eigen::MatrixXf mixed = Eigen::MatrixXf::Zero(rows, inputs.cols());
-  for (int e = 0; e < kExperts; ++e) {
-    mixed.array() += all.middleRows(e * rows, rows).array().rowwise() * shares.row(e).array();
-  }
-  return mixed;
-}
-
-// e^x over the sum, column by column.
-Eigen::MatrixXf Softmax(const Eigen::MatrixXf& values) {
-  Eigen::MatrixXf shares = values.rowwise() - values.colwise().maxCoeff();
-  shares = shares.array().exp();
-  const Eigen::RowVectorXf sums = shares.colwise().sum();
-  shares.array().rowwise() /= sums.array();
-  return shares;
-}
-
-// The next frame by the sampler, or the mean over draws of z where there is no pendulum.
-Eigen::MatrixXf NextFrame(const CvaeSampler& sampler, const CvaeDecoder& decoder,
-                          const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum,
-                          const Eigen::MatrixXf& draws) {
-  if (pendulum.rows() > 0)
-    return decoder.Evaluate(sampler.Evaluate(condition, pendulum, draws), condition);
-  Eigen::MatrixXf sum = decoder.Evaluate(draws.col(0).replicate(1, condition.cols()), condition);
-  for (Eigen::Index k = 1; k < draws.cols(); ++k) {
-    sum += decoder.Evaluate(draws.col(k).replicate(1, condition.cols()), condition);
-  }
-  return sum / static_cast<float>(draws.cols());
-}
-
-}  // namespace
-
 Eigen::MatrixXf CvaeSampler::Evaluate(const Eigen::MatrixXf& condition,
                                       const Eigen::MatrixXf& pendulum,
                                       const Eigen::MatrixXf& eps) const {
@@ -310,43 +334,6 @@ void StepUpper(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
       Stacked(*upper, lower.middleRows(3, weights.layout.LowerPositions()));
   *upper = NextFrame(weights.upper_sampler, weights.upper_decoder, condition, pendulum, draws);
 }
-
-namespace {
-
-void ListSampler(const std::string& name, int condition, CvaeSampler* sampler,
-                 TensorFields* fields) {
-  fields->Layer(name + ".first", condition + kPendulumFrame, kCvaeHidden, &sampler->first);
-  fields->Layer(name + ".second", kCvaeHidden + kPendulumFrame, kCvaeHidden, &sampler->second);
-  const int last = kCvaeHidden + kPendulumFrame;
-  fields->Layer(name + ".mean", last, kLatent, &sampler->mean);
-  fields->Layer(name + ".log_variance", last, kLatent, &sampler->log_variance);
-}
-
-void ListDecoder(const std::string& name, int condition, int frame, CvaeDecoder* decoder,
-                 TensorFields* fields) {
-  fields->Network(name + ".gate", 3, kLatent + condition, kExperts, &decoder->gate);
-  fields->Layer(name + ".first", kLatent + condition, kExperts * kCvaeHidden, &decoder->first);
-  fields->Layer(name + ".second", kLatent + kCvaeHidden, kExperts * kCvaeHidden, &decoder->second);
-  fields->Layer(name + ".last", kLatent + kCvaeHidden, kExperts * frame, &decoder->last);
-}
-
-void ListTensors(CvaeWeights* weights, TensorFields* fields) {
-  const CvaeLayout& layout = weights->layout;
-  const int lower = layout.LowerFrame(), upper = layout.UpperFrame();
-  const int condition = layout.UpperCondition();
-  fields->Scales("lower", lower, &weights->lower);
-  if (layout.halves) fields->Scales("upper", upper, &weights->upper);
-  if (layout.pendulum) {
-    fields->Scales("pendulum", kPendulumFrame, &weights->pendulum);
-    ListSampler("lower_sampler", lower, &weights->lower_sampler, fields);
-    if (layout.halves) ListSampler("upper_sampler", condition, &weights->upper_sampler, fields);
-  }
-  ListDecoder("lower_decoder", lower, lower, &weights->lower_decoder, fields);
-  if (!layout.halves) return;
-  ListDecoder("upper_decoder", condition, upper, &weights->upper_decoder, fields);
-}
-
-}  // namespace
 
 TensorList ToTensors(const CvaeWeights& weights) {
   CvaeWeights written = weights;

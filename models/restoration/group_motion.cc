@@ -49,31 +49,6 @@ bool Pushes(const BodyMotion& body, const BodyMotion& front, size_t t, double dt
          (body[t].col(kLeftWrist) - back).norm() < kReach;
 }
 
-}  // namespace
-
-std::vector<Symbols> SocialStates(const std::vector<BodyMotion>& people, double dt) {
-  std::vector<Symbols> all;
-  for (size_t n = 0; n < people.size(); ++n) {
-    const int front = InFront(people, n);
-    Symbols symbols(people[n].size(), kStand);
-    for (size_t t = 1; t < symbols.size(); ++t) {
-      const bool pushes = front != kNobody && Pushes(people[n], people[front], t, dt);
-      symbols[t] = (pushes ? kPushStanding : kStand) + PostureSymbol(people[n], t, dt);
-    }
-    if (symbols.size() > 1) symbols[0] = symbols[1];
-    all.push_back(std::move(symbols));
-  }
-  return all;
-}
-
-StateFunction SocialStateFunction() {
-  StateFunction states{{}, SocialStates};
-  for (const auto& row : Names(SocialState{})) states.names.push_back(row.name);
-  return states;
-}
-
-namespace {
-
 constexpr double kLeastWay = 1e-7;   // m
 constexpr double kRounding = 1e-12;  // m^2, of the bound by means
 constexpr int kLast = -1;
@@ -92,100 +67,6 @@ double Score(const Word& a, const Word& b) {
   }
   return sum / ((kWordFrames - 1) * static_cast<double>(kWordJoints.size()));
 }
-
-}  // namespace
-
-MotionWords::Word MotionWords::WordAt(const BodyMotion& motion, size_t begin) {
-  const Pose& first = motion[begin];
-  Eigen::Vector3d origin = 0.5 * (first.col(kRightHip) + first.col(kLeftHip));
-  origin.z() = 0.0;
-  const Eigen::Vector3d across = first.col(kLeftHip) - first.col(kRightHip);
-  const Eigen::Matrix3d turn = TurnAboutZ(-std::atan2(across.y(), across.x()));
-  Word word;
-  for (int t = 0; t < kWordFrames; ++t) {
-    for (size_t i = 0; i < kWordJoints.size(); ++i) {
-      word.block<3, 1>(3 * static_cast<int>(i), t) =
-          turn * (motion[begin + t].col(kWordJoints[i]) - origin);
-    }
-  }
-  return word;
-}
-
-MotionWords::MotionWords(const std::vector<BodyMotion>& motions) {
-  std::vector<Word> words;
-  std::vector<int> following;
-  for (const BodyMotion& motion : motions) {
-    for (size_t t = 0; t + kWordFrames <= motion.size(); ++t) {
-      const bool is_last = t + kWordFrames == motion.size();
-      words.push_back(WordAt(motion, t));
-      following.push_back(is_last ? kLast : static_cast<int>(words.size()));
-    }
-  }
-  Mean centre = Mean::Zero();
-  std::vector<Mean> means;
-  for (const Word& word : words) means.push_back(word.rowwise().mean());
-  for (const Mean& mean : means) centre += mean / static_cast<double>(means.size());
-  Eigen::Matrix<double, kWordSize, kWordSize> spread;
-  spread.setZero();
-  for (const Mean& mean : means) spread += (mean - centre) * (mean - centre).transpose();
-  // Eigenvalues ascend: the widest axis is the last, and is to come first.
-  axes_ = DecomposeSymmetric(spread).vectors.rowwise().reverse().transpose();
-  for (Mean& mean : means) mean = axes_ * mean;
-  std::vector<int> order(words.size()), place(words.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&means](int a, int b) { return means[a][0] < means[b][0]; });
-  for (size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
-  for (const int i : order) {
-    words_.push_back(words[i]);
-    places_.push_back(means[i]);
-    next_.push_back(following[i] == kLast ? kLast : place[following[i]]);
-  }
-}
-
-int MotionWords::Nearest(const Word& word, int first) const {
-  const Mean at = axes_ * word.rowwise().mean();
-  int nearest = first;
-  double least = (words_[first] - word).squaredNorm();
-  const auto within = [&least](double squared_gap) {
-    return kWordFrames * squared_gap <= least + kRounding;
-  };
-  const auto look = [&](int i) {
-    double gap = 0.0;
-    for (int k = 0; k < kWordSize; ++k) {
-      const double d = places_[i][k] - at[k];
-      gap += d * d;
-      if (k % 4 == 3 && !within(gap)) return;
-    }
-    if (!within(gap)) return;
-    const double distance = (words_[i] - word).squaredNorm();
-    if (distance > least || (distance == least && i >= nearest)) return;
-    least = distance;
-    nearest = i;
-  };
-  const auto less = [](const Mean& mean, double value) { return mean[0] < value; };
-  const int middle = static_cast<int>(
-      std::lower_bound(places_.begin(), places_.end(), at[0], less) - places_.begin());
-  const auto near = [&](int i) { return within(std::pow(places_[i][0] - at[0], 2)); };
-  for (int i = middle; i < size() && near(i); ++i) look(i);
-  for (int i = middle - 1; i >= 0 && near(i); --i) look(i);
-  return nearest;
-}
-
-std::vector<double> MotionWords::Scores(const BodyMotion& motion) const {
-  std::vector<double> scores;
-  int nearest = kLast;
-  for (size_t t = 0; t + kWordFrames <= motion.size(); ++t) {
-    const Word word = WordAt(motion, t);
-    // The nearest of the word before, a frame on, is hardly ever far.
-    const int first = nearest == kLast || next_[nearest] == kLast ? 0 : next_[nearest];
-    nearest = Nearest(word, first);
-    scores.push_back(Score(word, words_[nearest]));
-  }
-  return scores;
-}
-
-namespace {
 
 constexpr double kHalfWindow = 0.25;    // s
 constexpr double kPenalty = 1e-3;       // a sample
@@ -293,6 +174,117 @@ Eigen::MatrixXd StateProbabilities(Eigen::MatrixXd scores) {
 }
 
 }  // namespace
+
+std::vector<Symbols> SocialStates(const std::vector<BodyMotion>& people, double dt) {
+  std::vector<Symbols> all;
+  for (size_t n = 0; n < people.size(); ++n) {
+    const int front = InFront(people, n);
+    Symbols symbols(people[n].size(), kStand);
+    for (size_t t = 1; t < symbols.size(); ++t) {
+      const bool pushes = front != kNobody && Pushes(people[n], people[front], t, dt);
+      symbols[t] = (pushes ? kPushStanding : kStand) + PostureSymbol(people[n], t, dt);
+    }
+    if (symbols.size() > 1) symbols[0] = symbols[1];
+    all.push_back(std::move(symbols));
+  }
+  return all;
+}
+
+StateFunction SocialStateFunction() {
+  StateFunction states{{}, SocialStates};
+  for (const auto& row : Names(SocialState{})) states.names.push_back(row.name);
+  return states;
+}
+
+MotionWords::Word MotionWords::WordAt(const BodyMotion& motion, size_t begin) {
+  const Pose& first = motion[begin];
+  Eigen::Vector3d origin = 0.5 * (first.col(kRightHip) + first.col(kLeftHip));
+  origin.z() = 0.0;
+  const Eigen::Vector3d across = first.col(kLeftHip) - first.col(kRightHip);
+  const Eigen::Matrix3d turn = TurnAboutZ(-std::atan2(across.y(), across.x()));
+  Word word;
+  for (int t = 0; t < kWordFrames; ++t) {
+    for (size_t i = 0; i < kWordJoints.size(); ++i) {
+      word.block<3, 1>(3 * static_cast<int>(i), t) =
+          turn * (motion[begin + t].col(kWordJoints[i]) - origin);
+    }
+  }
+  return word;
+}
+
+MotionWords::MotionWords(const std::vector<BodyMotion>& motions) {
+  std::vector<Word> words;
+  std::vector<int> following;
+  for (const BodyMotion& motion : motions) {
+    for (size_t t = 0; t + kWordFrames <= motion.size(); ++t) {
+      const bool is_last = t + kWordFrames == motion.size();
+      words.push_back(WordAt(motion, t));
+      following.push_back(is_last ? kLast : static_cast<int>(words.size()));
+    }
+  }
+  Mean centre = Mean::Zero();
+  std::vector<Mean> means;
+  for (const Word& word : words) means.push_back(word.rowwise().mean());
+  for (const Mean& mean : means) centre += mean / static_cast<double>(means.size());
+  Eigen::Matrix<double, kWordSize, kWordSize> spread;
+  spread.setZero();
+  for (const Mean& mean : means) spread += (mean - centre) * (mean - centre).transpose();
+  // Eigenvalues ascend: the widest axis is the last, and is to come first.
+  axes_ = DecomposeSymmetric(spread).vectors.rowwise().reverse().transpose();
+  for (Mean& mean : means) mean = axes_ * mean;
+  std::vector<int> order(words.size()), place(words.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&means](int a, int b) { return means[a][0] < means[b][0]; });
+  for (size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
+  for (const int i : order) {
+    words_.push_back(words[i]);
+    places_.push_back(means[i]);
+    next_.push_back(following[i] == kLast ? kLast : place[following[i]]);
+  }
+}
+
+int MotionWords::Nearest(const Word& word, int first) const {
+  const Mean at = axes_ * word.rowwise().mean();
+  int nearest = first;
+  double least = (words_[first] - word).squaredNorm();
+  const auto within = [&least](double squared_gap) {
+    return kWordFrames * squared_gap <= least + kRounding;
+  };
+  const auto look = [&](int i) {
+    double gap = 0.0;
+    for (int k = 0; k < kWordSize; ++k) {
+      const double d = places_[i][k] - at[k];
+      gap += d * d;
+      if (k % 4 == 3 && !within(gap)) return;
+    }
+    if (!within(gap)) return;
+    const double distance = (words_[i] - word).squaredNorm();
+    if (distance > least || (distance == least && i >= nearest)) return;
+    least = distance;
+    nearest = i;
+  };
+  const auto less = [](const Mean& mean, double value) { return mean[0] < value; };
+  const int middle = static_cast<int>(
+      std::lower_bound(places_.begin(), places_.end(), at[0], less) - places_.begin());
+  const auto near = [&](int i) { return within(std::pow(places_[i][0] - at[0], 2)); };
+  for (int i = middle; i < size() && near(i); ++i) look(i);
+  for (int i = middle - 1; i >= 0 && near(i); --i) look(i);
+  return nearest;
+}
+
+std::vector<double> MotionWords::Scores(const BodyMotion& motion) const {
+  std::vector<double> scores;
+  int nearest = kLast;
+  for (size_t t = 0; t + kWordFrames <= motion.size(); ++t) {
+    const Word word = WordAt(motion, t);
+    // The nearest of the word before, a frame on, is hardly ever far.
+    const int first = nearest == kLast || next_[nearest] == kLast ? 0 : next_[nearest];
+    nearest = Nearest(word, first);
+    scores.push_back(Score(word, words_[nearest]));
+  }
+  return scores;
+}
 
 StateFeatures StateFeaturesOf(const std::vector<BodyMotion>& people, double dt) {
   const size_t frames = people.front().size();

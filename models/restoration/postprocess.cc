@@ -59,6 +59,25 @@ class FootLock {
   int fading_ = 0;
 };
 
+using Eigen::Vector3d;
+
+constexpr double kClearance = 0.05;  // m, of an ankle in the middle of its swing, at least
+
+// Of a foot in the air, from 0 to 1 and back to 0; 0 while it stands.
+std::vector<double> LiftsOf(const std::vector<FootPath>& feet, bool left) {
+  std::vector<double> lifts(feet.size(), 0.0);
+  for (size_t t = 0; t < feet.size(); ++t) {
+    if (!feet[t].flies[left]) continue;
+    size_t end = t;
+    while (end < feet.size() && feet[end].flies[left]) ++end;
+    for (size_t k = t; k < end; ++k) {
+      lifts[k] = std::sin(M_PI * static_cast<double>(k - t + 1) / static_cast<double>(end - t + 1));
+    }
+    t = end - 1;
+  }
+  return lifts;
+}
+
 }  // namespace
 
 bool Rests(const Eigen::Vector3d& ankle, const Eigen::Vector3d& before, double floor, double dt,
@@ -119,29 +138,6 @@ void Finish(const RestorationInput& person, const PostprocessOptions& options, B
     PlantFeet(person, motion);
   }
 }
-
-namespace {
-
-using Eigen::Vector3d;
-
-constexpr double kClearance = 0.05;  // m, of an ankle in the middle of its swing, at least
-
-// Of a foot in the air, from 0 to 1 and back to 0; 0 while it stands.
-std::vector<double> LiftsOf(const std::vector<FootPath>& feet, bool left) {
-  std::vector<double> lifts(feet.size(), 0.0);
-  for (size_t t = 0; t < feet.size(); ++t) {
-    if (!feet[t].flies[left]) continue;
-    size_t end = t;
-    while (end < feet.size() && feet[end].flies[left]) ++end;
-    for (size_t k = t; k < end; ++k) {
-      lifts[k] = std::sin(M_PI * static_cast<double>(k - t + 1) / static_cast<double>(end - t + 1));
-    }
-    t = end - 1;
-  }
-  return lifts;
-}
-
-}  // namespace
 
 void PlantFeet(const RestorationInput& person, BodyMotion* motion) {
   const Pose& first = person.first_pose;

@@ -7,18 +7,6 @@
 #include <tuple>
 
 namespace pushid {
-
-std::vector<BodyMotion> WindowRestoration::Restore(
-    const std::vector<RestorationInput>& people) const {
-  std::vector<BodyMotion> motions;
-  for (int n = 0; n < static_cast<int>(people.size()); ++n) {
-    const Eigen::MatrixXf inputs = weights_.inputs.Scaled(WindowInputs(people, n, weights_.view));
-    motions.push_back(
-        MotionFromOutputs(people[n], weights_.network.Evaluate(inputs), weights_.view));
-  }
-  return motions;
-}
-
 namespace {
 
 constexpr std::array<int, 7> kSeenJoints = {kRightKnee,  kLeftKnee,  kRightAnkle, kLeftAnkle,
@@ -89,7 +77,63 @@ Eigen::MatrixXf PersonInputs(const RestorationInput& person) {
   return inputs;
 }
 
+constexpr std::array<int, 6> kLags = {0, -12, -6, 6, 12, 24};
+constexpr double kFurthest = 2.0;    // m
+constexpr double kNearLength = 1.0;  // m
+
+double Nearness(const Eigen::Vector2d& away) {
+  return std::exp(-away.squaredNorm() / (kNearLength * kNearLength));
+}
+
+// 0 ahead, 1 behind, 2 to the left, 3 to the right.
+int QuarterOf(const Eigen::Vector2d& away) {
+  if (std::abs(away.x()) >= std::abs(away.y())) return away.x() >= 0.0 ? 0 : 1;
+  return away.y() > 0.0 ? 2 : 3;
+}
+
+// Where the rod's tip goes (x, y), seen along a turned path.
+FramePath<Eigen::Vector2d> TipPath(const RestorationInput& person,
+                                   const FramePath<Vector4<double>>& turned) {
+  std::vector<Eigen::Vector2d> tips;
+  for (int t = 0; t < turned.num_frames(); ++t) {
+    tips.emplace_back(HipPosition(person.BodyAt(t), turned.At(t)).head<2>());
+  }
+  return {std::move(tips), person.dt};
+}
+
+// Indices of the nearest in each quarter; -1: nobody.
+std::array<int, kNeighbourQuarters> Nearest(const std::vector<RestorationInput>& people, int n,
+                                            const Eigen::Matrix3d& turn) {
+  std::array<int, kNeighbourQuarters> nearest;
+  std::array<Eigen::Vector2d, kNeighbourQuarters> places;
+  nearest.fill(-1);
+  for (int k = 0; k < static_cast<int>(people.size()); ++k) {
+    if (k == n) continue;
+    const Eigen::Vector2d away = (turn * (TipAt(people[k], 0) - TipAt(people[n], 0))).head<2>();
+    if (away.norm() > kFurthest) continue;
+    const int quarter = QuarterOf(away);
+    const auto rank = [](const Eigen::Vector2d& p) {
+      return std::make_tuple(p.squaredNorm(), -p.y(), -p.x());
+    };
+    if (nearest[quarter] >= 0 && rank(away) >= rank(places[quarter])) continue;
+    nearest[quarter] = k;
+    places[quarter] = away;
+  }
+  return nearest;
+}
+
 }  // namespace
+
+std::vector<BodyMotion> WindowRestoration::Restore(
+    const std::vector<RestorationInput>& people) const {
+  std::vector<BodyMotion> motions;
+  for (int n = 0; n < static_cast<int>(people.size()); ++n) {
+    const Eigen::MatrixXf inputs = weights_.inputs.Scaled(WindowInputs(people, n, weights_.view));
+    motions.push_back(
+        MotionFromOutputs(people[n], weights_.network.Evaluate(inputs), weights_.view));
+  }
+  return motions;
+}
 
 int WindowInputRows(RestorationView view) {
   if (view == RestorationView::kPose) return kPersonInputs + kPushInputs;
@@ -153,55 +197,6 @@ BodyMotion MotionFromOutputs(const RestorationInput& person, const Eigen::Matrix
   }
   return motion;
 }
-
-namespace {
-
-constexpr std::array<int, 6> kLags = {0, -12, -6, 6, 12, 24};
-constexpr double kFurthest = 2.0;    // m
-constexpr double kNearLength = 1.0;  // m
-
-double Nearness(const Eigen::Vector2d& away) {
-  return std::exp(-away.squaredNorm() / (kNearLength * kNearLength));
-}
-
-// 0 ahead, 1 behind, 2 to the left, 3 to the right.
-int QuarterOf(const Eigen::Vector2d& away) {
-  if (std::abs(away.x()) >= std::abs(away.y())) return away.x() >= 0.0 ? 0 : 1;
-  return away.y() > 0.0 ? 2 : 3;
-}
-
-// Where the rod's tip goes (x, y), seen along a turned path.
-FramePath<Eigen::Vector2d> TipPath(const RestorationInput& person,
-                                   const FramePath<Vector4<double>>& turned) {
-  std::vector<Eigen::Vector2d> tips;
-  for (int t = 0; t < turned.num_frames(); ++t) {
-    tips.emplace_back(HipPosition(person.BodyAt(t), turned.At(t)).head<2>());
-  }
-  return {std::move(tips), person.dt};
-}
-
-// Indices of the nearest in each quarter; -1: nobody.
-std::array<int, kNeighbourQuarters> Nearest(const std::vector<RestorationInput>& people, int n,
-                                            const Eigen::Matrix3d& turn) {
-  std::array<int, kNeighbourQuarters> nearest;
-  std::array<Eigen::Vector2d, kNeighbourQuarters> places;
-  nearest.fill(-1);
-  for (int k = 0; k < static_cast<int>(people.size()); ++k) {
-    if (k == n) continue;
-    const Eigen::Vector2d away = (turn * (TipAt(people[k], 0) - TipAt(people[n], 0))).head<2>();
-    if (away.norm() > kFurthest) continue;
-    const int quarter = QuarterOf(away);
-    const auto rank = [](const Eigen::Vector2d& p) {
-      return std::make_tuple(p.squaredNorm(), -p.y(), -p.x());
-    };
-    if (nearest[quarter] >= 0 && rank(away) >= rank(places[quarter])) continue;
-    nearest[quarter] = k;
-    places[quarter] = away;
-  }
-  return nearest;
-}
-
-}  // namespace
 
 Eigen::MatrixXf NeighbourInputs(const std::vector<RestorationInput>& people, int n) {
   const RestorationInput& person = people[n];

@@ -31,6 +31,14 @@ PackedColumns ColumnsOf(const std::vector<AdjointRecording>& all,
   return PackedColumns(steps);
 }
 
+using Matrix = Eigen::MatrixXd;
+
+// Adds the adjoint of [state of n, state of j].
+void AddToBoth(const Eigen::Matrix<double, 1, 16>& by_states, int n, int j, Matrix* by_state) {
+  by_state->col(n) += by_states.head<8>().transpose();
+  by_state->col(j) += by_states.tail<8>().transpose();
+}
+
 }  // namespace
 
 MeasuredFrame AdjointGradient::Batch::Walker::Measured(int frame, bool rod_moves) const {
@@ -181,18 +189,6 @@ double AdjointGradient::Batch::Cost() const {
   }
   return cost;
 }
-
-namespace {
-
-using Matrix = Eigen::MatrixXd;
-
-// Adds the adjoint of [state of n, state of j].
-void AddToBoth(const Eigen::Matrix<double, 1, 16>& by_states, int n, int j, Matrix* by_state) {
-  by_state->col(n) += by_states.head<8>().transpose();
-  by_state->col(j) += by_states.tail<8>().transpose();
-}
-
-}  // namespace
 
 TouchingPeople::TouchingPeople(const ModelOptions& options, const std::vector<const Scene*>& scenes,
                                const VectorKernels& kernels)

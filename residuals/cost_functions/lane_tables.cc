@@ -17,6 +17,32 @@ std::vector<const ScenePush*> PushesWithTails(const Scene& scene, const ModelOpt
   return pushes;
 }
 
+int MostFrames(const std::vector<const RolloutProblem*>& problems) {
+  int most = 0;
+  for (const RolloutProblem* problem : problems) most = std::max(most, problem->horizon);
+  return most;
+}
+
+int MostTails(const std::vector<const RolloutProblem*>& problems) {
+  int most = 0;
+  for (const RolloutProblem* problem : problems) {
+    most = std::max(most, NumTails(problem->recording->scene, problem->options));
+  }
+  return most;
+}
+
+// Whether two have the same columns.
+bool SameLanes(const RolloutProblem& a, const RolloutProblem& b) {
+  return a.options.friction == b.options.friction &&
+         a.options.cart_derivative == b.options.cart_derivative &&
+         a.layout.first_acting == b.layout.first_acting &&
+         a.layout.VelocityColumn() == b.layout.VelocityColumn() &&
+         std::equal(a.map.fitted.begin(), a.map.fitted.end(), b.map.fitted.begin(),
+                    b.map.fitted.end(), [](const FittedParameter& x, const FittedParameter& y) {
+                      return x.parameter == y.parameter;
+                    });
+}
+
 }  // namespace
 
 bool HasLanes(const Scene& scene, const ModelOptions& options) {
@@ -197,36 +223,6 @@ std::vector<std::vector<Vector3<double>>> HipsSideBySide(
   }
   return hips;
 }
-
-namespace {
-
-int MostFrames(const std::vector<const RolloutProblem*>& problems) {
-  int most = 0;
-  for (const RolloutProblem* problem : problems) most = std::max(most, problem->horizon);
-  return most;
-}
-
-int MostTails(const std::vector<const RolloutProblem*>& problems) {
-  int most = 0;
-  for (const RolloutProblem* problem : problems) {
-    most = std::max(most, NumTails(problem->recording->scene, problem->options));
-  }
-  return most;
-}
-
-// Whether two have the same columns.
-bool SameLanes(const RolloutProblem& a, const RolloutProblem& b) {
-  return a.options.friction == b.options.friction &&
-         a.options.cart_derivative == b.options.cart_derivative &&
-         a.layout.first_acting == b.layout.first_acting &&
-         a.layout.VelocityColumn() == b.layout.VelocityColumn() &&
-         std::equal(a.map.fitted.begin(), a.map.fitted.end(), b.map.fitted.begin(),
-                    b.map.fitted.end(), [](const FittedParameter& x, const FittedParameter& y) {
-                      return x.parameter == y.parameter;
-                    });
-}
-
-}  // namespace
 
 bool HasLanes(const RolloutProblem& problem) {
   return HasLanes(problem.recording->scene, problem.options) && !problem.recording->HasPlates() &&

@@ -147,36 +147,6 @@ PairJacobian OtherJacobian(const InteractionTerms& terms, const Pair& pair,
   return jacobian;
 }
 
-}  // namespace
-
-PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
-                                 const ParameterSet<double>& p, const PosedPendulum<double>& n,
-                                 const PosedPendulum<double>& j) {
-  InteractionTerms others = terms;
-  others.spring = others.damping = others.learned = false;
-  PairJacobian jacobian;
-  if (others.Any()) {
-    jacobian = OtherJacobian(others, pair, p, n, j);
-  } else {
-    jacobian.by_states.setZero();
-    jacobian.by_parameter.setZero();
-  }
-  const auto add = [&jacobian](const PairJacobian& contact) {
-    jacobian.by_states += contact.by_states;
-    jacobian.by_parameter += contact.by_parameter;
-  };
-  if (terms.spring && terms.damping) {
-    add(ContactJacobian<true, true>(pair, p, n, j));
-  } else if (terms.spring) {
-    add(ContactJacobian<true, false>(pair, p, n, j));
-  } else if (terms.damping) {
-    add(ContactJacobian<false, true>(pair, p, n, j));
-  }
-  return jacobian;
-}
-
-namespace {
-
 using Output = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::RowMajor>;
 
 // d(output)/d(inputs), and into by_weight, scaled, d(output)/d(weights).
@@ -221,6 +191,32 @@ void AddResponse(const PairShape& shape, const Pair& pair, const GateJacobian& g
 }
 
 }  // namespace
+
+PairJacobian ComputePairJacobian(const InteractionTerms& terms, const Pair& pair,
+                                 const ParameterSet<double>& p, const PosedPendulum<double>& n,
+                                 const PosedPendulum<double>& j) {
+  InteractionTerms others = terms;
+  others.spring = others.damping = others.learned = false;
+  PairJacobian jacobian;
+  if (others.Any()) {
+    jacobian = OtherJacobian(others, pair, p, n, j);
+  } else {
+    jacobian.by_states.setZero();
+    jacobian.by_parameter.setZero();
+  }
+  const auto add = [&jacobian](const PairJacobian& contact) {
+    jacobian.by_states += contact.by_states;
+    jacobian.by_parameter += contact.by_parameter;
+  };
+  if (terms.spring && terms.damping) {
+    add(ContactJacobian<true, true>(pair, p, n, j));
+  } else if (terms.spring) {
+    add(ContactJacobian<true, false>(pair, p, n, j));
+  } else if (terms.damping) {
+    add(ContactJacobian<false, true>(pair, p, n, j));
+  }
+  return jacobian;
+}
 
 GateJacobian PairGateJacobian(const PairShape& shape, const Pair& pair,
                               const ParameterSet<double>& p, const Vector4<double>& q_n,

@@ -25,6 +25,16 @@ void LateJacobian(const SelfForce& self, const ParameterSet<double>& p,
   jacobian->by_parameter.bottomRows<2>() += of_angles.by_parameter.bottomRows<2>();
 }
 
+using BodyDual = Dual<double, kNumBodyParameters>;
+
+ParameterSet<BodyDual> Duals(const ParameterSet<double>& p) {
+  ParameterSet<BodyDual> duals{};
+  for (int k = 0; k < kNumBodyParameters; ++k) {
+    duals[kBodyParameters[k]] = BodyDual::Input(p[kBodyParameters[k]], k);
+  }
+  return duals;
+}
+
 }  // namespace
 
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
@@ -111,20 +121,6 @@ Vector4<double> StepJacobian::Velocity(int frame, int person,
   by_state->rightCols<4>() += Matrix4<double>::Identity();
   return state.qd + scene_.dt * a;
 }
-
-namespace {
-
-using BodyDual = Dual<double, kNumBodyParameters>;
-
-ParameterSet<BodyDual> Duals(const ParameterSet<double>& p) {
-  ParameterSet<BodyDual> duals{};
-  for (int k = 0; k < kNumBodyParameters; ++k) {
-    duals[kBodyParameters[k]] = BodyDual::Input(p[kBodyParameters[k]], k);
-  }
-  return duals;
-}
-
-}  // namespace
 
 BodyByParameters BodyJacobian(const ModelOptions& options, const Body& body,
                               const ParameterSet<double>& p, bool holds_fast) {
