@@ -1,4 +1,4 @@
-// residuals: packed self-force networks, forwards.
+// residuals: packed self-force networks, forth and back.
 #include "residuals/packed/packed_network.h"
 
 namespace pushid {
@@ -6,6 +6,15 @@ namespace {
 
 using Columns = PackedNetwork::Columns;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+template <typename A>
+auto TanhSlopes(const A& a) {
+  return 1.0 - a * a;
+}
+template <typename A>
+auto LogisticSlopes(const A& a) {
+  return a * (1.0 - a);
+}
 
 int StackedRows(const NetworkShape& shape) {
   int rows = shape.gate_rows();
@@ -164,21 +173,6 @@ void PackedNetwork::Activate(int step) {
     }
   }
 }
-
-namespace {
-
-using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-template <typename A>
-auto TanhSlopes(const A& a) {
-  return 1.0 - a * a;
-}
-template <typename A>
-auto LogisticSlopes(const A& a) {
-  return a * (1.0 - a);
-}
-
-}  // namespace
 
 void PackedNetwork::DeactivateMlp(int step, int column, const Columns& adjoint) {
   const auto hidden = adjoint.col(column).array();
