@@ -32,42 +32,6 @@ void ReadColumns(JsonFields* fields, ColumnMapping* mapping) {
   }
 }
 
-}  // namespace
-
-Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
-  const Result<JsonDocument> document = ReadJsonDocument(path);
-  if (!document.ok()) return document.error();
-  JsonFields fields(document.value(), document.value().content, "", "mapping");
-  ColumnMapping mapping;
-  if (fields.error()) return *fields.error();
-  ReadColumns(&fields, &mapping);
-  mapping.joints = ReadJointMapping(document.value(), &fields);
-  mapping.time_column = fields.OptionalText("time", "");
-  if (fields.Has("frame_rate")) {
-    mapping.frame_rate = fields.Number("frame_rate", "the frames per second");
-    const std::string problem = FrameRateProblem(mapping.frame_rate);
-    if (!problem.empty()) fields.Fail("frame_rate", problem);
-  }
-  mapping.length_unit = ReadLengthUnit(&fields, "length_unit");
-  mapping.length_scale = ReadLengthScale(&fields);
-  mapping.up = fields.OptionalText("up", "");
-  mapping.forward = fields.OptionalText("forward", "");
-  if (mapping.up.empty() != mapping.forward.empty()) {
-    fields.Fail(mapping.up.empty() ? "forward" : "up", "needs the other one: give up and forward");
-  }
-  if (!mapping.up.empty() && !fields.error()) {
-    const Result<Eigen::Matrix3d> axes = AxesRotation(mapping.up, mapping.forward);
-    if (!axes.ok()) fields.Fail("up", "and forward: " + axes.error().message);
-  }
-  fields.OnlyAsked();
-  if (fields.error()) return *fields.error();
-  return mapping;
-}
-
-namespace {
-
-using Json = nlohmann::ordered_json;
-
 constexpr int kHighestIndex = 1 << 30;
 
 std::optional<JointReference> ReadOne(const Json& value) {
@@ -107,6 +71,36 @@ std::optional<JointReference> ReadJoint(JsonFields* fields, const char* key) {
 }
 
 }  // namespace
+
+Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
+  const Result<JsonDocument> document = ReadJsonDocument(path);
+  if (!document.ok()) return document.error();
+  JsonFields fields(document.value(), document.value().content, "", "mapping");
+  ColumnMapping mapping;
+  if (fields.error()) return *fields.error();
+  ReadColumns(&fields, &mapping);
+  mapping.joints = ReadJointMapping(document.value(), &fields);
+  mapping.time_column = fields.OptionalText("time", "");
+  if (fields.Has("frame_rate")) {
+    mapping.frame_rate = fields.Number("frame_rate", "the frames per second");
+    const std::string problem = FrameRateProblem(mapping.frame_rate);
+    if (!problem.empty()) fields.Fail("frame_rate", problem);
+  }
+  mapping.length_unit = ReadLengthUnit(&fields, "length_unit");
+  mapping.length_scale = ReadLengthScale(&fields);
+  mapping.up = fields.OptionalText("up", "");
+  mapping.forward = fields.OptionalText("forward", "");
+  if (mapping.up.empty() != mapping.forward.empty()) {
+    fields.Fail(mapping.up.empty() ? "forward" : "up", "needs the other one: give up and forward");
+  }
+  if (!mapping.up.empty() && !fields.error()) {
+    const Result<Eigen::Matrix3d> axes = AxesRotation(mapping.up, mapping.forward);
+    if (!axes.ok()) fields.Fail("up", "and forward: " + axes.error().message);
+  }
+  fields.OnlyAsked();
+  if (fields.error()) return *fields.error();
+  return mapping;
+}
 
 std::optional<JointReference> JointMapping::Of(int role) const {
   if (role == kBodyHip) return hip;

@@ -204,6 +204,75 @@ void PlaceRow(const SyntheticOptions& options, const std::vector<const Subject*>
   }
 }
 
+constexpr double kStepStart = 0.3, kStepSeconds = 0.4;       // s
+constexpr double kSine = 0.5;                                // Hz
+constexpr double kSines[] = {0.15, 0.35, 0.65, 1.05, 1.55};  // Hz
+
+// From 0 to 1 with velocity and acceleration zero at both ends (minimum jerk).
+double Smooth(double u) {
+  const double v = std::clamp(u, 0.0, 1.0);
+  return v * v * v * (10.0 - 15.0 * v + 6.0 * v * v);
+}
+
+// Everything is quoted as a fraction of the rod: pelvis centre to ankles, about 0.52 of a person's
+// height (Winter, Biomechanics and Motor Control of Human Movement, segment lengths).
+constexpr double kHalfStance = 0.10;   // hip joint to the side of the pelvis centre
+constexpr double kAnkleHeight = 0.08;  // above the ground
+constexpr double kBone = 0.502;        // thigh, shank: a standing knee is never quite straight
+
+struct JointShape {
+  const char* name;
+  int parent;
+  double x, y, z;  // offset from the parent, rods
+};
+
+constexpr std::array<JointShape, kSkeletonJoints> kShapes = {{
+    {"Hips", -1, 0, 0, 0},
+    {"Spine", 0, 0, 0, 0.11},
+    {"Spine1", 1, 0, 0, 0.11},
+    {"Spine2", 2, 0, 0, 0.11},
+    {"Neck", 3, 0, 0, 0.17},
+    {"Head", 4, 0.02, 0, 0.09},
+    {"RightClavicle", 3, 0, -0.03, 0.10},
+    {"RightShoulder", 6, 0, -0.16, -0.02},
+    {"RightElbow", 7, 0, 0, -0.34},
+    {"RightWrist", 8, 0, 0, -0.28},
+    {"LeftClavicle", 3, 0, 0.03, 0.10},
+    {"LeftShoulder", 10, 0, 0.16, -0.02},
+    {"LeftElbow", 11, 0, 0, -0.34},
+    {"LeftWrist", 12, 0, 0, -0.28},
+    {"RightHip", 0, 0, -kHalfStance, 0},
+    {"RightKnee", 14, 0, 0, -kBone},
+    {"RightAnkle", 15, 0, 0, -kBone},
+    {"RightToe", 16, 0.16, 0, -0.9 * kAnkleHeight},
+    {"LeftHip", 0, 0, kHalfStance, 0},
+    {"LeftKnee", 18, 0, 0, -kBone},
+    {"LeftAnkle", 19, 0, 0, -kBone},
+    {"LeftToe", 20, 0.16, 0, -0.9 * kAnkleHeight},
+}};
+
+// The order of rotations that each leg joint's pose is a product of, so that the channels are the
+// angles themselves: hip Rx(phi) Ry(theta - bend), knee Ry(2 bend), ankle Ry(..) Rx(-phi).
+std::vector<BvhChannel> LegChannels(bool is_thigh, bool with_position) {
+  std::vector<BvhChannel> channels;
+  if (with_position) {
+    channels = {BvhChannel::kXposition, BvhChannel::kYposition, BvhChannel::kZposition};
+  }
+  const BvhChannel x = BvhChannel::kXrotation, y = BvhChannel::kYrotation;
+  channels.push_back(is_thigh ? x : y);
+  channels.push_back(is_thigh ? y : x);
+  channels.push_back(BvhChannel::kZrotation);
+  return channels;
+}
+
+double Degrees(double radians) { return radians * 180.0 / M_PI; }
+
+Eigen::Matrix3d RotationXY(double about_x, double about_y) {
+  return (Eigen::AngleAxisd(about_x, Eigen::Vector3d::UnitX()) *
+          Eigen::AngleAxisd(about_y, Eigen::Vector3d::UnitY()))
+      .toRotationMatrix();
+}
+
 }  // namespace
 
 Result<std::vector<SyntheticRecording>> MakeSyntheticRecordings(const SyntheticOptions& options) {
@@ -280,20 +349,6 @@ std::vector<Recording> Recordings(const std::vector<SyntheticRecording>& synthet
   for (const SyntheticRecording& made : synthetic) recordings.push_back(made.recording);
   return recordings;
 }
-
-namespace {
-
-constexpr double kStepStart = 0.3, kStepSeconds = 0.4;       // s
-constexpr double kSine = 0.5;                                // Hz
-constexpr double kSines[] = {0.15, 0.35, 0.65, 1.05, 1.55};  // Hz
-
-// From 0 to 1 with velocity and acceleration zero at both ends (minimum jerk).
-double Smooth(double u) {
-  const double v = std::clamp(u, 0.0, 1.0);
-  return v * v * v * (10.0 - 15.0 * v + 6.0 * v * v);
-}
-
-}  // namespace
 
 std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt,
                                         const Eigen::Vector2d& along) {
@@ -403,69 +458,6 @@ MaybeError CheckSyntheticOptions(const SyntheticOptions& o) {
   }
   return {};
 }
-
-namespace {
-
-// Everything is quoted as a fraction of the rod: pelvis centre to ankles, about 0.52 of a person's
-// height (Winter, Biomechanics and Motor Control of Human Movement, segment lengths).
-constexpr double kHalfStance = 0.10;   // hip joint to the side of the pelvis centre
-constexpr double kAnkleHeight = 0.08;  // above the ground
-constexpr double kBone = 0.502;        // thigh, shank: a standing knee is never quite straight
-
-struct JointShape {
-  const char* name;
-  int parent;
-  double x, y, z;  // offset from the parent, rods
-};
-
-constexpr std::array<JointShape, kSkeletonJoints> kShapes = {{
-    {"Hips", -1, 0, 0, 0},
-    {"Spine", 0, 0, 0, 0.11},
-    {"Spine1", 1, 0, 0, 0.11},
-    {"Spine2", 2, 0, 0, 0.11},
-    {"Neck", 3, 0, 0, 0.17},
-    {"Head", 4, 0.02, 0, 0.09},
-    {"RightClavicle", 3, 0, -0.03, 0.10},
-    {"RightShoulder", 6, 0, -0.16, -0.02},
-    {"RightElbow", 7, 0, 0, -0.34},
-    {"RightWrist", 8, 0, 0, -0.28},
-    {"LeftClavicle", 3, 0, 0.03, 0.10},
-    {"LeftShoulder", 10, 0, 0.16, -0.02},
-    {"LeftElbow", 11, 0, 0, -0.34},
-    {"LeftWrist", 12, 0, 0, -0.28},
-    {"RightHip", 0, 0, -kHalfStance, 0},
-    {"RightKnee", 14, 0, 0, -kBone},
-    {"RightAnkle", 15, 0, 0, -kBone},
-    {"RightToe", 16, 0.16, 0, -0.9 * kAnkleHeight},
-    {"LeftHip", 0, 0, kHalfStance, 0},
-    {"LeftKnee", 18, 0, 0, -kBone},
-    {"LeftAnkle", 19, 0, 0, -kBone},
-    {"LeftToe", 20, 0.16, 0, -0.9 * kAnkleHeight},
-}};
-
-// The order of rotations that each leg joint's pose is a product of, so that the channels are the
-// angles themselves: hip Rx(phi) Ry(theta - bend), knee Ry(2 bend), ankle Ry(..) Rx(-phi).
-std::vector<BvhChannel> LegChannels(bool is_thigh, bool with_position) {
-  std::vector<BvhChannel> channels;
-  if (with_position) {
-    channels = {BvhChannel::kXposition, BvhChannel::kYposition, BvhChannel::kZposition};
-  }
-  const BvhChannel x = BvhChannel::kXrotation, y = BvhChannel::kYrotation;
-  channels.push_back(is_thigh ? x : y);
-  channels.push_back(is_thigh ? y : x);
-  channels.push_back(BvhChannel::kZrotation);
-  return channels;
-}
-
-double Degrees(double radians) { return radians * 180.0 / M_PI; }
-
-Eigen::Matrix3d RotationXY(double about_x, double about_y) {
-  return (Eigen::AngleAxisd(about_x, Eigen::Vector3d::UnitX()) *
-          Eigen::AngleAxisd(about_y, Eigen::Vector3d::UnitY()))
-      .toRotationMatrix();
-}
-
-}  // namespace
 
 // A leg of two equal bones, each tilted by `bend` against the rod: 2 bone cos(bend) = rod.
 SyntheticSkeleton::SyntheticSkeleton(double rod_length)

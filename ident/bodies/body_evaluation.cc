@@ -12,6 +12,153 @@
 #include "models/learned_terms.h"
 
 namespace pushid {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json MetricsJson(const BodyMetrics& value) {
+  Json json;
+  for (int m = 0; m < kNumBodyMetrics; ++m) json[kBodyMetrics[m].Key()] = value[m];
+  return json;
+}
+
+// Keys of `more` into `json`, objects into objects, lists entry by entry.
+void Merge(const Json& more, Json* json) {
+  if (more.is_object()) {
+    if (!json->is_object()) *json = Json::object();
+    for (const auto& [key, value] : more.items()) Merge(value, &(*json)[key]);
+  } else if (more.is_array() && json->is_array() && more.size() == json->size()) {
+    for (size_t i = 0; i < more.size(); ++i) Merge(more[i], &(*json)[i]);
+  } else {
+    *json = more;
+  }
+}
+
+std::string Cell(double value, double error = 0.0) {
+  char text[64];
+  if (error > 0.0) {
+    std::snprintf(text, sizeof text, "%.3f +- %.3f", value, error);
+  } else {
+    std::snprintf(text, sizeof text, "%.3f", value);
+  }
+  return text;
+}
+
+std::vector<std::string> Row(const std::string& name, const BodyMean& mean) {
+  std::vector<std::string> row = {name, std::to_string(mean.recordings)};
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    row.push_back(Cell(mean.value[m], kBodyMetrics[m].with_error ? mean.error[m] : 0.0));
+  }
+  return row;
+}
+
+TextTable NewTable(const std::string& first) {
+  std::vector<std::string> header = {first, "recordings"};
+  for (const BodyMetricRow& metric : kBodyMetrics) header.push_back(metric.Title());
+  return TextTable::OfNumbers(header);
+}
+
+std::string Spaced(std::string name) {
+  for (char& c : name) c = c == '_' ? ' ' : c;
+  return name;
+}
+
+// How groups move, where there are any.
+std::string GroupsText(const BodyEvaluation& evaluation) {
+  std::vector<GroupMetricsRow> rows;
+  for (const auto& [name, summary] : evaluation) {
+    if (summary.groups) rows.push_back({Spaced(name), &*summary.groups});
+  }
+  return rows.empty() ? "" : "\n" + GroupMetricsText(rows);
+}
+
+constexpr double kTouchHeight = 0.025;  // m
+constexpr double kCentimetres = 100.0;  // per m
+
+// The metrics of one person, but the FSE.
+BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted, int first_frame) {
+  BodyMetrics sum{};
+  const int frames = static_cast<int>(recorded.size());
+  for (int t = first_frame; t < frames; ++t) {
+    const Pose error = predicted[t] - recorded[t];
+    const Eigen::Vector3d hip = error.col(0);
+    sum[kMpjpe] += error.colwise().norm().mean();
+    sum[kHipAde] += hip.norm();
+    sum[kMble] +=
+        (BoneLengths(predicted[t]) - BoneLengths(recorded[t])).cwiseAbs().sum() / (kBodyJoints - 1);
+    sum[kRelativeMpjpe] += (error.colwise() - hip).colwise().norm().mean();
+    const Pose carried = recorded[t].colwise() + hip;
+    sum[kBoundMpjpe] += (carried - recorded[t]).colwise().norm().mean();
+  }
+  for (double& value : sum) value /= frames - first_frame;
+  sum[kHipFde] = (predicted.back() - recorded.back()).col(0).norm();
+  return sum;
+}
+
+TimedError ErrorAt(const std::vector<BodyMotion>& recorded,
+                   const std::vector<BodyMotion>& predicted, int frame) {
+  TimedError error;
+  const double people = static_cast<double>(recorded.size());
+  for (size_t n = 0; n < recorded.size(); ++n) {
+    const Pose difference = predicted[n][frame] - recorded[n][frame];
+    const Eigen::Vector3d hip = difference.col(kBodyHip);
+    error.root += hip.norm() / people;
+    error.pose += (difference.colwise() - hip).colwise().norm().mean() / people;
+  }
+  return error;
+}
+
+TimedMean MeanAt(const std::vector<const BodyScore*>& scores, size_t second) {
+  TimedMean at;
+  for (const BodyScore* score : scores) {
+    if (!score->at[second]) continue;
+    ++at.recordings;
+    at.mean.root += score->at[second]->root;
+    at.mean.pose += score->at[second]->pose;
+  }
+  at.mean.root /= std::max(1, at.recordings);
+  at.mean.pose /= std::max(1, at.recordings);
+  return at;
+}
+
+std::optional<GroupMetrics> GroupsOf(const std::vector<BodyRecording>& recordings,
+                                     const std::vector<BodyScore>& scores) {
+  std::vector<GroupMotion> recorded, predicted;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    if (scores[i].predicted.empty()) continue;
+    const PendulumRecording& pendulum = recordings[i].pendulum;
+    const int first = scores[i].first_frame;
+    recorded.push_back({recordings[i].bodies, pendulum.scene.dt, pendulum.pushed_person, first});
+    predicted.push_back({scores[i].predicted, pendulum.scene.dt, pendulum.pushed_person, first});
+  }
+  if (recorded.empty()) return std::nullopt;
+  return CompareGroups(recorded, predicted);
+}
+
+using Scores = std::vector<const BodyScore*>;
+
+BodyMean Mean(const Scores& scores, bool by_frames) {
+  BodyMean mean;
+  mean.recordings = static_cast<int>(scores.size());
+  const auto weight = [by_frames](const BodyScore* s) {
+    return by_frames ? static_cast<double>(s->frames - s->first_frame) : 1.0;
+  };
+  double total = 0.0;
+  for (const BodyScore* s : scores) total += weight(s);
+  const double n = static_cast<double>(scores.size());
+  for (int m = 0; m < kNumBodyMetrics; ++m) {
+    double squares = 0.0;
+    for (const BodyScore* s : scores) mean.value[m] += weight(s) / total * s->value[m];
+    for (const BodyScore* s : scores) {
+      squares += std::pow(weight(s) / total * (s->value[m] - mean.value[m]), 2);
+    }
+    if (n > 1) mean.error[m] = std::sqrt(squares * n / (n - 1.0));
+  }
+  return mean;
+}
+
+}  // namespace
+
 BodyScore FailedBodies(const BodyRecording& recording, const std::string& failure) {
   BodyScore score;
   score.id = recording.pendulum.id;
@@ -103,68 +250,6 @@ BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
   }
   return SummarizeAll(recordings, all);
 }
-
-namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json MetricsJson(const BodyMetrics& value) {
-  Json json;
-  for (int m = 0; m < kNumBodyMetrics; ++m) json[kBodyMetrics[m].Key()] = value[m];
-  return json;
-}
-
-// Keys of `more` into `json`, objects into objects, lists entry by entry.
-void Merge(const Json& more, Json* json) {
-  if (more.is_object()) {
-    if (!json->is_object()) *json = Json::object();
-    for (const auto& [key, value] : more.items()) Merge(value, &(*json)[key]);
-  } else if (more.is_array() && json->is_array() && more.size() == json->size()) {
-    for (size_t i = 0; i < more.size(); ++i) Merge(more[i], &(*json)[i]);
-  } else {
-    *json = more;
-  }
-}
-
-std::string Cell(double value, double error = 0.0) {
-  char text[64];
-  if (error > 0.0) {
-    std::snprintf(text, sizeof text, "%.3f +- %.3f", value, error);
-  } else {
-    std::snprintf(text, sizeof text, "%.3f", value);
-  }
-  return text;
-}
-
-std::vector<std::string> Row(const std::string& name, const BodyMean& mean) {
-  std::vector<std::string> row = {name, std::to_string(mean.recordings)};
-  for (int m = 0; m < kNumBodyMetrics; ++m) {
-    row.push_back(Cell(mean.value[m], kBodyMetrics[m].with_error ? mean.error[m] : 0.0));
-  }
-  return row;
-}
-
-TextTable NewTable(const std::string& first) {
-  std::vector<std::string> header = {first, "recordings"};
-  for (const BodyMetricRow& metric : kBodyMetrics) header.push_back(metric.Title());
-  return TextTable::OfNumbers(header);
-}
-
-std::string Spaced(std::string name) {
-  for (char& c : name) c = c == '_' ? ' ' : c;
-  return name;
-}
-
-// How groups move, where there are any.
-std::string GroupsText(const BodyEvaluation& evaluation) {
-  std::vector<GroupMetricsRow> rows;
-  for (const auto& [name, summary] : evaluation) {
-    if (summary.groups) rows.push_back({Spaced(name), &*summary.groups});
-  }
-  return rows.empty() ? "" : "\n" + GroupMetricsText(rows);
-}
-
-}  // namespace
 
 Json MeanJson(const BodyMean& mean) {
   Json json = MetricsJson(mean.value);
@@ -283,95 +368,6 @@ std::string BodyText(const BodyEvaluation& evaluation) {
   }
   return text;
 }
-
-namespace {
-
-constexpr double kTouchHeight = 0.025;  // m
-constexpr double kCentimetres = 100.0;  // per m
-
-// The metrics of one person, but the FSE.
-BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted, int first_frame) {
-  BodyMetrics sum{};
-  const int frames = static_cast<int>(recorded.size());
-  for (int t = first_frame; t < frames; ++t) {
-    const Pose error = predicted[t] - recorded[t];
-    const Eigen::Vector3d hip = error.col(0);
-    sum[kMpjpe] += error.colwise().norm().mean();
-    sum[kHipAde] += hip.norm();
-    sum[kMble] +=
-        (BoneLengths(predicted[t]) - BoneLengths(recorded[t])).cwiseAbs().sum() / (kBodyJoints - 1);
-    sum[kRelativeMpjpe] += (error.colwise() - hip).colwise().norm().mean();
-    const Pose carried = recorded[t].colwise() + hip;
-    sum[kBoundMpjpe] += (carried - recorded[t]).colwise().norm().mean();
-  }
-  for (double& value : sum) value /= frames - first_frame;
-  sum[kHipFde] = (predicted.back() - recorded.back()).col(0).norm();
-  return sum;
-}
-
-TimedError ErrorAt(const std::vector<BodyMotion>& recorded,
-                   const std::vector<BodyMotion>& predicted, int frame) {
-  TimedError error;
-  const double people = static_cast<double>(recorded.size());
-  for (size_t n = 0; n < recorded.size(); ++n) {
-    const Pose difference = predicted[n][frame] - recorded[n][frame];
-    const Eigen::Vector3d hip = difference.col(kBodyHip);
-    error.root += hip.norm() / people;
-    error.pose += (difference.colwise() - hip).colwise().norm().mean() / people;
-  }
-  return error;
-}
-
-TimedMean MeanAt(const std::vector<const BodyScore*>& scores, size_t second) {
-  TimedMean at;
-  for (const BodyScore* score : scores) {
-    if (!score->at[second]) continue;
-    ++at.recordings;
-    at.mean.root += score->at[second]->root;
-    at.mean.pose += score->at[second]->pose;
-  }
-  at.mean.root /= std::max(1, at.recordings);
-  at.mean.pose /= std::max(1, at.recordings);
-  return at;
-}
-
-std::optional<GroupMetrics> GroupsOf(const std::vector<BodyRecording>& recordings,
-                                     const std::vector<BodyScore>& scores) {
-  std::vector<GroupMotion> recorded, predicted;
-  for (size_t i = 0; i < recordings.size(); ++i) {
-    if (scores[i].predicted.empty()) continue;
-    const PendulumRecording& pendulum = recordings[i].pendulum;
-    const int first = scores[i].first_frame;
-    recorded.push_back({recordings[i].bodies, pendulum.scene.dt, pendulum.pushed_person, first});
-    predicted.push_back({scores[i].predicted, pendulum.scene.dt, pendulum.pushed_person, first});
-  }
-  if (recorded.empty()) return std::nullopt;
-  return CompareGroups(recorded, predicted);
-}
-
-using Scores = std::vector<const BodyScore*>;
-
-BodyMean Mean(const Scores& scores, bool by_frames) {
-  BodyMean mean;
-  mean.recordings = static_cast<int>(scores.size());
-  const auto weight = [by_frames](const BodyScore* s) {
-    return by_frames ? static_cast<double>(s->frames - s->first_frame) : 1.0;
-  };
-  double total = 0.0;
-  for (const BodyScore* s : scores) total += weight(s);
-  const double n = static_cast<double>(scores.size());
-  for (int m = 0; m < kNumBodyMetrics; ++m) {
-    double squares = 0.0;
-    for (const BodyScore* s : scores) mean.value[m] += weight(s) / total * s->value[m];
-    for (const BodyScore* s : scores) {
-      squares += std::pow(weight(s) / total * (s->value[m] - mean.value[m]), 2);
-    }
-    if (n > 1) mean.error[m] = std::sqrt(squares * n / (n - 1.0));
-  }
-  return mean;
-}
-
-}  // namespace
 
 std::string MetricsText(const BodyMetrics& metrics, int digits) {
   std::string text;

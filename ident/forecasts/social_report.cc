@@ -49,64 +49,6 @@ MaybeError FindByClassifier(const StateTable& table, const std::vector<BodyRecor
   return std::nullopt;
 }
 
-}  // namespace
-
-Result<SocialCues> SocialCuesOf(const StateTable& table, const std::vector<std::string>& ids,
-                                const std::vector<BodyRecording>& recordings) {
-  if (MaybeError error = CheckRecordings(table, ids)) return *error;
-  SocialCues cues;
-  cues.source = table.path;
-  std::set<std::string> names;
-  for (const BodyRecording& recording : recordings) {
-    const PendulumRecording& pendulum = recording.pendulum;
-    Result<RecordedStates> states =
-        StatesOf(table, pendulum.id, pendulum.subject_ids, recording.num_frames());
-    if (!states.ok()) return states.error();
-    for (const auto& person : states.value().people) names.insert(person.begin(), person.end());
-    cues.annotated.push_back(std::move(states.value()));
-  }
-  if (AllBuiltIn(names)) return cues;
-  cues.states.names.assign(names.begin(), names.end());
-  if (MaybeError error = FindByClassifier(table, recordings, &cues)) return *error;
-  return cues;
-}
-
-GroupMotion RecordedGroup(const BodyRecording& recording, const SocialCues& cues, size_t index,
-                          int first_frame, bool annotated) {
-  const PendulumRecording& pendulum = recording.pendulum;
-  GroupMotion group{recording.bodies, pendulum.scene.dt, pendulum.pushed_person, first_frame};
-  if (!annotated || cues.annotated.empty()) return group;
-  const RecordedStates& states = cues.annotated[index];
-  for (const std::vector<std::string>& person : states.people) {
-    group.states.emplace_back();
-    for (const std::string& name : person) {
-      group.states.back().push_back(SymbolOf(cues.states.names, name));
-    }
-  }
-  return group;
-}
-
-std::vector<RecordedStates> StatesInUse(const std::vector<BodyRecording>& recordings,
-                                        const SocialCues& cues) {
-  std::vector<RecordedStates> all;
-  for (size_t i = 0; i < recordings.size(); ++i) {
-    const PendulumRecording& pendulum = recordings[i].pendulum;
-    RecordedStates states{pendulum.id, pendulum.subject_ids};
-    const GroupMotion group = RecordedGroup(recordings[i], cues, i, 1);
-    for (const Symbols& person : StatesOfPeople(group, cues.states)) {
-      states.people.emplace_back();
-      for (int t = 0; t < recordings[i].num_frames(); ++t) {
-        const auto at = static_cast<size_t>(std::lround(t * pendulum.scene.dt * kWordRate));
-        states.people.back().push_back(cues.states.names[person[std::min(at, person.size() - 1)]]);
-      }
-    }
-    all.push_back(std::move(states));
-  }
-  return all;
-}
-
-namespace {
-
 using Json = nlohmann::ordered_json;
 using Groups = std::vector<GroupMotion>;
 
@@ -190,7 +132,112 @@ SocialRow Compared(const std::string& name, const Groups& groups, const SocialRe
   return row;
 }
 
+Json MatrixJson(const Eigen::MatrixXd& matrix) {
+  Json rows = Json::array();
+  for (const auto& row : matrix.rowwise()) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
+  }
+  return rows;
+}
+
+Json FramesJson(const ByFrame& by_frame) {
+  Json values = Json::array();
+  for (const auto& value : by_frame) values.push_back(NumberOrNull(value));
+  return values;
+}
+
+constexpr double kFiguresWidth = 1000;
+// Changes of state per person and minute.
+Chart ChangesChart(const std::string& title, const Eigen::MatrixXd& counts,
+                   const std::vector<std::string>& names) {
+  Chart chart{title};
+  chart.x_categories = chart.y_categories = names;
+  chart.full_cell = 1e-9;
+  for (Eigen::Index i = 0; i < counts.rows(); ++i) {
+    chart.cells.emplace_back();
+    for (Eigen::Index j = 0; j < counts.cols(); ++j) {
+      const double a_minute = kFramesAMinute * counts(i, j) / std::max(1.0, counts.sum());
+      chart.cells.back().push_back(i == j ? 0.0 : std::round(10.0 * a_minute) / 10.0);
+      chart.full_cell = std::max(chart.full_cell, chart.cells.back().back());
+    }
+  }
+  return chart;
+}
+
+// The row "recorded" in ink, the predictor in colour.
+Chart FrameChart(const std::string& title, const SocialReport& report, const SocialRow& predictor,
+                 ByFrame SocialRow::*values) {
+  Chart chart{title, "s"};
+  chart.y_from = 0.0;
+  for (const SocialRow* row : {&report.rows.front(), &predictor}) {
+    ChartLine line;
+    line.look = row == &predictor ? kPredictedLook : kMeasuredLook;
+    const ByFrame& by_frame = row->*values;
+    for (size_t k = 0; k < by_frame.size(); ++k) {
+      if (!by_frame[k]) continue;
+      line.points.emplace_back((report.first_frame + static_cast<double>(k)) / kWordRate,
+                               *by_frame[k]);
+    }
+    if (!line.points.empty()) chart.lines.push_back(line);
+  }
+  return chart;
+}
+
 }  // namespace
+
+Result<SocialCues> SocialCuesOf(const StateTable& table, const std::vector<std::string>& ids,
+                                const std::vector<BodyRecording>& recordings) {
+  if (MaybeError error = CheckRecordings(table, ids)) return *error;
+  SocialCues cues;
+  cues.source = table.path;
+  std::set<std::string> names;
+  for (const BodyRecording& recording : recordings) {
+    const PendulumRecording& pendulum = recording.pendulum;
+    Result<RecordedStates> states =
+        StatesOf(table, pendulum.id, pendulum.subject_ids, recording.num_frames());
+    if (!states.ok()) return states.error();
+    for (const auto& person : states.value().people) names.insert(person.begin(), person.end());
+    cues.annotated.push_back(std::move(states.value()));
+  }
+  if (AllBuiltIn(names)) return cues;
+  cues.states.names.assign(names.begin(), names.end());
+  if (MaybeError error = FindByClassifier(table, recordings, &cues)) return *error;
+  return cues;
+}
+
+GroupMotion RecordedGroup(const BodyRecording& recording, const SocialCues& cues, size_t index,
+                          int first_frame, bool annotated) {
+  const PendulumRecording& pendulum = recording.pendulum;
+  GroupMotion group{recording.bodies, pendulum.scene.dt, pendulum.pushed_person, first_frame};
+  if (!annotated || cues.annotated.empty()) return group;
+  const RecordedStates& states = cues.annotated[index];
+  for (const std::vector<std::string>& person : states.people) {
+    group.states.emplace_back();
+    for (const std::string& name : person) {
+      group.states.back().push_back(SymbolOf(cues.states.names, name));
+    }
+  }
+  return group;
+}
+
+std::vector<RecordedStates> StatesInUse(const std::vector<BodyRecording>& recordings,
+                                        const SocialCues& cues) {
+  std::vector<RecordedStates> all;
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const PendulumRecording& pendulum = recordings[i].pendulum;
+    RecordedStates states{pendulum.id, pendulum.subject_ids};
+    const GroupMotion group = RecordedGroup(recordings[i], cues, i, 1);
+    for (const Symbols& person : StatesOfPeople(group, cues.states)) {
+      states.people.emplace_back();
+      for (int t = 0; t < recordings[i].num_frames(); ++t) {
+        const auto at = static_cast<size_t>(std::lround(t * pendulum.scene.dt * kWordRate));
+        states.people.back().push_back(cues.states.names[person[std::min(at, person.size() - 1)]]);
+      }
+    }
+    all.push_back(std::move(states));
+  }
+  return all;
+}
 
 std::optional<SocialReport> CompareSocially(const std::vector<BodyRecording>& recordings,
                                             const SocialCues& cues, BodyEvaluation* evaluation) {
@@ -235,24 +282,6 @@ std::optional<SocialReport> CompareSocially(const std::vector<BodyRecording>& re
   return report;
 }
 
-namespace {
-
-Json MatrixJson(const Eigen::MatrixXd& matrix) {
-  Json rows = Json::array();
-  for (const auto& row : matrix.rowwise()) {
-    rows.push_back(std::vector<double>(row.begin(), row.end()));
-  }
-  return rows;
-}
-
-Json FramesJson(const ByFrame& by_frame) {
-  Json values = Json::array();
-  for (const auto& value : by_frame) values.push_back(NumberOrNull(value));
-  return values;
-}
-
-}  // namespace
-
 Json ToJson(const SocialReport& report) {
   Json json = {{"states", report.cues.source},
                {"names", report.cues.states.names},
@@ -278,47 +307,6 @@ std::string SocialText(const SocialReport& report) {
   }
   return table.ToString();
 }
-
-namespace {
-
-constexpr double kFiguresWidth = 1000;
-// Changes of state per person and minute.
-Chart ChangesChart(const std::string& title, const Eigen::MatrixXd& counts,
-                   const std::vector<std::string>& names) {
-  Chart chart{title};
-  chart.x_categories = chart.y_categories = names;
-  chart.full_cell = 1e-9;
-  for (Eigen::Index i = 0; i < counts.rows(); ++i) {
-    chart.cells.emplace_back();
-    for (Eigen::Index j = 0; j < counts.cols(); ++j) {
-      const double a_minute = kFramesAMinute * counts(i, j) / std::max(1.0, counts.sum());
-      chart.cells.back().push_back(i == j ? 0.0 : std::round(10.0 * a_minute) / 10.0);
-      chart.full_cell = std::max(chart.full_cell, chart.cells.back().back());
-    }
-  }
-  return chart;
-}
-
-// The row "recorded" in ink, the predictor in colour.
-Chart FrameChart(const std::string& title, const SocialReport& report, const SocialRow& predictor,
-                 ByFrame SocialRow::*values) {
-  Chart chart{title, "s"};
-  chart.y_from = 0.0;
-  for (const SocialRow* row : {&report.rows.front(), &predictor}) {
-    ChartLine line;
-    line.look = row == &predictor ? kPredictedLook : kMeasuredLook;
-    const ByFrame& by_frame = row->*values;
-    for (size_t k = 0; k < by_frame.size(); ++k) {
-      if (!by_frame[k]) continue;
-      line.points.emplace_back((report.first_frame + static_cast<double>(k)) / kWordRate,
-                               *by_frame[k]);
-    }
-    if (!line.points.empty()) chart.lines.push_back(line);
-  }
-  return chart;
-}
-
-}  // namespace
 
 std::vector<std::string> SocialFigures(const SocialReport& report, const std::string& predictor) {
   const auto found = std::find_if(report.rows.begin(), report.rows.end(),

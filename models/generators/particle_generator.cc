@@ -19,6 +19,97 @@ Eigen::MatrixXf Apply(const DenseLayer& layer, const Eigen::MatrixXf& inputs) {
   return (layer.weights * inputs).colwise() + layer.bias;
 }
 
+void ListTensors(const std::string& name, int coordinates, ParticleNetwork* network,
+                 TensorFields* fields) {
+  const ParticleStructure& structure = network->structure;
+  fields->Matrix(name + ".pose_mean", coordinates, 1, &network->pose_mean);
+  fields->Matrix(name + ".pose_spread", coordinates, 1, &network->pose_spread);
+  fields->Matrix(name + ".step_spread", coordinates, 1, &network->step_spread);
+  fields->Layer(name + ".input", structure.NumInputs(coordinates), kParticleGates, &network->input);
+  fields->Layer(name + ".recurrent", kParticleHidden, kParticleGates, &network->recurrent);
+  fields->Layer(name + ".drift", kParticleHidden, coordinates, &network->drift);
+  fields->Layer(name + ".noise", kParticleHidden, coordinates, &network->noise);
+  if (structure.correlated_noise) {
+    fields->Matrix(name + ".noise_mix", coordinates, coordinates, &network->noise_mix);
+  }
+  if (structure.corrected_frames > 0) {
+    const int terms = kCorrectionTerms * coordinates;
+    fields->Layer(name + ".correction_hidden", kParticleHidden + terms, kCorrectionHidden,
+                  &network->correction_hidden);
+    fields->Layer(name + ".correction", kCorrectionHidden, terms, &network->correction);
+  }
+  if (structure.HasSkip()) {
+    fields->Matrix(name + ".skip", coordinates, kSkipSteps * coordinates, &network->skip);
+  }
+}
+
+std::vector<Trajectories> Empty(const std::vector<ObservedMotion>& people, int count, int frames) {
+  return std::vector<Trajectories>(people.size() * static_cast<size_t>(count),
+                                   Trajectories::Zero(people.front().frames.rows(), frames));
+}
+
+// Noise with a memory; what it adds to the likelihood that white noise of these values would have.
+class ColouredNoise {
+ public:
+  ColouredNoise(Eigen::Index rows, Eigen::Index columns, const ParticleGeneratorOptions& options)
+      : memory_(static_cast<float>(options.noise_memory)),
+        noise_(Eigen::MatrixXf::Zero(rows, columns)) {}
+
+  const Eigen::MatrixXf& Next(const NormalSource& normal) {
+    Eigen::MatrixXf fresh(noise_.rows(), noise_.cols());
+    for (float& value : fresh.reshaped()) value = static_cast<float>(normal());
+    const float share = is_first_ ? 1.0f : std::sqrt(1.0f - memory_ * memory_);
+    noise_ = memory_ * noise_ + share * fresh;
+    is_first_ = false;
+    const float constant = static_cast<float>(noise_.rows()) * std::log(share);
+    change_ = 0.5f * (noise_.colwise().squaredNorm() - fresh.colwise().squaredNorm()).transpose();
+    change_.array() -= constant;
+    return noise_;
+  }
+  const Eigen::VectorXf& log_likelihood_change() const { return change_; }
+
+ private:
+  float memory_;
+  bool is_first_ = true;
+  Eigen::MatrixXf noise_;
+  Eigen::VectorXf change_;
+};
+
+// `last`: the column of the last observed frame.
+Eigen::VectorXf Features(const Trajectories& motion, Eigen::Index last) {
+  const Eigen::Index size = motion.rows();
+  Eigen::VectorXf features(size * (1 + kRidgeDisplacements));
+  features.head(size) = motion.col(last);
+  for (int k = 0; k < kRidgeDisplacements; ++k) {
+    features.segment((k + 1) * size, size) = motion.col(last - k) - motion.col(last - k - 1);
+  }
+  return features;
+}
+
+// Each column to mean 0 and variance 1, then by row.
+Eigen::MatrixXf Normed(const Eigen::MatrixXf& values, const SimlpeBlock& block) {
+  Eigen::MatrixXf normed = values.rowwise() - values.colwise().mean();
+  const Eigen::RowVectorXf variance = normed.array().square().colwise().mean();
+  normed.array().rowwise() /= (variance.array() + kNormSmooth).sqrt();
+  normed.array().colwise() *= block.scale.array();
+  return normed.colwise() + block.shift;
+}
+
+void ListTensors(const std::string& name, int observed, int coordinates, SimlpeNetwork* network,
+                 TensorFields* fields) {
+  fields->Matrix(name + ".pose_mean", coordinates, 1, &network->pose_mean);
+  fields->Positive(name + ".pose_spread", coordinates, &network->pose_spread);
+  fields->Layer(name + ".input", coordinates, coordinates, &network->input);
+  fields->Layer(name + ".output", coordinates, coordinates, &network->output);
+  for (size_t i = 0; i < network->blocks.size(); ++i) {
+    SimlpeBlock& block = network->blocks[i];
+    const std::string of_block = name + ".block" + std::to_string(i);
+    fields->Layer(of_block + ".mix", observed, observed, &block.mix);
+    fields->Matrix(of_block + ".scale", coordinates, 1, &block.scale);
+    fields->Matrix(of_block + ".shift", coordinates, 1, &block.shift);
+  }
+}
+
 }  // namespace
 
 ParticleRollout::ParticleRollout(const ParticleNetwork& network,
@@ -142,34 +233,6 @@ Eigen::MatrixXf CorrectionSines(int frames) {
   return sines;
 }
 
-namespace {
-
-void ListTensors(const std::string& name, int coordinates, ParticleNetwork* network,
-                 TensorFields* fields) {
-  const ParticleStructure& structure = network->structure;
-  fields->Matrix(name + ".pose_mean", coordinates, 1, &network->pose_mean);
-  fields->Matrix(name + ".pose_spread", coordinates, 1, &network->pose_spread);
-  fields->Matrix(name + ".step_spread", coordinates, 1, &network->step_spread);
-  fields->Layer(name + ".input", structure.NumInputs(coordinates), kParticleGates, &network->input);
-  fields->Layer(name + ".recurrent", kParticleHidden, kParticleGates, &network->recurrent);
-  fields->Layer(name + ".drift", kParticleHidden, coordinates, &network->drift);
-  fields->Layer(name + ".noise", kParticleHidden, coordinates, &network->noise);
-  if (structure.correlated_noise) {
-    fields->Matrix(name + ".noise_mix", coordinates, coordinates, &network->noise_mix);
-  }
-  if (structure.corrected_frames > 0) {
-    const int terms = kCorrectionTerms * coordinates;
-    fields->Layer(name + ".correction_hidden", kParticleHidden + terms, kCorrectionHidden,
-                  &network->correction_hidden);
-    fields->Layer(name + ".correction", kCorrectionHidden, terms, &network->correction);
-  }
-  if (structure.HasSkip()) {
-    fields->Matrix(name + ".skip", coordinates, kSkipSteps * coordinates, &network->skip);
-  }
-}
-
-}  // namespace
-
 void AddTensors(const std::string& name, const ParticleNetwork& network, TensorList* tensors) {
   ParticleNetwork written = network;
   TensorFields fields(tensors);
@@ -184,42 +247,6 @@ ParticleNetwork TakeParticles(const std::string& name, const ParticleStructure& 
   ListTensors(name, coordinates, &network, &fields);
   return network;
 }
-
-namespace {
-
-std::vector<Trajectories> Empty(const std::vector<ObservedMotion>& people, int count, int frames) {
-  return std::vector<Trajectories>(people.size() * static_cast<size_t>(count),
-                                   Trajectories::Zero(people.front().frames.rows(), frames));
-}
-
-// Noise with a memory; what it adds to the likelihood that white noise of these values would have.
-class ColouredNoise {
- public:
-  ColouredNoise(Eigen::Index rows, Eigen::Index columns, const ParticleGeneratorOptions& options)
-      : memory_(static_cast<float>(options.noise_memory)),
-        noise_(Eigen::MatrixXf::Zero(rows, columns)) {}
-
-  const Eigen::MatrixXf& Next(const NormalSource& normal) {
-    Eigen::MatrixXf fresh(noise_.rows(), noise_.cols());
-    for (float& value : fresh.reshaped()) value = static_cast<float>(normal());
-    const float share = is_first_ ? 1.0f : std::sqrt(1.0f - memory_ * memory_);
-    noise_ = memory_ * noise_ + share * fresh;
-    is_first_ = false;
-    const float constant = static_cast<float>(noise_.rows()) * std::log(share);
-    change_ = 0.5f * (noise_.colwise().squaredNorm() - fresh.colwise().squaredNorm()).transpose();
-    change_.array() -= constant;
-    return noise_;
-  }
-  const Eigen::VectorXf& log_likelihood_change() const { return change_; }
-
- private:
-  float memory_;
-  bool is_first_ = true;
-  Eigen::MatrixXf noise_;
-  Eigen::VectorXf change_;
-};
-
-}  // namespace
 
 ParticleGenerator::ParticleGenerator(ParticleLayout layout, std::vector<ParticleNetwork> members,
                                      BlendPartners partners,
@@ -319,21 +346,6 @@ std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
   return futures;
 }
 
-namespace {
-
-// `last`: the column of the last observed frame.
-Eigen::VectorXf Features(const Trajectories& motion, Eigen::Index last) {
-  const Eigen::Index size = motion.rows();
-  Eigen::VectorXf features(size * (1 + kRidgeDisplacements));
-  features.head(size) = motion.col(last);
-  for (int k = 0; k < kRidgeDisplacements; ++k) {
-    features.segment((k + 1) * size, size) = motion.col(last - k) - motion.col(last - k - 1);
-  }
-  return features;
-}
-
-}  // namespace
-
 Trajectories RidgeForecast::Forecast(const Trajectories& observed) const {
   const Eigen::Index last = observed.cols() - 1;
   const Eigen::VectorXf change = weights * Features(observed, last) + bias;
@@ -374,19 +386,6 @@ RidgeForecast RidgeFit::Solve(double penalty) const {
   return {weights.cast<float>(), (mean_y - weights * mean_x).cast<float>()};
 }
 
-namespace {
-
-// Each column to mean 0 and variance 1, then by row.
-Eigen::MatrixXf Normed(const Eigen::MatrixXf& values, const SimlpeBlock& block) {
-  Eigen::MatrixXf normed = values.rowwise() - values.colwise().mean();
-  const Eigen::RowVectorXf variance = normed.array().square().colwise().mean();
-  normed.array().rowwise() /= (variance.array() + kNormSmooth).sqrt();
-  normed.array().colwise() *= block.scale.array();
-  return normed.colwise() + block.shift;
-}
-
-}  // namespace
-
 Trajectories SimlpeNetwork::Forecast(const Trajectories& seen, int frames) const {
   const int given = observed();
   const Eigen::MatrixXf transform = CosineTransform(given).cast<float>();
@@ -405,25 +404,6 @@ Trajectories SimlpeNetwork::Forecast(const Trajectories& seen, int frames) const
   }
   return motion.middleCols(given, frames);
 }
-
-namespace {
-
-void ListTensors(const std::string& name, int observed, int coordinates, SimlpeNetwork* network,
-                 TensorFields* fields) {
-  fields->Matrix(name + ".pose_mean", coordinates, 1, &network->pose_mean);
-  fields->Positive(name + ".pose_spread", coordinates, &network->pose_spread);
-  fields->Layer(name + ".input", coordinates, coordinates, &network->input);
-  fields->Layer(name + ".output", coordinates, coordinates, &network->output);
-  for (size_t i = 0; i < network->blocks.size(); ++i) {
-    SimlpeBlock& block = network->blocks[i];
-    const std::string of_block = name + ".block" + std::to_string(i);
-    fields->Layer(of_block + ".mix", observed, observed, &block.mix);
-    fields->Matrix(of_block + ".scale", coordinates, 1, &block.scale);
-    fields->Matrix(of_block + ".shift", coordinates, 1, &block.shift);
-  }
-}
-
-}  // namespace
 
 void AddTensors(const std::string& name, const SimlpeNetwork& network, TensorList* tensors) {
   SimlpeNetwork written = network;
