@@ -6,9 +6,12 @@
 //   H = S_yu / S_uu,   coherence = |S_yu|^2 / (S_uu S_yy)
 // of each person, over all recordings of that person; then the mean of log |H| and of the phase
 // over people, with its standard error: from people to people, or of one person by the coherence.
-// An input that repeats itself is cut into its periods, which need no window; anything else into
-// segments with Hann's window that overlap by half, less their means. The model's is in closed form
-// (problem/linear_loop.h), averaged over the same people.
+// The model's is in closed form (problem/linear_loop.h), averaged over the same people.
+// Input: of the ground's shift (m) or tilt (rad) and of external pushes (N), in both planes, what
+// accelerates a person most. Output: the angle of the body in the laboratory (rad), and the ankles'
+// torque (N m) by platforms (ground.h; less that at rest), else by inverse dynamics:
+//   about theta  tau = -F_z (p_x - x) - h F_x,   about phi  tau = F_z (p_y - y) + h F_y
+//   tau = [M (a + A) + C + (g_n / g) G - Q_push] in the angle's row
 // Sources: Welch, IEEE Trans. Audio Electroacoust. 1967; Bendat and Piersol, Random Data, 2010,
 // section 9.2.4: the random error of log |H| and of the phase is sqrt((1 - c) / (2 c K)).
 #pragma once
@@ -25,16 +28,13 @@
 namespace pushid {
 
 struct Segmenting {
-  int frames = 0;  // of a segment
-  int first = 0;   // frame at which the first begins
-  int step = 0;    // frames from one to the next
-  bool periodic = false;
+  int frames = 0, first = 0, step = 0;  // of a segment, where the first begins, to the next
+  bool periodic = false;                // no window; else Hann's
 };
 
 // The shortest period, at most half of the series, after which it repeats itself to 2 % of its
-// standard deviation (root mean square; its first tenth is left out), in frames; 0: none.
+// standard deviation (its first tenth is left out), in frames; 0: none.
 int PeriodOf(const std::vector<double>& series);
-
 // By the input: its periods, the first of them left out (the answer to it is not yet periodic), of
 // two half of it; else nine segments that overlap by half, of 4 to 30 s. frames 0: too short.
 Segmenting SegmentsOf(const std::vector<double>& input, double dt);
@@ -49,34 +49,16 @@ struct CrossSpectra {
   void Add(const CrossSpectra& other);
   std::complex<double> Response(int bin) const { return yu[bin] / uu[bin]; }
   double Coherence(int bin) const;
-  // Standard error of log |H|, and of its phase in rad.
-  double RelativeError(int bin) const;
 };
 
-// Both series of equal length.
 CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<double>& output,
                             const Segmenting& segments, double dt);
-
-// Bins that say something: where the input has at least 1e-6 of its largest power
-// (periodic: 1e-4, so that those between its lines are left out), and the
-// coherence is 0.3 and beyond what two independent series have in one of 20 cases.
+// Where the input has at least 1e-6 of its largest power (periodic: 1e-4, which only lines have).
 std::vector<int> BinsWithPower(const CrossSpectra& spectra, bool periodic);
+// At least 0.3, and beyond what two independent series have in one of 20 cases.
 bool IsCoherent(const CrossSpectra& spectra, int bin);
 
-// What moves people who stand on and on, and how they answer, as series over frames.
-//
-// Input u: of the ground's shift (m) or tilt (rad) and of external pushes (N), in both planes, what
-// accelerates a person most. Output y: the angle of the body in the laboratory (rad), and the
-// ankles' torque (N m),
-//   about theta  tau = -F_z (p_x - x) - h F_x,   about phi  tau = F_z (p_y - y) + h F_y
-// by platforms where these measured (ground.h; less that at rest, F_z = M g_n), else by
-// inverse dynamics of the recorded motion with the model's body,
-//   tau = [M (a + A) + C + (g_n / g) G - Q_push] in the angle's row.
-
 enum class LoopOutput { kAngle, kTorque };
-constexpr EnumNames<LoopOutput, 2> Names(LoopOutput) {
-  return {{{"angle", LoopOutput::kAngle}, {"torque", LoopOutput::kTorque}}};
-}
 
 // Gains in the output's unit over the input's; phases in rad, negative where the output is late.
 struct FrequencyBin {
@@ -88,41 +70,34 @@ struct FrequencyBin {
   double model_log_gain = 0.0, model_phase = 0.0;  // 0 without a closed form
 };
 
-struct FrequencyCurve {
-  std::vector<double> hz, log_gain, phase;
-};
-
 // A kind of disturbance in one plane, and one output.
 struct FrequencyResponse {
   Disturbance input = Disturbance::kGroundShift;
+  int plane = 0;  // 0: x and theta, 1: y and phi
   LoopOutput output = LoopOutput::kAngle;
-  int plane = 0;           // 0: x and theta, 1: y and phi
   bool periodic = false;   // at the frequencies of sums of sines; else by Welch
   bool by_plates = false;  // torque
   int recordings = 0;
-  std::vector<std::string> people;
   double segment_s = 0.0;
+  std::vector<std::string> people;
   std::vector<FrequencyBin> bins;
-  FrequencyCurve model;  // as dense as a line needs; empty without a closed form
+  std::vector<FrequencyBin> model;  // hz, model_*: dense as a line; empty without a closed form
 
   std::string InputUnit() const;   // "m", "rad", "N"
   std::string OutputUnit() const;  // "rad", "N m"
-  std::string Name() const;        // "theta by ground shift along x"
-  std::string Key() const;         // "angle_theta_by_ground_shift_x"
+  std::string Name() const;        // "theta by the ground's shift along x"
+  std::string Key() const;         // "angle_theta_by_ground_shift"
 };
 
-// With each person's own parameters; none where nothing in the recordings is continuous.
+// recordings: as the files have them; those of less than 10 s, or without a continuous input, have
+// none. parameters: [recording][person]; else each person's own.
 std::vector<FrequencyResponse> FrequencyResponses(const IdentifiedModel& model,
                                                   const std::vector<PendulumRecording>& recordings);
-// recordings: as the files have them. parameters: [recording][person]. Recordings that last less
-// than 10 s, and those without a continuous input, have none. People whose rollouts would not be
-// linear (who step or slide far) are not told apart from others: their coherence tells.
 std::vector<FrequencyResponse> FrequencyResponses(
     const std::vector<PendulumRecording>& recordings, const ModelOptions& options,
     const std::vector<std::vector<ParameterSet<double>>>& parameters);
 
-// A row for each bin: input, output, axis, frequency_hz, gain, gain_lower, gain_upper (one standard
-// error), phase_deg, phase_error_deg, coherence, people, model_gain, model_phase_deg.
+// A row for each bin; gain_lower and gain_upper: one standard error.
 TextTable FrequencyTable(const std::vector<FrequencyResponse>& responses);
 
 }  // namespace pushid

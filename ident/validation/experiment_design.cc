@@ -21,47 +21,6 @@ using Eigen::MatrixXd;
 constexpr double kDirections[] = {0.0, 45.0, 90.0, 180.0};  // degrees
 constexpr const char* kDirectionNames[] = {"forwards", "to the front left", "to the left",
                                            "backwards"};
-constexpr double kHeights[] = {0.8, 1.0};
-constexpr int kMinFrames = 60, kRowsShown = 10;
-
-template <typename F>
-std::pair<double, double> RangeOf(const std::vector<PendulumRecording>& recordings, F value) {
-  std::vector<double> values;
-  for (const PendulumRecording& r : recordings) values.push_back(value(r));
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return {*low, *high};
-}
-
-double PeakAcceleration(const PendulumRecording& r) {
-  double peak = 0.0;
-  for (const ScenePush& push : r.scene.pushes) {
-    for (const Vector4<double>& row : push.force) {
-      peak = std::max(peak, row.head<2>().norm() / r.scene.people[push.person].body.mass);
-    }
-  }
-  return peak;
-}
-
-bool UsuallyMeasured(const std::vector<PendulumRecording>& recordings) {
-  int more = 0;
-  for (const PendulumRecording& r : recordings) {
-    for (const ScenePush& push : r.scene.pushes) more += push.kind == PushKind::kExternal ? 1 : -1;
-  }
-  return more > 0;
-}
-
-// A whole half-sine where it is measured, its rising half where a tail goes on with it.
-std::vector<Vector4<double>> PushRows(const CandidatePush& push, const Body& body, double dt) {
-  const int rows = std::max(2, static_cast<int>(std::lround(push.duration_s / dt)));
-  const double angle = push.direction_deg * M_PI / 180.0, span = push.sensor ? M_PI : 0.5 * M_PI;
-  std::vector<Vector4<double>> force;
-  for (int i = 0; i < rows; ++i) {
-    const double size = push.acceleration * body.mass * std::sin(span * (i + 0.5) / rows);
-    const Vector3<double> f(size * std::cos(angle), size * std::sin(angle), 0.0);
-    force.push_back(GeneralizedForce<double>(body, Vector4<double>::Zero(), f, push.height));
-  }
-  return force;
-}
 
 // J'J of a candidate, weighted as a recording of the fit.
 MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
@@ -88,45 +47,41 @@ MatrixXd SpreadOf(const MatrixXd& clustered, const MatrixXd& naive, int groups) 
   return root * root.transpose();
 }
 
-bool Falls(const PendulumRecording& candidate) {
-  return candidate.states.empty() ||
-         std::any_of(candidate.states[0].begin(), candidate.states[0].end(), [](const auto& state) {
-           return state.q.template tail<2>().cwiseAbs().maxCoeff() > kFallAngle;
-         });
-}
-
 // Where the parameter stands among those with an error; past them for "all".
 size_t IndexOf(const ExperimentDesign& design, const std::string& parameter) {
-  return static_cast<size_t>(
-      std::find(design.parameters.begin(), design.parameters.end(), parameter) -
-      design.parameters.begin());
+  const std::vector<std::string>& names = design.parameters;
+  return static_cast<size_t>(std::find(names.begin(), names.end(), parameter) - names.begin());
 }
-
-std::string Change(double ratio) { return Rounded(100.0 * (ratio - 1.0), 2) + " %"; }
 
 }  // namespace
 
 std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording>& recordings) {
-  const bool measured = UsuallyMeasured(recordings);
-  const auto strength = RangeOf(recordings, PeakAcceleration);
-  const auto duration = RangeOf(recordings, [](const PendulumRecording& r) {
-    return r.scene.pushes.empty()
-               ? 0.1
-               : static_cast<double>(r.scene.pushes[0].force.size()) * r.scene.dt;
-  });
-  const auto mass = RangeOf(recordings, [](const PendulumRecording& r) {
-    return r.scene.people[r.pushed_person].body.mass;
-  });
-  const double middle = 0.5 * (strength.first + strength.second);
+  std::vector<double> strength, duration, mass;
+  int measured = 0;  // more pushes that are than those that are not
+  for (const PendulumRecording& r : recordings) {
+    const std::vector<ScenePush>& pushes = r.scene.pushes;
+    double peak = 0.0;
+    for (const ScenePush& push : pushes) {
+      measured += push.kind == PushKind::kExternal ? 1 : -1;
+      for (const Vector4<double>& row : push.force) {
+        peak = std::max(peak, row.head<2>().norm() / r.scene.people[push.person].body.mass);
+      }
+    }
+    strength.push_back(peak);
+    duration.push_back(pushes.empty() ? 0.1
+                                      : static_cast<double>(pushes[0].force.size()) * r.scene.dt);
+    mass.push_back(r.scene.people[r.pushed_person].body.mass);
+  }
+  for (auto* values : {&strength, &duration, &mass}) std::sort(values->begin(), values->end());
+  const double weak = strength.front(), strong = strength.back();
   std::vector<CandidatePush> candidates;
   for (double direction : kDirections) {
-    for (double a : {strength.first, middle, strength.second}) {
-      for (double height : kHeights) {
-        for (double seconds : {duration.first, duration.second}) {
-          for (double kg : {mass.first, mass.second}) {
-            if (!measured) candidates.push_back({direction, a, height, seconds, kg, false});
-            candidates.push_back(
-                {direction, a, height, measured ? seconds : 2.0 * seconds, kg, true});
+    for (double a : {weak, 0.5 * (weak + strong), strong}) {
+      for (double height : {0.8, 1.0}) {
+        for (double s : {duration.front(), duration.back()}) {
+          for (double kg : {mass.front(), mass.back()}) {
+            if (measured <= 0) candidates.push_back({direction, a, height, s, kg, false});
+            candidates.push_back({direction, a, height, measured > 0 ? s : 2.0 * s, kg, true});
           }
         }
       }
@@ -137,17 +92,25 @@ std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording
 
 PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estimate,
                                 const CandidatePush& push) {
-  int frames = kMinFrames;
+  int frames = 60;
   for (const PendulumRecording& r : problem.recordings()) frames = std::max(frames, r.num_frames());
   PendulumRecording candidate;
   candidate.id = "candidate";
   candidate.subject_ids = {"candidate"};
   candidate.scene.dt = problem.recordings()[0].scene.dt;
-  ScenePerson person;
-  person.body = {push.mass_kg, kReferenceRod, 0.0};
-  candidate.scene.people = {person};
-  candidate.scene.pushes = {MakeScenePush(0, 0, push.sensor ? PushKind::kExternal : PushKind::kNet,
-                                          PushRows(push, person.body, candidate.scene.dt))};
+  candidate.scene.people.resize(1);
+  const Body& body = candidate.scene.people[0].body = {push.mass_kg, kReferenceRod, 0.0};
+  // A whole half-sine where it is measured, its rising half where a tail goes on with it.
+  const int rows = std::max(2, static_cast<int>(std::lround(push.duration_s / candidate.scene.dt)));
+  const double angle = push.direction_deg * M_PI / 180.0, span = push.sensor ? M_PI : 0.5 * M_PI;
+  std::vector<Vector4<double>> force;
+  for (int i = 0; i < rows; ++i) {
+    const double size = push.acceleration * body.mass * std::sin(span * (i + 0.5) / rows);
+    const Vector3<double> f(size * std::cos(angle), size * std::sin(angle), 0.0);
+    force.push_back(GeneralizedForce<double>(body, Vector4<double>::Zero(), f, push.height));
+  }
+  const PushKind kind = push.sensor ? PushKind::kExternal : PushKind::kNet;
+  candidate.scene.pushes = {MakeScenePush(0, 0, kind, force)};
   IdentifiedModel model;
   model.options = problem.options().model;
   model.parameters = problem.Parameters(estimate, "");
@@ -155,7 +118,14 @@ PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estim
   if (!expected.status.ok) return candidate;
   candidate.hip = expected.hip;
   candidate.states.resize(1);
-  for (int t = 0; t < frames; ++t) candidate.states[0].push_back(expected.path.At(t, 0));
+  for (int t = 0; t < frames; ++t) {
+    candidate.states[0].push_back(expected.path.At(t, 0));
+    const PendulumState<double>& state = candidate.states[0].back();
+    if (state.q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle) {
+      candidate.states.clear();
+      return candidate;
+    }
+  }
   candidate.rod_length = {std::vector<double>(frames, kReferenceRod)};
   return candidate;
 }
@@ -167,9 +137,8 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
   std::vector<int> known;
   for (int i = 0; i < problem.map().num_shared(); ++i) {
     const Estimate& e = uncertainty.estimates[i];
-    if (e.status == EstimateStatus::kUnidentifiable || e.status == EstimateStatus::kAtBound) {
-      continue;
-    }
+    using Status = EstimateStatus;
+    if (e.status == Status::kUnidentifiable || e.status == Status::kAtBound) continue;
     known.push_back(i);
     design.parameters.push_back(e.name);
     design.units.push_back(e.unit);
@@ -186,7 +155,7 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
   const MatrixXd spread = SpreadOf(now, by_recording.naive(known, known), groups);
   for (const CandidatePush& push : candidates) {
     const PendulumRecording candidate = MakeCandidate(problem, estimate, push);
-    if (Falls(candidate)) continue;
+    if (candidate.states.empty()) continue;
     const MatrixXd information = Information(problem, estimate, candidate, known) /
                                  (by_recording.sigma * by_recording.sigma);
     // (I^-1 + T)^-1 = (1 + I T)^-1 I, also where I is singular.
@@ -237,35 +206,32 @@ Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string&
                               int count) {
   const Result<std::vector<DesignRow>> ranked = RankedRows(design, parameter);
   if (!ranked.ok()) return ranked.error();
+  const bool all = parameter == "all";
   std::vector<std::string> header = {"one more push", "m/s^2", "height", "s", "kg", "sensor"};
-  if (parameter != "all") header.push_back("error of " + parameter);
+  if (!all) header.push_back("error of " + parameter);
   header.push_back("mean of all errors");
   TextTable table = TextTable::OfNumbers(header);
-  const auto add = [&](const DesignRow& row) {
-    const CandidatePush& push = row.push;
+  const std::vector<DesignRow>& rows = ranked.value();
+  const size_t size = rows.size(), shown = std::min(size, static_cast<size_t>(count));
+  for (size_t i = 0; i < size; i = i + 1 < shown ? i + 1 : std::max(i + 1, size - 1)) {
+    if (i >= shown) table.AddGap();
+    const CandidatePush& push = rows[i].push;
     const auto direction =
-        std::find(std::begin(kDirections), std::end(kDirections), push.direction_deg) -
-        std::begin(kDirections);
+        std::find(std::begin(kDirections), std::end(kDirections), push.direction_deg) - kDirections;
+    const auto change = [](double ratio) { return Rounded(100.0 * (ratio - 1.0), 2) + " %"; };
     std::vector<std::string> cells = {kDirectionNames[direction], Rounded(push.acceleration, 3),
                                       Rounded(push.height, 2),    Rounded(push.duration_s, 2),
                                       Rounded(push.mass_kg, 3),   push.sensor ? "yes" : "no"};
-    if (parameter != "all") cells.push_back(Change(row.error_ratio[IndexOf(design, parameter)]));
-    cells.push_back(Change(row.volume_ratio));
+    if (!all) cells.push_back(change(rows[i].error_ratio[IndexOf(design, parameter)]));
+    cells.push_back(change(rows[i].volume_ratio));
     table.Add(cells);
-  };
-  const std::vector<DesignRow>& rows = ranked.value();
-  const size_t shown = std::min(rows.size(), static_cast<size_t>(count));
-  for (size_t i = 0; i < shown; ++i) add(rows[i]);
-  if (rows.size() > shown) {
-    table.AddGap();
-    add(rows.back());
   }
   return table;
 }
 
 Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter) {
   if (!design.refused.empty()) return "no further push is proposed: " + design.refused + "\n";
-  const Result<TextTable> table = DesignTable(design, parameter, kRowsShown);
+  const Result<TextTable> table = DesignTable(design, parameter, 10);
   if (!table.ok()) return table.error();
   std::string text = "effect of one more recording, best first; last row: the least useful of " +
                      std::to_string(design.rows.size()) + " candidates\n" +

@@ -4,13 +4,9 @@
 // Recordings deviate from the shared parameters by the spread T, and are seen through noise. With V
 // the covariance clustered by the G recordings, V_naive the one that takes all errors for noise,
 // and I_c = J_c'J_c / sigma^2 of a candidate, rolled out at the estimate:
-//
 //   V' = (V^-1 + (I_c^-1 + T)^-1)^-1,   T = G (V - V_naive), its positive part
-//
-// However strong the push, one more recording lowers the error of a parameter that recordings
-// disagree on by no more than about sqrt(G / (G + 1)). Rejected: det(J'J + J_c'J_c) alone, which
-// believes that people are alike and promises far too much of one recording. Errors of parameters
-// on a bound, and null directions, are left out.
+// Rejected: det(J'J + J_c'J_c) alone, which believes that people are alike and promises far too
+// much of one recording. Errors of parameters on a bound, and null directions, are left out.
 #pragma once
 
 #include <string>
@@ -46,11 +42,11 @@ struct ExperimentDesign {
   std::vector<DesignRow> rows;         // candidates that fall are left out
 };
 
-// Directions forward, oblique, sideways and back; strengths, durations and masses as wide as those
-// of the recordings; at the hip and lower; with a sensor, and without where most recordings are.
+// As strong, long and heavy as the recordings' own; without a sensor too where most have none.
 std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording>& recordings);
 
-// The recording a candidate would be, as the model expects it; without states where it fails.
+// The recording a candidate would be, as the model expects it; without states where it fails or
+// falls.
 PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estimate,
                                 const CandidatePush& push);
 
@@ -62,8 +58,7 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
 ExperimentDesign DesignExperiments(const std::vector<PendulumRecording>& recordings,
                                    const FitResult& result);
 
-// By what they bring to a parameter, or to all together ("all"), best first. Errors: the design's
-// refusal, no such parameter.
+// By what they bring to a parameter, or to all together ("all"), best first.
 Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
                                           const std::string& parameter);
 // The best `count` of them, and after a gap the least useful one.

@@ -104,20 +104,16 @@ ReportSection GroupSection(const ReportSource& source) {
 namespace {
 
 constexpr double kDegrees = 180.0 / M_PI;
-
 constexpr char kErrorLook[] = "fill:none;stroke:#8a8f98;stroke-width:1.2";
-
-// The multiple of 360 degrees away that is nearest.
-double Nearest(double phase, double to) { return to + std::remainder(phase - to, 360.0); }
 
 void AddPoint(double x, double value, double error, Chart* chart) {
   if (error > 0.0) chart->lines.push_back({{{x, value - error}, {x, value + error}}, kErrorLook});
   chart->lines.push_back({{{x, value}}, kMeasuredLook, true});
 }
 
-// Gain, phase and coherence over a logarithmic frequency: measured points with their errors over
-// the model's curve. Phases go on without jumps: of the model from its lowest frequency on, of each
-// point as near to the model as may be, or to the point before where there is no model.
+// Measured points with their errors over the model's curve, over a logarithmic frequency. Phases go
+// on without jumps: of the model from its lowest frequency on, of each point as near to the model
+// as may be, or to the point before where there is no model.
 Figure BodeFigure(const FrequencyResponse& response) {
   Chart gain{"gain, " + response.OutputUnit() + "/" + response.InputUnit(), "frequency, Hz"};
   gain.logarithmic_x = true;
@@ -125,62 +121,60 @@ Figure BodeFigure(const FrequencyResponse& response) {
   phase.title = "phase, degrees";
   coherence.title = "coherence";
   gain.logarithmic_y = true;
-  coherence.y_from = 0.0;
-  coherence.y_to = 1.05;
+  coherence.y_from = 0.0, coherence.y_to = 1.05;
   double lowest = INFINITY, highest = -INFINITY;
-  const FrequencyCurve& model = response.model;
-  ChartLine gain_line{{}, kPredictedLook}, phase_line{{}, kPredictedLook};
-  for (size_t i = 0; i < model.hz.size(); ++i) {
-    const double x = std::log10(model.hz[i]), log = model.log_gain[i] / M_LN10;
-    const double degrees = kDegrees * model.phase[i];
-    gain_line.points.emplace_back(x, log);
-    phase_line.points.emplace_back(
-        x, i == 0 ? degrees : Nearest(degrees, phase_line.points.back().second));
-    lowest = std::min(lowest, log);
-    highest = std::max(highest, log);
-  }
-  if (!model.hz.empty()) {
-    gain.lines.push_back(gain_line);
-    phase.lines.push_back(phase_line);
-  }
+  const auto cover = [&](double log, double error) {
+    lowest = std::min(lowest, log - error), highest = std::max(highest, log + error);
+  };
+  // The multiple of 360 degrees away that is nearest.
+  const auto nearest = [](double angle, std::optional<double> to) {
+    return to ? *to + std::remainder(kDegrees * angle - *to, 360.0) : kDegrees * angle;
+  };
+  ChartLine gains{{}, kPredictedLook}, phases{{}, kPredictedLook};
   std::optional<double> beside;
+  for (const FrequencyBin& bin : response.model) {
+    const double x = std::log10(bin.hz), log = bin.model_log_gain / M_LN10;
+    beside = nearest(bin.model_phase, beside);
+    gains.points.emplace_back(x, log);
+    phases.points.emplace_back(x, *beside);
+    cover(log, 0.0);
+  }
+  Figure figure;
+  figure.legend = {{"measured, one standard error", kErrorLook}};
+  if (!response.model.empty()) {
+    gain.lines.push_back(gains), phase.lines.push_back(phases);
+    figure.legend.push_back({"model", kPredictedLook});
+  }
+  size_t at = 0;
   for (const FrequencyBin& bin : response.bins) {
     const double x = std::log10(bin.hz);
     const double log = bin.log_gain / M_LN10, error = bin.log_gain_error / M_LN10;
-    if (!model.hz.empty()) {
-      const auto next = std::lower_bound(model.hz.begin(), model.hz.end(), bin.hz);
-      const size_t at = std::min<size_t>(next - model.hz.begin(), model.hz.size() - 1);
-      beside = phase_line.points[at].second;
-    }
-    const double degrees = beside ? Nearest(kDegrees * bin.phase, *beside) : kDegrees * bin.phase;
-    beside = degrees;
+    while (at + 1 < response.model.size() && response.model[at].hz < bin.hz) ++at;
+    if (!response.model.empty()) beside = phases.points[at].second;
+    beside = nearest(bin.phase, beside);
     AddPoint(x, log, error, &gain);
-    AddPoint(x, degrees, kDegrees * bin.phase_error, &phase);
+    AddPoint(x, *beside, kDegrees * bin.phase_error, &phase);
     AddPoint(x, bin.coherence, 0.0, &coherence);
-    lowest = std::min(lowest, log - error);
-    highest = std::max(highest, log + error);
+    cover(log, error);
   }
   gain.y_from = std::floor(lowest);  // a power of ten at both ends
   gain.y_to = std::max(std::ceil(highest), *gain.y_from + 1.0);
-  Figure figure;
-  figure.legend = {{"measured, one standard error", kErrorLook}};
-  if (!model.hz.empty()) figure.legend.push_back({"model", kPredictedLook});
   figure.panels = {gain, phase, coherence};
   return figure;
 }
 
 std::string CaptionOf(const FrequencyResponse& response) {
   const size_t people = response.people.size();
-  std::string text = response.Name() + ": " + std::to_string(response.recordings) +
-                     (response.recordings == 1 ? " recording of " : " recordings of ") +
-                     std::to_string(people) + (people == 1 ? " person" : " people") + "; ";
-  text += response.periodic
-              ? "the excited frequencies, in periods of " + Rounded(response.segment_s, 3) + " s"
-              : "Welch's method, segments of " + Rounded(response.segment_s, 3) + " s";
-  if (response.output == LoopOutput::kTorque) {
-    text += response.by_plates ? "; torque by force platforms" : "; torque by inverse dynamics";
-  }
-  return text + (people == 1 ? "; errors by the coherence." : "; errors from person to person.");
+  const std::string seconds = Rounded(response.segment_s, 3) + " s";
+  return response.Name() + ": " + std::to_string(response.recordings) +
+         (response.recordings == 1 ? " recording of " : " recordings of ") +
+         std::to_string(people) + (people == 1 ? " person" : " people") +
+         (response.periodic ? "; the excited frequencies, in periods of " + seconds
+                            : "; Welch's method, segments of " + seconds) +
+         (response.output == LoopOutput::kAngle ? ""
+          : response.by_plates                  ? "; torque by force platforms"
+                                                : "; torque by inverse dynamics") +
+         (people == 1 ? "; errors by the coherence." : "; errors from person to person.");
 }
 
 }  // namespace
@@ -199,18 +193,16 @@ ReportSection LoopSection(const ReportSource& source) {
 
 ReportSection FrequencySection(const ReportSource& source) {
   ReportSection section;
-  const std::vector<FrequencyResponse>& responses = source.frequency;
-  if (responses.empty()) return section;
-  section.paragraphs = {
+  if (source.frequency.empty()) return section;
+  section.Say(
       "How people answer what disturbs them on and on, frequency by frequency: the cross spectrum "
       "of the answer and the disturbance over the spectrum of the disturbance, of each person "
       "first, then the mean of log gain and phase over people. Frequencies whose coherence could "
       "be chance are left out. The model's curve is the closed form of its linearized loop, with "
-      "the same people's parameters."};
-  section.Say(WithoutLinearLoop(source.fit.options.model).empty()
-                  ? ""
-                  : "There is no curve: " + WithoutLinearLoop(source.fit.options.model) + ".");
-  for (const FrequencyResponse& response : responses) {
+      "the same people's parameters.");
+  const std::string without = WithoutLinearLoop(source.fit.options.model);
+  section.Say(without.empty() ? "" : "There is no curve: " + without + ".");
+  for (const FrequencyResponse& response : source.frequency) {
     section.figures.push_back({"frequency_" + response.Key(), CaptionOf(response),
                                BodeFigure(response), FrequencyTable({response})});
   }

@@ -95,7 +95,7 @@ TEST(FrequencyResponse, PeriodicGround) {
         EXPECT_GT(bin.coherence, 0.999) << bin.hz;
       }
       EXPECT_NEAR(response.bins[5].hz, 1.7, 1e-9);
-      EXPECT_FALSE(response.model.hz.empty());
+      EXPECT_FALSE(response.model.empty());
     }
   }
 }
