@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
     Terms, GroupRecovery,
     ::testing::Values(TermsCase{"Contact",
                                 Terms({&InteractionTerms::spring, &InteractionTerms::damping})},
-                      TermsCase{"Potential", Terms({&InteractionTerms::potential})}),
+                      TermsCase{"Spring", Terms({&InteractionTerms::spring})}),
     [](const ::testing::TestParamInfo<TermsCase>& one) { return std::string(one.param.name); });
 
 // 95 % intervals of the contact's parameters, clustered by recording, joints noisy by 2 mm.
