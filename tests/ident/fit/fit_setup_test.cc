@@ -204,6 +204,7 @@ TEST(FitSetup, SeedsAndBoolsAsFlagsTakeThem) {
 TEST(FitSetup, TermsChangedByHandAreTheSameProblem) {
   FitOptions by_hand = MakePreset("group").value();
   by_hand.model.interaction.damping = false;
+  by_hand.table[kContactDamping].prior.reset();  // which the preset had freed
   FreeTerms(&by_hand);
   const FitOptions by_flags =
       MakeFitOptions({{"preset", "group"}, {"interaction", "spring"}}).value();

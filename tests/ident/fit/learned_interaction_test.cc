@@ -86,8 +86,6 @@ TEST(LearnedInteraction, PredictsUnseenPushesAsTheTruthDoes) {
 TEST(LearnedInteraction, LargeOnesLearnByTheirGradient) {
   Rows rows;
   rows.options.max_iterations = 100;
-  rows.options.pool_by = kSubjectUnit;
-  rows.options.table[kMu].pooled = true;
   const double without = rows.HeldOutAde(rows.Fitted({}));
   const PairShape large{{48, 32}};
   ASSERT_GT(large.num_weights(), kMostGaussNewtonWeights);

