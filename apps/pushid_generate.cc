@@ -161,6 +161,9 @@ void ReadNumbers(GenerateFlags* flags) {
   TakeInRange("observed", FLAGS_observed, 0, 1000, &flags->observed);
   TakeInRange("frames", FLAGS_frames, 0, 10000, &flags->frames);
   OrFail(CheckPosesPath("--poses_out", FLAGS_poses_out));
+  if (flags->target_window >= 0 && FLAGS_samples == 0) {
+    throw Error{"--target_window needs --samples, among which it looks"};
+  }
 }
 
 // Errors: flags that say something to generators of the other kind alone, or that this kind needs.
@@ -176,9 +179,6 @@ void CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
     if (!Given(flag)) continue;
     throw Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),
                 FLAGS_model};
-  }
-  if (flags.target_window >= 0 && flags.samples == 0) {
-    throw Error{"--target_window needs --samples, among which it looks"};
   }
   if (!groups) return Require("folder", FLAGS_folder, "name the folder of the clips");
   if (flags.Shows()) Require("id", FLAGS_id, "name the recording to show");

@@ -462,8 +462,9 @@ ReportSection DesignSection(const ReportSource& source) {
   }
   section.paragraphs = {
       "Effect of one more recording of each kind on the standard errors, from the sensitivities at "
-      "the estimate, for all parameters together (D-optimal); pushid-check --design=NAME has those "
-      "for one (c-optimal)."};
+      "the estimate, for all parameters together (D-optimal); a design for one parameter ranks "
+      "them "
+      "for that alone (c-optimal)."};
   section.Show("", DesignTable(design, "all", kBestPushes).value());
   return section;
 }
