@@ -246,7 +246,7 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--push=0"}, {"--push", "'0'", "impulse"}},
       {{"--formation=line", "--push=nan"}, {"--push", "'nan'"}},
       {{"--formation=line", "--set=mew=1"}, {"--set", "'mew'"}},
-      {{"--formation=line", "--out=x"}, {"no flag --out", "--csv_out"}},
+      {{"--formation=line", "--out=x"}, {"--out names x", "end in .txt"}},
       {{"--formation=line", "--noise=0.1"}, {"no flag --noise"}},
       {{"--formation=line", "--svg_out=/none/wave.svg"}, {"/none/wave.svg"}},
       {{"--formation=line", "--people=301", "--svg_out=x"}, {"--svg_out", "300"}},

@@ -125,7 +125,8 @@ constexpr char kProbe[] = R"js(  const picture = () => document.getElementById('
   const time = document.getElementById('time');
   const at = frame => { time.value = frame; time.dispatchEvent(new Event('input')); return picture(); };
   said.push('time ' + (at(10) !== at(40) ? 'moves' : 'is dead'));
-  const with_futures = at(40), box = document.getElementById('futures');
+  const with_futures = at(40), box =
+    [...document.querySelectorAll('label')].find(l => l.textContent.includes('sampled futures')).querySelector('input');
   box.checked = false;
   box.dispatchEvent(new Event('change'));
   said.push('futures ' + (picture() !== with_futures ? 'go' : 'stay'));
@@ -142,7 +143,7 @@ TEST_F(GeneratorAppTest, ThePageWorksInABrowser) {
   const AppRun seen =
       Succeeded(Browse(Path("browser"), WriteText("probed.html", Probed(page, kProbe))));
   EXPECT_FALSE(Contains(seen.err, "CONSOLE")) << seen.err;
-  for (const char* expected : {"time moves", "futures go", "0.64 s, forecast", "wide false"}) {
+  for (const char* expected : {"time moves", "futures go", "s, frame 40", "wide false"}) {
     EXPECT_TRUE(Contains(seen.out, expected));
   }
 }
