@@ -283,12 +283,12 @@ struct PersonSpectra {
 };
 
 // Of segments that last as long.
-struct Group {
+struct SegmentGroup {
   FrequencyResponse response;
   std::map<std::string, PersonSpectra> people;  // by subject
 };
 
-void AddModel(const Group& group, FrequencyBin* bin) {
+void AddModel(const SegmentGroup& group, FrequencyBin* bin) {
   std::vector<std::complex<double>> answers;
   for (const auto& [name, person] : group.people) {
     if (!person.loop) return;
@@ -302,7 +302,7 @@ void AddModel(const Group& group, FrequencyBin* bin) {
 
 // A bin is taken or left by everybody's spectra: to take those people alone whose coherence is high
 // would take those whose noise happens to be along their answer.
-FrequencyResponse ResponseOf(const Group& group) {
+FrequencyResponse ResponseOf(const SegmentGroup& group) {
   FrequencyResponse response = group.response;
   CrossSpectra all;
   for (const auto& [name, person] : group.people) {
@@ -334,7 +334,8 @@ FrequencyResponse ResponseOf(const Group& group) {
 }
 
 void Gather(const PendulumRecording& recording, const ModelOptions& options,
-            const std::vector<ParameterSet<double>>& parameters, std::vector<Group>* groups) {
+            const std::vector<ParameterSet<double>>& parameters,
+            std::vector<SegmentGroup>* groups) {
   const double dt = recording.scene.dt;
   if ((recording.num_frames() - 1) * dt < 10.0) return;
   const std::optional<ContinuousInput> input = ContinuousInputOf(recording);
@@ -343,12 +344,12 @@ void Gather(const PendulumRecording& recording, const ModelOptions& options,
   if (segments.frames == 0) return;
   const double seconds = segments.frames * dt;
   for (LoopOutput output : {LoopOutput::kAngle, LoopOutput::kTorque}) {
-    auto group = std::find_if(groups->begin(), groups->end(), [&](const Group& g) {
+    auto group = std::find_if(groups->begin(), groups->end(), [&](const SegmentGroup& g) {
       const FrequencyResponse& r = g.response;
       return r.input == input->kind && r.plane == input->plane && r.output == output &&
              r.periodic == segments.periodic && std::abs(r.segment_s - seconds) < 0.005 * seconds;
     });
-    if (group == groups->end()) group = groups->insert(group, Group{});
+    if (group == groups->end()) group = groups->insert(group, SegmentGroup{});
     FrequencyResponse& response = group->response;
     if (group->people.empty()) {
       response.input = input->kind, response.plane = input->plane, response.output = output;
@@ -398,12 +399,12 @@ std::vector<FrequencyResponse> FrequencyResponses(
     const std::vector<PendulumRecording>& recordings, const ModelOptions& options,
     const std::vector<std::vector<ParameterSet<double>>>& parameters) {
   const auto own = InOwnAxes(recordings, options);
-  std::vector<Group> groups;
+  std::vector<SegmentGroup> groups;
   for (size_t i = 0; i < recordings.size(); ++i) {
     Gather(own ? (*own)[i] : recordings[i], options, parameters[i], &groups);
   }
   std::vector<FrequencyResponse> responses;
-  for (const Group& group : groups) {
+  for (const SegmentGroup& group : groups) {
     responses.push_back(ResponseOf(group));
     if (responses.back().bins.empty()) responses.pop_back();
   }
