@@ -21,7 +21,7 @@ def groups():
 
 def table_of(arguments):
     spread, told = studies.printed_table("pushid-known-truth-study", *arguments)
-    header = ["how many, and % of the intervals that hold the truth", "identified", "weak", "prior-held",
+    header = ["how many, and % of the intervals that hold the truth", "identified", "model-dependent", "weak", "prior-held",
               "unidentifiable", "at bound"]
     rows = [[f"`{row[0]}`" if row[0] != "all" else "**all**", *row[1:]] for row in spread]
     return f"{studies.table(header, rows)}\n\n{told}."

@@ -178,11 +178,11 @@ int Run() {
         if (done % 20 == 0) std::fprintf(stderr, "study %d of %d\n", done, total);
       });
   const std::vector<EstimateStatus> statuses = {
-      EstimateStatus::kIdentified, EstimateStatus::kWeak, EstimateStatus::kPriorHeld,
-      EstimateStatus::kUnidentifiable, EstimateStatus::kAtBound};
+      EstimateStatus::kIdentified, EstimateStatus::kModelDependent, EstimateStatus::kWeak,
+      EstimateStatus::kPriorHeld,  EstimateStatus::kUnidentifiable, EstimateStatus::kAtBound};
   std::vector<std::string> header = {"estimates: intervals that hold the truth, %"};
   for (EstimateStatus status : statuses) header.push_back(NameOf(status));
-  TextTable table(header, {true, false, false, false, false, false});
+  TextTable table(header, {true, false, false, false, false, false, false});
   Tally sum;
   for (const auto& [id, tally] : all.tallies) {
     std::vector<std::string> row = {std::string(kParameterNames[id])};
