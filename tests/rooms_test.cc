@@ -29,11 +29,11 @@ const std::map<std::string, std::vector<std::string>> kFloors = {
     {"models", {"", "restoration", "generators"}},
     {"datasets", {"files", "formats", "manifest", "sensors", "loading", "synthetic", "inspection"}},
     {"residuals", {"packed", "", "lanes", "sensitivities", "cost_functions", "adjoint"}},
-    {"ident", {"figures",     "parameters",  "problem",  "solver",     "large_networks",
-               "uncertainty", "diagnostics", "model",    "observed",   "fit",
-               "prediction",  "validation",  "push",     "bodies",
-               "generators",  "forecasts",   "training", "formations", "report",
-               "report/page", "checks",      ""}},
+    {"ident",
+     {"figures",     "parameters",  "problem",    "solver",    "large_networks", "uncertainty",
+      "diagnostics", "model",       "observed",   "fit",       "prediction",     "validation",
+      "push",        "bodies",      "generators", "forecasts", "training",       "formations",
+      "report",      "report/page", "checks",     ""}},
     {"apps", {"support", "flags", "batch", "", "python"}},
 };
 

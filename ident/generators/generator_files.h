@@ -1,7 +1,7 @@
 // ident: a generator in a folder: generator.json (what it is, what it was trained on) and
-// weights.npy. Both load without the training code and without LibTorch; restoration_files.h has the
-// layout. Settings of every kind: frames observed and forecast, the rate, the particles; then its
-// own.
+// weights.npy. Both load without the training code and without LibTorch; restoration_files.h has
+// the layout. Settings of every kind: frames observed and forecast, the rate, the particles; then
+// its own.
 #pragma once
 
 #include <functional>

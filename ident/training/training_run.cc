@@ -83,8 +83,7 @@ MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOp
   while (!trainer->Done()) {
     curve.push_back(trainer->RunRound());
     told(&curve.back());
-    const bool due =
-        trainer->Done() ? options.keep_finished : Now() - last >= kCheckpointSeconds;
+    const bool due = trainer->Done() ? options.keep_finished : Now() - last >= kCheckpointSeconds;
     if (options.checkpoint.empty() || !due) continue;
     last = Now();
     if (MaybeError error = Save(options.checkpoint, key, trainer->State(), curve)) return error;

@@ -3,7 +3,8 @@
 //
 // At the optimum, with H the Hessian of the cost, H = J'J + sum r d2r (the second term only where
 // it was computed, jacobian_blocks.h):
-//   naive      (J'J)^-1 (sigma^2 J_d'J_d + J_b'J_b) (J'J)^-1, sigma^2 = |r_d|^2 / (N - rank): rows of data
+//   naive      (J'J)^-1 (sigma^2 J_d'J_d + J_b'J_b) (J'J)^-1, sigma^2 = |r_d|^2 / (N - rank): rows
+//   of data
 //              (d) taken as independent, priors and demands (b) in units of their own
 //   clustered  CR2 over clusters of rows (clusters.h). Where rows are clustered two ways,
 //              V_first + V_second - V_both. Deviations of pooled units are draws, and what they

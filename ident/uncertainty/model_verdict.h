@@ -77,8 +77,8 @@ struct PartTest {
 
 struct ModelVerdict {
   std::string not_checked = "an older version fitted";  // why nothing was; empty where it was
-  // Why nothing is identified, whatever the checks say: there is one recording, or the fitted people
-  // do not come to rest. Empty: no such reason.
+  // Why nothing is identified, whatever the checks say: there is one recording, or the fitted
+  // people do not come to rest. Empty: no such reason.
   std::string none_identified;
   std::vector<AssumptionTest> assumptions;
   std::vector<PartTest> parts;
@@ -102,9 +102,10 @@ struct ModelVerdict {
   }
 };
 
-// Adds the total errors to the estimates of `uncertainty`, which is of this point and knows what the
-// demand to settle did, and takes "identified" back: weak where the total interval is wide,
-// model-dependent where the model fails or its people do not come to rest. behaviour: at this point.
+// Adds the total errors to the estimates of `uncertainty`, which is of this point and knows what
+// the demand to settle did, and takes "identified" back: weak where the total interval is wide,
+// model-dependent where the model fails or its people do not come to rest. behaviour: at this
+// point.
 ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point,
                         const Behaviour& behaviour, Uncertainty* uncertainty);
 

@@ -77,8 +77,8 @@ class CvaeTrainer : public Trainer {
 //
 // way: of the ankle, horizontal, from the frame that the network started from to its output, m;
 // h: the output's ankle above its own height at frame 0 of the person; H = 0.025 m. The same as
-// FootSkate of ident/bodies/body_evaluation.cc. h counts in the weight and its gradient; which ankles
-// count has no gradient. 0 where no ankle is low.
+// FootSkate of ident/bodies/body_evaluation.cc. h counts in the weight and its gradient; which
+// ankles count has no gradient. 0 where no ankle is low.
 //
 // In `ldp` coordinates positions contain the hip's way. In `tip` coordinates they do not: the hip
 // is put at the end of the rod, so the way and the rise of that end are added (PendulumFrames).

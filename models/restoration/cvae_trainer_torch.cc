@@ -67,7 +67,6 @@ double CvaeFootSkate(const CvaeLayout& layout, const CvaeSkateFrames& frames,
 
 // The foot-skate error on LibTorch's tensors. For *_torch.cc files alone.
 
-
 // The modules of LDP's chain in LibTorch, for cvae_trainer_torch.cc and its likes alone.
 
 using torch::Tensor;

@@ -55,10 +55,9 @@ TEST_F(CvaeAppTest, ThePublishedCvaeSaysItsSizesAndDraws) {
 }
 
 TEST_F(CvaeAppTest, TheCvaeIsCrossValidatedByMeanAndByDraws) {
-  const AppRun run = Succeeded(
-      RunApp("pushid-train-restoration",
-             {Recordings(), model_, "--crossvalidate=2", "--kind=cvae", "--effort=0.001",
-              "--quiet", "--json_out=" + Path("cv.json")}));
+  const AppRun run = Succeeded(RunApp(
+      "pushid-train-restoration", {Recordings(), model_, "--crossvalidate=2", "--kind=cvae",
+                                   "--effort=0.001", "--quiet", "--json_out=" + Path("cv.json")}));
   EXPECT_TRUE(Contains(run.out, "restoration drawn"));
   const auto json = Json(Path("cv.json"));
   const double mean = json["mean"]["MPJPE_m"], drawn = json["restoration_drawn"]["mean"]["MPJPE_m"];

@@ -18,8 +18,7 @@ class DiffusionAppTest : public AppTest {
     return RunApp("pushid-train-generator", more);
   }
   AppRun Generate(std::vector<std::string> more) const {
-    more.insert(more.end(),
-                {"--model=" + Path("g"), Recordings(), "--steps=2", "--quiet"});
+    more.insert(more.end(), {"--model=" + Path("g"), Recordings(), "--steps=2", "--quiet"});
     return RunApp("pushid-generate", more);
   }
 };
@@ -108,8 +107,7 @@ TEST_F(DiffusionAppTest, AsSdmIsPublished) {
 TEST_F(DiffusionAppTest, PushesOfAnotherKindAreToldOf) {
   Succeeded(Train({"--out=" + Path("g")}));
   const auto generate = [&](const std::string& recordings) {
-    return RunApp("pushid-generate",
-                  {"--model=" + Path("g"), recordings, "--steps=2", "--quiet"});
+    return RunApp("pushid-generate", {"--model=" + Path("g"), recordings, "--steps=2", "--quiet"});
   };
   EXPECT_EQ(generate(Recordings()).err, "");
   const AppRun other = generate(ChangedManifest([](nlohmann::ordered_json& json) {

@@ -203,9 +203,8 @@ TEST_F(RestorationAppTest, RefusesWhatMakesNoSense) {
   refused("pushid-evaluate", {"--latent=draw"}, {"--latent", "--restoration"});
   refused("pushid-evaluate", {"--restoration=rigid", "--latent=mean:2"}, {"draw:2"});
   refused("pushid-evaluate", {"--restoration=rigid", "--latent=draw"}, {"--kind=cvae"});
-  EXPECT_TRUE(
-      Refused(RunApp("pushid-formation", {model_, "--formation=line", "--poses_out=x.csv"}),
-              {"--poses_out", "--restoration"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-formation", {model_, "--formation=line", "--poses_out=x.csv"}),
+                      {"--poses_out", "--restoration"}));
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 // What is advised after a fit of people whose model is known.
+#include "ident/report/advice.h"
+
 #include <algorithm>
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
-#include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

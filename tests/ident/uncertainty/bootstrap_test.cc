@@ -142,9 +142,9 @@ TEST_F(BootstrapRun, EachDrawIsFittedOnce) {
   const std::vector<PendulumRecording> three(recordings_.begin(), recordings_.begin() + 3);
   const FitProblem problem(three, options_);
   int fits = 0;
-  const Bootstrap many = ComputeBootstrap(problem, estimate_, {300, 1, 1},
-                                          [&fits](int, int total) { fits = total; })
-                             .value();
+  const Bootstrap many = ComputeBootstrap(problem, estimate_, {300, 1, 1}, [&fits](int, int total) {
+                           fits = total;
+                         }).value();
   EXPECT_EQ(fits, 10);
   EXPECT_EQ(many.values.size() + many.failed, 300u);
   const ResamplingUnits from = MakeResamplingUnits(three, ClusterBy::kAuto);

@@ -219,9 +219,8 @@ TEST(ModelVerdict, IdentifiesNothingOfWhoDoesNotComeToRest) {
   const FitProblem problem(recordings, result.options);
   const FitPoint& optimum = result.starts[result.best_start].to;
   const auto identified = [](const Uncertainty& u) {
-    return std::count_if(u.estimates.begin(), u.estimates.end(), [](const Estimate& e) {
-      return e.status == EstimateStatus::kIdentified;
-    });
+    return std::count_if(u.estimates.begin(), u.estimates.end(),
+                         [](const Estimate& e) { return e.status == EstimateStatus::kIdentified; });
   };
   Uncertainty u = result.uncertainty;
   Behaviour driven = result.behaviour;
