@@ -106,11 +106,12 @@ TEST(LargeNetworkFit, FitsSharedParametersToo) {
   fit.shared = {std::log(mu / 2.0), 0.5 * ax};
   fit.shared_prior = {{std::log(mu), 1.0, 1.0}, {ax, 10.0, 5.0}};
   fit.options.weight_sigma = 0.0;
-  fit.options.rate = 1e-2;
+  fit.options.rate = 3e-2;
+  fit.options.passes = 1000;
   const LargeNetworkSolution s = Unwrapped(FitLargeNetwork(fit));
-  EXPECT_LT(s.passes.back().cost, 0.05 * s.passes.front().cost);
-  EXPECT_NEAR(s.shared[0], std::log(mu), 0.5 * std::log(2.0));
-  EXPECT_LT(std::abs(s.shared[1] - ax), 0.45 * std::abs(ax));
+  EXPECT_LT(s.passes.back().cost, 1e-3 * s.passes.front().cost);
+  EXPECT_NEAR(s.shared[0], std::log(mu), 0.3 * std::log(2.0));
+  EXPECT_NEAR(s.shared[1], ax, 0.3 * std::abs(ax));
 }
 
 TEST(LargeNetworkFit, PriorsOfTheTable) {
