@@ -74,7 +74,7 @@ int Run(const std::string& word, const std::vector<std::string>& arguments) {
       known.push_back(one.name);
     }
   }
-  std::string meant = MeantBy(command, known);
+  std::string meant = ClosestName(command, known);
   for (const std::string& one : known) {  // "fitt" and "sim"
     const bool begins = command.rfind(one, 0) == 0 || one.rfind(command, 0) == 0;
     if (meant.empty() && begins && !command.empty()) meant = one;

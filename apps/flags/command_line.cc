@@ -49,8 +49,8 @@ bool IsPartOfResult(const FlagInfo& flag) {
   return !IsOutputFlag(flag.name) && kLeftOut.count(flag.name) == 0;
 }
 
-// gflags prints 0.2 as 0.20000000000000001.
-std::string WithoutDust(const FlagInfo& flag, const std::string& text) {
+// The shortest text of a flag's number: gflags prints 0.2 as 0.20000000000000001.
+std::string ShortestNumber(const FlagInfo& flag, const std::string& text) {
   double value = 0.0;
   return flag.type == "double" && ParseDouble(text, &value) ? DoubleText(value) : text;
 }
@@ -130,7 +130,7 @@ std::string FlagHelp(bool full) {
       continue;
     }
     const std::string value =
-        flag.default_value.empty() ? "" : "=" + WithoutDust(flag, flag.default_value);
+        flag.default_value.empty() ? "" : "=" + ShortestNumber(flag, flag.default_value);
     add(heading, "--" + flag.name + value, flag.description);
   }
   add("general", "--flagfile=FILE", "read flags from a file, one per line");
@@ -149,7 +149,7 @@ std::string FlagHelp(bool full) {
 Error NoSuchFlag(const std::string& name) {
   std::vector<std::string> known;
   for (const FlagInfo& flag : OwnFlags()) known.push_back(flag.name);
-  std::string meant = MeantBy(name, known);
+  std::string meant = ClosestName(name, known);
   // "out", where several things can be written.
   for (const std::string& one : known) {
     if (!meant.empty() && !EndsWith(meant, "_" + name)) break;
@@ -297,7 +297,7 @@ void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>
 std::map<std::string, std::string> EffectiveFlags() {
   std::map<std::string, std::string> flags;
   for (const FlagInfo& flag : OwnFlags()) {
-    if (IsPartOfResult(flag)) flags[flag.name] = WithoutDust(flag, flag.current_value);
+    if (IsPartOfResult(flag)) flags[flag.name] = ShortestNumber(flag, flag.current_value);
   }
   return flags;
 }

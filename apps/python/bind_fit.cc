@@ -120,7 +120,7 @@ void CheckRecordings(const std::vector<SharedRecording>& recordings) {
 
 std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
                                 const GivenOptions& given, const py::object& progress,
-                                const Told& file_warnings) {
+                                const WarningTuples& file_warnings) {
   CheckRecordings(recordings);
   const FitSetup setup = Setup(given);
   auto model = std::make_shared<Model>();
@@ -132,9 +132,9 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
   Check(PrepareFit(pendulums, &options, &warnings), Fault::kUsage);
   warnings.insert(warnings.begin(), ignored.begin(), ignored.end());
   Warn(warnings);
-  const SolveProgress told = ProgressOf(progress);
+  const SolveProgress report = ProgressOf(progress);
   FittedModel fitted;
-  fitted.fit = WithoutGil([&] { return Fit(pendulums, options, told); });
+  fitted.fit = WithoutGil([&] { return Fit(pendulums, options, report); });
   FitResult& fit = fitted.fit;
   if (!fit.ok()) Raise(Fault::kFit, Error{"the fit failed: " + fit.message});
   const Warnings of_files = WarningsOf(file_warnings);
@@ -225,11 +225,11 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
     }
   }
   const auto folds = Unwrapped(MakeFolds(pendulums, how, num_folds, repeats, seed), Fault::kUsage);
-  const JobProgress told = JobsOf(progress);
+  const JobProgress report = JobsOf(progress);
   return FromJson(WithoutGil([&] {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const Predictor& predictor : predictors) {
-      json.push_back(ToJson(CrossValidate(pendulums, folds, predictor, num_threads, told)));
+      json.push_back(ToJson(CrossValidate(pendulums, folds, predictor, num_threads, report)));
     }
     return json;
   }));
@@ -266,25 +266,25 @@ using PendulumRecordings = std::vector<PendulumRecording>;
 
 void ProfilesOf(Model* model, const std::vector<std::string>& names, int num_threads,
                 const py::object& progress) {
-  const JobProgress told = JobsOf(progress);
+  const JobProgress report = JobsOf(progress);
   Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
-    return AddProfiles(recordings, names, num_threads, told, fitted);
+    return AddProfiles(recordings, names, num_threads, report, fitted);
   });
 }
 
 void BootstrapOf(Model* model, int replicas, uint64_t seed, int num_threads,
                  const py::object& progress) {
   const BootstrapOptions options{replicas, seed, num_threads};
-  const JobProgress told = JobsOf(progress);
+  const JobProgress report = JobsOf(progress);
   Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
-    return AddBootstrap(recordings, options, told, fitted);
+    return AddBootstrap(recordings, options, report, fitted);
   });
 }
 
 void CheckHorizonsOf(Model* model, int num_threads, const py::object& progress) {
-  const JobProgress told = JobsOf(progress);
+  const JobProgress report = JobsOf(progress);
   Extend(model, [&](const PendulumRecordings& recordings, FittedModel* fitted) {
-    AddHorizonCheck(recordings, num_threads, told, fitted);
+    AddHorizonCheck(recordings, num_threads, report, fitted);
     return MaybeError();
   });
 }

@@ -44,20 +44,20 @@ auto WithoutGil(Compute compute) {
 
 // Progress of something long: looks for signals, so that Ctrl-C ends it, and tells `callable`.
 // Called without the GIL.
-template <typename... Told>
-auto Telling(const py::object& callable) {
-  return [callable = callable.ptr()](Told... told) {
+template <typename... Args>
+auto CallbackOf(const py::object& callable) {
+  return [callable = callable.ptr()](Args... args) {
     const py::gil_scoped_acquire gil;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    if (callable != Py_None) py::reinterpret_borrow<py::object>(callable)(told...);
+    if (callable != Py_None) py::reinterpret_borrow<py::object>(callable)(args...);
   };
 }
 // Of a fit: (phase, iteration, cost).
 inline SolveProgress ProgressOf(const py::object& callable) {
-  return Telling<const std::string&, int, double>(callable);
+  return CallbackOf<const std::string&, int, double>(callable);
 }
 // Of many jobs: (done, total).
-inline JobProgress JobsOf(const py::object& callable) { return Telling<int, int>(callable); }
+inline JobProgress JobsOf(const py::object& callable) { return CallbackOf<int, int>(callable); }
 
 // Flags and programs as options and calls: "--fix=mu=0" -> "fix={"mu": 0}", "pushid-push" ->
 // "pushid.estimate_push".
@@ -69,8 +69,8 @@ void Warn(const std::string& text);
 void Warn(const Warnings& warnings);
 
 // Warnings as the package keeps them: text, recording, of_many.
-using Told = std::vector<std::tuple<std::string, std::string, std::string>>;
-Warnings WarningsOf(const Told& told);
+using WarningTuples = std::vector<std::tuple<std::string, std::string, std::string>>;
+Warnings WarningsOf(const WarningTuples& tuples);
 
 // Recordings are shared, so that results and arrays outlive the list they came from.
 using SharedRecording = std::shared_ptr<const Recording>;

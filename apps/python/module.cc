@@ -38,9 +38,9 @@ void Warn(const Warnings& warnings) {
   for (const std::string& text : GroupedWarnings(warnings)) Warn(text);
 }
 
-Warnings WarningsOf(const Told& told) {
+Warnings WarningsOf(const WarningTuples& tuples) {
   Warnings warnings;
-  for (const auto& [text, recording, of_many] : told) {
+  for (const auto& [text, recording, of_many] : tuples) {
     warnings.emplace_back(text, recording, of_many);
   }
   return warnings;
@@ -60,7 +60,8 @@ PYBIND11_MODULE(_pushid, module) {
   using namespace pushid;
   module.doc() = "The C++ library behind pushid.";
   module.attr("version") = PUSHID_VERSION;
-  module.def("grouped", [](const Told& told) { return GroupedWarnings(WarningsOf(told)); });
+  module.def("grouped",
+             [](const WarningTuples& tuples) { return GroupedWarnings(WarningsOf(tuples)); });
   const std::pair<const char*, const char*> errors[] = {
       {"DataError", "Invalid data: the problem, its location and its remedy."},
       {"UsageError", "Invalid request: the option, and its valid values."},

@@ -22,7 +22,7 @@ std::string ListOfNames(const std::vector<std::string>& names, std::size_t most,
 Error UnknownNameError(const std::string& path, const std::string& noun,
                        const std::vector<std::string>& names, const std::string& name) {
   return {"there is no " + noun + " " + Quoted(name) + "; it has " +
-              ListOfNames(names, kNamesInErrors, noun + "s") + MeantText(name, names),
+              ListOfNames(names, kNamesInErrors, noun + "s") + Suggestion(name, names),
           path};
 }
 
@@ -51,7 +51,7 @@ std::string Plain(std::string key) {
 
 }  // namespace
 
-std::string MeantBy(const std::string& word, const std::vector<std::string>& known) {
+std::string ClosestName(const std::string& word, const std::vector<std::string>& known) {
   if (std::find(known.begin(), known.end(), word) != known.end()) return "";
   std::string nearest;
   const std::string plain = Plain(word);
@@ -68,8 +68,8 @@ std::string MeantBy(const std::string& word, const std::vector<std::string>& kno
   return nearest;
 }
 
-std::string MeantText(const std::string& word, const std::vector<std::string>& known) {
-  const std::string meant = MeantBy(word, known);
+std::string Suggestion(const std::string& word, const std::vector<std::string>& known) {
+  const std::string meant = ClosestName(word, known);
   return meant.empty() ? "" : "; is " + meant + " meant?";
 }
 

@@ -1,5 +1,5 @@
-// datasets: names: of a file's parts as messages list them, of choices as flags and files
-// spell them, and what a misspelt one was meant to be.
+// datasets: names: lists of them in messages, choices by name, and the closest name to a misspelt
+// one.
 #pragma once
 
 #include <string>
@@ -23,14 +23,12 @@ inline constexpr std::size_t kNamesInErrors = 8;
 Error UnknownNameError(const std::string& path, const std::string& noun,
                        const std::vector<std::string>& names, const std::string& name);
 
-// What a misspelt name was meant to be.
-
-// The known word that another one is most likely a misspelling of; empty where it is known itself
+// The known word of which `word` is most likely a misspelling; empty where `word` is known itself
 // or like none of them.
-std::string MeantBy(const std::string& word, const std::vector<std::string>& known);
+std::string ClosestName(const std::string& word, const std::vector<std::string>& known);
 
 // "; is hip meant?", or nothing.
-std::string MeantText(const std::string& word, const std::vector<std::string>& known);
+std::string Suggestion(const std::string& word, const std::vector<std::string>& known);
 
 // "a,b" as a and b; none of an empty text.
 std::vector<std::string> SplitList(const std::string& text, char separator = ',');

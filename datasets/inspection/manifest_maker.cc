@@ -95,7 +95,7 @@ class Maker {
   // A misspelt {subject} would make one person of everybody.
   void WarnOfNames() {
     for (const std::string& name : pattern_.names()) {
-      const std::string meant = MeantBy(name, kUnderstood);
+      const std::string meant = ClosestName(name, kUnderstood);
       if (meant.empty() || pattern_.Has(meant)) continue;
       made_.warnings.push_back("the pattern has {" + name +
                                "}, which only tells recordings apart; is {" + meant + "} meant?");

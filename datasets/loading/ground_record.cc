@@ -38,7 +38,7 @@ Result<std::vector<int>> GroundColumns(const std::string& path, int up,
                  path};
   }
   for (const std::string& name : names) {
-    const std::string meant = MeantText(name, known);
+    const std::string meant = Suggestion(name, known);
     if (meant.empty()) continue;
     return Error{"the column " + Quoted(name) + " is not known, and would be read as none" + meant +
                      " Columns of the ground are " + ListOfNames(known),

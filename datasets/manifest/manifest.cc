@@ -410,9 +410,9 @@ std::vector<std::string> MisspeltKeys(const ManifestRecording& entry) {
   std::vector<std::string> found;
   if (!entry.json->is_object()) return found;
   for (const auto& [key, value] : entry.json->items()) {
-    if (MeantBy(key, ManifestKeys()).empty()) continue;
+    if (ClosestName(key, ManifestKeys()).empty()) continue;
     found.push_back("has the key " + Quoted(key) + ", which is not known and not used" +
-                    MeantText(key, ManifestKeys()));
+                    Suggestion(key, ManifestKeys()));
   }
   return found;
 }

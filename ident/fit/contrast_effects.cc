@@ -48,7 +48,7 @@ void AddContrastEffects(const std::vector<PendulumRecording>& recordings, FitRes
   const bool by_person = AnyPooled(fitted.table) && fitted.pool_by == kSubjectUnit;
   if (by_person || !PeopleCanBeTold(recordings)) return;
   FitProblem problem(recordings, WithPeopleApart(*result));
-  const WeightedSolution solved = SolveAsAsked(&problem);
+  const WeightedSolution solved = SolveFit(&problem);
   if (!solved.solution.ok()) return;
   for (ContrastRow& row : result->contrast->rows) {
     const ParameterSpec* spec = problem.options().table.Find(row.name);

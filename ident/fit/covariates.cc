@@ -80,7 +80,7 @@ class SlopeRows {
       std::vector<std::string> names;
       for (Parameter id : table_.Free()) names.push_back(table_[id].name);
       return Error{"--covariate names " + Quoted(parameter) + ", which is not a parameter" +
-                   MeantText(parameter, names) + "; free ones are " +
+                   Suggestion(parameter, names) + "; free ones are " +
                    ListOfNames(names, names.size())};
     }
     if (!target->free) {
@@ -114,7 +114,7 @@ class SlopeRows {
         }
       }
       return Error{"--covariate names " + Quoted(key) + ", a number that nobody has" +
-                   MeantText(key, {known.begin(), known.end()}) + "; there are " +
+                   Suggestion(key, {known.begin(), known.end()}) + "; there are " +
                    Listed({known.begin(), known.end()}, ",")};
     }
     if (lacking) return lacking;
@@ -167,7 +167,7 @@ class SlopeRows {
         }
       }
       return Error{"--contrast is " + Quoted(label) + ", a label that no recording or person has" +
-                   MeantText(label, {known.begin(), known.end()}) + "; there are " +
+                   Suggestion(label, {known.begin(), known.end()}) + "; there are " +
                    Listed({known.begin(), known.end()}, ",")};
     }
     if (lacking) return *lacking;

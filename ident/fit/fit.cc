@@ -28,8 +28,8 @@ struct SolvedFit {
 
 // What judging and folds have in common. Errors: a large network's training fails; without a usable
 // optimum the result is not ok().
-Result<SolvedFit> SolveFit(const std::vector<PendulumRecording>& recordings,
-                           const FitOptions& options, const SolveProgress& progress) {
+Result<SolvedFit> SetUpAndSolve(const std::vector<PendulumRecording>& recordings,
+                                const FitOptions& options, const SolveProgress& progress) {
   const bool trains = NeedsGradientTraining(options);
   const Result<FitOptions> trained =
       trains ? TrainLargeNetwork(recordings, options, progress) : Result<FitOptions>(options);
@@ -39,7 +39,7 @@ Result<SolvedFit> SolveFit(const std::vector<PendulumRecording>& recordings,
   if (trains && !options.estimate_weights) {
     fit.problem.set_gradient_tolerance(std::numeric_limits<double>::infinity());
   }
-  fit.solved = SolveAsAsked(&fit.problem, progress);
+  fit.solved = SolveFit(&fit.problem, progress);
   fit.problem.set_gradient_tolerance(options.gradient_tolerance);
   return fit;
 }
@@ -94,7 +94,7 @@ void AddWarnings(const SolvedFit& fit, FitResult* result) {
 // The covariance of a network's weights has no meaning for a reader and fills files: from here on
 // the covariance is that of everything else, whatever the weights are. Bands draw from it with the
 // weights as they are fitted, and so may be too wide where a network trades with a gain.
-void ForgetWeights(Eigen::Index weights, FitResult* result) {
+void DropNetworkWeights(Eigen::Index weights, FitResult* result) {
   if (weights == 0) return;
   Uncertainty& u = result->uncertainty;
   const Eigen::Index size = u.covariance.rows() - weights;
@@ -155,7 +155,7 @@ FitResult Judge(const SolvedFit& fit) {
   // Warnings; and what a model keeps of its covariance.
   AddWarnings(fit, &result);
   result.work = work.parts();
-  ForgetWeights(static_cast<Eigen::Index>(optimum.weights.size()), &result);
+  DropNetworkWeights(static_cast<Eigen::Index>(optimum.weights.size()), &result);
   return result;
 }
 
@@ -163,7 +163,7 @@ FitResult Judge(const SolvedFit& fit) {
 
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
               const SolveProgress& progress) {
-  const Result<SolvedFit> fit = SolveFit(recordings, options, progress);
+  const Result<SolvedFit> fit = SetUpAndSolve(recordings, options, progress);
   if (fit.ok()) {
     FitResult result = Judge(fit.value());
     AddContrastEffects(recordings, &result);
@@ -180,7 +180,7 @@ Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings
                                 bool forecasts) {
   const FitOptions asked = options;
   if (MaybeError error = PrepareFit(recordings, &options)) return *error;
-  const Result<SolvedFit> fit = SolveFit(recordings, options, nullptr);
+  const Result<SolvedFit> fit = SetUpAndSolve(recordings, options, nullptr);
   if (!fit.ok()) return fit.error();
   if (!fit.value().ok()) return Error{"no usable optimum was found"};
   const SolvedFit& solved = fit.value();

@@ -109,9 +109,9 @@ bool GoesTogether(const FitOptions& o, const std::vector<PendulumRecording>& rec
           }));
 }
 
-// Nothing for presets that do not ask the feet.
-std::optional<Stance> ToldByFeet(const std::vector<PendulumRecording>& recordings,
-                                 const std::string& preset) {
+// The stance that the recorded feet show; none for presets with a stance of their own.
+std::optional<Stance> StanceFromFeet(const std::vector<PendulumRecording>& recordings,
+                                     const std::string& preset) {
   const std::optional<Stance> of_movers = StanceOfMovers(preset);
   if (!of_movers) return std::nullopt;
   return StanceOf(FeetOf(recordings), *of_movers);
@@ -122,7 +122,7 @@ Result<FitOptions> OverPresetOf(const std::vector<PendulumRecording>& recordings
                                 const std::string& preset, const GivenOptions& given,
                                 const GivenOptions& must_act) {
   const std::string* asked = Find(given, "stance");
-  const std::optional<Stance> told = ToldByFeet(recordings, preset);
+  const std::optional<Stance> told = StanceFromFeet(recordings, preset);
   const bool open = asked == nullptr || *asked == kAutoStance;
   if (open && told && *told != Stance::kSlide) {
     Result<FitOptions> made =
@@ -183,7 +183,7 @@ Result<FitSetup> FitSetup::Make(GivenOptions given, GivenOptions must_act) {
 
 Result<FitOptions> FitSetup::For(const std::vector<PendulumRecording>& recordings) const {
   const std::string preset = PresetFor(PresetIn(given_), recordings);
-  const std::optional<Stance> told = ToldByFeet(recordings, preset);
+  const std::optional<Stance> told = StanceFromFeet(recordings, preset);
   if (preset == roughly_.preset && (!told || *told == roughly_.model.stance)) return roughly_;
   return MakeFitOptions(given_, &recordings, must_act_);
 }

@@ -42,7 +42,7 @@ double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights,
                                {before.rate, now.rate}}) {
       change = std::max(change, Change(a, b));
     }
-    problem.Weigh(*weights);  // the effective weight is that of residuals in these sigmas
+    problem.SetWeights(*weights);  // the effective weight is that of residuals in these sigmas
   }
   if (options.estimate_weights) {
     weights->effective_weight = EstimateEffectiveWeight(problem, point, recordings);
@@ -51,15 +51,15 @@ double Reweigh(FitProblem problem, const FitPoint& point, CostWeights* weights,
   return std::max(change, UpdatePoolingSpread(problem, point, weights));
 }
 
-// On the way an optimum need not be exact.
-FitProblem Roughly(FitProblem problem) {
+// Optima on the way to the final one need not be exact.
+FitProblem WithRoughTolerance(FitProblem problem) {
   problem.set_function_tolerance(std::max(kRough, problem.options().function_tolerance));
   return problem;
 }
 
-// Between two estimates of the weights.
-FitProblem Briefly(const FitProblem& problem) {
-  FitProblem rough = Roughly(problem);
+// For solves between two estimates of the weights.
+FitProblem WithFewIterations(const FitProblem& problem) {
+  FitProblem rough = WithRoughTolerance(problem);
   const FitOptions& options = problem.options();
   if (options.model.learned == nullptr) {
     rough.set_max_iterations(std::min(kFewIterations, options.max_iterations));
@@ -67,8 +67,8 @@ FitProblem Briefly(const FitProblem& problem) {
   return rough;
 }
 
-// With a share of a demand.
-FitProblem OnTheWay(FitProblem problem) {
+// For solves with a share of a demand.
+FitProblem WithLooserTolerance(FitProblem problem) {
   problem.set_function_tolerance(kLessExact * problem.options().function_tolerance);
   return problem;
 }
@@ -92,9 +92,9 @@ void SolveOn(const FitProblem& problem, SolveStart* start) {
   start->message = std::move(again.message);
 }
 
-// Weighs and solves in turns, roughly until the weights stay, then exactly until they stay again.
-// False where they do not stay.
-bool Weigh(FitProblem* problem, SolveStart* start) {
+// Solves and estimates the weights in turns: with a rough tolerance until the weights settle, then
+// exactly until they settle again. False where they do not.
+bool SolveAndReweigh(FitProblem* problem, SolveStart* start) {
   bool exact = false;
   for (int round = 0; round < kMostRounds; ++round) {
     CostWeights now = problem->weights();
@@ -103,16 +103,16 @@ bool Weigh(FitProblem* problem, SolveStart* start) {
     if (settled && exact) return true;
     exact = exact || settled;
     if (!settled) {
-      problem->Weigh(now);
+      problem->SetWeights(now);
       start->recordings = std::move(recordings);
     }
-    SolveOn(exact ? *problem : Briefly(*problem), start);
+    SolveOn(exact ? *problem : WithFewIterations(*problem), start);
   }
   if (!exact) SolveOn(*problem, start);
   return false;
 }
 
-// In which the slowest of those whom the demand is put to settle.
+// Seconds until the slowest simulated person has settled.
 double SlowestSeconds(const FitProblem& problem, const FitPoint& point) {
   double slowest = 0.0;
   for (const std::string& unit : problem.SettlingUnits(point)) {
@@ -130,9 +130,9 @@ SolveStart SolveHeld(const FitProblem& demanding, const SolveStart& free) {
   for (double share : kDemandSteps) {
     part.set_settling_weight(share * demanding.options().settling_weight);
     if (share == kDemandSteps[0] && std::isinf(CostAt(part.WithoutRecordings(), free.to))) {
-      held = SolveFrom(Roughly(part), part.NominalPoint(), "nominal", nullptr);
+      held = SolveFrom(WithRoughTolerance(part), part.NominalPoint(), "nominal", nullptr);
     } else {
-      SolveOn(share < 1.0 ? OnTheWay(part) : part, &held);
+      SolveOn(share < 1.0 ? WithLooserTolerance(part) : part, &held);
     }
   }
   held.failed = FailuresAfter(demanding, held);
@@ -176,14 +176,14 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
   problem->set_settling_weight(0.0);
   WeightedSolution solved;
   Solution& solution = solved.solution;
-  solution = Solve(Roughly(*problem), progress);
+  solution = Solve(WithRoughTolerance(*problem), progress);
   solved.work.Add("starts and horizons");
   if (!solution.ok()) {
     problem->set_settling_weight(weight);
     return solved;
   }
   SolveStart& best = solution.start;
-  solved.weights_settled = Weigh(problem, &best);
+  solved.weights_settled = SolveAndReweigh(problem, &best);
   best.failed = FailuresAfter(*problem, best);
   solved.work.Add("weights");
   Demand(weight, problem, &solved);
@@ -194,7 +194,7 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
   return solved;
 }
 
-WeightedSolution SolveAsAsked(FitProblem* problem, const SolveProgress& progress) {
+WeightedSolution SolveFit(FitProblem* problem, const SolveProgress& progress) {
   if (problem->options().likelihood == Likelihood::kTrajectory) {
     return SolveWeighted(problem, progress);
   }

@@ -38,6 +38,6 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
 
 // By rollouts as above, or by a likelihood of single steps (solver/solver.h), as the
 // problem's options say.
-WeightedSolution SolveAsAsked(FitProblem* problem, const SolveProgress& progress = nullptr);
+WeightedSolution SolveFit(FitProblem* problem, const SolveProgress& progress = nullptr);
 
 }  // namespace pushid

@@ -145,7 +145,7 @@ bool ParseNumber(const std::string& text, double* value) {
 Error UnknownName(const std::string& name, const std::string& flag, const ParameterTable& table) {
   std::vector<std::string> names;
   for (const ParameterSpec& spec : table.specs) names.push_back(spec.name);
-  const std::string meant = MeantText(name, names);
+  const std::string meant = Suggestion(name, names);
   return Error{flag + " names '" + name + "', which is not a parameter" +
                (meant.empty() ? "; there are " + Listed(names, ",") : meant)};
 }

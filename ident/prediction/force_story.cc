@@ -52,7 +52,7 @@ std::vector<StoryMoment> Runs(const ForceStory& story) {
 }
 
 // The cause of which a series of short runs has most.
-Cause Loudest(const ForceStory& story, const std::vector<StoryMoment>& runs) {
+Cause DominantCause(const ForceStory& story, const std::vector<StoryMoment>& runs) {
   std::map<Cause, double> sums;
   for (const StoryMoment& run : runs) {
     for (int t = run.from; t < run.to; ++t) {
@@ -83,7 +83,7 @@ std::vector<StoryMoment> Moments(const ForceStory& story, double dt) {
     all.to = shorts.back().to;
     const bool lasts = (all.to - all.from) * dt >= kShortest;
     if (lasts || moments.empty()) {
-      all.cause = Loudest(story, shorts);
+      all.cause = DominantCause(story, shorts);
       Append(all, &moments);
     } else {
       moments.back().to = all.to;

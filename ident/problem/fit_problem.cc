@@ -52,7 +52,7 @@ CostWeights FitProblem::weights() const {
   return weights;
 }
 
-void FitProblem::Weigh(const CostWeights& weights) {
+void FitProblem::SetWeights(const CostWeights& weights) {
   options_.sigmas = weights.sigmas;
   options_.effective_weight = weights.effective_weight;
   options_.settling_weight = weights.settling_weight;

@@ -89,7 +89,7 @@ class FitProblem {
 
   CostWeights weights() const;
   // Points of the problem stay points of it.
-  void Weigh(const CostWeights& weights);
+  void SetWeights(const CostWeights& weights);
   void set_settling_weight(double weight) { options_.settling_weight = weight; }
   void set_function_tolerance(double tolerance) { options_.function_tolerance = tolerance; }
   void set_max_iterations(int most) { options_.max_iterations = most; }

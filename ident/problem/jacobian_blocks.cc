@@ -60,7 +60,7 @@ class Gatherer {
     std::vector<PersonRows> people(1);
     // A block that cannot be evaluated here was left out by Build; skip it all the same.
     const bool told = recording != nullptr && recording->in_lanes() != nullptr
-                          ? recording->TellPeople(sums[block.cluster], robust_, &people)
+                          ? recording->FillPeople(sums[block.cluster], robust_, &people)
                       : rollout != nullptr ? rollout->EvaluatePeople(at.data(), robust_, &people)
                                            : EvaluateRows(*block.cost, at, &people[0]);
     if (!told) return;

@@ -51,7 +51,7 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
 
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override {
     bool held = Holds(blocks, jacobians != nullptr);
-    if (held && in_lanes() != nullptr) return rollout()->Tell(sums_, residuals, jacobians);
+    if (held && in_lanes() != nullptr) return rollout()->FillRows(sums_, residuals, jacobians);
     for (size_t b = 0; held && jacobians != nullptr && b < blocks_.size(); ++b) {
       held = jacobians[b] == nullptr || !jacobians_[b].empty();
     }

@@ -113,7 +113,7 @@ bool SolveOn(FitProblem* problem, SolveStart* start) {
   for (int round = 0; round < kMostRounds; ++round) {
     CostWeights weights = problem->weights();
     const double spread = UpdatePoolingSpread(*problem, start->to, &weights);
-    problem->Weigh(weights);
+    problem->SetWeights(weights);
     const SolveStage stage = SolveByBfgs(*problem, &start->to, &start->message);
     const double before = start->cost;
     start->stages.push_back(stage);

@@ -74,7 +74,7 @@ void Shift(double eta, PendulumRecording* r) {
 }
 
 // All people heavier by the share eta; pushes by inverse dynamics with them.
-void Weigh(double eta, PendulumRecording* r) {
+void ScaleMasses(double eta, PendulumRecording* r) {
   for (ScenePerson& person : r->scene.people) person.body.mass *= 1.0 + eta;
   for (ScenePush& push : r->scene.pushes) {
     if (push.kind == PushKind::kExternal) continue;
@@ -85,7 +85,7 @@ void Weigh(double eta, PendulumRecording* r) {
 
 // More frames a second by the share eta; forces by inverse dynamics are masses times second
 // differences.
-void Hasten(double eta, PendulumRecording* r) {
+void ScaleFrameRate(double eta, PendulumRecording* r) {
   r->scene.dt /= 1.0 + eta;
   for (ScenePerson& person : r->scene.people) person.start.qd *= 1.0 + eta;
   for (ScenePush& push : r->scene.pushes) {
@@ -184,8 +184,8 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
     all.push_back({"height of the pushes", "m", stated.push_height_m, 1e-4, Raise});
     all.push_back({"zero of the pushes", "N", stated.push_zero_N, 1e-2, Shift});
   }
-  all.push_back({"masses", "", stated.mass, 1e-4, Weigh});
-  all.push_back({"frame rate", "", stated.frame_rate, 1e-4, Hasten, nullptr, {}, true});
+  all.push_back({"masses", "", stated.mass, 1e-4, ScaleMasses});
+  all.push_back({"frame rate", "", stated.frame_rate, 1e-4, ScaleFrameRate, nullptr, {}, true});
   all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, DriftAlong});
   const FitOptions& options = problem.options();
   if (options.model.stance == Stance::kFixed && options.model.delay == Delay::kNone) {

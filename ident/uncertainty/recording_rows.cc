@@ -271,14 +271,14 @@ std::vector<PersonSums> Condense(const FitProblem& problem, const RecordingRows&
   return std::move(people);
 }
 
-// What is told of a recording.
-struct Told {
+// The rows of one recording, condensed to one triangle a person.
+struct CondensedRecording {
   std::vector<Index> columns;
   std::vector<PersonSums> people;
   int num_rows = 0;  // before they were condensed
 };
 
-// Of all of them, then what is no data.
+// Stacks the rows of all recordings, then those of priors and demands.
 class RowStack {
  public:
   RowStack(Index rows, Index columns, RowsByHorizon* result) : result_(*result) {
@@ -287,21 +287,21 @@ class RowStack {
     all.residuals = Eigen::VectorXd::Zero(rows);
   }
 
-  void Add(const Told& told, int recording) {
-    const Index count = static_cast<Index>(told.columns.size());
-    for (int n = 0; n < static_cast<int>(told.people.size()); ++n) {
-      const PersonSums& person = told.people[n];
+  void Add(const CondensedRecording& condensed, int recording) {
+    const Index count = static_cast<Index>(condensed.columns.size());
+    for (int n = 0; n < static_cast<int>(condensed.people.size()); ++n) {
+      const PersonSums& person = condensed.people[n];
       const RowMajorMatrix plain = person.plain.Factor(), robust = person.robust.Factor();
       for (Index k = 0; k <= count; ++k) {
         const Index row = Next(recording, n);
         result_.rows.residuals[row] = plain(k, count);
         for (Index j = 0; j < count; ++j) {
-          result_.rows.jacobian(row, told.columns[j]) = plain(k, j);
-          result_.rows.robust_jacobian(row, told.columns[j]) = robust(k, j);
+          result_.rows.jacobian(row, condensed.columns[j]) = plain(k, j);
+          result_.rows.robust_jacobian(row, condensed.columns[j]) = robust(k, j);
         }
       }
       for (size_t part = 0; part < person.scores.size(); ++part) {
-        AddPart(told, person, {recording, n, static_cast<int>(part), {}, {}});
+        AddPart(condensed, person, {recording, n, static_cast<int>(part), {}, {}});
       }
     }
   }
@@ -328,10 +328,11 @@ class RowStack {
     return next_++;
   }
 
-  void AddPart(const Told& told, const PersonSums& person, DataPart part) {
+  void AddPart(const CondensedRecording& condensed, const PersonSums& person, DataPart part) {
     const Index estimates = result_.num_estimates;
-    const auto beyond = std::lower_bound(told.columns.begin(), told.columns.end(), estimates);
-    const std::vector<Index> own(told.columns.begin(), beyond);
+    const auto beyond =
+        std::lower_bound(condensed.columns.begin(), condensed.columns.end(), estimates);
+    const std::vector<Index> own(condensed.columns.begin(), beyond);
     const Index count = static_cast<Index>(own.size());
     const RowMajorMatrix gram =
         person.robust_parts[part.part].information().topLeftCorner(count, count);
@@ -358,31 +359,31 @@ RowsByHorizon EvaluateByHorizon(const FitProblem& problem, const FitPoint& point
                                 const std::vector<int>& horizons) {
   const int recordings = static_cast<int>(problem.recordings().size());
   RowsOfRecordings of(problem, point, assumptions);
-  std::vector<Told> told(recordings);
+  std::vector<CondensedRecording> condensed(recordings);
   ParallelFor(recordings, problem.options().num_threads, [&](int i) {
     if (problem.Count(i) == 0) return;
     RecordingRows rows = of.Of(i);
-    told[i].num_rows = static_cast<int>(rows.residuals.size());
-    if (told[i].num_rows == 0) return;
-    told[i].people = Condense(problem, rows, horizons, i);
-    told[i].columns = std::move(rows.columns);
+    condensed[i].num_rows = static_cast<int>(rows.residuals.size());
+    if (condensed[i].num_rows == 0) return;
+    condensed[i].people = Condense(problem, rows, horizons, i);
+    condensed[i].columns = std::move(rows.columns);
   });
   RowsByHorizon result;
   for (int i = 0; i < recordings; ++i) {
-    if (problem.Count(i) > 0 && told[i].num_rows == 0) return result;
+    if (problem.Count(i) > 0 && condensed[i].num_rows == 0) return result;
   }
   const JacobianBlocks beside = RowsBeside(problem, point);
   result.num_estimates = static_cast<int>(of.num_estimates());
   Index size = beside.jacobian.rows() + static_cast<Index>(assumptions.size());
-  for (const Told& one : told) {
+  for (const CondensedRecording& one : condensed) {
     size += static_cast<Index>(one.people.size() * (one.columns.size() + 1));
   }
   RowStack stack(size, of.num_estimates() + static_cast<Index>(assumptions.size()), &result);
   for (int i = 0; i < recordings; ++i) {
-    if (told[i].num_rows == 0) continue;
+    if (condensed[i].num_rows == 0) continue;
     result.rows.clusters.push_back(i);
-    result.rows.num_data_rows += told[i].num_rows;
-    stack.Add(told[i], i);
+    result.rows.num_data_rows += condensed[i].num_rows;
+    stack.Add(condensed[i], i);
   }
   stack.AddBeside(beside, assumptions);
   return result;

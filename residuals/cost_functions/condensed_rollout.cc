@@ -22,26 +22,27 @@ bool CondensedRollout::Evaluate(double const* const* blocks, double* residuals,
                                 double** jacobians) const {
   if (in_lanes() == nullptr) return CondensedRows::Evaluate(blocks, residuals, jacobians);
   const LaneSums sums = jacobians != nullptr ? LaneSums::kPlain : LaneSums::kSquares;
-  return Tell(Alone(blocks, sums), residuals, jacobians);
+  return FillRows(Alone(blocks, sums), residuals, jacobians);
 }
 
 bool CondensedRollout::EvaluatePeople(double const* const* blocks, bool robust,
                                       std::vector<PersonRows>* people) const {
   if (in_lanes() == nullptr) return CondensedRows::EvaluatePeople(blocks, robust, people);
-  return TellPeople(Alone(blocks, robust ? LaneSums::kRobust : LaneSums::kPlain), robust, people);
+  return FillPeople(Alone(blocks, robust ? LaneSums::kRobust : LaneSums::kPlain), robust, people);
 }
 
-bool CondensedRollout::Tell(const RolloutSums& sums, double* residuals, double** jacobians) const {
+bool CondensedRollout::FillRows(const RolloutSums& sums, double* residuals,
+                                double** jacobians) const {
   if (!sums.ok) return false;
   if (jacobians == nullptr) {
-    TellSquares(sums.squares, residuals);
+    FillSquares(sums.squares, residuals);
   } else {
-    CondensedRows::Tell(sums.plain, residuals, jacobians);
+    CondensedRows::FillRows(sums.plain, residuals, jacobians);
   }
   return true;
 }
 
-bool CondensedRollout::TellPeople(const RolloutSums& sums, bool robust,
+bool CondensedRollout::FillPeople(const RolloutSums& sums, bool robust,
                                   std::vector<PersonRows>* people) const {
   if (!sums.ok) return false;
   *people = {RowsOf(sums.plain, robust ? &sums.robust : nullptr)};
@@ -85,21 +86,21 @@ bool CondensedRows::Evaluate(double const* const* blocks, double* residuals,
   });
   if (!status.ok) return false;
   if (wanted == Derivatives::kNone) {
-    TellSquares(squares, residuals);
+    FillSquares(squares, residuals);
   } else {
-    Tell(equations, residuals, jacobians);
+    FillRows(equations, residuals, jacobians);
   }
   return true;
 }
 
-void CondensedRows::TellSquares(double squares, double* residuals) const {
+void CondensedRows::FillSquares(double squares, double* residuals) const {
   Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());
   values.setZero();
   values[values.size() - 1] = std::sqrt(squares);
 }
 
-void CondensedRows::Tell(const NormalEquations& equations, double* residuals,
-                         double** jacobians) const {
+void CondensedRows::FillRows(const NormalEquations& equations, double* residuals,
+                             double** jacobians) const {
   const int acting = equations.columns();
   const RowMajorMatrix factor = equations.Factor();
   Eigen::Map<Eigen::VectorXd> values(residuals, num_residuals());

@@ -54,9 +54,9 @@ class CondensedRows : public ceres::CostFunction {
                               const RowsVisitor& visit) const = 0;
 
   const ActingColumns& columns() const { return columns_; }
-  // What Evaluate tells of equations by `acting` columns, and of r'r where there are none.
-  void Tell(const NormalEquations& equations, double* residuals, double** jacobians) const;
-  void TellSquares(double squares, double* residuals) const;
+  // Evaluate's outputs from equations by `acting` columns, or from r'r where there are none.
+  void FillRows(const NormalEquations& equations, double* residuals, double** jacobians) const;
+  void FillSquares(double squares, double* residuals) const;
   // robust: null without.
   PersonRows RowsOf(const NormalEquations& plain, const NormalEquations* robust) const;
 
@@ -79,9 +79,9 @@ class CondensedRollout : public CondensedRows {
 
   // The problem, where it has lanes and they are to be used; null otherwise.
   const RolloutProblem* in_lanes() const { return HasLanes(problem()) ? &problem() : nullptr; }
-  // What Evaluate and EvaluatePeople say, of sums that are there.
-  bool Tell(const RolloutSums& sums, double* residuals, double** jacobians) const;
-  bool TellPeople(const RolloutSums& sums, bool robust, std::vector<PersonRows>* people) const;
+  // The outputs of Evaluate and EvaluatePeople from sums that were computed before.
+  bool FillRows(const RolloutSums& sums, double* residuals, double** jacobians) const;
+  bool FillPeople(const RolloutSums& sums, bool robust, std::vector<PersonRows>* people) const;
 
  protected:
   RolloutStatus Visit(double const* const* blocks, Derivatives derivatives,

@@ -54,7 +54,7 @@ void SolveByInnovations(benchmark::State& state) {
   Solution solution;
   for (auto _ : state) {
     FitProblem problem(SinglePeople().recordings, options);
-    solution = SolveAsAsked(&problem).solution;
+    solution = SolveFit(&problem).solution;
   }
   Report(state, solution);
 }

@@ -87,7 +87,7 @@ TEST(FitProblem, WhatIsLaidOutGoesWithTheWeights) {
   EXPECT_EQ(CostOf(weighed, point), before);
   CostWeights weights = problem.weights();
   weights.sigmas.hip *= 2.0;
-  weighed.Weigh(weights);
+  weighed.SetWeights(weights);
   options.sigmas = weights.sigmas;
   EXPECT_EQ(CostOf(weighed, point), CostOf(FitProblem(recordings, options), point));
   EXPECT_LT(CostOf(weighed, point), before);

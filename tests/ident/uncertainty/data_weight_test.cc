@@ -66,7 +66,7 @@ TEST(DataWeight, MakesUpForSigmas) {
   CostWeights weights = problem.weights();
   ResidualSigmas& sigmas = weights.sigmas;
   for (double* sigma : {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate}) *sigma *= 2.0;
-  problem.Weigh(weights);
+  problem.SetWeights(weights);
   const double doubled = EstimateEffectiveWeight(problem, point, &sums);
   EXPECT_NEAR(doubled / weight, 4.0, 1e-6);
 }
@@ -79,13 +79,13 @@ TEST(DataWeight, TellsTheSumsOfRecordings) {
   RecordingSums sums;
   CostWeights weights = problem.weights();
   weights.effective_weight = 0.0;
-  problem.Weigh(weights);
+  problem.SetWeights(weights);
   weights.effective_weight = EstimateEffectiveWeight(problem, point, &sums);
   EXPECT_EQ(sums.at.size(), 0) << "where recordings do not weigh alike";
   weights.effective_weight *= 3.0;
-  problem.Weigh(weights);
+  problem.SetWeights(weights);
   weights.effective_weight = EstimateEffectiveWeight(problem, point, &sums);
-  problem.Weigh(weights);
+  problem.SetWeights(weights);
   const RecordingSums anew = SumRecordings(EvaluateJacobianBlocks(problem.Build(&point, 0)), point);
   ASSERT_EQ(sums.at, anew.at);
   const auto& [information, gradient] = anew.sums;
