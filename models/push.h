@@ -12,7 +12,9 @@
 // [(g + s) Fx, (g + s) Fy] exp(-k dt / tau) at the hip: r is what sliding feet make of it.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "models/enum_names.h"
@@ -48,8 +50,13 @@ struct ScenePush {
   bool Active(int frame) const { return frame >= start_frame && frame < EndFrame(); }
 };
 
+// A push ends with its last row that is not zero, if it has one: files may pad it to the length of
+// a recording.
 inline ScenePush MakeScenePush(int person, int start_frame, PushKind kind,
                                std::vector<Vector4<double>> force) {
+  const auto last = std::find_if(force.rbegin(), force.rend(),
+                                 [](const Vector4<double>& row) { return !row.isZero(0.0); });
+  if (last != force.rend()) force.erase(last.base(), force.end());
   ScenePush push{person, start_frame, kind, std::move(force)};
   for (const Vector4<double>& row : push.force) push.mean += row;
   if (!push.force.empty()) push.mean /= static_cast<double>(push.force.size());

@@ -60,6 +60,18 @@ TEST(Evaluation, ConstantVelocityOfAPushBeyondTheEnd) {
   EXPECT_NE(path[0][20], r.hip[0][20]);
 }
 
+TEST(Evaluation, APushPaddedByZerosEndsWithItsLastForce) {
+  PendulumRecording r = Parabola("a", 30);
+  const Vector4<double> force{50.0, 0.0, 0.0, 0.0}, none = Vector4<double>::Zero();
+  r.scene.pushes[0] = MakeScenePush(0, 0, PushKind::kExternal, {force, none, force});
+  const HipPaths exact = ConstantVelocityBaseline(r);
+  std::vector<Vector4<double>> padded(29, none);
+  padded[0] = padded[2] = force;
+  r.scene.pushes[0] = MakeScenePush(0, 0, PushKind::kExternal, padded);
+  EXPECT_EQ(r.scene.pushes[0].EndFrame(), 3);
+  EXPECT_EQ(ConstantVelocityBaseline(r), exact);
+}
+
 // Frames 0 to 2 are seen: 0, 0.01, 0.04 m, and the last step was 0.03 m.
 TEST(Evaluation, BaselinesAfterFirstFramesByHand) {
   const PendulumRecording r = Parabola("a", 5);
