@@ -18,7 +18,7 @@ mv "$scratch/usr" "$scratch/moved"
 cmake -S "$source_dir/tests/install/consumer" -B "$scratch/consumer" -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_PREFIX_PATH="$scratch/moved" >/dev/null
 cmake --build "$scratch/consumer" >/dev/null
-"$scratch/consumer/own_law"
+"$scratch/consumer/own_law" "$scratch/study"
 
 # Programs run from where they were put, and the batch finds those beside it.
 "$scratch/moved/bin/pushid-simulate" --out="$scratch/recordings" --people=1 --recordings_per_person=3 >/dev/null
