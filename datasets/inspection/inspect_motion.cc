@@ -380,7 +380,9 @@ class MotionInspector {
       if (across.norm() > farthest.norm()) farthest = across;
     }
     if (found_.onset_frame < 0) {
-      found_.Warn("the hip moves less than 2 cm: there is no push");
+      found_.Warn(
+          "the hip moves " + Rounded(1000.0 * farthest.norm(), 2) +
+          " mm at most, and an onset is seen from 20 mm on: if there is a push, it is small");
       return;
     }
     found_.Fact("onset", "the hip has moved 2 cm at frame " + std::to_string(found_.onset_frame) +

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kFar = 0.5;  // shares beyond it are no more than a direction: tests are linear
 
+constexpr double kLargestFactor = 10.0;
+
 constexpr size_t kNamedSuspects = 3;
 
 struct Remedy {
@@ -37,9 +39,13 @@ bool IsLogarithm(const AssumptionTest& test) {
   return test.unit.empty() && FindRemedy(test) == nullptr;
 }
 
-// "0.6 +- 0.2 frames", "-3 +- 1 %", "factor 0.74 (0.6 to 0.91)".
+// "0.6 +- 0.2 frames", "-3 +- 1 %", "factor 0.74 (0.6 to 0.91)". One Newton step is linear, so a
+// factor beyond kLargestFactor is no more than a direction.
 std::string ValueText(const AssumptionTest& test) {
   if (IsLogarithm(test)) {
+    if (std::abs(test.wanted) > std::log(kLargestFactor)) {
+      return test.wanted > 0.0 ? "much larger" : "much smaller";
+    }
     return "factor " + Rounded(std::exp(test.wanted), 2) + " (" +
            Rounded(std::exp(test.wanted - test.error), 2) + " to " +
            Rounded(std::exp(test.wanted + test.error), 2) + ")";

@@ -35,6 +35,9 @@ TEST(ValueText, WhatIsTakenAsKnownHasItsUnit) {
   EXPECT_TRUE(Contains(table, "factor 2 "));
   EXPECT_TRUE(Contains(table, "factor 0.5 (0.25 to 1)"));
   EXPECT_TRUE(Contains(table, "0.005 +- 0.001 m"));
+
+  result.verdict.assumptions[1].wanted = -33.0;  // a factor of 4.7e-15
+  EXPECT_TRUE(Contains(AssumptionTable(result).ToString(), "much smaller"));
 }
 
 TEST(ValueText, GainsAreSaidInWords) {
