@@ -20,14 +20,14 @@ namespace pushid {
 //   linear  f = w u
 //   mlp     h_1 = tanh(W_1 u + b_1) - tanh(b_1),  h_i = tanh(W_i h_{i-1} + b_i) - tanh(b_i),
 //           f = o h_n
-// F_self: friction, balance, linear and learned self force, whether or not a push hides them for a
-// while; F_rest: the torque that holds the posture. A person at rest with the rod of frame 0
-// (u = 0) keeps exactly that rod, whatever the weights, and zero weights (of f or of o) are a
-// constant rod. Nothing pulls the rod back but the weights on l - l_0: built-in relaxation would
-// decide what the data can say.
+// F_self: balance, linear and learned self force, whether or not a push hides them for a while, and
+// not friction, which is the ground's (LDP, Eq. 7); F_rest: the torque that holds the posture. A
+// person at rest with the rod of frame 0 (u = 0) keeps exactly that rod, whatever the weights, and
+// zero weights (of f or of o) are a constant rod. Nothing pulls the rod back but the weights on
+// l - l_0: built-in relaxation would decide what the data can say.
 //
-// `ldp` is LDP's rod network (Yue et al., CVPR 2024, Eq. 7: 256-128-256) without that guarantee; it
-// sees the length itself and the mass:
+// `ldp` is LDP's rod network (Yue et al., CVPR 2024, Eq. 7; of the paper 128-128, of its release
+// 256-128-256) without that guarantee; it sees the length itself and the mass:
 //   u = [as above (10), (l - 0.95 m) / 0.05, (M - 85 kg) / 20 kg]
 //   h_i = max(0, W_i h_{i-1} + b_i),  f = o h_n + c
 //
@@ -56,7 +56,7 @@ struct RodShape {
   int num_weights() const;
 };
 
-// "constant", "linear", "mlp:4", "ldp:256-128-256".
+// "constant", "linear", "mlp:4", "ldp:128-128".
 std::string RodName(const RodShape& shape);
 
 inline constexpr double kRodSpeed = 0.1;  // m/s per unit of f

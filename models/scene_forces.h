@@ -196,7 +196,7 @@ class SceneForces {
     const SelfForce& self = self_[person];
     const PendulumState<T>& state = states_[person];
     const LearnedTerms& network = *options_->learned;
-    Vector4<T> force = self.Total(Parameters(person), state, qd_previous);
+    Vector4<T> force = self.Effort(Parameters(person), state, qd_previous);
     if (!networks_.empty()) force += networks_[person].force;
     for (int i = 0; i < 2; ++i) force[2 + i] -= self.hold[i];
     SetRodInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd, force,

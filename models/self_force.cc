@@ -25,4 +25,10 @@ void SelfForce::TotalJacobian(const ParameterSet<double>& p, const PendulumState
   AddOwnJacobian(p, state, jacobian);
 }
 
+void SelfForce::EffortJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
+                               const Vector4<double>& qd_previous, Jacobian* jacobian) const {
+  ControlJacobian(p, state, qd_previous, jacobian);
+  AddOwnJacobian(p, state, jacobian);
+}
+
 }  // namespace pushid

@@ -77,15 +77,24 @@ struct SelfForce : SelfTerms<double> {
   template <typename T>
   Vector4<T> Total(const ParameterSet<T>& p, const PendulumState<T>& state,
                    const Vector4<T>& qd_previous) const {
-    Vector4<T> force = Friction(p, state.qd) + Balance(p, state, qd_previous) + Linear(p, state);
+    return Friction(p, state.qd) + Effort(p, state, qd_previous);
+  }
+
+  // What the person does: all but friction, which is the ground's.
+  template <typename T>
+  Vector4<T> Effort(const ParameterSet<T>& p, const PendulumState<T>& state,
+                    const Vector4<T>& qd_previous) const {
+    Vector4<T> force = Balance(p, state, qd_previous) + Linear(p, state);
     if (!laws.empty()) force += Own(p, state);
     return force;
   }
 
-  // Derivatives of Total; of the laws that a user brings, added.
+  // Derivatives of Total, and of Effort; of the laws that a user brings, added.
   using Jacobian = SelfJacobian<double>;
   void TotalJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
                      const Vector4<double>& qd_previous, Jacobian* jacobian) const;
+  void EffortJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
+                      const Vector4<double>& qd_previous, Jacobian* jacobian) const;
   void AddOwnJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
                       Jacobian* jacobian) const;
 };

@@ -115,7 +115,7 @@ Eigen::MatrixXd LearnedStep(const LearnedTerms& network, const SelfForce& self,
       const Vector4<double> before{from[kPreviousAt], from[kPreviousAt + 1], 0.0, 0.0};
       RodLayers<double> layers(network.rod);
       SetRodInputs<double>(from[0], from[1], qd,
-                           self.Total(parameters, state, before) + to.head<4>(), state.rod,
+                           self.Effort(parameters, state, before) + to.head<4>(), state.rod,
                            self.body, &layers);
       to[4] = RodVelocity(network.rod, network.weights.data() + network.rod_at(), &layers);
     }

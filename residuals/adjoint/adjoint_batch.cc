@@ -138,7 +138,7 @@ void AdjointGradient::Batch::SetRodVelocities(int step) {
     if (!Going(walker, step)) continue;
     const PendulumState<double>& state = walker.path[step];
     Vector4<double> force =
-        walker.self.Total(Parameters(column), state, walker.VelocityBefore(step));
+        walker.self.Effort(Parameters(column), state, walker.VelocityBefore(step));
     force += forces_.col(column);
     force.tail<2>() -= walker.self.hold;
     SetRodInputs<double>(state.q[2] - walker.self.posture[0], state.q[3] - walker.self.posture[1],
@@ -379,7 +379,7 @@ AdjointGradient::Batch::ForceAdjoint AdjointGradient::Batch::StepBack(
     adjoint->rod += (*by_rod)[RodShape::kRodInput] / kNetworkRod;
     const Vector4<double> seen =
         by_rod->segment<4>(RodShape::kForceInputs) / (kNetworkAcceleration * walker.body().mass);
-    walker.self.TotalJacobian(p, state, before, &jacobian);
+    walker.self.EffortJacobian(p, state, before, &jacobian);
     s.tail<6>() += by_rod->head<6>().cwiseProduct(MotionInputScales());
     s += jacobian.by_state.transpose() * seen;
     sum += jacobian.by_parameter.transpose() * seen;

@@ -385,7 +385,7 @@ class SensitivityRollout {
 
   void AdvanceRod(const PersonStep& step) {
     const int t = step.frame, n = step.person;
-    step.self.TotalJacobian(step.p, step.state, step.previous, &jacobian_);
+    step.self.EffortJacobian(step.p, step.state, step.previous, &jacobian_);
     const RodStep rod{forces_.rod(n), step.self.body.mass, jacobian_,
                       networks_.empty() ? nullptr : &networks_[n], inputs_.entries[n]};
     const auto now = sensitivities_.Rod(t, n);

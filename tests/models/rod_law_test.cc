@@ -66,12 +66,12 @@ TEST(RodLaw, SizesAndNames) {
   EXPECT_EQ(constant.num_weights(), 0);
   EXPECT_EQ(linear.num_weights(), 11);
   EXPECT_EQ(mlp.num_weights(), 256 * 12 + 128 * 257 + 256 * 129 + 256);
-  const RodShape ldp{RodKind::kLdp, {256, 128, 256}};  // the mass among the inputs, all biases
-  EXPECT_EQ(ldp.num_weights(), 256 * 13 + 128 * 257 + 256 * 129 + 257);
+  const RodShape ldp{RodKind::kLdp, {128, 128}};  // the mass among the inputs, all biases
+  EXPECT_EQ(ldp.num_weights(), 18305);            // 128 13 + 128 129 + 129
   EXPECT_EQ(RodName(constant), "constant");
   EXPECT_EQ(RodName(linear), "linear");
   EXPECT_EQ(RodName({RodKind::kMlp, {4}}), "mlp:4");
-  EXPECT_EQ(RodName(ldp), "ldp:256-128-256");
+  EXPECT_EQ(RodName(ldp), "ldp:128-128");
 }
 
 // One unit that sees the length and the mass: h = max(0, (l - 0.95) / 0.05 + 2 (M - 85) / 20 +
@@ -89,6 +89,45 @@ TEST(RodLaw, LdpsSeesLengthAndMass) {
   EXPECT_NEAR(velocity(85.0, 0.05), 0.1 * (3.0 * 0.5 - 1.0), 1e-14);
   EXPECT_NEAR(velocity(95.0, 0.05), 0.1 * (3.0 * 1.5 - 1.0), 1e-14);
   EXPECT_NEAR(velocity(85.0, 0.0), -0.1, 1e-14) << "rectified";
+}
+
+// LDP's Eq. 7: the self force that the rod sees is PD and LSTM, without the ground's friction.
+// A person of 95 kg and l = 1.0 + 0.02 m, theta = 0.1, phi = 0.05, v = (0.5, -0.2), (0.4, -0.2) a
+// frame earlier, thd = 0.2; an LSTM that says 170 (0.02, 0, -0.1, 0) = (3.4, 0, -17, 0):
+//   x      -30 0.5 - 4 per frame (0.5 - 0.4) + 3.4 = -12 N     (a friction of -50 N left out)
+//   y      30 0.2 = 6 N
+//   theta  -1500 0.1 - 10 0.2 - 17 = -169 N m
+//   phi    -1500 0.05 = -75 N m
+// each over 2 95 kg.
+TEST(RodLaw, LdpsInputsByHand) {
+  LearnedTerms learned;
+  learned.shape = {NetworkKind::kLdp, 1, 1};
+  learned.rod = {RodKind::kLdp, {1}};
+  learned.weights.assign(learned.num_weights(), 0.0);
+  learned.weights[learned.shape.output_at() + 1] = 0.02;
+  learned.weights[learned.shape.output_at() + 5] = -0.1;
+  ModelOptions options;
+  options.posture = Posture::kUpright;
+  options.gain_scaling = GainScaling::kNone;
+  options.cart_derivative = CartDerivative::kBackward;
+  options.learned = std::make_shared<LearnedTerms>(learned);
+  ParameterSet<double> p{};
+  p[kMu] = 100.0, p[kKpX] = p[kKpY] = 30.0, p[kKdX] = p[kKdY] = 4.0 / 60.0;
+  p[kKpTheta] = p[kKpPhi] = 1500.0, p[kKdTheta] = p[kKdPhi] = 10.0;
+  Scene scene;
+  scene.people = {{{95.0, 1.0, 0.1}, {}}};
+  PendulumState<double> now{{3.0, 4.0, 0.1, 0.05}, {0.5, -0.2, 0.2, 0.0}};
+  now.rod = 0.02;
+
+  const std::vector<ParameterSet<double>> parameters = {p};
+  SceneForces<double> forces(scene, options, parameters);
+  forces.Update(&now);
+  forces.PrepareAll();
+  forces.Next(0, Vector4<double>::Zero(), {}, {0.4, -0.2, 0.0, 0.0});
+  Eigen::VectorXd by_hand(12);
+  by_hand << 0.1 / 0.15, 0.05 / 0.15, 0.5 / 0.8, -0.2 / 0.8, 0.2 / 0.6, 0.0, -12.0 / 190.0,
+      6.0 / 190.0, -169.0 / 190.0, -75.0 / 190.0, 1.4, 0.5;
+  ExpectClose(forces.rod(0).inputs, by_hand, 1e-13);
 }
 
 ParameterSet<double> RodParameters() {
@@ -178,7 +217,7 @@ TEST(RodLaw, APushMovesTheRodAndTheRodThePendulum) {
 
 TEST(RodLaw, LdpsSizeRunsInARollout) {
   Random random(75);
-  const RodShape ldp{RodKind::kLdp, {256, 128, 256}};
+  const RodShape ldp{RodKind::kLdp, {128, 128}};
   const auto path = RollStanding(TwoPeople(40.0), WithRod(ldp, kMotionMlp, 0.05, &random), 60);
   EXPECT_NE(path.At(59, 0).rod, 0.0);
 }
