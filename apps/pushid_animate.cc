@@ -41,7 +41,7 @@ void Write(const std::string& file, const std::string& content) {
   std::printf("%s\n", file.c_str());
 }
 
-// Of the model as it was fitted.
+// Explains the forces of the model as it was fitted.
 void Explain(const std::string& who, const PendulumRecording& recording,
              const Prediction& prediction, Animation* animation) {
   ForceStory story;

@@ -12,9 +12,10 @@
 #include "apps/support/app_support.h"
 #include "apps/support/processes.h"
 #include "datasets/files/error.h"
+#include "datasets/files/names.h"
 #include "datasets/manifest/manifest.h"
 #include "ident/figures/text_table.h"
-#include "ident/report/page/document.h"
+#include "ident/report/document.h"
 
 DEFINE_string(plan, "", "the plan (TOML); apps/README.md gives its keys");
 DEFINE_bool(
@@ -34,7 +35,7 @@ namespace {
 
 using namespace pushid;
 
-// Only every `shards`-th job, starting with this one, from 1.
+// Run only every `shards`-th job, starting with number `shard`, from 1.
 int shard = 1, shards = 1;
 
 void ReadShard() {
@@ -147,7 +148,7 @@ std::string TimeText(double seconds) {
   return std::to_string(s / 60) + " min " + std::to_string(s % 60) + " s";
 }
 
-// Of all jobs of the plan, whichever of them ran now.
+// Shows all jobs of the plan, whichever of them ran now.
 void ShowSummary(const BatchPlan& plan, const std::vector<BatchJob>& all) {
   const std::vector<JobResult> rows = ReadResults(plan, all);
   WriteSummary(plan, rows);
@@ -179,8 +180,7 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
               plan.dir.c_str());
   if (o.elsewhere > 0) {
-    Warn("left to another pushid-batch that is running them: " + std::to_string(o.elsewhere) +
-         (o.elsewhere == 1 ? " job" : " jobs") +
+    Warn("left to another pushid-batch that is running them: " + CountText(o.elsewhere, "job") +
          "; when it has finished, --gather writes the complete table");
   }
   for (const std::string& reason : o.unrecorded) Warn("a job failed: " + reason);

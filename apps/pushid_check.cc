@@ -67,7 +67,6 @@ ModelChecks ChecksFromCommandLine(uint64_t seed) {
   return checks;
 }
 
-// With a progress line.
 void Add(const std::vector<PendulumRecording>& recordings, const ModelChecks& checks,
          FittedModel* model) {
   ProgressLine line;

@@ -106,7 +106,7 @@ void ReadScheme(FoldScheme* scheme) {
 
 using Predictors = std::vector<Predictor>;
 
-// Those that futures can be drawn from.
+// The candidates from which futures can be drawn.
 Candidates NoisyModels(const Candidates& candidates) {
   Candidates noisy;
   for (const auto& [name, candidate] : candidates) {
@@ -125,8 +125,8 @@ Candidates NoisyModels(const Candidates& candidates) {
   return noisy;
 }
 
-// Where first frames are seen, the model started anew takes the place of ridge regression and
-// template, which could not use them.
+// After observed frames the restarted model takes the place of ridge regression and template, which
+// could not use them.
 void AddBaselines(const FitOptions& options, Predictors* predictors) {
   const int observed = ObservedFrames();
   if (observed > 0) {
@@ -167,7 +167,7 @@ Predictors MakePredictors(const Candidates& candidates) {
   return predictors;
 }
 
-// What is wrong with the flags, before any recording is read.
+// Throws where flags are wrong, before any recording is read.
 void CheckFlags(const Setups& setups) {
   MakePredictors(CandidatesOf(setups));
   CheckObservedFlag();

@@ -29,7 +29,6 @@ namespace {
 
 using namespace pushid;
 
-// That of --restoration, once all flags have been checked.
 RestorationFlags CheckedFlags() {
   RequireModel();
   const RestorationFlags restoration = RestorationFlagsFromCommandLine();

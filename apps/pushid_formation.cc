@@ -333,7 +333,7 @@ void PrintPeople(const FormationRun& run, bool named) {
   }
 }
 
-// What the fit warned of holds for what is simulated with it.
+// Warnings of the fit hold for what is simulated with it.
 void PrintFitWarnings(const FittedModel& model) {
   for (const std::string& warning : GroupedWarnings(model.fit.warnings)) {
     std::printf("warning of the fit: %s\n", warning.c_str());
@@ -503,7 +503,8 @@ int Run() {
   if (!run.prediction.status.ok) return LeftDomain(run.prediction.status, scene.dt);
   const ModelFlags named = ModelFlagsFromCommandLine();
   const FittedModel fitted = OrFail(ReadFittedModel(named.file));
-  // What a setting's own parameters leave open is no part of a model.
+  // A model does not hold the uncertainty of a setting's own parameters, so there are no bands
+  // then.
   const bool setting = !FLAGS_setting.empty();
   const bool banded =
       !setting && (!FLAGS_svg_out.empty() || scene.num_people() <= kMostPeopleForBands);

@@ -40,7 +40,6 @@ namespace {
 
 using namespace pushid;
 
-// What the command line says.
 struct GenerateFlags {
   std::string model;   // folder of the generator
   std::string folder;  // of clips
@@ -216,7 +215,7 @@ GenerateFlags GenerateFlagsFromCommandLine() {
 
 // Windows of clips forecast, sampled and shown, and paths to a pose.
 
-// All windows are forecast together, in pieces that fit the memory.
+// Windows are forecast together, in batches that fit the memory.
 constexpr size_t kTogether = 64;
 constexpr double kTargetDistance = 0.05;  // m; what counts as near the target of a path
 
@@ -306,7 +305,7 @@ ForecastScene SceneOfWindow(const LoadedGenerator& loaded, const GenerateFlags& 
   return scene;
 }
 
-// What --poses_out, --svg_out and --html_out ask for; their names go to stdout.
+// Writes the files of --poses_out, --svg_out and --html_out; their names go to stdout.
 void ShowForecast(const ForecastScene& scene, const GenerateFlags& flags) {
   if (!flags.poses_out.empty()) {
     const auto files = OrFail(WritePoses(flags.poses_out, scene));
@@ -371,7 +370,7 @@ Prediction PredictBeside(const LoadedGenerator& loaded, const IdentifiedModel& p
               physics.source};
 }
 
-// Where physics have the hips; none without physics.
+// The hips that physics predict; none without physics.
 GroupHips HipsBeside(const LoadedGenerator& loaded, const std::optional<IdentifiedModel>& physics,
                      const BodyRecording& recording, int frames) {
   if (!physics) return GroupHips();
@@ -417,8 +416,9 @@ SocialCues FlaggedCues(const GenerateFlags& flags, const std::vector<BodyRecordi
   return cues;
 }
 
-// What --poses_out, --svg_out and --html_out ask for: everybody recorded, forecast, and the
-// pendulums of the physics beside them; the page shows the figures too. Returns the files' names.
+// Writes the files of --poses_out, --svg_out and --html_out: everybody recorded, forecast, and
+// beside them the pendulums of the physics; the page shows the figures too. Returns the files'
+// names.
 std::vector<std::string> ShowGroup(const LoadedGenerator& loaded, const GenerateFlags& flags,
                                    const BodyRecording& recording,
                                    const std::optional<IdentifiedModel>& physics,

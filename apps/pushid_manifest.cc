@@ -84,7 +84,7 @@ ManifestOptions OptionsFromFlags() {
   return options;
 }
 
-// No flag names the files that the patterns find.
+// Throws where --out would replace a file that the patterns find, which no flag names.
 void CheckFilesKept(const Manifest& manifest, const std::string& path) {
   const OutputFiles outputs;
   for (const ManifestRecording& recording : manifest.recordings) {
@@ -101,7 +101,7 @@ void PrintIds(const char* what, const std::vector<std::string>& ids) {
   if (!ids.empty()) std::printf("%s: %s\n", what, ListOfNames(ids).c_str());
 }
 
-// What the folder has and the manifest that is there has not, behind its entries; those stay as
+// The manifest that is there, with the folder's new recordings behind its entries, which stay as
 // somebody may have edited them.
 Manifest Updated(const std::string& path, const std::vector<ManifestRecording>& found) {
   std::error_code ignored;

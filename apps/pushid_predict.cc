@@ -50,7 +50,7 @@ std::string BodyOutput() {
   return IsBodyFile(FLAGS_out) ? "out=" + FLAGS_out : "";
 }
 
-// Only then are there errors to print.
+// Errors are printed only where the recording itself is predicted.
 bool IsThatOfTheRecording() {
   return FLAGS_frames == 0 && FLAGS_push_scale == 1.0 && FLAGS_push_again.empty();
 }
@@ -70,7 +70,7 @@ ChangedPushes ChangedPushesFromCommandLine() {
   return changed;
 }
 
-// With the pushes that the flags, once checked, ask for.
+// The recording with the pushes of the flags, which were checked.
 PendulumRecording PushedRecording(const Recording& recorded) {
   const PendulumRecording recording = MakePendulumRecording(recorded);
   const ChangedPushes changed = ChangedPushesFromCommandLine();
@@ -79,7 +79,6 @@ PendulumRecording PushedRecording(const Recording& recorded) {
   return WithPushes(recording, changed);
 }
 
-// That of --restoration, once all flags have been checked.
 RestorationFlags CheckedFlags() {
   RequireModel();
   Require("id", FLAGS_id, "name a recording of the manifest");

@@ -56,7 +56,7 @@ namespace {
 
 using namespace pushid;
 
-// What takes more than a look at the flags.
+// Flags that need more than a look.
 struct PushFlags {
   std::vector<std::string> ids;  // the recordings
   SensorSetup sensor;            // what measured the push; without it, inverse dynamics
@@ -125,7 +125,7 @@ void CheckInverseDynamics() {
   }
 }
 
-// That of --frames; -1: detected.
+// --frames as a window; -1: to be detected.
 PushWindow FlaggedWindow() {
   PushWindow window = {-1, -1};
   if (FLAGS_frames.empty()) return window;
@@ -181,7 +181,7 @@ PushFlags PushFlagsFromCommandLine() {
   return flags;
 }
 
-// What the two ways have in common.
+// A push by a sensor or by inverse dynamics.
 struct MadePush {
   Push push;
   PushKind kind;
@@ -194,7 +194,7 @@ struct RecordingsPush {
   MadePush made;
 };
 
-// As the manifest needs it: relative to its folder.
+// A file's path relative to the manifest's folder.
 std::string PathFromManifest(const std::string& file) {
   namespace fs = std::filesystem;
   std::error_code failed;

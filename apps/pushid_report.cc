@@ -10,8 +10,8 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/error.h"
 #include "ident/model/model_json.h"
+#include "ident/report/document.h"
 #include "ident/report/page/build_report.h"
-#include "ident/report/page/document.h"
 #include "ident/report/report_text.h"
 
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 bool FiguresAsked() { return !FLAGS_figures_out.empty(); }
 
-// Before anything is computed: a folder with other things in it.
+// Refuses, before anything is computed, a folder with other files in it.
 void CheckFigureFlags() {
   if (!FiguresAsked()) return;
   std::error_code ignored;

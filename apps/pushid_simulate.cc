@@ -81,12 +81,12 @@ void CheckRecordingNumbers() {
   CheckRange("subject_spread", FLAGS_subject_spread, 0, 2);
 }
 
-// What --ground names; a file is sampled at the recordings' frames.
+// Sets the ground of --ground; a file is sampled at the recordings' frames.
 void SetGround(SyntheticOptions* study) {
   const std::optional<GroundKind> kind = FromName<GroundKind>(FLAGS_ground);
   if (kind && *kind != GroundKind::kFile) {
     study->ground = *kind;
-    // As platforms sway in experiments: 20 to 30 mm from peak to peak, five sines together.
+    // Platforms sway in experiments by 20 to 30 mm from peak to peak, five sines together.
     constexpr double kSwayOfEach = 0.0036;
     if (*kind == GroundKind::kSumOfSines) study->ground_size_m = kSwayOfEach;
     if (study->pushes || study->ground != GroundKind::kNone) return;
@@ -102,7 +102,7 @@ void SetGround(SyntheticOptions* study) {
   study->ground_poses = OrFail(LoadGround(entry, frames));
 }
 
-// All but the truth: the terms of the model that the flags name, not its parameters.
+// Everything but the truth: the terms of the model that the flags name, not its parameters.
 SyntheticOptions StudyFromCommandLine() {
   Require("out", FLAGS_out, "name the folder to write");
   OrFail(CheckOutputFolder("out", FLAGS_out));

@@ -104,7 +104,7 @@ bool AtDefault(const char* flag) {
          gflags::GetCommandLineFlagInfoOrDie(flag).default_value;
 }
 
-// What goes with which kind.
+// Throws where flags do not go with the kind.
 void CheckKind(RestorationKind kind, RestorationView view) {
   const RestorationKindRow& row = RowOf(kind);
   if (view == RestorationView::kNeighbours && !row.sees_neighbours) {
@@ -121,7 +121,7 @@ void CheckKind(RestorationKind kind, RestorationView view) {
   }
 }
 
-// What the command line says, but the model.
+// Reads all flags but the model's.
 void ReadOptions(RestorationRunOptions* options) {
   Require("model", FLAGS_model, "give a file that pushid-fit --model_out wrote");
   const auto kind = FromName<RestorationKind>(FLAGS_kind);
@@ -249,7 +249,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
   return kDone;
 }
 
-// Those of --more_settings, without the ones that are learnt from (and scored) anyway.
+// Adds the recordings of --more_settings, without those that are learnt from (and scored) anyway.
 void AddMoreRecordings(const std::string& settings, const std::vector<Recording>& known,
                        RestorationRunOptions* options) {
   if (settings.empty()) return;

@@ -41,7 +41,7 @@ namespace pushid {
 struct BatchVariant {
   std::string name;
   std::vector<std::string> flags;  // of pushid-fit, with paths as the programs can open them
-  // Of pushid-train-restoration; where there are none, no bodies are restored.
+  // Flags of pushid-train-restoration; without them no bodies are restored.
   std::optional<std::vector<std::string>> restoration;
   int line = 0, restoration_line = 0;  // of the plan
 };
@@ -68,10 +68,9 @@ struct BatchPlan {
 // of range, two variants of one name, flags that the batch sets itself.
 Result<BatchPlan> ReadPlan(const std::string& path);
 
-// From a plan to jobs. A job's id is the hash of all that decides its result - the contents
-// of its recordings and of the files its flags name, its flags, its replica and the version of the
-// programs - so the same job keeps its id in another order, folder or plan, and a changed file
-// makes new jobs of those it touches.
+// Jobs of a plan. A job's id is the hash of all that decides its result (contents of its recordings
+// and of the files its flags name, flags, replica, version of the programs), so the same job keeps
+// its id in another order, folder or plan, and a changed file makes new jobs of those it touches.
 
 struct BatchJob {
   std::string id;       // 32 hexadecimal digits
@@ -81,16 +80,16 @@ struct BatchJob {
   int replica = 0;      // 0: the recordings as they are
   std::vector<std::string> recordings, held_out;  // ids
   std::vector<std::string> fit_flags;             // of pushid-fit, without outputs and recordings
-  // Of pushid-train-restoration, likewise; without them nothing is restored.
+  // Flags of pushid-train-restoration, likewise; without them nothing is restored.
   std::optional<std::vector<std::string>> restoration_flags;
 };
 
-// In a fixed order: variants as in the plan, groups as in the manifest, folds, replicas. Errors: of
-// the manifest, a group with fewer recordings than folds, files that cannot be read.
+// The order is fixed: variants as in the plan, groups as in the manifest, folds, replicas. Errors:
+// a group with fewer recordings than folds, files that cannot be read.
 std::vector<BatchJob> ExpandPlan(const BatchPlan& plan, const Manifest& manifest);
 
-// What to run, one after the other: pushid-fit and, of a fold, pushid-evaluate on what was held
-// out. folder: of the job; bin: where the programs are.
+// The commands of a job, one after the other: pushid-fit and, for a fold, pushid-evaluate on what
+// was held out. folder: the job's; bin: where the programs are.
 std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const BatchPlan& plan,
                                                   const std::string& folder,
                                                   const std::string& bin);
@@ -99,7 +98,7 @@ std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const Bat
 // same flags, are in one part.
 std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n);
 
-// What a job left in its folder: status.json, model.json and, of a fold, scores.json.
+// Files that a job left in its folder: status.json, model.json and, for a fold, scores.json.
 
 enum class JobState {
   kDone,    // all its files can be read
@@ -128,8 +127,8 @@ struct JobResult {
   double cost = 0.0, solve_s = 0.0;
   bool settles = false;
   std::vector<std::string> warnings;
-  // Of the restored bodies, or of the hips where nothing is restored; empty where nothing was held
-  // out.
+  // Scores of the restored bodies, or of the hips where nothing is restored; empty where nothing
+  // was held out.
   std::vector<HeldOutScore> held_out;
 
   // Null where there is no such score.
@@ -188,8 +187,8 @@ std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<Batc
 // summary.csv, summary.json and summary.html in the plan's folder.
 void WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows);
 
-// By variant: jobs done and failed, mean and spread over groups of each parameter; the bootstrap of
-// each group where those are few; failures.
+// Tables by variant (jobs done and failed, mean and spread over groups of each parameter), of the
+// bootstrap where its groups are few, and of failures.
 std::string SummaryText(const std::vector<JobResult>& rows);
 
 }  // namespace pushid

@@ -8,6 +8,7 @@
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
 #include "datasets/files/input_file.h"
+#include "datasets/files/names.h"
 #include "datasets/manifest/manifest.h"
 #include "ident/validation/crossvalidation.h"
 
@@ -20,8 +21,8 @@ void AddPiece(const std::string& text, ContentHash* hash) {
   hash->Add(std::string_view("\0", 1));
 }
 
-// What a manifest's entry says, with the contents of every file it names. Whatever text of it is a
-// file counts: the keys that name files are the reader's business.
+// Adds the contents of every file that a manifest's entry names. Every text that is a file's name
+// counts, whatever its key.
 void HashFiles(const nlohmann::ordered_json& json, const std::string& manifest, ContentHash* hash) {
   if (json.is_structured()) {
     for (const auto& part : json) HashFiles(part, manifest, hash);
@@ -32,7 +33,7 @@ void HashFiles(const nlohmann::ordered_json& json, const std::string& manifest, 
   if (std::filesystem::is_regular_file(path, ignored)) AddPiece(OrFail(HashFile(path)), hash);
 }
 
-// Of what a manifest says of all its recordings, or of one.
+// Hash of what a manifest says about all its recordings, or about one.
 std::string HashOf(const nlohmann::ordered_json& json, const std::string& manifest) {
   ContentHash hash;
   AddPiece(json.dump(), &hash);
@@ -40,7 +41,6 @@ std::string HashOf(const nlohmann::ordered_json& json, const std::string& manife
   return hash.Hex();
 }
 
-// What a variant's flags say.
 std::string FlagsHash(const BatchVariant& variant) {
   ContentHash hash;
   for (const std::string& flag : variant.flags) AddPiece(flag, &hash);
@@ -51,7 +51,6 @@ std::string FlagsHash(const BatchVariant& variant) {
   return hash.Hex();
 }
 
-// Empty where the recording has no such label.
 std::string GroupOf(const std::string& by, const ManifestRecording& entry) {
   if (by == "none") return "all";
   if (by == "recording") return entry.id;
@@ -59,7 +58,7 @@ std::string GroupOf(const std::string& by, const ManifestRecording& entry) {
   return entry.labels.Of(by);
 }
 
-// All that MakeFolds looks at.
+// A recording with all that MakeFolds looks at.
 PendulumRecording AsKnown(const ManifestRecording& entry) {
   PendulumRecording recording;
   recording.id = entry.id;
@@ -102,12 +101,6 @@ std::vector<Part> PartsOf(const BatchPlan& plan, const Manifest& manifest, const
   return parts;
 }
 
-std::string JoinIds(const std::vector<std::string>& ids) {
-  std::string list;
-  for (const std::string& id : ids) list += (list.empty() ? "" : ",") + id;
-  return list;
-}
-
 std::vector<std::string> Those(const std::vector<std::string>& flags,
                                const std::vector<const char*>& names) {
   std::vector<std::string> those;
@@ -129,7 +122,7 @@ void Append(const Command& more, Command* command) {
 Command AfterFit(const std::string& program, const BatchJob& job, const BatchPlan& plan,
                  const std::vector<std::string>& ids, const std::string& model) {
   Command command = {program, "--model=" + model, "--recordings=" + plan.manifest,
-                     "--ids=" + JoinIds(ids), "--quiet"};
+                     "--ids=" + Joined(ids, ","), "--quiet"};
   Append(Those(job.fit_flags, {std::begin(kLoadFlags), std::end(kLoadFlags)}), &command);
   return command;
 }
@@ -166,7 +159,7 @@ class Expander {
   }
 
  private:
-  // Each key by itself, so that the one that is wrong can be named.
+  // Keys are checked one by one, so that the wrong one can be named.
   std::vector<int> Chosen() const {
     const auto by = [this](const char* key, const std::vector<std::string>& ids,
                            const std::vector<std::string>& leave_out) {
@@ -226,7 +219,7 @@ std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const Bat
                                                   const std::string& bin) {
   const std::string model = folder + "/model.json", restoration = folder + "/restoration";
   Command fit = {bin + "/pushid-fit", "--recordings=" + plan.manifest,
-                 "--ids=" + JoinIds(job.recordings), "--model_out=" + model, "--quiet"};
+                 "--ids=" + Joined(job.recordings, ","), "--model_out=" + model, "--quiet"};
   Append(job.fit_flags, &fit);
   std::vector<Command> commands = {fit};
   if (job.restoration_flags) {

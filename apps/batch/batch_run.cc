@@ -135,8 +135,8 @@ std::string LastLine(const std::string& path) {
   return last.size() <= kMost ? last : last.substr(0, kMost) + "...";
 }
 
-// How a program ends that gets no more memory under a limit: with a message of its own, with one of
-// the loader, or with none.
+// Whether a program ended because it got no more memory under its limit: with a message of its own,
+// with one of the loader, or with none.
 bool LooksOutOfMemory(const ChildEnd& end, const std::string& last) {
   for (int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGKILL}) {
     if (end.signal == signal) return true;
@@ -225,7 +225,7 @@ class Pool {
     return lock->Take(folder);
   }
 
-  // Its next command.
+  // Starts the job's next command.
   MaybeError Start(Running* running) {
     const ChildSpec spec{running->commands[running->step], running->folder + "/stdout.txt",
                          running->folder + "/stderr.txt", plan_.memory_limit_mb};
@@ -296,7 +296,7 @@ class Pool {
     CheckOutput(reason);
   }
 
-  // Whether what hit one job's folder would hit them all: then the batch ends with it.
+  // Ends the batch where the failure in one job's folder would hit all of them.
   void CheckOutput(const std::string& reason) {
     const std::string probe = plan_.dir + "/jobs/.probe";
     const MaybeError nowhere = WriteFileAtomically(probe, "x");
@@ -312,7 +312,7 @@ class Pool {
     return WriteJobStatus(running.folder, *running.job, {state, reason, seconds}, running.commands);
   }
 
-  // What runs is ended and will be redone: it has no status.
+  // Ends the running jobs, which have no status yet and will be redone.
   void EndAll() {
     for (const Running& running : running_) KillChild(running.pid, SIGKILL);
     const auto begin = Clock::now();

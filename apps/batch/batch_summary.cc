@@ -9,11 +9,12 @@
 #include "apps/support/app_support.h"
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/problem/statistics.h"
-#include "ident/report/page/document.h"
+#include "ident/report/document.h"
 #include "ident/uncertainty/bootstrap.h"
 
 namespace pushid {
@@ -28,7 +29,7 @@ constexpr size_t kMostRowsInText = 40, kMostRowsOnPage = 2000;
 struct JobCell {
   std::string exact{};  // in summary.csv
   std::string shown{};  // to people: rounded or shortened
-  // Of a number to be summarized over groups (JobColumn::over_groups).
+  // A number that is summarized over groups (JobColumn::over_groups).
   std::optional<double> number{};
   nlohmann::ordered_json json{};  // null: not in summary.json
 };
@@ -42,7 +43,7 @@ struct JobColumn {
   std::function<JobCell(const JobResult&)> cell;
 };
 
-// All that some job was scored by.
+// All metrics by which some job was scored.
 std::vector<Metric> HeldOutMetrics(const std::vector<JobResult>& rows) {
   std::vector<Metric> metrics;
   for (const JobResult& row : rows) {
@@ -64,12 +65,6 @@ JobCell Number(double value, int digits) {
 
 JobCell Nothing() { return {}; }
 
-std::string Joined(const std::vector<std::string>& sentences) {
-  std::string text;
-  for (const std::string& sentence : sentences) text += (text.empty() ? "" : "; ") + sentence;
-  return text;
-}
-
 // A value that is not the data's own says so.
 std::string EstimateText(const Estimate& e) {
   const std::string text = Rounded(e.value, 4), error = Rounded(e.standard_error, 3);
@@ -89,7 +84,7 @@ std::string LowerCase(const std::string& name) {
   return text;
 }
 
-// In the order in which jobs first have them.
+// Names in the order in which jobs first have them.
 std::vector<std::string> ParameterNames(const std::vector<JobResult>& rows) {
   std::vector<std::string> names;
   std::set<std::string> seen;
@@ -106,7 +101,7 @@ std::string Place(const char* folder, const std::string& name, const char* rest 
   return (Json::json_pointer(folder) / name).to_string() + rest;
 }
 
-// What a job says of one parameter; nothing where it has none of that name.
+// A job's value of one parameter; nothing where it has none of that name.
 JobColumn OfParameter(const std::string& name, const char* ending, const char* key, bool words,
                       JobCell (*cell)(const Estimate&)) {
   const bool value = *ending == '\0';  // on the page error and status stand beside it
@@ -133,7 +128,7 @@ JobColumn HeldOutColumn(const Metric& metric) {
           }};
 }
 
-// In the order of summary.csv.
+// The columns in the order of summary.csv.
 std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
   using Row = const JobResult&;
   std::vector<JobColumn> columns = {
@@ -179,7 +174,8 @@ std::vector<JobColumn> JobColumns(const std::vector<JobResult>& rows) {
   for (const Metric& metric : HeldOutMetrics(rows)) add(HeldOutColumn(metric));
   add({"warnings", "/warnings", "warnings", false, false, [](Row r) {
          if (r.warnings.empty()) return Nothing();
-         return JobCell{Joined(r.warnings), std::to_string(r.warnings.size()), {}, r.warnings};
+         return JobCell{
+             Joined(r.warnings, "; "), std::to_string(r.warnings.size()), {}, r.warnings};
        }});
   add({"solve_s", "/run/solve_s", "solve s", false, false, [](Row r) {
          JobCell cell = r.done() ? Number(r.solve_s, 2) : Nothing();
@@ -381,7 +377,7 @@ TextTable BootstrapTable(const std::vector<JobResult>& rows) {
   return table;
 }
 
-// Each warning once, with how many jobs it is of.
+// Every different warning with the number of jobs that have it.
 TextTable WarningTable(const std::vector<JobResult>& rows) {
   std::vector<std::pair<std::string, std::vector<const JobResult*>>> warnings;
   for (const JobResult& row : rows) {

@@ -29,7 +29,6 @@ struct RestorationFlags {
   bool given() const { return !name.empty(); }
 };
 
-// Without --restoration, `otherwise` is taken.
 RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise = "");
 
 // people: the most there are in one recording. Warns where a restoration that never saw a group is

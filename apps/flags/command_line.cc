@@ -42,7 +42,7 @@ std::vector<FlagInfo> OwnFlags() {
   return own;
 }
 
-// What names outputs or only changes speed and talk is no part of a result.
+// Flags that name outputs or change only speed and messages are no part of a result.
 bool IsPartOfResult(const FlagInfo& flag) {
   static const std::set<std::string> kLeftOut = {"quiet", "num_threads", "check",
                                                  "list_parameters"};
@@ -55,7 +55,8 @@ std::string ShortestNumber(const FlagInfo& flag, const std::string& text) {
   return flag.type == "double" && ParseDouble(text, &value) ? DoubleText(value) : text;
 }
 
-// By value: a default that is given is no change, `none` over a preset's value is one.
+// Flags are compared by value: a default that is given is no change, `none` over a preset's value
+// is one.
 bool Changed(const FlagInfo& flag) {
   double now = 0.0, before = 0.0;
   const bool numbers =

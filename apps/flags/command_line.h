@@ -33,7 +33,7 @@ void CheckNeeds(const std::vector<std::string>& flags, const std::vector<std::st
 void CheckExcludes(const std::vector<std::string>& flags, const std::string& other,
                    const std::string& why);
 
-// Whether a flag was given at all, even with its default's value.
+// Whether a flag was given, even with its default's value.
 bool Given(const char* flag);
 
 // "--recordings is missing ..." when a flag that is needed is empty.
@@ -57,7 +57,7 @@ void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>
 // verbosity.
 std::map<std::string, std::string> EffectiveFlags();
 
-// What a program's JSON begins with: the name of its format, version, effective flags.
+// The beginning of a program's JSON: name of its format, version, effective flags.
 nlohmann::ordered_json ResultHead(const char* schema);
 
 // Names of those that are not at their defaults.

@@ -47,7 +47,7 @@ GivenOptions GivenFitFlags() {
   GivenOptions given;
   for (const FitOptionRow& row : FitOptionRows()) {
     const gflags::CommandLineFlagInfo flag = gflags::GetCommandLineFlagInfoOrDie(row.name.c_str());
-    // No value, as --fix= gives it, is the default of an option that has none of its own.
+    // An empty value, as --fix= gives it, is the default of an option that has none of its own.
     const bool nothing = flag.current_value.empty() && flag.default_value.empty();
     if (!flag.is_default && !nothing) given.emplace_back(row.name, flag.current_value);
   }
@@ -61,7 +61,7 @@ FitSetup FitSetupFromFlags() {
 
 namespace {
 
-// Of a flag that has been checked with all the others.
+// The value of a flag that was checked with all others.
 std::int64_t WholeNumber(const char* flag) {
   return std::stoll(gflags::GetCommandLineFlagInfoOrDie(flag).current_value);
 }

@@ -8,7 +8,7 @@
 
 namespace pushid {
 
-// Those that the command line gave, even with their defaults' values.
+// Flags that the command line gave, even with their defaults' values.
 GivenOptions GivenFitFlags();
 
 // The given flags over the preset's settings; once in a program. Errors also where a given flag

@@ -16,7 +16,7 @@ inline constexpr std::uint64_t kFuturesSeed = 1;  // of all draws
 // --samples; 0: none are drawn.
 int DrawnFutures();
 
-// What is wrong with drawing from a model: no process noise, or frames that were seen.
+// Throws where the model has no process noise to draw from, or frames were observed.
 void CheckDraws(const IdentifiedModel& model);
 
 // Draws them and prints where everybody is at the end; nothing without --samples. num_frames: 0
@@ -25,17 +25,15 @@ int PrintFutures(const IdentifiedModel& model, const PendulumRecording& recordin
 
 // --observed, of every program that predicts recordings.
 
-// How many first frames are seen; 0: none.
 int ObservedFrames();
 
-// Who forecasts then.
+// --forecast: who forecasts after observed frames.
 ForecastUse ForecastUseFlag();
 
-// What is wrong with them, by themselves.
+// Throw where --observed and --forecast do not go together, with these recordings, or with this
+// model.
 void CheckObservedFlag();
-// For these recordings.
 void CheckObservedFlag(const std::vector<PendulumRecording>& recordings);
-// And this model.
 void CheckObservedFlag(const std::vector<PendulumRecording>& recordings,
                        const IdentifiedModel& model);
 

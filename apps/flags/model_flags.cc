@@ -29,7 +29,6 @@ std::string ModelFile() {
   return OwnFolder() + "/../share/pushid/models/" + name + ".json";
 }
 
-// That of --model.
 FittedModel ReadFlaggedModel() {
   Result<FittedModel> read = ReadFittedModel(ModelFile());
   if (!IsShipped()) return OrFail(std::move(read));

@@ -20,7 +20,7 @@ struct ModelFlags {
 };
 ModelFlags ModelFlagsFromCommandLine();
 
-// Whether --model is given; `why` says what it must name, or what needs it.
+// Throws without --model; `why` says what it must name, or what needs it.
 void RequireModel(const std::string& why = "give a file that pushid-fit --model_out wrote");
 
 // The model of --model with the values of --set.

@@ -46,7 +46,7 @@ LoadOptions LoadOptionsOfFlags() {
   return options;
 }
 
-// Each once; none where the flags choose others.
+// Ids of the fitted recordings, each once; none where the flags choose others.
 std::vector<std::string> FittedIds(const FitResult& fit) {
   std::vector<std::string> ids;
   if (RecordingFlagsFromCommandLine().chosen || !FLAGS_leave_out.empty()) return ids;
@@ -151,7 +151,7 @@ Provenance ProvenanceOfRun() {
   Provenance from;
   from.version = Version();
   from.configuration = EffectiveFlags();
-  // Where the data lay is no part of what was found; the hash is.
+  // The place of the data is no part of a result; their hash is.
   from.configuration.erase("recordings");
   from.changed_flags = ChangedFlags();
   from.manifest = FLAGS_recordings;

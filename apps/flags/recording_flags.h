@@ -23,7 +23,7 @@ struct RecordingFlags {
 };
 RecordingFlags RecordingFlagsFromCommandLine();
 
-// That of --recordings, merged where there are several; read once in a run.
+// The manifest of --recordings, merged where there are several; read once in a run.
 const Result<Manifest>& FlaggedManifest();
 
 // The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr, and to
@@ -34,25 +34,25 @@ std::vector<Recording> LoadFlaggedRecordings(const std::vector<std::string>& ids
                                              Warnings* warnings = nullptr,
                                              bool plates_alone = false);
 
-// How files are read: the flags of that by name.
+// Flags that decide how files are read.
 inline constexpr const char* kLoadFlags[] = {"length_unit", "length_scale", "max_gap_s",
                                              "lowpass_hz", "resample_fps"};
-// Those that are not given take the values that they had in another program's run.
+// Sets those that are not given to their values in another program's run.
 void LoadAs(const std::map<std::string, std::string>& configuration);
 
 // The recordings that a model was fitted to, or those that --setting, --ids or --leave_out choose.
 std::vector<Recording> LoadFittedRecordings(const FitResult& fit, bool keep_all_joints);
 
-// What is wrong with their flags, before any file is read.
+// Throws where flags of recordings are wrong, before any file is read.
 void CheckRecordingFlags();
 
-// Those of another --setting, with whole bodies.
+// Loads recordings of another --setting, with whole bodies.
 std::vector<Recording> LoadBodiesOfSetting(const std::string& setting);
 
 // Version, flags and manifest of this program's run, as a model keeps them.
 Provenance ProvenanceOfRun();
 
-// Whether there is a push in every one of them: without it there is nothing to learn from.
+// Throws where a recording has no push: without one there is nothing to learn from.
 void CheckPushed(const std::vector<Recording>& recordings);
 
 // overwrite_flag.cc: --overwrite, of the programs that write what a person may have edited or
@@ -64,8 +64,8 @@ bool OverwriteGiven();
 MaybeError CheckNew(const std::string& flag, const std::string& file,
                     const std::string& besides = "");
 
-// The same for a folder of recordings that pushid-simulate writes. --overwrite replaces its earlier
-// output alone: real recordings stay.
+// As above, for a folder of recordings that pushid-simulate writes: --overwrite replaces only its
+// earlier output, real recordings stay.
 MaybeError CheckOutputFolder(const std::string& flag, const std::string& folder);
 
 }  // namespace pushid

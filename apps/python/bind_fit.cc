@@ -14,8 +14,8 @@
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/option_table.h"
 #include "ident/report/advice.h"
+#include "ident/report/document.h"
 #include "ident/report/page/build_report.h"
-#include "ident/report/page/document.h"
 #include "ident/report/report_text.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/experiment_design.h"
@@ -170,7 +170,7 @@ void Save(const Model& model, const std::string& path) {
   Check(WriteJson(path, ToJson(*model.fitted, run)), Fault::kData);
 }
 
-// With the figures of the recordings that the model has, if any. Releases the GIL.
+// A report with figures of the recordings that the model has, if any. Releases the GIL.
 Report ReportOf(const FittedModel& fitted, const Model& model) {
   const std::shared_ptr<const FittedTo> to = model.to;
   BuildReportOptions options;
@@ -183,7 +183,7 @@ Report ReportOf(const FittedModel& fitted, const Model& model) {
   return BuildReport(fitted, drawn, options);
 }
 
-// Of a model that pushid-fit made the page has commands, as the program's own.
+// The page of a model that pushid-fit made has commands, as the program's own.
 void WriteReport(const Model& model, const std::string& path, const Advised& calls) {
   Check(CheckPageName("report", path), Fault::kUsage);
   std::shared_ptr<const FittedModel> fitted = model.fitted;

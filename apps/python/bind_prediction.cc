@@ -252,7 +252,7 @@ Scene SceneOf(const FormationAsked& asked) {
   return scene;
 }
 
-// What the picture of a wave shows, and the table beside it.
+// Adds what the picture of a wave shows, and the table beside it.
 void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dict) {
   py::list onset, displacement, outcome, onset_band;
   for (int n = 0; n < run.num_people(); ++n) {

@@ -16,7 +16,7 @@
 
 namespace pushid {
 
-// For pickle, copy and other processes.
+// An object's state, for pickle, copy and other processes.
 template <class Archive>
 void Fields(Archive& a, Push& p) {
   PUSHID_FIELDS(a, p, person, start_frame, force, file);
@@ -91,7 +91,7 @@ Array StatesArray(const SharedRecording& recording) {
   });
 }
 
-// All pushes by frame and person; zero where nobody pushes.
+// The sum of all pushes by frame and person.
 Array PushArray(const SharedRecording& recording) {
   const int people = static_cast<int>(recording->people.size());
   std::vector<std::vector<Eigen::Vector4d>> force(
@@ -225,7 +225,7 @@ py::tuple EstimatePushOf(const SharedRecording& recording, int person, int first
   return py::make_tuple(RowsArray(push.push.force), window.start, NameOf(push.kind));
 }
 
-// What of recordings cannot be right, a dict each.
+// Findings in recordings, a dict each.
 py::list FindingsIn(const std::vector<SharedRecording>& recordings) {
   py::list list;
   std::vector<Finding> found = FindingsOf(Pendulums(recordings));
@@ -304,7 +304,7 @@ void AddPlates(const py::object& given, std::vector<TrackedPerson>* people) {
   }
 }
 
-// Where a push acts: a fraction of the way from the ankles to the hip, or metres.
+// The height of a push: a fraction of the way from the ankles to the hip, or metres.
 struct PushHeight {
   double fraction = 1.0;
   std::optional<double> metres;

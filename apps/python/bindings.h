@@ -13,16 +13,16 @@
 #include "datasets/files/error.h"
 #include "datasets/files/names.h"
 #include "datasets/loading/warning.h"
-#include "ident/pushid.h"
 #include "ident/parameters/option_names.h"
 #include "ident/prediction/prediction.h"
+#include "ident/pushid.h"
 
 namespace pushid {
 
 namespace py = pybind11;
 
-// What went wrong, by whose fault: the data's, the caller's, the fit's. Python sees DataError,
-// UsageError and FitError with message, file and line.
+// Whose fault an error is. Python sees DataError, UsageError and FitError with message, file and
+// line.
 enum class Fault { kData, kUsage, kFit };
 [[noreturn]] void Raise(Fault fault, const Error& error);
 
@@ -35,7 +35,7 @@ inline void Check(const MaybeError& error, Fault fault) {
   if (error) Raise(fault, *error);
 }
 
-// What `compute` returns, with the GIL released while it computes.
+// Calls `compute` with the GIL released.
 template <typename Compute>
 auto WithoutGil(Compute compute) {
   const py::gil_scoped_release no_gil;
@@ -52,11 +52,11 @@ auto CallbackOf(const py::object& callable) {
     if (callable != Py_None) py::reinterpret_borrow<py::object>(callable)(args...);
   };
 }
-// Of a fit: (phase, iteration, cost).
+// Progress of a fit: (phase, iteration, cost).
 inline SolveProgress ProgressOf(const py::object& callable) {
   return CallbackOf<const std::string&, int, double>(callable);
 }
-// Of many jobs: (done, total).
+// Progress of many jobs: (done, total).
 inline JobProgress JobsOf(const py::object& callable) { return CallbackOf<int, int>(callable); }
 
 // Flags and programs as options and calls: "--fix=mu=0" -> "fix={"mu": 0}", "pushid-push" ->
@@ -64,7 +64,7 @@ inline JobProgress JobsOf(const py::object& callable) { return CallbackOf<int, i
 std::string InPython(const std::string& text);
 // Equal ones, or those that differ only in the recording, once.
 std::vector<std::string> InPython(const Warnings& warnings);
-// As warnings.warn does.
+// Warns by Python's warnings.warn.
 void Warn(const std::string& text);
 void Warn(const Warnings& warnings);
 
@@ -100,7 +100,6 @@ Array TableArray(int frames, int people, int size, Value value) {
   return array;
 }
 
-// The same numbers in another shape.
 inline Array Reshaped(const Array& array, const std::vector<int>& shape) {
   return array.attr("reshape")(shape);
 }
@@ -109,14 +108,14 @@ void BindRecordings(py::module_* module);
 void BindFits(py::module_* module);
 void BindPredictions(py::module_* module);
 
-// What a model was fitted to.
+// The recordings to which a model was fitted.
 struct FittedTo {
   std::vector<SharedRecording> recordings;
   std::vector<PendulumRecording> pendulums;
 };
 
-// Both parts are replaced whole and never changed: another thread may be reading them without the
-// GIL. `to` is null where the model was loaded.
+// A model and its recordings. Both are replaced as a whole and never changed, as another thread may
+// be reading them without the GIL. `to` is null where the model was loaded.
 struct Model {
   std::shared_ptr<const FittedModel> fitted;
   std::shared_ptr<const FittedTo> to;
@@ -127,7 +126,7 @@ std::shared_ptr<const FittedTo> DataOf(const Model& model);
 
 IdentifiedModel IdentifiedOf(const Model& model);
 
-// Who forecasts after observed frames. Raises on another name.
+// The forecaster after observed frames, by name; raises on another name.
 inline ForecastUse ForecastFrom(const std::string& name) {
   ForecastUse use = ForecastUse::kBoth;
   Check(ParseName("forecast", name, &use), Fault::kUsage);

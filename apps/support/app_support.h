@@ -27,8 +27,8 @@ const std::string& ProgramName();
 // "pushid-fit: error: ..." on stderr; returns kBadInput.
 int Fail(const Error& error);
 int Fail(const std::string& message);
-// What a program cannot do without: the value, or an Error is thrown, which RunApp says once all
-// that was open is closed. The libraries under the programs return their errors.
+// Returns the value, or throws the Error, which RunApp prints once everything that was open is
+// closed. The libraries under the programs return their errors.
 template <typename T>
 T OrFail(Result<T> result) {
   if (!result.ok()) throw result.error();
@@ -38,7 +38,7 @@ inline void OrFail(const MaybeError& error) {
   if (error) throw *error;
 }
 void Warn(const std::string& message);
-// Those that differ only in the recording as one.
+// Warnings that differ only in the recording are printed as one.
 void WarnGrouped(const Warnings& warnings);
 
 std::string Version();
@@ -47,7 +47,7 @@ std::string Version();
 MaybeError WriteModelFile(const std::string& path, const FittedModel& model, int num_threads,
                           double begin);
 
-// No ProgressLine shows anything from now on (--quiet).
+// Hides all ProgressLines from now on (--quiet).
 void HideProgress();
 
 // One line that is redrawn on a terminal, plain lines (at most one a second) elsewhere; on stderr.
@@ -57,7 +57,7 @@ class ProgressLine {
   void Show(const std::string& text);
   void Finish();  // ends the line; also done by the destructor
 
-  // Of many jobs: "recording 3 of 32". The line must outlive it.
+  // Progress of many jobs: "recording 3 of 32". The line must outlive it.
   JobProgress OfJobs(const std::string& what);
 
  private:
@@ -67,8 +67,8 @@ class ProgressLine {
 
 inline constexpr int kInterrupted = 130;  // as shells count SIGINT
 
-// From now on SIGINT ends the process so: "pushid-fit: interrupted; WHAT". what: what is kept, and
-// what starts it again. Called again, it replaces what is said.
+// From now on SIGINT ends the process with "pushid-fit: interrupted; WHAT". what: what is kept, and
+// how to start again; a second call replaces it.
 void SayWhenInterrupted(const std::string& what);
 
 // The threads of the system's BLAS, which sparse normal equations and training ask for
@@ -84,8 +84,8 @@ void SetBlasThreads(int num_threads);
 // The message of a training into this folder that Ctrl-C stops.
 std::string KeptCheckpoints(const std::string& folder);
 
-// How far a training has come: "window, epoch 12: 43 %, 12 s left"; the time left from the share
-// done so far. Steps are told apart by what stands before their last word.
+// Progress of a training: "window, epoch 12: 43 %, 12 s left", where the time left follows from the
+// share done so far. Steps differ in what stands before their last word.
 class TrainingLine {
  public:
   TrainingLine();
@@ -102,12 +102,12 @@ class TrainingLine {
 // Outputs are known by their flags' names (out, *_out), inputs by the list in
 // app_support.cc; so the check holds for every program at once.
 
-// Whether a flag of this name says where to write. Here, so that plans are read without flags.
+// Whether a flag of this name is an output. It is here so that plans are read without flags.
 inline bool IsOutputFlag(const std::string& name) {
   return name == "out" || (EndsWith(name, "_out") && name != "leave_out" && name != "held_out");
 }
 
-// Whether the outputs that are named (not empty) can be written, before a long run.
+// Checks, before a long run, that the named outputs (not empty) can be written.
 MaybeError CheckOutputFiles(std::initializer_list<std::string> files);
 
 // Between the flags, as they are given. RunApp asks for it before anything is done.
@@ -118,7 +118,7 @@ class OutputFiles {
  public:
   OutputFiles();
 
-  // For an input that no flag names: `reader` says what does ("--sensor", "the command line").
+  // Checks an input that no flag names: `reader` is who reads it ("--sensor", "the command line").
   MaybeError CheckNotRead(const std::string& reader, const std::string& path) const;
 
  private:

@@ -98,7 +98,7 @@ std::string OwnFolder() {
 
 namespace {
 
-// Empty: nowhere.
+// A program's file beside this one or on the PATH; empty: there is none.
 std::string FindProgram(const std::string& name) {
   const char* const path = std::getenv("PATH");
   for (const std::string& folder :

@@ -35,7 +35,6 @@ Error RunInstead(const std::string& name, const std::vector<std::string>& argume
 // A command as a shell takes it, every word quoted.
 std::string ShellText(const std::vector<std::string>& command);
 
-// How a child ended.
 struct ChildEnd {
   pid_t pid = 0;
   int exit_code = -1;  // -1: killed
@@ -45,7 +44,7 @@ struct ChildEnd {
 // The next child that ended, or one with pid 0 when none has.
 ChildEnd NextEnded();
 
-// With everything it started.
+// Kills a child with everything it started.
 void KillChild(pid_t pid, int signal);
 
 // One process at a time in a folder. The lock goes with the process, however it ends, and
@@ -82,7 +81,7 @@ class SignalReader {
     sigprocmask(SIG_SETMASK, &before_, nullptr);
   }
 
-  // Until a child ends, an interrupt comes, or the time is up.
+  // Waits until a child ends, an interrupt comes, or the time is up.
   void Wait(int milliseconds) {
     pollfd waiting{descriptor_, POLLIN, 0};
     poll(&waiting, 1, milliseconds);

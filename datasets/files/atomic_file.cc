@@ -76,7 +76,7 @@ MaybeError AtomicFile::Open(const std::string& path) {
     return SystemError(path, "cannot write it");
   }
   if (exists && ::fchmod(descriptor_, mode) != 0) {
-    // Not worth failing for: a file system without modes.
+    // A file system without modes is not worth failing for.
   }
   return std::nullopt;
 }

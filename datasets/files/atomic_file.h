@@ -10,7 +10,7 @@
 
 namespace pushid {
 
-// For output in pieces:
+// A file that is written in pieces:
 //
 //   AtomicFile file;
 //   if (MaybeError failed = file.Open(path)) return failed;
@@ -44,12 +44,11 @@ class AtomicFile {
 
 MaybeError WriteFileAtomically(const std::string& path, std::string_view contents);
 
-// Whether `path` could be written now, checked by creating and removing a temporary file beside it.
-// For use before a long computation whose result goes there; leaves the target untouched.
+// Checks, before a long computation, that its result can be written to `path`: makes and removes a
+// temporary file beside it, and leaves the target untouched.
 MaybeError CheckWritable(const std::string& path);
 
-// The same for a folder of files that belong together: written beside the target, and renamed at
-// last.
+// A folder of files that belong together: written beside the target, and renamed at last.
 class AtomicFolder {
  public:
   AtomicFolder() = default;
@@ -59,7 +58,7 @@ class AtomicFolder {
 
   // Errors: a file of that name, or the folder above cannot be written.
   MaybeError Open(const std::string& folder);
-  // Where to write until Commit.
+  // The folder to write to until Commit.
   const std::string& path() const { return temporary_; }
   // Replaces what was there.
   MaybeError Commit();
@@ -70,7 +69,7 @@ class AtomicFolder {
 
 // Folders that outputs need.
 
-// With all folders above it; one that is there already is no error.
+// Makes the folder and all folders above it; one that is there already is no error.
 MaybeError MakeFolder(const std::string& folder);
 
 // The folder in which a file is to be written.

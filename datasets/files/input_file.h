@@ -78,7 +78,7 @@ class LineReader {
   // file or after an error. A byte order mark at the start is skipped, other encodings are an
   // error.
   bool Next(std::string_view* line);
-  // The same, passing over lines with nothing but blanks.
+  // Like Next, but skips blank lines.
   bool NextNonBlank(std::string_view* line);
 
   int line_number() const { return line_number_; }             // of the line last returned, 1-based

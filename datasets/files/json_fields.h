@@ -49,7 +49,7 @@ class JsonFields {
   }
   const std::string& label() const { return label_; }
   void set_label(std::string label) { label_ = std::move(label); }
-  // All keys that are missing, in one error; otherwise the first other thing that is wrong.
+  // One error that lists all missing keys; otherwise the first other mistake.
   MaybeError error() const {
     if (missing_.empty()) return error_;
     const MissingKey& first = missing_.front();
@@ -67,7 +67,7 @@ class JsonFields {
   void Fail(const MaybeError& error) {
     if (!error_) error_ = error;
   }
-  // What is wrong with an object inside of this one.
+  // Takes over the mistakes of an object inside this one.
   void Add(const JsonFields& inner) {
     missing_.insert(missing_.end(), inner.missing_.begin(), inner.missing_.end());
     Fail(inner.error_);
@@ -76,8 +76,8 @@ class JsonFields {
   // The keys that were asked for, which are those that its reader knows.
   const std::vector<std::string>& asked() const { return asked_; }
 
-  // After all keys were read: others are mistakes, which would be read over. Told before anything
-  // else that is wrong.
+  // Called after all keys were read: unknown keys are mistakes, and are reported before all others,
+  // since they would be ignored silently.
   void OnlyAsked() {
     if (!object_.is_object()) return;
     for (const auto& [key, value] : object_.items()) {

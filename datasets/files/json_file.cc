@@ -174,7 +174,7 @@ MaybeError Write(const std::string& path, const Json& content, int indent) {
 
 using ObjectKeys = std::vector<const MissingKey*>;  // of one object
 
-// In the order in which objects first lack something.
+// The missing keys by object, in the order in which objects first lack something.
 std::vector<ObjectKeys> ByObject(const std::vector<MissingKey>& missing) {
   std::vector<ObjectKeys> objects;
   std::map<std::string, std::size_t> index;  // by label

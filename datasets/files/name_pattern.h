@@ -53,7 +53,7 @@ struct FoundFile {
 // Every regular file below the folder, as sorted paths relative to it.
 Result<std::vector<std::string>> FilesBelow(const std::string& folder);
 
-// Of the recording that a file belongs to: its values but those of the person.
+// The id of the recording that a file belongs to: its values without the person's.
 std::string IdOf(const NamePattern& pattern, const NameValues& values);
 
 // "7" before "10", and both before "a".

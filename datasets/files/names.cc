@@ -1,4 +1,3 @@
-// datasets: names, listed and guessed.
 #include "datasets/files/names.h"
 
 #include <algorithm>
@@ -10,11 +9,8 @@ namespace pushid {
 
 std::string ListOfNames(const std::vector<std::string>& names, std::size_t most,
                         const std::string& plural) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
-    text += (i > 0 ? ", " : "") + names[i];
-  }
-  if (names.size() <= most) return text;
+  if (names.size() <= most) return Joined(names);
+  const std::string text = Joined({names.begin(), names.begin() + most});
   return text + ", ... (" + std::to_string(names.size()) + (plural.empty() ? "" : " ") + plural +
          ")";
 }
@@ -71,6 +67,17 @@ std::string ClosestName(const std::string& word, const std::vector<std::string>&
 std::string Suggestion(const std::string& word, const std::vector<std::string>& known) {
   const std::string meant = ClosestName(word, known);
   return meant.empty() ? "" : "; is " + meant + " meant?";
+}
+
+std::string Joined(const std::vector<std::string>& texts, const std::string& between) {
+  std::string joined;
+  for (const std::string& text : texts) joined += (&text == texts.data() ? "" : between) + text;
+  return joined;
+}
+
+std::string CountText(std::size_t number, const std::string& noun, const std::string& plural) {
+  const std::string several = plural.empty() ? noun + "s" : plural;
+  return std::to_string(number) + " " + (number == 1 ? noun : several);
 }
 
 std::vector<std::string> SplitList(const std::string& text, char separator) {

@@ -16,7 +16,12 @@ namespace pushid {
 std::string ListOfNames(const std::vector<std::string>& names, std::size_t most = 60,
                         const std::string& plural = "");
 
-// How many of a file's names an error lists.
+// "a, b, c"
+std::string Joined(const std::vector<std::string>& texts, const std::string& between = ", ");
+// "1 score", "2 scores"; plural: where it is not the noun with an s.
+std::string CountText(std::size_t number, const std::string& noun, const std::string& plural = "");
+
+// Most names of a file that an error lists.
 inline constexpr std::size_t kNamesInErrors = 8;
 
 // "there is no joint 'Hip'; it has Hips, Spine, ... (75 joints); is Hips meant?"

@@ -24,7 +24,8 @@ std::string_view WithoutPlus(std::string_view token) {
   return token;
 }
 
-// Where the end of the first cell may be looked for: behind its quotes, if it has any.
+// The place from which the end of the first cell may be looked for: behind its quotes, if it has
+// any.
 std::size_t BehindQuotes(std::string_view row) {
   const std::size_t opens = row.find_first_not_of(' ');
   if (opens == std::string_view::npos || row[opens] != '"') return 0;

@@ -64,7 +64,6 @@ class TableCells {
   bool more_;
 };
 
-// All cells of a row.
 std::vector<std::string_view> CellsOf(std::string_view row, char separator);
 
 }  // namespace pushid

@@ -17,7 +17,7 @@
 
 namespace pushid {
 
-// After NumberProblem, where cells may be missing.
+// Follows NumberProblem where cells may be missing.
 inline constexpr const char* kMissingCell = "; a value that is missing is an empty cell or nan";
 
 enum class TableFormat { kCsv, kStorage };

@@ -16,7 +16,7 @@ class Random {
  public:
   explicit Random(uint64_t seed) : engine_(seed) {}
 
-  // In [0, 1), 53 random bits.
+  // Uniform in [0, 1), 53 random bits.
   double Unit() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
   double Uniform(double lower, double upper) { return lower + (upper - lower) * Unit(); }
 

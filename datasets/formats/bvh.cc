@@ -25,7 +25,7 @@ void RotateAbout(int axis, double radians, Eigen::Matrix3d* rotation) {
   rotation->col(j) = c * column_j - s * column_i;
 }
 
-// What would make the file unreadable; "" when nothing does.
+// The reason why the file cannot be read; "" where there is none.
 std::string SkeletonProblem(const BvhSkeleton& skeleton) {
   std::unordered_set<std::string> names;
   std::vector<int> path;  // from the root to the joint before

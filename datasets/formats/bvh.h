@@ -32,13 +32,12 @@
 
 namespace pushid {
 
-// In the order of the letters, so that the axis is the value modulo three.
+// Channels are in the order of their letters, so that the axis is the value modulo three.
 enum class BvhChannel { kXposition, kYposition, kZposition, kXrotation, kYrotation, kZrotation };
 
 inline bool IsRotation(BvhChannel channel) { return channel >= BvhChannel::kXrotation; }
 inline int AxisOf(BvhChannel channel) { return static_cast<int>(channel) % 3; }  // 0 x, 1 y, 2 z
 
-// As files spell them.
 constexpr EnumNames<BvhChannel, 6> Names(BvhChannel) {
   return {{{"Xposition", BvhChannel::kXposition},
            {"Yposition", BvhChannel::kYposition},
@@ -80,7 +79,7 @@ struct BvhMotion {
 };
 
 struct BvhReadOptions {
-  // What the file's lengths are; BVH itself does not say. Only noted in the motion, not converted.
+  // The unit of the file's lengths, which BVH does not say; noted in the motion, not converted.
   LengthUnit length_unit = LengthUnit::kMillimetre;
 };
 
@@ -88,12 +87,12 @@ struct BvhReadOptions {
 Result<BvhMotion> ReadBvh(const std::string& path, const BvhReadOptions& options = {});
 
 struct BvhPositionOptions {
-  // What the file's lengths are; the positions come out in metres.
+  // The unit of the file's lengths; positions are converted to metres.
   LengthUnit length_unit = LengthUnit::kMillimetre;
   // Names of the joints whose positions are wanted, in the order wanted; empty: all joints.
   std::vector<std::string> joints;
-  // When set, decides instead of `joints`: called once with the skeleton, returns joint indices.
-  // For a choice that depends on the skeleton, like a default mapping.
+  // Decides instead of `joints` where it is set: called once with the skeleton, it returns indices
+  // of joints, which may depend on the skeleton.
   std::function<Result<std::vector<int>>(const BvhSkeleton&)> choose_joints;
   // Metres in one of the file's lengths, where that is no unit; 0: length_unit's.
   double metres_per_unit = 0.0;

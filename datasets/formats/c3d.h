@@ -45,7 +45,7 @@ struct C3dParameter {
   std::vector<std::string> texts;  // kText: one per string, blanks at the end cut off
 };
 
-// All of them, looked up as GROUP:NAME whatever their case.
+// All parameters, looked up as GROUP:NAME whatever their case.
 struct C3dParameters {
   std::vector<C3dParameter> list;
 
@@ -67,7 +67,7 @@ struct C3dEvent {
   std::string context;  // Left, Right, General; may be empty
 };
 
-// Where a force platform stands and which channels it fills; evaluated by force_platform.h.
+// The place of a force platform and the channels it fills (evaluated by force_platform.h).
 struct C3dPlatform {
   int type = 2;               // 1 to 4
   std::vector<int> channels;  // indices into the analog channels, from 0

@@ -30,7 +30,7 @@ class C3dBytes {
   bool Has(std::size_t at, std::size_t count) const {
     return at <= bytes_.size() && count <= bytes_.size() - at;
   }
-  // Only where Has().
+  // The accessors below need Has().
   std::uint8_t Byte(std::size_t at) const { return static_cast<std::uint8_t>(bytes_[at]); }
   std::int8_t Signed(std::size_t at) const { return static_cast<std::int8_t>(bytes_[at]); }
   std::uint16_t Word(std::size_t at) const;

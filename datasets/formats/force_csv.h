@@ -40,7 +40,7 @@ struct SensorRecord {
   std::vector<Eigen::Vector3d> force;  // N; a force along an axis stands in x
   bool is_vector = false;              // whether the file had fx, fy, fz
   std::string file;                    // for messages
-  // Where it pushed, m above the file's zero, where the sensor knows (a force platform on a wall).
+  // Height of the push above the file's zero, m, where the sensor knows it (a platform on a wall).
   std::optional<double> height_m;
   Eigen::Vector3d subtracted = Eigen::Vector3d::Zero();  // N, what it read at rest
   double noise = 0.0;                                    // N, one standard deviation at rest

@@ -48,7 +48,7 @@ constexpr const auto& Names(MotionFormat) { return kMotionFormats; }
 static_assert(RowsAreInOrder(kMotionFormats), "RowOf finds a row by its value");
 
 inline bool HasSkeleton(MotionFormat format) { return RowOf(format).read == nullptr; }
-// Whether its points are people of a crowd.
+// Whether the points of the format are people of a crowd.
 inline bool HoldsCrowd(MotionFormat format) { return format == MotionFormat::kTrajectoryText; }
 // Why recordings of people cannot be made of such a file.
 inline constexpr char kCrowdIsNoRecording[] =
@@ -56,22 +56,22 @@ inline constexpr char kCrowdIsNoRecording[] =
     "person, and nothing can be fitted to it without their ankles; pushid-inspect --wave measures "
     "how a push travels through the group, pushid-formation --formation places people as they "
     "stand; a tracker's numbered markers need \"joints\" (in a mapping file or the manifest)";
-// As people write it: "BVH", "C3D", ...
+// The name for people: "BVH", "C3D", ...
 inline std::string Title(MotionFormat format) { return RowOf(format).title; }
 
-// By the file's ending: ".c3d" is C3D, ".mot" and ".sto" storage, ...; nullopt for other endings.
+// The format by the file's ending: ".c3d" is C3D, ".mot" and ".sto" storage, ...
 std::optional<MotionFormat> MotionFormatOfFile(std::string_view path);
 
-// For messages: ".bvh, .c3d, .trc, .csv, .sto, .mot" and "bvh, c3d, trc, csv, sto".
+// ".bvh, .c3d, .trc, .csv, .sto, .mot" and "bvh, c3d, trc, csv, sto", for messages.
 std::string MotionFileEndings();
 std::string MotionKeys();
 
-// Of a format without a skeleton. Errors besides those of the single readers: no points.
+// Reads a format without a skeleton. Errors besides those of the single readers: no points.
 Result<PointMotion> ReadPointMotion(const std::string& path, MotionFormat format,
                                     const PointReadOptions& options = {});
 
-// What the file says, as WholeFrameRate reads it; 0 where it does not say. The motion of a BVH file
-// is not read for it, and of the others none is kept.
+// The file's rate, as WholeFrameRate reads it; 0 where it does not say. No motion is kept, and that
+// of a BVH file is not read.
 Result<double> ReadFrameRate(const std::string& path, MotionFormat format,
                              const PointReadOptions& options = {});
 

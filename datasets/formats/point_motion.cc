@@ -219,7 +219,7 @@ class TrcReader {
     return CheckRate(rows);
   }
 
-  // Where Frame# first leaves numbers out.
+  // Remembers where Frame# first leaves numbers out.
   void NoteMissing(std::string_view line) {
     const long frame =
         std::strtol(std::string(line.substr(0, line.find('\t'))).c_str(), nullptr, 10);
@@ -300,7 +300,7 @@ class TrcReader {
     }
     for (std::size_t i = 0; i < motion_.chosen.size(); ++i) {
       const double* at = row_.data() + 3 * motion_.chosen[i];
-      // Some programs leave zeros where it was not seen.
+      // Some programs write zeros where a point was not seen.
       motion_.positions[i].push_back(SeenPosition({at[0], at[1], at[2]}));
     }
     return std::nullopt;

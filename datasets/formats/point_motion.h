@@ -69,7 +69,8 @@ struct TablePoint {
 // point is called what is left without axis and separator. Columns without a partner are no points.
 std::vector<TablePoint> PointsOf(const std::vector<std::string>& names);
 
-// By name. "ground_force_px", of OpenSim, is where a force acts: its centre of pressure.
+// Tells columns of forces by their names. OpenSim's "ground_force_px" is where a force acts: its
+// centre of pressure.
 bool IsForceColumn(const std::string& name);
 
 // Three columns of a force or a torque look like a point: all that do not.

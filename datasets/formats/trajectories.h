@@ -45,8 +45,8 @@ Result<std::vector<CrowdPlace>> PlacesAt(const PointMotion& motion,
 // m; of everybody's distance to the nearest other, the median; 0 of one person.
 double MedianSpacing(const std::vector<CrowdPlace>& places);
 
-// What is odd about the places: people nearly at one, or so far apart that the unit may be another;
-// empty: nothing.
+// A warning where people stand nearly at one place, or so far apart that the unit may be another;
+// else empty.
 std::string OddSpacing(const std::vector<CrowdPlace>& places);
 
 }  // namespace pushid

@@ -58,7 +58,7 @@ std::string LengthText(double metres_per_unit) {
 
 double ConvertLength(double value, LengthUnit from, LengthUnit to) {
   if (from == to) return value;
-  // Of the ratio and its inverse one is a whole number, as a rule: that one is exact.
+  // The ratio or its inverse is a whole number, as a rule: that one is exact.
   const double from_per_metre = RowOf(from).per_metre, to_per_metre = RowOf(to).per_metre;
   return to_per_metre >= from_per_metre ? value * (to_per_metre / from_per_metre)
                                         : value / (from_per_metre / to_per_metre);

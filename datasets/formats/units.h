@@ -13,7 +13,7 @@
 
 namespace pushid {
 
-// In a metre. A float is exact here, and scales floats as floats, doubles as doubles.
+// Units in a metre. A float is exact here, and scales floats as floats, doubles as doubles.
 inline constexpr float kMillimetres = 1e3f;
 
 enum class LengthUnit { kMillimetre, kCentimetre, kMetre };
@@ -42,15 +42,15 @@ static_assert(RowsAreInOrder(kLengthUnits), "RowOf finds a row by its value");
 // Metres in one unit: 0.001, 0.01 or 1.
 inline double MetresPer(LengthUnit unit) { return 1.0 / RowOf(unit).per_metre; }
 
-// Also of longer and capital spellings ("Metres").
+// Reads longer and capital spellings too ("Metres").
 template <>
 std::optional<LengthUnit> FromName<LengthUnit>(std::string_view name);
 
 // The first unit in which a file's length lies between two others, m; nullopt: in none.
 std::optional<LengthUnit> UnitThatGives(double files_length, double shortest, double longest);
 
-// What is wrong with a length_scale, the metres that a file's 1 stands for, where that is no unit:
-// "is 0; it must ..."; empty where it is fine.
+// The end of a message about a length_scale (metres in the file's unit of length) that is none: "is
+// 0; it must ..."; empty where it is fine.
 std::string LengthScaleProblem(double metres);
 
 // "mm", or "0.0564 m each" where it is no unit.
@@ -74,9 +74,9 @@ constexpr double kMaxFramesPerSecond = 10000.0;
 // "is 0; accepted are 1 to 10000 frames per second", or "" where the rate is accepted.
 std::string FrameRateProblem(double fps);
 
-// What a file's rate most likely is: the next whole number within 0.1 %, for files round their
-// frame time (0.016667 s is meant to be 1/60 s). Rates of video, which lie 0.1 % below a whole
-// number (60/1.001), and all others stay as they are.
+// The rate that a file most likely means: the next whole number within 0.1 %, because files round
+// their frame time (0.016667 s for 1/60 s). Rates of video, which lie 0.1 % below a whole number
+// (60/1.001), and all others stay as they are.
 double WholeFrameRate(double fps);
 
 }  // namespace pushid

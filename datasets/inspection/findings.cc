@@ -20,7 +20,7 @@ constexpr double kLeastMotion = 0.01;                  // m
 constexpr double kNoise = 4.0;                         // standard errors
 constexpr double kShareOfSpeed = 0.25;                 // of the largest, at the onset
 constexpr double kSwayTime = 0.25;                     // s: what sway before the push goes on for
-// Before a push people sway; who is faster than this, and half as fast as ever after, is moved.
+// People sway before a push; whoever is faster than this, and half as fast as ever after, moves.
 constexpr double kSway = 0.05, kFast = 0.08;         // m/s
 constexpr double kMostGain = 2.0, kUsualGain = 0.9;  // of those who are quickest to move
 constexpr double kSlowToMove = 0.5, kLeastGain = 0.3, kSlideGain = 1.0;  // of who is looked at
@@ -80,7 +80,7 @@ class Comparison {
       : recording_(recording), person_(person), force_(std::move(force)), dt_(recording.scene.dt) {}
 
   std::optional<PushAndMotion> Compare() {
-    // On ground that moves, who sets off when is not the push's to say.
+    // On ground that moves, the push does not decide when people set off.
     if (recording_.scene.ground.moves() || !FindPush() || !FindPath()) return std::nullopt;
     PushAndMotion found;
     found.speed = impulse_.norm() / Mass();
@@ -147,7 +147,7 @@ class Comparison {
     return sum / (2 * half + 1);
   }
 
-  // Of a line fitted to the frames [from, to).
+  // Slope of a line fitted to the frames [from, to).
   Eigen::Vector2d Slope(int from, int to) const {
     const double middle = 0.5 * (from + to - 1);
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -162,7 +162,8 @@ class Comparison {
   void Gain(PushAndMotion* found) const {
     double gain = 0.0, error = 0.0;
     if (force_.kind != PushKind::kExternal) {
-      // Its rows are all that moves the person: the way it goes over theirs.
+      // The push's rows are all that moves the person: their motion is compared with the recorded
+      // one.
       double speed = 0.0, way = 0.0, squares = 0.0, product = 0.0;
       for (int t = start_; t <= std::min(end_, last_ - 1); ++t) {
         product += way * (path_[t] - path_[start_]).dot(along_);
@@ -252,7 +253,8 @@ class Comparison {
 constexpr double kRestTime = 0.2;                       // s
 constexpr double kLeastShare = 0.01, kRestShare = 0.3;  // of the peak, of what is a rest
 constexpr double kSteady = 0.3;                         // of it: by how much its halves may differ
-// Of the peak: a force still on; who starts more slowly does not stop so at once.
+// Shares of the peak: a force that is still on; a slow start, after which no sudden end is
+// expected.
 constexpr double kStillOn = 0.5, kSlowStart = 0.25;
 
 double Length(const Vector4<double>& row) { return row.head<2>().norm(); }
@@ -340,7 +342,7 @@ class Judge {
     const double angle = motion.angle.value_or(0.0), degrees = std::round(angle / kDegree);
     const bool net = std::any_of(r_.scene.pushes.begin(), r_.scene.pushes.end(),
                                  [](const auto& p) { return p.kind != PushKind::kExternal; });
-    // Who is moving already when a recording begins may be so.
+    // A recording may begin while the person moves already.
     const bool moving = r_.initial_velocity != InitialVelocity::kZero;
     if (motion.push_late > 0.0 && !moving) {
       Add(FindingKind::kLate, Who(n), motion.push_late);
@@ -477,7 +479,7 @@ std::vector<Finding> FindingsOf(const PendulumRecording& recording) {
   return Judge(recording).Look();
 }
 
-// By the line between the ankles, where it is long enough.
+// The facing follows from the line between the ankles, where it is long enough.
 std::vector<Finding> FacingFindings(const Recording& recording) {
   std::vector<Finding> found;
   // Forward is the way of the push: a group that nobody and nothing pushes may face each other.
@@ -540,14 +542,12 @@ std::vector<std::string> FindingTexts(const std::vector<Finding>& findings) {
       if (finding.kind == row.value) cases.push_back(Case(finding, row.unit));
     }
     if (cases.empty()) continue;
-    const std::string count =
-        std::to_string(cases.size()) + (cases.size() == 1 ? " case" : " cases");
-    std::string list;
-    for (std::size_t i = 0; i < std::min(cases.size(), kNamedCases); ++i) {
-      list += (i > 0 ? "; " : "") + cases[i];
+    const std::string count = CountText(cases.size(), "case");
+    if (cases.size() > kNamedCases) {
+      cases.resize(kNamedCases);
+      cases.emplace_back("...");
     }
-    texts.push_back(row.what + (" in " + count) + " (" + list +
-                    (cases.size() > kNamedCases ? "; ..." : "") + "); " + row.advice);
+    texts.push_back(row.what + (" in " + count) + " (" + Joined(cases, "; ") + "); " + row.advice);
   }
   return texts;
 }

@@ -44,15 +44,15 @@ struct PushAndMotion {
   double push_late = 0.0, push_early = 0.0;
 };
 
-// Of the first push on a person. None: nobody pushes, the force has no horizontal impulse, or
+// Compares the first push on a person. None: nobody pushes, the force has no horizontal impulse, or
 // frames around it were not seen.
 std::optional<PushAndMotion> ComparePush(const PendulumRecording& recording, int person);
 
-// What a measured force reads where nobody pulls, N, horizontal: the mean of its last 0.2 s, where
+// Reading of a measured force where nobody pulls, N, horizontal: the mean of its last 0.2 s, where
 // that is steady and small beside the peak but no noise about zero. 0: none.
 double RestingForce(const ScenePush& push, double dt);
 
-// Whether a measured force stops, or the recording does, while it is large.
+// Whether a measured force, or the recording, stops while the force is large.
 bool HasNoEnd(const ScenePush& push, int num_frames);
 
 enum class FindingKind {
@@ -96,14 +96,14 @@ std::vector<Finding> FindingsOf(const PendulumRecording& recording);
 std::vector<Finding> FacingFindings(const Recording& recording);
 std::vector<Finding> FindingsOf(const Recording& recording);
 
-// By recording, the index of an earlier one with the same motion under another id; -1: none. (A
-// bootstrap's replica holds a recording several times, under one id.)
+// For each recording the index of an earlier one with the same motion under another id; -1: none.
+// (A bootstrap's replica holds a recording several times, under one id.)
 std::vector<int> CopyOf(const std::vector<PendulumRecording>& recordings);
 
-// Those of all recordings, copies among them.
+// Findings of all recordings, copies among them.
 std::vector<Finding> FindingsOf(const std::vector<PendulumRecording>& recordings);
 
-// Those that a fit, a prediction and pushid-push tell.
+// The findings that a fit, a prediction and pushid-push report.
 std::vector<Finding> FitFindings(std::vector<Finding> findings);
 
 // One sentence a kind: "the push is above 1 kN in 2 cases (a: 1650 N; b: 1219 N); ...".
@@ -111,7 +111,7 @@ std::vector<std::string> FindingTexts(const std::vector<Finding>& findings);
 Warnings FindingWarnings(const std::vector<Finding>& findings);
 
 // Whether the first row is more than three times as large as any other, as inverse dynamics makes
-// it where the person is faster at the push's begin than was assumed.
+// it where the person moves faster when the push begins than was assumed.
 bool FirstRowStandsOut(const std::vector<Vector4<double>>& force);
 
 }  // namespace pushid

@@ -108,9 +108,9 @@ struct Facing {
   std::string doubt;  // empty: none
 };
 
-// By the pelvis at frame `first`; without one by the line between the ankles, meant over
-// a second, as one foot is ahead in mid-stride. Doubtful where that line turns, or where the person
-// walks to its side. rod: from ankles to hip; metres: of the file's unit.
+// The facing by the pelvis at frame `first`; without one by the line between the ankles, averaged
+// over a second, as one foot is ahead in mid-stride. Doubtful where that line turns, or where the
+// person walks to its side. rod: from ankles to hip; metres: of the file's unit.
 Facing FacingOf(const PointMotion& motion, const PelvisSides& pelvis, const Track& hip,
                 const Track& left, const Track& right, const Eigen::Vector3d& rod, int first,
                 double metres) {
@@ -150,7 +150,7 @@ PersonSteps StepsOf(const PointMotion& motion, const PendulumJoints& joints,
     for (Eigen::Vector3d& position : mean) position = to_project * position;
     return mean;
   };
-  // As loading does: a toe or heel that is lost for long is not used.
+  // Loading does not use a toe or heel that is lost for long either.
   const double gap = PreparationOptions{}.max_gap_s * motion.rate_hz;
   RecordedPerson person;
   for (const PendulumTrack& row : kPendulumTracks) {
@@ -248,7 +248,7 @@ class MotionInspector {
     Steps(joints, facing.to_the_left, rod);
   }
 
-  // In the person's own axes, forward where they face.
+  // Finds steps in the person's own axes, forward where they face.
   void Steps(const PendulumJoints& joints, const Eigen::Vector3d& to_the_left,
              const Eigen::Vector3d& rod) {
     const Result<Eigen::Matrix3d> turn = AxesRotation(up_, AxisName(to_the_left.cross(rod)));
@@ -356,8 +356,8 @@ class MotionInspector {
     }
   }
 
-  // Whether the hip gathers speed before the onset, as a push makes it do, rather than coming with
-  // it: a person who walks in is as fast at first as later.
+  // Whether the hip gathers speed before the onset, as a push makes it do: a person who walks in is
+  // as fast at first as later.
   bool PushedFromRest(int first) const {
     const int end = found_.onset_frame, step = std::max(1, (end - first) / 4);
     const auto way = [&](int t) { return (found_.hip[t + step] - found_.hip[t]).norm(); };
@@ -393,7 +393,7 @@ class MotionInspector {
                              " m, mostly along " + AxisName(farthest));
   }
 
-  // From frame to frame of the same point, where metres are known.
+  // Warns of jumps of a point between frames, where metres are known.
   void Jumps() {
     if (metres_ == 0.0 || !(motion_.rate_hz > 0.0)) return;
     std::vector<std::string> jumps;

@@ -27,7 +27,7 @@ struct InspectedSignal {
   std::vector<double> values;
 };
 
-// What a laboratory adds to a recording of a manifest.
+// Ground and platforms of a manifest's recording.
 struct InspectedGround {
   std::string recording, kind;  // "displacement", "velocity", "acceleration" or "markers"
   double rate_hz = 0.0;         // of its file
@@ -52,7 +52,7 @@ struct Inspection {
   std::vector<InspectedGround> grounds;  // of a manifest's recordings
   std::vector<InspectedPlates> plates;
 
-  // For the picture; empty where the file has no such thing.
+  // Data of the picture; empty where the file has no such thing.
   double rate_hz = 0.0;                  // of hip and seen
   std::vector<Eigen::Vector3d> hip;      // m, file's axes, less that of the first frame seen
   std::vector<std::string> point_names;  // of seen
@@ -65,15 +65,15 @@ struct Inspection {
   void Warn(const std::string& text) { warnings.push_back(text); }
 };
 
-// By the file's ending and its first line; joints, columns, times and rate as the mapping says. An
-// Error where it cannot be read at all; several manifests, "a.json,b.json", are one study; a C3D
-// file cut short is read as far as it goes, with a warning.
+// Inspects a file by its ending and its first line; joints, columns, times and rate as the mapping
+// says. Error: it cannot be read at all. Several manifests, "a.json,b.json", are one study; a C3D
+// file that is cut short is read as far as it goes, with a warning.
 Result<Inspection> Inspect(const std::string& path, const ColumnMapping& mapping = {});
 
 // "file: format", the facts and the warnings, one a line.
 std::string InspectionText(const Inspection& inspection);
 
-// The same with names and numbers: {"file", "format", "facts", "warnings", "ground", "plates"}.
+// As above, with names and numbers: {"file", "format", "facts", "warnings", "ground", "plates"}.
 nlohmann::ordered_json InspectionJson(const Inspection& inspection);
 
 // Two points of the pelvis, one on each side, as indices; empty where there are none.

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What names of a pattern mean something; others tell recordings apart.
+// Names in a pattern that mean something; others tell recordings apart.
 const std::vector<std::string> kUnderstood = {"setting",   "subject",        "magnitude",
                                               "condition", kOldConditionKey, "person"};
 
@@ -78,7 +78,7 @@ class Maker {
   }
 
  private:
-  // It must name one file for each recording.
+  // The push pattern must name one file for each recording.
   MaybeError CheckPushPattern() const {
     const std::string what = "the push pattern " + Quoted(options_.push_pattern);
     if (push_pattern_->HasStar()) {
@@ -129,7 +129,7 @@ class Maker {
     return found == values.end() ? fallback : found->second;
   }
 
-  // As the manifest names it.
+  // The path of a file as the manifest names it.
   std::string FromManifest(const std::string& relative) const {
     return BesideManifest(fs::path(options_.folder) / relative);
   }

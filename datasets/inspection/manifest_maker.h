@@ -32,7 +32,7 @@ struct ManifestOptions {
   double mass_kg = 0.0;                  // of everybody else; 0: not known, an Error
   double fps = 0.0;                      // 0: as each file says, whole where it nearly is
   int pushed_person = 0;
-  // Of recordings whose pattern does not say.
+  // The setting of recordings whose pattern does not say.
   std::string setting = "single";
   std::string magnitude = "unknown";
   PushKind push_kind = PushKind::kExternal;

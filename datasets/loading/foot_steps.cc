@@ -120,7 +120,7 @@ class StepFinder {
     return spans;
   }
 
-  // Of the point that moves least: where one rests, the foot rolls or turns on it.
+  // Speed of the point that moves least: where one rests, the foot rolls or turns on it.
   double Speed(int frame) const {
     double slowest = std::numeric_limits<double>::infinity();
     for (const Track& point : points_) slowest = std::min(slowest, SpeedAt(point, frame, fps_));
@@ -152,7 +152,7 @@ class StepFinder {
     });
   }
 
-  // Where the ankle stands in a stance: its mean while the heel is down. No stance: at `frame`.
+  // The ankle's place in a stance: its mean while the heel is down; without a stance at `frame`.
   Eigen::Vector2d Place(const Span& stance, int frame) const {
     const Track& ankle = points_[0];
     if (stance.begin >= stance.end) return ankle[frame].head<2>();

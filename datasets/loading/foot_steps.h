@@ -34,8 +34,8 @@ struct FootStep {
   int lift_off = 0;      // the first frame off the ground; 0 where the recording starts so
   int landing = 0;       // the first frame on it again; the recording's end if not finished
   bool finished = true;  // false: still off the ground in the last frame
-  // From the ankle's place in the stance before to that after it (an unfinished step: to the last
-  // frame), m forward and to the left. Of one foot: what gait analysis calls a stride of who walks.
+  // Travel of the ankle from the stance before to the one after (an unfinished step: to the last
+  // frame), m forward and to the left: a foot's stride in gait analysis.
   Eigen::Vector2d travel = Eigen::Vector2d::Zero();
 
   double Length() const { return travel.norm(); }
@@ -56,9 +56,9 @@ inline constexpr StepThresholds kAnkleAlone{0.5, 0.7};
 // One foot's points, one position per frame, m; toe and heel may be empty.
 struct FootTracks {
   std::vector<Eigen::Vector3d> ankle, toe, heel;
-  // Empty: every frame was seen. Frames with weight 0 were not, nor were positions that are not
-  // finite; a straight line stands in: a foot that is elsewhere after a short gap has stepped in
-  // it.
+  // Weights of frames; empty: every frame was seen. Frames with weight 0 were not, nor were
+  // positions that are not finite: a straight line replaces them, and a foot that is elsewhere
+  // after a short gap has stepped in it.
   std::vector<double> weight;
 };
 
@@ -66,7 +66,7 @@ struct FootTracks {
 // (tests/datasets/loading/foot_steps_test.cc).
 inline constexpr double kTravelOfWhoMoves = 0.05;
 
-// Both feet's steps, by lift-off.
+// Steps of both feet, by lift-off.
 struct PersonSteps {
   std::vector<FootStep> steps;
   // m, of the foot that went farther: from its place in the first 0.1 s to that in the last, by
@@ -74,7 +74,7 @@ struct PersonSteps {
   double travel = 0.0;
 
   bool Stepped() const { return !steps.empty(); }
-  // Whether the feet are elsewhere than they were, or have been.
+  // Whether the feet stepped, or are elsewhere than they were.
   bool Moved() const { return Stepped() || travel > kTravelOfWhoMoves; }
   const FootStep* First() const { return steps.empty() ? nullptr : &steps.front(); }
   bool Stands(Foot foot, int frame) const;

@@ -18,7 +18,7 @@ constexpr char kColumns[][6] = {"x", "y", "z", "theta", "phi"};
 constexpr int kNumColumns = 5;
 constexpr double kRestSeconds = 0.1;  // over which the speed at frame 0 is taken
 
-// By name; -1 for what is not there. up: of the column whose motion lifts, which is not read.
+// Columns by their names; -1: not there. up: of the column whose motion lifts, which is not read.
 Result<std::vector<int>> GroundColumns(const std::string& path, int up,
                                        const std::vector<std::string>& names) {
   std::vector<int> columns;
@@ -62,7 +62,7 @@ void Integrate(GroundQuantity quantity, double dt, std::vector<GroundPose>* pose
 // The tracks' clock at frame 0, and that they last as long as the motion from there.
 Result<double> GroundStart(const GroundTracks& tracks, const ManifestRecording& entry,
                            const Recording& recording) {
-  // Of markers by the rate that counts for the motion, whatever the file says.
+  // Markers have the rate that counts for the motion, whatever the file says.
   const double start = entry.ground.start_s.value_or(
       entry.ground.csv.empty() ? tracks.first_s + entry.first_frame / tracks.rate_hz
                                : recording.people[0].skipped_s);
@@ -94,7 +94,7 @@ GroundPose Sampled(const GroundTracks& tracks, double at) {
 // poses: at the recording's frames; start: the tracks' clock at the first of them.
 MaybeError CheckAtRest(const GroundTracks& tracks, bool displacement, double start, double fps,
                        const std::vector<GroundPose>& poses) {
-  // By what was before frame 0, where the file has it: ground may start quickly at frame 0.
+  // What was before frame 0 counts where the file has it: ground may start quickly at frame 0.
   const double first_at = (start - tracks.first_s) * tracks.rate_hz;
   const int rest = std::max(5, 1 + static_cast<int>(std::lround(kRestSeconds * tracks.rate_hz)));
   std::vector<GroundPose> about_first;

@@ -27,13 +27,13 @@ inline constexpr double kGroundAtRest = 0.02;
 // (rms); 5 mm of noise of each are 7 mm.
 inline constexpr double kRigidMarkers = 0.01;
 
-// How fast the ground is at the first of some poses, in the fastest coordinate, m/s or rad/s: the
-// slope there of a parabola through them, less what the scatter about it explains (three standard
+// Speed of the ground at the first of some poses, in the fastest coordinate, m/s or rad/s: the
+// slope of a parabola through them, less what the scatter about it explains (three standard
 // errors), and no more than the first step, which is short where ground starts quickly from rest.
 double GroundSpeedAtFirst(const std::vector<GroundPose>& poses, double dt);
 
-// How the recording's motion was read: the units and the rate of markers in its file, and the
-// low-pass of its positions, which the ground gets too. Nothing of it counts for a CSV but that.
+// How the recording's motion was read: units and rate of the markers in its file, and the low-pass
+// of its positions, which the ground gets too (of a CSV only the low-pass counts).
 struct GroundReading {
   double metres_per_unit = 1.0;
   double file_fps = 0.0;    // before resampling
@@ -60,11 +60,11 @@ struct GroundTracks {
   double last_s() const { return first_s + (static_cast<double>(shift.size()) - 1.0) / rate_hz; }
 };
 
-// From the table that the entry names.
+// The ground of the table that the entry names.
 Result<GroundTracks> GroundOfCsv(const ManifestRecording& entry);
 
-// From the markers that the entry names, in the first person's file: the rigid motion of what is
-// under that person. Errors and warnings: those of ground_record.h.
+// The ground of the markers that the entry names, in the first person's file: the rigid motion of
+// what is under that person. Errors and warnings: those of ground_record.h.
 Result<GroundTracks> GroundOfMarkers(const ManifestRecording& entry, const Recording& recording,
                                      const GroundReading& reading, Warnings* warnings);
 

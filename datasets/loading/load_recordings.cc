@@ -129,7 +129,8 @@ class PersonLoader {
   }
 
  private:
-  // By a reader that does not have to believe the file; the first one counts.
+  // Metres per unit as a reader is told who does not have to believe the file; the first one
+  // counts.
   std::optional<double> MetresGiven() const {
     const std::pair<std::optional<LengthUnit>, std::optional<double>> said[] = {
         {options_.length_unit, options_.length_scale},
@@ -145,7 +146,7 @@ class PersonLoader {
 
   void Warn(const std::string& warning) const {
     if (warnings_ == nullptr) return;
-    // As the manifest names it: results keep warnings, and not where the data lay.
+    // The file as the manifest names it: results keep warnings, and not where the data lay.
     const std::string& file = entry_.motion[index_];
     warnings_->emplace_back("recording " + Quoted(entry_.id) + ": " + file + " " + warning,
                             entry_.id, "the file " + warning);
@@ -199,7 +200,7 @@ class PersonLoader {
     return std::nullopt;
   }
 
-  // Only gaps of hip and ankles take weight from a frame.
+  // A frame loses weight only by gaps of hip and ankles.
   MaybeError CloseGaps(FileMotion* motion, RecordedPerson* person) const {
     const std::size_t frames = motion->tracks[0].size();
     const int max_gap = static_cast<int>(std::floor(options_.preparation.max_gap_s * fps_ + 1e-9));

@@ -28,15 +28,16 @@ struct LoadOptions {
   std::optional<double> length_scale;
   // Which recordings: see SelectRecordings. Only those are read.
   std::string setting = "all";
-  // Only these ids; empty: all of the setting.
+  // Only these ids are loaded; empty: all of the setting.
   std::vector<std::string> ids;
-  // Not these ids of them.
+  // These ids are left out.
   std::vector<std::string> leave_out;
-  // Also keep the positions of all joints (RecordedPerson::joints), for full-body work; without it
-  // only hip and ankles stay in memory.
+  // Whether the positions of all joints are kept (RecordedPerson::joints), for full-body work;
+  // otherwise only hip and ankles stay in memory.
   bool keep_all_joints = false;
-  // Also people whom force plates alone measured ("motion": "none"), who stand still in what is
-  // returned, with no weight; only a fit and an inspection know them. Else they are errors.
+  // Whether people may be loaded whom force plates alone measured ("motion": "none"): they stand
+  // still in what is returned, with no weight, and only a fit and an inspection know them.
+  // Otherwise they are errors.
   bool plates_alone = false;
   // Gaps, filter, frame rate.
   PreparationOptions preparation{};
@@ -54,7 +55,7 @@ Result<std::vector<Recording>> LoadRecordings(const std::string& manifests,
                                               const LoadOptions& options = {},
                                               Warnings* warnings = nullptr);
 
-// Those of a manifest that was read already, or one of them.
+// As above, from a manifest that was read already; or one recording of it.
 Result<std::vector<Recording>> LoadRecordings(const Manifest& manifest, const LoadOptions& options,
                                               Warnings* warnings = nullptr);
 Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecording& entry,

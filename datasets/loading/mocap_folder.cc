@@ -139,7 +139,7 @@ ForecastWindow WindowAt(const MocapClip& clip, const Trajectories& motion, int s
           motion.middleCols(start + kObservedFrames, kForecastFrames)};
 }
 
-// Of Human3.6M: the clip's share of the windows that it has with the other one of its action; none
+// Human3.6M: the clip's share of the windows that it has with the other one of its action; none
 // where there is no such pair.
 std::vector<int> PairedStarts(const MocapFolder& mocap, const MocapClip& clip) {
   std::vector<const MocapClip*> pair;

@@ -47,7 +47,7 @@ const char* Human36mSkeleton();
 // Errors: no skeleton, no clips, a clip that is malformed (file, line, column).
 Result<MocapFolder> ReadMocapFolder(const std::string& folder);
 
-// What forecasts of motion capture are made from and judged by: the eight-action protocol
+// The protocol by which forecasts of motion capture are made and judged: the eight actions
 // of CMU's clips.
 //
 // Every second frame of a clip, 25 a second: 25 frames are observed, the next 25 forecast. The test
@@ -84,7 +84,7 @@ std::vector<int> TestWindowStarts(int frames);
 // i + 25 on, as above. None where a clip is too short.
 std::vector<std::pair<int, int>> PairedWindowStarts(int frames, int frames_of_other);
 
-// Whether a clip is of the validation split: of subject 11, or the last of its action.
+// Whether a clip belongs to the validation split: subject 11, or the last of its action.
 bool IsValidationClip(const MocapFolder& mocap, const MocapClip& clip);
 
 // test: eight windows of every clip below test/, or of every clip where there is no such folder;

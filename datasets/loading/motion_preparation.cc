@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
 #include "datasets/manifest/joint_choice.h"
@@ -97,7 +98,7 @@ struct Biquad {
   double b, a1, a2;
 };
 
-// Of which two passes have lost 3 dB at the cut-off.
+// A filter of which two passes lose 3 dB at the cut-off.
 Biquad Butterworth(double cutoff_hz, double rate_hz) {
   const double k = std::tan(M_PI * cutoff_hz / rate_hz) / TwoPassCorrection();
   const double q = std::sqrt(2.0) * k;
@@ -105,7 +106,7 @@ Biquad Butterworth(double cutoff_hz, double rate_hz) {
   return {k * k * norm, 2.0 * (k * k - 1.0) * norm, (1.0 - q + k * k) * norm};
 }
 
-// In place, from the steady state at the first value.
+// Filters in place, from the steady state at the first value.
 void Pass(const Biquad& filter, std::vector<Vector3d>* x) {
   Vector3d x1 = x->front(), x2 = x1, y1 = x1, y2 = x1;
   for (Vector3d& value : *x) {
@@ -122,7 +123,7 @@ using Position = Eigen::Vector3d;
 
 constexpr double kRounding = 1e-9;  // of a frame
 
-// Where new frame i lies on the old frames.
+// The place of new frame i among the old frames.
 double OldFrame(int i, double from_hz, double to_hz) { return i * from_hz / to_hz; }
 
 }  // namespace
@@ -270,10 +271,9 @@ FilledTracks FillTracks(int max_gap, const std::vector<std::vector<Vector3d>*>& 
 std::string FilledTracks::Warning(double max_gap_s) const {
   if (gaps == 0) return "";
   const std::string frames = std::to_string(weight.size());
-  std::string text = "has " + std::to_string(gaps) + " gap" + (gaps == 1 ? "" : "s") +
-                     " in hip and ankles; those of up to " + Rounded(max_gap_s) +
-                     " s are interpolated, " + std::to_string(excluded_frames) + " of " + frames +
-                     " frames are left out";
+  std::string text = "has " + CountText(gaps, "gap") + " in hip and ankles; those of up to " +
+                     Rounded(max_gap_s) + " s are interpolated, " +
+                     std::to_string(excluded_frames) + " of " + frames + " frames are left out";
   if (many) {
     text += "; " + std::to_string(interpolated_frames) +
             " of the others are interpolated, more than a tenth: these count "

@@ -22,7 +22,6 @@ struct PreparationOptions {
   double resample_fps = 0.0;
 };
 
-// What is wrong with the options, if anything.
 MaybeError CheckPreparation(const PreparationOptions& options);
 
 // Filters and resamples a recording whose gaps are filled. Errors: a cut-off that the recording's
@@ -30,11 +29,10 @@ MaybeError CheckPreparation(const PreparationOptions& options);
 // fewer than three frames left.
 MaybeError PrepareMotion(const PreparationOptions& options, Recording* recording);
 
-// Whether positions read from a file can be a person at all: a fit to wrong units or axes succeeds,
-// and is wrong. Looks at the distance from the ankles' midpoint to the hip at frame 0 (in people
-// about 0.7 to 1.1 m; accepted are 0.12 to 3 m), at its direction (within 1 rad of up) and at every
-// position (within 100 km of the origin, three frames at least). `unit` is what the file was read
-// in.
+// Checks whether positions read from a file can be a person at all: a fit to wrong units or axes
+// succeeds, and is wrong. The distance from the ankles' midpoint to the hip at frame 0 (in people
+// about 0.7 to 1.1 m) must be 0.12 to 3 m, its direction within 1 rad of up, and every position
+// within 100 km of the origin; three frames are needed. `unit` is what the file was read in.
 MaybeError CheckMotion(const RecordedPerson& person, double metres_per_unit);
 
 // Single tracks of positions.

@@ -15,7 +15,7 @@
 namespace pushid {
 namespace {
 
-// Of the files and of what the manifest makes of them: masses, units, rate, pushes.
+// Hash of the files and of what the manifest makes of them: masses, units, rate, pushes.
 std::string HashOf(const PendulumRecording& recording, const std::string& files) {
   ContentHash hash;
   hash.Add(files);
@@ -44,8 +44,8 @@ std::string HashOf(const PendulumRecording& recording, const std::string& files)
   return hash.Hex();
 }
 
-// Where the lines between the ankles point forwards, on average over people and the frames before
-// the push; 0 where the ankles are one.
+// The direction in which the lines between the ankles point forwards, on average over people and
+// the frames before the push; 0 where the ankles are one.
 double FacingBeforePush(const Recording& recording) {
   int frames = recording.num_frames();
   for (const Push& push : recording.pushes) frames = std::min(frames, push.start_frame);
@@ -59,8 +59,8 @@ double FacingBeforePush(const Recording& recording) {
   return to_the_left.norm() > 0.0 ? std::atan2(-to_the_left.x(), to_the_left.y()) : 0.0;
 }
 
-// All of a person as ground that moves sees it, but for the joints that only bodies have, and for
-// platforms, which move with the ground.
+// A person as seen from ground that moves, without the joints that only bodies have, and with
+// platforms as they are, which move with the ground.
 RecordedPerson SeenFromGround(const Recording& recording, RecordedPerson person) {
   const std::vector<GroundPose>& poses = recording.ground;
   if (poses.empty()) return person;
@@ -84,7 +84,7 @@ size_t FirstDisturbance(const Recording& recording) {
   return std::min(first, static_cast<size_t>(FirstMotion(recording.ground)));
 }
 
-// Where the centre of pressure was on average over the frames before `end`; none: nobody pressed.
+// The mean centre of pressure over the frames before `end`; none: nobody pressed.
 std::optional<Eigen::Vector2d> MeanCentre(const std::vector<PlateSample>& plates, size_t end) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double weights = 0.0;
@@ -131,8 +131,7 @@ constexpr Segment kSegments[] = {{kNeck, kBodyHead, 0.0681, 0.5, 0.29},
                                  {kRightKnee, kRightAnkle, 0.0457, 0.444, 0.26},
                                  {kLeftKnee, kLeftAnkle, 0.0457, 0.444, 0.26}};
 
-// Of an average body, over the rod: thigh and shank together, their first moment, and what is
-// above.
+// An average body, over the rod: thigh and shank together, their first moment, and what is above.
 constexpr double kLegs = 0.3808, kLegsMoment = 0.2595, kAbove = 0.5926, kOfShoulders = 0.6;
 
 MassDistribution Average() {
@@ -140,7 +139,7 @@ MassDistribution Average() {
   return {1.0 - kMassAboveAnkles, kComOverHip, r};
 }
 
-// How far the shoulders are above the hip, m; 0: not seen.
+// Height of the shoulders above the hip, m; 0: not seen.
 double ShouldersAboveHip(const RecordedPerson& person) {
   double height = 0.0;
   int seen = 0;
@@ -226,7 +225,8 @@ Eigen::Vector2d PushDirection(const PendulumRecording& recording) {
     sum += static_cast<double>(push.force.size()) * push.mean.head<2>();
   }
   if (sum.norm() > 0.0) return sum.normalized();
-  // Without a push: where the ground goes farthest, shifted or tilted by as many metres as the rod.
+  // Without a push the direction is where the ground goes farthest, shifted or tilted by as many
+  // metres as the rod.
   Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
   for (const GroundPose& pose : recording.scene.ground.poses) {
     const Eigen::Vector2d moved = pose.head<2>() + Eigen::Vector2d(pose[2], -pose[3]);

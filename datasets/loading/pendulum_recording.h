@@ -12,7 +12,7 @@
 
 namespace pushid {
 
-// What platforms measured of one person at one frame, in the scene's axes.
+// Platforms' measurement of one person at one frame, in the scene's axes.
 struct PlateFrame {
   Eigen::Vector2d shear = Eigen::Vector2d::Zero();   // horizontal force on the person, N
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // of pressure, less that at rest, m
@@ -33,8 +33,8 @@ struct PendulumRecording {
   std::vector<std::vector<PendulumState<double>>> states;
   std::vector<std::vector<double>> rod_length;    // m
   std::vector<std::vector<Vector3<double>>> hip;  // m
-  // How much each frame counts, in [0, 1]; [person] is empty where all of them count fully. That of
-  // a frame is the least of its own and the one before, which its velocity needs.
+  // Weight of each frame, in [0, 1]; [person] is empty where all of them count fully. A frame's
+  // weight is the least of its own and the one before, which its velocity needs.
   std::vector<std::vector<double>> weight;
   // [person][frame]; [person] is empty where no platform measured, and all of it where none did.
   std::vector<std::vector<PlateFrame>> plates;
@@ -52,7 +52,7 @@ struct PendulumRecording {
   int num_people() const { return static_cast<int>(hip.size()); }
   // false: platforms alone measured it, and nobody saw the motion.
   bool IsSeen() const { return Weight(0, 0) > 0.0; }
-  // Of the rod's length since frame 0, m.
+  // Change of the rod's length since frame 0, m.
   double RodChange(int person, int frame) const {
     return rod_length[person][frame] - rod_length[person][0];
   }
@@ -78,8 +78,8 @@ std::vector<PendulumRecording> MakePendulumRecordings(const std::vector<Recordin
 // farthest shift; x without either.
 Eigen::Vector2d PushDirection(const PendulumRecording& recording);
 
-// In axes turned by so much about the vertical; forces at the recorded poses. The steps of the feet
-// stay as they are.
+// The scene in axes turned by so much about the vertical; forces at the recorded poses. The steps
+// of the feet stay as they are.
 Scene TurnedScene(const PendulumRecording& recording, double angle);
 PendulumRecording Turned(PendulumRecording recording, double angle);
 
@@ -87,7 +87,7 @@ PendulumRecording Turned(PendulumRecording recording, double angle);
 MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const std::string& flag,
                       const std::string& key, const std::string& other);
 
-// Where a body's mass is, from its recorded segments.
+// The distribution of a body's mass, from its recorded segments.
 //
 // Masses, centres and radii of gyration of segments are the means of women and men in de Leva, J.
 // Biomechanics 29, 1996, table 4. Of the 22 joints of a body (body_roles.h) all segments above the
@@ -99,7 +99,6 @@ MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const st
 // person: its joints where they were asked for (LoadOptions::keep_all_joints).
 MassDistribution MassesOf(const RecordedPerson& person);
 
-// Whether the body is the average one, for want of joints.
 bool IsAverage(const MassDistribution& masses);
 
 }  // namespace pushid

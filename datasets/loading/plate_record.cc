@@ -53,7 +53,7 @@ double MeanDistance(const std::vector<PlateSample>& plates, const RecordedPerson
   return sum / std::max(1, seen);
 }
 
-// Of several people, the one who is named stands nearest to where the platforms are pressed.
+// In a file of several people, the named one must stand nearest to where platforms are pressed.
 MaybeError CheckPerson(const std::string& file, const Recording& recording, int named) {
   const std::vector<PlateSample>& plates = recording.people[named].plates;
   const double own = MeanDistance(plates, recording.people[named]);
@@ -99,7 +99,7 @@ Result<double> PlatesStart(const PlateTracks& tracks, const ManifestPlates& plat
   return start;
 }
 
-// At the frames, from the tracks' time `start` on.
+// Samples at the frames, from the tracks' time `start` on.
 std::vector<PlateSample> SampledAt(const PlateTracks& tracks, double start, double fps,
                                    int frames) {
   std::vector<PlateSample> samples;
@@ -117,7 +117,7 @@ std::vector<PlateSample> SampledAt(const PlateTracks& tracks, double start, doub
   return samples;
 }
 
-// How far outside of the corners a point is, m; in the file's axes and on the surface.
+// Distance of a point outside of the corners, m; in the file's axes and on the surface.
 double Beyond(const Eigen::Matrix<double, 3, 4>& corners, const Eigen::Vector3d& point) {
   const Eigen::Vector3d centre = corners.rowwise().mean();
   double most = 0.0;
@@ -138,7 +138,7 @@ struct PlateColumns {
   bool Has(int from, int needed) const {
     return std::count_if(index + from, index + from + 3, [](int i) { return i >= 0; }) >= needed;
   }
-  // With two coordinates of the centre, whichever of the file's axes are level.
+  // Whether there are two coordinates of the centre, whichever of the file's axes are level.
   bool Complete() const { return Has(0, 3) && (Has(3, 2) || Has(kMoments, 3)); }
 };
 
@@ -209,8 +209,8 @@ Result<std::vector<PlateColumns>> PlateColumnsIn(const std::string& path,
       path};
 }
 
-// Where a force with this moment about the origin, all in the project's axes, meets the ground at
-// height 0: M = r x F but for a moment about the vertical.
+// The point where a force with this moment about the origin, all in the project's axes, meets the
+// ground at height 0: M = r x F but for a moment about the vertical.
 Eigen::Vector3d CentreByMoment(const Eigen::Vector3d& force, const Eigen::Vector3d& moment,
                                const Eigen::Vector3d& origin) {
   const double up = -origin.z();
@@ -243,7 +243,7 @@ MaybeError LoadPlates(const ManifestRecording& entry, const ManifestPlates& plat
   }
   person.plates = SampledAt(tracks, start.value(), fps, recording->num_frames());
   if (MaybeError error = CheckPlates(tracks.file, *recording, plates.person)) return error;
-  // Of platforms alone the feet are not seen; on ground that moves they go with it.
+  // With platforms alone the feet are not seen; on ground that moves they go with it.
   const bool feet_seen = recording->ground.empty() && !entry.plates_alone;
   return feet_seen ? CheckCentre(tracks, person) : std::nullopt;
 }

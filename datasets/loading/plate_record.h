@@ -22,8 +22,8 @@ namespace pushid {
 inline constexpr double kWeightTolerance = 0.05;  // of the mean vertical force about m g
 inline constexpr double kFarFromFeet = 0.6;       // m, of the centre of pressure
 
-// Whether who stands on the platforms of `file` weighs what these measure, and stands nearest to
-// where they are pressed.
+// Checks that whoever stands on the platforms of `file` weighs what these measure, and stands
+// nearest to where they are pressed.
 MaybeError CheckPlates(const std::string& file, const Recording& recording, int person);
 
 // Into the person's `plates`. Errors: those of the files, no such platform or column, a record that
@@ -56,13 +56,13 @@ struct PlateTracks {
   double last_s() const { return first_s + (static_cast<double>(force.size()) - 1.0) / rate_hz; }
 };
 
-// Those of a manifest's entry, of the file that it names or of the motion's; a motion's file has
-// the axes of its person. Errors: those of the files, no such platform or column, a centre of
-// pressure off the platform.
+// The platforms of a manifest's entry, from the file that it names or from the motion's; a motion's
+// file has the axes of its person. Errors: those of the files, no such platform or column, a centre
+// of pressure off the platform.
 Result<PlateTracks> ReadPlates(const ManifestRecording& entry, const ManifestPlates& plates,
                                const RecordedPerson& person);
 
-// By the kind of file; axes: from the file's to the project's.
+// Readers by the kind of file; axes: from the file's to the project's.
 Result<PlateTracks> PlatesOfC3d(const std::string& path, const ManifestPlates& plates,
                                 const Eigen::Matrix3d& axes);
 Result<PlateTracks> PlatesOfTable(const std::string& path, const ManifestPlates& plates,

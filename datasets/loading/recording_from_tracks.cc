@@ -148,7 +148,7 @@ std::vector<int> Wanted(const FileMotionRequest& request, const PendulumJoints& 
   return read;
 }
 
-// Of the file's joints, which are all kept where there are roles.
+// Sets roles of the file's joints, which are all kept where there are roles.
 MaybeError SetRoles(const FileMotionRequest& request, const std::vector<std::string>& names,
                     const BvhSkeleton* skeleton, const PendulumJoints& joints, FileMotion* motion) {
   if (!request.keep_all_joints) return std::nullopt;

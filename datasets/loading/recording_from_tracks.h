@@ -75,7 +75,7 @@ struct FileMotion {
   double frame_time_s = 0.0;  // 0: neither file nor mapping says it
   double first_time_s = 0.0;  // by the file's clock
   double metres_per_unit = MetresPer(LengthUnit::kMillimetre);
-  // With all joints: who plays which role, and a BVH's hierarchy at the first frame.
+  // Set with all joints: who plays which role, and a BVH's hierarchy at the first frame.
   BodyRoles roles;
   std::optional<FileSkeleton> skeleton;
   std::string content_hash;

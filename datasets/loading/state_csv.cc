@@ -46,7 +46,7 @@ Result<StateRow> RowOfCells(const LineReader& reader, std::string_view line) {
   return StateRow{texts[0], texts[2], static_cast<int>(frame), texts[3], reader.line_number()};
 }
 
-// By the frames at which symbols begin.
+// States of all frames from the frames at which symbols begin.
 std::vector<std::string> Held(const std::map<int, std::string>& from, int frames) {
   std::vector<std::string> held;
   for (auto row = from.begin(); row != from.end(); ++row) {

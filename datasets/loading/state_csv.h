@@ -44,8 +44,8 @@ struct RecordedStates {
   std::vector<std::vector<std::string>> people = {};  // [person][frame]; empty: none are known
 };
 
-// Those of a recording of so many frames. Errors: a row of nobody in it, or behind its end; people
-// some of whom have no states; states that do not begin at frame 0.
+// The states of a recording of so many frames. Errors: a row of nobody in it, or behind its end;
+// people some of whom have no states; states that do not begin at frame 0.
 Result<RecordedStates> StatesOf(const StateTable& table, const std::string& recording,
                                 const std::vector<std::string>& subjects, int frames);
 

@@ -13,7 +13,7 @@ struct Warning {
   std::string of_many = {};    // what it says of several: "the file has gaps"
 
   Warning() = default;
-  // Of no recording.
+  // A warning about no single recording.
   Warning(std::string sentence)
       : text(std::move(sentence)) {}                 // NOLINT(google-explicit-constructor)
   Warning(const char* sentence) : text(sentence) {}  // NOLINT(google-explicit-constructor)

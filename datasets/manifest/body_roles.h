@@ -21,7 +21,8 @@
 
 namespace pushid {
 
-// Of kBodyJoints, in their order: "hip", "lower_spine", ..., "right_clavicle", ..., "left_toe".
+// Names of the kBodyJoints, in their order: "hip", "lower_spine", ..., "right_clavicle", ...,
+// "left_toe".
 const std::vector<std::string>& RoleNames();
 inline const std::string& RoleName(int role) { return RoleNames()[role]; }
 

@@ -35,7 +35,7 @@ struct ColumnMapping {
 // Errors name line and key; keys that are not known are Errors too, since they would do nothing.
 Result<ColumnMapping> ReadColumnMapping(const std::string& path);
 
-// What manifests and mapping files say in the same words: joints and units.
+// Joints and units, which manifests and mapping files write alike.
 
 // "joints": {"hip": "Hips" or 0 or ["LASI", "RASI"], "left_ankle": ..., "left_knee": ...}: any role
 // of body_roles.h, all optional.

@@ -11,7 +11,7 @@
 namespace pushid {
 namespace {
 
-// What differs between the joints of a skeleton and the points of other files.
+// The joints of a skeleton or the points of another file, as a choice sees them.
 struct Source {
   const std::string& path;
   std::vector<std::string> names;
@@ -180,8 +180,8 @@ Result<std::vector<int>> Meant(const Source& source, const std::string& key,
   return chosen;
 }
 
-// What `reference` means, otherwise the role's default, which is only looked for where it is
-// wanted: it may be ambiguous. An Error when there is neither.
+// The joints of `reference`, otherwise the role's default, which is only looked for where it is
+// wanted, as it may be ambiguous. Error: neither is there.
 Result<std::vector<int>> Choose(const Source& source, int role,
                                 const std::optional<JointReference>& reference) {
   const std::string& key = RoleName(role);
@@ -307,14 +307,14 @@ std::vector<std::string> Split(std::string_view text, char at) {
 
 class RoleFinder {
  public:
-  // Only joints with `prefix` ("Anna:") are looked at: others may be another person's.
+  // Joints without `prefix` ("Anna:") are ignored: they may be another person's.
   RoleFinder(const std::vector<std::string>& names, const std::string& prefix) {
     for (const std::string& name : names) {
       simplified_.push_back(PrefixOf(name) == prefix ? SimplifiedName(name) : "");
     }
   }
 
-  // What the naming calls all roles that `roles` lacks; a joint plays one role.
+  // Adds the roles that `roles` lacks and the naming has names for; a joint plays one role.
   BodyRoles Named(int naming, BodyRoles roles) const {
     for (const RoleWords& row : kWords) {
       const char* words = row.words[naming];
@@ -381,7 +381,7 @@ int CountOf(const BodyRoles& roles) {
                                         [](const auto& list) { return !list.empty(); }));
 }
 
-// From the joint to its root, itself first.
+// The joints from `joint` to its root, `joint` first.
 std::vector<int> WayToRoot(const BvhSkeleton& skeleton, int joint) {
   std::vector<int> way;
   for (; joint >= 0; joint = skeleton.joints[joint].parent) way.push_back(joint);
@@ -408,14 +408,14 @@ void SetSpine(const BvhSkeleton& skeleton, BodyRoles* roles) {
   const int count = static_cast<int>(chain.size());
   for (int role : kSpine) roles->joints[role].clear();
   for (int i = 0; i < std::min(count, 3); ++i) {
-    // Of k joints, those at k/3, 2k/3 and k.
+    // Three of k joints: those at k/3, 2k/3 and k.
     const int place = count > 3 ? (2 * (i + 1) * count + 3) / 6 - 1 : i;
     const int role = count >= 3 ? kSpine[i] : count == 2 ? kSpine[2 * i] : kUpperSpine;
     roles->joints[role] = {chain[place]};
   }
 }
 
-// Of hip and ankles the prefix that most of the file's names have: a manifest may name a joint that
+// The prefix of hip and ankles that most of the file's names have: a manifest may name a joint that
 // lacks it.
 std::string CommonPrefix(const std::vector<std::string>& names, const PendulumJoints& pendulum) {
   std::string best;

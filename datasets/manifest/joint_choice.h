@@ -16,11 +16,11 @@ namespace pushid {
 // Indices into the file's joints or points; each place is the mean of its list.
 struct PendulumJoints {
   std::vector<int> hip, left_ankle, right_ankle;
-  // Of the feet, where the file has them; empty otherwise.
+  // Joints of the feet, where the file has them; empty otherwise.
   std::vector<int> left_toe{}, right_toe{}, left_heel{}, right_heel{};
 };
 
-// What a person's tracks are the means of; those that only the feet's steps need come last.
+// A track of a person: the mean of these joints. Tracks that only the steps of feet need come last.
 struct PendulumTrack {
   std::vector<int> PendulumJoints::*joints;
   std::vector<Eigen::Vector3d> RecordedPerson::*track;
@@ -36,7 +36,7 @@ inline constexpr PendulumTrack kPendulumTracks[] = {
     {&PendulumJoints::right_heel, &RecordedPerson::right_heel, false},
 };
 
-// What `mapping` names, and for the rest the defaults:
+// The joints that `mapping` names, and for the rest the defaults:
 //   hip     a joint called Hips, Hip or Pelvis, otherwise the first root;
 //   ankles  joints called LeftAnkle, LeftFoot, L_Ankle, foot.l, mixamorig:LeftFoot, ... (case and
 //           punctuation do not matter); otherwise, in a skeleton with the 22 joints and the parents
@@ -50,7 +50,7 @@ inline constexpr PendulumTrack kPendulumTracks[] = {
 Result<PendulumJoints> ChoosePendulumJoints(const std::string& path, const BvhSkeleton& skeleton,
                                             const JointMapping& mapping);
 
-// The same for named points. A name may leave out what stands before a colon ("LASI" for
+// As above, for named points. A name may leave out what stands before a colon ("LASI" for
 // "Anna:LASI") where that is clear. Defaults:
 //   hip     Hips, Hip or Pelvis, otherwise the mean of the pelvis markers: LASI RASI LPSI RPSI
 //           (also as L.ASIS, ASISl, ...), LASI RASI SACR, LASI RASI;
@@ -77,8 +77,8 @@ std::string PrefixOf(const std::string& name);
 // "left" and "ankle": "leftankle", "lankle", "ankleleft", "anklel".
 std::vector<std::string> NamesOnSide(const std::string& side, const std::string& part);
 
-// Whether a skeleton has the 22 joints of the FZJ push recordings in their order, by its parents:
-// those are the joints of models/restoration/body.h.
+// Whether a skeleton has the 22 joints of the FZJ push recordings (those of
+// models/restoration/body.h) in their order, by its parents.
 bool IsFzjSkeleton(const BvhSkeleton& skeleton);
 
 // `first` where it names a joint, otherwise `second`.

@@ -19,7 +19,7 @@ struct JsonDocument;
 class JsonFields;
 struct ManifestRecording;
 
-// What a file of the ground holds.
+// The quantity in a file of the ground.
 enum class GroundQuantity { kDisplacement, kVelocity, kAcceleration };
 constexpr EnumNames<GroundQuantity, 3> Names(GroundQuantity) {
   return {{{"displacement", GroundQuantity::kDisplacement},
@@ -36,7 +36,7 @@ struct ManifestGround {
   bool given() const { return !csv.empty() || !markers.empty(); }
 };
 
-// Whether platforms are what a rollout is compared with.
+// Whether rollouts are compared with what platforms measured.
 enum class PlateUse { kNone, kMeasure };
 constexpr EnumNames<PlateUse, 2> Names(PlateUse) {
   return {{{"none", PlateUse::kNone}, {"measure", PlateUse::kMeasure}}};
@@ -50,7 +50,8 @@ struct ManifestPlates {
   std::optional<double> start_s;    // the file's clock at frame 0
   double lowpass_hz = 0.0;          // 0: 0.4 of the frame rate
   std::string up, forward;          // axes of the file; empty: z and x, of a motion's file its own
-  // What columns of moments are about, m, in the file's axes; the surface is at height 0.
+  // The point about which columns of moments are, m, in the file's axes; the surface is at height
+  // 0.
   std::optional<Eigen::Vector3d> origin{};
 };
 
@@ -64,19 +65,19 @@ std::vector<ManifestPlates> ReadPlatesKey(const JsonDocument& document, JsonFiel
 //   "motion": "none", "force_plates": {"use": "measure", "file": "quiet.csv"},
 //   "subjects": [{"id": "anna", "mass_kg": 62, "rod_m": 0.91}]
 
-// Whether nothing but platforms measured; then every other key that asks for motion is a mistake.
+// Whether platforms alone measured; then every other key that asks for motion is a mistake.
 bool ReadPlatesAlone(JsonFields* fields);
 
-// What such a person needs, and may have.
+// Checks the keys that such a person needs and may have.
 void CheckPlatesAlone(const ManifestRecording& recording, JsonFields* fields);
 
-// How well a laboratory knows what a fit takes as known, as standard deviations.
+// Standard deviations of what a fit takes as known, as the laboratory states them.
 //
 //   "stated_errors": {"push_scale": 0.02, "push_lag_frames": 0.5, "mass": 0.01}
 
-// Of measured pushes (kind external): share of the force, frames between its clock and that of the
-// cameras, height (m), zero of the sensor (N). Shares of masses and of the frame rate; and how far
-// (m) what the cameras see may drift along the push over a recording.
+// Errors of measured pushes (kind external): share of the force, frames between its clock and the
+// cameras', height (m), zero of the sensor (N); shares of masses and of the frame rate; and how far
+// (m) the cameras may drift along the push over a recording.
 struct StatedErrors {
   double push_scale = 0.05, push_lag_frames = 1.0, push_height_m = 0.05, push_zero_N = 2.0;
   double mass = 0.03, frame_rate = 0.01, drift_m = 0.005;

@@ -206,7 +206,7 @@ void SetUnless(bool is_default, const char* key, const T& value, Json* object) {
   }
 }
 
-// The same for keys whose default value may as well be spelled out.
+// As above, for keys whose default value may as well be spelled out.
 template <typename T>
 void SetOrKeep(bool is_default, const char* key, const T& value, Json* object) {
   if (!is_default || object->contains(key)) (*object)[key] = value;
@@ -221,7 +221,7 @@ Json JointJson(const JointReference& joint) {
   return joint.name.empty() ? Json(joint.index) : Json(joint.name);
 }
 
-// What was under `key` when it is a list of `size` objects, so that their other keys stay;
+// The value under `key` where it is a list of `size` objects, so that their other keys stay;
 // otherwise a list of that many empty ones.
 Json ObjectsUnder(const Json& object, const char* key, std::size_t size) {
   Json list = object.contains(key) ? object.at(key) : Json();
@@ -339,7 +339,7 @@ MaybeError LeaveOut(const Manifest& manifest, const std::vector<std::string>& id
 
 namespace fs = std::filesystem;
 
-// Where something was first said.
+// The place where something was first said.
 struct Said {
   std::string path;
   int line = 0;
@@ -392,7 +392,7 @@ class Merger {
 
 }  // namespace
 
-// Those that the reader asks for, here of a recording that has none of them.
+// The keys that the reader asks for, here in an entry that has none of them.
 const std::vector<std::string>& ManifestKeys() {
   static const std::vector<std::string> keys = [] {
     JsonDocument empty;

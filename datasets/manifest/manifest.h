@@ -41,24 +41,23 @@ struct JointMapping {
   std::optional<JointReference> hip, left_ankle, right_ankle;
   std::map<int, JointReference> others{};  // by role (body_roles.h)
 
-  // By role, whichever it is.
   std::optional<JointReference> Of(int role) const;
   void Set(int role, const JointReference& joint);
 };
 
-// What the published manifests call `condition`; read where that is not there, never written.
+// The published manifests' key for `condition`; read where that is not there, never written.
 inline constexpr char kOldConditionKey[] = "condition_code";
 
 inline constexpr double kHeaviestPerson = 400.0;  // kg
 
-// Of the ankles above the ground, m, of an adult, where nobody measured it.
+// Height of an adult's ankles above the ground, m, where nobody measured it.
 inline constexpr double kUsualAnkleHeight = 0.08;
 
 struct ManifestSubject {
   std::string id;
   double mass_kg = 0.0;
   JointMapping joints{};  // before those of the recording
-  // Of a person whom platforms alone measured, m.
+  // Rod of a person whom platforms alone measured, m.
   double rod_m = 0.0, ankle_height_m = kUsualAnkleHeight;
   PersonFacts known{};  // under keys that no program knows
 };
@@ -102,12 +101,12 @@ struct ManifestRecording {
   KeptJson json{};
 };
 
-// What a recording says of itself; subjects, files and pushes are the caller's.
+// The entry of a recording without its subjects, files and pushes, which are the caller's.
 ManifestRecording EntryOf(const Recording& recording);
 
 struct Manifest {
   std::string path;  // the file (or files) it was read from, for messages
-  // For recordings that do not give their own.
+  // The unit of recordings that do not give their own.
   std::optional<LengthUnit> length_unit;
   std::optional<double> length_scale;
   StatedErrors stated_errors;
@@ -129,7 +128,7 @@ MaybeError WriteManifest(const std::string& path, const Manifest& manifest);
 // "push/a.csv" as named by the manifest at `manifest_path`: relative to its folder unless absolute.
 std::string ResolvePath(const std::string& manifest_path, const std::string& file);
 
-// Of a recording, known to this program.
+// Keys of a recording that this program knows.
 const std::vector<std::string>& ManifestKeys();
 
 // "has the key 'push_scv', which is not known and not used; is push_csv meant?" for each. Keys that

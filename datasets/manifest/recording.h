@@ -27,7 +27,7 @@ inline constexpr char kConditionLabel[] = "condition";  // of the protocol
 
 class RecordingLabels {
  public:
-  // Empty where the recording has no such label.
+  // The text of a label; empty where the recording has none.
   const std::string& Of(const std::string& key) const {
     static const std::string kNone;
     const auto found = labels_.find(key);
@@ -87,16 +87,16 @@ struct FileSkeleton {
   Eigen::Matrix3d world_from_file = Eigen::Matrix3d::Identity();
 };
 
-// What force platforms under a person measured at one frame: the sum of them all, in the axes of
-// the ground, with which they move.
+// The sum of all force platforms under a person at one frame, in the axes of the ground, with which
+// they move.
 struct PlateSample {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   // on the person, N
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of pressure, m
   double weight = 0.0;                               // in [0, 1]: 0 where nothing was measured
 };
 
-// What a manifest says of a person beside the mass, under keys of the user's own: numbers that a
-// fit may take as covariates (age, height), and texts by which people are compared (group).
+// Facts about a person beside the mass, under keys of the user's own: numbers that a fit may take
+// as covariates (age, height), and texts by which people are compared (group).
 struct PersonFacts {
   std::map<std::string, double> numbers;
   std::map<std::string, std::string> texts;
@@ -107,20 +107,20 @@ struct RecordedPerson {
   double mass_kg = 0.0;
   PersonFacts known;
   std::string file;  // of the motion
-  // That file's own clock at frame 0, s, how much of it is before frame 0 (first_frame), and its
-  // axes: for forces that were recorded in it or beside it.
+  // Clock of that file at frame 0, s, how much of it is before frame 0 (first_frame), and its axes:
+  // for forces that were recorded in it or beside it.
   double file_clock_s = 0.0, skipped_s = 0.0;
   std::string file_up = "z", file_forward = "x";
   // Joint positions, one entry per frame, metres.
   std::vector<Eigen::Vector3d> hip, left_ankle, right_ankle;
-  // Empty where the file has none, or loses them for longer than a gap that is filled.
+  // Tracks of the feet; empty where the file has none, or loses them for longer than a filled gap.
   std::vector<Eigen::Vector3d> left_toe, right_toe, left_heel, right_heel;
   // One per frame in [0, 1]: how much the frame counts; empty: 1 for all. 0 where hip or ankles
   // were not seen: the positions there mean nothing.
   std::vector<double> weight;
   // One per frame; empty: no platform is to be measured against.
   std::vector<PlateSample> plates;
-  // All joints, frame-major ([frame][joint]); empty unless asked for.
+  // Positions of all joints, [frame][joint]; empty unless asked for.
   std::vector<std::vector<Eigen::Vector3d>> joints;
   // Names and parents (-1 for a root) of `joints`; empty unless those were asked for.
   std::vector<std::string> joint_names;

@@ -29,7 +29,7 @@ struct PlatformRecord {
   // reaction, but a platform can only be pressed, never pulled, so the sign is the one that makes
   // the impulse point out of the surface.
   std::vector<Eigen::Vector3d> force;  // N
-  // On the surface; NaN where the platform is pressed with less than kPressed.
+  // Points on the surface; NaN where the platform is pressed with less than kPressed.
   std::vector<Eigen::Vector3d> centre;                // m
   std::vector<double> free_moment;                    // N m on the person, about the outward normal
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // out of the surface

@@ -69,7 +69,7 @@ Result<SensorRecord> FromTable(const SensorChoice& choice) {
   return record;
 }
 
-// For files that hold more than a push.
+// The error for files that hold more than a push.
 Error WhichColumn(const SensorChoice& choice, MotionFormat format) {
   std::vector<std::string> names;
   if (format == MotionFormat::kC3d) {

@@ -17,12 +17,12 @@ namespace pushid {
 // One sensor, and how it pushes.
 struct SensorChoice {
   std::string file;
-  // What of the file: empty for a CSV time,force or time,fx,fy,fz; a column's name, or the common
-  // part of three (ground_force_v for ground_force_vx, ..._vy, ..._vz); an analog channel; or
-  // platform:1, counted from 1.
+  // The part of the file: empty for a CSV time,force or time,fx,fy,fz; a column's name, or the
+  // common part of three (ground_force_v for ground_force_vx, ..._vy, ..._vz); an analog channel;
+  // or platform:1, counted from 1.
   std::string column;
   double gain = 1.0;  // N per unit of the column; negative where it counts the other way
-  // What it reads at rest, N, of a sensor of one number; unset: what it reads before the pull.
+  // Reading of a sensor of one number at rest, N; unset: what it reads before the pull.
   std::optional<double> zero_n;
   // Axes of the file that point up and forward, for forces that are vectors; empty: z and x.
   std::string up, forward;
@@ -34,8 +34,8 @@ struct SensorChoice {
   double idle_force = 0.0;        // N
 };
 
-// Where the sensor was recorded in the file of a person's motion, what the choice does not say is
-// that file's: clock at frame 0 and axes.
+// Where the sensor was recorded in the file of a person's motion, the choice takes what it lacks
+// from that file: clock at frame 0 and axes.
 void FillFromMotion(const RecordedPerson& person, SensorChoice* choice);
 
 // Errors besides those of the files' readers: no such column, channel or platform (some that exist
@@ -72,8 +72,8 @@ Result<TimedColumns> ReadTimedColumns(
     const std::string& path,
     const std::function<Result<std::vector<int>>(const std::vector<std::string>&)>& choose);
 
-// That a record, "the record of the ground lasts", goes on for as long as a motion of so many
-// seconds that begins at `start_s` of its clock. spare: frames that may be missing at the end.
+// Checks that a record, "the record of the ground lasts", goes on for as long as a motion of so
+// many seconds that begins at `start_s` of its clock. spare: frames that may be missing at the end.
 struct RecordTimes {
   const char* lasts;
   double first_s, last_s, start_s, seconds, fps, spare;

@@ -98,7 +98,7 @@ class Walker {
     if (swings || lost_.size() <= late || !lost_.back() || !lost_[lost_.size() - 1 - late]) return;
     const int foot = Foot(1, t) < Foot(0, t) ? 1 : 0;
     const double stand = Foot(1 - foot, t) + body_.toe;
-    // Where the extrapolated centre of mass will be when the foot lands; the foot reaches past it.
+    // The foot steps past where the extrapolated centre of mass will be when it lands.
     const double landing = stand + (beyond - stand) * std::exp(rate * kSwing);
     swing_[foot] = {Foot(foot, t), std::max(landing - 0.2 * body_.toe, stand), t};
     trial->steps.push_back({foot, t, t + kSwing, swing_[foot].to - swing_[foot].from});
@@ -145,7 +145,7 @@ class Walker {
                 body_.m2 * body_.c2 * std::sin(q.trunk)) /
                    (body_.m1 + body_.m2);
   }
-  // Of the feet that stand: hindmost and foremost point.
+  // Hindmost and foremost point of the feet that stand.
   std::pair<double, double> Support(double t) const {
     double back = 1e9, front = -1e9;
     for (int foot : {0, 1}) {
@@ -287,7 +287,7 @@ PointMotion Markers(const LaboratoryPerson& person, const LaboratoryTrial& trial
   return motion;
 }
 
-// How much of the weight is on the left foot.
+// Share of the weight on the left foot.
 double LeftShare(const LaboratorySample& s) {
   if (s.foot_lift[0] > 0.0) return 0.0;
   if (s.foot_lift[1] > 0.0) return 1.0;
@@ -310,7 +310,7 @@ NumericTable Plates(const LaboratoryTrial& trial, Random* noise) {
     const LaboratorySample& s = trial.samples[i];
     const double left = LeftShare(s);
     std::vector<double> row = {static_cast<double>(i) / kLaboratoryHz};
-    // Where each foot presses, so that both together press at the centre.
+    // Each foot presses so that both together press at the centre.
     const double beyond = s.centre_m - left * s.foot[0] - (1.0 - left) * s.foot[1];
     for (int foot : {0, 1}) {
       const double share = foot == 0 ? left : 1.0 - left;

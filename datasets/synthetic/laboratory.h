@@ -34,7 +34,7 @@ namespace pushid {
 
 struct LaboratoryPerson {
   double mass_kg = 75.0, height_m = 1.75;
-  // Of ankles and hips: N m/rad and N m s/rad.
+  // Gains of ankles or hips: N m/rad and N m s/rad.
   struct Joint {
     double active = 0.0, passive = 0.0, active_damping = 0.0, passive_damping = 0.0;
   };

@@ -28,8 +28,7 @@ struct SyntheticClipOptions {
   uint64_t seed = 1;
 };
 
-// Of synthetic people: slow noise of unit variance: n' = m n + sqrt(1 - m^2) N(0, 1), m = exp(-step
-// / memory).
+// Slow noise of unit variance: n' = m n + sqrt(1 - m^2) N(0, 1), m = exp(-step / memory).
 class SlowNoise {
  public:
   SlowNoise(Random* random, double step_s, double memory_s = 1.0)

@@ -25,7 +25,8 @@ struct Subject {
 // known seed would change.
 constexpr int kSpreadDraws = 35;
 
-// Not of delays, of bodies and of dry friction, nor of the rod's lift and what is behind it.
+// Whether a parameter is spread: not delays, bodies and dry friction, nor the rod's lift and what
+// is behind it.
 constexpr bool IsSpread(int id) {
   return id < kRodLift && id != kCoulombFriction && (id < kReactionDelay || id > kPushGain);
 }
@@ -85,8 +86,8 @@ RolloutStatus RollDriven(const SyntheticOptions& options, Random* random,
   return Roll(options, options.model, made, nullptr, &noise);
 }
 
-// Where a push stands for other forces too while it lasts, its rows must contain them. They are
-// taken from a rollout in which the drawn push is added to everything else.
+// Where a push replaces other forces while it lasts, its rows must contain them. They are taken
+// from a rollout in which the drawn push is added to everything else.
 RolloutStatus AbsorbOtherForces(const SyntheticOptions& options, SyntheticRecording* made) {
   const ModelOptions& model = options.model;
   if (model.push == PushUse::kAdded || options.push_kind == PushKind::kExternal) return {};
@@ -137,7 +138,7 @@ RecordedPerson ObservePerson(const SyntheticOptions& options, const SyntheticRec
   return person;
 }
 
-// What platforms under the person measure, which move with the ground.
+// Measurements of platforms under the person, which move with the ground.
 std::vector<PlateSample> ObservePlates(const SyntheticOptions& options,
                                        const SyntheticRecording& made, int n, Random* noise) {
   std::vector<PlateSample> plates;
@@ -169,7 +170,7 @@ std::vector<PlateSample> ObservePlates(const SyntheticOptions& options,
 std::vector<Subject> DrawSubjects(const SyntheticOptions& options, Random* people, Random* spread) {
   std::vector<Subject> subjects;
   for (int s = 0; s < options.subjects; ++s) {
-    // To 0.1 kg, as scales show it.
+    // Scales show masses to 0.1 kg.
     const double mass =
         std::round(10.0 * people->Uniform(options.min_mass_kg, options.max_mass_kg)) / 10.0;
     const SyntheticSkeleton skeleton(people->Uniform(options.min_rod_m, options.max_rod_m));
@@ -208,7 +209,7 @@ constexpr double kStepStart = 0.3, kStepSeconds = 0.4;       // s
 constexpr double kSine = 0.5;                                // Hz
 constexpr double kSines[] = {0.15, 0.35, 0.65, 1.05, 1.55};  // Hz
 
-// From 0 to 1 with velocity and acceleration zero at both ends (minimum jerk).
+// A rise from 0 to 1 with velocity and acceleration zero at both ends (minimum jerk).
 double Smooth(double u) {
   const double v = std::clamp(u, 0.0, 1.0);
   return v * v * v * (10.0 - 15.0 * v + 6.0 * v * v);
@@ -416,7 +417,7 @@ MaybeError CheckSyntheticOptions(const SyntheticOptions& o) {
   constexpr double kMany = 100000;
   if (o.strengths.empty()) return Error{"no push strengths given: name at least one"};
   for (const PushStrength& strength : o.strengths) {
-    // It becomes part of ids and file names.
+    // The name becomes part of ids and file names.
     const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
     if (!std::all_of(strength.name.begin(), strength.name.end(), plain) || strength.name.empty()) {
       return Error{"push strength '" + strength.name + "': use letters, digits, - and _"};

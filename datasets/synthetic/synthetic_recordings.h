@@ -79,12 +79,12 @@ struct PushStrength {
 // The settled tail model for the person of 85 kg and 0.95 m: round values near those identified
 // from the published recordings of single people.
 ParameterSet<double> PublishedTailParameters();
-// The same of people who touch, near those identified from the published groups.
+// Values for people who touch, near those identified from the published groups.
 ParameterSet<double> PublishedGroupParameters();
-// The same of feet that hold and step (models/stance.h).
+// Values for feet that hold and step (models/stance.h).
 ParameterSet<double> PublishedStanceParameters();
 
-// How the ground of synthetic recordings moves, along x.
+// Motion of the ground of synthetic recordings, along x.
 enum class GroundKind {
   kNone,
   kStep,        // a shift within 0.4 s, from 0.3 s on
@@ -100,7 +100,7 @@ constexpr EnumNames<GroundKind, 5> Names(GroundKind) {
            {"file", GroundKind::kFile}}};
 }
 
-// Its poses; size: m, of the step or of each sine; along: horizontal, of length 1.
+// Poses of the ground; size: m, of the step or of each sine; along: horizontal, of length 1.
 std::vector<GroundPose> SyntheticGround(GroundKind kind, double size, int frames, double dt,
                                         const Eigen::Vector2d& along);
 
@@ -153,12 +153,12 @@ struct SyntheticOptions {
   // Frame 0 sets rod length, start and posture of a fit; false keeps it exact, for studies that
   // must not mix errors in the motion with errors in these.
   bool noise_at_first_frame = true;
-  // Not zero: the noise is drawn from this seed, so that one set of motions can have several
-  // draws of noise.
+  // Where it is not zero, the noise is drawn from this seed, so that one set of motions can have
+  // several draws of noise.
   uint64_t noise_seed = 0;
 };
 
-// What is wrong with the options, if anything: names option, value and constraint.
+// Error: an option, its value and the constraint that it breaks.
 MaybeError CheckSyntheticOptions(const SyntheticOptions& options);
 
 struct SyntheticRecording {

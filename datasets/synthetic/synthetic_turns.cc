@@ -23,7 +23,7 @@ constexpr int kSpine = 1, kTalkingNeck = 4, kTalkersRightArm = 7, kTalkersRightE
 constexpr LengthUnit kTurnsUnit = LengthUnit::kMillimetre;
 constexpr double kDegrees = 180.0 / M_PI;
 
-// Who speaks at each frame.
+// The speaker at each frame.
 std::vector<int> Speakers(const SyntheticTurnsOptions& o, Random* random) {
   const double end = 1.0 / (o.turn_s * o.fps), begin = 1.0 / (o.pause_s * o.fps);
   const double pausing = end * o.pause_share / (end * o.pause_share + begin);
@@ -68,7 +68,7 @@ std::vector<Talker> DrawTalkers(int recording, Random* random) {
 
 double Wrapped(double angle) { return std::remainder(angle, 2.0 * M_PI); }
 
-// What moves in one person, frame by frame.
+// The motion of one person, frame by frame.
 class TalkingBody {
  public:
   TalkingBody(const Talker& who, double dt, Random* random)
@@ -100,7 +100,7 @@ class TalkingBody {
     double* const frame = values->data() + begin;
     frame[0] = ConvertLength(there.x(), LengthUnit::kMetre, kTurnsUnit);
     frame[1] = ConvertLength(there.y(), LengthUnit::kMetre, kTurnsUnit);
-    // After the hip's place three angles of each joint, about z, y and x.
+    // Channels are the hip's place, then three angles of each joint, about z, y and x.
     const auto turn_joint = [frame](int joint, int axis, double angle) {
       frame[3 + 3 * joint + axis] = kDegrees * angle;
     };

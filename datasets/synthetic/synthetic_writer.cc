@@ -23,7 +23,7 @@ BvhMotion Motion(const SyntheticRecording& made, int n) {
   const RecordedPerson& person = made.recording.people[n];
   for (int t = 0; t < made.recording.num_frames(); ++t) {
     const PendulumState<double>& state = made.path.At(t, n);
-    // Of it the angles are asked for, which know no origin.
+    // Only the angles are used here, which know no origin.
     const Vector4<double> q = InLaboratory(made.scene.ground, t, Vector3<double>::Zero(), state).q;
     made.skeletons[n].AppendFrame(
         {q[2], q[3], person.hip[t], person.left_ankle[t], person.right_ankle[t]}, kUnit,
@@ -33,7 +33,7 @@ BvhMotion Motion(const SyntheticRecording& made, int n) {
 }
 
 std::string GroundFile(const Recording& recording) { return "ground/" + recording.id + ".csv"; }
-// As the motion's: of a row one for each person.
+// Names are the motion's: in a row one for each person.
 std::string OfPerson(const Recording& recording, size_t n) {
   return recording.id + (recording.people.size() > 1 ? "_" + std::to_string(n) : "");
 }

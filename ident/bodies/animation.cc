@@ -207,8 +207,8 @@ nlohmann::json Samples(const std::vector<Points>& frames, int every) {
   return json;
 }
 
-// Of people, or of what-ifs; more people than there are colours take them from a scale, so that
-// neighbours look alike and no two are the same.
+// Colours of people or what-ifs; where there are more people than colours, they come from a scale,
+// so that neighbours look alike and no two are the same.
 std::vector<std::string> ColoursOf(const Animation& animation,
                                    const std::vector<std::string>& whats) {
   const std::set<std::string> names = NamesOf(animation);
@@ -387,14 +387,14 @@ class Panel {
   SvgPicture* svg_;
 };
 
-// Where a person's hip is; nothing beyond the last frame.
+// A person's hip; none beyond the last frame.
 std::optional<Eigen::Vector3d> HipAt(const AnimatedPerson& person, int t) {
   if (t < static_cast<int>(person.tip.size())) return person.tip[t];
   if (t < static_cast<int>(person.body.size())) return person.body[t].col(0);
   return std::nullopt;
 }
 
-// How far everybody's joints, or hips, go from one frame to the next: the sum over people.
+// The way of everybody's joints, or hips, from one frame to the next: the sum over people.
 double MotionTo(const Animation& animation, int t) {
   double sum = 0.0;
   for (const AnimatedPerson& person : animation.people) {
@@ -426,8 +426,8 @@ std::vector<int> FramesByMotion(const Animation& animation, int poses) {
   return frames;
 }
 
-// The same with the moment at which a push is hardest in the place of the one next to it: a short
-// push would fall between two.
+// As above, with the frame of the hardest push in place of the nearest one: a short push would fall
+// between two.
 std::vector<int> FramesWithPush(const Animation& animation, int poses) {
   std::vector<int> frames = FramesByMotion(animation, poses);
   int hardest = -1;
@@ -447,7 +447,7 @@ std::vector<int> FramesWithPush(const Animation& animation, int poses) {
   return frames;
 }
 
-// What the strip draws, and no more.
+// The legend of what the strip draws.
 std::vector<LegendEntry> LegendOf(const Animation& animation) {
   std::vector<LegendEntry> legend;
   const auto any = [&animation](auto has) {

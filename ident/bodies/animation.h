@@ -12,13 +12,13 @@
 
 namespace pushid {
 
-// What a person does according to one source, with pendulum and net force where there are any.
+// A person's motion by one source, with pendulum and net force where there are any.
 struct AnimatedPerson {
   std::string name;
   bool recorded = false;  // else predicted
   BodyMotion body;        // empty: none
-  // Where it is none that has all joints of a body: what the file's skeleton has, frame by frame,
-  // with the parents (-1: none).
+  // Joints of a file's skeleton that lacks joints of a body, frame by frame, with their parents
+  // (-1: none).
   std::vector<Eigen::Matrix3Xd> joints;
   std::vector<int> parents;
   std::vector<Vector3<double>> cart;  // empty: none
@@ -91,7 +91,7 @@ inline constexpr char kAnimatedPushColour[] = "#d55e00";
 SvgPicture PoseStrip(const Animation& animation, int poses);
 inline constexpr int kPosesOfStrip = 6;  // where nobody says how many
 
-// From an ankle to the ends of a foot as it is drawn, m.
+// Distances from an ankle to the ends of a foot as it is drawn, m.
 inline constexpr double kSoleBehind = 0.06, kSoleBefore = 0.19;
 
 }  // namespace pushid

@@ -63,7 +63,7 @@ std::string Spaced(std::string name) {
   return name;
 }
 
-// How groups move, where there are any.
+// Metrics of groups, where there are any.
 std::string GroupsText(const BodyEvaluation& evaluation) {
   std::vector<GroupMetricsRow> rows;
   for (const auto& [name, summary] : evaluation) {

@@ -31,7 +31,7 @@
 
 namespace pushid {
 
-// How far predicted bodies are from recorded ones.
+// Distances of predicted bodies from recorded ones.
 //
 // For one recording, means over the frames that count, people and all 22 joints unless said
 // otherwise. Those are frames 1 .. T-1, and of a predictor that was shown more than frame 0 only
@@ -89,7 +89,7 @@ struct BodyScore {
   std::string failure;                     // why there is no score; such a recording is in no mean
   std::vector<BodyMotion> predicted = {};  // of more than one person; groups are judged together
   int first_frame = 1;                     // that counts
-  // At kErrorSeconds, where the recording lasts so long.
+  // Errors at kErrorSeconds, where the recording lasts so long.
   std::array<std::optional<TimedError>, kErrorSeconds.size()> at = {};
 };
 
@@ -140,7 +140,7 @@ std::vector<BodyMotion> ConstantVelocityBodies(const BodyRecording& recording, i
 // The score of a recording whose bodies could not be predicted.
 BodyScore FailedBodies(const BodyRecording& recording, const std::string& failure);
 
-// By the names above; the scores in the order of the calls.
+// Scores by the names above, in the order of the calls.
 using BodyScores = std::map<std::string, std::vector<BodyScore>>;
 void ScoreRestoration(const IdentifiedModel& model, const Restoration& restoration,
                       const PostprocessOptions& options, const BodyRecording& recording,

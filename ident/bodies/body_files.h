@@ -27,7 +27,7 @@ struct BodyScene {
   int num_frames() const { return bodies.empty() ? 0 : static_cast<int>(bodies[0].size()); }
 };
 
-// Of the recording's people, with other motions of theirs.
+// A scene of the recording's people with other motions.
 BodyScene SceneOf(const BodyRecording& recording, std::vector<BodyMotion> bodies);
 
 // The hierarchy of the BVH file that the person came from: its joints in their order, offsets,
@@ -42,7 +42,6 @@ BvhMotion ToBvh(const BodySkeleton& skeleton, const BodyMotion& motion, double d
 // Returns the files' names.
 Result<std::vector<std::string>> WriteBodyBvh(const std::string& path, const BodyScene& scene);
 
-// Whether a file's name ends in .bvh.
 bool IsBodyFile(const std::string& path);
 
 // frame,time_s,person,subject,joint,x_m,y_m,z_m

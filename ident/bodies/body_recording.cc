@@ -84,7 +84,7 @@ void SetTree(BodySkeleton* skeleton) {
   skeleton->tree.aims.assign(columns, {});
   for (int j = 0; j < columns; ++j) {
     const int above = parents[j] < 0 ? -1 : turning[parents[j]];
-    // Where the hip is a mean of several joints, the root turns for it.
+    // The root turns for a hip that is the mean of several joints.
     const bool turns = wanted[j] >= 0 || (parents[j] < 0 && !hip_is_one);
     turning[j] = turns ? j : above;
     if (wanted[j] >= 0 && above >= 0) skeleton->tree.aims[above].push_back(j);
@@ -208,7 +208,7 @@ BodySkeleton SkeletonOf(const RecordedPerson& person) {
   for (int role = kBodyJoints - 1; role >= 0; --role) {
     if (person.roles.Single(role) >= 0) skeleton.roles[person.roles.Single(role)] = role;
   }
-  // As the file has it, and not as it was filtered: its bones are what is kept.
+  // Positions are the file's, not the filtered ones: their bones are what is kept.
   std::vector<int> all(joints);
   for (int j = 0; j < joints; ++j) all[j] = j;
   std::vector<Eigen::Vector3d> rest(joints);

@@ -25,8 +25,8 @@ struct BodySkeleton {
   std::vector<std::string> names;
   std::vector<int> parents;  // -1: a root; every parent precedes its children
   std::vector<int> roles;    // the role that a joint plays; -1: none
-  // At frame 0, m, world: the joints, then the filled roles beyond the last joint of a limb (toes,
-  // head), which the joint before them turns towards.
+  // Positions at frame 0, m, world: the joints, then the filled roles beyond the last joint of a
+  // limb (toes, head), which the joint before them turns towards.
   Eigen::Matrix3Xd rest;
   JointAims tree;
   std::vector<int> wanted_roles;                  // by column of rest; -1: nothing is wanted of it
@@ -42,7 +42,8 @@ std::vector<std::string> DefaultJointNames();
 // The 22 roles themselves, as they stand in a pose.
 BodySkeleton RoleSkeleton(const Pose& first, const std::vector<std::string>& names);
 
-// That of a person read with all joints: the hierarchy of a BVH file; of points, the 22 roles.
+// The skeleton of a person read with all joints: the hierarchy of a BVH file; of points, the 22
+// roles.
 BodySkeleton SkeletonOf(const RecordedPerson& person);
 
 struct PosedJoints {
@@ -67,7 +68,7 @@ struct BodyRecording {
 // plays and that its neighbours do not fill (datasets/manifest/body_roles.h).
 Result<BodyRecording> MakeBodyRecording(const Recording& recording);
 Result<std::vector<BodyRecording>> MakeBodyRecordings(const std::vector<Recording>& recordings);
-// Of all recordings; of none where not all have such a skeleton, or nobody is in a group.
+// Bodies of all recordings; of none where not all have such a skeleton, or nobody is in a group.
 RecordedBodies BodiesOfGroups(const std::vector<Recording>& recordings);
 std::vector<PendulumRecording> PendulumsOf(const std::vector<BodyRecording>& recordings);
 
@@ -78,7 +79,7 @@ void FollowPrediction(const Prediction& prediction, std::vector<RestorationInput
 // People of a recording with predicted pendulums and the first poses that the prediction has seen.
 std::vector<RestorationInput> PredictedPeople(const BodyRecording& recording,
                                               const Prediction& prediction);
-// The same with recorded pendulums, after `observed` poses. rod_moves: beside predictions whose
+// As above with recorded pendulums, after `observed` poses. rod_moves: beside predictions whose
 // rods move, the rod has the recorded length of each frame, so that its tip is the recorded hip;
 // otherwise that of frame 0.
 std::vector<RestorationInput> RecordedPeople(const BodyRecording& recording, bool rod_moves,

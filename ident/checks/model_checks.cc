@@ -34,7 +34,7 @@ MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
   if (bootstrap && recordings.size() < 2) {
     return Error{"--bootstrap draws people or recordings with replacement; it needs at least two"};
   }
-  // Whether it was trained by its gradient, or will be: a model's file holds its network.
+  // A model that was trained by its gradient, or will be: its file holds the network.
   const bool large = IsLarge(options);
   if (checks.horizon_check && (large || options.likelihood != Likelihood::kTrajectory)) {
     return Error{

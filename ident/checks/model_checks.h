@@ -19,16 +19,16 @@ struct ModelChecks {
   std::string design;  // a parameter, or all; empty: none
   int num_threads = 1;
 
-  // Whether they add to the model; a design is only printed.
+  // Whether the checks add to the model; a design is only printed.
   bool Adds() const {
     return !profile.empty() || bootstrap.replicas > 0 || horizon_check || learn_forecasts;
   }
   bool Any() const { return Adds() || !design.empty(); }
 };
 
-// What is wrong with them, before a long fit. Errors name the flag.
+// Checks the numbers before a long fit. Errors name the flag.
 MaybeError CheckNumbers(const ModelChecks& checks);
-// The same against what is, or was, fitted.
+// Checks them against what is, or was, fitted.
 MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
                         const std::vector<PendulumRecording>& recordings);
 
@@ -47,7 +47,7 @@ MaybeError AddChecks(const std::vector<PendulumRecording>& recordings, const Mod
                      const std::function<JobProgress(const std::string&)>& progress,
                      FittedModel* model);
 
-// What forecasts and design print; empty where nothing was asked.
+// The text of forecasts and design; empty where neither was asked for.
 Result<std::string> CheckSections(const std::vector<PendulumRecording>& recordings,
                                   const ModelChecks& checks, const FitResult& fit);
 
@@ -58,7 +58,7 @@ MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
 MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
                         const BootstrapOptions& options, const JobProgress& progress,
                         FittedModel* model);
-// What predictions from first frames need. Errors: the model has no push tail.
+// Learns what predictions from first frames need. Error: the model has no push tail.
 MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int num_threads,
                         FittedModel* model);
 void AddHorizonCheck(const std::vector<PendulumRecording>& recordings, int num_threads,

@@ -304,7 +304,7 @@ namespace {
 constexpr double kNarrowest = 0.65;
 constexpr double kLegendRow = 18, kHeading = 22;
 
-// Of its line, its name and the room after it.
+// Width of an entry's line, its name and the room after it.
 double EntryWidth(const LegendEntry& entry) {
   return 44 + 6.6 * static_cast<double>(entry.name.size());
 }

@@ -88,26 +88,26 @@ struct Chart {
   void Shrink() { width = kSmallWidth, height = kSmallHeight; }
 };
 
-// What the lines of a picture mean.
+// The meaning of the lines of a picture.
 struct LegendEntry {
   std::string name, look;
 };
 
-// What belongs together, with one legend.
+// Charts that belong together, with one legend.
 struct Figure {
   std::vector<LegendEntry> legend;
   std::vector<Chart> panels;
   std::string heading = {};  // above everything; may be empty
 };
 
-// Of a panel that is drawn so wide.
+// Height of a panel that is drawn so wide.
 double HeightOf(const Chart& chart, double width);
 // Axes and labels lie within the box.
 void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg);
 
 // A picture of its own, as wide as wanted.
 SvgPicture DrawPanel(const Chart& chart);
-// All panels in one picture, as many side by side as fit.
+// Draws all panels in one picture, as many side by side as fit.
 SvgPicture DrawFigure(const Figure& figure, double width, const std::string& title);
 
 double LegendWidth(const std::vector<LegendEntry>& entries);

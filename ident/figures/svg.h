@@ -52,15 +52,15 @@ class SvgPicture {
   // Classes middle and end set the anchor, small and bold the font. A number's hyphen becomes a
   // minus sign; an empty text draws nothing.
   void Text(double x, double y, std::string_view text, std::string_view look = "ink");
-  // From (x, y) upwards.
+  // Text from (x, y) upwards.
   void TextUp(double x, double y, std::string_view text, std::string_view look = "ink");
 
   double width() const { return width_; }
 
   std::string ToString() const;
-  // For a page that has SvgStyle: without a style sheet of its own.
+  // The picture for a page that has SvgStyle: without a style sheet of its own.
   std::string ToInline() const;
-  // For print: always light, so wide, with a description.
+  // The picture for print: always light, so wide, with a description.
   std::string ToPaper(double width_mm, std::string_view description) const;
 
  private:
@@ -94,7 +94,7 @@ class SvgScale {
 // (viridis), so that it reads in grey and by the colour-blind.
 std::string ColourOf(double fraction);
 
-// The same for a fraction in [-1, 1]: from orange over near white at zero to blue.
+// Colour of a fraction in [-1, 1]: from orange over near white at zero to blue.
 std::string SignedColourOf(double fraction);
 
 }  // namespace pushid

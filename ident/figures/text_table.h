@@ -1,7 +1,7 @@
 // ident: tables of text, columns padded, numbers to the right; how a column and a metric are
 // called.
 //
-// One table serves a terminal (ToString), a page and a CSV file (report/page/document.h).
+// One table serves a terminal (ToString), a page and a CSV file (report/document.h).
 #pragma once
 
 #include <initializer_list>
@@ -45,7 +45,7 @@ class TextTable {
   void AddGap();
   // Takes these columns out if all their cells are empty.
   void DropIfEmpty(const std::vector<std::string>& columns);
-  // Only a header: nothing to show.
+  // Whether there is only a header.
   bool empty() const { return rows_.size() < 2; }
   std::string ToString() const;
 
@@ -64,17 +64,17 @@ std::string WithError(double value, double error);
 // The head of a column: "mu, N s/m", and the name alone where the unit is "1".
 std::string WithUnit(const std::string& name, const std::string& unit);
 
-// What files and tables call a metric of a prediction.
+// Names of a prediction's metric in files and tables.
 struct Metric {
   const char* name;  // "hipADE"
   const char* unit;  // "m"
 
-  // In files: "hipADE_m".
+  // The key in files: "hipADE_m".
   std::string Key() const { return std::string(name) + "_" + unit; }
   std::string ErrorKey() const { return std::string(name) + "_standard_error_" + unit; }
-  // At the head of a column: "hipADE m".
+  // The head of a column: "hipADE m".
   std::string Title() const;
-  // In a sentence: "hipADE 0.1 m".
+  // The metric in a sentence: "hipADE 0.1 m".
   std::string Text(double value, int digits) const;
 };
 

@@ -240,7 +240,7 @@ constexpr int kCornersOfSole = 24;
 constexpr char kSeenSoleLook[] = "ink";
 constexpr char kPredictedSoleLook[] = "stroke:none;fill:#3b82f6;fill-opacity:.28";
 
-// What one source says of one person.
+// Feet of one person by one source.
 struct FeetTrack {
   int person;
   bool predicted;

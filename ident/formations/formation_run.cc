@@ -42,7 +42,8 @@ Outcome Judge(const FormationRun& run, int person, int onset_frame) {
   }
   if (onset_frame < 0) return Outcome::kUnmoved;
   const Scene& scene = run.recording.scene;
-  // From a person's own onset: what a wave takes to reach them (kWaitSecondsInRows) is not in it.
+  // Time counts from a person's own onset, so that it does not hold what a wave takes to reach them
+  // (kWaitSecondsInRows).
   const int judged = std::max(scene.LastPushEnd(), onset_frame) +
                      static_cast<int>(std::lround(kWaitSeconds / scene.dt));
   if (judged >= run.num_frames()) return Outcome::kNotJudged;
@@ -98,7 +99,7 @@ FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int 
   FormationRun run;
   run.recording = AsRecording(scene);
   if (!names.empty()) run.recording.subject_ids = names;
-  // No person of a formation is a subject of the fit.
+  // People of a formation are no subjects of the fit.
   IdentifiedModel shared = model;
   shared.by_unit.clear();
   run.prediction = Predict(shared, run.recording, num_frames);

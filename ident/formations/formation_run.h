@@ -35,7 +35,7 @@ constexpr EnumNames<Outcome, 5> Names(Outcome) {
            {"not judged", Outcome::kNotJudged}}};
 }
 
-// What a table of outcomes and displacements means, for the line under it.
+// The meaning of a table of outcomes and displacements, for the line under it.
 std::string OutcomeLegend();
 
 struct PersonSummary {
@@ -62,14 +62,14 @@ struct FormationRun {
 // list them: the push and its tail first, then what answers it.
 std::vector<ForcePart> ActingParts(const FormationRun& run);
 
-// When the prediction leaves the model's domain, the summaries stay empty.
-// names: of the people; empty: p00, p01, ...
+// Rolls out a formation; when it leaves the model's domain, the summaries stay empty. names: of the
+// people; empty: p00, p01, ...
 FormationRun RunFormation(const IdentifiedModel& model, const Scene& scene, int num_frames,
                           const std::vector<std::string>& names = {});
 
 // |hip velocity| at a frame, m/s: how fast it got there (backward difference); zero at frame 0.
 double HipSpeed(const FormationRun& run, int person, int frame);
-// The same, negative for a person who goes back more than aside: what colours a wave.
+// As above, negative for a person who goes back more than aside: the colour of a wave.
 double SignedHipSpeed(const FormationRun& run, int person, int frame);
 
 // Bodies for people who were never recorded: a formation's people get the skeleton and pose

@@ -91,7 +91,7 @@ int OnsetOf(const Track& track) {
   return -1;
 }
 
-// From the first place to the farthest.
+// The way from the first place to the farthest.
 Eigen::Vector2d WayOf(const Track& track) {
   Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& place : track.places) {

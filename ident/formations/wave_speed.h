@@ -12,7 +12,7 @@
 
 namespace pushid {
 
-// From the first person who moves to the foremost one who does; people are numbered forwards.
+// Speed from the first person who moves to the foremost one who does; people are numbered forwards.
 struct WaveSpeed {
   int from = 0, to = 0;  // persons
   double metres = 0.0, seconds = 0.0;
@@ -24,7 +24,7 @@ struct WaveSpeed {
 std::optional<WaveSpeed> SpeedOfWave(const Scene& scene, const std::vector<int>& onsets);
 std::optional<WaveSpeed> SpeedOfWave(const FormationRun& run);
 
-// How sure the wave of a formation is.
+// The uncertainty of a formation's wave.
 //
 // The formation is rolled out with parameters drawn anew, from the bootstrap's replicas where the
 // model has them and else from its covariance (prediction/predictive_bands.h); bands are the
@@ -36,7 +36,7 @@ struct OnsetBand {
   double moved = 0.0;           // share of the draws in which this person moves; 0: no band
 };
 
-// Of SpeedOfWave in each draw, m/s: each between the first and the foremost of its own movers.
+// SpeedOfWave in each draw, m/s: between the first and the foremost of its own movers.
 struct SpeedBand {
   double from = 0.0, to = 0.0;
   int moved = 0, draws = 0;  // those that have a speed, and all
@@ -56,11 +56,12 @@ struct WaveBands {
 // moves it; empty: nothing.
 std::string HeldInDraws(const FittedModel& model, const std::string& set);
 
-// Empty where the model has neither covariance nor bootstrap. set: what --set replaces in every
-// draw.
+// Bands of a wave; empty where the model has neither covariance nor bootstrap. set: what --set
+// replaces in every draw.
 WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run);
 
-// How a push travels through people, from their trajectories alone: no model, no fit.
+// The speed at which a push travels through people, from their trajectories alone: no model, no
+// fit.
 //
 // The first mover is who leaves the first position seen by 2 cm, horizontally, before all others
 // (kOnsetDistance, propagation.h). With s_n the distance of everybody from there at rest and t_n

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/uncertainty/clusters.h"
@@ -416,10 +417,8 @@ ScoreClusters ClustersOf(const std::vector<PendulumRecording>& recordings) {
 }
 
 std::string ClustersText(ClusterBy by, int count) {
-  const bool people = by == ClusterBy::kSubject;
-  const char* const what =
-      people ? (count == 1 ? " person" : " people") : (count == 1 ? " recording" : " recordings");
-  return std::to_string(count) + what;
+  return by == ClusterBy::kSubject ? CountText(count, "person", "people")
+                                   : CountText(count, "recording");
 }
 
 LabelKeys UsualGroups() { return {kMagnitudeLabel, kSubjectUnit, kSettingLabel}; }
@@ -431,11 +430,7 @@ LabelKeys ParseLabelKeys(const std::string& list) {
   return keys;
 }
 
-std::string LabelKeysText(const LabelKeys& keys) {
-  std::string text;
-  for (const std::string& key : keys) text += (text.empty() ? "" : ",") + key;
-  return text;
-}
+std::string LabelKeysText(const LabelKeys& keys) { return Joined(keys, ","); }
 
 MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const LabelKeys& keys) {
   if (keys == UsualGroups()) return std::nullopt;  // any of these may be absent
@@ -452,8 +447,8 @@ MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const L
 std::string WithoutLabelText(const WithoutLabel& counts) {
   std::string text;
   for (const auto& [key, count] : counts) {
-    text += std::to_string(count) + " recording" + (count == 1 ? " has" : "s have") + " no " + key +
-            ": " + (count == 1 ? "it is" : "they are") + " in no group by " + key + "\n";
+    text += CountText(count, "recording has", "recordings have") + " no " + key + ": " +
+            (count == 1 ? "it is" : "they are") + " in no group by " + key + "\n";
   }
   return text;
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "models/rollout.h"
 
@@ -159,8 +160,7 @@ std::string EffectText(const Prediction& prediction) {
   const EffectEstimate& b = prediction.effect;
   return "tail " + Rounded(std::exp(b.mean), 3) + " times that of the mean recording (b " +
          Rounded(b.mean, 2) + " +- " + Rounded(b.error, 2) + "), from " +
-         std::to_string(prediction.observed) + " frame" + (prediction.observed == 1 ? "" : "s") +
-         "\n";
+         CountText(prediction.observed, "frame") + "\n";
 }
 
 }  // namespace pushid

@@ -113,7 +113,7 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
     const std::vector<SmoothedSample> smoothed = SavitzkyGolay(q, options.smoothing_frames, dt);
     for (int t = 0; t < frames; ++t) {
       states[t].q = smoothed[t].value;
-      // Not the smoother's rate: qd must be what an Euler step makes of q.
+      // The smoother's rate is not used: qd must be what an Euler step makes of q.
       if (t > 0) states[t].qd = (states[t].q - states[t - 1].q) / dt;
     }
   }

@@ -33,9 +33,9 @@ struct PushEstimationOptions {
   // Window of the zero-phase smoothing of q (Savitzky-Golay, cubic) in frames; odd and at least 5,
   // or 0 for none, which keeps the inverse exact.
   int smoothing_frames = 0;
-  // How fast the person is where the window begins: not at all (zero), or the backward difference
-  // (estimated), of which noise makes a first row as large as any. Not said: estimated where the
-  // smoothed hip is faster than onset_speed. At frame 0 the recording's own start velocity.
+  // Speed of the person where the window begins: none (zero), or the backward difference
+  // (estimated), of which noise makes a first row as large as any. Unset: estimated where the
+  // smoothed hip is faster than onset_speed. At frame 0 it is the recording's own start velocity.
   std::optional<InitialVelocity> initial_velocity;
   // Detection: the hip's speed that counts as moving, and its acceleration, as a fraction of the
   // peak, below which the push is over.
@@ -53,8 +53,8 @@ struct EstimatedPush {
   double start_speed = 0.0;                           // m/s, of the cart, at the window's start
 };
 
-// From the frame where the hip sets off (slowest before it first moves at onset_speed) to the end
-// of its acceleration along the way it goes. Judged on the hip smoothed over 0.15 s.
+// The window from the frame where the hip sets off (slowest before it first moves at onset_speed)
+// to the end of its acceleration along its way, judged on the hip smoothed over 0.15 s.
 Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
                                     const PushEstimationOptions& options);
 
@@ -62,8 +62,7 @@ Result<PushWindow> DetectPushWindow(const PendulumRecording& recording,
 Result<PushWindow> PushWindowFrom(const PushWindow& given, const PendulumRecording& recording,
                                   const PushEstimationOptions& options);
 
-// What initial_velocity may be by name: zero, estimated or auto (not said). what:
-// --initial_velocity.
+// Reads an initial_velocity by name: zero, estimated or auto (unset). what: --initial_velocity.
 MaybeError ParseInitialVelocity(const std::string& what, const std::string& name,
                                 std::optional<InitialVelocity>* value);
 

@@ -150,7 +150,7 @@ void AddPush(const Push& more, Push* sum) {
   sum->start_frame = start;
 }
 
-// As PushFromSensor takes it, but for the offset: vectors along the direction.
+// The record as PushFromSensor takes it, but for the offset: vectors along the direction.
 TimedRecord AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
   TimedRecord timed{record, sensor.start_s.value_or(0.0)};
   if (record.is_vector) return timed;
@@ -225,7 +225,7 @@ Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded,
   return read;
 }
 
-// What the noise of a sensor at rest makes of the mean over a frame, N.
+// The mean over a frame that a sensor's noise at rest makes, N.
 double IdleForce(const SensorRecord& record, double dt) {
   const double step = (record.time_s.back() - record.time_s.front()) / (record.num_samples() - 1);
   return kNoisePeaks * record.noise * std::sqrt(std::min(1.0, step / dt));
@@ -236,8 +236,8 @@ double ClockError(const SensorOffset& offset, const PendulumRecording& recording
   return 0.5 * recording.scene.dt + 2.0 * offset.standard_error_s;
 }
 
-// How far the sensors' clocks are off by the motion; zero unless that is asked for, and where the
-// motion does not contradict it.
+// Offset of the sensors' clocks by the motion; zero unless it is asked for and the motion does not
+// contradict it.
 Result<SensorOffset> Offset(const SensorSetup& setup, const ReadSensors& read,
                             const PendulumRecording& recording, int person, SensorPush* result) {
   if (!setup.estimate_offset) return SensorOffset();
@@ -333,7 +333,7 @@ class Integrals {
     }
   }
 
-  // At a time of the cameras plus the offset.
+  // Integrals at a time of the cameras plus the offset.
   void At(double t, double* once, double* twice) const {
     t += zero_;
     if (t <= time_.front()) {
@@ -394,7 +394,7 @@ class OffsetFit {
     regressors_ = regressors;
   }
 
-  // What the linear parameters leave; its derivative by tau, with them following.
+  // Residuals after the linear parameters; the derivative is by tau, with them following.
   VectorXd Residual(double tau, VectorXd* derivative = nullptr) const {
     VectorXd way(target_.size()), velocity(target_.size());
     ByTheForce(tau, &way, &velocity);
@@ -413,7 +413,7 @@ class OffsetFit {
   double Count() const { return weight_.squaredNorm(); }
 
  private:
-  // How far, and how fast, the force alone would have moved the person.
+  // Way and velocity that the force alone would have given the person.
   void ByTheForce(double tau, VectorXd* way, VectorXd* velocity) const {
     for (int t = 0; t < target_.size(); ++t) {
       double once = 0.0, twice = 0.0, sum_once = 0.0, sum_twice = 0.0;
@@ -438,7 +438,8 @@ class OffsetFit {
   Eigen::MatrixXd regressors_, pseudo_inverse_;
 };
 
-// Where 99 % of the force's impulse has passed, on the cameras' clock; the net direction.
+// The time at which 99 % of the force's impulse has passed, on the cameras' clock; the net
+// direction.
 double PushEnd(const std::vector<TimedRecord>& forces, Eigen::Vector2d* direction) {
   double end = 0.0;
   Eigen::Vector2d impulse = Eigen::Vector2d::Zero();

@@ -21,11 +21,11 @@ namespace pushid {
 
 struct SensorPushOptions {
   int person = 0;
-  // Of a force given along the sensor's axis: where it pushes the person, in the project's axes; of
-  // any length. A record with fx, fy, fz has its own.
+  // Direction of a force given along the sensor's axis: where it pushes the person, in the
+  // project's axes; of any length. A record with fx, fy, fz has its own.
   Vector3<double> direction = {1.0, 0.0, 0.0};
-  // Where it acts: fraction of the rod from cart to hip (above 1: above the hip), or, when given,
-  // metres above the recording's zero height, judged at the push's first frame.
+  // Height of the push: fraction of the rod from cart to hip (above 1: above the hip), or, where
+  // given, metres above the recording's zero height, judged at the push's first frame.
   double height_fraction = 1.0;
   std::optional<double> height_m;
   double frame_zero_time_s = 0.0;  // on the sensor's clock

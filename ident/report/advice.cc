@@ -323,7 +323,7 @@ void Adviser::Recordings() {
       parameter = p;
     }
   }
-  // Of a single one nothing would be left.
+  // A single recording cannot be left out.
   if (most > kStrongLeverage && l.recordings.size() > 1) {
     Add("Recording " + l.recordings[recording] + " alone changes " + l.parameters[parameter] +
             " by " + Rounded(most, 2) + " standard errors; inspect it, and fit without it.",

@@ -22,12 +22,12 @@ class FitCommand {
   // pushid-check of the fitted model, with FILE for the model's file.
   static FitCommand Check(const Provenance& provenance);
 
-  // In place of what the fit had.
+  // Replaces the value that the fit had.
   FitCommand& Set(const std::string& flag, const std::string& value);
   // One more item of a comma-separated list: the flag given twice would lose the first list. What
   // is fixed is neither free nor pooled any more.
   FitCommand& Append(const std::string& flag, const std::string& item);
-  // What Append would make of the list.
+  // The list that Append would make.
   std::string Appended(const std::string& flag, const std::string& item) const;
 
   // Values are quoted for a shell where they need it.
@@ -44,12 +44,11 @@ class FitCommand {
 
 // An advised command as it is printed: with the model's file instead of FILE, where one keeps it.
 std::string CommandFor(const Provenance& provenance, std::string command);
-// Whether it is one of pushid-check, and so needs the model's file.
+// Whether a command is one of pushid-check, which needs the model's file.
 bool NamesModel(const std::string& command);
 
-// What to try next, in plain words: a pure function of a fitted model.
-//
-// Most pressing first. Commands repeat the settings of the fit.
+// Rules from findings to next steps in plain words, the most pressing first: a pure function of a
+// fitted model. Commands repeat the settings of the fit.
 std::vector<Advice> Advise(const FittedModel& model);
 
 }  // namespace pushid

@@ -1,5 +1,5 @@
-// ident: what a result says of parameters, what is derived, who settles, contrasts and the loop, as
-// tables and sentences.
+#include "ident/report/estimate_tables.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,14 +7,12 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/figures/text_table.h"
 #include "ident/parameters/option_names.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/behaviour_text.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/linear_loop.h"
 #include "ident/problem/statistics.h"
-#include "ident/report/report_text.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/clusters.h"
 #include "models/self_terms.h"
@@ -51,7 +49,7 @@ std::string IntervalText(double value, double lower, double upper) {
 
 namespace {
 
-// How a derived gain reads; rates as their time constant.
+// Words for a derived gain; rates are told as their time constant.
 struct GainWords {
   const char *derived, *name, *unit;
   bool inverse;
@@ -93,10 +91,10 @@ std::string GainsText(const FitResult& result) {
 
 namespace {
 
-// What stands where errors about these people are told apart (uncertainty/covariance.h).
+// Columns about these people, where their errors differ (uncertainty/covariance.h).
 const std::vector<std::string> kTheseColumns = {"these people", "their 95 %"};
 
-// Its errors hold what is taken as known as well (model_verdict.h).
+// The column of errors that hold what is taken as known as well (model_verdict.h).
 constexpr char kTotalColumn[] = "total 95 %";
 
 std::string TheirError(const std::optional<Interval>& these) {
@@ -114,7 +112,7 @@ std::string SharesText(const Shares& s) {
   return percent(s.data) + "/" + percent(s.prior) + "/" + percent(s.settling);
 }
 
-// What priors and settling together moved the value by, in its standard errors.
+// The shift by priors and settling together, in standard errors of the value.
 std::string PullText(const Estimate& e) {
   if (e.standard_error <= 0.0) return "-";
   const double pull = (e.shares.prior_pull + e.shares.settling_pull) / e.standard_error;
@@ -186,7 +184,7 @@ std::string SharesNote() {
 
 namespace {
 
-// Whom errors and status are about: these people, or people like them.
+// Says whether errors and status are about these people, or about people like them.
 std::string TargetText(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   if (u.num_people == 0) return "";  // a model of an older version
@@ -215,7 +213,7 @@ std::string Freedom(double least, double most) {
 
 }  // namespace
 
-std::string HowSure(const FitResult& result) {
+std::string ErrorsText(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
   if (!u.clustered) {
     return "standard errors: of the posterior, priors included; a single recording says nothing of "
@@ -367,7 +365,7 @@ TextTable LinesTable(const FitResult& result) {
 
 namespace {
 
-// What is left of a motion that has died out is 0.
+// Speeds of a motion that has died out are shown as 0.
 std::string MotionText(double value) {
   constexpr double kNothing = 1e-6;
   return Rounded(std::abs(value) < kNothing ? 0.0 : value, 2);
@@ -448,9 +446,7 @@ std::string ProbabilityText(double p) {
   return p < kLeastShown ? "<" + Rounded(kLeastShown) : Rounded(p, 2);
 }
 
-std::string NumberOfPeople(size_t number) {
-  return std::to_string(number) + (number == 1 ? " person" : " people");
-}
+std::string NumberOfPeople(size_t number) { return CountText(number, "person", "people"); }
 
 std::string ComparedText(const Contrast& c) {
   std::string text = c.label + ": " + c.second + " less " + c.first + "; ";
@@ -475,10 +471,10 @@ std::string DifferText(const Contrast& c) {
   for (const ContrastRow& row : c.rows) {
     if (row.p_holm < kHolmLevel) found += (found.empty() ? "" : ", ") + row.name;
   }
-  const std::string of =
-      std::to_string(c.rows.size()) + (c.rows.size() == 1 ? " parameter" : " parameters");
-  return found.empty() ? "after Holm's correction for " + of + " no difference is told from 0"
-                       : "after Holm's correction for " + of + " these differ: " + found;
+  const std::string of = CountText(c.rows.size(), "parameter");
+  return found.empty()
+             ? "after Holm's correction for " + of + " no difference is distinguishable from 0"
+             : "after Holm's correction for " + of + " these differ: " + found;
 }
 
 std::string EffectNote(const FitResult& result) {
@@ -492,7 +488,7 @@ std::string EffectNote(const FitResult& result) {
   std::string text = "effects are in standard deviations between people";
   if (!by_person) text += ", by a second fit that lets them differ";
   if (!untold.empty()) {
-    text += "; not told, for want of people, of repeated recordings or of a spread: " + untold;
+    text += "; left out, for want of people, of repeated recordings or of a spread: " + untold;
   }
   return text + "\n";
 }

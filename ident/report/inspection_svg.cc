@@ -51,7 +51,7 @@ void AddHip(const Inspection& found, Figure* figure) {
   if (found.steps) figure->legend = {{"foot off the ground", kLiftedLook}};
 }
 
-// When points were seen, those that were hidden most first.
+// Bars where points were seen, those that were hidden most first.
 Chart SeenChart(const Inspection& found) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < found.seen.size(); ++i) order.push_back(i);

@@ -1,4 +1,3 @@
-// ident: the report for a terminal, and how sure it is.
 #include "ident/report/report_text.h"
 
 #include <algorithm>
@@ -6,36 +5,22 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/json_file.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/warning.h"
-#include "ident/figures/text_table.h"
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_names.h"
-#include "ident/report/advice.h"
-#include "ident/validation/scores_report.h"
+#include "ident/report/document.h"
+#include "ident/report/fit_sections.h"
+#include "ident/report/parameter_sections.h"
 
 namespace pushid {
-std::string Count(int number, const std::string& noun) {
-  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
-}
-
 namespace {
-
-std::string PoolingText(const FitOptions& options) {
-  for (const ParameterSpec& spec : options.table.specs) {
-    if (!spec.free || !spec.pooled) continue;
-    const bool may_lack = options.pool_by != kSubjectUnit && options.pool_by != kSettingLabel;
-    return ", pooled by " + options.pool_by + (may_lack ? " (without one by setting)" : "");
-  }
-  return "";
-}
 
 std::string TrainingText(const FitOptions& o) {
   std::string text =
       o.network_prior > 0.0 ? "prior " + Rounded(o.network_prior, 4) : std::string("no prior");
   if (o.model.learned->num_weights() > kMostGaussNewtonWeights) {
-    text += ", trained together with the free parameters by Adam";
-    text += ", fixed while the errors above were computed";
+    text += ", trained together with the free parameters by Adam, fixed while errors were computed";
   }
   return text;
 }
@@ -46,7 +31,7 @@ std::string NetworkText(const FitResult& result) {
   const auto& network = result.options.model.learned;
   if (network == nullptr) return "";
   return (network->shape.any() ? "network " : "") + LearnedName(*network) + " (" +
-         Count(network->num_weights(), "weight") + ", " + TrainingText(result.options) + ")";
+         CountText(network->num_weights(), "weight") + ", " + TrainingText(result.options) + ")";
 }
 
 std::string LikelihoodText(const FitResult& result) {
@@ -54,69 +39,13 @@ std::string LikelihoodText(const FitResult& result) {
   return "likelihood " + NameOf(result.options.likelihood) + ", noise " +
          NameOf(result.options.model.process_noise) + ": -2 log L " + Rounded(score.deviance, 7) +
          " of " + std::to_string(score.measured) + " values, AIC " + Rounded(score.Aic(), 7) +
-         ", BIC " + Rounded(score.Bic(), 7) + " (" + Count(score.parameters, "parameter") +
+         ", BIC " + Rounded(score.Bic(), 7) + " (" + CountText(score.parameters, "parameter") +
          "); compare only with models of the same likelihood and the same recordings\n" +
          (AnyPooled(result.options.table) ? "  units' deviations are not counted as parameters: "
                                             "compare only models with the same pooling\n"
                                           : "") +
          "  this likelihood is of single steps; settling, errors and outliers below are those of\n"
          "  rollouts";
-}
-
-std::string ReportText(const FittedModel& model) {
-  const FitResult& result = model.fit;
-  const FitOptions& o = result.options;
-  const Provenance& from = model.provenance;  // empty where no program fitted
-  std::string text = (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " +
-                     o.preset + ": " +
-                     Count(static_cast<int>(result.recordings.size()), "recording") +
-                     (from.setting.empty() ? "" : " (" + from.setting + ")") + ", " +
-                     FeetOfFit(result) + ", posture " + NameOf(o.model.posture) + ", push " +
-                     NameOf(o.model.push) + ", push tail " + NameOf(o.model.push_tail) +
-                     ", self force " + SelfForceText(o.self_force, o.model.learned.get()) +
-                     (RodMoves(o.model) ? ", rod " + RodName(o.model.learned->rod) : "") +
-                     ", interaction " + InteractionText(o.model) + PoolingText(o) + "\n\n";
-  text += ModelVerdictText(result.verdict) + "\n\n";
-  text += EstimateTable(result).ToString() + HowSure(result) + "\n" +
-          DerivedTable(result).ToString() + ConventionText(result) + GainsText(result) + "\n\n";
-  for (const NullDirection& n : result.uncertainty.null_directions) {
-    text += "unidentifiable: " + n.sentence + "\n";
-  }
-  for (const std::string& held : result.uncertainty.held_directions)
-    text += "prior-dependent: " + held + "\n";
-  const TextTable intervals = IntervalTable(model);
-  if (!intervals.empty()) text += intervals.ToString();
-  if (model.bootstrap) text += "bootstrap " + ResamplingText(*model.bootstrap) + "\n";
-  if (!intervals.empty()) text += "\n";
-  if (model.horizon_check) {
-    text += HorizonTable(*model.horizon_check).ToString() + DriftText(*model.horizon_check) + "\n";
-  }
-  if (const std::string network = NetworkText(result); !network.empty()) text += network + "\n";
-  text += CorrelationText(result);
-  if (result.contrast) {
-    text += "\n" + ContrastTable(*result.contrast).ToString() + ContrastText(result) + "\n";
-  }
-  const TextTable pooled = PooledTable(result);
-  if (!pooled.empty()) {
-    text += "\n" + pooled.ToString() + "\n" + SpreadTable(result).ToString() + "\n";
-  }
-  text += BehaviourText(result);
-  const TextTable lines = LinesTable(result);
-  if (!lines.empty()) text += lines.ToString();
-  const TextTable loop = LoopTable(result);
-  if (!loop.empty()) text += loop.ToString();
-  if (result.step_probability) text += StepProbabilityText(*result.step_probability) + "\n";
-  text += "\n";
-  text += "cost " + Rounded(result.cost, 6) + " after " +
-          Count(result.starts[result.best_start].iterations, "iteration") + "; " +
-          (result.converged ? "converged" : "NOT CONVERGED") + "\n";
-  if (result.likelihood) text += LikelihoodText(result) + "\n";
-  text += PreparationText(model.provenance.configuration);
-  for (const std::string& warning : GroupedWarnings(result.warnings))
-    text += "warning: " + warning + "\n";
-  const std::string diagnostics = DiagnosticsText(model);
-  if (!diagnostics.empty()) text += "\n" + diagnostics;
-  return text;
 }
 
 std::string PreparationText(const std::map<std::string, std::string>& configuration) {
@@ -176,7 +105,7 @@ std::string TruthTable(const FitResult& result, const std::map<std::string, doub
   for (const Estimate& e : result.estimates) {
     const auto known = truth.find(e.name);
     if (e.status == EstimateStatus::kFixed || known == truth.end()) continue;
-    // Without noise the interval shrinks below what the files' decimals can hold.
+    // Without noise an interval shrinks below what the files' decimals can hold.
     const double slack = kFileRounding * std::abs(known->second);
     const auto within = [&](double lower, double upper) {
       return lower - slack <= known->second && known->second <= upper + slack;
@@ -205,10 +134,9 @@ std::string ForecastText(const ForecastRule& f) {
       f.folds > 0
           ? "by models fitted without them, in " + std::to_string(f.folds) + " folds"
           : "by the model that was fitted to them: too few people or recordings to leave some out, "
-            "so weights are not learned, and new ones will err more";
+            "so expect larger errors on new recordings";
   return "From a quarter of a second of first frames on (--observed) the rollout and a filter with "
-         "an "
-         "unknown force are put together; the filter has the weight " +
+         "an unknown force are combined; the filter has the weight " +
          Rounded(f.input_share, 2) + ". Forecasts of " + std::to_string(f.recordings) +
          " recordings " + judged + ". The unknown force dies out in " +
          Rounded(f.noise.force_time, 2) + " s; the filter's tail is " +
@@ -218,80 +146,13 @@ std::string ForecastText(const ForecastRule& f) {
 
 namespace {
 
-constexpr size_t kWorstRecordings = 5;
 constexpr int kFewUnits = 5;  // of fewer a bootstrap has too few distinct resamples
 
 std::string OrDash(double value, const std::optional<Interval>& interval) {
   return interval ? IntervalText(value, interval->lower, interval->upper) : "-";
 }
 
-std::string StartText(const StartDiagnostics& start) {
-  std::string text;
-  for (const std::string& note : start.notes) text += "start: " + note + "\n";
-  for (const std::string& finding : FindingTexts(start.findings)) {
-    text += "warning: " + finding + "\n";
-  }
-  return text;
-}
-
-// The parameter that leaving a recording out moves most, in standard errors.
-std::string LargestMove(const Leverage& leverage, const std::string& recording) {
-  for (size_t g = 0; g < leverage.recordings.size(); ++g) {
-    if (leverage.recordings[g] != recording) continue;
-    const std::vector<double>& row = leverage.in_errors[g];
-    const auto most = std::max_element(
-        row.begin(), row.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-    if (most == row.end()) return "";
-    return leverage.parameters[static_cast<size_t>(most - row.begin())] + " " + Rounded(*most, 2);
-  }
-  return "";
-}
-
-std::string RecordingsText(const Diagnostics& d) {
-  std::vector<const RecordingDiagnostics*> worst;
-  if (d.whiteness.empty()) return "";  // nobody saw the motion
-  for (const RecordingDiagnostics& r : d.recordings) worst.push_back(&r);
-  std::sort(worst.begin(), worst.end(),
-            [](const auto* a, const auto* b) { return a->explained < b->explained; });
-  if (worst.size() > kWorstRecordings) worst.resize(kWorstRecordings);
-  TextTable table({"explained least", "% of motion", "cost", "down-weighted frames",
-                   "change without it (std errors)"},
-                  {true, false, false, false, true});
-  for (const RecordingDiagnostics* r : worst) {
-    table.Add({r->id, Rounded(r->explained, 3), Rounded(r->cost, 3), r->outliers.size(),
-               LargestMove(d.leverage, r->id)});
-  }
-  return worst.empty() ? "" : table.ToString();
-}
-
-std::string WhitenessText(const std::vector<Whiteness>& whiteness) {
-  std::string text;
-  for (const Whiteness& w : whiteness) {
-    if (w.channel != "hip x" && w.channel != "theta") continue;
-    text += "errors of " + w.channel + ": lag-1 correlation " +
-            Rounded(w.autocorrelation.front(), 2) + " (white: +-" + Rounded(w.mean_band, 1) + ")\n";
-  }
-  return text.empty()
-             ? ""
-             : text + "residuals within a recording may be correlated: use the clustered errors\n";
-}
-
 }  // namespace
-
-std::string DiagnosticsText(const FittedModel& model) {
-  const Diagnostics& d = model.fit.diagnostics;
-  std::string text = model.fit.verdict.checked() ? AssumptionTable(model.fit).ToString() : "";
-  text += StartText(d.start) + RecordingsText(d) + WhitenessText(d.whiteness);
-  bool unkept = false;
-  for (const Advice& advice : model.advice) {
-    text += "advice: " + advice.sentence + "\n";
-    if (advice.command.empty()) continue;
-    text += "  " + CommandFor(model.provenance, advice.command) + "\n";
-    unkept = unkept || (model.provenance.model_file.empty() && NamesModel(advice.command));
-  }
-  if (unkept) text += "FILE: keep the model first; fit again with --model_out=FILE\n";
-  return text;
-}
 
 std::optional<Interval> ProfileInterval(const FittedModel& model, const std::string& name) {
   for (const Profile& p : model.profiles) {
@@ -352,6 +213,30 @@ std::string ResamplingText(const Bootstrap& b) {
             " distinct resamples exist: its intervals are rough, and usually too narrow";
   }
   return text;
+}
+
+std::string ReportText(const FittedModel& model) {
+  const FitResult& result = model.fit;
+  const Provenance& from = model.provenance;  // empty where no program fitted
+  Report report;
+  report.title = (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " +
+                 result.options.preset + ": " + CountText(result.recordings.size(), "recording") +
+                 (from.setting.empty() ? "" : " (" + from.setting + ")");
+  report.subtitle = ModelVerdictText(result.verdict);
+  for (const auto section :
+       {SummarySection, ParameterSection, ContrastSection, UnitSection, IdentifiabilitySection,
+        ProfileSection, BootstrapSection, HorizonCheckSection, BehaviourSection, LoopSection,
+        RecordingSection, AdviceSection}) {
+    ReportSection shown = section(model);
+    shown.figures.clear();
+    std::vector<ReportTable> open;  // what the page folds is left out
+    for (const ReportTable& table : shown.tables) {
+      if (table.caption.empty()) open.push_back(table);
+    }
+    shown.tables = open;
+    report.sections.push_back(std::move(shown));
+  }
+  return ToText(report);
 }
 
 }  // namespace pushid

@@ -1,9 +1,9 @@
-// ident: sentences and tables of a verdict.
+#include "ident/report/verdict_text.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "datasets/files/number_text.h"
-#include "ident/report/report_text.h"
 
 namespace pushid {
 namespace {
@@ -27,14 +27,14 @@ constexpr Remedy kRemedies[] = {
     {"frame rate", "check the frame rate"},
     {"drift of the cameras", "check whether positions drift, or people walk before the push"}};
 
-// Of a quantity of the laboratory; null where the model has it as a parameter.
+// The remedy for a quantity of the laboratory; null where the model has it as a parameter.
 const Remedy* FindRemedy(const AssumptionTest& test) {
   const auto found = std::find_if(std::begin(kRemedies), std::end(kRemedies),
                                   [&test](const Remedy& r) { return r.name == test.name; });
   return found == std::end(kRemedies) ? nullptr : found;
 }
 
-// Without a unit it is a share, of a held gain the logarithm of a factor.
+// A value without a unit is a share, or for a held gain the logarithm of a factor.
 bool IsLogarithm(const AssumptionTest& test) {
   return test.unit.empty() && FindRemedy(test) == nullptr;
 }
@@ -84,8 +84,8 @@ const Test* Surest(const std::vector<Test>& tests) {
   return least == tests.end() ? nullptr : &*least;
 }
 
-// What the recordings want otherwise, the surest first: of what was measured; else of held gains;
-// else of terms that are left out, which can imitate any of the others.
+// Assumptions that the recordings contradict, the surest first: measured ones; without any, held
+// gains; without any, terms that are left out, which can imitate all others.
 std::vector<const AssumptionTest*> Suspects(const ModelVerdict& v) {
   if (v.p_assumptions >= kVerdictLevel) return {};
   const double tests = static_cast<double>(v.NumTested());
@@ -146,9 +146,9 @@ std::string CheckText(const ModelVerdict& v) {
   }
   return "The model check found no contradiction: " + std::to_string(v.NumTested()) +
          " quantities that are taken as known (p = " + Rounded(v.p_assumptions, 2) + "), " +
-         Count(static_cast<int>(v.parts.size()), "score") +
+         CountText(v.parts.size(), "score") +
          " of parts of the data (p = " + Rounded(v.p_parts, 2) + ") and " +
-         Count(static_cast<int>(v.motion.tests.size()), "measure") +
+         CountText(v.motion.tests.size(), "measure") +
          " of feet and hips (p = " + Rounded(v.p_motion, 2) + "; each after all tests, " +
          std::to_string(v.freedom) + " degrees of freedom; less than " + Rounded(kVerdictLevel, 2) +
          " contradicts)" +

@@ -153,7 +153,7 @@ Predictor RidgePredictor() { return {"ridge", ScoreRidge}; }
 
 namespace {
 
-// Each recording's scores summed over the folds that held it out, and how often one was there.
+// Sums of each recording's scores over the folds that held it out, and their number.
 struct Sums {
   std::vector<RecordingScore> scores;
   std::vector<int> counts;
@@ -171,8 +171,8 @@ void AddMargins(const std::vector<StepPrediction>& steps, std::vector<StepPredic
   }
 }
 
-// Each person's probabilities from the held-out margins of everybody else: margins of recordings
-// that were fitted err less, and a person's own steps are what is to be predicted.
+// Each person's probabilities follow from the held-out margins of everybody else: margins of
+// recordings that were fitted err less, and a person's own steps are what is to be predicted.
 void PredictStepsWithoutThePerson(std::vector<RecordingScore>* scores) {
   std::vector<StepOutcome> all;
   std::set<std::string> people;
@@ -260,7 +260,7 @@ std::vector<PredictedGroup> GroupsOf(const std::vector<Fold>& folds,
   return groups;
 }
 
-// Of the recordings that were held out, each averaged over its folds.
+// The summary of held-out recordings, each averaged over its folds.
 ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const Predictor& predictor,
                        Sums sums, const LabelKeys& group_by) {
   std::vector<PendulumRecording> held;

@@ -18,7 +18,7 @@
 
 namespace pushid {
 
-// What became of one fold.
+// The outcome of one fold.
 struct FoldPrediction {
   std::vector<RecordingScore> scores;  // one per test recording
   std::optional<Behaviour> behaviour;  // of the model fitted on the others, if one was
@@ -47,7 +47,7 @@ struct FoldScore : HipMetrics {  // means over the fold's recordings
 struct CrossValidation {
   std::string predictor;
   std::vector<FoldScore> folds;
-  // Each recording's score averaged over the repeats that held it out.
+  // Scores of each recording are averaged over the repeats that held it out.
   ScoreSummary summary;
   int failures = 0, falls = 0, falls_harder = 0;  // over all folds
   // Over all folds whose model was fitted: how many, how many of them settle in every
@@ -55,7 +55,7 @@ struct CrossValidation {
   // fastest anybody still is two seconds after a push.
   int fits = 0, settling = 0, harder_farther = 0;
   double slowest_to_settle = 0.0;  // m/s
-  // Of all folds' recordings of more than one person together, if any.
+  // Metrics of all folds' recordings of several people together, if any.
   std::optional<GroupMetrics> groups;
 };
 
@@ -78,7 +78,6 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b);
 
 // The predictors compared: an identified model, and the baselines that any model has to beat.
 
-// How first frames are used.
 enum class FramesUse { kForecast, kReanchored };
 
 // Fits the pendulum model to the training recordings, and to them what first frames tell. observed:

@@ -22,7 +22,6 @@ int WordFrames(const GroupMotion& group) {
   return 1 + static_cast<int>(seconds * kWordRate + kWholeFrame);
 }
 
-// Of the nearest frames.
 template <typename Value>
 std::vector<Value> AtWordRate(const std::vector<Value>& values, const GroupMotion& group) {
   std::vector<Value> resampled;
@@ -77,7 +76,7 @@ namespace {
 
 constexpr int kNever = -1;
 
-// Of everybody, those that count.
+// Everybody's states that count.
 std::vector<Symbols> StatesOf(const std::vector<GroupMotion>& groups, const StateFunction& states) {
   std::vector<Symbols> all;
   for (const GroupMotion& group : groups) {
@@ -273,7 +272,7 @@ std::optional<GroupMetrics> CompareHips(const std::vector<PendulumRecording>& re
               &metrics.onsets);
     if (bodies.empty()) continue;
     const std::vector<BodyMotion>& people = bodies[group.recording];
-    // Each recording is there to compare with once, however often it was predicted.
+    // Each recording is compared with once, however often it was predicted.
     if (seen.insert(group.recording).second) recorded.push_back({people, dt});
     motions.push_back({Carried(people, group.hips), dt});
   }

@@ -42,25 +42,25 @@ struct GroupMotion {
   double dt = 1.0 / 60.0;
   int pushed_person = 0;
   int first_frame = 1;  // that counts; everybody knows frame 0
-  // As annotated, a value per frame of `people`; empty: not annotated.
+  // Annotated states, a value per frame of `people`; empty: not annotated.
   std::vector<Symbols> states = {};  // [person], of the names of a StateFunction
 };
 
 // Transitions and words are those of 60 frames a second.
 std::vector<BodyMotion> AtWordRate(const GroupMotion& group);
-// At the words' rate: the frame at which the first step that counts begins.
+// The frame, at the words' rate, at which the first step that counts begins.
 std::ptrdiff_t FirstStep(const GroupMotion& group);
 
-// Of all frames, [person].
+// States of all frames, [person].
 std::vector<Symbols> StatesOfPeople(const GroupMotion& group, const StateFunction& states);
-// Those that count, and before them the first of them again, as at frame 0.
+// The states that count, preceded by the first of them again, as at frame 0.
 Symbols Counted(const GroupMotion& group, const Symbols& symbols);
 
 // Everybody's frames whose steps count.
 std::vector<BodyMotion> CountedMotions(const std::vector<GroupMotion>& groups);
 
-// Of what people do, of any number of groups against any others; the three of them are symmetric
-// but for ndms, whose words are those of `motions`.
+// Measures of what people do, for any number of groups against any others; all of them are
+// symmetric but ndms, whose words are those of `motions`.
 struct SocialMetrics {
   std::optional<double> sscp, sscp_changes, ndms;
 };
@@ -102,17 +102,17 @@ GroupMetrics CompareGroups(const std::vector<GroupMotion>& recorded,
 
 nlohmann::ordered_json ToJson(const GroupMetrics& metrics);
 
-// What predictors' groups do, one a row; empty without any.
+// One predictor's groups.
 struct GroupMetricsRow {
   std::string predictor;
   const GroupMetrics* metrics;
 };
 TextTable GroupMetricsTable(const std::vector<GroupMetricsRow>& rows);
-// The same as text, with what the measures can see and what they cannot.
+// The table as text, with what the measures can see and what they cannot.
 std::string GroupMetricsText(const std::vector<GroupMetricsRow>& rows);
 const char* GroupMetricsLegend();
 
-// What groups do where hips alone are predicted, as pendulums do.
+// Metrics of groups whose hips alone are predicted, as pendulums do.
 //
 // The hips show who begins to move when. The measures of what people do (sscp, sscp_changes,
 // ndms) need bodies: each recorded first pose is carried by the predicted hip and never steps, as
@@ -121,13 +121,13 @@ const char* GroupMetricsLegend();
 // [recording][person]; empty where bodies are not known.
 using RecordedBodies = std::vector<std::vector<BodyMotion>>;
 
-// Of one recording, which may be predicted several times.
+// A prediction of one recording, which may be predicted several times.
 struct PredictedGroup {
   int recording = 0;
   HipPaths hips;  // [person][frame], m
 };
 
-// Nothing where nothing was predicted.
+// The metrics; none where nothing was predicted.
 std::optional<GroupMetrics> CompareHips(const std::vector<PendulumRecording>& recordings,
                                         const RecordedBodies& bodies,
                                         const std::vector<PredictedGroup>& predicted);

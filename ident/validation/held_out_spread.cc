@@ -12,7 +12,7 @@
 namespace pushid {
 namespace {
 
-// Of one held-out recording in one fold.
+// One held-out recording in one fold.
 struct HeldScore {
   int recording = 0;
   std::vector<double> values;
@@ -149,8 +149,8 @@ std::array<MeanAndError*, kBandFigures> FiguresOf(BandCoverage* c) {
           &c->inside90[1], &c->width90[0],  &c->width90[1]};
 }
 
-// Of the pushed person: bystanders of a single recording stand still, and groups err by contact.
-// Nothing where a rollout leaves the domain.
+// Shares of the pushed person alone: bystanders of a single recording stand still, and groups err
+// by contact. Empty where a rollout leaves the domain.
 std::vector<double> CountInside(const PredictiveBands& bands, const IdentifiedModel& model,
                                 const PendulumRecording& recording) {
   const Prediction rollout = Predict(model, recording);

@@ -14,7 +14,7 @@
 
 namespace pushid {
 
-// What was scored of recordings that were held out, each averaged over the repeats that did so.
+// Values of held-out recordings, each averaged over the repeats that held it out.
 struct HeldOutValues {
   std::vector<int> recording;  // index of each
   std::vector<std::vector<double>> values;
@@ -49,7 +49,7 @@ struct BandCoverage {
   MeanAndError width90[2];  // m
 };
 
-// Of recordings that were not fitted, with and without model error.
+// Coverage of recordings that were not fitted, with and without model error.
 std::vector<BandCoverage> CrossValidateBands(const std::vector<PendulumRecording>& recordings,
                                              const std::vector<Fold>& folds,
                                              const FitOptions& options, const BandOptions& bands,

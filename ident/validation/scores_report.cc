@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/json_archive.h"
@@ -22,13 +23,13 @@ std::string ScoreText(double value, double error, const MeanScore& mean) {
   return Rounded(value, 3) + (mean.recordings > 1 ? " +- " + Rounded(error, 2) : "");
 }
 
-// None where a baseline failed in all of a group.
+// The mean of a group; none where a baseline failed in all of it.
 MeanScore MeanOfGroup(const std::map<std::string, MeanScore>& groups, const std::string& name) {
   const auto found = groups.find(name);
   return found == groups.end() ? MeanScore() : found->second;
 }
 
-// Before the name of a group.
+// The word before the name of a group.
 std::string GroupTitle(const std::string& key, const ScoreSummary& summary) {
   if (key == kMagnitudeLabel) return "strength ";
   const bool one_of_several = key == kSubjectUnit && summary.propagation.recordings > 0;
@@ -43,7 +44,7 @@ std::vector<std::string> MeanCells(const MeanScore& mean, const ShownMetrics& sh
   return cells;
 }
 
-// Without errors; "-" where there is no score.
+// Cells without errors; "-" where there is no score.
 std::vector<std::string> PlainCells(const HipMetrics& metrics, const ShownMetrics& shown,
                                     bool known = true) {
   std::vector<std::string> cells;
@@ -65,14 +66,8 @@ std::vector<std::string> MetricNames(const ShownMetrics& shown) {
   return names;
 }
 
-std::string Together(const std::vector<std::string>& cells) {
-  std::string text;
-  for (const std::string& cell : cells) text += (text.empty() ? "" : " / ") + cell;
-  return text;
-}
-
 std::string MeanText(const MeanScore& mean, const ShownMetrics& shown) {
-  return Together(MeanCells(mean, shown));
+  return Joined(MeanCells(mean, shown), " / ");
 }
 
 void Append(const std::vector<std::string>& cells, std::vector<std::string>* row) {
@@ -96,8 +91,7 @@ TextTable TableOf(const std::vector<std::string>& header, size_t text_from) {
 
 std::string ObservedText(const ScoreSummary& summary) {
   if (summary.observed == 0) return "";
-  std::string text = "the first " + std::to_string(summary.observed) +
-                     (summary.observed == 1 ? " frame was" : " frames were") +
+  std::string text = "the first " + CountText(summary.observed, "frame was", "frames were") +
                      " seen, which have no error; after_hipADE: mean over the others";
   if (!summary.bands) return text + "\n";
   const char* const axes[] = {" (x)", " (y)"};
@@ -170,8 +164,8 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
       text += OnsetsText(evaluation.model.recordings) + "\n";
     }
   }
-  std::vector<std::string> header = {Together(MetricNames(shown)) + " in " + kHipMetrics[0].unit,
-                                     "recordings", "model"};
+  std::vector<std::string> header = {
+      Joined(MetricNames(shown), " / ") + " in " + kHipMetrics[0].unit, "recordings", "model"};
   for (const BaselineSummary& baseline : evaluation.baselines) header.push_back(baseline.name);
   std::vector<bool> left(header.size(), true);
   left[1] = false;
@@ -297,11 +291,12 @@ std::string ConclusionText(const PairedDifference& d) {
          " (" + interval + ").";
 }
 
-// Of --group_by; empty where no label tells recordings apart.
+// A table by --group_by; empty where no label tells recordings apart.
 std::string HeldOutGroupsText(const std::vector<CrossValidation>& candidates,
                               const ShownMetrics& shown) {
   std::vector<std::string> header = {
-      Together(MetricNames(shown)) + " in " + kHipMetrics[0].unit + ", held out", "recordings"};
+      Joined(MetricNames(shown), " / ") + " in " + kHipMetrics[0].unit + ", held out",
+      "recordings"};
   std::vector<const ScoreSummary*> summaries;
   for (const CrossValidation& candidate : candidates) {
     header.push_back(candidate.predictor);
@@ -351,7 +346,7 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
     const bool compared = &candidate != &candidates[0] && difference.recordings > 0;
     std::vector<std::string> row = {candidate.predictor};
     Append(MeanCells(candidate.summary.mean, shown), &row);
-    Append({Together(PlainCells(candidate.summary.frame_weighted, shown)),
+    Append({Joined(PlainCells(candidate.summary.frame_weighted, shown), " / "),
             compared ? Rounded(difference.*main.value, 2) + " +- " +
                            Rounded(difference.error.*main.value, 2)
                      : "",
@@ -386,7 +381,7 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
          (metrics.empty() ? "" : "\n" + GroupMetricsText(metrics));
 }
 
-// Who steps.
+// Scores of who steps.
 
 template <class Archive>
 void Fields(Archive& a, StepFifth& f) {
@@ -410,7 +405,7 @@ void Fields(JsonWriter& a, StepPrediction& s) {
   a("margin_m", s.margin);
   PUSHID_FIELDS(a, s, probability, stepped);
   if (!s.timing) return;
-  // All null where the model has the person stand.
+  // All three are null where the model has the person stand.
   std::optional<Eigen::Vector2d> travel;
   if (s.timing->lift_off) travel = s.timing->travel;
   a.OrNull("lift_off_s", s.timing->lift_off);
@@ -498,7 +493,7 @@ void RecordingFields(Archive& a, RecordingScore& r, const ScoreSummary& of) {
     }
   }
   a("fell", r.fell);
-  // For other readers than ours.
+  // Entries for other readers than ours.
   if constexpr (!Archive::kReads) {
     if (!r.propagation.people.empty()) a("people", r.propagation.people);
     if (!r.steps.empty()) a("predicted_steps", r.steps);

@@ -55,15 +55,13 @@ std::string StepsReport(const std::vector<PendulumRecording>& recordings, bool p
 //   steps: {people, people_who_step, first_lift_off_median_s, first_length_median_m}
 void AddStepsJson(const std::vector<PendulumRecording>& recordings, nlohmann::ordered_json* json);
 
-// How well it is predicted who steps, in words and as a picture.
-
 // "P(step) = ...", its errors, and at which margin half of all people step.
 std::string StepProbabilityText(const StepProbability& probability);
 
 // A column for each named score that is known.
 using NamedStepScores = std::vector<std::pair<std::string, const StepScore*>>;
 TextTable StepScoresTable(const NamedStepScores& scores);
-// The same with what the errors are; empty where no score is known.
+// The table with what the errors are; empty where no score is known.
 std::string StepScoresText(const NamedStepScores& scores);
 
 // The fifths' observed share over the predicted probability, beside the diagonal.

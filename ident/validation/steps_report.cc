@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/text_table.h"
 #include "ident/problem/statistics.h"
@@ -15,7 +16,7 @@ using Json = nlohmann::ordered_json;
 
 struct StepSummary {
   int people = 0, stepping = 0;
-  // Of those who step: when they first lift a foot, s, and how far that step goes, m. One that the
+  // Times of first lift-offs, s, and lengths of first steps, m, of those who step. A step that the
   // recording cuts off has no length yet.
   std::vector<double> lift_off, length;
 };
@@ -62,8 +63,8 @@ std::string StepsReport(const std::vector<PendulumRecording>& recordings, bool p
     text += table.ToString() + "\n";
   }
   const StepSummary summary = StepSummaryOf(recordings);
-  text += "steps: " + std::to_string(summary.stepping) + " of " + std::to_string(summary.people) +
-          (summary.people == 1 ? " person steps" : " people step");
+  text += "steps: " + std::to_string(summary.stepping) + " of " +
+          CountText(summary.people, "person steps", "people step");
   if (summary.stepping > 0) {
     text += "; medians: first lift-off after " + Rounded(Median(summary.lift_off), 2) + " s";
   }
@@ -109,7 +110,7 @@ std::string LiftOffText(const LiftOffError& error) {
          (error.landed > 0 ? "; place off by " + Rounded(error.place, 2) + " m" : "");
 }
 
-// Nothing where in no model feet step.
+// Adds a row where feet step in some model.
 void AddLiftOff(const NamedStepScores& scores, TextTable* table) {
   std::vector<std::string> row = {"first lift-off, predicted - recorded: median"};
   bool any = false;
@@ -159,7 +160,8 @@ TextTable StepScoresTable(const NamedStepScores& scores) {
   add("tracks with a step / tracks", [](const StepScore& s) {
     return std::to_string(s.stepped) + " / " + std::to_string(s.tracks);
   });
-  // Of one who steps, or one who does not, it says who stands where, no more.
+  // With a single person who steps, or one who does not, the AUC says no more than who stands
+  // where.
   add("AUC", [](const StepScore& s) {
     return std::min(s.stepped, s.tracks - s.stepped) < kFewForAuc ? std::string("- (too few)")
                                                                   : WithError(s.auc, s.auc_error);

@@ -185,7 +185,7 @@ TEST_F(AnyRecordingTest, Manifest) {
                                        "--out=" + Path("measured.json")}));
   const std::string measured = "--recordings=" + Path("measured.json");
   run = Succeeded(RunApp("pushid-fit", {measured}));
-  EXPECT_TRUE(Contains(run.out, "warning: every push is external"));
+  EXPECT_TRUE(Contains(run.out, "Warning: every push is external"));
   run = RunApp("pushid-fit", {measured, "--fix=mu,Kp_theta,Kd_theta,a_x"});
   EXPECT_TRUE(Refused(run, {"every parameter that acts on these recordings is fixed"}));
   const int files = CountFiles();

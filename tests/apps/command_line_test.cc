@@ -148,7 +148,7 @@ TEST_F(CommandLineTest, ProgressIsPlainLinesOnStderrAndCanBeSilenced) {
 TEST_F(CommandLineTest, AFitThatDoesNotConvergeExitsWithTwo) {
   const AppRun run = RunApp("pushid-fit", {Recordings(), "--max_iterations=1"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_TRUE(Contains(run.out, "NOT CONVERGED"));
+  EXPECT_TRUE(Contains(run.out, "did NOT converge"));
 }
 
 TEST_F(CommandLineTest, APredictionThatFallsExitsWithTwoAndSaysWhere) {

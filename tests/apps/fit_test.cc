@@ -153,7 +153,7 @@ TEST_F(FitAppTest, WarningsAboutFilesStayWithTheResult) {
   const std::string bvh = Json(manifest_)["recordings"][0]["bvh"][0];
   const std::string says = "recording '" + id_ + "': " + bvh + " has a frame time of 0.0166667 s";
   EXPECT_TRUE(Contains(run.err, says)) << run.err;
-  EXPECT_TRUE(Contains(run.out, "warning: " + says)) << run.out;
+  EXPECT_TRUE(Contains(run.out, "Warning: " + says)) << run.out;
   EXPECT_TRUE(Contains(Json(Path("m.json"))["warnings"].dump(), says));
   EXPECT_TRUE(Contains(RunApp("pushid-report", {"--model=" + Path("m.json")}).out, says));
 }

@@ -52,7 +52,7 @@ FEATURES = [
     ("Python", 2600, 2875, r"apps/python"),
     ("packaging, site", 500, 500, r"apps/(packaging|site|explore|quickstart|laboratory|mkdocs)|(models|residuals|datasets|ident|apps)/CMakeLists.txt"),
     ("flags", 900, 1736, r"apps/(flags|support|pushid\.cc|completion)"),
-    ("fit, options, solver", 5500, 8052, r"ident/(fit|model|parameters|problem|solver|diagnostics)|apps/pushid_fit"),
+    ("fit, options, solver", 5500, 8052, r"ident/(fit|model|parameters|problem|solver|diagnostics|pushid\.h)|apps/pushid_fit"),
     ("core model", 3200, 4261, r"models|residuals"),
 ]
 

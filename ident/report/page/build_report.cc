@@ -1,10 +1,12 @@
-// ident: the order of a report.
 #include "ident/report/page/build_report.h"
 
 #include <algorithm>
 
 #include "ident/prediction/prediction.h"
-#include "ident/report/page/sections.h"
+#include "ident/report/fit_sections.h"
+#include "ident/report/page/motion_sections.h"
+#include "ident/report/page/prediction_sections.h"
+#include "ident/report/parameter_sections.h"
 
 namespace pushid {
 namespace {
@@ -28,7 +30,7 @@ std::string NoteOf(const FitResult& result, const PendulumRecording& recording,
          " leaves the model's domain at frame " + std::to_string(prediction.status.frame);
 }
 
-// In the order given. The recordings must outlive the views.
+// The recordings must outlive the views.
 std::vector<RecordingView> ViewRecordings(const FitResult& result,
                                           const std::vector<Recording>& recordings, int num_threads,
                                           const JobProgress& progress) {
@@ -64,7 +66,7 @@ std::vector<RecordingView> ViewRecordings(const FitResult& result,
   return views;
 }
 
-// Of those of several people that the model predicts.
+// How pushes travel through the recordings of several people that the model predicts.
 PropagationSummary PropagationOf(const FitResult& result, const std::vector<RecordingView>& views) {
   const IdentifiedModel model = ModelOf(result);
   std::vector<PropagationScore> scores;
@@ -78,6 +80,38 @@ PropagationSummary PropagationOf(const FitResult& result, const std::vector<Reco
   for (const PropagationScore& score : scores) all.push_back(&score);
   return SummarizePropagation(all);
 }
+
+using RenderSection = ReportSection(const ReportSource& source);
+
+template <ReportSection (*kRender)(const FittedModel&)>
+ReportSection OfModel(const ReportSource& source) {
+  return kRender(source.model);
+}
+
+// The sections in the order of the page.
+constexpr RenderSection* kSections[] = {LeadSection,
+                                        OfModel<SummarySection>,
+                                        OfModel<ParameterSection>,
+                                        OfModel<ContrastSection>,
+                                        OfModel<UnitSection>,
+                                        OfModel<IdentifiabilitySection>,
+                                        OfModel<ProfileSection>,
+                                        OfModel<BootstrapSection>,
+                                        OfModel<HorizonCheckSection>,
+                                        OfModel<BehaviourSection>,
+                                        OfModel<LoopSection>,
+                                        FrequencySection,
+                                        StepSection,
+                                        GroupSection,
+                                        FigureSection,
+                                        MotionSection,
+                                        OfModel<RecordingSection>,
+                                        OfModel<LeverageSection>,
+                                        OfModel<ResidualSection>,
+                                        OfModel<SolveSection>,
+                                        DesignSection,
+                                        OfModel<AdviceSection>,
+                                        OfModel<ProvenanceSection>};
 
 }  // namespace
 
@@ -94,12 +128,7 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   const IdentifiedModel identified = ModelOf(result);
   source.frequency = FrequencyResponses(identified, MakePendulumRecordings(recordings));
   source.propagation = PropagationOf(result, source.views);
-  for (const SectionRow& row : kSections) {
-    ReportSection section = row.render(source);
-    section.id = row.id;
-    if (section.title.empty()) section.title = row.title;
-    report.sections.push_back(std::move(section));
-  }
+  for (RenderSection* const render : kSections) report.sections.push_back(render(source));
   return report;
 }
 

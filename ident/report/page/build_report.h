@@ -2,6 +2,9 @@
 //
 //   const Report report = BuildReport(result, recordings, BuildReportOptions());
 //   WriteFileAtomically("report.html", ToPage(report));
+//
+// A new section is a function in one of the *_sections files and its name in build_report.cc (and,
+// for the terminal, in report_text.cc).
 #pragma once
 
 #include <string>
@@ -10,10 +13,11 @@
 #include "datasets/manifest/recording.h"
 #include "ident/formations/formation_run.h"
 #include "ident/model/fitted_model.h"
+#include "ident/prediction/frequency_response.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/prediction/propagation.h"
 #include "ident/problem/parallel.h"
-#include "ident/report/page/document.h"
+#include "ident/report/document.h"
 
 namespace pushid {
 
@@ -34,6 +38,15 @@ struct RecordingView {
   FormationRun run;                      // pendulums and prediction
   PredictiveBands bands;                 // empty when the rollouts failed
   std::string note;  // "not among those fitted", "its files have changed since", or a failure
+};
+
+// Data of which sections are made.
+struct ReportSource {
+  const FittedModel& model;
+  const FitResult& fit = model.fit;
+  std::vector<RecordingView> views = {};  // the recordings that are shown; may be none
+  PropagationSummary propagation = {};    // through them
+  std::vector<FrequencyResponse> frequency = {};
 };
 
 }  // namespace pushid

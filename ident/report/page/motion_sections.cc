@@ -1,4 +1,5 @@
-// ident: recordings beside their predictions, with bands and forces.
+#include "ident/report/page/motion_sections.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -7,14 +8,87 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/animation.h"
-#include "ident/figures/chart.h"
-#include "ident/figures/text_table.h"
+#include "ident/figures/svg.h"
 #include "ident/formations/formation_files.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/force_story.h"
-#include "ident/report/page/sections.h"
+#include "ident/prediction/prediction.h"
+#include "ident/problem/behaviour_text.h"
+#include "ident/report/parameter_sections.h"
+#include "ident/report/report_text.h"
+#include "ident/uncertainty/clusters.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
+namespace {
+
+// Sampling of the figure, seconds; many skeletons make a large file, so they are sampled less
+// often.
+constexpr double kSampleSeconds = 1.0 / 30.0, kSeldomSeconds = 1.0 / 6.0;
+constexpr int kManySkeletons = 100;
+
+// Adds the skeleton of a file that lacks joints of a body.
+void AddSkeleton(const RecordedPerson& recorded, AnimatedPerson* person) {
+  person->parents = recorded.joint_parents;
+  if (person->parents.empty()) return;
+  for (const auto& places : recorded.joints) {
+    person->joints.emplace_back(3, places.size());
+    for (size_t j = 0; j < places.size(); ++j) {
+      person->joints.back().col(static_cast<Eigen::Index>(j)) = places[j];
+    }
+  }
+}
+
+// A page as the value of an attribute; line breaks stay.
+std::string ForAttribute(const std::string& page) {
+  std::string quoted;
+  for (const char c : page) quoted += c == '\n' ? "\n" : EscapeXml({&c, 1});
+  return quoted;
+}
+
+// An animation of what was measured, with skeletons where they were recorded, and predicted.
+Animation AnimationOf(const RecordingView& view) {
+  const PendulumRecording& recording = view.run.recording;
+  Animation animation;
+  animation.title = recording.id;
+  animation.dt = recording.scene.dt;
+  auto bodies = MakeBodyRecording(*view.recording);
+  if (bodies.ok()) {
+    ToLaboratory(recording.scene, &bodies.value().bodies);
+    AddRecorded(recording, bodies.value().bodies, &animation);
+  } else {
+    AddRecorded(recording, {}, &animation);
+    for (size_t n = 0; n < animation.people.size(); ++n) {
+      AddSkeleton(view.recording->people[n], &animation.people[n]);
+    }
+  }
+  if (view.run.prediction.status.ok) AddPrediction(recording, view.run.prediction, {}, &animation);
+  AddPushes(recording, &animation);
+  return animation;
+}
+
+}  // namespace
+
+ReportSection FigureSection(const ReportSource& source) {
+  ReportSection section{"figure", "Moving figure"};
+  if (source.views.empty()) return section;
+  section.paragraphs = {
+      "Every recording with the model's prediction from its first frame and the push. The slider "
+      "and the list can be operated with the arrow keys."};
+  std::vector<Animation> animations;
+  int skeletons = 0;
+  for (const RecordingView& view : source.views) {
+    animations.push_back(AnimationOf(view));
+    skeletons += view.run.num_people();
+  }
+  const double seconds = skeletons > kManySkeletons ? kSeldomSeconds : kSampleSeconds;
+  section.widget = "<iframe class=\"moving\" title=\"moving figure\" srcdoc=\"" +
+                   ForAttribute(AnimationHtml(animations, seconds)) +
+                   "\"></iframe>\n<noscript><p>The moving figure needs JavaScript; everything else "
+                   "on this page does not.</p></noscript>\n";
+  return section;
+}
+
 namespace {
 
 // Bars where a foot is off the ground.
@@ -56,7 +130,7 @@ void AddPerson(const RecordingView& view, int person, int predicted_frames,
   chart->lines.push_back({points(run.recording.num_frames(), measured), kMeasuredLook});
 }
 
-// Of the hip along one axis, from a place on.
+// The hip along one axis, relative to `from`.
 void AddHip(const RecordingView& view, int person, int axis, double from, Chart* chart) {
   const FormationRun& run = view.run;
   AddPerson(
@@ -142,8 +216,8 @@ TextTable ForceNumbers(const FormationRun& run) {
 constexpr int kRows[] = {0, 2};  // of the generalized force: along x, about y
 constexpr const char* kForceHeads[] = {"force along the push, N", "torque about y, N m"};
 
-// After Okabe and Ito: told apart by the colour-blind, on light and on dark paper.
-// A part without a colour of its own is grey and dotted.
+// Colours after Okabe and Ito: the colour-blind can tell them apart, on light and on dark paper. A
+// part without a colour of its own is grey and dotted.
 std::string PartColour(ForcePart part) {
   static const std::map<ForcePart, const char*> colours = {
       {ForcePart::kPush, "#d55e00"},
@@ -174,7 +248,7 @@ struct ForceRange {
   }
 };
 
-// Of what a panel shows.
+// The range of the forces in one panel.
 ForceRange RangeOf(const FormationRun& run, const std::vector<ForcePart>& parts, int person,
                    int row) {
   ForceRange range;
@@ -186,7 +260,7 @@ ForceRange RangeOf(const FormationRun& run, const std::vector<ForcePart>& parts,
   return range;
 }
 
-// The net force thick and first, so that a part that is all of it shows on top.
+// The net force is drawn first and thick, so that a part that equals it shows on top.
 Chart ForceChart(const FormationRun& run, const std::vector<ForcePart>& parts, int person, int row,
                  const ForceRange& scale) {
   Chart chart{"", "time, s"};
@@ -238,7 +312,7 @@ Figure ForcesFigure(const FormationRun& run) {
   return figure;
 }
 
-// What this picture draws, and no more.
+// The legend of what this picture draws.
 std::vector<LegendEntry> LegendOf(const RecordingView& view) {
   std::vector<LegendEntry> legend = {{"measured", kMeasuredLook}};
   if (view.run.prediction.status.ok) legend.push_back({"predicted", kPredictedLook});
@@ -285,10 +359,6 @@ std::string FoldTitle(const RecordingView& view) {
   return title + (view.note.empty() ? "" : " (" + view.note + ")");
 }
 
-}  // namespace
-
-namespace {
-
 // The hips of everybody along the push, from the pushed person's start on.
 Chart TypicalChart(const RecordingView& view, const std::string& title) {
   const PendulumRecording& recording = view.run.recording;
@@ -300,8 +370,7 @@ Chart TypicalChart(const RecordingView& view, const std::string& title) {
   return chart;
 }
 
-}  // namespace
-
+// Hips of the recordings that are predicted best, in the middle and worst; none without recordings.
 std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
   std::vector<std::pair<double, const RecordingView*>> ranked;
   for (const RecordingView& view : source.views) {
@@ -347,8 +416,10 @@ std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
       numbers};
 }
 
+}  // namespace
+
 ReportSection MotionSection(const ReportSource& source) {
-  ReportSection section;
+  ReportSection section{"motion", "Measured and predicted motion"};
   if (source.views.empty()) return section;
   section.paragraphs = {
       "Predicted from the first frame and the push alone. The bands include the uncertainty of the "
@@ -377,6 +448,143 @@ ReportSection MotionSection(const ReportSource& source) {
     }
     section.folds.push_back(std::move(fold));
   }
+  return section;
+}
+
+namespace {
+
+constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has all
+
+// "mu = 31.3 N s/m (20 to 42)", with the interval where there is one.
+std::string ValueText(const Estimate& e) {
+  std::string text = e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
+  if (e.lower95 < e.upper95) {
+    const double lower = e.total ? e.total->lower95 : e.lower95;
+    const double upper = e.total ? e.total->upper95 : e.upper95;
+    const double from = ShownEnd(e.value, lower, upper), to = ShownEnd(e.value, upper, lower);
+    text += std::isfinite(from) && std::isfinite(to)
+                ? " (" + Rounded(from, 3) + " to " + Rounded(to, 3) + ")"
+            : std::isfinite(from) ? " (above " + Rounded(from, 3) + ")"
+            : std::isfinite(to)   ? " (below " + Rounded(to, 3) + ")"
+                                  : " (undetermined)";
+  }
+  return text;
+}
+
+std::vector<const Estimate*> With(const FitResult& result, EstimateStatus status) {
+  std::vector<const Estimate*> found;
+  for (const Estimate& e : result.estimates) {
+    if (e.status == status) found.push_back(&e);
+  }
+  return found;
+}
+
+std::string Listed(const std::vector<const Estimate*>& estimates) {
+  std::string text;
+  for (size_t i = 0; i < std::min(kNamed, estimates.size()); ++i) {
+    text += (i > 0 ? ", " : "") + ValueText(*estimates[i]);
+  }
+  const size_t more = estimates.size() - std::min(kNamed, estimates.size());
+  return text + (more > 0 ? " and " + std::to_string(more) + " more" : "");
+}
+
+std::string Known(const FitResult& result) {
+  const std::vector<const Estimate*> known = With(result, EstimateStatus::kIdentified);
+  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
+  return "What is known: " +
+         (known.empty() ? "these recordings alone identify no parameter"
+                        : "these recordings identify " + Listed(known)) +
+         "; " + VerdictSentence(verdict, result.behaviour, result.options.model) + ".";
+}
+
+// Which intervals ValueText shows, where it shows any.
+std::string Brackets(const FitResult& result) {
+  if (With(result, EstimateStatus::kIdentified).empty()) return "";
+  const bool total = std::any_of(result.estimates.begin(), result.estimates.end(),
+                                 [](const Estimate& e) { return e.total.has_value(); });
+  return total ? " In brackets: 95 % intervals, with the errors of what is taken as known."
+               : " In brackets: 95 % intervals.";
+}
+
+std::string NotKnown(const FitResult& result) {
+  std::string text;
+  const auto add = [&](EstimateStatus status, const std::string& words) {
+    const std::vector<const Estimate*> found = With(result, status);
+    if (!found.empty()) text += (text.empty() ? "" : "; ") + words + Listed(found);
+  };
+  add(EstimateStatus::kUnidentifiable, "not identifiable from these recordings: ");
+  add(EstimateStatus::kAtBound, "ended at a bound: ");
+  add(EstimateStatus::kPriorHeld,
+      "determined more by priors or constraints than by the recordings: ");
+  add(EstimateStatus::kModelDependent, "dependent on a model that does not fit: ");
+  add(EstimateStatus::kWeak, "with wide intervals: ");
+  const Uncertainty& u = result.uncertainty;
+  const std::string join = text.empty() ? "" : "; ";
+  if (u.about_people_like_them && u.num_people < kFewestPeople) {
+    text += join + "anything about people like these " + std::to_string(u.num_people) +
+            ", who are fewer than " + std::to_string(kFewestPeople);
+  } else if (u.clustered && u.num_clusters < kFewClusters) {
+    text += join + "with " + std::to_string(u.num_clusters) +
+            (u.clustered_by == ClusterBy::kSubject ? " people" : " recordings") +
+            " all intervals are rough";
+  }
+  return "What is not known: " + (text.empty() ? "no free parameter" : text) + ".";
+}
+
+// A sentence about how the push travels through groups, measured and predicted.
+std::string Travels(const PropagationSummary& p) {
+  if (p.recordings == 0 || !p.figures[kSlownessMeasured].known()) return "";
+  std::string text = "How the push travels in the fitted recordings: in " +
+                     std::to_string(std::lround(p.figures[kSlownessMeasured].weight)) +
+                     " recordings the onset of motion propagated at " +
+                     SpeedText(p.figures[kSlownessMeasured]) +
+                     " m/s (predicted: " + SpeedText(p.figures[kSlownessPredicted]) + ")";
+  const PropagationMean &measured = p.figures[kMomentumMeasured],
+                        &predicted = p.figures[kMomentumPredicted];
+  if (measured.known() && predicted.known()) {
+    text += "; the momentum of each person was " + Rounded(measured.value, 2) +
+            " times that of the previous one (predicted: " + Rounded(predicted.value, 2) + ")";
+  }
+  return text + "; the model misses " + Rounded(p.missed_movers, 4) + " of the " +
+         Rounded(p.movers, 4) + " people who moved.";
+}
+
+std::string Next(const FittedModel& model) {
+  if (model.advice.empty()) return "What to do next: predict a push that was not fitted.";
+  return "What to do next: " + model.advice.front().sentence;
+}
+
+// Names, units and meanings of the free parameters.
+TextTable Legend(const FitResult& result) {
+  TextTable table({"name", "unit", "meaning"});
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = result.options.table.Find(e.name);
+    if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
+    table.Add({e.name, e.unit == "1" ? "-" : e.unit, spec->meaning});
+  }
+  return table;
+}
+
+}  // namespace
+
+ReportSection LeadSection(const ReportSource& source) {
+  ReportSection section{"short", "In short"};
+  if (const std::optional<ReportFigure> typical = TypicalFigure(source))
+    section.figures.push_back(*typical);
+  section.figures.push_back(IntervalFigure(source.model));
+  const std::string verdict = ModelVerdictText(source.fit.verdict);
+  if (source.fit.verdict.fails() || !source.fit.verdict.none_identified.empty()) {
+    section.alarm = verdict;
+  } else {
+    section.Say(verdict);
+    section.verdict_first = true;
+  }
+  section.Say(Known(source.fit) + Brackets(source.fit));
+  section.Say(NotKnown(source.fit));
+  section.Say(GainsText(source.fit));
+  section.Say(Travels(source.propagation));
+  section.Say(Next(source.model));
+  section.Show("what the names mean", Legend(source.fit));
   return section;
 }
 

@@ -1,15 +1,14 @@
-// ident: who steps, groups, and people who stand: the loop and its frequency response.
+#include "ident/report/page/prediction_sections.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
-#include "ident/figures/chart.h"
 #include "ident/prediction/evaluation.h"
-#include "ident/prediction/prediction.h"
-#include "ident/report/page/sections.h"
-#include "ident/report/report_text.h"
+#include "ident/validation/experiment_design.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {
@@ -39,10 +38,8 @@ ReportFigure ReliabilityFigure(const StepScore& score) {
 }  // namespace
 
 ReportSection StepSection(const ReportSource& source) {
-  ReportSection section;
-  const auto& probability = source.fit.step_probability;
-  if (!probability) return section;
-  section.Say(StepProbabilityText(*probability));
+  ReportSection section{"steps", "Who steps"};
+  if (!source.fit.step_probability) return section;
   const StepScore score = ScoreOf(source.views);
   if (!score.known()) return section;
   section.tables.push_back(
@@ -55,8 +52,8 @@ ReportSection StepSection(const ReportSource& source) {
 
 namespace {
 
-// Hips of the recordings of more than one person that the model predicts, by the model and by a
-// baseline that sees the recording until the last push ends.
+// Recordings of several people that the model predicts, with hips by the model and by a baseline
+// that sees the recording until the last push ends.
 struct ShownGroups {
   std::vector<PendulumRecording> recordings;
   std::vector<Recording> with_bodies;
@@ -80,7 +77,7 @@ ShownGroups GroupsOf(const std::vector<RecordingView>& views) {
 }  // namespace
 
 ReportSection GroupSection(const ReportSource& source) {
-  ReportSection section;
+  ReportSection section{"groups", "Groups"};
   const ShownGroups groups = GroupsOf(source.views);
   const RecordedBodies bodies = BodiesOfGroups(groups.with_bodies);
   const auto model = CompareHips(groups.recordings, bodies, groups.by_model);
@@ -126,7 +123,7 @@ Figure BodeFigure(const FrequencyResponse& response) {
   const auto cover = [&](double log, double error) {
     lowest = std::min(lowest, log - error), highest = std::max(highest, log + error);
   };
-  // The multiple of 360 degrees away that is nearest.
+  // The angle in degrees that is nearest to another, by multiples of 360.
   const auto nearest = [](double angle, std::optional<double> to) {
     return to ? *to + std::remainder(kDegrees * angle - *to, 360.0) : kDegrees * angle;
   };
@@ -166,9 +163,8 @@ Figure BodeFigure(const FrequencyResponse& response) {
 std::string CaptionOf(const FrequencyResponse& response) {
   const size_t people = response.people.size();
   const std::string seconds = Rounded(response.segment_s, 3) + " s";
-  return response.Name() + ": " + std::to_string(response.recordings) +
-         (response.recordings == 1 ? " recording of " : " recordings of ") +
-         std::to_string(people) + (people == 1 ? " person" : " people") +
+  return response.Name() + ": " + CountText(response.recordings, "recording") + " of " +
+         CountText(people, "person", "people") +
          (response.periodic ? "; the excited frequencies, in periods of " + seconds
                             : "; Welch's method, segments of " + seconds) +
          (response.output == LoopOutput::kAngle ? ""
@@ -179,20 +175,8 @@ std::string CaptionOf(const FrequencyResponse& response) {
 
 }  // namespace
 
-ReportSection LoopSection(const ReportSource& source) {
-  ReportSection section;
-  section.Say(LoopText(source.fit));
-  if (section.paragraphs.empty()) return section;
-  section.Say(
-      "Of the linearized model of a person of 85 kg with a rod of 0.95 m at rest. Phase and delay "
-      "margin: how much later feedback may come; the last column: between which factors its gains "
-      "may change.");
-  section.Show("", LoopTable(source.fit));
-  return section;
-}
-
 ReportSection FrequencySection(const ReportSource& source) {
-  ReportSection section;
+  ReportSection section{"frequency", "Frequency response"};
   if (source.frequency.empty()) return section;
   section.Say(
       "How people answer what disturbs them on and on, frequency by frequency: the cross spectrum "
@@ -206,6 +190,39 @@ ReportSection FrequencySection(const ReportSource& source) {
     section.figures.push_back({"frequency_" + response.Key(), CaptionOf(response),
                                BodeFigure(response), FrequencyTable({response})});
   }
+  return section;
+}
+
+// A design needs all recordings of the fit, unchanged.
+ReportSection DesignSection(const ReportSource& source) {
+  constexpr int kBestPushes = 8;
+  std::vector<PendulumRecording> recordings;
+  for (const RecordingView& view : source.views) {
+    const PendulumRecording& seen = view.run.recording;
+    const bool same = std::any_of(source.fit.recordings.begin(), source.fit.recordings.end(),
+                                  [&](const FittedRecording& r) {
+                                    return r.id == seen.id && r.content_hash == seen.content_hash;
+                                  });
+    if (same && seen.num_people() == 1) recordings.push_back(seen);
+  }
+  ReportSection section{"design", "What to record next"};
+  if (recordings.empty() || recordings.size() != source.fit.recordings.size()) {
+    section.paragraphs = {
+        "Left out: it needs all recordings that were fitted, as they were then, each of one "
+        "person."};
+    return section;
+  }
+  const ExperimentDesign design = DesignExperiments(recordings, source.fit);
+  if (!design.refused.empty()) {
+    section.paragraphs = {"Left out: " + design.refused + "."};
+    return section;
+  }
+  section.paragraphs = {
+      "Effect of one more recording of each kind on the standard errors, from the sensitivities at "
+      "the estimate, for all parameters together (D-optimal); a design for one parameter ranks "
+      "them "
+      "for that alone (c-optimal)."};
+  section.Show("", DesignTable(design, "all", kBestPushes).value());
   return section;
 }
 

@@ -171,7 +171,7 @@ TEST_F(Judged, AdviceNamesTheRecordingAndACommand) {
   EXPECT_TRUE(Contains(about->sentence, recordings_->at(5).id));
   EXPECT_TRUE(Contains(about->command, "--setting=single --fix=mu_y=10 --leave_out="));
   model.advice = advice;
-  EXPECT_TRUE(Contains(DiagnosticsText(model), about->command));
+  EXPECT_TRUE(Contains(ReportText(model), about->command));
 }
 
 std::string AllAdvice(const FitResult& result) {

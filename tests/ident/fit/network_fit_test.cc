@@ -87,7 +87,7 @@ TEST(NetworkFit, ResultsComeBackFromJsonWithoutLoss) {
   EXPECT_EQ(ToJson(read, RunInfo{}).dump(), json.dump());
   EXPECT_EQ(read.fit.options.model.learned->weights, result.options.model.learned->weights);
   EXPECT_EQ(HeldOutAde(study, read.fit), HeldOutAde(study, result));
-  EXPECT_TRUE(Contains(ReportText(read), "self force gru:2"));
+  EXPECT_TRUE(Contains(ReportText(read), "gru:2"));
   // Weights are not in the table.
   for (const Estimate& e : read.fit.nuisance) {
     EXPECT_FALSE(Contains(e.name, "weight"));

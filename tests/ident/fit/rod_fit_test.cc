@@ -58,7 +58,6 @@ TEST(RodFit, ResultsComeBackFromJsonWithoutLoss) {
   EXPECT_EQ(ToJson(read, RunInfo{}).dump(), json.dump());
   EXPECT_EQ(HeldOutAde(study, read.fit), HeldOutAde(study, model.fit));
   const std::string text = ReportText(read);
-  EXPECT_TRUE(Contains(text, "self force none"));
   EXPECT_TRUE(Contains(text, "rod mlp:2 (26 weights, prior 1)"));
   EXPECT_TRUE(Contains(text, "rod_lift"));
 }

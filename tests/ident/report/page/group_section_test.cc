@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/bodies/body_files.h"
-#include "ident/report/page/sections.h"
+#include "ident/report/page/prediction_sections.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"
 

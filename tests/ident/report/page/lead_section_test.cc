@@ -1,8 +1,8 @@
 // The report's three sentences, by hand.
 #include <gtest/gtest.h>
 
-#include "ident/report/page/document.h"
-#include "ident/report/page/sections.h"
+#include "ident/report/document.h"
+#include "ident/report/page/motion_sections.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -1,7 +1,8 @@
 // What the report says of people who stand.
 #include <gtest/gtest.h>
 
-#include "ident/report/page/sections.h"
+#include "ident/report/fit_sections.h"
+#include "ident/report/page/prediction_sections.h"
 #include "ident/report/report_text.h"
 #include "tests/ident/laboratory_samples.h"
 #include "tests/test_support.h"
@@ -29,7 +30,7 @@ TEST(StandingSections, TheLoopInWords) {
   ASSERT_EQ(rows.size(), 2u) << "alike in both planes";
   EXPECT_EQ(rows[1][0], "both directions");
   EXPECT_EQ(rows[1][1], "1.55");
-  const ReportSection section = LoopSection({model});
+  const ReportSection section = LoopSection(model);
   EXPECT_TRUE(Contains(section.paragraphs[0], "stiffness 1.55 times m g l"));
   EXPECT_TRUE(Contains(section.paragraphs[0], "phase margin"));
   EXPECT_TRUE(Contains(section.paragraphs[0], "delay margin"));
@@ -42,7 +43,7 @@ TEST(StandingSections, TheLoopInWords) {
   FittedModel slides = model;
   slides.fit.options.model.stance = Stance::kSlide;
   EXPECT_TRUE(LoopText(slides.fit).empty());
-  EXPECT_TRUE(LoopSection({slides}).tables.empty());
+  EXPECT_TRUE(LoopSection(slides).tables.empty());
 }
 
 TEST(StandingSections, FrequencyResponse) {

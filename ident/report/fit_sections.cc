@@ -1,23 +1,165 @@
-// ident: recording by recording, and what is left over.
+#include "ident/report/fit_sections.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <tuple>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/figures/chart.h"
-#include "ident/figures/text_table.h"
-#include "ident/report/page/sections.h"
+#include "datasets/loading/warning.h"
+#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/option_names.h"
+#include "ident/problem/behaviour_text.h"
+#include "ident/report/advice.h"
+#include "ident/report/parameter_sections.h"
 #include "ident/report/report_text.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {
 
-constexpr size_t kMostOutliers = 20;
+std::string VerdictText(const FitResult& result) {
+  std::string text = result.converged ? "The solve converged. " : "The solve did NOT converge. ";
+  text += IdentifiedText(result) + " ";
+  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
+  text += Capitalized(VerdictSentence(verdict, result.behaviour, result.options.model)) + ".";
+  if (result.behaviour.self_propelling) text += " Do not use the gains.";
+  return text;
+}
+
+// What parameters are pooled by, if any.
+std::string PooledBy(const FitOptions& options) {
+  if (!AnyPooled(options.table)) return "";
+  const bool may_lack = options.pool_by != kSubjectUnit && options.pool_by != kSettingLabel;
+  return options.pool_by + (may_lack ? " (without one by setting)" : "");
+}
+
+double MeanExplained(const FitResult& result) {
+  double sum = 0.0;
+  for (const RecordingDiagnostics& r : result.diagnostics.recordings) sum += r.explained;
+  return sum / static_cast<double>(std::max<size_t>(1, result.diagnostics.recordings.size()));
+}
+
+}  // namespace
+
+ReportSection SummarySection(const FittedModel& model) {
+  ReportSection section{"summary", "What was fitted"};
+  section.Say(VerdictText(model.fit));
+  const FitOptions& o = model.fit.options;
+  TextTable facts({"what", "value"});
+  const std::string by = PooledBy(o);
+  facts.Add({"recordings", std::to_string(model.fit.recordings.size()) + " (" +
+                               model.provenance.setting +
+                               (by.empty() ? ")" : "), pooled by " + by)});
+  facts.Add({"preset", o.preset});
+  facts.Add({"posture", NameOf(o.model.posture)});
+  facts.Add({"push", NameOf(o.model.push) + ", tail " + NameOf(o.model.push_tail)});
+  facts.Add({"feet", FeetOfFit(model.fit)});
+  facts.Add({"self force", SelfForceText(o.self_force, o.model.learned.get())});
+  if (RodMoves(o.model)) facts.Add({"rod", RodName(o.model.learned->rod)});
+  facts.Add({"interaction", InteractionText(o.model)});
+  if (model.fit.ok()) {
+    const int iterations = model.fit.starts[model.fit.best_start].iterations;
+    facts.Add(
+        {"cost", Rounded(model.fit.cost, 6) + " after " + CountText(iterations, "iteration")});
+  }
+  if (!model.fit.diagnostics.recordings.empty()) {
+    facts.Add({"hip motion explained, mean over recordings",
+               Rounded(MeanExplained(model.fit), 3) + " %"});
+  }
+  section.Show("", facts);
+  if (const std::string network = NetworkText(model.fit); !network.empty()) {
+    section.Say("Learned terms: " + network + ".");
+  }
+  if (model.fit.likelihood) section.Say(LikelihoodText(model.fit));
+  section.Say(PreparationText(model.provenance.configuration));
+  for (const std::string& warning : GroupedWarnings(model.fit.warnings)) {
+    section.Say("Warning: " + warning);
+  }
+  for (const std::string& finding : FindingTexts(model.fit.diagnostics.start.findings)) {
+    section.Say("Warning: " + finding);
+  }
+  return section;
+}
+
+ReportSection AdviceSection(const FittedModel& model) {
+  ReportSection section{"advice", "What to try next"};
+  bool unkept = false;
+  for (const Advice& advice : model.advice) {
+    section.advice.emplace_back(advice.sentence, CommandFor(model.provenance, advice.command));
+    unkept = unkept || (model.provenance.model_file.empty() && NamesModel(advice.command));
+  }
+  if (unkept) section.Say("FILE is the model, which --model_out=FILE of pushid-fit keeps.");
+  return section;
+}
+
+ReportSection BehaviourSection(const FittedModel& model) {
+  ReportSection section{"behaviour", "After a push"};
+  section.paragraphs = {BehaviourText(model.fit)};
+  if (model.fit.step_probability) section.Say(StepProbabilityText(*model.fit.step_probability));
+  section.Show("", LinesTable(model.fit));
+  section.tables.push_back(
+      {"settling simulations: pushed and left alone", BehaviourTable(model.fit)});
+  return section;
+}
+
+ReportSection ProvenanceSection(const FittedModel& model) {
+  ReportSection section{"provenance", "Provenance"};
+  section.paragraphs = {"pushid " + model.provenance.version + ", manifest " +
+                        model.provenance.manifest + " (hash " + model.provenance.manifest_hash +
+                        ")"};
+  TextTable flags({"flag", "value"});
+  for (const auto& [name, value] : model.provenance.configuration) flags.Add({"--" + name, value});
+  section.Show("flags of the fit (empty: the preset's value)", flags);
+  TextTable files({"recording", "frames", "hash of its files"}, {true, false, true});
+  for (const FittedRecording& r : model.fit.recordings) {
+    files.Add({r.id, r.frames, r.content_hash});
+  }
+  section.Show("recordings", files);
+  return section;
+}
+
+ReportSection LoopSection(const FittedModel& model) {
+  ReportSection section{"loop", "The identified loop"};
+  section.Say(LoopText(model.fit));
+  if (section.paragraphs.empty()) return section;
+  section.Say(
+      "These are numbers of the linearized model of a person of 85 kg with a rod of 0.95 m at "
+      "rest. "
+      "Phase and delay margin: how much later feedback may come; the last column: between which "
+      "factors its gains may change.");
+  section.Show("", LoopTable(model.fit));
+  return section;
+}
+
+namespace {
+
+constexpr size_t kMostOutliers = 20, kWorstRecordings = 5;
 constexpr double kStrongMove = 1.0;     // standard errors
 constexpr double kWorstShown = -300.0;  // % explained; bars of worse ones are cut
 
-// Best explained first.
+// The recordings that are explained least, and the parameter that changes most without each.
+TextTable WorstTable(std::vector<const RecordingDiagnostics*> worst, const Leverage& leverage) {
+  TextTable table({"explained least", "% of motion", "cost", "down-weighted frames",
+                   "change without it (std errors)"},
+                  {true, false, false, false, true});
+  for (size_t k = worst.size(); k-- > 0 && worst.size() - k <= kWorstRecordings;) {
+    std::string change;
+    for (size_t g = 0; g < leverage.recordings.size(); ++g) {
+      const std::vector<double>& row = leverage.in_errors[g];
+      if (leverage.recordings[g] != worst[k]->id || row.empty()) continue;
+      const auto most = std::max_element(
+          row.begin(), row.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+      change = leverage.parameters[most - row.begin()] + " " + Rounded(*most, 2);
+    }
+    table.Add({worst[k]->id, Rounded(worst[k]->explained, 3), Rounded(worst[k]->cost, 3),
+               worst[k]->outliers.size(), change});
+  }
+  return table;
+}
+
+// A bar for each recording, the best explained first.
 Chart ExplainedChart(const std::vector<const RecordingDiagnostics*>& recordings) {
   double worst = 0.0;
   for (const RecordingDiagnostics* r : recordings) worst = std::min(worst, r->explained);
@@ -34,7 +176,7 @@ Chart ExplainedChart(const std::vector<const RecordingDiagnostics*>& recordings)
   return chart;
 }
 
-// Frames in a row are one: "85 - 104".
+// Outliers in consecutive frames: "85 - 104".
 struct OutlierRun {
   std::string recording;
   int person = 0, from = 0, to = 0;
@@ -100,10 +242,10 @@ Chart Correlogram(const std::string& title, const std::vector<double>& values,
 
 }  // namespace
 
-ReportSection RecordingSection(const ReportSource& source) {
-  ReportSection section;
-  const Diagnostics& d = source.fit.diagnostics;
-  if (d.recordings.empty()) return section;
+ReportSection RecordingSection(const FittedModel& model) {
+  ReportSection section{"recordings", "Recording by recording"};
+  const Diagnostics& d = model.fit.diagnostics;
+  if (d.recordings.empty() || d.whiteness.empty()) return section;  // or nobody saw the motion
   std::vector<const RecordingDiagnostics*> sorted;
   TextTable numbers({"recording", "explained_percent", "cost", "lag1", "ljung_box", "ljung_box_p",
                      "outlier_frames"});
@@ -118,18 +260,15 @@ ReportSection RecordingSection(const ReportSource& source) {
                              "zero it is worse than predicting no motion.",
                              {{}, {ExplainedChart(sorted)}},
                              numbers});
-  const TextTable outliers = OutlierTable(d);
-  if (!outliers.empty()) {
-    section.tables.push_back(
-        {"intervals that have less than half their weight in the robust loss (the 20 worst)",
-         outliers});
-  }
+  section.Show("", WorstTable(sorted, d.leverage));
+  section.Show("intervals that have less than half their weight in the robust loss (the 20 worst)",
+               OutlierTable(d));
   return section;
 }
 
-ReportSection LeverageSection(const ReportSource& source) {
-  ReportSection section;
-  const Leverage& l = source.fit.diagnostics.leverage;
+ReportSection LeverageSection(const FittedModel& model) {
+  ReportSection section{"leverage", "Influence of each recording"};
+  const Leverage& l = model.fit.diagnostics.leverage;
   if (l.recordings.empty()) return section;
   Chart map{"change without it, standard errors"};
   map.x_categories = l.parameters;
@@ -158,18 +297,17 @@ ReportSection LeverageSection(const ReportSource& source) {
   }
   section.figures.push_back(
       {"leverage",
-       "Change of each parameter without one recording, in standard errors. One "
-       "step with the Hessian of all recordings, not a refit (on the 32 "
-       "published recordings of "
-       "single people refits differ from it by 15 %).",
+       "Change of each parameter without one recording, in standard errors: one step with the "
+       "Hessian of all recordings, not a refit (on the 32 published recordings of single people "
+       "refits differ from it by 15 %).",
        {{}, {map}},
        numbers});
   return section;
 }
 
-ReportSection ResidualSection(const ReportSource& source) {
-  ReportSection section;
-  const std::vector<Whiteness>& channels = source.fit.diagnostics.whiteness;
+ReportSection ResidualSection(const FittedModel& model) {
+  ReportSection section{"residuals", "Residuals"};
+  const std::vector<Whiteness>& channels = model.fit.diagnostics.whiteness;
   if (channels.empty()) return section;
   section.paragraphs = {
       "Autocorrelation of the residuals, and their correlation with the push, by lag in frames: "
@@ -205,8 +343,7 @@ ReportSection ResidualSection(const ReportSource& source) {
 
 namespace {
 
-// Costs on a logarithmic axis. Those of a likelihood may be negative: they count from 1 below the
-// lowest.
+// Costs on a logarithmic axis. A likelihood's may be negative: they count from 1 below the lowest.
 struct CostAxis {
   double base = 0.0;
   explicit CostAxis(double lowest) : base(lowest > 0.0 ? 0.0 : lowest - 1.0) {}
@@ -216,18 +353,17 @@ struct CostAxis {
 
 }  // namespace
 
-ReportSection SolveSection(const ReportSource& source) {
-  ReportSection section;
+ReportSection SolveSection(const FittedModel& model) {
+  ReportSection section{"solve", "Solver convergence"};
   TextTable starts(
       {"start", "cost", "iterations", "converged", "failed recordings", "solver's message"},
       {true, false, false, true, false, true});
-  for (const SolveStart& s : source.fit.starts) {
+  for (const SolveStart& s : model.fit.starts) {
     starts.Add({s.kind, s.usable ? Rounded(s.cost, 6) : "-", s.iterations,
                 s.converged ? "yes" : "no", s.failed.size(), s.message});
   }
   section.Show("solved from", starts);
-  if (source.fit.likelihood) section.Say(LikelihoodText(source.fit));
-  const std::vector<TracePoint>& trace = source.fit.diagnostics.trace;
+  const std::vector<TracePoint>& trace = model.fit.diagnostics.trace;
   if (trace.size() < 2) return section;
   double lowest = HUGE_VAL;
   for (const TracePoint& point : trace) lowest = std::min(lowest, point.cost);
@@ -254,9 +390,9 @@ ReportSection SolveSection(const ReportSource& source) {
   }
   section.figures.push_back(
       {"trace",
-       source.fit.options.likelihood == Likelihood::kTrajectory
+       model.fit.options.likelihood == Likelihood::kTrajectory
            ? "The best start. The cost jumps where the horizon grows (lines) and where "
-             "the data are weighed anew."
+             "the weights are estimated anew."
            : "The best start: Fisher scoring, then BFGS.",
        {{}, {cost, gradient}},
        numbers});

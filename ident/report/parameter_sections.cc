@@ -1,15 +1,11 @@
-// ident: parameters, by unit, and how sure: what the data cannot tell apart, profiles, bootstrap,
-// shorter horizons, what to record next.
+#include "ident/report/parameter_sections.h"
+
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "datasets/files/number_text.h"
-#include "ident/figures/chart.h"
-#include "ident/figures/text_table.h"
-#include "ident/report/page/sections.h"
 #include "ident/report/report_text.h"
-#include "ident/validation/experiment_design.h"
 
 namespace pushid {
 namespace {
@@ -20,7 +16,34 @@ constexpr char kProfileLook[] = "fill:none;stroke-width:3;stroke:#009e73";
 constexpr char kBootstrapLook[] = "fill:none;stroke-width:3;stroke:#cc79a7";
 constexpr double kStripHeight = 50, kIntervalHeight = 6;  // pixels
 
-// Ends that tell nothing go to the edge.
+// A value with its intervals, one above the other, and what it is compared with (an upright line),
+// on a scale of its own. Interval ends that tell nothing are infinite.
+struct IntervalRow {
+  std::string name, unit;
+  double value = 0.0, nominal = 0.0;
+  std::vector<std::pair<Interval, std::string>> intervals;  // with their looks
+};
+constexpr char kIntervalLook[] = "fill:none;stroke-width:3;stroke:#3b82f6";
+constexpr char kToldLook[] = "fill:none;stroke-width:3;stroke:#d55e00";
+
+Chart IntervalStrip(const IntervalRow& row) {
+  Chart chart{WithUnit(row.name, row.unit)};
+  chart.bare_y = true;
+  chart.height = kStripHeight + kIntervalHeight * static_cast<double>(row.intervals.size());
+  chart.marks = {row.nominal};
+  const double rows = static_cast<double>(row.intervals.size());
+  chart.y_from = -1.0 - 0.5 * rows;
+  chart.y_to = 1.0 + 0.5 * rows;
+  double y = 0.5 * (rows - 1.0);
+  for (const auto& [interval, look] : row.intervals) {
+    chart.lines.push_back({{{interval.lower, y}, {interval.upper, y}}, look});
+    y -= 1.0;
+  }
+  chart.lines.push_back({{{row.value, 0.0}}, kMeasuredLook, true});
+  return chart;
+}
+
+// An interval with ends that tell nothing moved to infinity, which charts draw to the edge.
 Interval Shown(double value, Interval interval) {
   const Interval known = interval;
   interval.lower = ShownEnd(value, known.lower, known.upper);
@@ -31,9 +54,9 @@ Interval Shown(double value, Interval interval) {
 constexpr char kDataLook[] = "stroke:none;fill:#3b82f6";
 constexpr char kPriorLook[] = "stroke:none;fill:#d55e00";
 constexpr char kSettlingLook[] = "stroke:none;fill:#009e73";
-constexpr double kLeastDrawn = 0.001;  // a share that is narrower than a pixel
+constexpr double kLeastDrawn = 0.001;  // smaller shares are narrower than a pixel
 
-// A bar a parameter, in three parts.
+// A bar in three parts for each parameter.
 ReportFigure SharesFigure(const FitResult& result) {
   std::vector<const Estimate*> shown;
   for (const Estimate& e : result.estimates) {
@@ -79,32 +102,15 @@ ReportFigure SharesFigure(const FitResult& result) {
 
 }  // namespace
 
-Chart IntervalStrip(const IntervalRow& row) {
-  Chart chart{WithUnit(row.name, row.unit)};
-  chart.bare_y = true;
-  chart.height = kStripHeight + kIntervalHeight * static_cast<double>(row.intervals.size());
-  chart.marks = {row.nominal};
-  const double rows = static_cast<double>(row.intervals.size());
-  chart.y_from = -1.0 - 0.5 * rows;
-  chart.y_to = 1.0 + 0.5 * rows;
-  double y = 0.5 * (rows - 1.0);
-  for (const auto& [interval, look] : row.intervals) {
-    chart.lines.push_back({{{interval.lower, y}, {interval.upper, y}}, look});
-    y -= 1.0;
-  }
-  chart.lines.push_back({{{row.value, 0.0}}, kMeasuredLook, true});
-  return chart;
-}
-
-ReportFigure IntervalFigure(const ReportSource& source) {
+ReportFigure IntervalFigure(const FittedModel& model) {
   Figure figure;
   bool told_apart = false, with_total = false;
   TextTable numbers({"parameter", "unit", "value", "nominal", "clustered_lower95",
                      "clustered_upper95", "total_lower95", "total_upper95", "these_people_lower95",
                      "these_people_upper95", "profile_lower95", "profile_upper95",
                      "bootstrap_lower95", "bootstrap_upper95"});
-  for (const Estimate& e : source.fit.estimates) {
-    const ParameterSpec* spec = source.fit.options.table.Find(e.name);
+  for (const Estimate& e : model.fit.estimates) {
+    const ParameterSpec* spec = model.fit.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
     IntervalRow row{e.name, e.unit, e.value, spec->nominal, {}};
     std::vector<std::string> cells = {e.name, e.unit, DoubleText(e.value),
@@ -121,16 +127,16 @@ ReportFigure IntervalFigure(const ReportSource& source) {
     with_total = with_total || e.total;
     add(e.these, kTheseLook);
     told_apart = told_apart || e.these;
-    add(ProfileInterval(source.model, e.name), kProfileLook);
-    add(BootstrapInterval(source.model, e.name), kBootstrapLook);
+    add(ProfileInterval(model, e.name), kProfileLook);
+    add(BootstrapInterval(model, e.name), kBootstrapLook);
     figure.panels.push_back(IntervalStrip(row));
     numbers.Add(cells);
   }
   figure.legend = {{told_apart ? "people like them, 95 %" : "clustered 95 %", kIntervalLook}};
   if (with_total) figure.legend.push_back({"total 95 %", kTotalLook});
   if (told_apart) figure.legend.push_back({"these people", kTheseLook});
-  if (!source.model.profiles.empty()) figure.legend.push_back({"profile", kProfileLook});
-  if (source.model.bootstrap) figure.legend.push_back({"bootstrap", kBootstrapLook});
+  if (!model.profiles.empty()) figure.legend.push_back({"profile", kProfileLook});
+  if (model.bootstrap) figure.legend.push_back({"bootstrap", kBootstrapLook});
   figure.legend.push_back({"nominal", kMarkLook});
   return {"forest",
           "Fitted values (dots) with their 95 % intervals, and the nominal values (upright lines). "
@@ -138,27 +144,26 @@ ReportFigure IntervalFigure(const ReportSource& source) {
           figure, numbers};
 }
 
-ReportSection ParameterSection(const ReportSource& source) {
-  ReportSection section;
-  section.paragraphs = {IdentifiedText(source.fit), SharesNote(), HowSure(source.fit),
-                        ConventionText(source.fit)};
-  section.Say(GainsText(source.fit));
-  section.Show("", EstimateTable(source.fit));
-  section.Show("derived", DerivedTable(source.fit));
-  if (source.fit.verdict.checked()) {
-    section.Show("taken as known, and what the recordings say of it", AssumptionTable(source.fit));
+ReportSection ParameterSection(const FittedModel& model) {
+  ReportSection section{"parameters", "Parameters"};
+  section.paragraphs = {SharesNote(), ErrorsText(model.fit), ConventionText(model.fit)};
+  section.Say(GainsText(model.fit));
+  section.Show("", EstimateTable(model.fit));
+  section.Show("", DerivedTable(model.fit));
+  if (model.fit.verdict.checked()) {
+    section.Show("taken as known, and what the recordings say of it", AssumptionTable(model.fit));
   }
-  const ReportFigure shares = SharesFigure(source.fit);
+  const ReportFigure shares = SharesFigure(model.fit);
   if (!shares.numbers.empty()) section.figures.push_back(shares);
   return section;
 }
 
-ReportSection UnitSection(const ReportSource& source) {
-  const std::string by = source.fit.options.pool_by;
-  ReportSection section;
+ReportSection UnitSection(const FittedModel& model) {
+  const std::string by = model.fit.options.pool_by;
+  ReportSection section{"units"};
   const bool may_lack = by != kSubjectUnit && by != kSettingLabel;
   section.title = "By " + by + (may_lack ? " or setting" : "");
-  const TextTable pooled = PooledTable(source.fit);
+  const TextTable pooled = PooledTable(model.fit);
   if (pooled.empty()) return section;
   section.paragraphs = {
       "Partially pooled: each value deviates from the shared value as far as its "
@@ -174,7 +179,7 @@ ReportSection UnitSection(const ReportSource& source) {
               .try_emplace(name, Chart(),
                            TextTable({"unit", "value", "lower95", "upper95", "shared"}))
               .first->second;
-      const double shared = source.fit.parameters[source.fit.options.table.Find(name)->id];
+      const double shared = model.fit.parameters[model.fit.options.table.Find(name)->id];
       const double row = static_cast<double>(chart.y_categories.size());
       const Interval shown = Shown(e.value, {e.standard_error, e.lower95, e.upper95});
       chart.title = WithUnit(name, e.unit);
@@ -185,8 +190,8 @@ ReportSection UnitSection(const ReportSource& source) {
       numbers.Add({unit, e.value, shown.lower, shown.upper, shared});
     }
   };
-  for (const auto& [id, subject] : source.fit.subjects) add(id, subject.pooled);
-  for (const auto& [setting, estimates] : source.fit.settings) add(setting, estimates);
+  for (const auto& [id, subject] : model.fit.subjects) add(id, subject.pooled);
+  for (const auto& [setting, estimates] : model.fit.settings) add(setting, estimates);
   for (const auto& [name, drawn] : by_parameter) {
     section.figures.push_back(
         {"units_" + name,
@@ -196,7 +201,7 @@ ReportSection UnitSection(const ReportSource& source) {
          drawn.second});
   }
   section.Show("", pooled);
-  section.Show("spread of the values", SpreadTable(source.fit));
+  section.Show("", SpreadTable(model.fit));
   return section;
 }
 
@@ -204,7 +209,7 @@ namespace {
 
 constexpr double kContrastLevel = 0.05;
 
-// Every row has its own scale, with zero in the middle: units differ, their signs do not.
+// Rows have scales of their own with zero in the middle: units differ, signs do not.
 Figure ContrastForest(const Contrast& contrast) {
   Figure figure;
   figure.legend = {{"95 %", kIntervalLook}, {"differs after Holm's correction", kToldLook}};
@@ -242,12 +247,12 @@ TextTable ContrastNumbers(const Contrast& contrast) {
 
 }  // namespace
 
-ReportSection ContrastSection(const ReportSource& source) {
-  ReportSection section;
-  if (!source.fit.contrast) return section;
-  const Contrast& contrast = *source.fit.contrast;
+ReportSection ContrastSection(const FittedModel& model) {
+  ReportSection section{"contrast"};
+  if (!model.fit.contrast) return section;
+  const Contrast& contrast = *model.fit.contrast;
   section.title = "By " + contrast.label + ": " + contrast.second + " less " + contrast.first;
-  section.Say(ContrastText(source.fit));
+  section.Say(ContrastText(model.fit));
   section.Show("", ContrastTable(contrast));
   section.figures.push_back(
       {"contrast",
@@ -263,7 +268,8 @@ constexpr int kBars = 24;
 
 ReportFigure CorrelationFigure(const FitResult& result) {
   const Uncertainty& u = result.uncertainty;
-  const size_t size = result.options.table.Free().size();  // without deviations and velocities
+  // Without deviations and velocities.
+  const size_t size = std::min(result.options.table.Free().size(), u.estimates.size());
   Chart map{"correlation of the estimates"};
   map.width = kWidestMap;
   std::vector<std::string> header = {"parameter"};
@@ -288,7 +294,7 @@ ReportFigure CorrelationFigure(const FitResult& result) {
       numbers};
 }
 
-// A multiple of one parameter draws that parameter's curve again.
+// Whether a combination is a multiple of one parameter, whose curve it would draw again.
 bool IsAlias(const FittedModel& model, const Profile& p) {
   const FitResult& result = model.fit;
   const bool parameter = result.options.table.Find(p.name) != nullptr;
@@ -342,43 +348,43 @@ Chart Histogram(const std::vector<double>& values, const std::string& name, cons
 
 }  // namespace
 
-ReportSection IdentifiabilitySection(const ReportSource& source) {
-  ReportSection section;
-  const Diagnostics& d = source.fit.diagnostics;
+ReportSection IdentifiabilitySection(const FittedModel& model) {
+  ReportSection section{"identifiability", "Identifiability"};
+  const Diagnostics& d = model.fit.diagnostics;
   section.Say("Condition number of the scaled Jacobian: " + Rounded(d.start.condition_number, 3) +
-              " at the start, " + Rounded(source.fit.uncertainty.condition_number, 3) +
+              " at the start, " + Rounded(model.fit.uncertainty.condition_number, 3) +
               " at the optimum.");
-  for (const NullDirection& n : source.fit.uncertainty.null_directions) {
+  for (const NullDirection& n : model.fit.uncertainty.null_directions) {
     section.Say("Unidentifiable: " + n.sentence);
   }
-  if (source.fit.uncertainty.null_directions.empty()) {
+  if (model.fit.uncertainty.null_directions.empty()) {
     section.Say("Data, priors and constraints together determine all directions.");
   }
-  for (const std::string& held : source.fit.uncertainty.held_directions) {
+  for (const std::string& held : model.fit.uncertainty.held_directions) {
     section.Say("Prior-dependent: " + held);
   }
   for (const std::string& note : d.start.notes) section.Say("Start: " + note);
-  section.Say(CorrelationText(source.fit));
-  section.figures.push_back(CorrelationFigure(source.fit));
+  section.Say(CorrelationText(model.fit));
+  section.figures.push_back(CorrelationFigure(model.fit));
   return section;
 }
 
-ReportSection ProfileSection(const ReportSource& source) {
-  ReportSection section;
-  if (source.model.profiles.empty()) return section;
+ReportSection ProfileSection(const FittedModel& model) {
+  ReportSection section{"profiles", "Profile likelihood"};
+  if (model.profiles.empty()) return section;
   section.paragraphs = {
-      "Each parameter is moved away from its estimate and everything else refitted. Where the "
-      "curve crosses the dashed line the 95 % interval ends; a flat curve means that the data do "
-      "not determine the parameter."};
-  section.Show("intervals", IntervalTable(source.model));
+      "Each parameter is moved away from its estimate and everything else refitted; the 95 % "
+      "interval ends where the cost has risen by the threshold. A profile that stays flat means "
+      "that the data do not determine the parameter."};
+  section.Show("", IntervalTable(model));
   Figure figure;
   TextTable ends({"profile of", "why it ended below", "above"});
   TextTable numbers({"parameter", "unit", "value", "cost_above_best", "threshold"});
-  for (const Profile& p : source.model.profiles) {
+  for (const Profile& p : model.profiles) {
     if (p.lower_end != "threshold" || p.upper_end != "threshold") {
       ends.Add({p.name, p.lower_end, p.upper_end});
     }
-    if (p.points.size() > 1 && !IsAlias(source.model, p)) figure.panels.push_back(ProfileChart(p));
+    if (p.points.size() > 1 && !IsAlias(model, p)) figure.panels.push_back(ProfileChart(p));
     for (const ProfilePoint& point : p.points) {
       numbers.Add({p.name, p.unit, point.value, point.cost - p.cost, p.threshold});
     }
@@ -391,21 +397,21 @@ ReportSection ProfileSection(const ReportSource& source) {
   return section;
 }
 
-ReportSection BootstrapSection(const ReportSource& source) {
-  ReportSection section;
-  if (!source.model.bootstrap || source.model.bootstrap->values.empty()) return section;
-  const Bootstrap& b = *source.model.bootstrap;
+ReportSection BootstrapSection(const FittedModel& model) {
+  ReportSection section{"bootstrap", "Bootstrap"};
+  if (!model.bootstrap || model.bootstrap->values.empty()) return section;
+  const Bootstrap& b = *model.bootstrap;
   section.paragraphs = {"The fit was repeated on samples drawn with replacement, " +
                         ResamplingText(b) + "."};
-  if (source.model.profiles.empty()) {
-    section.Show("intervals", IntervalTable(source.model));
+  if (model.profiles.empty()) {
+    section.Show("", IntervalTable(model));
   }
   Figure figure;
   std::vector<std::string> header;
   for (size_t i = 0; i < b.names.size(); ++i) {
     header.push_back(b.names[i] + " (" + b.units[i] + ")");
     const Estimate* estimate = nullptr;
-    for (const Estimate& e : source.fit.estimates) {
+    for (const Estimate& e : model.fit.estimates) {
       if (e.name == b.names[i]) estimate = &e;
     }
     if (estimate == nullptr) continue;  // combinations are their parameter on another scale
@@ -424,48 +430,15 @@ ReportSection BootstrapSection(const ReportSource& source) {
   return section;
 }
 
-ReportSection HorizonCheckSection(const ReportSource& source) {
-  ReportSection section;
-  if (!source.model.horizon_check || source.model.horizon_check->refits.empty()) return section;
+ReportSection HorizonCheckSection(const FittedModel& model) {
+  ReportSection section{"horizon_check", "Estimates from fewer frames"};
+  if (!model.horizon_check || model.horizon_check->refits.empty()) return section;
   section.paragraphs = {
       "The fit was repeated on only so many frames of every recording, counted from the start of "
       "its push. A parameter with physical meaning keeps its value; one that drifts compensates "
       "for something that the model omits.",
-      DriftText(*source.model.horizon_check)};
-  section.Show("values +- standard errors", HorizonTable(*source.model.horizon_check));
-  return section;
-}
-
-// A design needs the fit's own recordings, all of them and as they were.
-ReportSection DesignSection(const ReportSource& source) {
-  constexpr int kBestPushes = 8;
-  std::vector<PendulumRecording> recordings;
-  for (const RecordingView& view : source.views) {
-    const PendulumRecording& seen = view.run.recording;
-    const bool same = std::any_of(source.fit.recordings.begin(), source.fit.recordings.end(),
-                                  [&](const FittedRecording& r) {
-                                    return r.id == seen.id && r.content_hash == seen.content_hash;
-                                  });
-    if (same && seen.num_people() == 1) recordings.push_back(seen);
-  }
-  ReportSection section;
-  if (recordings.empty() || recordings.size() != source.fit.recordings.size()) {
-    section.paragraphs = {
-        "Left out: it needs all recordings that were fitted, as they were then, each of one "
-        "person."};
-    return section;
-  }
-  const ExperimentDesign design = DesignExperiments(recordings, source.fit);
-  if (!design.refused.empty()) {
-    section.paragraphs = {"Left out: " + design.refused + "."};
-    return section;
-  }
-  section.paragraphs = {
-      "Effect of one more recording of each kind on the standard errors, from the sensitivities at "
-      "the estimate, for all parameters together (D-optimal); a design for one parameter ranks "
-      "them "
-      "for that alone (c-optimal)."};
-  section.Show("", DesignTable(design, "all", kBestPushes).value());
+      DriftText(*model.horizon_check)};
+  section.Show("", HorizonTable(*model.horizon_check));
   return section;
 }
 

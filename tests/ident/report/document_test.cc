@@ -1,11 +1,12 @@
 // Reports as page, text and numbers: escaped, whole, nothing shown that is not there.
+#include "ident/report/document.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 
 #include "ident/figures/chart.h"
-#include "ident/report/page/document.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -1,5 +1,4 @@
-// ident: reports as text and as CSV.
-#include "ident/report/page/document.h"
+#include "ident/report/document.h"
 
 #include <algorithm>
 #include <cctype>
@@ -8,7 +7,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/figures/svg.h"
-#include "ident/report/page/page_parts.h"
+#include "ident/report/page_style.h"
 
 namespace pushid {
 namespace {
@@ -21,7 +20,7 @@ std::string ForReading(const std::string& cell) {
   return ParseDouble(cell, &value) ? Rounded(value, 4) : cell;
 }
 
-// Its numbers where they fit on a terminal; otherwise the file they go to.
+// A figure's numbers where they fit on a terminal; otherwise the file that has them.
 std::string FigureText(const ReportFigure& figure) {
   const auto& rows = figure.numbers.rows();
   std::string text = figure.caption + (figure.caption.empty() ? "" : "\n");
@@ -143,7 +142,7 @@ std::string Folded(const std::string& title, const std::string& html) {
   return "<details><summary>" + EscapeXml(title) + "</summary>\n" + html + "</details>\n";
 }
 
-// With a caption it unfolds on demand.
+// A table with a caption unfolds on demand.
 std::string TableHtml(const ReportTable& table) {
   const auto& rows = table.table.rows();
   if (rows.size() < 2) return "";

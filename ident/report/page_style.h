@@ -48,7 +48,7 @@ table{font-size:.62rem}th,td{white-space:normal;padding-right:.35rem}td:last-chi
 svg .paper{fill:#fff}svg .ink,svg .axis{fill:#222}svg .faint{fill:#666}svg line.axis,svg path.axis,svg path.ink{stroke:#222;fill:none}svg line.grid,svg path.grid{stroke:#ddd}}
 )css";
 
-// On paper everything is open.
+// Folds are open on paper.
 inline constexpr char kPageScript[] = R"js(
 (function () {
   let closed = [];

@@ -24,7 +24,7 @@ struct ReportFigure {
   TextTable numbers;  // behind it, at full precision, units in the header
 };
 
-// What opens on demand: one recording's figures.
+// One recording's figures, which unfold on demand.
 struct ReportFold {
   std::string title;
   std::vector<ReportFigure> figures;
@@ -32,13 +32,14 @@ struct ReportFold {
 };
 
 struct ReportSection {
-  std::string id, title;
-  std::vector<std::string> paragraphs;                      // line breaks are kept
-  std::vector<std::pair<std::string, std::string>> advice;  // a sentence, and what to type next
-  std::vector<ReportTable> tables;
-  std::vector<ReportFigure> figures;
-  std::vector<ReportFold> folds;
-  std::string widget;          // HTML that only a page can show; empty elsewhere
+  std::string id, title = {};
+  std::vector<std::string> paragraphs = {};  // line breaks are kept
+  std::vector<std::pair<std::string, std::string>> advice =
+      {};  // a sentence, and what to type next
+  std::vector<ReportTable> tables = {};
+  std::vector<ReportFigure> figures = {};
+  std::vector<ReportFold> folds = {};
+  std::string widget = {};     // HTML that only a page can show; empty elsewhere
   std::string alarm = {};      // before everything else, and in red
   bool verdict_first = false;  // the first paragraph stands before the figures
 
@@ -58,7 +59,8 @@ struct Report {
 
 // A report for a terminal, and the numbers behind its figures as CSV files.
 
-// All sentences and tables; of a figure its caption and the name of its file of numbers.
+// A report for a terminal: all sentences and tables; of a figure its caption and numbers, or the
+// name of their file.
 std::string ToText(const Report& report);
 
 // Rows of a table; fields with a comma or a quote are quoted.
@@ -67,7 +69,7 @@ std::string CsvOf(const TextTable& table);
 // All figures, those of folds too.
 std::vector<const ReportFigure*> FiguresOf(const Report& report);
 
-// For papers: a file's name and what is in it.
+// A file's name and content.
 using NamedText = std::pair<std::string, std::string>;
 
 // Every figure as <name>.svg, as wide as a journal's column; what it draws and every table as

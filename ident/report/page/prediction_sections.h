@@ -1,0 +1,13 @@
+// ident: sections of a report that score predictions: steps, groups, frequency response, design.
+#pragma once
+
+#include "ident/report/page/build_report.h"
+
+namespace pushid {
+
+ReportSection StepSection(const ReportSource& source);
+ReportSection GroupSection(const ReportSource& source);
+ReportSection FrequencySection(const ReportSource& source);
+ReportSection DesignSection(const ReportSource& source);
+
+}  // namespace pushid

@@ -1,0 +1,24 @@
+// ident: sections of a report about the parameters, which need no recordings.
+#pragma once
+
+#include "ident/model/fitted_model.h"
+#include "ident/report/document.h"
+
+namespace pushid {
+
+// A section with nothing to say is empty and left out.
+ReportSection ParameterSection(const FittedModel& model);
+ReportSection ContrastSection(const FittedModel& model);  // "By group: patients less controls"
+ReportSection UnitSection(const FittedModel& model);      // "By subject"
+ReportSection IdentifiabilitySection(const FittedModel& model);
+ReportSection ProfileSection(const FittedModel& model);
+ReportSection BootstrapSection(const FittedModel& model);
+ReportSection HorizonCheckSection(const FittedModel& model);
+
+// The parameters' values with all intervals that are known.
+ReportFigure IntervalFigure(const FittedModel& model);
+
+// Width of a table of colours that fills the page, pixels.
+inline constexpr double kWidestMap = 1000;
+
+}  // namespace pushid
