@@ -6,7 +6,7 @@
 
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/problem/statistics.h"
 
 namespace pushid {

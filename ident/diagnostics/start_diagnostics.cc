@@ -4,7 +4,7 @@
 
 #include "datasets/files/random.h"
 #include "ident/diagnostics/diagnostics.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
 
 namespace pushid {
@@ -17,7 +17,7 @@ constexpr uint64_t kNearbySeed = 7;  // fixed: the check is part of no random ch
 
 // Norms of the shared columns over the rows of data, per typical size of each parameter.
 std::vector<double> ColumnNorms(const FitProblem& problem, const FitPoint& point,
-                                const JacobianBlocks& score) {
+                                const ResidualRows& score) {
   std::vector<double> norms(point.shared.size(), 0.0);
   for (size_t i = 0; i < norms.size(); ++i) {
     const FittedParameter& f = problem.map().fitted[i];
@@ -35,7 +35,7 @@ std::vector<double> ColumnNorms(const FitProblem& problem, const FitPoint& point
 }
 
 std::vector<std::string> WithoutEffect(const FitProblem& problem, const FitPoint& point,
-                                       const JacobianBlocks& score) {
+                                       const ResidualRows& score) {
   const std::vector<double> norms = ColumnNorms(problem, point, score);
   double largest = 0.0;
   for (double norm : norms) largest = std::max(largest, norm);
@@ -45,10 +45,6 @@ std::vector<std::string> WithoutEffect(const FitProblem& problem, const FitPoint
     names.push_back(problem.options().table[problem.map().fitted[i].parameter].name);
   }
   return names;
-}
-
-JacobianBlocks EvaluateAt(const FitProblem& problem, FitPoint point) {
-  return EvaluateJacobianBlocks(problem.Build(&point, 0));
 }
 
 }  // namespace
@@ -88,7 +84,7 @@ FitPoint NearbyPoint(const FitProblem& problem) {
 
 MaybeError CheckEffects(const FitProblem& problem) {
   const FitPoint nominal = problem.NominalPoint();
-  std::vector<std::string> names = WithoutEffect(problem, nominal, EvaluateAt(problem, nominal));
+  std::vector<std::string> names = WithoutEffect(problem, nominal, EvaluateRows(problem, nominal));
   if (names.empty()) return std::nullopt;
   // A term may rest at the nominal values (a contact not reached, a network that begins without
   // any output) and act beside them.
@@ -97,7 +93,7 @@ MaybeError CheckEffects(const FitProblem& problem) {
   for (double& weight : nearby.weights) weight += random.Uniform(-kNearbyWeight, kNearbyWeight);
   MoveOffBounds(problem, &nearby);
   const std::vector<std::string> still =
-      WithoutEffect(problem, nearby, EvaluateAt(problem, nearby));
+      WithoutEffect(problem, nearby, EvaluateRows(problem, nearby));
   std::string list;
   for (const std::string& name : names) {
     if (std::find(still.begin(), still.end(), name) == still.end()) continue;
@@ -115,7 +111,7 @@ MaybeError CheckEffects(const FitProblem& problem) {
 }
 
 StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start) {
-  const JacobianBlocks score = EvaluateAt(problem, start.from);
+  const ResidualRows score = EvaluateRows(problem, start.from);
   const Conditioning at_start = ComputeConditioning(problem, start.from, score);
   return {at_start.condition_number, at_start.null_directions,
           WithoutEffect(problem, start.from, score), start.notes,

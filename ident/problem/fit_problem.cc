@@ -6,11 +6,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "datasets/inspection/findings.h"
-#include "ident/problem/jacobian_blocks.h"
 #include "ident/problem/own_axes.h"
+#include "ident/problem/residual_rows.h"
 #include "models/decompositions.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/prior_residual.h"
@@ -158,21 +157,6 @@ Deviance FitProblem::DevianceAt(const FitPoint& point) const {
     sum.measured += Count(i) * one.measured;
   }
   return sum;
-}
-
-double FitProblem::DataCost(const FitPoint& point) const {
-  if (options_.likelihood != Likelihood::kTrajectory) return 0.5 * DevianceAt(point).value;
-  FitPoint copy = point;
-  double cost = 0.0;
-  for (const auto& [rollout, blocks] : Rollouts(*LayOut(0), &copy)) {
-    if (rollout == nullptr) continue;
-    Eigen::VectorXd values(rollout->num_residuals());
-    if (!RolloutResiduals(*rollout, blocks.data(), values.data())) {
-      return std::numeric_limits<double>::infinity();
-    }
-    cost += 0.5 * values.squaredNorm();
-  }
-  return cost;
 }
 
 size_t FitProblem::NumMotionRows(int recording) const {
@@ -508,18 +492,17 @@ struct DeviationPosterior {
 
 DeviationPosterior IntegrateOut(const FitProblem& problem, const FitPoint& point,
                                 const Eigen::VectorXd& pooling_precision) {
-  FitPoint copy = point;
-  const JacobianBlocks blocks = EvaluateJacobianBlocks(problem.Build(&copy, 0));
+  const ResidualRows rows = EvaluateRows(problem, point);
   const std::vector<double> flat = point.Flat();
   const Eigen::Index shared = static_cast<Eigen::Index>(point.shared.size());
   const Eigen::Index deviations = pooling_precision.size();
   const Eigen::Index size = static_cast<Eigen::Index>(flat.size());
   // Deviations first, then the rest.
-  Eigen::MatrixXd jacobian(blocks.jacobian.rows(), size);
-  jacobian << blocks.jacobian.middleCols(shared, deviations), blocks.jacobian.leftCols(shared),
-      blocks.jacobian.rightCols(size - shared - deviations);
+  Eigen::MatrixXd jacobian(rows.jacobian.rows(), size);
+  jacobian << rows.jacobian.middleCols(shared, deviations), rows.jacobian.leftCols(shared),
+      rows.jacobian.rightCols(size - shared - deviations);
   const Eigen::MatrixXd hessian = jacobian.transpose() * jacobian;
-  const Eigen::VectorXd gradient = jacobian.transpose() * blocks.residuals;
+  const Eigen::VectorXd gradient = jacobian.transpose() * rows.residuals;
 
   const Eigen::Index rest = size - deviations;
   Eigen::MatrixXd nuisance = hessian.bottomRightCorner(rest, rest);

@@ -130,10 +130,6 @@ class FitProblem {
   // What people do after a push at a point; where settings or conditions differ, in each.
   Behaviour BehaviourAt(const FitPoint& point) const;
 
-  // Half the squared residuals of the recordings alone, as they count; infinite where a rollout
-  // leaves the domain.
-  double DataCost(const FitPoint& point) const;
-
   // Recordings whose rollout over `horizon` frames (0: all) leaves the domain at a point; none
   // where the likelihood needs no rollout.
   std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;

@@ -12,7 +12,7 @@
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
 #include "models/decompositions.h"
 #include "models/parameters.h"
@@ -290,7 +290,7 @@ SolveStage SolveByBfgs(const FitProblem& problem, FitPoint* point, std::string* 
                std::to_string(failed.status.frame);
     return stage;
   }
-  const JacobianBlocks score = EvaluateJacobianBlocks(built);
+  const ResidualRows score = EvaluateRows(built);
   const VectorXd x = FlatOf(*point), gradient = score.jacobian.transpose() * score.residuals;
   const Bounds bounds = BoundsOf(problem, x.size());
   const MatrixXd information = score.jacobian.transpose() * score.jacobian;

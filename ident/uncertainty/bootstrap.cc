@@ -51,7 +51,7 @@ std::vector<RecordingSums> SumEach(const FitProblem& problem, FitPoint estimate)
   if (problem.options().likelihood != Likelihood::kTrajectory) return {};
   const FitProblem::Built built = problem.Build(&estimate, 0);
   if (!built.shortened.empty()) return {};
-  const JacobianBlocks score = EvaluateJacobianBlocks(built);
+  const ResidualRows score = EvaluateRows(built);
   if (score.jacobian.cols() > kDenseColumns) return {};
   std::vector<RecordingSums> each;
   for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {

@@ -64,7 +64,7 @@ Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterB
 }
 
 Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
-                       const JacobianBlocks& score) {
+                       const ResidualRows& score) {
   Clustering rows;
   rows.priors_scatter = true;
   rows.pooled_units =
@@ -138,7 +138,7 @@ struct Leverage {
 
 }  // namespace
 
-RowClusters ClusterByRecording(const JacobianBlocks& score) {
+RowClusters ClusterByRecording(const ResidualRows& score) {
   RowClusters clusters;
   for (int cluster : score.cluster_of_row) {
     clusters.of_row.push_back(std::max(-1, cluster));
@@ -147,7 +147,7 @@ RowClusters ClusterByRecording(const JacobianBlocks& score) {
   return clusters;
 }
 
-ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clusters,
+ClusterScores GatherScores(const ResidualRows& score, const RowClusters& clusters,
                            const Eigen::MatrixXd& base) {
   std::vector<std::vector<int>> rows(clusters.count);
   for (int row = 0; row < static_cast<int>(clusters.of_row.size()); ++row) {

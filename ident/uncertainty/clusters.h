@@ -16,7 +16,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 
 namespace pushid {
 
@@ -71,7 +71,7 @@ struct RowClusters {
   std::vector<int> of_row;
   int count = 0;
 };
-RowClusters ClusterByRecording(const JacobianBlocks& score);
+RowClusters ClusterByRecording(const ResidualRows& score);
 
 // How the rows of data are clustered: one way, or two. recordings: where `first` is people.
 struct Clustering {
@@ -83,7 +83,7 @@ struct Clustering {
 
 // The rows of a problem's data by these clusters.
 Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
-                       const JacobianBlocks& score);
+                       const ResidualRows& score);
 
 // J_g'J_g = F_g'F_g and s_g of every cluster that has rows, in the coordinates of `base`'s columns.
 // F_g has no more rows than J_g has columns that are not zero: few where units have columns of
@@ -92,7 +92,7 @@ struct ClusterScores {
   std::vector<Eigen::MatrixXd> factors;
   Eigen::MatrixXd scores;  // a column for each
 };
-ClusterScores GatherScores(const JacobianBlocks& score, const RowClusters& clusters,
+ClusterScores GatherScores(const ResidualRows& score, const RowClusters& clusters,
                            const Eigen::MatrixXd& base);
 
 // hessian: of the cost, in the same coordinates. coefficients: rows c whose freedom is asked for.

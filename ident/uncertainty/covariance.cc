@@ -22,7 +22,7 @@ Eigen::MatrixXd WithoutNegative(const Eigen::MatrixXd& covariance) {
 }
 
 // H^-1 s_g G / (G - 1) for each recording.
-Eigen::MatrixXd LeftOutMoves(const JacobianBlocks& score, const Eigen::MatrixXd& inverse_hessian) {
+Eigen::MatrixXd LeftOutMoves(const ResidualRows& score, const Eigen::MatrixXd& inverse_hessian) {
   const double groups = static_cast<double>(score.clusters.size());
   Eigen::MatrixXd moves(inverse_hessian.cols(), score.clusters.size());
   for (size_t g = 0; g < score.clusters.size(); ++g) {
@@ -48,7 +48,7 @@ RowClusters Crossed(const RowClusters& first, const RowClusters& second) {
 }
 
 // The rows of one of FitProblem's clusters, or those of all recordings.
-std::vector<int> RowsWhere(const JacobianBlocks& score, bool data, int cluster) {
+std::vector<int> RowsWhere(const ResidualRows& score, bool data, int cluster) {
   std::vector<int> rows;
   for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
     const int c = score.cluster_of_row[row];
@@ -57,16 +57,16 @@ std::vector<int> RowsWhere(const JacobianBlocks& score, bool data, int cluster) 
   return rows;
 }
 
-Eigen::MatrixXd Information(const JacobianBlocks& score, const std::vector<int>& rows) {
+Eigen::MatrixXd Information(const ResidualRows& score, const std::vector<int>& rows) {
   const Eigen::MatrixXd own = score.jacobian(rows, Eigen::all);
   return own.transpose() * own;
 }
 
-Eigen::VectorXd Gradient(const JacobianBlocks& score, const std::vector<int>& rows) {
+Eigen::VectorXd Gradient(const ResidualRows& score, const std::vector<int>& rows) {
   return score.jacobian(rows, Eigen::all).transpose() * score.residuals(rows);
 }
 
-void SplitHessian(const JacobianBlocks& score, const Eigen::MatrixXd& back, Covariance* c) {
+void SplitHessian(const ResidualRows& score, const Eigen::MatrixXd& back, Covariance* c) {
   const auto rows = [&score](int cluster) { return RowsWhere(score, false, cluster); };
   const std::vector<int> prior = rows(FitProblem::kPriorCluster);
   const std::vector<int> settling = rows(FitProblem::kSettlingCluster);
@@ -85,7 +85,7 @@ void SplitHessian(const JacobianBlocks& score, const Eigen::MatrixXd& back, Cova
 }
 
 // What the recordings scatter, one way or two.
-Scatter::Part DataScatter(const JacobianBlocks& score, const Clustering& clustering,
+Scatter::Part DataScatter(const ResidualRows& score, const Clustering& clustering,
                           const ClusterScores& first, const Eigen::MatrixXd& back,
                           const Eigen::MatrixXd& hessian) {
   const ClusteredCovariance one = Cr2(first, hessian, back);
@@ -106,7 +106,7 @@ Scatter::Part DataScatter(const JacobianBlocks& score, const Clustering& cluster
 }
 
 // Empty with fewer than two clusters. inverse_hessian: in the columns as they came.
-Scatter ClusteredScatter(const JacobianBlocks& score, const Clustering& clustering,
+Scatter ClusteredScatter(const ResidualRows& score, const Clustering& clustering,
                          const Eigen::MatrixXd& back, const Eigen::MatrixXd& hessian,
                          const Eigen::MatrixXd& inverse_hessian) {
   Scatter scatter;
@@ -132,7 +132,7 @@ Clustering ByRecordingAlone(const Clustering& clustering) {
 
 }  // namespace
 
-Eigen::MatrixXd InformationBeside(const JacobianBlocks& score) {
+Eigen::MatrixXd InformationBeside(const ResidualRows& score) {
   std::vector<int> rows;
   for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
     if (score.cluster_of_row[row] < 0) rows.push_back(row);
@@ -142,7 +142,7 @@ Eigen::MatrixXd InformationBeside(const JacobianBlocks& score) {
 
 namespace {
 
-RecordingSums SumRows(const JacobianBlocks& score, const FitPoint& point,
+RecordingSums SumRows(const ResidualRows& score, const FitPoint& point,
                       const std::vector<int>& rows) {
   const std::vector<double> at = point.Flat();
   return {Eigen::VectorXd::Map(at.data(), score.jacobian.cols()),
@@ -152,11 +152,11 @@ RecordingSums SumRows(const JacobianBlocks& score, const FitPoint& point,
 
 }  // namespace
 
-RecordingSums SumRecordings(const JacobianBlocks& score, const FitPoint& point) {
+RecordingSums SumRecordings(const ResidualRows& score, const FitPoint& point) {
   return SumRows(score, point, RowsWhere(score, true, 0));
 }
 
-RecordingSums SumRecording(const JacobianBlocks& score, const FitPoint& point, int recording) {
+RecordingSums SumRecording(const ResidualRows& score, const FitPoint& point, int recording) {
   return SumRows(score, point, score.RowsOf(recording));
 }
 
@@ -177,7 +177,7 @@ SingularDirections Decompose(const Eigen::MatrixXd& jacobian, double null_value)
   return directions;
 }
 
-Covariance NaiveCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
+Covariance NaiveCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
                            double null_value) {
   const Eigen::MatrixXd scaled = score.jacobian * unit.asDiagonal();
   Covariance c;
@@ -200,7 +200,7 @@ Covariance NaiveCovariance(const JacobianBlocks& score, const Eigen::VectorXd& u
   return c;
 }
 
-Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
+Covariance ComputeCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
                              const Clustering& clustering, double null_value) {
   Covariance c = NaiveCovariance(score, unit, null_value);
   // In the base of the identified directions, then back to the columns as they came.

@@ -2,7 +2,7 @@
 // model made them (the NIST reference sets go through here too).
 //
 // At the optimum, with H the Hessian of the cost, H = J'J + sum r d2r (the second term only where
-// it was computed, jacobian_blocks.h):
+// it was computed, residual_rows.h):
 //   naive      (J'J)^-1 (sigma^2 J_d'J_d + J_b'J_b) (J'J)^-1, sigma^2 = |r_d|^2 / (N - rank): rows
 //   of data
 //              (d) taken as independent, priors and demands (b) in units of their own
@@ -23,7 +23,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/uncertainty/clusters.h"
 
 namespace pushid {
@@ -92,7 +92,7 @@ struct Covariance {
   int naive_freedom = 1;          // rows of data less the rank
   double sigma = 0.0;             // residual standard deviation
   Eigen::MatrixXd inverse_hessian;
-  Eigen::MatrixXd curvature;  // JacobianBlocks::curvature, where full_hessian
+  Eigen::MatrixXd curvature;  // ResidualRows::curvature, where full_hessian
   // With second derivatives; J'J alone where they leave no minimum, and where feet step or columns
   // are many, of which they are not computed.
   bool full_hessian = false;
@@ -113,42 +113,24 @@ struct Covariance {
 
 // unit: the size of one step in each column, for judging what counts as null; 0 holds a column. No
 // scatter without clusters.
-Covariance ComputeCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
+Covariance ComputeCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
                              const Clustering& clustering, double null_value = kNullSingularValue);
 
 // The first of it alone: directions, sigma and what rows taken as independent scatter.
-Covariance NaiveCovariance(const JacobianBlocks& score, const Eigen::VectorXd& unit,
+Covariance NaiveCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
                            double null_value = kNullSingularValue);
 
 // J'J of what is no data: priors, demands, pooling.
-Eigen::MatrixXd InformationBeside(const JacobianBlocks& score);
+Eigen::MatrixXd InformationBeside(const ResidualRows& score);
 // Of the data, at the point that they were evaluated at, and of one recording.
-RecordingSums SumRecordings(const JacobianBlocks& score, const FitPoint& point);
-RecordingSums SumRecording(const JacobianBlocks& score, const FitPoint& point, int recording);
+RecordingSums SumRecordings(const ResidualRows& score, const FitPoint& point);
+RecordingSums SumRecording(const ResidualRows& score, const FitPoint& point, int recording);
 
 // What the covariances of a fit (uncertainty.h) are computed from, second derivatives included.
 struct ScoredFit {
-  JacobianBlocks score;
+  ResidualRows score;
   Eigen::VectorXd unit;
 };
 ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point);
-
-// The fitted numbers one by one, in the order of FitPoint::Flat.
-
-// What is known of each fitted number besides its estimate.
-struct FittedColumn {
-  std::string name, unit;
-  Transform transform = Transform::kIdentity;
-  double scale = 1.0;   // typical size, natural unit
-  double width = 1.0;   // the prior's, or the typical size: what an interval is compared with
-  double fitted = 0.0;  // value on the fitted scale
-  double natural = 0.0;
-  bool at_bound = false;
-};
-
-std::vector<FittedColumn> FittedColumns(const FitProblem& problem, const FitPoint& point);
-
-// To physical units; a parameter on its bound does not move.
-Eigen::VectorXd Units(const std::vector<FittedColumn>& columns);
 
 }  // namespace pushid

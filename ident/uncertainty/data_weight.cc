@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/solver/structured_secants.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
@@ -54,7 +54,7 @@ double CompositeInflation(const FitProblem& problem, const FitPoint& point,
                           RecordingSums* recordings) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
-  const JacobianBlocks score = EvaluateJacobianBlocks(built, true);
+  const ResidualRows score = EvaluateRows(built, true);
   const bool whole = built.shortened.empty() && score.jacobian.cols() <= kDenseColumns;
   *recordings = whole ? SumRecordings(score, point) : RecordingSums();
   const Eigen::MatrixXd unit = Units(FittedColumns(problem, point)).asDiagonal();
@@ -85,11 +85,7 @@ ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) 
   double* const scales[] = {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate};
   std::array<std::vector<double>, 4> squares;
   std::array<std::vector<double>, 2> of_plates;
-  std::vector<bool> counts;
-  for (size_t i = 0; i < problem.recordings().size(); ++i) {
-    counts.push_back(problem.Count(static_cast<int>(i)) > 0);
-  }
-  const ResidualsByRecording all = RawResiduals(problem, point, counts);
+  const ResidualsByRecording all = RawResiduals(problem, point, true);
   for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
     const std::vector<double>& residuals = all[i];
     const size_t motion = problem.NumMotionRows(i);

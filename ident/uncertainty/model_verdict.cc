@@ -32,7 +32,7 @@ std::string WhyNot(const FitOptions& options, size_t estimates) {
 }
 
 // s_g, a column for each cluster.
-Eigen::MatrixXd Scores(const JacobianBlocks& rows, const RowClusters& clusters) {
+Eigen::MatrixXd Scores(const ResidualRows& rows, const RowClusters& clusters) {
   Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(rows.jacobian.cols(), clusters.count);
   for (size_t i = 0; i < clusters.of_row.size(); ++i) {
     if (clusters.of_row[i] < 0) continue;
@@ -88,21 +88,21 @@ class ModelJudge {
     verdict_.not_checked = WhyNot(problem.options(), columns_.size());
     if (!verdict_.checked()) return;
     assumptions_ = AssumptionsOf(problem, point);
-    rows_ = EvaluateByHorizon(problem, point, assumptions_, kHorizons);
-    if (rows_.num_estimates == 0) verdict_.not_checked = "a rollout fails at the optimum";
+    rows_ = EvaluateRows(problem, point, assumptions_, kHorizons);
+    if (rows_.jacobian.cols() == 0) verdict_.not_checked = "a rollout fails at the optimum";
   }
 
   ModelVerdict Run(Uncertainty* uncertainty) {
     uncertainty_ = uncertainty;
     if (!verdict_.checked()) return verdict_;
     verdict_.freedom = clusters_.count() - 1;
-    clustering_ = ClusterRows(problem_, clusters_, rows_.rows);
-    const Eigen::Index n = rows_.num_estimates;
-    const Eigen::MatrixXd own = rows_.rows.robust_jacobian.leftCols(n);
-    beside_ = InformationBeside(rows_.rows).topLeftCorner(n, n);
+    clustering_ = ClusterRows(problem_, clusters_, rows_);
+    const Eigen::Index n = num_estimates();
+    const Eigen::MatrixXd own = rows_.robust_jacobian.leftCols(n);
+    beside_ = InformationBeside(rows_).topLeftCorner(n, n);
     const Eigen::MatrixXd hessian = own.transpose() * own + beside_;
     inverse_ = SolveSymmetric(hessian, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n)));
-    scores_ = Scores(rows_.rows, clustering_.first);
+    scores_ = Scores(rows_, clustering_.first);
     if (clusters_.count() >= kFewestClusters) {
       TestAssumptions(own);
       TestParts();
@@ -119,16 +119,18 @@ class ModelJudge {
   }
 
  private:
+  Eigen::Index num_estimates() const { return static_cast<Eigen::Index>(columns_.size()); }
+
   double Slope(Eigen::Index i) const {
     return TransformSlope(columns_[i].transform, columns_[i].natural);
   }
 
   void TestAssumptions(const Eigen::MatrixXd& own) {
-    const Eigen::Index n = rows_.num_estimates, shared = problem_.map().num_shared();
+    const Eigen::Index n = num_estimates(), shared = problem_.map().num_shared();
     for (size_t k = 0; k < assumptions_.size(); ++k) {
       const Assumption& a = assumptions_[k];
       const Eigen::Index column = n + static_cast<Eigen::Index>(k);
-      const auto by = rows_.rows.robust_jacobian.col(column);
+      const auto by = rows_.robust_jacobian.col(column);
       const Eigen::VectorXd b = own.transpose() * by;
       const Eigen::VectorXd moves = -inverse_ * b;
       const double all = by.squaredNorm(), information = all + b.dot(moves);
@@ -172,7 +174,7 @@ class ModelJudge {
 
   template <typename Holds>
   void TestPart(const std::string& name, const Holds& holds) {
-    const Eigen::Index n = rows_.num_estimates, shared = problem_.map().num_shared();
+    const Eigen::Index n = num_estimates(), shared = problem_.map().num_shared();
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
     Eigen::MatrixXd some = Eigen::MatrixXd::Zero(n, clusters_.count());  // scores
     std::set<int> inside, outside;                                       // clusters
@@ -206,7 +208,7 @@ class ModelJudge {
   }
 
   void AddTotals() {
-    const int n = rows_.num_estimates;
+    const int n = static_cast<int>(num_estimates());
     std::vector<int> joint;
     std::vector<double> unit;
     const Eigen::VectorXd own = Units(columns_);
@@ -216,7 +218,7 @@ class ModelJudge {
       joint.push_back(n + static_cast<int>(k));
       unit.push_back(assumptions_[k].sigma);
     }
-    JacobianBlocks rows = std::move(rows_.rows);  // the last to ask
+    ResidualRows rows = std::move(rows_);  // the last to ask
     rows.jacobian = rows.jacobian(Eigen::all, joint).eval();
     rows.robust_jacobian = rows.robust_jacobian(Eigen::all, joint).eval();
     clustering_.recordings = {};  // nobody asks for the errors of these people
@@ -246,7 +248,7 @@ class ModelJudge {
   Clusters clusters_;
   std::vector<FittedColumn> columns_;
   std::vector<Assumption> assumptions_;
-  RowsByHorizon rows_;
+  ResidualRows rows_;
   Clustering clustering_;
   Eigen::MatrixXd beside_, inverse_, scores_;
   ModelVerdict verdict_;

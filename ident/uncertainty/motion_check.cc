@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/problem/statistics.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/model_verdict.h"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
@@ -21,7 +21,7 @@ constexpr Eigen::Index kMostColumnsWithCurvature = 40;
 
 // Directions that the recordings say nothing about, whatever priors and settling simulations say: a
 // number that only its prior holds is not identified.
-Eigen::MatrixXd DataNullSpace(const JacobianBlocks& score, const Eigen::MatrixXd& scaled,
+Eigen::MatrixXd DataNullSpace(const ResidualRows& score, const Eigen::MatrixXd& scaled,
                               const std::vector<FittedColumn>& columns) {
   std::vector<int> rows;
   for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
@@ -159,7 +159,7 @@ Eigen::VectorXd MovedBySettling(const Covariance& c, const Eigen::VectorXd& unit
 
 // Residuals, Jacobian and, unless there are too many columns, second derivatives.
 struct Evaluated {
-  JacobianBlocks score;
+  ResidualRows score;
   std::vector<FittedColumn> columns;
   Eigen::VectorXd unit;
   Clusters clusters;
@@ -174,7 +174,7 @@ constexpr double kCurvatureStep = 3e-7, kCurvatureStepOfLikelihood = 1e-3;
 Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
-  Evaluated e{EvaluateJacobianBlocks(built, true), FittedColumns(problem, point), {}, {}, {}};
+  Evaluated e{EvaluateRows(built, true), FittedColumns(problem, point), {}, {}, {}};
   e.unit = Units(e.columns);
   e.clusters = MakeClusters(problem.recordings(), ClusterBy::kAuto, problem.counts());
   e.clustering = ClusterRows(problem, e.clusters, e.score);
@@ -207,7 +207,7 @@ Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point) {
 }
 
 Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point,
-                                 const JacobianBlocks& score) {
+                                 const ResidualRows& score) {
   const std::vector<FittedColumn> columns = FittedColumns(problem, point);
   const Eigen::VectorXd unit = Units(columns);
   const Covariance c = NaiveCovariance(score, unit);

@@ -160,7 +160,7 @@ struct Conditioning {
   std::vector<NullDirection> null_directions;
 };
 Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& point,
-                                 const JacobianBlocks& score);
+                                 const ResidualRows& score);
 
 // A linear combination of natural values of shared parameters, and its error by the delta method.
 struct Term {

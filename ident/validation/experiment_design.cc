@@ -8,7 +8,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
@@ -32,8 +32,7 @@ MatrixXd Information(const FitProblem& problem, const FitPoint& estimate,
   const FitProblem alone(one, options);
   FitPoint point = alone.NominalPoint();
   point.shared = estimate.shared;
-  const MatrixXd jacobian =
-      EvaluateJacobianBlocks(alone.Build(&point, 0)).jacobian(Eigen::all, known);
+  const MatrixXd jacobian = EvaluateRows(alone, point).jacobian(Eigen::all, known);
   return jacobian.transpose() * jacobian;
 }
 

@@ -6,7 +6,7 @@
 #include "ident/fit/fit.h"
 #include "ident/fit/weighted_solve.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "models/decompositions.h"
 #include "tests/ident/fit_samples.h"
 
@@ -83,7 +83,7 @@ TEST(PoolingSpread, EndsWhereEmStandsStill) {
   FitProblem problem(recordings, options);
   FitPoint point = SolveWeighted(&problem).solution.start.to;
   const double sigma = problem.options().table[kKpTheta].pooling_sigma;
-  const JacobianBlocks blocks = EvaluateJacobianBlocks(problem.Build(&point, 0));
+  const ResidualRows blocks = EvaluateRows(problem, point);
   const Eigen::MatrixXd covariance = Inverse(blocks.jacobian.transpose() * blocks.jacobian);
   double mean = 0.0;
   Eigen::Index column = static_cast<Eigen::Index>(point.shared.size());

@@ -78,7 +78,7 @@ Score RunSet(const NistSet& set, const std::vector<double>& start) {
                                       StructuredSecants(true));
 
   Eigen::VectorXd unit = Eigen::Map<const Eigen::VectorXd>(b.data(), b.size()).cwiseAbs();
-  const Covariance covariance = ComputeCovariance(EvaluateJacobianBlocks(built), unit, {}, 1e-13);
+  const Covariance covariance = ComputeCovariance(EvaluateRows(built), unit, {}, 1e-13);
   Score score;
   score.iterations = stage.iterations;
   for (size_t i = 0; i < b.size(); ++i) {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
 #include "ident/solver/summed_cost.h"
 #include "ident/uncertainty/covariance.h"
@@ -204,7 +204,7 @@ TEST(SummedCost, LanesSumToWhatRowsDo) {
   const FitProblem problem(recordings, UnbiasedFit(TinyStudy()));
   FitPoint point = problem.NominalPoint();
   FitProblem::Built built = problem.Build(&point, 0);
-  const RecordingSums expected = SumRecordings(EvaluateJacobianBlocks(built), point);
+  const RecordingSums expected = SumRecordings(EvaluateRows(built), point);
   const SummedCost summed(&built, StructuredSecants(false), {});
   std::vector<double> at = summed.Values(), elsewhere = at;
   for (double& value : elsewhere) value += 0.01;

@@ -12,8 +12,8 @@ namespace pushid {
 namespace {
 
 // Rows r = y - m of clusters of given sizes; the least-squares m is their mean.
-JacobianBlocks MeanProblem(const std::vector<std::vector<double>>& clusters) {
-  JacobianBlocks score;
+ResidualRows MeanProblem(const std::vector<std::vector<double>>& clusters) {
+  ResidualRows score;
   double sum = 0.0;
   int rows = 0;
   for (const auto& y : clusters) {
@@ -34,7 +34,7 @@ JacobianBlocks MeanProblem(const std::vector<std::vector<double>>& clusters) {
   return score;
 }
 
-Covariance Of(const JacobianBlocks& score) {
+Covariance Of(const ResidualRows& score) {
   return ComputeCovariance(score, Eigen::VectorXd::Ones(1), {ClusterByRecording(score), {}, 0});
 }
 
@@ -57,7 +57,7 @@ TEST(Clusters, AnUnevenClusterCostsFreedom) {
 
 // Two clusters and a prior that settles most: what the two say still has one degree of freedom.
 TEST(Clusters, HaveOneFreedomLessThanTheirNumberBesideAPrior) {
-  JacobianBlocks score = MeanProblem({{1.0, 1.1, 0.9}, {2.0}});
+  ResidualRows score = MeanProblem({{1.0, 1.1, 0.9}, {2.0}});
   const Eigen::Index rows = score.residuals.size();
   score.jacobian.conservativeResize(rows + 1, Eigen::NoChange);
   score.residuals.conservativeResize(rows + 1);
@@ -74,7 +74,7 @@ TEST(Clusters, HaveOneFreedomLessThanTheirNumberBesideAPrior) {
 // One recording whose four rows scatter by 1e-3, and a prior of +- 40 that they say little beside:
 // H = 4 w + 1 / 1600 with w the weight of a row. Only rows of data are scaled by their scatter.
 TEST(Clusters, ThePriorIsNotScaledByTheScatterOfTheData) {
-  JacobianBlocks score = MeanProblem({{1e-3, -1e-3, 1e-3, -1e-3}});
+  ResidualRows score = MeanProblem({{1e-3, -1e-3, 1e-3, -1e-3}});
   constexpr double kRow = 1e-4;  // d residual / d parameter
   score.jacobian *= kRow;
   score.jacobian.conservativeResize(5, Eigen::NoChange);
@@ -92,7 +92,7 @@ TEST(Clusters, ThePriorIsNotScaledByTheScatterOfTheData) {
 // Degrees of freedom by Pustejovsky and Tipton's formula, written out over rows.
 TEST(Clusters, FreedomIsSatterthwaites) {
   Random random(5);
-  JacobianBlocks score;
+  ResidualRows score;
   const int sizes[] = {3, 5, 2, 7};
   for (int g = 0; g < 4; ++g) {
     score.clusters.push_back(g);
@@ -190,7 +190,7 @@ TEST(Clusters, PeopleWhoShareRecordingsAreClusteredTwoWays) {
 // A and B in two recordings, B and C in a third: two line-ups. The mean's variance is that of
 // people, and of line-ups, less that of people in line-ups.
 TEST(Clusters, LineUpsAreTheSecondWay) {
-  const JacobianBlocks score = MeanProblem({{1.0, 2.0}, {2.0, 1.5}, {0.5, 3.5}});
+  const ResidualRows score = MeanProblem({{1.0, 2.0}, {2.0, 1.5}, {0.5, 3.5}});
   const RowClusters people{{0, 1, 0, 1, 1, 2}, 3}, line_ups{{0, 0, 0, 0, 1, 1}, 2};
   const Eigen::VectorXd unit = Eigen::VectorXd::Ones(1);
   const auto variance = [&](const Clustering& clustering) {

@@ -54,13 +54,13 @@ void ExpectTheGradientOfTheCost(const SyntheticOptions& study, const char* prese
   FitOptions options = MakePreset(preset).value();
   ASSERT_FALSE(PrepareFit(recordings, &options));
   const FitProblem problem(recordings, options);
-  FitPoint point = problem.NominalPoint();
-  const RowsByHorizon by_horizon = EvaluateByHorizon(problem, point, {}, {8, 16});
-  const JacobianBlocks condensed = EvaluateJacobianBlocks(problem.Build(&point, 0), true);
-  const auto gradient = [](const JacobianBlocks& rows) {
+  const FitPoint point = problem.NominalPoint();
+  const ResidualRows by_horizon = EvaluateRows(problem, point, {}, {8, 16});
+  const ResidualRows condensed = EvaluateRows(problem, point, true);
+  const auto gradient = [](const ResidualRows& rows) {
     return Eigen::VectorXd(rows.jacobian.transpose() * rows.residuals);
   };
-  const Eigen::VectorXd a = gradient(by_horizon.rows), b = gradient(condensed);
+  const Eigen::VectorXd a = gradient(by_horizon), b = gradient(condensed);
   ASSERT_EQ(a.size(), b.size());
   for (Eigen::Index i = 0; i < a.size(); ++i) {
     EXPECT_NEAR(a[i], b[i], tolerance * (tolerance + std::abs(b[i]))) << i;
@@ -71,11 +71,11 @@ void ExpectTheGradientOfTheCost(const SyntheticOptions& study, const char* prese
     score += part.score;
     information += part.information;
   }
-  const auto is_data = [&](int row) { return by_horizon.rows.cluster_of_row[row] >= 0; };
-  Eigen::VectorXd of_data = by_horizon.rows.residuals;
+  const auto is_data = [&](int row) { return by_horizon.cluster_of_row[row] >= 0; };
+  Eigen::VectorXd of_data = by_horizon.residuals;
   for (int row = 0; row < of_data.size(); ++row) of_data[row] *= is_data(row);
-  const Eigen::MatrixXd& robust = by_horizon.rows.robust_jacobian;
-  EXPECT_TRUE(score.isApprox(by_horizon.rows.jacobian.transpose() * of_data, 1e-9));
+  const Eigen::MatrixXd& robust = by_horizon.robust_jacobian;
+  EXPECT_TRUE(score.isApprox(by_horizon.jacobian.transpose() * of_data, 1e-9));
   EXPECT_TRUE(information.isApprox(robust.transpose() * robust, 1e-9));
 }
 

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 
 #include "ident/fit/fit.h"
-#include "ident/problem/jacobian_blocks.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
@@ -21,7 +21,7 @@ struct Solved {
   FitOptions options;
   std::unique_ptr<FitProblem> problem;
   FitPoint point;
-  JacobianBlocks score;
+  ResidualRows score;
   Uncertainty uncertainty;
 };
 
@@ -45,12 +45,12 @@ std::unique_ptr<Solved> SolveSmall(int recordings, double prior_sigma) {
   EXPECT_TRUE(solution.ok());
   solved->point = solution.start.to;
   FitPoint copy = solved->point;
-  solved->score = EvaluateJacobianBlocks(solved->problem->Build(&copy, 0));
+  solved->score = EvaluateRows(solved->problem->Build(&copy, 0));
   solved->uncertainty = ComputeUncertainty(*solved->problem, solved->point);
   return solved;
 }
 
-std::vector<int> RowsOf(const JacobianBlocks& score, int cluster, bool inside) {
+std::vector<int> RowsOf(const ResidualRows& score, int cluster, bool inside) {
   std::vector<int> rows;
   for (int i = 0; i < score.residuals.size(); ++i) {
     if ((score.cluster_of_row[i] == cluster) == inside) rows.push_back(i);
@@ -105,7 +105,7 @@ TEST(Uncertainty, CurvatureIsTheSameFromOneSideAndFromBoth) {
   const Eigen::VectorXd unit = Units(FittedColumns(*s->problem, s->point));
   FitPoint copy = s->point;
   const FitProblem::Built built = s->problem->Build(&copy, 0);
-  JacobianBlocks ahead = EvaluateJacobianBlocks(built), both = ahead;
+  ResidualRows ahead = EvaluateRows(built), both = ahead;
   AddCurvature(built, 3e-7 * unit, false, &ahead);
   AddCurvature(built, 1e-4 * unit, true, &both);
   const Eigen::MatrixXd squares = both.jacobian.transpose() * both.jacobian;

@@ -1,0 +1,652 @@
+// ident: rows of built problems, and rows by differences of rollouts.
+#include "ident/problem/residual_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <list>
+#include <map>
+#include <set>
+
+#include "ident/problem/parallel.h"
+#include "ident/problem/work.h"
+#include "residuals/cost_functions/condensed_rollout.h"
+#include "residuals/cost_functions/likelihood_residual.h"
+#include "residuals/cost_functions/plate_residual.h"
+#include "residuals/normal_equations.h"
+
+namespace pushid {
+namespace {
+
+using Eigen::Index;
+using PersonRows = CondensedRows::PersonRows;
+
+// Rows of one cost function by the columns that move it.
+struct RowBlock {
+  int cluster;
+  std::vector<Index> columns;  // of the whole Jacobian, one for each of these rows
+  std::vector<PersonRows> people;
+  std::vector<int> person_of_row;
+  int num_rows = 0;  // before they were condensed
+
+  bool is_data() const { return cluster >= 0; }
+};
+
+ResidualRows Stack(const std::vector<RowBlock>& blocks, Index columns, bool robust) {
+  ResidualRows rows;
+  std::set<int> present;
+  for (const RowBlock& block : blocks) {
+    rows.cluster_of_row.insert(rows.cluster_of_row.end(), block.person_of_row.size(),
+                               block.cluster);
+    rows.person_of_row.insert(rows.person_of_row.end(), block.person_of_row.begin(),
+                              block.person_of_row.end());
+    if (!block.is_data()) continue;
+    present.insert(block.cluster);
+    rows.num_data_rows += block.num_rows;
+  }
+  const Index size = static_cast<Index>(rows.cluster_of_row.size());
+  rows.residuals.resize(size);
+  rows.jacobian.setZero(size, columns);
+  if (robust) rows.robust_jacobian.setZero(size, columns);
+  Index row = 0;
+  for (const RowBlock& block : blocks) {
+    for (const PersonRows& person : block.people) {
+      const auto own = Eigen::seqN(row, person.residuals.size());
+      rows.residuals(own) = person.residuals;
+      rows.jacobian(own, block.columns) = person.jacobian;
+      if (robust && block.is_data()) {
+        rows.robust_jacobian(own, block.columns) = person.robust_jacobian;
+      }
+      row += person.residuals.size();
+    }
+  }
+  rows.clusters.assign(present.begin(), present.end());
+  return rows;
+}
+
+// The cost function's own rows.
+bool EvaluateOwnRows(const ceres::CostFunction& cost, const std::vector<const double*>& at,
+                     PersonRows* rows) {
+  const int n = cost.num_residuals();
+  std::vector<RowMajorMatrix> by_block;
+  std::vector<double*> pointers;
+  Index columns = 0;
+  for (int size : cost.parameter_block_sizes()) {
+    by_block.emplace_back(n, size);
+    columns += size;
+  }
+  for (RowMajorMatrix& jacobian : by_block) pointers.push_back(jacobian.data());
+  rows->residuals.resize(n);
+  if (!cost.Evaluate(at.data(), rows->residuals.data(), pointers.data())) return false;
+  rows->jacobian.resize(n, columns);
+  Index column = 0;
+  for (const RowMajorMatrix& jacobian : by_block) {
+    rows->jacobian.middleCols(column, jacobian.cols()) = jacobian;
+    column += jacobian.cols();
+  }
+  rows->robust_jacobian = rows->jacobian;  // other cost functions have no robust loss
+  return true;
+}
+
+int NumColumns(const BuiltProblem& built) {
+  int columns = 0;
+  for (double* block : built.parameter_blocks) columns += built.problem->ParameterBlockSize(block);
+  return columns;
+}
+
+std::vector<RowBlock> RowBlocksOf(const BuiltProblem& built, bool robust) {
+  CountEvaluations({1, 0});
+  std::map<const double*, Index> first_column;
+  Index next = 0;
+  for (double* block : built.parameter_blocks) {
+    first_column[block] = next;
+    next += built.problem->ParameterBlockSize(block);
+  }
+  const std::vector<RolloutSums> sums =
+      SumUp(*built.side_by_side, built.rollouts, robust ? LaneSums::kRobust : LaneSums::kPlain);
+  std::vector<RowBlock> blocks;
+  for (const BuiltProblem::Block& from : built.blocks) {
+    std::vector<double*> on;
+    built.problem->GetParameterBlocksForResidualBlock(from.id, &on);
+    const std::vector<const double*> at(on.begin(), on.end());
+    const auto* rollout = dynamic_cast<const CondensedRollout*>(from.cost);
+    const auto* steps = dynamic_cast<const LikelihoodResidual*>(from.cost);
+    RowBlock block{from.cluster, {}, std::vector<PersonRows>(1), {}};
+    const bool told = rollout == nullptr ? EvaluateOwnRows(*from.cost, at, &block.people[0])
+                      : rollout->in_lanes() != nullptr
+                          ? rollout->FillPeople(sums[from.cluster], robust, &block.people)
+                          : rollout->EvaluatePeople(at.data(), robust, &block.people);
+    if (!told) continue;
+    block.num_rows = rollout != nullptr ? rollout->num_rows() : from.cost->num_residuals();
+    for (size_t n = 0; n < block.people.size(); ++n) {
+      for (Index row = 0; row < block.people[n].residuals.size(); ++row) {
+        block.person_of_row.push_back(rollout != nullptr ? static_cast<int>(n)
+                                      : steps != nullptr ? steps->PersonOfRow(row)
+                                                         : -1);
+      }
+    }
+    for (double* parameters : on) {
+      const Index first = first_column.at(parameters);
+      for (Index c = 0; c < built.problem->ParameterBlockSize(parameters); ++c) {
+        block.columns.push_back(first + c);
+      }
+    }
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
+}  // namespace
+
+std::vector<int> ResidualRows::RowsOf(int cluster) const {
+  std::vector<int> rows;
+  for (int row = 0; row < static_cast<int>(cluster_of_row.size()); ++row) {
+    if (cluster_of_row[row] == cluster) rows.push_back(row);
+  }
+  return rows;
+}
+
+ResidualRows EvaluateRows(const BuiltProblem& built, bool robust) {
+  return Stack(RowBlocksOf(built, robust), NumColumns(built), robust);
+}
+
+ResidualRows EvaluateRows(const FitProblem& problem, FitPoint point, bool robust) {
+  return EvaluateRows(problem.Build(&point, 0), robust);
+}
+
+void AddCurvature(const BuiltProblem& built, const Eigen::VectorXd& steps, bool both_sides,
+                  ResidualRows* rows) {
+  ceres::Problem::EvaluateOptions by_all;
+  by_all.parameter_blocks = built.parameter_blocks;
+  const Index size = rows->jacobian.cols();
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
+  Index column = 0;
+  std::vector<double> above(size), below(size);  // without the other side: at the point
+  Eigen::VectorXd::Map(below.data(), size) = rows->jacobian.transpose() * rows->residuals;
+  for (double* block : built.parameter_blocks) {
+    for (int k = 0; k < built.problem->ParameterBlockSize(block); ++k, ++column) {
+      const double step = steps[column], value = block[k];
+      if (step == 0.0) continue;
+      block[k] = value + step;
+      bool told = built.problem->Evaluate(by_all, nullptr, nullptr, &above, nullptr);
+      block[k] = value - step;
+      if (both_sides) told &= built.problem->Evaluate(by_all, nullptr, nullptr, &below, nullptr);
+      block[k] = value;
+      if (!told) return;
+      for (Index row = 0; row < size; ++row) {
+        hessian(row, column) = (above[row] - below[row]) / (both_sides ? 2.0 * step : step);
+      }
+    }
+  }
+  rows->curvature =
+      0.5 * (hessian + hessian.transpose()) - rows->jacobian.transpose() * rows->jacobian;
+  for (Index i = 0; i < size; ++i) {
+    if (steps[i] != 0.0) continue;
+    rows->curvature.row(i).setZero();
+    rows->curvature.col(i).setZero();
+  }
+}
+
+namespace {
+
+constexpr double kStep = 1e-5;  // of a column's unit
+
+ResidualSigmas WithoutRobustLoss(ResidualSigmas sigmas) {
+  sigmas.robust = 0.0;
+  return sigmas;
+}
+
+// By rollout: empty where it leaves the domain, and without a problem.
+ResidualsByRecording ResidualsOf(const std::vector<RolloutAt>& rollouts) {
+  std::vector<RolloutSums> sums = SumUp(PutSideBySide(rollouts), rollouts, LaneSums::kNone);
+  ResidualsByRecording raw(rollouts.size());
+  for (size_t i = 0; i < rollouts.size(); ++i) {
+    const RolloutProblem* const problem = rollouts[i].problem.get();
+    raw[i] = std::move(sums[i].residuals);
+    if (problem == nullptr || HasLanes(*problem)) continue;
+    raw[i].resize(problem->num_residuals());
+    if (!RolloutResiduals(*problem, rollouts[i].blocks.data(), raw[i].data())) raw[i].clear();
+  }
+  return raw;
+}
+
+Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& values) {
+  return {values.data(), static_cast<Index>(values.size())};
+}
+
+// With d(model - (1 + eta) measured) = d(model) - measured, the column holds the noise of what was
+// measured, which the residual holds as well: their product is no longer zero on average. The same
+// model, with d(model / (1 + eta) - measured) = d(model) - model: less by the residual.
+void LeaveOutNoiseOfRates(const Eigen::VectorXd& here, Index motion,
+                          Eigen::Ref<Eigen::VectorXd> column) {
+  for (Index k = 0; k < motion; ++k) {
+    const Index channel = k % kFrameResiduals;
+    const bool rate = channel == 3 || channel == 4 || channel >= 7;
+    if (rate) column[k] -= here[k];
+  }
+}
+
+// Raw residuals of a recording, and their derivatives.
+struct RawRows {
+  Eigen::VectorXd residuals;   // empty: the rollout fails
+  std::vector<Index> columns;  // those that move the recording: estimates, then assumptions
+  Eigen::MatrixXd by_column;
+};
+
+class RowsOfRecordings {
+ public:
+  // What it is made of must outlive it.
+  RowsOfRecordings(const FitProblem& problem, const FitPoint& point,
+                   const std::vector<Assumption>& assumptions);
+
+  Index num_estimates() const { return unit_.size(); }
+  // From any thread.
+  RawRows Of(int index);
+
+ private:
+  // What a fit sees of a recording besides itself.
+  struct Seen {
+    ModelOptions model;
+    ParameterMap map;
+    FitPoint point;
+  };
+  // What is seen one step along a column. assumption: null for an estimate.
+  struct Column {
+    Seen seen;
+    double step;
+    const Assumption* assumption;
+  };
+  RolloutAt Rollout(Seen* seen, const PendulumRecording& recording, int index) const;
+  Seen Under(const Assumption& assumption) const;
+  std::vector<std::pair<Index, Index>> OwnColumns(const RolloutAt& here) const;
+  RawRows BySensitivities(const RolloutAt& here) const;
+  void AddDifferences(const RolloutAt& here, int index, RawRows* rows);
+  void Correct(const Assumption& assumption, int index, const RawRows& rows,
+               Eigen::Ref<Eigen::VectorXd> column) const;
+
+  const FitProblem& problem_;
+  Seen here_;
+  std::map<const double*, Index> first_;  // column of each block of here_
+  Eigen::VectorXd unit_;                  // of the estimates; 0: on a bound
+  std::vector<Column> columns_;           // estimates, then assumptions
+};
+
+RowsOfRecordings::RowsOfRecordings(const FitProblem& problem, const FitPoint& point,
+                                   const std::vector<Assumption>& assumptions)
+    : problem_(problem),
+      here_{problem.options().model, problem.map(), point},
+      unit_(Units(FittedColumns(problem, point))) {
+  Index next = 0;
+  const auto add = [this, &next](const std::vector<double>& block) {
+    first_[block.data()] = next;
+    next += static_cast<Index>(block.size());
+  };
+  add(here_.point.shared);
+  for (const auto& [unit, block] : here_.point.unit) add(block);
+  for (const auto& [recording, block] : here_.point.velocity) add(block);
+  const std::vector<double> flat = point.Flat();
+  for (size_t c = 0; c < flat.size(); ++c) {
+    const double step = kStep * unit_[static_cast<Index>(c)];
+    std::vector<double> moved = flat;
+    moved[c] += step;
+    columns_.push_back({here_, step, nullptr});
+    columns_.back().seen.point.SetFlat(moved);
+  }
+  for (const Assumption& assumption : assumptions) {
+    columns_.push_back({Under(assumption), assumption.step, &assumption});
+  }
+}
+
+RowsOfRecordings::Seen RowsOfRecordings::Under(const Assumption& assumption) const {
+  Seen seen = here_;
+  for (const auto& [index, shift] : assumption.along) seen.point.shared[index] += shift;
+  if (assumption.of_options == nullptr) return seen;
+  FitOptions options = problem_.options();
+  assumption.of_options(assumption.step, &options);
+  seen.model = options.model;
+  seen.map.values = options.table.Values();
+  return seen;
+}
+
+RolloutAt RowsOfRecordings::Rollout(Seen* seen, const PendulumRecording& recording,
+                                    int index) const {
+  return {MakeRolloutProblem(recording, seen->model, seen->map,
+                             WithoutRobustLoss(problem_.options().sigmas), 1.0, 0),
+          problem_.RecordingBlocks(&seen->point, index)};
+}
+
+// Of the fit, and among those of the recording's blocks; none on bounds.
+std::vector<std::pair<Index, Index>> RowsOfRecordings::OwnColumns(const RolloutAt& here) const {
+  std::vector<std::pair<Index, Index>> columns;
+  const std::vector<int> sizes = here.problem->layout.BlockSizes();
+  Index in_blocks = 0;
+  for (size_t b = 0; b < sizes.size(); ++b) {
+    const Index first = first_.at(here.blocks[b]);
+    for (Index c = first; c < first + sizes[b]; ++c, ++in_blocks) {
+      if (unit_[c] > 0.0) columns.emplace_back(c, in_blocks);
+    }
+  }
+  return columns;
+}
+
+RawRows RowsOfRecordings::BySensitivities(const RolloutAt& here) const {
+  const RolloutProblem& problem = *here.problem;
+  RawRows rows;
+  rows.residuals.resize(problem.num_residuals());
+  const Index acting = problem.layout.num_acting();
+  RowMajorMatrix by_acting(rows.residuals.size(), acting);
+  Index row = 0;
+  const auto add = [&](int, int, const auto& residual, const auto* by_column) {
+    rows.residuals.segment(row, residual.size()) = residual;
+    by_acting.middleRows(row, residual.size()) = by_column->leftCols(acting);
+    row += residual.size();
+  };
+  if (!VisitFrames(problem, here.blocks.data(), Derivatives::kAll, add, add).ok) return {};
+  const RowMajorMatrix by_blocks = ActingColumns(problem.layout).Expand(by_acting);
+  std::vector<Index> in_blocks;
+  for (const auto& [column, in_block] : OwnColumns(here)) {
+    rows.columns.push_back(column);
+    in_blocks.push_back(in_block);
+  }
+  rows.by_column = by_blocks(Eigen::all, in_blocks);
+  return rows;
+}
+
+// The column of an assumption, of which the estimates' columns are known.
+void RowsOfRecordings::Correct(const Assumption& assumption, int index, const RawRows& rows,
+                               Eigen::Ref<Eigen::VectorXd> column) const {
+  if (assumption.of_rates) {
+    LeaveOutNoiseOfRates(rows.residuals, static_cast<Index>(problem_.NumMotionRows(index)), column);
+  }
+  // As if the estimates had stayed where they are.
+  for (const auto& [of, shift] : assumption.along) {
+    const auto found = std::find(rows.columns.begin(), rows.columns.end(), static_cast<Index>(of));
+    if (found == rows.columns.end()) continue;
+    column -= shift / assumption.step * rows.by_column.col(found - rows.columns.begin());
+  }
+}
+
+// What *rows does not hold yet. A column whose changed rollout fails is left out.
+void RowsOfRecordings::AddDifferences(const RolloutAt& here, int index, RawRows* rows) {
+  const bool none = rows->residuals.size() == 0;
+  std::vector<RolloutAt> rollouts = {here};
+  std::vector<Index> columns;
+  if (none) {
+    for (const auto& [column, in_blocks] : OwnColumns(here)) columns.push_back(column);
+  } else {
+    rollouts.clear();
+  }
+  for (Index c = num_estimates(); c < static_cast<Index>(columns_.size()); ++c) {
+    columns.push_back(c);
+  }
+  std::list<PendulumRecording> changed;
+  for (Index c : columns) {
+    const PendulumRecording* seen = &problem_.recordings()[index];
+    const Assumption* const assumption = columns_[c].assumption;
+    if (assumption != nullptr && assumption->of_recording != nullptr) {
+      assumption->of_recording(assumption->step, &changed.emplace_back(*seen));
+      seen = &changed.back();
+    }
+    rollouts.push_back(Rollout(&columns_[c].seen, *seen, index));
+  }
+  ResidualsByRecording there = ResidualsOf(rollouts);
+  if (none) {
+    rows->residuals = AsVector(there[0]);
+    there.erase(there.begin());
+    if (rows->residuals.size() == 0) return;
+  }
+  Index next = rows->by_column.cols();
+  rows->by_column.conservativeResize(rows->residuals.size(),
+                                     next + static_cast<Index>(there.size()));
+  for (size_t j = 0; j < there.size(); ++j) {
+    if (static_cast<Index>(there[j].size()) != rows->residuals.size()) continue;
+    const Column& column = columns_[columns[j]];
+    auto by = rows->by_column.col(next++);
+    by = (AsVector(there[j]) - rows->residuals) / column.step;
+    if (column.assumption != nullptr) Correct(*column.assumption, index, *rows, by);
+    rows->columns.push_back(columns[j]);
+  }
+  rows->by_column.conservativeResize(Eigen::NoChange, next);
+}
+
+RawRows RowsOfRecordings::Of(int index) {
+  const RolloutAt here = Rollout(&here_, problem_.recordings()[index], index);
+  RawRows rows;
+  if (!HasLanes(*here.problem)) {
+    rows = BySensitivities(here);
+    if (rows.residuals.size() == 0) return rows;
+  }
+  AddDifferences(here, index, &rows);
+  return rows;
+}
+
+// One person's normal equations.
+struct PersonSums {
+  NormalEquations plain, robust;  // robust: with the loss's own Hessian
+  std::vector<NormalEquations> robust_parts;
+  std::vector<Eigen::VectorXd> scores;  // J'r, by part
+};
+
+// Raw rows become those of the cost, and add up.
+class Condenser {
+ public:
+  Condenser(const FitProblem& problem, const RawRows& rows, size_t num_parts, int recording)
+      : columns_(static_cast<int>(rows.columns.size())),
+        weight_(problem.Weight(recording, 0)),
+        loss_(problem.options().sigmas.OfFrames()),
+        rows_(rows),
+        frame_(RowMajorMatrix::Zero(kFrameResiduals, NormalEquations::PaddedSize(columns_))) {
+    const NormalEquations none(columns_);
+    people_.resize(static_cast<size_t>(problem.recordings()[recording].num_people()),
+                   {none, none, std::vector(num_parts, none),
+                    std::vector<Eigen::VectorXd>(num_parts, Eigen::VectorXd::Zero(columns_))});
+  }
+
+  // The next rows, times how much of the frame was seen: with c = sqrt(1 + |r|^2 / d^2), residual
+  // and Jacobian times weight / sqrt(c); the loss's own Hessian has 1 / c of that along r
+  // (frame_residual.h).
+  void AddFrame(Index count, double seen, size_t part, int person) {
+    PersonSums& to = people_[person];
+    const auto r = rows_.residuals.segment(next_, count);
+    const double squared = r.squaredNorm();
+    const double whole = seen > 0.0 ? squared / (seen * seen) : 0.0;  // as if all of it counted
+    const double c = loss_ > 0.0 ? std::sqrt(1.0 + whole / (loss_ * loss_)) : 1.0;
+    const double scale = weight_ / std::sqrt(c);
+    auto by_column = frame_.topLeftCorner(count, columns_);
+    by_column = scale * rows_.by_column.middleRows(next_, count);
+    residuals_ = scale * r;
+    to.plain.Add(static_cast<int>(count), frame_.data(), residuals_.data());
+    if (squared > 0.0) {
+      along_.noalias() = r.transpose() * by_column;
+      to.scores[part] += scale * along_.transpose();
+      along_ *= (1.0 / c - 1.0) / squared;
+      for (Index i = 0; i < count; ++i) by_column.row(i) += r[i] * along_;
+    }
+    to.robust_parts[part].Add(static_cast<int>(count), frame_.data(), residuals_.data());
+    next_ += count;
+  }
+
+  std::vector<PersonSums>& people() { return people_; }
+
+ private:
+  int columns_;
+  double weight_, loss_;
+  const RawRows& rows_;
+  Index next_ = 0;
+  RowMajorMatrix frame_;  // J, padded
+  Eigen::VectorXd residuals_;
+  Eigen::RowVectorXd along_;
+  std::vector<PersonSums> people_;
+};
+
+std::vector<PersonSums> Condense(const FitProblem& problem, const RawRows& rows,
+                                 const std::vector<int>& horizons, int recording) {
+  const PendulumRecording& r = problem.recordings()[recording];
+  Condenser condenser(problem, rows, horizons.size() + 1, recording);
+  const int begin = PushFrame(r);
+  const auto part_of = [&](int frame) {
+    return static_cast<size_t>(std::lower_bound(horizons.begin(), horizons.end(), frame - begin) -
+                               horizons.begin());
+  };
+  for (int t = 1; t < r.num_frames(); ++t) {
+    for (int n = 0; n < r.num_people(); ++n) {
+      condenser.AddFrame(kFrameResiduals, r.Weight(n, t), part_of(t), n);
+    }
+  }
+  for (int t = 0; t + 1 < r.num_frames(); ++t) {
+    for (int n = 0; n < r.num_people(); ++n) {
+      if (!r.HasPlates(n)) continue;
+      condenser.AddFrame(kPlateResiduals, r.plates[n][t].weight, part_of(t), n);
+    }
+  }
+  for (PersonSums& person : condenser.people()) {
+    for (const NormalEquations& part : person.robust_parts) person.robust.Add(part);
+  }
+  return std::move(condenser.people());
+}
+
+RowBlock RowsOfPeople(int recording, const RawRows& raw, const std::vector<PersonSums>& people) {
+  RowBlock block{recording, raw.columns, {}, {}, static_cast<int>(raw.residuals.size())};
+  const Index count = static_cast<Index>(raw.columns.size());
+  for (const PersonSums& person : people) {
+    const RowMajorMatrix plain = person.plain.Factor();
+    block.people.push_back(
+        {plain.leftCols(count), plain.col(count), person.robust.Factor().leftCols(count)});
+    block.person_of_row.insert(block.person_of_row.end(), static_cast<size_t>(count + 1),
+                               static_cast<int>(&person - people.data()));
+  }
+  return block;
+}
+
+DataPart PartOf(const PersonSums& person, size_t part, const std::vector<Index>& columns,
+                Index estimates) {
+  const auto beyond = std::lower_bound(columns.begin(), columns.end(), estimates);
+  const std::vector<Index> own(columns.begin(), beyond);
+  const Index count = static_cast<Index>(own.size());
+  const RowMajorMatrix gram = person.robust_parts[part].information().topLeftCorner(count, count);
+  DataPart of;
+  of.part = static_cast<int>(part);
+  of.score = Eigen::VectorXd::Zero(estimates);
+  of.score(own) = person.scores[part].head(count);
+  of.information = Eigen::MatrixXd::Zero(estimates, estimates);
+  of.information(own, own) = Eigen::MatrixXd(gram.selfadjointView<Eigen::Upper>());
+  return of;
+}
+
+}  // namespace
+
+ResidualRows EvaluateRows(const FitProblem& problem, const FitPoint& point,
+                          const std::vector<Assumption>& assumptions,
+                          const std::vector<int>& horizons) {
+  const int recordings = static_cast<int>(problem.recordings().size());
+  RowsOfRecordings of(problem, point, assumptions);
+  const Index estimates = of.num_estimates();
+  std::vector<RowBlock> blocks(recordings);
+  std::vector<std::vector<DataPart>> parts(recordings);
+  ParallelFor(recordings, problem.options().num_threads, [&](int i) {
+    if (problem.Count(i) == 0) return;
+    const RawRows raw = of.Of(i);
+    if (raw.residuals.size() == 0) return;
+    const std::vector<PersonSums> people = Condense(problem, raw, horizons, i);
+    blocks[i] = RowsOfPeople(i, raw, people);
+    for (size_t n = 0; n < people.size(); ++n) {
+      for (size_t part = 0; part < people[n].scores.size(); ++part) {
+        parts[i].push_back(PartOf(people[n], part, raw.columns, estimates));
+        parts[i].back().recording = i;
+        parts[i].back().person = static_cast<int>(n);
+      }
+    }
+  });
+  for (int i = 0; i < recordings; ++i) {
+    if (problem.Count(i) > 0 && blocks[i].num_rows == 0) return {};
+  }
+  blocks.erase(std::remove_if(blocks.begin(), blocks.end(),
+                              [](const RowBlock& block) { return block.num_rows == 0; }),
+               blocks.end());
+  FitPoint copy = point;
+  for (RowBlock& block : RowBlocksOf(problem.WithoutRecordings().Build(&copy, 0), false)) {
+    blocks.push_back(std::move(block));
+  }
+  for (size_t k = 0; k < assumptions.size(); ++k) {
+    const double sigma = assumptions[k].sigma, stated = sigma > 0.0 ? 1.0 / sigma : 0.0;
+    blocks.push_back({FitProblem::kPriorCluster,
+                      {estimates + static_cast<Index>(k)},
+                      {{RowMajorMatrix::Constant(1, 1, stated), Eigen::VectorXd::Zero(1), {}}},
+                      {-1}});
+  }
+  ResidualRows rows = Stack(blocks, estimates + static_cast<Index>(assumptions.size()), true);
+  for (std::vector<DataPart>& own : parts) {
+    for (DataPart& part : own) rows.parts.push_back(std::move(part));
+  }
+  return rows;
+}
+
+ResidualsByRecording RawResiduals(const FitProblem& problem, FitPoint point, bool counted_only) {
+  std::vector<RolloutAt> rollouts(problem.recordings().size());
+  for (int i = 0; i < static_cast<int>(rollouts.size()); ++i) {
+    if (counted_only && problem.Count(i) == 0) continue;
+    rollouts[i] = {
+        MakeRolloutProblem(problem.recordings()[i], problem.options().model, problem.map(),
+                           WithoutRobustLoss(problem.options().sigmas), 1.0, 0),
+        problem.RecordingBlocks(&point, i)};
+  }
+  return ResidualsOf(rollouts);
+}
+
+std::vector<FittedColumn> FittedColumns(const FitProblem& problem, const FitPoint& point) {
+  std::vector<FittedColumn> columns;
+  const ParameterTable& table = problem.options().table;
+  const auto& fitted = problem.map().fitted;
+  for (size_t i = 0; i < fitted.size(); ++i) {
+    const ParameterSpec& spec = table[fitted[i].parameter];
+    FittedColumn c{spec.name, spec.unit, spec.transform, spec.scale};
+    c.width = spec.prior ? spec.prior->sigma : spec.scale;
+    c.fitted = point.shared[i];
+    c.natural = ToNatural(spec.transform, c.fitted);
+    const double lower = ToFitted(spec.transform, spec.lower);
+    const double upper = ToFitted(spec.transform, spec.upper);
+    const double margin = 1e-6 * (upper - lower);
+    c.at_bound = c.fitted < lower + margin || c.fitted > upper - margin;
+    columns.push_back(c);
+  }
+  for (const auto& [unit, values] : point.unit) {
+    for (const FittedParameter& f : fitted) {
+      if (f.deviation < 0) continue;
+      const ParameterSpec& spec = table[f.parameter];
+      const bool plain = f.transform == Transform::kIdentity;
+      FittedColumn c{spec.name + "[" + unit + "] deviation", plain ? spec.unit : "1"};
+      c.scale = c.width = plain ? spec.scale : 1.0;
+      c.fitted = c.natural = values[f.deviation];
+      columns.push_back(c);
+    }
+  }
+  static const char* const kVelocityNames[] = {"xd", "yd", "thetad", "phid"};
+  for (const auto& [recording, values] : point.velocity) {
+    for (size_t k = 0; k < values.size(); ++k) {
+      FittedColumn c{"initial " + std::string(kVelocityNames[k % 4]) + "[" +
+                         problem.recordings()[recording].id +
+                         (values.size() > 4 ? ":" + std::to_string(k / 4) : "") + "]",
+                     k % 4 < 2 ? "m/s" : "rad/s"};
+      c.scale = c.width = 0.1;
+      c.fitted = c.natural = values[k];
+      columns.push_back(c);
+    }
+  }
+  for (size_t i = 0; i < point.weights.size(); ++i) {
+    FittedColumn c{"network weight " + std::to_string(i), "1"};
+    c.fitted = c.natural = point.weights[i];
+    columns.push_back(c);
+  }
+  return columns;
+}
+
+Eigen::VectorXd Units(const std::vector<FittedColumn>& columns) {
+  Eigen::VectorXd unit(columns.size());
+  for (size_t i = 0; i < columns.size(); ++i) {
+    const FittedColumn& c = columns[i];
+    unit[static_cast<Index>(i)] =
+        c.at_bound ? 0.0 : c.scale / TransformSlope(c.transform, c.natural);
+  }
+  return unit;
+}
+
+}  // namespace pushid
