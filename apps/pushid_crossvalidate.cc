@@ -19,7 +19,6 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/fit/fit_setup.h"
-#include "ident/parameters/option_names.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/predictive_bands.h"
 #include "ident/problem/folds.h"

@@ -31,7 +31,6 @@
 #include "ident/model/identified_model.h"
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"
-#include "ident/parameters/option_names.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
 #include "ident/validation/scores_report.h"

@@ -8,6 +8,7 @@
 #include "apps/flags/command_line.h"
 #include "apps/flags/model_flags.h"
 #include "apps/flags/recording_flags.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/loading/ground_record.h"
 #include "datasets/manifest/recording.h"
@@ -15,7 +16,6 @@
 #include "datasets/synthetic/synthetic_clips.h"
 #include "ident/figures/text_table.h"
 #include "ident/model/push_range.h"
-#include "ident/parameters/option_names.h"
 #include "ident/validation/synthetic_truth.h"
 
 DEFINE_string(out, "", "folder to write: manifest.json, bvh/ and push/");

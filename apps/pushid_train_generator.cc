@@ -18,7 +18,6 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/option_names.h"
 #include "ident/problem/folds.h"
 #include "ident/training/generator_crossvalidation.h"
 #include "ident/training/restoration_training.h"

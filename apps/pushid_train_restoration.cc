@@ -19,7 +19,6 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/option_names.h"
 #include "ident/problem/folds.h"
 #include "ident/training/restoration_chain.h"
 #include "ident/training/training_run.h"

@@ -8,7 +8,6 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/restoration_files.h"
-#include "ident/parameters/option_names.h"
 
 DEFINE_string(restoration, "",
               "whole bodies: the folder that pushid-train-restoration --out wrote, or rigid");

@@ -11,7 +11,6 @@
 #include "datasets/files/names.h"
 #include "ident/checks/model_checks.h"
 #include "ident/parameters/json_archive.h"
-#include "ident/parameters/option_names.h"
 #include "ident/parameters/option_table.h"
 #include "ident/report/advice.h"
 #include "ident/report/document.h"

@@ -10,9 +10,9 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"
 #include "datasets/files/json_fields.h"
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
-#include "ident/parameters/option_names.h"
 #include "models/restoration/window_restoration.h"
 
 namespace pushid {

@@ -91,7 +91,7 @@ Result<std::vector<PendulumRecording>> AsFitted(const std::vector<PendulumRecord
 MaybeError ResumeFit(const std::vector<PendulumRecording>& recordings, FitResult* fit) {
   // The reader holds what is learned; a fit holds only what was trained by its gradient.
   fit->options.hold_network = IsLarge(fit->options);
-  SolveStart& best = fit->starts[fit->best_start];
+  SolveStart& best = fit->Best();
   const FitProblem problem(recordings, fit->options);
   std::optional<FitPoint> point = problem.PointAt(best.to.Flat());
   if (!point) {
@@ -171,12 +171,11 @@ MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
                        const std::vector<std::string>& names, int num_threads,
                        const JobProgress& progress, FittedModel* model) {
   const FitProblem problem(recordings, model->fit.options);
-  Result<std::vector<Profile>> profiles =
-      ComputeProfiles(problem, model->fit.starts[model->fit.best_start].to, model->fit.uncertainty,
-                      names, num_threads, progress);
+  Result<std::vector<Profile>> profiles = ComputeProfiles(
+      problem, model->fit.Best().to, model->fit.uncertainty, names, num_threads, progress);
   if (!profiles.ok()) return profiles.error();
-  ClassifyByDataAlone(problem, model->fit.starts[model->fit.best_start].to, names, num_threads,
-                      progress, &profiles.value());
+  ClassifyByDataAlone(problem, model->fit.Best().to, names, num_threads, progress,
+                      &profiles.value());
   model->profiles = std::move(profiles.value());
   return std::nullopt;
 }
@@ -185,8 +184,7 @@ MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
                         const BootstrapOptions& options, const JobProgress& progress,
                         FittedModel* model) {
   const FitProblem problem(recordings, model->fit.options);
-  Result<Bootstrap> bootstrap =
-      ComputeBootstrap(problem, model->fit.starts[model->fit.best_start].to, options, progress);
+  Result<Bootstrap> bootstrap = ComputeBootstrap(problem, model->fit.Best().to, options, progress);
   if (!bootstrap.ok()) return bootstrap.error();
   model->bootstrap = std::move(bootstrap.value());
   return std::nullopt;
@@ -201,7 +199,7 @@ MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int nu
         "needs a push tail, and a recording with a push"};
   }
   const FitProblem problem(recordings, fit.options);
-  const FitPoint& optimum = fit.starts[fit.best_start].to;
+  const FitPoint& optimum = fit.Best().to;
   fit.forecasts = CrossFitForecasts(problem, optimum, ModelOf(fit), recordings, num_threads);
   if (fit.forecasts) return std::nullopt;
   return Error{"no recording stays in the model's domain"};
@@ -210,8 +208,8 @@ MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int nu
 void AddHorizonCheck(const std::vector<PendulumRecording>& recordings, int num_threads,
                      const JobProgress& progress, FittedModel* model) {
   const FitProblem problem(recordings, model->fit.options);
-  model->horizon_check = CheckHorizons(problem, model->fit.starts[model->fit.best_start].to,
-                                       model->fit.uncertainty, num_threads, progress);
+  model->horizon_check =
+      CheckHorizons(problem, model->fit.Best().to, model->fit.uncertainty, num_threads, progress);
 }
 
 }  // namespace pushid

@@ -28,7 +28,7 @@ void AddUnitErrors(const FitProblem& problem, const FitPoint& point, FitResult* 
 std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const SolveStart& best,
                                               const Diagnostics& diagnostics);
 
-// fit_warnings.cc: failed rollouts, a solver that stopped early, a verdict other than that people
+// Failed rollouts, a solver that stopped early, a verdict other than that people
 // settle, few clusters, what the demand to settle did, parameters at bounds, a tail that cannot
 // act.
 Warnings FitWarnings(const FitProblem& problem, const FitResult& result);

@@ -31,8 +31,8 @@ Result<FitOptions> MakeFitOptions(const GivenOptions& given,
                                   const std::vector<PendulumRecording>* recordings = nullptr,
                                   const GivenOptions& must_act = {});
 
-// The same in two steps, of which the second builds again only where the recordings decide for
-// another preset than the first took.
+// MakeFitOptions in two steps, of which the second builds again only where the recordings decide
+// for another preset than the first took.
 class FitSetup {
  public:
   static Result<FitSetup> Make(GivenOptions given, GivenOptions must_act = {});
@@ -50,13 +50,5 @@ class FitSetup {
 
 // Options that are taken but do nothing, or not what they seem to.
 std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options);
-
-// Whether a model with a delay, moving ground, platforms or other bodies fits recordings.
-
-// Errors name the recording, what does not go together and what to do: a delay beyond a recording,
-// masses from the table where feet stand, platforms under people who touch, anything of it with
-// networks that are trained by their gradient.
-MaybeError CheckLaboratory(const std::vector<PendulumRecording>& recordings,
-                           const FitOptions& options);
 
 }  // namespace pushid

@@ -52,7 +52,7 @@ Eigen::Vector2d MostLikelyCoefficients(const std::vector<StepOutcome>& outcomes,
   return coefficients;
 }
 
-// Of a support that goes with the cart.
+// The margin of a support that goes with the cart.
 double MarginOfPath(const ModelOptions& options, const ParameterSet<double>& parameters,
                     const ScenePerson& person, const RolloutPath<double>& path, int index) {
   const SelfForce self(options, person.body, person.start.q, 1.0);
@@ -86,7 +86,7 @@ bool StepsWith(double factor, int person, const ModelOptions& options,
   return false;
 }
 
-// Of everybody, in order; none where the model's rollout of the recording leaves its domain.
+// Everybody's outcome, in order; none where the model's rollout leaves its domain.
 std::vector<StepOutcome> StepOutcomes(const IdentifiedModel& model,
                                       const PendulumRecording& recording) {
   if (!recording.StepsKnown()) return {};

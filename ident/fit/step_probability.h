@@ -48,8 +48,8 @@ struct StepOutcome {
 // Each person asks for a dozen rollouts of all: seconds at this number, hours in a crowd.
 inline constexpr int kMostPeopleWithMargins = 20;
 
-// Of everybody in a recording; path: the model's own rollout of it. None where more people than
-// that have feet that step.
+// The margin of everybody in a recording; path: the model's own rollout of it. None where more
+// people than that have feet that step.
 std::vector<double> StepMargins(const ModelOptions& options,
                                 const std::vector<ParameterSet<double>>& parameters,
                                 const PendulumRecording& recording,

@@ -2,11 +2,11 @@
 #include "ident/fit/weighted_solve.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/parallel.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/clusters.h"
 
@@ -171,7 +171,7 @@ void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
 }  // namespace
 
 WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progress) {
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = Now();
   const double weight = problem->options().settling_weight;
   problem->set_settling_weight(0.0);
   WeightedSolution solved;
@@ -189,8 +189,7 @@ WeightedSolution SolveWeighted(FitProblem* problem, const SolveProgress& progres
   Demand(weight, problem, &solved);
   solved.work.Add("settling");
   best.recordings = {};
-  solution.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  solution.seconds = Now() - begin;
   return solved;
 }
 

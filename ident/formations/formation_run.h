@@ -8,7 +8,7 @@
 #include "ident/bodies/body_recording.h"
 #include "ident/model/identified_model.h"
 #include "ident/prediction/prediction.h"
-#include "ident/problem/behaviour_text.h"
+#include "ident/problem/behaviour.h"
 #include "models/enum_names.h"
 #include "models/restoration/body.h"
 #include "models/restoration/postprocess.h"

@@ -13,7 +13,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/files/kept_json.h"
-#include "ident/parameters/option_names.h"
+#include "datasets/files/names.h"
 #include "models/generators/diffusion_generator.h"
 #include "models/generators/generator_trainers.h"
 #include "models/generators/particle_generator.h"

@@ -37,29 +37,20 @@ struct FittedRecording {
   std::string failure;  // empty, or where its rollout left the domain
 };
 
-struct FitResult {
+struct FitResult : ModelFacts {
   FitOptions options;
-  // As they act: fixed ones too. Indexed by Parameter.
-  ParameterSet<double> parameters{};
   std::vector<Estimate> estimates;   // one per Parameter that the table shows, fixed ones included
   std::vector<Estimate> nuisance;    // units' deviations and initial velocities
   std::vector<Combination> derived;  // c_x, c_y and per-mass gains
   std::map<std::string, SubjectParameters> subjects;
   // Value of each pooled parameter in each setting or condition, where these differ.
   std::map<std::string, std::map<std::string, Estimate>> settings;
-  std::optional<Contrast> contrast;     // none where --contrast did not ask for one
-  std::optional<PushedFeet> feet;       // none in older files
-  std::optional<PushRange> push_range;  // none in files that are older than it
-  // None where nobody stepped or everybody did, and in older files.
-  std::optional<StepProbability> step_probability;
+  std::optional<Contrast> contrast;           // none where --contrast did not ask for one
+  std::optional<PushedFeet> feet;             // none in older files
   std::optional<LikelihoodScore> likelihood;  // of a fit by one of single steps
-  // None without a push tail, and in older files.
-  std::optional<RecordingEffect> recording_effect;
-  std::optional<ForecastRule> forecasts;
   Uncertainty uncertainty;
   ModelVerdict verdict;  // not checked in older files
   Diagnostics diagnostics;
-  Behaviour behaviour;
   std::vector<FittedRecording> recordings;
 
   bool converged = false;
@@ -72,6 +63,9 @@ struct FitResult {
   std::vector<Work> work;  // of solve and judgement; empty in older files
 
   bool ok() const { return best_start >= 0; }
+  // Where ok().
+  const SolveStart& Best() const { return starts[best_start]; }
+  SolveStart& Best() { return starts[best_start]; }
 };
 
 // Where a fit came from.

@@ -19,15 +19,10 @@ double StepProbability::ErrorAt(double margin) const {
 
 IdentifiedModel ModelOf(const FitResult& result) {
   IdentifiedModel model;
+  static_cast<ModelFacts&>(model) = result;
   model.options = result.options.model;
   model.table = result.options.table;
-  model.parameters = result.parameters;
   model.pool_by = result.options.pool_by;
-  model.push_range = result.push_range;
-  model.step_probability = result.step_probability;
-  model.recording_effect = result.recording_effect;
-  model.forecasts = result.forecasts;
-  model.behaviour = result.behaviour;
   const auto add = [&](const std::string& unit, const std::map<std::string, Estimate>& pooled) {
     if (pooled.empty()) return;
     ParameterSet<double>& own = model.by_unit[unit] = result.parameters;

@@ -77,7 +77,7 @@ struct RecordingEffect {
   std::vector<EffectOfRecording> recordings = {};  // those that b acts on
 };
 
-// Who is to forecast a motion that was seen to begin (observed/first_frames.h): both together, or
+// What forecasts a motion that was seen to begin (observed/first_frames.h): both together, or
 // one alone.
 enum class ForecastUse { kBoth, kPhysics, kInput };
 constexpr EnumNames<ForecastUse, 3> Names(ForecastUse) {
@@ -107,21 +107,28 @@ struct ForecastRule {
   int folds = 0, recordings = 0;
 };
 
+// What a fit and the model that it gives know alike.
+struct ModelFacts {
+  // As they act, fixed ones too. Indexed by Parameter.
+  ParameterSet<double> parameters{};
+  std::optional<PushRange> push_range;  // that it was fitted to; none in files older than it
+  // None where nobody stepped or everybody did, and in older files.
+  std::optional<StepProbability> step_probability;
+  // For what first frames tell; none without a push tail, and in older files.
+  std::optional<RecordingEffect> recording_effect;
+  std::optional<ForecastRule> forecasts;
+  Behaviour behaviour;  // whether its people settle
+};
+
 struct FitResult;
 
 // The model a prediction needs: options and parameters of each subject.
-struct IdentifiedModel {
+struct IdentifiedModel : ModelFacts {
   std::string source;  // file, for messages
   ModelOptions options;
   ParameterTable table;  // names, units and bounds, for --set
-  ParameterSet<double> parameters{};
   std::string pool_by = kSubjectUnit;
   std::map<std::string, ParameterSet<double>> by_unit;  // options' pool_by; only where pooled
-  std::optional<PushRange> push_range;                  // that it was fitted to
-  std::optional<StepProbability> step_probability;      // of the people it was fitted to
-  std::optional<RecordingEffect> recording_effect;      // for what first frames tell
-  std::optional<ForecastRule> forecasts;                // beside it
-  Behaviour behaviour;                                  // whether its people settle
 
   // A unit the model does not know gets the shared values.
   const ParameterSet<double>& For(const std::string& unit) const {

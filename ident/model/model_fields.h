@@ -53,13 +53,7 @@ void Fields(Archive& a, Estimate& e) {
       g("settling", e.shares.settling_pull);
     });
   }
-  if (a.Has("total", e.total.has_value())) {
-    TotalError& total = e.total ? *e.total : e.total.emplace();
-    a.Group("total", [&](auto& g) {
-      g("standard_error", total.error);
-      g.Pair("interval_95", total.lower95, total.upper95);
-    });
-  }
+  a.Optional("total", e.total);
   a.Optional("these_people", e.these);
   PUSHID_FIELDS(a, e, unit, status);
 }

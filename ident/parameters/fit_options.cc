@@ -65,6 +65,11 @@ bool IsLarge(const FitOptions& options) {
   return network != nullptr && static_cast<int>(network->weights.size()) > kMostGaussNewtonWeights;
 }
 
+template <class Archive>
+void Fields(Archive& a, Prior& prior) {
+  PUSHID_FIELDS(a, prior, mean, sigma);
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -82,30 +87,52 @@ constexpr const char* kRetiredParameters[] = {"drive_gain",  "drive_torque",  "d
                                               "noise_phi_x", "noise_phi_y",   "noise_phi_theta",
                                               "noise_speed", "noise_push"};
 
+// One row of the table, which names other rows.
+template <class Archive>
+void RowFields(Archive& a, ParameterSpec& spec, const ParameterTable& table) {
+  const auto find = [&table](const std::string& name, const std::string& otherwise) {
+    const ParameterSpec* found = table.Find(name);
+    if (found == nullptr) throw std::runtime_error(otherwise);
+    return found->id;
+  };
+  PUSHID_FIELDS(a, spec, name, unit, nominal);
+  a.Pair("bounds", spec.lower, spec.upper);
+  PUSHID_FIELDS(a, spec, scale, transform, free, pooled, meaning);
+  a.Optional("prior", spec.prior);
+  if (a.Has("tied_to", spec.tied_to.has_value())) {
+    a.Via(
+        "tied_to", [&] { return table[*spec.tied_to].name; },
+        [&](const std::string& to) {
+          spec.tied_to = find(to, spec.name + " is tied to an unknown parameter");
+        });
+  }
+  if (a.Has("slope_of", spec.slope_of.has_value())) {
+    ParameterSpec::SlopeOf& slope = spec.slope_of ? *spec.slope_of : spec.slope_of.emplace();
+    Covariate& covariate = slope.covariate;
+    a.Group("slope_of", [&](auto& g) {
+      g.Via(
+          "parameter", [&] { return table[slope.target].name; },
+          [&](const std::string& of) {
+            slope.target = find(of, "a slope of an unknown parameter");
+          });
+      g("covariate", covariate.key);
+      if (g.Has("values", covariate.is_contrast())) {
+        g.Pair("values", covariate.first, covariate.second);
+      } else {
+        g("centre", covariate.centre);
+      }
+    });
+  }
+  if (a.Has("pooling_sigma", spec.pooled)) a("pooling_sigma", spec.pooling_sigma);
+}
+
 }  // namespace
 
 Json TableJson(const ParameterTable& table) {
   Json rows = Json::array();
-  for (const ParameterSpec& spec : table.specs) {
-    Json row = {{"name", spec.name},       {"unit", spec.unit},
-                {"nominal", spec.nominal}, {"bounds", {spec.lower, spec.upper}},
-                {"scale", spec.scale},     {"transform", NameOf(spec.transform)},
-                {"free", spec.free},       {"pooled", spec.pooled},
-                {"meaning", spec.meaning}};
-    if (spec.prior) row["prior"] = {{"mean", spec.prior->mean}, {"sigma", spec.prior->sigma}};
-    if (spec.tied_to) row["tied_to"] = table[*spec.tied_to].name;
-    if (spec.slope_of) {
-      const Covariate& c = spec.slope_of->covariate;
-      Json& slope = row["slope_of"] = {{"parameter", table[spec.slope_of->target].name},
-                                       {"covariate", c.key}};
-      if (c.is_contrast()) {
-        slope["values"] = {c.first, c.second};
-      } else {
-        slope["centre"] = c.centre;
-      }
-    }
-    if (spec.pooled) row["pooling_sigma"] = spec.pooling_sigma;
-    rows.push_back(row);
+  for (ParameterSpec spec : table.specs) {
+    JsonWriter writer(&rows.emplace_back(Json::object()));
+    RowFields(writer, spec, table);
   }
   return rows;
 }
@@ -129,24 +156,6 @@ Json SettingsJson(const FitOptions& options) {
   return json;
 }
 
-namespace {
-
-ParameterSpec::SlopeOf SlopeFrom(const Json& json, const ParameterTable& table) {
-  const ParameterSpec* target = table.Find(json.at("parameter"));
-  if (target == nullptr) throw std::runtime_error("a slope of an unknown parameter");
-  ParameterSpec::SlopeOf slope{target->id, {}};
-  slope.covariate.key = json.at("covariate");
-  if (json.contains("values")) {
-    slope.covariate.first = json.at("values").at(0);
-    slope.covariate.second = json.at("values").at(1);
-  } else {
-    slope.covariate.centre = json.at("centre");
-  }
-  return slope;
-}
-
-}  // namespace
-
 ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
   ParameterTable table = known;
   for (const Json& row : json) {
@@ -164,27 +173,11 @@ ParameterTable TableFrom(const Json& json, const ParameterTable& known) {
       spec = &table.Add(facts);
     }
     if (spec == nullptr) throw std::runtime_error("unknown parameter '" + name + "'");
-    if (row.contains("slope_of")) spec->slope_of = SlopeFrom(row.at("slope_of"), table);
-    spec->unit = row.at("unit");
-    spec->nominal = row.at("nominal");
-    spec->lower = row.at("bounds").at(0);
-    spec->upper = row.at("bounds").at(1);
-    spec->scale = row.at("scale");
-    spec->transform = EnumFrom<Transform>(row, "transform");
-    spec->free = row.at("free");
-    spec->pooled = row.at("pooled");
-    spec->pooling_sigma = row.value("pooling_sigma", kFirstPoolingSigma);
-    spec->meaning = row.at("meaning");
+    spec->pooling_sigma = kFirstPoolingSigma;
     spec->tied_to.reset();
-    if (row.contains("tied_to")) {
-      const ParameterSpec* to = table.Find(row.at("tied_to"));
-      if (to == nullptr) throw std::runtime_error(name + " is tied to an unknown parameter");
-      spec->tied_to = to->id;
-    }
     spec->prior.reset();
-    if (row.contains("prior")) {
-      spec->prior = Prior{row.at("prior").at("mean"), row.at("prior").at("sigma")};
-    }
+    JsonReader reader(row);
+    RowFields(reader, *spec, table);
   }
   return table;
 }

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "ident/parameters/option_names.h"
+#include "datasets/files/names.h"
 #include "ident/parameters/parameter_table.h"
 #include "models/enum_names.h"
 #include "residuals/frame_residual.h"

@@ -26,7 +26,7 @@
 #include <utility>
 #include <vector>
 
-#include "ident/parameters/option_names.h"
+#include "datasets/files/names.h"
 
 // At most sixty, by the macros with which nlohmann's JSON goes through members.
 #define PUSHID_FIELDS(archive, object, ...)                              \
@@ -73,7 +73,7 @@ nlohmann::ordered_json NumberJson(double value);
 double NumberFrom(const nlohmann::ordered_json& json);
 nlohmann::ordered_json NumberOrNull(const std::optional<double>& value);
 
-// The value of an option by its name in option_names.h.
+// The value of an option by its name in names.h.
 template <typename E>
 E EnumFrom(const nlohmann::ordered_json& json, const char* key) {
   E value{};

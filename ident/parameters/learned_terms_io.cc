@@ -6,13 +6,51 @@
 #include <stdexcept>
 #include <vector>
 
+#include "datasets/files/names.h"
 #include "datasets/files/random.h"
 #include "ident/parameters/json_archive.h"
-#include "ident/parameters/option_names.h"
 
 namespace pushid {
 
 namespace {
+
+// Empty for an unknown name.
+std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
+  if (name == "contact") return {&InteractionTerms::spring, &InteractionTerms::damping};
+  for (const InteractionTermName& term : kInteractionTerms) {
+    if (name == term.name) return {term.member};
+  }
+  return {};
+}
+
+std::string TermsText(const InteractionTerms& terms) {
+  std::string text;
+  for (const InteractionTermName& row : kInteractionTerms) {
+    if (terms.*row.member) text += (text.empty() ? "" : ",") + std::string(row.name);
+  }
+  return text.empty() ? "none" : text;
+}
+
+MaybeError ParseTerms(const std::string& flag, const std::string& text, InteractionTerms* terms) {
+  *terms = {};
+  if (text == "none") return std::nullopt;
+  for (const std::string& part : SplitList(text)) {
+    const std::vector<bool InteractionTerms::*> members = TermsOf(part);
+    if (part == "none") return Error{flag + ": none stands alone; leave it or the others out"};
+    if (members.empty()) {
+      std::string known = "contact (spring,damping)";
+      for (const auto& term : kInteractionTerms) known += ", " + std::string(term.name);
+      return Error{flag + " names '" + part + "'; it must be none, or some of " + known};
+    }
+    for (bool InteractionTerms::*member : members) {
+      if (terms->*member) {
+        return Error{flag + " names '" + part + "' twice (contact is spring,damping)"};
+      }
+      terms->*member = true;
+    }
+  }
+  return std::nullopt;
+}
 
 constexpr int kDefaultHidden = 4;
 constexpr double kOpenForgetGate = 1.0;
@@ -137,7 +175,7 @@ Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::s
     return Error{flag + ": none stands alone; leave it or the others out"};
   }
   if (!others.empty() || !choice.pair.any()) {
-    if (MaybeError error = ParseName(flag, others, &choice.terms)) return *error;
+    if (MaybeError error = ParseTerms(flag, others, &choice.terms)) return *error;
   }
   choice.terms.learned = choice.pair.any();
   choice.terms.learned_in_range = choice.pair.ldp;
@@ -145,7 +183,7 @@ Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::s
 }
 
 std::string InteractionText(const ModelOptions& options) {
-  const std::string others = NameOf(options.interaction);
+  const std::string others = TermsText(options.interaction);
   if (!options.interaction.learned || options.learned == nullptr) return others;
   return (others == "none" ? "" : others + ",") + PairName(options.learned->pair);
 }

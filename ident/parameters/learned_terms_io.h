@@ -40,7 +40,8 @@ std::vector<std::string> NetworkExamples();
 // The value of --rod.
 Result<RodShape> ParseRod(const std::string& flag, const std::string& text);
 
-// The value of --interaction: terms by name (option_names.h) and at most one network.
+// The value of --interaction: none, or terms by name, comma-separated ("contact" is short
+// for spring and damping), and at most one network.
 struct InteractionChoice {
   InteractionTerms terms;
   PairShape pair;

@@ -7,11 +7,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <type_traits>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/learned_terms_io.h"
-#include "ident/parameters/option_names.h"
 #include "ident/parameters/presets.h"
 
 namespace pushid {
@@ -76,63 +76,97 @@ Row WordsRow(const char* name, OptionStage stage, const char* help,
   return row;
 }
 
+// A value in words, as flags give it, and back.
+std::string TextOf(double value) { return DoubleText(value); }
+std::string TextOf(int value) { return std::to_string(value); }
+std::string TextOf(uint64_t value) { return std::to_string(value); }
+std::string TextOf(bool value) { return value ? "true" : "false"; }
+std::string TextOf(const std::string& value) { return value; }
+std::string TextOf(const std::vector<int>& value) { return Json(value).dump(); }
+template <typename E, typename = std::enable_if_t<std::is_enum_v<E>>>
+std::string TextOf(E value) {
+  return NameOf(value);
+}
+
+bool ParseText(const std::string& text, double* value) { return ParseDouble(text, value); }
+bool ParseText(const std::string& text, int* value) {
+  std::int64_t whole = 0;
+  if (!ParseInteger(text, &whole) || whole > std::numeric_limits<int>::max() ||
+      whole < std::numeric_limits<int>::min()) {
+    return false;
+  }
+  *value = static_cast<int>(whole);
+  return true;
+}
+bool ParseText(const std::string& text, uint64_t* value) {
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, *value);
+  return read.ec == std::errc() && read.ptr == end;
+}
+bool ParseText(const std::string& text, bool* value) {
+  for (const auto& [yes, no] :
+       {std::pair("true", "false"), std::pair("1", "0"), std::pair("yes", "no")}) {
+    if (text != yes && text != no) continue;
+    *value = text == yes;
+    return true;
+  }
+  return false;
+}
+bool ParseText(const std::string& text, std::string* value) {
+  *value = text;
+  return true;
+}
+bool ParseText(const std::string&, std::vector<int>*) { return false; }  // in files alone
+
+// The row of a field, whose flag and JSON follow from its type. must: what words have to be.
+template <typename T>
+Row FieldRow(const char* name, const char* json, OptionField<T> field, const char* help,
+             const char* must = "") {
+  Row row = WordsRow(name, OptionStage::kModel, help,
+                     [=](const std::string& text, FitOptions* o) -> MaybeError {
+                       if constexpr (std::is_enum_v<T>) {
+                         return ParseName("--" + std::string(name), text, &field(*o));
+                       } else {
+                         if (ParseText(text, &field(*o))) return std::nullopt;
+                         return BadOption(name, text, must);
+                       }
+                     });
+  row.json = json;
+  row.text = [field](const FitOptions& o) { return TextOf(OptionValue(field, o)); };
+  if constexpr (std::is_enum_v<T>) {
+    row.write = [text = row.text](const FitOptions& o) { return Json(text(o)); };
+    row.read = [=](const Json& value, FitOptions* o) {
+      if (MaybeError error = ParseName(name, value.get<std::string>(), &field(*o))) {
+        throw std::runtime_error(error->ToString());
+      }
+    };
+  } else {
+    row.write = [field](const FitOptions& o) { return Json(OptionValue(field, o)); };
+    row.read = [field](const Json& value, FitOptions* o) { field(*o) = value.get<T>(); };
+  }
+  return row;
+}
+
 Row NumberRow(const char* name, const char* json, OptionField<double> field, OptionRange range,
               const char* help) {
-  Row row;
-  row.name = name;
-  row.json = json;
-  row.help = help;
-  row.text = [field](const FitOptions& o) { return DoubleText(OptionValue(field, o)); };
-  row.apply = [=](const std::string& text, FitOptions* o) -> MaybeError {
-    if (ParseDouble(text, &field(*o))) return std::nullopt;
-    return BadOption(name, text, range.words);
-  };
+  Row row = FieldRow(name, json, field, help, range.words);
   row.violation = [=](const FitOptions& o) { return RangeViolation(range, OptionValue(field, o)); };
-  row.write = [field](const FitOptions& o) { return Json(OptionValue(field, o)); };
-  row.read = [field](const Json& json_value, FitOptions* o) { field(*o) = json_value; };
   return row;
 }
 
 // A whole number of at least 1.
 Row CountRow(const char* name, const char* json, OptionField<int> field, const char* help) {
-  Row row;
-  row.name = name;
-  row.json = json;
-  row.help = help;
-  row.text = [field](const FitOptions& o) { return std::to_string(OptionValue(field, o)); };
-  row.apply = [=](const std::string& text, FitOptions* o) -> MaybeError {
-    std::int64_t value = 0;
-    const bool whole = ParseInteger(text, &value) && value <= std::numeric_limits<int>::max() &&
-                       value >= std::numeric_limits<int>::min();
-    if (!whole) return BadOption(name, text, "must be a whole number of at least 1");
-    field(*o) = static_cast<int>(value);
-    return std::nullopt;
-  };
+  Row row = FieldRow(name, json, field, help, "must be a whole number of at least 1");
   row.violation = [field](const FitOptions& o) {
     return OptionValue(field, o) >= 1 ? "" : "must be positive";
   };
-  row.write = [field](const FitOptions& o) { return Json(OptionValue(field, o)); };
-  row.read = [field](const Json& json_value, FitOptions* o) { field(*o) = json_value; };
   return row;
 }
 
 // Yes or no.
-Row BoolRow(const char* name, const char* json, bool FitOptions::*field, const char* help) {
-  Row row = WordsRow(
-      name, OptionStage::kModel, help, [=](const std::string& text, FitOptions* o) -> MaybeError {
-        for (const auto& [yes, no] :
-             {std::pair("true", "false"), std::pair("1", "0"), std::pair("yes", "no")}) {
-          if (text != yes && text != no) continue;
-          o->*field = text == yes;
-          return std::nullopt;
-        }
-        return BadOption(name, text, "must be true or false");
-      });
+Row BoolRow(const char* name, const char* json, OptionField<bool> field, const char* help) {
+  Row row = FieldRow(name, json, field, help, "must be true or false");
   row.is_bool = true;
-  row.text = [field](const FitOptions& o) { return o.*field ? "true" : "false"; };
-  row.json = json;
-  row.write = [field](const FitOptions& o) { return Json(o.*field); };
-  row.read = [field](const Json& value, FitOptions* o) { o->*field = value; };
   return row;
 }
 
@@ -154,28 +188,11 @@ Row Stored(Row row) {
   return row;
 }
 
-// An enum by name.
-template <typename E>
-Row NameRow(const char* name, const char* json, OptionField<E> field, const char* help) {
-  Row row = WordsRow(name, OptionStage::kModel, help, [=](const std::string& text, FitOptions* o) {
-    return ParseName("--" + std::string(name), text, &field(*o));
-  });
-  row.json = json;
-  row.text = [field](const FitOptions& o) { return NameOf(OptionValue(field, o)); };
-  row.write = [text = row.text](const FitOptions& o) { return Json(text(o)); };
-  row.read = [=](const Json& value, FitOptions* o) {
-    if (MaybeError error = ParseName(name, value.get<std::string>(), &field(*o))) {
-      throw std::runtime_error(error->ToString());
-    }
-  };
-  return row;
-}
-
 // An enum that other options depend on, which `set` sets with it; absent in older files.
 template <typename E>
-Row NameRowWith(void (*set)(E, FitOptions*), const char* name, const char* json,
-                OptionField<E> field, const char* help) {
-  Row row = NameRow<E>(name, json, field, help);
+Row FieldRowWith(void (*set)(E, FitOptions*), const char* name, const char* json,
+                 OptionField<E> field, const char* help) {
+  Row row = FieldRow<E>(name, json, field, help);
   row.apply = [=](const std::string& text, FitOptions* o) -> MaybeError {
     E value{};
     if (MaybeError error = ParseName("--" + std::string(name), text, &value)) return error;
@@ -188,17 +205,15 @@ Row NameRowWith(void (*set)(E, FitOptions*), const char* name, const char* json,
 // What the model is.
 
 Row PresetRow() {
-  Row row = WordsRow(
-      "preset", OptionStage::kPreset,
+  Row row = FieldRow<std::string>(
+      "preset", "/preset", &FitOptions::preset,
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
       "tail, posture-relative recovery), group (tail with contact, pooled by setting; with feet "
       "that slide, linear self forces too), ldp (plain PD and friction from upright), or "
-      "ldp_published (LDP with all its networks, of one person or of groups)",
-      nullptr);
+      "ldp_published (LDP with all its networks, of one person or of groups)");
+  row.stage = OptionStage::kPreset;
   row.text = [](const FitOptions&) { return std::string(kAutoPreset); };
-  row.json = "/preset";
-  row.write = [](const FitOptions& o) { return Json(o.preset); };
-  row.read = [](const Json& json, FitOptions* o) { o->preset = json; };
+  row.apply = nullptr;
   return row;
 }
 
@@ -211,7 +226,7 @@ void SetLearned(const LearnedTerms& network, FitOptions* o) {
 }
 
 Row StanceRow() {
-  Row row = NameRow<Stance>(
+  Row row = FieldRow<Stance>(
       "stance", "/stance", &ModelOptions::stance,
       "behaviour of the feet: slide (the cart moves under any force), steps (they hold until the "
       "capture point leaves their support, then one of them steps), fixed (they hold), or auto "
@@ -321,37 +336,37 @@ std::vector<Row> ModelRows() {
       StanceRow(),
       SelfForceRow(),
       RodRow(),
-      Decided(NameRow<Posture>("posture", "/posture", &ModelOptions::posture,
-                               "balance error measured from: upright or initial")),
-      MayBeAbsent(Decided(NameRow<Directions>(
+      Decided(FieldRow<Posture>("posture", "/posture", &ModelOptions::posture,
+                                "balance error measured from: upright or initial")),
+      MayBeAbsent(Decided(FieldRow<Directions>(
           "directions", "/directions", &ModelOptions::directions,
           "isotropic (people answer alike in all directions; fitted along each push), body (along "
           "what people face, sideways parameters free where forward ones are) or axes (those of "
           "the file; sideways parameters as the preset has them)"))),
-      Decided(
-          NameRow<GainScaling>("gain_scaling", "/gain_scaling", &ModelOptions::gain_scaling,
-                               "gains of other bodies: none, mass, or body (mass and rod length)")),
-      Decided(NameRow<FrictionKind>("friction", "/friction", &ModelOptions::friction,
-                                    AnyName<FrictionKind>().c_str())),
-      Stored(NameRow<PushUse>("push", "/push", &ModelOptions::push, "")),
-      Decided(NameRow<PushTail>("push_tail", "/push_tail", &ModelOptions::push_tail,
-                                "none or exponential")),
-      NameRowWith<Delay>(
+      Decided(FieldRow<GainScaling>(
+          "gain_scaling", "/gain_scaling", &ModelOptions::gain_scaling,
+          "gains of other bodies: none, mass, or body (mass and rod length)")),
+      Decided(FieldRow<FrictionKind>("friction", "/friction", &ModelOptions::friction,
+                                     AnyName<FrictionKind>().c_str())),
+      Stored(FieldRow<PushUse>("push", "/push", &ModelOptions::push, "")),
+      Decided(FieldRow<PushTail>("push_tail", "/push_tail", &ModelOptions::push_tail,
+                                 "none or exponential")),
+      FieldRowWith<Delay>(
           SetDelay, "delay", "/delay", &ModelOptions::delay,
           "reaction delay of active feedback: none, one (of all of it) or ankle_and_step (the "
           "feet's own); reaction_delay and the passive shares of stiffness and damping are then "
           "fitted"),
-      NameRowWith<BodyModel>(
+      FieldRowWith<BodyModel>(
           SetBody, "body", "/body", &ModelOptions::body,
           "where a body's mass is: ldp (nine tenths at the hip; of who stands, an average body's), "
           "anthropometric (by the recorded segments, de Leva 1996), or table (cart_share, "
           "com_height, gyration_radius and push_gain, of robots and rigs: fixed or fitted)"),
-      Stored(NameRow<CartDerivative>("cart_derivative", "/cart_derivative",
-                                     &ModelOptions::cart_derivative, "")),
+      Stored(FieldRow<CartDerivative>("cart_derivative", "/cart_derivative",
+                                      &ModelOptions::cart_derivative, "")),
       InteractionRow(),
-      Stored(MayBeAbsent(NameRow<ProcessNoise>("process_noise", "/process_noise",
-                                               &ModelOptions::process_noise, ""))),
-      NameRowWith<Likelihood>(
+      Stored(MayBeAbsent(FieldRow<ProcessNoise>("process_noise", "/process_noise",
+                                                &ModelOptions::process_noise, ""))),
+      FieldRowWith<Likelihood>(
           SetLikelihood, "likelihood", "/likelihood", &O::likelihood,
           "what a fit maximizes: trajectory (whole rollouts), or, under process noise, transition "
           "(each measured state given the one before) or innovation (each measurement given all "
@@ -364,7 +379,7 @@ std::vector<Row> ModelRows() {
 // How the recordings, the priors and the demands on the person weigh.
 
 Row LossRow() {
-  Row row = NameRow<FrameLoss>(
+  Row row = FieldRow<FrameLoss>(
       "loss", "/sigmas/loss", &ResidualSigmas::loss,
       "what is minimized: hip (positions of the hip, velocities, angles and rates, robust by "
       "frame), or ldp (LDP's Eq. 6: absolute errors of all states and velocities, but for the rate "
@@ -380,20 +395,15 @@ Row LossRow() {
 }
 
 Row PoolByRow() {
-  Row row = WordsRow("pool_by", OptionStage::kModel,
-                     "what pooled parameters may differ by: subject, setting, condition or any "
-                     "other label of the manifest; a recording without the label takes its setting",
-                     [](const std::string& given, FitOptions* o) -> MaybeError {
-                       if (given.empty()) {
-                         return BadOption("pool_by", given, "must be subject or a label");
-                       }
-                       o->pool_by = given;
-                       return std::nullopt;
-                     });
-  row.text = [](const FitOptions& o) { return o.pool_by; };
-  row.json = "/pool_by";
-  row.write = [](const FitOptions& o) { return Json(o.pool_by); };
-  row.read = [](const Json& json, FitOptions* o) { o->pool_by = json.get<std::string>(); };
+  Row row = FieldRow<std::string>(
+      "pool_by", "/pool_by", &FitOptions::pool_by,
+      "what pooled parameters may differ by: subject, setting, condition or any other label of the "
+      "manifest; a recording without the label takes its setting");
+  row.apply = [](const std::string& given, FitOptions* o) -> MaybeError {
+    if (given.empty()) return BadOption("pool_by", given, "must be subject or a label");
+    o->pool_by = given;
+    return std::nullopt;
+  };
   return row;
 }
 
@@ -449,42 +459,21 @@ std::vector<Row> WeightRows() {
 // Where the solve starts and ends.
 
 Row HorizonsRow() {
-  Row row;
-  row.name = "horizons";
-  row.text = [](const FitOptions& o) { return Json(o.horizons).dump(); };
+  Row row = FieldRow<std::vector<int>>("horizons", "/horizons", &FitOptions::horizons, "");
   row.violation = [](const FitOptions& o) {
     const bool sound = std::all_of(o.horizons.begin(), o.horizons.end(),
                                    [](int frames) { return frames == 0 || frames >= 2; });
     return sound ? "" : "must be numbers of frames of at least 2";
   };
-  row.json = "/horizons";
-  row.write = [](const FitOptions& o) { return Json(o.horizons); };
-  row.read = [](const Json& json, FitOptions* o) { o->horizons = json.get<std::vector<int>>(); };
   return Stored(row);
-}
-
-Row SeedRow() {
-  Row row = WordsRow("seed", OptionStage::kModel, "seed of all random numbers",
-                     [](const std::string& text, FitOptions* o) -> MaybeError {
-                       const char* const end = text.data() + text.size();
-                       const auto read = std::from_chars(text.data(), end, o->seed);
-                       if (read.ec != std::errc() || read.ptr != end) {
-                         return BadOption("seed", text, "must be a whole number of at least 0");
-                       }
-                       return std::nullopt;
-                     });
-  row.text = [](const FitOptions& o) { return std::to_string(o.seed); };
-  row.json = "/seed";
-  row.write = [](const FitOptions& o) { return Json(o.seed); };
-  row.read = [](const Json& json, FitOptions* o) { o->seed = json; };
-  return row;
 }
 
 std::vector<Row> SolverRows() {
   using O = FitOptions;
   return {
       HorizonsRow(),
-      SeedRow(),
+      FieldRow<uint64_t>("seed", "/seed", &O::seed, "seed of all random numbers",
+                         "must be a whole number of at least 0"),
       CountRow("num_threads", "", &O::num_threads, "threads"),
       CountRow("max_iterations", "/max_iterations", &O::max_iterations, "iterations of each stage"),
       Stored(NumberRow("function_tolerance", "/function_tolerance", &O::function_tolerance,
@@ -498,39 +487,23 @@ std::vector<Row> SolverRows() {
 
 // Edits of the table of parameters.
 
-Row ContrastRow() {
-  Row row = WordsRow(
-      "contrast", OptionStage::kTable,
-      "a label with two values (patients and controls, eyes open and closed, before and after), of "
-      "a recording or of a person in the manifest's subjects: the difference of every free "
-      "parameter between them is fitted",
-      [](const std::string& text, FitOptions* o) -> MaybeError {
-        o->contrast = text;
-        return std::nullopt;
-      });
-  row.text = [](const FitOptions& o) { return o.contrast; };
-  row.json = "/contrast";
-  row.write = [](const FitOptions& o) { return Json(o.contrast); };
-  row.read = [](const Json& json, FitOptions* o) { o->contrast = json.get<std::string>(); };
-  return MayBeAbsent(row);
+Row AtTable(Row row) {
+  row.stage = OptionStage::kTable;
+  return row;
 }
 
 Row CovariateRow() {
-  Row row = WordsRow(
-      "covariate", OptionStage::kTable,
+  Row row = FieldRow<std::string>(
+      "covariate", "/covariate", &FitOptions::covariates,
       "numbers of people that parameters follow, as in 'Kp_theta ~ age + height; Kd_theta ~ age': "
-      "keys of the manifest's subjects, mass (kg) or rod (m)",
-      [](const std::string& text, FitOptions* o) -> MaybeError {
-        const Result<std::vector<CovariatesOfParameter>> chosen = ParseCovariates(text);
-        if (!chosen.ok()) return chosen.error();
-        o->covariates = text;
-        return std::nullopt;
-      });
-  row.text = [](const FitOptions& o) { return o.covariates; };
-  row.json = "/covariate";
-  row.write = [](const FitOptions& o) { return Json(o.covariates); };
-  row.read = [](const Json& json, FitOptions* o) { o->covariates = json.get<std::string>(); };
-  return MayBeAbsent(row);
+      "keys of the manifest's subjects, mass (kg) or rod (m)");
+  row.apply = [](const std::string& text, FitOptions* o) -> MaybeError {
+    const Result<std::vector<CovariatesOfParameter>> chosen = ParseCovariates(text);
+    if (!chosen.ok()) return chosen.error();
+    o->covariates = text;
+    return std::nullopt;
+  };
+  return row;
 }
 
 Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
@@ -543,8 +516,12 @@ Row EditRow(const char* name, std::string TableEdits::*list, const char* help) {
 
 std::vector<Row> TableRows() {
   return {
-      ContrastRow(),
-      CovariateRow(),
+      MayBeAbsent(AtTable(FieldRow<std::string>(
+          "contrast", "/contrast", &FitOptions::contrast,
+          "a label with two values (patients and controls, eyes open and closed, before and "
+          "after), of a recording or of a person in the manifest's subjects: the difference of "
+          "every free parameter between them is fitted"))),
+      MayBeAbsent(AtTable(CovariateRow())),
       EditRow("free", &TableEdits::free, "parameters fitted: name or name=start, comma-separated"),
       EditRow("fix", &TableEdits::fix,
               "parameters held fixed: name or name=value, comma-separated"),

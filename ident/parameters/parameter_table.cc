@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "datasets/files/names.h"
@@ -223,7 +224,37 @@ MaybeError AddPriors(const std::string& list, ParameterTable* table) {
   return std::nullopt;
 }
 
+Error Misspelt(const std::string& part) {
+  return Error{"--covariate: " + Quoted(part) +
+               " is not PARAMETER ~ KEY + KEY, as in 'Kp_theta ~ age + height; Kd_theta ~ age'"};
+}
+
 }  // namespace
+
+Result<std::vector<CovariatesOfParameter>> ParseCovariates(const std::string& text) {
+  std::vector<CovariatesOfParameter> all;
+  std::set<std::string> seen;
+  for (const std::string& entry : SplitList(text, ';')) {
+    const std::string part = std::string(Trimmed(entry));
+    if (part.empty()) continue;
+    const size_t tilde = part.find('~');
+    if (tilde == std::string::npos || part.find('~', tilde + 1) != std::string::npos) {
+      return Misspelt(part);
+    }
+    CovariatesOfParameter one{std::string(Trimmed(part.substr(0, tilde))), {}};
+    const std::string keys = std::string(Trimmed(part.substr(tilde + 1)));
+    if (one.parameter.empty() || keys.empty() || keys.back() == '+') return Misspelt(part);
+    for (const std::string& word : SplitList(keys, '+')) {
+      one.keys.push_back(std::string(Trimmed(word)));
+      if (one.keys.back().empty()) return Misspelt(part);
+      if (!seen.insert(one.parameter + "~" + one.keys.back()).second) {
+        return Error{"--covariate names " + one.keys.back() + " of " + one.parameter + " twice"};
+      }
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
 
 Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const std::string& flag) {
   std::vector<NamedValue> values;

@@ -36,12 +36,12 @@ struct ParameterSpec {
   Transform transform = Transform::kIdentity;
   bool free = false;
   bool pooled = false;  // may deviate by subject, setting or condition
-  // Of a pooled one: standard deviation of a unit's deviation, as PoolingSigma has it.
+  // Standard deviation of a unit's deviation where it is pooled, as PoolingSigma has it.
   double pooling_sigma = kFirstPoolingSigma;
   std::optional<Prior> prior;
   // Whose value it has; none where a flag names the parameter itself.
   std::optional<Parameter> tied_to;
-  // Of a slope: which parameter it moves, and by what (residuals/parameter_map.h).
+  // Which parameter a slope moves, and by what (residuals/parameter_map.h).
   struct SlopeOf {
     Parameter target;
     Covariate covariate;
@@ -122,13 +122,23 @@ struct NamedValue {
 };
 Result<std::vector<NamedValue>> ParseAssignments(const std::string& text, const std::string& flag);
 
+// The covariates of one parameter.
+struct CovariatesOfParameter {
+  std::string parameter;
+  std::vector<std::string> keys;
+};
+
+// "Kp_theta ~ age + height; Kd_theta ~ age". Errors: a part without '~' or without a name on
+// either side, the same covariate of a parameter twice.
+Result<std::vector<CovariatesOfParameter>> ParseCovariates(const std::string& text);
+
 // Every parameter in words, from its row (models/model_rows.h).
 
 // Name, symbol (in the equation that heads the file of its term), unit, value where no preset sets
 // one, bounds, meaning, and when to free it; a row each.
 TextTable ParameterGlossary();
 
-// The same as a table in Markdown.
+// The glossary as a table in Markdown.
 std::string ParameterGlossaryMarkdown();
 
 // A user's own force laws in a fit.
@@ -141,7 +151,7 @@ using ForceLaws = std::vector<std::shared_ptr<const ForceLaw>>;
 MaybeError AddForceLaw(std::shared_ptr<const ForceLaw> law, ModelOptions* model,
                        ParameterTable* table);
 
-// Those of `laws` that a model file names, added in its order. Errors: one that is not among them.
+// Adds the laws that a model file names, in its order. Errors: one that is not among `laws`.
 MaybeError AddNamedLaws(const std::vector<std::string>& names, const ForceLaws& laws,
                         ModelOptions* model, ParameterTable* table);
 

@@ -49,7 +49,7 @@ FitOptions GroupPreset() {
   o.table[kKdTheta] = BaseTable()[kKdTheta];
   // Free, it predicts no better (hipADE 0.1000 against 0.1009 m, mean of three sets of folds).
   o.table[kTailBase] = BaseTable()[kTailBase];
-  // Of a line, less leaves somebody a little too fast.
+  // A smaller weight leaves somebody in a line a little too fast.
   o.settling_weight = 80.0;
   o.pool = "all,-mu";  // the same floor: by setting, mu predicts no better and turns negative
   // Estimated, most spreads are nil and the fit is slow to settle.
@@ -149,7 +149,7 @@ void SetStance(Stance stance, FitOptions* options) {
   if (preset != nullptr && preset->pooled_where_feet_step != nullptr) {
     options->pool = preset->pooled_where_feet_step;
   }
-  // Who stands gives way about the ankles, not at them: people push at the hip, or above. At 1.15
+  // People who stand turn about the ankles: contact is at the hip, or above. At 1.15
   // and 1.25 groups are predicted better, and rows no longer settle in time (models/README.md).
   table[kContactHeight].nominal = 0.95;
   table[kSupportBack].nominal = 0.08;

@@ -36,7 +36,7 @@ std::string PresetFor(const std::string& name, const std::vector<PendulumRecordi
 // Complete and ready for PrepareFit. Errors: no such preset (auto is none before PresetFor).
 Result<FitOptions> MakePreset(const std::string& name);
 
-// The same before FreeTerms and PoolParameters: only the preset's own parameters are free.
+// As MakePreset before FreeTerms and PoolParameters: only the preset's own parameters are free.
 Result<FitOptions> StartPreset(const std::string& name);
 
 // Frees the parameters of the terms that the options have, with weak priors as wide as their

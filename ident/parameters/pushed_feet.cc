@@ -7,8 +7,8 @@
 namespace pushid {
 namespace {
 
-// Of all: more of them are everybody. In the published recordings of single people 30 of 32 step,
-// in those of groups 48 of the 49 who are pushed.
+// Share of the pushes beyond which everybody moves. In the published recordings of single people 30
+// of 32 step, in those of groups 48 of the 49 who are pushed.
 constexpr double kEverybody = 0.75;
 
 std::string OfAll(const PushedFeet& feet) {

@@ -19,8 +19,8 @@ inline constexpr double kSettlingImpulses[] = {4.0, 25.0, 80.0};  // N s, on one
 inline constexpr int kLinePeople = 5;                             // in a line, where people touch
 inline constexpr double kLineImpulses[] = {4.0, 20.0, 80.0};      // N s, on the first in a line
 
-// Those of them that people are held to: of one person, and where people touch also of a line. Feet
-// that hold, whatever happens, are held to the weakest: nobody knows when they would have stepped.
+// The scenes that people are held to: of one person, and where people touch also of a line. Feet
+// that never move are held to the weakest push: nobody knows when they would have stepped.
 std::vector<std::vector<Scene>> SettlingScenes(const ModelOptions& options);
 
 inline constexpr double kBehind = 0.05;  // m behind the start that are worth a warning
@@ -70,5 +70,45 @@ struct Behaviour {
 double SettlingSeconds(const ModelOptions& options, const ParameterSet<double>& parameters);
 
 Behaviour ComputeBehaviour(const ModelOptions& options, const ParameterSet<double>& parameters);
+
+inline constexpr const char* kSlowToSettleText = "slow to settle";
+inline constexpr const char* kSettledText = "settled";
+inline constexpr const char* kFellText = "fell";
+
+// The settling simulations end before a slow mode has grown, and a negative drag may be held by
+// other forces: a person can settle in all of them and be self-propelling all the same.
+enum class Verdict {
+  kSettles,
+  kSlowToSettle,           // not driven, but not at rest when it is judged
+  kSelfPropelling,         // does not settle, and the fitted forces are why
+  kUnstableThoughSettled,  // settles in the simulations, yet a free mode at rest grows
+  kRodRunsAway,            // the same, with a rod that moves
+  kNegativeDrag            // settles and is stable, yet c_x is below zero
+};
+Verdict VerdictOf(const Behaviour& behaviour, const ModelOptions& options);
+
+// "slow to settle", "self-propelling"; empty where the person settles.
+std::string VerdictName(Verdict verdict);
+
+// "the fitted forces drive the person after a push": no capital, no full stop.
+std::string VerdictSentence(Verdict verdict, const Behaviour& behaviour, const ModelOptions& model);
+
+// As it begins a sentence.
+std::string Capitalized(std::string text);
+
+// The flag that mends it, for a fit with these options; empty where the person settles.
+std::string VerdictRemedy(Verdict verdict, const ModelOptions& options);
+
+// The settling simulations and the fastest free mode, on lines of their own.
+std::string SettlingText(const Behaviour& behaviour, const ModelOptions& model);
+std::string FreeModeText(const Behaviour& behaviour);
+
+// "row_1: 5 people in a line, 80 kg after 20 N s". Where settings differ, those without one stand
+// for the shared values and say so.
+bool SettingsDiffer(const Behaviour& behaviour);
+std::string SettlingSimulationName(const SettlingSimulation& d, bool settings_differ);
+
+// "2 s": when a settling simulation is judged.
+std::string WaitText(const ModelOptions& model);
 
 }  // namespace pushid

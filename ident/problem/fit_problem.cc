@@ -71,7 +71,7 @@ FitPoint FitProblem::NominalPoint() const {
     if (map_.num_deviations > 0) {
       for (const std::string& unit : PoolingUnits(recording, map_.pool_by)) {
         const auto start = options_.start_deviations.find(unit);
-        // Of options that pool something else since, those starts mean other parameters.
+        // Starts of options that pool something else since mean other parameters.
         const bool known = start != options_.start_deviations.end() &&
                            static_cast<int>(start->second.size()) == map_.num_deviations;
         point.unit[unit] = known ? start->second : std::vector<double>(map_.num_deviations, 0.0);
@@ -102,6 +102,20 @@ ParameterSet<double> FitProblem::Parameters(const FitPoint& point, const std::st
   const auto found = point.unit.find(unit);
   return map_.Apply<double>(point.shared.data(),
                             found == point.unit.end() ? nullptr : found->second.data());
+}
+
+size_t FitProblem::FittedIndex(Parameter id) const {
+  return static_cast<size_t>(
+      std::find_if(map_.fitted.begin(), map_.fitted.end(),
+                   [id](const FittedParameter& f) { return f.parameter == id; }) -
+      map_.fitted.begin());
+}
+
+std::vector<double> FitProblem::SharedValues(const FitPoint& point) const {
+  const ParameterSet<double> parameters = Parameters(point, "");
+  std::vector<double> values;
+  for (const FittedParameter& f : map_.fitted) values.push_back(parameters[f.parameter]);
+  return values;
 }
 
 ModelOptions FitProblem::ModelAt(const FitPoint& point) const {
@@ -229,7 +243,7 @@ void FitProblem::AddParameterBlocks(FitPoint* point, int num_threads, Built* bui
   for (auto& [index, values] : point->velocity) add(&values);
   if (map_.num_weights > 0) add(&point->weights);
   for (size_t i = 0; i < map_.fitted.size(); ++i) {
-    const ParameterSpec& spec = options_.table[map_.fitted[i].parameter];
+    const ParameterSpec& spec = Spec(i);
     const int index = static_cast<int>(i);
     built->problem->SetParameterLowerBound(point->shared.data(), index,
                                            ToFitted(spec.transform, spec.lower));
@@ -373,7 +387,7 @@ void AddPrior(const Family& family, const Place& at, int i, double mean, double 
 
 void AddPriors(const Family& family, const Place& at) {
   for (int i = 0; i < static_cast<int>(at.point->shared.size()); ++i) {
-    const ParameterSpec& spec = at.problem.options().table[at.problem.map().fitted[i].parameter];
+    const ParameterSpec& spec = at.problem.Spec(i);
     if (!spec.prior) continue;
     AddPrior(family, at, i, spec.prior->mean,
              spec.prior->sigma / TransformSlope(spec.transform, spec.prior->mean));
@@ -404,7 +418,7 @@ void AddNetworkPrior(const Family& family, const Place& at) {
 // does not move to its bounds, from which later stages may not return.
 void AddStagePriors(const Family& family, const Place& at) {
   for (int i = 0; i < static_cast<int>(at.point->shared.size()); ++i) {
-    const ParameterSpec& spec = at.problem.options().table[at.problem.map().fitted[i].parameter];
+    const ParameterSpec& spec = at.problem.Spec(i);
     if (spec.prior) continue;
     AddPrior(family, at, i, spec.nominal,
              spec.transform == Transform::kIdentity

@@ -71,7 +71,7 @@ struct BuiltProblem {
   int rests_left_out = 0;  // settling simulations that could not be rolled out to their end here
 
   void Add(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on, int cluster);
-  // The same for one that costs a rollout: once a point, and over threads where there are any.
+  // As Add, for a cost that rolls out: evaluated once a point, over threads where there are any.
   void AddRollout(std::unique_ptr<ceres::CostFunction> cost, const std::vector<double*>& on,
                   int cluster);
 };
@@ -96,6 +96,12 @@ class FitProblem {
   void set_gradient_tolerance(double tolerance) { options_.gradient_tolerance = tolerance; }
 
   const ParameterMap& map() const { return map_; }
+  // The table's row of a fitted parameter.
+  const ParameterSpec& Spec(size_t fitted) const {
+    return options_.table[map_.fitted[fitted].parameter];
+  }
+  // Where a parameter stands among the fitted ones; as many as these are where it is held.
+  size_t FittedIndex(Parameter id) const;
   // As the model sees them: in axes along their pushes, where it is the same in all directions.
   const std::vector<PendulumRecording>& recordings() const { return *recordings_; }
   const FitOptions& options() const { return options_; }
@@ -104,10 +110,9 @@ class FitProblem {
   int Frames(int recording, int horizon) const {
     return horizon == 0 ? 0 : horizon + PushFrame(recordings()[recording]);
   }
-  // Of a recording's residuals in the cost, rolled out over `horizon` frames (0: all).
+  // The factor on a recording's residuals, rolled out over `horizon` frames (0: all).
   double Weight(int recording, int horizon) const;
   const std::vector<int>& counts() const { return counts_; }  // empty: each once
-  // How often a recording counts.
   int Count(int recording) const { return counts_.empty() ? 1 : counts_[recording]; }
 
   // Shared values at the table's nominal values, deviations where the options start them,
@@ -119,6 +124,8 @@ class FitProblem {
 
   // The parameters of a unit (any name, even one that was not fitted) at a point.
   ParameterSet<double> Parameters(const FitPoint& point, const std::string& unit) const;
+  // The fitted parameters without deviations, in natural units.
+  std::vector<double> SharedValues(const FitPoint& point) const;
 
   // The options with the network of a point.
   ModelOptions ModelAt(const FitPoint& point) const;
@@ -134,8 +141,7 @@ class FitProblem {
   // where the likelihood needs no rollout.
   std::vector<FailedRollout> Failures(const FitPoint& point, int horizon) const;
 
-  // Of all recordings, as they count, under the likelihood of the options, which is none of whole
-  // rollouts.
+  // The deviance of all recordings, as they count, by a likelihood of single steps.
   Deviance DevianceAt(const FitPoint& point) const;
 
   // How many residuals of a recording are of motion; those of platforms follow.
@@ -231,7 +237,7 @@ struct FamilyPlace {
   int recording = -1;     // of a family of recordings
   std::string unit = {};  // of a family of units; empty: the shared parameters
 
-  // Of the recording, as long as it stays within the domain; no problem: not even one frame.
+  // The recording's rollout while it stays within the domain; no problem: not even one frame.
   const RolloutAt& rollout() const { return built->rollouts[recording]; }
 };
 

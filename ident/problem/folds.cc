@@ -101,7 +101,7 @@ Result<std::vector<Fold>> DrawFolds(const std::vector<PendulumRecording>& record
   return folds;
 }
 
-// Who fits a copy of what is held out has seen it.
+// A fit to a copy of what is held out has seen it.
 void HoldOutCopies(const std::vector<PendulumRecording>& recordings, std::vector<Fold>* folds) {
   std::vector<int> root = CopyOf(recordings);
   for (size_t i = 0; i < root.size(); ++i) root[i] = root[i] < 0 ? static_cast<int>(i) : root[i];

@@ -39,7 +39,7 @@ Result<std::vector<Fold>> MakeFolds(const std::vector<PendulumRecording>& record
 // The indices below `total` that are not held out, ascending.
 std::vector<int> Others(const std::vector<int>& held_out, int total);
 
-// Those of the positions, or none where there is nothing to pick from.
+// The values at these positions; none where there is nothing to pick from.
 template <typename Value>
 std::vector<Value> Picked(const std::vector<Value>& from, const std::vector<int>& positions) {
   std::vector<Value> picked;

@@ -82,7 +82,7 @@ LinearLoop::LinearLoop(const ModelOptions& options, const Body& person,
   linear[kCq] = linear[kDq] = 0.0;
   const SelfForce self(upright, person, Vector4<double>::Zero(), UprightRest<double>::kStep);
   const bool late = options.delay != Delay::kNone;
-  // Of the whole person at once, to be taken apart below.
+  // Derivatives of the whole person at once, to be taken apart below.
   const auto by = [&](RestInput input) {
     return InPlane(LinearizeAtRest(options, self, linear, input), plane);
   };

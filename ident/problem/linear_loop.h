@@ -41,7 +41,7 @@ constexpr EnumNames<Disturbance, 3> Names(Disturbance) {
            {"force", Disturbance::kForce}}};
 }
 
-// Of one oscillation, per unit of the disturbance.
+// Amplitudes of one oscillation, per unit of the disturbance.
 struct LoopAnswer {
   std::complex<double> angle;   // rad, of the body in the laboratory
   std::complex<double> torque;  // N m, of the ankles (and of all that acts there but gravity)
@@ -51,7 +51,7 @@ struct LoopNumbers {
   double stiffness_ratio = 0.0;  // of the ankles' whole stiffness to m g l of the body that turns
   bool stable = false;
   double fastest_growth = 0.0;  // 1/s, largest real part of the modes; not of the free place
-  // Of the oscillating pair that dies out last (or grows fastest); none where nothing oscillates.
+  // The oscillating pair that dies out last (or grows fastest); none where nothing oscillates.
   std::optional<double> damping_ratio, natural_hz;
   // None where the loop is unstable, where |L| never is 1 (phase, delay), or is never real and
   // negative on that side (gain).

@@ -33,7 +33,7 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
     ok_ = cost_->Evaluate(blocks_.data(), residuals_.data(),
                           with_jacobians ? jacobians.data() : nullptr);
   }
-  // The same of a rollout in lanes, whose rows are told when they are asked for.
+  // As above, for a rollout in lanes, whose rows are made when Ceres asks for them.
   void Prepare(RolloutSums sums, bool with_jacobians) {
     sums_ = std::move(sums);
     Remember(with_jacobians);

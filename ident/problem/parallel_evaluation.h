@@ -28,13 +28,13 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
                                             const std::vector<double*>& blocks);
   // Whose constant blocks need no derivatives.
   void set_problem(const ceres::Problem* problem) { problem_ = problem; }
-  // Of rollouts that are wrapped.
+  // The groups of the rollouts that are wrapped.
   void set_side_by_side(std::shared_ptr<const std::vector<SideBySide>> groups) {
     side_by_side_ = std::move(groups);
   }
 
-  // Of what Wrap made of a rollout in lanes: the rollout, and its sums at the last preparation.
-  // Null of other cost functions. For summed_cost.h, which adds sums up without rows between.
+  // The rollout in lanes that Wrap was given, and its sums at the last preparation; null for other
+  // cost functions. summed_cost.h adds sums up without rows between.
   static const RolloutProblem* ProblemOf(const ceres::CostFunction* cost);
   static const RolloutSums* SumsOf(const ceres::CostFunction* cost);
 

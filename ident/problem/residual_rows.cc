@@ -137,12 +137,13 @@ std::vector<RowBlock> RowBlocksOf(const BuiltProblem& built, bool robust) {
 
 }  // namespace
 
-std::vector<int> ResidualRows::RowsOf(int cluster) const {
-  std::vector<int> rows;
-  for (int row = 0; row < static_cast<int>(cluster_of_row.size()); ++row) {
-    if (cluster_of_row[row] == cluster) rows.push_back(row);
-  }
-  return rows;
+Eigen::MatrixXd ResidualRows::Information(const std::vector<int>& rows) const {
+  const Eigen::MatrixXd own = jacobian(rows, Eigen::all);
+  return own.transpose() * own;
+}
+
+Eigen::VectorXd ResidualRows::Gradient(const std::vector<int>& rows) const {
+  return jacobian(rows, Eigen::all).transpose() * residuals(rows);
 }
 
 ResidualRows EvaluateRows(const BuiltProblem& built, bool robust) {
@@ -209,7 +210,7 @@ ResidualsByRecording ResidualsOf(const std::vector<RolloutAt>& rollouts) {
   return raw;
 }
 
-Eigen::Map<const Eigen::VectorXd> AsVector(const std::vector<double>& values) {
+Eigen::Map<const Eigen::VectorXd> Mapped(const std::vector<double>& values) {
   return {values.data(), static_cast<Index>(values.size())};
 }
 
@@ -236,11 +237,50 @@ class RowsOfRecordings {
  public:
   // What it is made of must outlive it.
   RowsOfRecordings(const FitProblem& problem, const FitPoint& point,
-                   const std::vector<Assumption>& assumptions);
+                   const std::vector<Assumption>& assumptions)
+      : problem_(problem),
+        here_{problem.options().model, problem.map(), point},
+        unit_(Units(FittedColumns(problem, point))) {
+    Index next = 0;
+    const auto add = [this, &next](const std::vector<double>& block) {
+      first_[block.data()] = next;
+      next += static_cast<Index>(block.size());
+    };
+    add(here_.point.shared);
+    for (const auto& [unit, block] : here_.point.unit) add(block);
+    for (const auto& [recording, block] : here_.point.velocity) add(block);
+    const std::vector<double> flat = point.Flat();
+    for (size_t c = 0; c < flat.size(); ++c) {
+      std::vector<double> moved = flat;
+      columns_.push_back({here_, kStep * unit_[static_cast<Index>(c)], nullptr});
+      moved[c] += columns_.back().step;
+      columns_.back().seen.point.SetFlat(moved);
+    }
+    for (const Assumption& assumption : assumptions) {
+      columns_.push_back({here_, assumption.step, &assumption});
+      Seen& seen = columns_.back().seen;
+      for (const auto& [index, shift] : assumption.along) seen.point.shared[index] += shift;
+      if (assumption.of_options == nullptr) continue;
+      FitOptions options = problem.options();
+      assumption.of_options(assumption.step, &options);
+      seen.model = options.model;
+      seen.map.values = options.table.Values();
+    }
+  }
 
   Index num_estimates() const { return unit_.size(); }
+
   // From any thread.
-  RawRows Of(int index);
+  RawRows Of(int index) {
+    const RolloutAt here = Rollout(&here_, problem_.recordings()[index], index);
+    RawRows rows;
+    if (!HasLanes(*here.problem)) {
+      rows = BySensitivities(here);
+      if (rows.residuals.size() == 0) return rows;
+    }
+    AddDifferences(here, index, &rows);
+    return rows;
+  }
 
  private:
   // What a fit sees of a recording besides itself.
@@ -255,13 +295,107 @@ class RowsOfRecordings {
     double step;
     const Assumption* assumption;
   };
-  RolloutAt Rollout(Seen* seen, const PendulumRecording& recording, int index) const;
-  Seen Under(const Assumption& assumption) const;
-  std::vector<std::pair<Index, Index>> OwnColumns(const RolloutAt& here) const;
-  RawRows BySensitivities(const RolloutAt& here) const;
-  void AddDifferences(const RolloutAt& here, int index, RawRows* rows);
+
+  RolloutAt Rollout(Seen* seen, const PendulumRecording& recording, int index) const {
+    return {MakeRolloutProblem(recording, seen->model, seen->map,
+                               WithoutRobustLoss(problem_.options().sigmas), 1.0, 0),
+            problem_.RecordingBlocks(&seen->point, index)};
+  }
+
+  // Columns of the fit, each with its place among those of the recording's blocks; none on bounds.
+  std::vector<std::pair<Index, Index>> OwnColumns(const RolloutAt& here) const {
+    std::vector<std::pair<Index, Index>> columns;
+    const std::vector<int> sizes = here.problem->layout.BlockSizes();
+    Index in_blocks = 0;
+    for (size_t b = 0; b < sizes.size(); ++b) {
+      const Index first = first_.at(here.blocks[b]);
+      for (Index c = first; c < first + sizes[b]; ++c, ++in_blocks) {
+        if (unit_[c] > 0.0) columns.emplace_back(c, in_blocks);
+      }
+    }
+    return columns;
+  }
+
+  RawRows BySensitivities(const RolloutAt& here) const {
+    const RolloutProblem& problem = *here.problem;
+    RawRows rows;
+    rows.residuals.resize(problem.num_residuals());
+    const Index acting = problem.layout.num_acting();
+    RowMajorMatrix by_acting(rows.residuals.size(), acting);
+    Index row = 0;
+    const auto add = [&](int, int, const auto& residual, const auto* by_column) {
+      rows.residuals.segment(row, residual.size()) = residual;
+      by_acting.middleRows(row, residual.size()) = by_column->leftCols(acting);
+      row += residual.size();
+    };
+    if (!VisitFrames(problem, here.blocks.data(), Derivatives::kAll, add, add).ok) return {};
+    const RowMajorMatrix by_blocks = ActingColumns(problem.layout).Expand(by_acting);
+    std::vector<Index> in_blocks;
+    for (const auto& [column, in_block] : OwnColumns(here)) {
+      rows.columns.push_back(column);
+      in_blocks.push_back(in_block);
+    }
+    rows.by_column = by_blocks(Eigen::all, in_blocks);
+    return rows;
+  }
+
+  // What *rows does not hold yet. A column whose changed rollout fails is left out.
+  void AddDifferences(const RolloutAt& here, int index, RawRows* rows) {
+    const bool none = rows->residuals.size() == 0;
+    std::vector<RolloutAt> rollouts;
+    std::vector<Index> columns;
+    if (none) {
+      rollouts.push_back(here);
+      for (const auto& [column, in_blocks] : OwnColumns(here)) columns.push_back(column);
+    }
+    for (Index c = num_estimates(); c < static_cast<Index>(columns_.size()); ++c) {
+      columns.push_back(c);
+    }
+    std::list<PendulumRecording> changed;
+    for (Index c : columns) {
+      const PendulumRecording* seen = &problem_.recordings()[index];
+      const Assumption* const assumption = columns_[c].assumption;
+      if (assumption != nullptr && assumption->of_recording != nullptr) {
+        assumption->of_recording(assumption->step, &changed.emplace_back(*seen));
+        seen = &changed.back();
+      }
+      rollouts.push_back(Rollout(&columns_[c].seen, *seen, index));
+    }
+    ResidualsByRecording there = ResidualsOf(rollouts);
+    if (none) {
+      rows->residuals = Mapped(there[0]);
+      there.erase(there.begin());
+      if (rows->residuals.size() == 0) return;
+    }
+    Index next = rows->by_column.cols();
+    rows->by_column.conservativeResize(rows->residuals.size(),
+                                       next + static_cast<Index>(there.size()));
+    for (size_t j = 0; j < there.size(); ++j) {
+      if (static_cast<Index>(there[j].size()) != rows->residuals.size()) continue;
+      const Column& column = columns_[columns[j]];
+      auto by = rows->by_column.col(next++);
+      by = (Mapped(there[j]) - rows->residuals) / column.step;
+      if (column.assumption != nullptr) Correct(*column.assumption, index, *rows, by);
+      rows->columns.push_back(columns[j]);
+    }
+    rows->by_column.conservativeResize(Eigen::NoChange, next);
+  }
+
+  // The column of an assumption, of which the estimates' columns are known.
   void Correct(const Assumption& assumption, int index, const RawRows& rows,
-               Eigen::Ref<Eigen::VectorXd> column) const;
+               Eigen::Ref<Eigen::VectorXd> column) const {
+    if (assumption.of_rates) {
+      LeaveOutNoiseOfRates(rows.residuals, static_cast<Index>(problem_.NumMotionRows(index)),
+                           column);
+    }
+    // As if the estimates had stayed where they are.
+    for (const auto& [of, shift] : assumption.along) {
+      const auto found =
+          std::find(rows.columns.begin(), rows.columns.end(), static_cast<Index>(of));
+      if (found == rows.columns.end()) continue;
+      column -= shift / assumption.step * rows.by_column.col(found - rows.columns.begin());
+    }
+  }
 
   const FitProblem& problem_;
   Seen here_;
@@ -269,155 +403,6 @@ class RowsOfRecordings {
   Eigen::VectorXd unit_;                  // of the estimates; 0: on a bound
   std::vector<Column> columns_;           // estimates, then assumptions
 };
-
-RowsOfRecordings::RowsOfRecordings(const FitProblem& problem, const FitPoint& point,
-                                   const std::vector<Assumption>& assumptions)
-    : problem_(problem),
-      here_{problem.options().model, problem.map(), point},
-      unit_(Units(FittedColumns(problem, point))) {
-  Index next = 0;
-  const auto add = [this, &next](const std::vector<double>& block) {
-    first_[block.data()] = next;
-    next += static_cast<Index>(block.size());
-  };
-  add(here_.point.shared);
-  for (const auto& [unit, block] : here_.point.unit) add(block);
-  for (const auto& [recording, block] : here_.point.velocity) add(block);
-  const std::vector<double> flat = point.Flat();
-  for (size_t c = 0; c < flat.size(); ++c) {
-    const double step = kStep * unit_[static_cast<Index>(c)];
-    std::vector<double> moved = flat;
-    moved[c] += step;
-    columns_.push_back({here_, step, nullptr});
-    columns_.back().seen.point.SetFlat(moved);
-  }
-  for (const Assumption& assumption : assumptions) {
-    columns_.push_back({Under(assumption), assumption.step, &assumption});
-  }
-}
-
-RowsOfRecordings::Seen RowsOfRecordings::Under(const Assumption& assumption) const {
-  Seen seen = here_;
-  for (const auto& [index, shift] : assumption.along) seen.point.shared[index] += shift;
-  if (assumption.of_options == nullptr) return seen;
-  FitOptions options = problem_.options();
-  assumption.of_options(assumption.step, &options);
-  seen.model = options.model;
-  seen.map.values = options.table.Values();
-  return seen;
-}
-
-RolloutAt RowsOfRecordings::Rollout(Seen* seen, const PendulumRecording& recording,
-                                    int index) const {
-  return {MakeRolloutProblem(recording, seen->model, seen->map,
-                             WithoutRobustLoss(problem_.options().sigmas), 1.0, 0),
-          problem_.RecordingBlocks(&seen->point, index)};
-}
-
-// Of the fit, and among those of the recording's blocks; none on bounds.
-std::vector<std::pair<Index, Index>> RowsOfRecordings::OwnColumns(const RolloutAt& here) const {
-  std::vector<std::pair<Index, Index>> columns;
-  const std::vector<int> sizes = here.problem->layout.BlockSizes();
-  Index in_blocks = 0;
-  for (size_t b = 0; b < sizes.size(); ++b) {
-    const Index first = first_.at(here.blocks[b]);
-    for (Index c = first; c < first + sizes[b]; ++c, ++in_blocks) {
-      if (unit_[c] > 0.0) columns.emplace_back(c, in_blocks);
-    }
-  }
-  return columns;
-}
-
-RawRows RowsOfRecordings::BySensitivities(const RolloutAt& here) const {
-  const RolloutProblem& problem = *here.problem;
-  RawRows rows;
-  rows.residuals.resize(problem.num_residuals());
-  const Index acting = problem.layout.num_acting();
-  RowMajorMatrix by_acting(rows.residuals.size(), acting);
-  Index row = 0;
-  const auto add = [&](int, int, const auto& residual, const auto* by_column) {
-    rows.residuals.segment(row, residual.size()) = residual;
-    by_acting.middleRows(row, residual.size()) = by_column->leftCols(acting);
-    row += residual.size();
-  };
-  if (!VisitFrames(problem, here.blocks.data(), Derivatives::kAll, add, add).ok) return {};
-  const RowMajorMatrix by_blocks = ActingColumns(problem.layout).Expand(by_acting);
-  std::vector<Index> in_blocks;
-  for (const auto& [column, in_block] : OwnColumns(here)) {
-    rows.columns.push_back(column);
-    in_blocks.push_back(in_block);
-  }
-  rows.by_column = by_blocks(Eigen::all, in_blocks);
-  return rows;
-}
-
-// The column of an assumption, of which the estimates' columns are known.
-void RowsOfRecordings::Correct(const Assumption& assumption, int index, const RawRows& rows,
-                               Eigen::Ref<Eigen::VectorXd> column) const {
-  if (assumption.of_rates) {
-    LeaveOutNoiseOfRates(rows.residuals, static_cast<Index>(problem_.NumMotionRows(index)), column);
-  }
-  // As if the estimates had stayed where they are.
-  for (const auto& [of, shift] : assumption.along) {
-    const auto found = std::find(rows.columns.begin(), rows.columns.end(), static_cast<Index>(of));
-    if (found == rows.columns.end()) continue;
-    column -= shift / assumption.step * rows.by_column.col(found - rows.columns.begin());
-  }
-}
-
-// What *rows does not hold yet. A column whose changed rollout fails is left out.
-void RowsOfRecordings::AddDifferences(const RolloutAt& here, int index, RawRows* rows) {
-  const bool none = rows->residuals.size() == 0;
-  std::vector<RolloutAt> rollouts = {here};
-  std::vector<Index> columns;
-  if (none) {
-    for (const auto& [column, in_blocks] : OwnColumns(here)) columns.push_back(column);
-  } else {
-    rollouts.clear();
-  }
-  for (Index c = num_estimates(); c < static_cast<Index>(columns_.size()); ++c) {
-    columns.push_back(c);
-  }
-  std::list<PendulumRecording> changed;
-  for (Index c : columns) {
-    const PendulumRecording* seen = &problem_.recordings()[index];
-    const Assumption* const assumption = columns_[c].assumption;
-    if (assumption != nullptr && assumption->of_recording != nullptr) {
-      assumption->of_recording(assumption->step, &changed.emplace_back(*seen));
-      seen = &changed.back();
-    }
-    rollouts.push_back(Rollout(&columns_[c].seen, *seen, index));
-  }
-  ResidualsByRecording there = ResidualsOf(rollouts);
-  if (none) {
-    rows->residuals = AsVector(there[0]);
-    there.erase(there.begin());
-    if (rows->residuals.size() == 0) return;
-  }
-  Index next = rows->by_column.cols();
-  rows->by_column.conservativeResize(rows->residuals.size(),
-                                     next + static_cast<Index>(there.size()));
-  for (size_t j = 0; j < there.size(); ++j) {
-    if (static_cast<Index>(there[j].size()) != rows->residuals.size()) continue;
-    const Column& column = columns_[columns[j]];
-    auto by = rows->by_column.col(next++);
-    by = (AsVector(there[j]) - rows->residuals) / column.step;
-    if (column.assumption != nullptr) Correct(*column.assumption, index, *rows, by);
-    rows->columns.push_back(columns[j]);
-  }
-  rows->by_column.conservativeResize(Eigen::NoChange, next);
-}
-
-RawRows RowsOfRecordings::Of(int index) {
-  const RolloutAt here = Rollout(&here_, problem_.recordings()[index], index);
-  RawRows rows;
-  if (!HasLanes(*here.problem)) {
-    rows = BySensitivities(here);
-    if (rows.residuals.size() == 0) return rows;
-  }
-  AddDifferences(here, index, &rows);
-  return rows;
-}
 
 // One person's normal equations.
 struct PersonSums {
@@ -597,7 +582,7 @@ std::vector<FittedColumn> FittedColumns(const FitProblem& problem, const FitPoin
   const ParameterTable& table = problem.options().table;
   const auto& fitted = problem.map().fitted;
   for (size_t i = 0; i < fitted.size(); ++i) {
-    const ParameterSpec& spec = table[fitted[i].parameter];
+    const ParameterSpec& spec = problem.Spec(i);
     FittedColumn c{spec.name, spec.unit, spec.transform, spec.scale};
     c.width = spec.prior ? spec.prior->sigma : spec.scale;
     c.fitted = point.shared[i];

@@ -47,7 +47,26 @@ struct ResidualRows {
   Eigen::MatrixXd curvature;
   std::vector<DataPart> parts;  // with horizons
 
-  std::vector<int> RowsOf(int cluster) const;
+  template <typename OfCluster>
+  std::vector<int> RowsWhere(const OfCluster& of_cluster) const {
+    std::vector<int> rows;
+    for (int row = 0; row < static_cast<int>(cluster_of_row.size()); ++row) {
+      if (of_cluster(cluster_of_row[row])) rows.push_back(row);
+    }
+    return rows;
+  }
+  std::vector<int> RowsOf(int cluster) const {
+    return RowsWhere([cluster](int c) { return c == cluster; });
+  }
+  std::vector<int> RowsOfData() const {
+    return RowsWhere([](int c) { return c >= 0; });
+  }
+  // J'J and J'r of some rows, and J'J of what is no data: priors, demands, pooling.
+  Eigen::MatrixXd Information(const std::vector<int>& rows) const;
+  Eigen::VectorXd Gradient(const std::vector<int>& rows) const;
+  Eigen::MatrixXd InformationBeside() const {
+    return Information(RowsWhere([](int c) { return c < 0; }));
+  }
 };
 
 // robust: with robust_jacobian. Blocks that cannot be evaluated are left out.

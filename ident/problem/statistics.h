@@ -27,7 +27,7 @@ struct MeanAndError {
 };
 MeanAndError MeanOf(const std::vector<double>& values);
 
-// Of an even number, the mean of the middle two. values: at least one.
+// The median; of an even number, the mean of the middle two. values: at least one.
 inline double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const size_t half = values.size() / 2;

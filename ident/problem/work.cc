@@ -29,8 +29,8 @@ void WorkLog::Add(const std::string& purpose) {
   part->evaluations.jacobians += now.jacobians - from_.jacobians;
   part->evaluations.costs += now.costs - from_.costs;
   from_ = now;
-  const auto time = std::chrono::steady_clock::now();
-  part->seconds += std::chrono::duration<double>(time - since_).count();
+  const double time = Now();
+  part->seconds += time - since_;
   since_ = time;
 }
 

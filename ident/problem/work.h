@@ -1,21 +1,22 @@
 // ident: what a fit spends, and on what: evaluations of its problem, and time.
 #pragma once
 
-#include <chrono>
 #include <string>
 #include <vector>
 
+#include "ident/problem/parallel.h"
+
 namespace pushid {
 
-// Of all residual blocks of a problem.
+// Evaluations of all residual blocks of a problem.
 struct Evaluations {
   int jacobians = 0;  // residuals and their Jacobian
   int costs = 0;      // residuals alone
 };
 
-// Counts those that are about to be made; any thread.
+// Counts evaluations that are about to be made, in any thread.
 void CountEvaluations(const Evaluations& more);
-// Of the process so far, over all threads.
+// The sum over all threads of the process so far.
 Evaluations EvaluationsSoFar();
 
 struct Work {
@@ -35,7 +36,7 @@ class WorkLog {
  private:
   std::vector<Work> parts_;
   Evaluations from_ = EvaluationsSoFar();
-  std::chrono::steady_clock::time_point since_ = std::chrono::steady_clock::now();
+  double since_ = Now();
 };
 
 }  // namespace pushid

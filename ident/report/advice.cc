@@ -8,7 +8,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/presets.h"
-#include "ident/problem/behaviour_text.h"
+#include "ident/problem/behaviour.h"
 #include "ident/report/report_text.h"
 
 namespace pushid {

@@ -7,9 +7,8 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/parameters/option_names.h"
 #include "ident/parameters/presets.h"
-#include "ident/problem/behaviour_text.h"
+#include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/linear_loop.h"
 #include "ident/problem/statistics.h"
@@ -140,12 +139,11 @@ TextTable EstimateTable(const FitResult& result) {
     const bool no_shares = unknown || e.status == EstimateStatus::kAtBound;
     const bool no_error = no_shares && e.standard_error <= 0.0;
     const std::string error = no_error ? "-" : Rounded(e.standard_error, 3);
-    table.Add(
-        {e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
-         unknown || no_error ? "-" : IntervalText(e.value, e.lower95, e.upper95),
-         e.total && !no_shares ? IntervalText(e.value, e.total->lower95, e.total->upper95) : "",
-         TheirError(e.these), TheirInterval(e.value, e.these), e.unit, NameOf(e.status),
-         no_shares ? "-" : SharesText(e.shares), no_shares ? "-" : PullText(e), prior});
+    table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
+               unknown || no_error ? "-" : IntervalText(e.value, e.lower95, e.upper95),
+               e.total && !no_shares ? IntervalText(e.value, e.total->lower, e.total->upper) : "",
+               TheirError(e.these), TheirInterval(e.value, e.these), e.unit, NameOf(e.status),
+               no_shares ? "-" : SharesText(e.shares), no_shares ? "-" : PullText(e), prior});
   }
   table.DropIfEmpty({kTotalColumn});
   table.DropIfEmpty(kTheseColumns);

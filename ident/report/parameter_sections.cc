@@ -121,9 +121,7 @@ ReportFigure IntervalFigure(const FittedModel& model) {
       cells.push_back(interval ? DoubleText(interval->upper) : "");
     };
     add(Interval{e.standard_error, e.lower95, e.upper95}, kIntervalLook);
-    std::optional<Interval> total;
-    if (e.total) total = Interval{e.total->error, e.total->lower95, e.total->upper95};
-    add(total, kTotalLook);
+    add(e.total, kTotalLook);
     with_total = with_total || e.total;
     add(e.these, kTheseLook);
     told_apart = told_apart || e.these;

@@ -8,7 +8,6 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/parameters/learned_terms_io.h"
-#include "ident/parameters/option_names.h"
 #include "ident/report/document.h"
 #include "ident/report/fit_sections.h"
 #include "ident/report/parameter_sections.h"
@@ -115,7 +114,7 @@ std::string TruthTable(const FitResult& result, const std::map<std::string, doub
     covered += inside;
     if (e.total) {
       ++with_total;
-      by_total += within(e.total->lower95, e.total->upper95);
+      by_total += within(e.total->lower, e.total->upper);
     }
     table.Add({e.name, Rounded(known->second, 4), Rounded(e.value, 4), Rounded(e.standard_error, 3),
                IntervalText(e.value, e.lower95, e.upper95), e.unit, inside ? "covers" : "misses"});

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -12,6 +11,7 @@
 
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/parallel.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
 #include "models/decompositions.h"
@@ -81,9 +81,8 @@ void StartNoise(const FitProblem& problem, const FitPoint& point, double error,
 // The noise's starts, at a point of the other parameters.
 void TakeNoise(const FitProblem& problem, FitPoint* point) {
   const FitPoint nominal = problem.NominalPoint();
-  const auto& fitted = problem.map().fitted;
-  for (size_t i = 0; i < fitted.size(); ++i) {
-    if (IsNoiseParameter(fitted[i].parameter)) point->shared[i] = nominal.shared[i];
+  for (size_t i = 0; i < point->shared.size(); ++i) {
+    if (IsNoiseParameter(problem.Spec(i).id)) point->shared[i] = nominal.shared[i];
   }
 }
 
@@ -114,12 +113,8 @@ bool SolveOn(FitProblem* problem, SolveStart* start) {
     CostWeights weights = problem->weights();
     const double spread = UpdatePoolingSpread(*problem, start->to, &weights);
     problem->SetWeights(weights);
-    const SolveStage stage = SolveByBfgs(*problem, &start->to, &start->message);
     const double before = start->cost;
-    start->stages.push_back(stage);
-    start->iterations += stage.iterations;
-    start->cost = stage.final_cost;
-    start->converged = stage.converged;
+    start->Add(SolveByBfgs(*problem, &start->to, &start->message));
     if (!std::isfinite(start->cost)) return false;
     const bool stays = std::abs(before - start->cost) < kSameCost && spread < kSettled;
     if (stays && start->converged) return true;
@@ -142,7 +137,7 @@ FitPoint RolloutStart(const FitProblem& problem) {
 }  // namespace
 
 LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress) {
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = Now();
   LikelihoodSolution solved;
   FitPoint from = RolloutStart(*problem);
   FitProblem with_noise = WithNoise(*problem, &from);
@@ -159,8 +154,7 @@ LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& p
   solved.stays = SolveOn(&with_noise, &start);
   start.usable = std::isfinite(start.cost) && start.failed.empty();
   if (start.usable) *problem = std::move(with_noise);
-  solved.solution.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  solved.solution.seconds = Now() - begin;
   return solved;
 }
 
@@ -173,7 +167,7 @@ namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
 
-// Of a number that nothing depends on, in a direction's information.
+// Information below which nothing depends on a number, as a share of the largest.
 constexpr double kNoInformation = 1e-12;
 // How far the logarithm of noise may fall: far.
 constexpr double kAnyFall = 40.0;
@@ -187,9 +181,8 @@ struct Bounds {
 
 Bounds BoundsOf(const FitProblem& problem, Eigen::Index size) {
   Bounds bounds{VectorXd::Constant(size, -HUGE_VAL), VectorXd::Constant(size, HUGE_VAL)};
-  const auto& fitted = problem.map().fitted;
-  for (size_t i = 0; i < fitted.size(); ++i) {
-    const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
+  for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
+    const ParameterSpec& spec = problem.Spec(i);
     bounds.lower[i] = ToFitted(spec.transform, spec.lower);
     bounds.upper[i] = ToFitted(spec.transform, spec.upper);
   }

@@ -42,6 +42,14 @@ struct SolveStart {
   std::vector<FailedRollout> failed;  // recordings that could not be rolled out to their end
   std::vector<std::string> notes;     // parameters whose start was moved off a bound
   std::string message;
+
+  // A solve on from here.
+  void Add(const SolveStage& stage) {
+    stages.push_back(stage);
+    iterations += stage.iterations;
+    cost = stage.final_cost;
+    converged = stage.converged;
+  }
 };
 
 struct Solution {

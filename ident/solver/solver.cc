@@ -4,13 +4,13 @@
 #include <ceres/iteration_callback.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <unsupported/Eigen/SpecialFunctions>
 
 #include "datasets/files/number_text.h"
+#include "ident/problem/parallel.h"
 #include "ident/solver/summed_cost.h"
 
 namespace pushid {
@@ -129,11 +129,8 @@ void TrainNetwork(const FitProblem& problem, const SolveProgress& progress, Solv
   ProgressCallback callback(progress, "network");
   if (progress) solver.callbacks.push_back(&callback);
   const SolveStage stage = SolveBuilt(&built, solver, 0, &start->message, StructuredSecants(false));
-  start->stages.push_back(stage);
-  start->iterations += stage.iterations;
+  start->Add(stage);
   start->failed = problem.Failures(start->to, 0);
-  start->cost = stage.final_cost;
-  start->converged = stage.converged;
   start->usable = start->converged || stage.final_cost < stage.initial_cost;
 }
 
@@ -163,12 +160,9 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
       if (progress) solver.callbacks.push_back(&callback);
       const SolveStage stage =
           SolveBuilt(&built, solver, horizons[i], &start.message, StructuredSecants(false));
-      start.stages.push_back(stage);
-      start.iterations += stage.iterations;
+      start.Add(stage);
       if (!last) break;
       start.failed = problem.Failures(start.to, 0);
-      start.cost = stage.final_cost;
-      start.converged = stage.converged;
       start.usable = stage.converged || stage.final_cost < stage.initial_cost;
       const size_t left_out = built.shortened.size() + built.rests_left_out;
       if (left_out == 0 || left_out >= left_out_before) break;
@@ -182,7 +176,7 @@ SolveStart SolveFrom(const FitProblem& problem, const FitPoint& from, const std:
 std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* point) {
   std::vector<std::string> notes;
   for (size_t i = 0; i < point->shared.size(); ++i) {
-    const ParameterSpec& spec = problem.options().table[problem.map().fitted[i].parameter];
+    const ParameterSpec& spec = problem.Spec(i);
     const double lower = ToFitted(spec.transform, spec.lower);
     const double upper = ToFitted(spec.transform, spec.upper);
     const double size = spec.transform == Transform::kIdentity ? spec.scale : 1.0;
@@ -200,10 +194,9 @@ std::vector<std::string> MoveOffBounds(const FitProblem& problem, FitPoint* poin
 }
 
 Solution Solve(const FitProblem& problem, const SolveProgress& progress) {
-  const auto begin = std::chrono::steady_clock::now();
+  const double begin = Now();
   Solution solution{SolveFrom(problem, problem.NominalPoint(), "nominal", progress)};
-  solution.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  solution.seconds = Now() - begin;
   return solution;
 }
 
@@ -253,11 +246,8 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, int num_thread
   start.kind = "warm";
   start.from = start.to = from;
   if (problem.options().likelihood != Likelihood::kTrajectory) {
-    const SolveStage stage = SolveByBfgs(problem, &start.to, &start.message);
-    start.stages.push_back(stage);
-    start.iterations = stage.iterations;
-    start.cost = stage.final_cost;
-    start.converged = start.usable = stage.converged;
+    start.Add(SolveByBfgs(problem, &start.to, &start.message));
+    start.usable = start.converged;
     return start;
   }
   start.recordings = std::move(known);
@@ -269,13 +259,9 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, int num_thread
     FitProblem::Built built = problem.Build(&start.to, 0, false, num_threads, all_inside);
     ceres::Solver::Options solver = SolverOptions(problem.options(), *built.problem);
     if (network) solver.function_tolerance = std::max(kNetworkTolerance, solver.function_tolerance);
-    const SolveStage stage =
-        SolveBuilt(&built, solver, 0, &start.message, StructuredSecants(true), &start.recordings);
+    start.Add(
+        SolveBuilt(&built, solver, 0, &start.message, StructuredSecants(true), &start.recordings));
     start.failed = std::move(built.shortened);
-    start.stages.push_back(stage);
-    start.iterations += stage.iterations;
-    start.cost = stage.final_cost;
-    start.converged = stage.converged;
   };
   solve();
   const double worth = kWorthAnother * problem.options().function_tolerance;

@@ -14,15 +14,15 @@
 
 namespace pushid {
 
-// Of the cost, where a network is fitted: what more would bring cannot be seen.
+// Function tolerance where a network is fitted: a smaller one changes nothing that can be seen.
 inline constexpr double kNetworkTolerance = 1e-6;
 
 // The solver's settings: those of every fit, refit and reference check.
 ceres::Solver::Options SolverOptions(const FitOptions& options, const ceres::Problem& problem);
 
-// Solves what was built, from where its point stands. secants: far from an optimum, where a step
-// tells little of the next, they had better not learn. recordings: what is known where it begins,
-// and on return where it ended.
+// Solves what was built, from where its point stands. secants: whether to learn curvature (no: far
+// from an optimum, where one step says little about the next). recordings: what is known where it
+// begins, and on return where it ended.
 SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& options, int horizon,
                       std::string* message, StructuredSecants secants,
                       RecordingSums* recordings = nullptr);
@@ -38,7 +38,7 @@ SolveStart Refit(const FitProblem& problem, const FitPoint& from, int num_thread
 // that it is put to.
 bool Contradicted(double rise, size_t units);
 
-// Of all blocks that can be rolled out from a point; infinite where a settling simulation cannot.
+// The cost of all blocks that can be rolled out; infinite where a settling simulation cannot.
 double CostAt(const FitProblem& problem, FitPoint point);
 
 // Runs one start through the horizons.

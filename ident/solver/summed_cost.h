@@ -21,7 +21,7 @@ class SummedCost : public ceres::CostFunction {
   SummedCost(FitProblem::Built* built, StructuredSecants secants, RecordingSums known);
   bool Evaluate(double const* const* x, double* residuals, double** jacobians) const override;
 
-  // Of the problem's blocks.
+  // The values of the problem's blocks that move.
   std::vector<double> Values() const;
   void SetValues(const double* x) const;
   void SetBounds(ceres::Problem* problem, double* x) const;

@@ -133,18 +133,17 @@ Assumption Held(const ParameterSpec& spec) {
 
 constexpr double kStatedDelay = 0.1, kTriedDelay = 0.12;  // s
 
-// Of who stands: what is fitted as damping is less by the delay times the stiffness.
+// People who stand react late: what is fitted as damping is less by the delay times the stiffness.
 Assumption Delayed(const FitProblem& problem, const FitPoint& point) {
   const ParameterSet<double> values = problem.Parameters(point, "");
   Assumption delay{kReactionDelayName, "s", kStatedDelay, kTriedDelay, nullptr};
   for (const auto& [damping, stiffness] :
        {std::pair(kKdTheta, kKpTheta), std::pair(kKdPhi, kKpPhi)}) {
-    for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
-      if (problem.map().fitted[i].parameter != damping) continue;
-      const Transform transform = problem.options().table[damping].transform;
-      const double more = values[damping] + kTriedDelay * values[stiffness];
-      delay.along.emplace_back(i, ToFitted(transform, more) - ToFitted(transform, values[damping]));
-    }
+    const size_t i = problem.FittedIndex(damping);
+    if (i == problem.map().fitted.size()) continue;
+    const Transform transform = problem.Spec(i).transform;
+    const double more = values[damping] + kTriedDelay * values[stiffness];
+    delay.along.emplace_back(i, ToFitted(transform, more) - ToFitted(transform, values[damping]));
   }
   delay.of_options = [](double eta, FitOptions* options) {
     options->model.delay = Delay::kOne;

@@ -8,13 +8,13 @@
 
 namespace pushid {
 
-// Stated of what was measured: the largest of the recordings'
+// What is stated of measured pushes is the largest of the recordings'
 // (datasets/manifest/laboratory_keys.h). Pushes by inverse dynamics have neither a clock, a height
-// nor a zero of their own, and follow the masses. Of a held gain, a factor of two; of a term left
-// out, nothing. Who stands reacts late, by some 0.1 s: a torque Kp e(t - tau) is Kp e - tau Kp e'
-// at first order, so that the damping that is fitted is Kd - tau Kp. What is beyond the first order
-// tells whether they do: the problem with a delay of 0.12 s, and Kd greater by it, against the
-// problem as it is.
+// nor a zero of their own, and follow the masses. A held gain is stated to a factor of two, a term
+// left out not at all. People who stand react late, by some 0.1 s: a torque Kp e(t - tau) is Kp e -
+// tau Kp e' at first order, so that the damping that is fitted is Kd - tau Kp. What is beyond the
+// first order tells whether they do: the problem with a delay of 0.12 s, and Kd greater by it,
+// against the problem as it is.
 inline constexpr char kReactionDelayName[] = "reaction delay";
 
 // The largest of the recordings.
@@ -23,7 +23,7 @@ StatedErrors Stated(const std::vector<PendulumRecording>& recordings);
 // Steps of what has a typical size, in shares of that.
 inline constexpr double kScaleStep = 1e-4;
 
-// Those of a problem that can have an effect.
+// The assumptions of a problem that can have an effect.
 std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint& point);
 
 }  // namespace pushid

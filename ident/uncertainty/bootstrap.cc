@@ -14,10 +14,10 @@
 namespace pushid {
 namespace {
 
-// Of one replica: empty for a fit that failed.
+// The values of one replica: empty for a fit that failed.
 using ReplicaValues = std::vector<double>;
 
-// Of the cost: what more would bring is a hundredth of what replicas differ by.
+// Function tolerance: what a smaller one would change is a hundredth of what replicas differ by.
 constexpr double kReplicaTolerance = 1e-6;
 
 // The combinations that move with a free parameter.
@@ -35,8 +35,7 @@ std::vector<CombinationSpec> MovingCombinations(const FitProblem& problem) {
 ReplicaValues ValuesAt(const FitProblem& problem, const FitPoint& point,
                        const std::vector<CombinationSpec>& combinations) {
   const ParameterSet<double> parameters = problem.Parameters(point, "");
-  ReplicaValues values;
-  for (const FittedParameter& f : problem.map().fitted) values.push_back(parameters[f.parameter]);
+  ReplicaValues values = problem.SharedValues(point);
   for (const CombinationSpec& spec : combinations) {
     double sum = 0.0;
     for (const Term& term : spec.terms) sum += term.coefficient * parameters[term.parameter];
@@ -55,12 +54,12 @@ std::vector<RecordingSums> SumEach(const FitProblem& problem, FitPoint estimate)
   if (score.jacobian.cols() > kDenseColumns) return {};
   std::vector<RecordingSums> each;
   for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
-    each.push_back(SumRecording(score, estimate, i));
+    each.push_back(SumRows(score, estimate, score.RowsOf(i)));
   }
   return each;
 }
 
-// Of the recordings as a replica counts them. Those that the fit leaves out no replica counts.
+// The sum over the recordings as a replica counts them; none counts those that the fit leaves out.
 RecordingSums SumAsDrawn(const std::vector<RecordingSums>& each, const FitProblem& drawn) {
   if (each.empty()) return {};
   RecordingSums all{each[0].at, 0.0, SecondOrder::Zero(each[0].at.size())};
@@ -184,9 +183,9 @@ Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& es
   bootstrap.drawn_by = from.by;
   bootstrap.drawn_from = static_cast<int>(from.units.size());
   bootstrap.people_shared = from.people_shared;
-  for (const FittedParameter& f : problem.map().fitted) {
-    bootstrap.names.push_back(problem.options().table[f.parameter].name);
-    bootstrap.units.push_back(problem.options().table[f.parameter].unit);
+  for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
+    bootstrap.names.push_back(problem.Spec(i).name);
+    bootstrap.units.push_back(problem.Spec(i).unit);
   }
   for (const CombinationSpec& spec : combinations) {
     bootstrap.names.push_back(spec.name);

@@ -33,7 +33,7 @@ struct Clusters {
   std::vector<std::string> names;  // of the clusters: people or recordings
   // Cluster of every [recording][person].
   std::vector<std::vector<int>> of;
-  // Of every recording; the recordings themselves where line-ups are too few.
+  // Line-up of every recording; the recordings themselves where line-ups are too few.
   std::vector<int> line_up;
 
   int count() const { return static_cast<int>(names.size()); }
@@ -43,9 +43,9 @@ struct Clusters {
 Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by,
                       const std::vector<int>& counts = {});
 
-// Of fewer clusters the standard errors are uncertain themselves.
+// With fewer clusters the standard errors are uncertain themselves.
 inline constexpr int kFewClusters = 10;
-// Of fewer people nothing is identified about people like them.
+// From fewer people nothing is identified about people like them.
 inline constexpr int kFewestPeople = 4;
 
 // The covariance that clusters of rows leave, and how well it is itself known.

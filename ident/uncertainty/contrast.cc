@@ -30,7 +30,7 @@ double QuantileAt(double level, double freedom) {
   return 0.5 * (low + high);
 }
 
-// Of the units that a fit lets differ, on the fitted scale.
+// The spread of the units that a fit lets differ, on the fitted scale.
 std::optional<double> SpreadBetweenPeople(const FitOptions& options, const ParameterSpec& spec) {
   if (!spec.pooled || options.pool_by != kSubjectUnit) return std::nullopt;
   if (!options.pooling_sigma && spec.pooling_sigma <= kLeastPoolingSigma) return std::nullopt;
@@ -109,13 +109,11 @@ double ProbabilityOfZero(const Scatter& scatter, const Eigen::VectorXd& coeffici
 std::optional<Contrast> ContrastAt(const FitProblem& problem, const FitPoint& point,
                                    const Uncertainty& u) {
   const FitOptions& options = problem.options();
-  const auto& fitted = problem.map().fitted;
-  const Eigen::Index size = u.covariance.rows();
-  const auto column = [&fitted](Parameter id) {
-    const auto at = std::find_if(fitted.begin(), fitted.end(),
-                                 [id](const FittedParameter& f) { return f.parameter == id; });
-    return static_cast<Eigen::Index>(at - fitted.begin());
+  const Eigen::Index fitted = static_cast<Eigen::Index>(problem.map().fitted.size());
+  const auto column = [&problem](Parameter id) {
+    return static_cast<Eigen::Index>(problem.FittedIndex(id));
   };
+  const Eigen::Index size = u.covariance.rows();
   const ParameterSet<double> values = problem.Parameters(point, "");
   Contrast contrast;
   std::vector<double> p;
@@ -127,7 +125,7 @@ std::optional<Contrast> ContrastAt(const FitProblem& problem, const FitPoint& po
     contrast.second = between.second;
     const ParameterSpec& of = options.table[slope.slope_of->target];
     const Eigen::Index shared = column(of.id), own = column(slope.id);
-    if (own >= static_cast<Eigen::Index>(fitted.size())) continue;
+    if (own >= fitted) continue;
     const double b = values[slope.id];
     ContrastRow row;
     row.name = of.name;
@@ -144,9 +142,7 @@ std::optional<Contrast> ContrastAt(const FitProblem& problem, const FitPoint& po
       const double to_second = TransformSlope(of.transform, row.second);
       Eigen::VectorXd gradient = Eigen::VectorXd::Zero(size);
       gradient[own] = 0.5 * (to_first + to_second);
-      if (shared < static_cast<Eigen::Index>(fitted.size())) {
-        gradient[shared] = to_second - to_first;
-      }
+      if (shared < fitted) gradient[shared] = to_second - to_first;
       const double width = u.scatter.Of(gradient).HalfWidth();
       row.lower95 = row.difference - width;
       row.upper95 = row.difference + width;

@@ -13,7 +13,7 @@
 //                The chance of any false positive among them is then at most the level.
 //   effect       b over the standard deviation between people, both on the fitted scale; of fits
 //                in which people differ (--pool=... --pool_by=subject) that of the fit, of others
-//                that of a second one (fit/contrast_effects.cc)
+//                that of a second one (fit/covariates.h)
 #pragma once
 
 #include <optional>

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/statistics.h"
 #include "ident/solver/structured_secants.h"
 #include "models/decompositions.h"
 
@@ -26,9 +27,7 @@ Eigen::MatrixXd LeftOutMoves(const ResidualRows& score, const Eigen::MatrixXd& i
   const double groups = static_cast<double>(score.clusters.size());
   Eigen::MatrixXd moves(inverse_hessian.cols(), score.clusters.size());
   for (size_t g = 0; g < score.clusters.size(); ++g) {
-    const std::vector<int> rows = score.RowsOf(score.clusters[g]);
-    const Eigen::VectorXd gradient =
-        score.jacobian(rows, Eigen::all).transpose() * score.residuals(rows);
+    const Eigen::VectorXd gradient = score.Gradient(score.RowsOf(score.clusters[g]));
     moves.col(g) = groups / (groups - 1.0) * inverse_hessian * gradient;
   }
   return moves;
@@ -47,41 +46,21 @@ RowClusters Crossed(const RowClusters& first, const RowClusters& second) {
   return both;
 }
 
-// The rows of one of FitProblem's clusters, or those of all recordings.
-std::vector<int> RowsWhere(const ResidualRows& score, bool data, int cluster) {
-  std::vector<int> rows;
-  for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
-    const int c = score.cluster_of_row[row];
-    if (data ? c >= 0 : c == cluster) rows.push_back(row);
-  }
-  return rows;
-}
-
-Eigen::MatrixXd Information(const ResidualRows& score, const std::vector<int>& rows) {
-  const Eigen::MatrixXd own = score.jacobian(rows, Eigen::all);
-  return own.transpose() * own;
-}
-
-Eigen::VectorXd Gradient(const ResidualRows& score, const std::vector<int>& rows) {
-  return score.jacobian(rows, Eigen::all).transpose() * score.residuals(rows);
-}
-
 void SplitHessian(const ResidualRows& score, const Eigen::MatrixXd& back, Covariance* c) {
-  const auto rows = [&score](int cluster) { return RowsWhere(score, false, cluster); };
-  const std::vector<int> prior = rows(FitProblem::kPriorCluster);
-  const std::vector<int> settling = rows(FitProblem::kSettlingCluster);
+  const std::vector<int> prior = score.RowsOf(FitProblem::kPriorCluster);
+  const std::vector<int> settling = score.RowsOf(FitProblem::kSettlingCluster);
   c->by_data = score.robust_jacobian.size() > 0
                    ? Eigen::MatrixXd(score.robust_jacobian.transpose() * score.robust_jacobian)
-                   : Information(score, RowsWhere(score, true, 0));
-  c->by_prior = Information(score, prior);
-  c->by_settling = Information(score, settling);
-  c->by_pooling = Information(score, rows(FitProblem::kPoolingCluster)) +
-                  Information(score, rows(FitProblem::kNetworkCluster));
+                   : score.Information(score.RowsOfData());
+  c->by_prior = score.Information(prior);
+  c->by_settling = score.Information(settling);
+  c->by_pooling = score.Information(score.RowsOf(FitProblem::kPoolingCluster)) +
+                  score.Information(score.RowsOf(FitProblem::kNetworkCluster));
   const Eigen::MatrixXd sum =
       back.transpose() * (c->by_data + c->by_prior + c->by_settling + c->by_pooling) * back;
   c->inverse_of_parts = back * SolveSymmetricTransposed(sum, back);
-  c->prior_gradient = Gradient(score, prior);
-  c->settling_gradient = Gradient(score, settling);
+  c->prior_gradient = score.Gradient(prior);
+  c->settling_gradient = score.Gradient(settling);
 }
 
 // What the recordings scatter, one way or two.
@@ -115,9 +94,8 @@ Scatter ClusteredScatter(const ResidualRows& score, const Clustering& clustering
   if (first.scores.cols() < 2) return scatter;
   scatter.parts.push_back(DataScatter(score, clustering, first, back, hessian));
   const auto add = [&](int cluster, double freedom) {
-    scatter.Add(
-        inverse_hessian * Information(score, RowsWhere(score, false, cluster)) * inverse_hessian,
-        freedom);
+    scatter.Add(inverse_hessian * score.Information(score.RowsOf(cluster)) * inverse_hessian,
+                freedom);
   };
   constexpr double kCertain = std::numeric_limits<double>::infinity();
   if (clustering.priors_scatter) add(FitProblem::kPriorCluster, kCertain);
@@ -125,39 +103,14 @@ Scatter ClusteredScatter(const ResidualRows& score, const Clustering& clustering
   return scatter;
 }
 
-// The same with recordings as clusters.
-Clustering ByRecordingAlone(const Clustering& clustering) {
-  return {clustering.recordings, {}, clustering.pooled_units, clustering.priors_scatter};
-}
-
 }  // namespace
-
-Eigen::MatrixXd InformationBeside(const ResidualRows& score) {
-  std::vector<int> rows;
-  for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
-    if (score.cluster_of_row[row] < 0) rows.push_back(row);
-  }
-  return Information(score, rows);
-}
-
-namespace {
 
 RecordingSums SumRows(const ResidualRows& score, const FitPoint& point,
                       const std::vector<int>& rows) {
   const std::vector<double> at = point.Flat();
   return {Eigen::VectorXd::Map(at.data(), score.jacobian.cols()),
           score.residuals(rows).squaredNorm(),
-          {Information(score, rows), Gradient(score, rows)}};
-}
-
-}  // namespace
-
-RecordingSums SumRecordings(const ResidualRows& score, const FitPoint& point) {
-  return SumRows(score, point, RowsWhere(score, true, 0));
-}
-
-RecordingSums SumRecording(const ResidualRows& score, const FitPoint& point, int recording) {
-  return SumRows(score, point, score.RowsOf(recording));
+          {score.Information(rows), score.Gradient(rows)}};
 }
 
 double SingularDirections::Condition() const {
@@ -193,7 +146,7 @@ Covariance NaiveCovariance(const ResidualRows& score, const Eigen::VectorXd& uni
   // Rows of data scatter by sigma; priors and demands are in units of their own.
   const Eigen::MatrixXd back = unit.asDiagonal() * c.directions.v.leftCols(rank);
   const Eigen::VectorXd squared = c.directions.singular.head(rank).cwiseAbs2();
-  const Eigen::MatrixXd beside = back.transpose() * InformationBeside(score) * back;
+  const Eigen::MatrixXd beside = back.transpose() * score.InformationBeside() * back;
   const Eigen::MatrixXd data = Eigen::MatrixXd(squared.asDiagonal()) - beside;
   const Eigen::MatrixXd moves = back * squared.cwiseInverse().asDiagonal();
   c.naive = moves * (c.sigma * c.sigma * data + beside) * moves.transpose();
@@ -222,13 +175,70 @@ Covariance ComputeCovariance(const ResidualRows& score, const Eigen::VectorXd& u
   c.inverse_hessian = back * SolveSymmetricTransposed(hessian, back);
   c.scatter = ClusteredScatter(score, clustering, back, hessian, c.inverse_hessian);
   if (clustering.recordings.count > 1) {
-    c.these =
-        ClusteredScatter(score, ByRecordingAlone(clustering), back, hessian, c.inverse_hessian);
+    const Clustering by_recording{
+        clustering.recordings, {}, clustering.pooled_units, clustering.priors_scatter};
+    c.these = ClusteredScatter(score, by_recording, back, hessian, c.inverse_hessian);
   }
   if (score.clusters.size() < 2) return c;
   c.recordings = score.clusters;
   c.moves = LeftOutMoves(score, c.inverse_hessian);
   return c;
+}
+
+namespace {
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNormal95 = 1.959963984540054;
+constexpr double kMatters = 1e-6;  // of the variance
+
+double QuantileOf(double freedom) {
+  return std::isfinite(freedom) ? StudentQuantile95(freedom) : kNormal95;
+}
+
+double LeastFreedom(const Eigen::VectorXd& freedom, const Eigen::VectorXd& coefficients) {
+  double least = kInfinite;
+  for (Eigen::Index i = 0; i < coefficients.size(); ++i) {
+    if (coefficients[i] != 0.0) least = std::min(least, freedom[i]);
+  }
+  return least;
+}
+
+}  // namespace
+
+void Scatter::Add(const Eigen::MatrixXd& covariance, double freedom) {
+  parts.push_back({covariance, Eigen::VectorXd::Constant(covariance.rows(), freedom)});
+}
+
+Eigen::MatrixXd Scatter::Covariance() const {
+  Eigen::MatrixXd sum;
+  for (const Part& part : parts) {
+    sum = sum.size() == 0 ? part.covariance : Eigen::MatrixXd(sum + part.covariance);
+  }
+  return sum;
+}
+
+ScatterOf Scatter::Of(const Eigen::VectorXd& coefficients) const {
+  std::vector<double> variances, freedoms;
+  double sum = 0.0, squared_width = 0.0;
+  for (const Part& part : parts) {
+    variances.push_back(std::max(0.0, coefficients.dot(part.covariance * coefficients)));
+    freedoms.push_back(LeastFreedom(part.freedom, coefficients));
+    const double quantile = QuantileOf(freedoms.back());
+    sum += variances.back();
+    squared_width += quantile * quantile * variances.back();
+  }
+  ScatterOf of;
+  of.standard_error = std::sqrt(sum);
+  of.freedom = parts.empty() ? 1.0 : kInfinite;
+  for (size_t k = 0; k < parts.size(); ++k) {
+    if (variances[k] >= kMatters * sum) of.freedom = std::min(of.freedom, freedoms[k]);
+  }
+  of.quantile = sum > 0.0 ? std::sqrt(squared_width / sum) : QuantileOf(of.freedom);
+  return of;
+}
+
+ScatterOf Scatter::OfColumn(Eigen::Index column) const {
+  return Of(Eigen::VectorXd::Unit(parts.empty() ? column + 1 : parts[0].covariance.rows(), column));
 }
 
 }  // namespace pushid

@@ -63,7 +63,7 @@ struct Scatter {
   // One freedom for all columns.
   void Add(const Eigen::MatrixXd& covariance, double freedom);
   Eigen::MatrixXd Covariance() const;
-  // Of a sum of columns: each part by the least freedom of the columns in it.
+  // The error of a sum of columns: each part by the least freedom of the columns in it.
   ScatterOf Of(const Eigen::VectorXd& coefficients) const;
   ScatterOf OfColumn(Eigen::Index column) const;
 };
@@ -120,17 +120,19 @@ Covariance ComputeCovariance(const ResidualRows& score, const Eigen::VectorXd& u
 Covariance NaiveCovariance(const ResidualRows& score, const Eigen::VectorXd& unit,
                            double null_value = kNullSingularValue);
 
-// J'J of what is no data: priors, demands, pooling.
-Eigen::MatrixXd InformationBeside(const ResidualRows& score);
-// Of the data, at the point that they were evaluated at, and of one recording.
-RecordingSums SumRecordings(const ResidualRows& score, const FitPoint& point);
-RecordingSums SumRecording(const ResidualRows& score, const FitPoint& point, int recording);
+// The sums of some rows, by the point that they were evaluated at.
+RecordingSums SumRows(const ResidualRows& score, const FitPoint& point,
+                      const std::vector<int>& rows);
 
-// What the covariances of a fit (uncertainty.h) are computed from, second derivatives included.
+// What the covariances of a fit (uncertainty.h) are computed from. curvature: with second
+// derivatives, unless feet step or there are too many columns.
 struct ScoredFit {
   ResidualRows score;
+  std::vector<FittedColumn> columns;
   Eigen::VectorXd unit;
+  Clusters clusters;
+  Clustering clustering;
 };
-ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point);
+ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point, bool curvature = true);
 
 }  // namespace pushid

@@ -14,13 +14,6 @@ namespace {
 
 constexpr double kDriftErrors = 2.0;
 
-std::vector<double> SharedValues(const FitProblem& problem, const FitPoint& point) {
-  const ParameterSet<double> parameters = problem.Parameters(point, "");
-  std::vector<double> values;
-  for (const FittedParameter& f : problem.map().fitted) values.push_back(parameters[f.parameter]);
-  return values;
-}
-
 std::vector<double> Errors(const Uncertainty& uncertainty, size_t count) {
   std::vector<double> errors;
   for (size_t i = 0; i < count; ++i) errors.push_back(uncertainty.estimates[i].standard_error);
@@ -55,7 +48,7 @@ HorizonFit FitFirst(const FitProblem& whole, int frames) {
     fit.failure = "some rollouts leave the model's domain";
   } else {
     const FitPoint& point = solution.start.to;
-    fit.value = SharedValues(problem, point);
+    fit.value = problem.SharedValues(point);
     fit.standard_error = Errors(ComputeUncertainty(problem, point), fit.value.size());
   }
   return fit;
@@ -80,7 +73,7 @@ HorizonCheck CheckHorizons(const FitProblem& problem, const FitPoint& estimate,
   }
   std::sort(horizons.begin(), horizons.end());
   HorizonCheck check;
-  check.value = SharedValues(problem, estimate);
+  check.value = problem.SharedValues(estimate);
   check.standard_error = Errors(uncertainty, check.value.size());
   for (size_t i = 0; i < check.value.size(); ++i) {
     check.parameters.push_back(uncertainty.estimates[i].name);

@@ -29,8 +29,7 @@ struct HorizonFit {
   std::string failure;
 };
 
-// Of every free shared parameter.
-struct HorizonCheck {
+struct HorizonCheck {  // one entry a free shared parameter
   std::vector<std::string> parameters, units;
   std::vector<double> value, standard_error;  // of the whole fit
   std::vector<HorizonFit> refits;             // horizons that are shorter than some recording

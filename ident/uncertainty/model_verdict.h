@@ -37,8 +37,8 @@ namespace pushid {
 // Does the fitted motion look like the recorded one? Where the feet ended, when the hip
 // turned back, and how often: what a sum of squares over frames hardly sees.
 
-// Of pushed people, recorded less predicted, along the push. The mean of a cluster's recordings is
-// one number; t has as many degrees of freedom as there are clusters, less one.
+// Recorded less predicted motion of pushed people along the push. The mean of a cluster's
+// recordings is one number; t has as many degrees of freedom as there are clusters, less one.
 struct MotionTest {
   std::string quantity, unit;
   double difference = 0.0, error = 0.0, t = 0.0, p = 1.0;
@@ -88,7 +88,7 @@ struct ModelVerdict {
   // Times the number of tests, at most 1.
   double p_assumptions = 1.0, p_parts = 1.0, p_motion = 1.0;
 
-  // Of the assumptions: others look like estimates, or are told by nothing here.
+  // Assumptions that could be tested: others look like estimates, or nothing here tells of them.
   size_t NumTested() const {
     return static_cast<size_t>(
         std::count_if(assumptions.begin(), assumptions.end(),

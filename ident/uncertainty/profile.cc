@@ -136,13 +136,11 @@ ProfileTarget CombinationTarget(const FitProblem& problem, const CombinationSpec
   ProfileTarget target{spec.name, spec.unit};
   target.coefficients.assign(map.fitted.size(), 0.0);
   for (const Term& term : spec.terms) {
-    const auto at =
-        std::find_if(map.fitted.begin(), map.fitted.end(),
-                     [&term](const FittedParameter& f) { return f.parameter == term.parameter; });
-    if (at == map.fitted.end()) {
+    const size_t at = problem.FittedIndex(term.parameter);
+    if (at == map.fitted.size()) {
       target.constant += term.coefficient * map.values[term.parameter];
     } else {
-      target.coefficients[static_cast<size_t>(at - map.fitted.begin())] += term.coefficient;
+      target.coefficients[at] += term.coefficient;
     }
   }
   return target;
@@ -161,9 +159,8 @@ double ProfileTarget::Quantile(const Uncertainty& uncertainty) const {
 }
 
 ProfilePlan::ProfilePlan(const FitProblem& problem) {
-  const auto& fitted = problem.map().fitted;
-  for (size_t i = 0; i < fitted.size(); ++i) {
-    const ParameterSpec& spec = problem.options().table[fitted[i].parameter];
+  for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
+    const ParameterSpec& spec = problem.Spec(i);
     targets_.push_back({spec.name, spec.unit, spec.transform, static_cast<int>(i)});
     all_.push_back({spec.name, spec.unit, i});
   }
@@ -261,9 +258,6 @@ class Profiler {
     return target.index >= 0 &&
            uncertainty_.estimates[target.index].status == EstimateStatus::kUnidentifiable;
   }
-  const ParameterSpec& SpecOf(int index) const {
-    return problem_.options().table[problem_.map().fitted[index].parameter];
-  }
   double Value(const ProfileTarget& target, const FitPoint& point) const;
   Eigen::VectorXd Gradient(const ProfileTarget& target) const;
   double MeanRatio() const;
@@ -287,7 +281,7 @@ double Profiler::Value(const ProfileTarget& target, const FitPoint& point) const
   return value;
 }
 
-// Of the target by all fitted numbers, at the estimate.
+// The target's derivatives by all fitted numbers, at the estimate.
 Eigen::VectorXd Profiler::Gradient(const ProfileTarget& target) const {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(covariance_.inverse_hessian.rows());
   if (target.index >= 0) {
@@ -332,7 +326,7 @@ ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorX
     search.direction.assign(direction.data(), direction.data() + direction.size());
     search.naive_error = std::sqrt(naive);
   } else if (target.index >= 0) {
-    const ParameterSpec& spec = SpecOf(target.index);
+    const ParameterSpec& spec = problem_.Spec(target.index);
     search.direction[target.index] = 1.0;
     search.naive_error =
         0.1 * (spec.transform == Transform::kIdentity ? spec.scale : 1.0);  // a careful first step
@@ -341,7 +335,7 @@ ProfileSearch Profiler::Search(const ProfileTarget& target, const Eigen::VectorX
   const double by_frames = gradient.dot(free_.inverse_hessian * gradient);
   search.threshold = 0.5 * t * t * (known && by_frames > 0.0 ? clustered / by_frames : MeanRatio());
   if (target.index >= 0) {
-    const ParameterSpec& spec = SpecOf(target.index);
+    const ParameterSpec& spec = problem_.Spec(target.index);
     search.lower = ToFitted(spec.transform, spec.lower);
     search.upper = ToFitted(spec.transform, spec.upper);
   }
@@ -397,7 +391,7 @@ ProfilePoint Profiler::Describe(const ProfileTarget& target, const HeldFit& fit)
   point.cost = fit.cost;
   for (int i = 0; i < problem_.map().num_shared(); ++i) {
     if (i == target.index) continue;
-    const ParameterSpec& spec = SpecOf(i);
+    const ParameterSpec& spec = problem_.Spec(i);
     point.others[spec.name] = ToNatural(spec.transform, fit.point[i]);
   }
   return point;

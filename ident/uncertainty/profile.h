@@ -104,7 +104,7 @@ struct ProfileSearch {
 };
 
 struct ProfileSide {
-  // Of the threshold, or the last point where it is not located; infinite where it is not crossed.
+  // Where the threshold is crossed, or the last point where that is not located; infinite: nowhere.
   double crossing = 0.0;
   std::string end;  // as in Profile
   std::vector<HeldFit> points;
@@ -130,7 +130,7 @@ struct ProfileTarget {
   std::vector<double> coefficients{};  // of a combination, by fitted parameter
   double constant = 0.0;               // what fixed parameters contribute
 
-  // Of the number; of a combination, that of the parameter in it which is known least.
+  // Half-width over standard error; of a combination, that of its least known parameter.
   double Quantile(const Uncertainty& uncertainty) const;
 };
 

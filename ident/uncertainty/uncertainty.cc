@@ -1,10 +1,13 @@
 // ident: standard errors, intervals and null directions of a fit.
 #include "ident/uncertainty/uncertainty.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
+#include "datasets/files/number_text.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/uncertainty/clusters.h"
@@ -23,13 +26,9 @@ constexpr Eigen::Index kMostColumnsWithCurvature = 40;
 // number that only its prior holds is not identified.
 Eigen::MatrixXd DataNullSpace(const ResidualRows& score, const Eigen::MatrixXd& scaled,
                               const std::vector<FittedColumn>& columns) {
-  std::vector<int> rows;
-  for (int row = 0; row < static_cast<int>(score.cluster_of_row.size()); ++row) {
-    const int cluster = score.cluster_of_row[row];
-    const bool put_in =
-        cluster == FitProblem::kPriorCluster || cluster == FitProblem::kSettlingCluster;
-    if (!put_in) rows.push_back(row);
-  }
+  const std::vector<int> rows = score.RowsWhere([](int cluster) {
+    return cluster != FitProblem::kPriorCluster && cluster != FitProblem::kSettlingCluster;
+  });
   const SingularDirections data = Decompose(scaled(rows, Eigen::all));
   const int size = static_cast<int>(columns.size());
   Eigen::MatrixXd null_space(size, 0);
@@ -157,24 +156,22 @@ Eigen::VectorXd MovedBySettling(const Covariance& c, const Eigen::VectorXd& unit
   return moved;
 }
 
-// Residuals, Jacobian and, unless there are too many columns, second derivatives.
-struct Evaluated {
-  ResidualRows score;
-  std::vector<FittedColumn> columns;
-  Eigen::VectorXd unit;
-  Clusters clusters;
-  Clustering clustering;
-};
-
 // Steps of the gradient's differences, in a column's unit: standard errors are within 3e-5 of those
 // by central differences. A likelihood's rows have Jacobians that are differences themselves, whose
 // rounding a small step would magnify.
 constexpr double kCurvatureStep = 3e-7, kCurvatureStepOfLikelihood = 1e-3;
 
-Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvature) {
+Covariance CovarianceWithoutDemand(FitProblem problem, const FitPoint& free) {
+  problem.set_settling_weight(0.0);
+  return CovarianceAt(problem, free);
+}
+
+}  // namespace
+
+ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point, bool curvature) {
   FitPoint copy = point;
   const FitProblem::Built built = problem.Build(&copy, 0);
-  Evaluated e{EvaluateRows(built, true), FittedColumns(problem, point), {}, {}, {}};
+  ScoredFit e{EvaluateRows(built, true), FittedColumns(problem, point), {}, {}, {}};
   e.unit = Units(e.columns);
   e.clusters = MakeClusters(problem.recordings(), ClusterBy::kAuto, problem.counts());
   e.clustering = ClusterRows(problem, e.clusters, e.score);
@@ -189,20 +186,8 @@ Evaluated Evaluate(const FitProblem& problem, const FitPoint& point, bool curvat
   return e;
 }
 
-Covariance CovarianceWithoutDemand(FitProblem problem, const FitPoint& free) {
-  problem.set_settling_weight(0.0);
-  return CovarianceAt(problem, free);
-}
-
-}  // namespace
-
-ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point) {
-  Evaluated e = Evaluate(problem, point, true);
-  return {std::move(e.score), std::move(e.unit)};
-}
-
 Covariance CovarianceAt(const FitProblem& problem, const FitPoint& point) {
-  const Evaluated e = Evaluate(problem, point, true);
+  const ScoredFit e = ScoreAt(problem, point);
   return ComputeCovariance(e.score, e.unit, e.clustering);
 }
 
@@ -223,7 +208,7 @@ Conditioning ComputeConditioning(const FitProblem& problem, const FitPoint& poin
 Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
                                const FitPoint* free) {
   // Where a demand moved the fit its errors are those at `free`, second derivatives and all.
-  const Evaluated e = Evaluate(problem, point, free == nullptr);
+  const ScoredFit e = ScoreAt(problem, point, free == nullptr);
   const auto& [score, columns, unit, clusters, clustering] = e;
   const int size = static_cast<int>(columns.size());
   const Covariance c = ComputeCovariance(score, unit, free == nullptr ? clustering : Clustering{});
@@ -271,6 +256,277 @@ Uncertainty ComputeUncertainty(const FitProblem& problem, const FitPoint& point,
   for (const FittedColumn& column : columns) at_bound.push_back(column.at_bound);
   u.held_directions = HeldDirections(problem, point, c, at_bound);
   return u;
+}
+
+namespace {
+
+std::string JoinNames(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+std::string Format(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+// Sums and differences of two touched shared parameters of one unit that the null space leaves
+// alone; at most as many as are independent.
+std::vector<Combination> IdentifiedPairs(const FitProblem& problem, const FitPoint& point,
+                                         const std::vector<int>& touched,
+                                         const Eigen::MatrixXd& null_space,
+                                         const Uncertainty& uncertainty) {
+  const Eigen::MatrixXd own = null_space(touched, Eigen::all);
+  const size_t wanted = touched.size() - static_cast<size_t>(Rank(own, kTouched));
+  std::vector<Combination> found;
+  for (size_t a = 0; a < touched.size(); ++a) {
+    for (size_t b = a + 1; b < touched.size() && found.size() < wanted; ++b) {
+      const ParameterSpec& first = problem.Spec(touched[a]);
+      const ParameterSpec& second = problem.Spec(touched[b]);
+      if (first.unit != second.unit) continue;
+      for (double sign : {1.0, -1.0}) {
+        const Eigen::RowVectorXd change = first.scale * null_space.row(touched[a]) +
+                                          sign * second.scale * null_space.row(touched[b]);
+        if (change.norm() > 1e-4 * first.scale) continue;
+        found.push_back(Combine(problem, point, uncertainty,
+                                {first.name + (sign > 0 ? " + " : " - ") + second.name,
+                                 first.unit,
+                                 {{first.id, 1.0}, {second.id, sign}}}));
+        break;
+      }
+    }
+  }
+  return found;
+}
+
+NullDirection NoEffect(const FitProblem& problem, int parameter) {
+  NullDirection direction;
+  direction.parameters = {problem.Spec(parameter).name};
+  direction.coefficients = {1.0};
+  direction.sentence =
+      direction.parameters[0] +
+      " has no effect on these recordings: fix it (--fix=" + direction.parameters[0] + ")";
+  return direction;
+}
+
+NullDirection Inseparable(const FitProblem& problem, const FitPoint& point,
+                          const std::vector<int>& group, const Eigen::MatrixXd& null_space,
+                          const Uncertainty& uncertainty) {
+  const Eigen::MatrixXd projector = null_space * null_space.transpose();
+  NullDirection joint;
+  int largest = group[0];
+  for (int i : group) {
+    if (projector(i, i) > projector(largest, largest)) largest = i;
+  }
+  for (int i : group) {
+    joint.parameters.push_back(problem.Spec(i).name);
+    joint.coefficients.push_back(projector(i, largest) / projector(largest, largest));
+  }
+  joint.identified = IdentifiedPairs(problem, point, group, null_space, uncertainty);
+  joint.sentence = JoinNames(joint.parameters) + " cannot be separated";
+  for (const Combination& c : joint.identified) {
+    const double half = 0.5 * (c.upper95 - c.lower95);
+    const bool known = half < 0.5 * std::abs(c.value) || c.lower95 > 0.0 || c.upper95 < 0.0;
+    joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " + Format(c.standard_error) +
+                      " " + c.unit + (known ? " is identified" : " is only weakly identified");
+  }
+  return joint;
+}
+
+}  // namespace
+
+std::vector<NullDirection> DescribeNullSpace(const FitProblem& problem, const FitPoint& point,
+                                             const Eigen::MatrixXd& null_space,
+                                             const Uncertainty& uncertainty) {
+  std::vector<NullDirection> directions;
+  if (null_space.cols() == 0) return directions;
+  const auto& fitted = problem.map().fitted;
+
+  // Parameters belong together when one's share of the null space moves the other.
+  const Eigen::MatrixXd projector = null_space * null_space.transpose();
+  std::vector<int> touched;
+  for (int i = 0; i < static_cast<int>(fitted.size()); ++i) {
+    if (null_space.row(i).cwiseAbs().maxCoeff() > kTouched) touched.push_back(i);
+  }
+  while (!touched.empty()) {
+    std::vector<int> group = {touched[0]};
+    const auto in_group = [&group](int i) {
+      return std::find(group.begin(), group.end(), i) != group.end();
+    };
+    for (size_t k = 0; k < group.size(); ++k) {
+      for (int i : touched) {
+        if (!in_group(i) && std::abs(projector(group[k], i)) > kTouched) group.push_back(i);
+      }
+    }
+    touched.erase(std::remove_if(touched.begin(), touched.end(), in_group), touched.end());
+    std::sort(group.begin(), group.end());
+    directions.push_back(group.size() == 1
+                             ? NoEffect(problem, group[0])
+                             : Inseparable(problem, point, group, null_space, uncertainty));
+  }
+  return directions;
+}
+
+namespace {
+
+constexpr size_t kMostDirections = 3;  // to tell: those that the data know least
+constexpr double kPartOf = 0.3;  // of the largest component: what counts as part of a direction
+
+// The information on `kept`, everything else integrated out.
+Eigen::MatrixXd Marginal(const Eigen::MatrixXd& information, const std::vector<int>& kept,
+                         const std::vector<int>& rest) {
+  const Eigen::MatrixXd own = information(kept, kept);
+  if (rest.empty()) return own;
+  const Eigen::MatrixXd cross = information(rest, kept), others = information(rest, rest);
+  return own - cross.transpose() * SolveLeastNorm(others, cross);
+}
+
+// change: of each kept parameter along the direction, natural units.
+std::string Sentence(const std::vector<const ParameterSpec*>& specs, const Eigen::VectorXd& change,
+                     double share) {
+  Eigen::VectorXd size(change.size());
+  for (Eigen::Index i = 0; i < size.size(); ++i) {
+    size[i] = std::abs(change[i]) / specs[static_cast<size_t>(i)]->scale;
+  }
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < size.size(); ++i) {
+    if (size[i] >= kPartOf * size.maxCoeff()) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&size](auto a, auto b) { return size[a] > size[b]; });
+  const std::string percent = Rounded(std::round(100.0 * share), 3) + " %";
+  const ParameterSpec& first = *specs[static_cast<size_t>(order[0])];
+  if (order.size() == 1) {
+    return "the data alone hardly determine " + first.name + " (their share: " + percent + ")";
+  }
+  if (order.size() == 2) {
+    const ParameterSpec& second = *specs[static_cast<size_t>(order[1])];
+    const double slope = change[order[0]] / change[order[1]];
+    return "the data alone determine " + first.name + (slope > 0.0 ? " - " : " + ") +
+           Rounded(std::abs(slope), 2) + " " + second.name +
+           " better than either parameter; their split comes from priors or constraints (data: " +
+           percent + ")";
+  }
+  std::string names;
+  for (size_t k = 0; k < order.size(); ++k) {
+    names += (k == 0                  ? ""
+              : k + 1 == order.size() ? " and "
+                                      : ", ") +
+             specs[static_cast<size_t>(order[k])]->name;
+  }
+  return "the data alone hardly separate " + names +
+         "; their split comes from priors or constraints (data: " + percent + ")";
+}
+
+}  // namespace
+
+std::vector<std::string> HeldDirections(const FitProblem& problem, const FitPoint& point,
+                                        const Covariance& covariance,
+                                        const std::vector<bool>& at_bound) {
+  const auto& fitted = problem.map().fitted;
+  std::vector<int> kept, rest;
+  std::vector<const ParameterSpec*> specs;
+  Eigen::VectorXd slope(0);
+  for (int i = 0; i < covariance.by_data.rows(); ++i) {
+    const bool shared = i < static_cast<int>(fitted.size());
+    if (at_bound[static_cast<size_t>(i)]) continue;
+    if (!shared) {
+      rest.push_back(i);
+      continue;
+    }
+    kept.push_back(i);
+    const ParameterSpec& spec = problem.Spec(i);
+    specs.push_back(&spec);
+    slope.conservativeResize(slope.size() + 1);
+    slope[slope.size() - 1] =
+        TransformSlope(spec.transform, ToNatural(spec.transform, point.shared[i]));
+  }
+  std::vector<std::string> sentences;
+  if (kept.empty()) return sentences;
+  const Eigen::MatrixXd by_data = covariance.by_data + covariance.by_pooling;
+  const Eigen::MatrixXd data = Marginal(by_data, kept, rest);
+  const SymmetricEigen all = DecomposeSymmetric(
+      Marginal(by_data + covariance.by_prior + covariance.by_settling, kept, rest));
+  if (!(all.values.minCoeff() > 0.0)) return sentences;  // a null direction: told elsewhere
+  const Eigen::MatrixXd root = all.InverseSqrt();
+  const SymmetricEigen shares = DecomposeSymmetric(root * data * root);
+  for (Eigen::Index k = 0; k < shares.values.size(); ++k) {
+    const double share = std::max(0.0, shares.values[k]);
+    if (share >= kHeldShare || sentences.size() >= kMostDirections) break;  // ascending
+    const Eigen::VectorXd direction = root * shares.vectors.col(k);
+    const std::string sentence = Sentence(specs, slope.cwiseProduct(direction), share);
+    if (sentences.empty() || sentences.back() != sentence) sentences.push_back(sentence);
+  }
+  return sentences;
+}
+
+Combination Combine(const FitProblem& problem, const FitPoint& point,
+                    const Uncertainty& uncertainty, const CombinationSpec& spec) {
+  const std::vector<Term>& terms = spec.terms;
+  const ParameterSet<double> values = problem.Parameters(point, "");
+  const size_t fitted = problem.map().fitted.size();
+  Combination result{spec.name, spec.unit};
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(uncertainty.covariance.rows());
+  for (const Term& term : terms) {
+    result.value += term.coefficient * values[term.parameter];
+    const size_t i = problem.FittedIndex(term.parameter);
+    if (i == fitted) continue;
+    gradient[static_cast<Eigen::Index>(i)] +=
+        term.coefficient * TransformSlope(problem.Spec(i).transform, values[term.parameter]);
+  }
+  const ScatterOf of = uncertainty.scatter.Of(gradient);
+  result.standard_error = of.standard_error;
+  result.quantile = of.quantile;
+  result.lower95 = result.value - of.HalfWidth();
+  result.upper95 = result.value + of.HalfWidth();
+  if (!uncertainty.these.empty()) {
+    const ScatterOf these = uncertainty.these.Of(gradient);
+    result.these = Interval{these.standard_error, result.value - these.HalfWidth(),
+                            result.value + these.HalfWidth()};
+  }
+  // A multiple of one parameter has that parameter's interval, asymmetric where it is fitted as a
+  // log.
+  const size_t one = terms.size() == 1 ? problem.FittedIndex(terms[0].parameter) : fitted;
+  if (one == fitted) return result;
+  const double by = terms[0].coefficient;
+  const Estimate& e = uncertainty.estimates[one];
+  result.lower95 = by * e.lower95;
+  result.upper95 = by * e.upper95;
+  if (e.these) {
+    result.these = Interval{by * e.these->standard_error, by * e.these->lower, by * e.these->upper};
+  }
+  return result;
+}
+
+std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model) {
+  const bool slides = Acts(kMu, model);
+  const bool at_hip = model.stance != Stance::kFixed;  // where the mass is
+  const double m = (at_hip ? 1.0 - kCartShare : 1.0) * kReferenceMass, l = kReferenceRod;
+  const double stiffness = 1.0 / (m * kGravity * l), damping = 1.0 / (m * l * l);
+  const double by_mass = 1.0 / kReferenceMass;
+  std::vector<CombinationSpec> combinations;
+  const auto cart = [&](const char* over, const char* unit, double factor) {
+    for (const CartDamping& c : CartDampings(model.friction)) {
+      combinations.push_back(
+          {std::string(c.name) + over, unit, {{c.friction, factor}, {c.gain, factor}}});
+    }
+  };
+  if (slides) {
+    cart("", "N s/m", 1.0);
+    cart("/M", "1/s", by_mass);
+  }
+  // The mass at the hip, or of the whole body where it turns about its ankles.
+  const std::string mass = slides ? "m" : "M";
+  const std::string load = "/(" + mass + " g l)", inertia = "/(" + mass + " l^2)";
+  combinations.insert(combinations.end(), {{"Kp_theta" + load, "1", {{kKpTheta, stiffness}}},
+                                           {"Kp_phi" + load, "1", {{kKpPhi, stiffness}}},
+                                           {"Kd_theta" + inertia, "1/s", {{kKdTheta, damping}}},
+                                           {"Kd_phi" + inertia, "1/s", {{kKdPhi, damping}}}});
+  return combinations;
 }
 
 }  // namespace pushid

@@ -60,11 +60,6 @@ struct Shares {
   double prior_pull = 0.0, settling_pull = 0.0;
 };
 
-// What an estimate owes to what the fit takes as known as well, natural units (model_verdict.h).
-struct TotalError {
-  double error = 0.0, lower95 = 0.0, upper95 = 0.0;
-};
-
 // One fitted number: a shared parameter, a subject's deviation or an initial velocity.
 struct Estimate {
   std::string name;
@@ -77,7 +72,8 @@ struct Estimate {
   double quantile = 0.0;  // half-width over standard error, fitted scale
   // About these people alone; none where the interval above is about them, or naive.
   std::optional<Interval> these;
-  std::optional<TotalError> total;  // of shared parameters, where it was computed
+  // With what it owes to what the fit takes as known (model_verdict.h); shared parameters alone.
+  std::optional<Interval> total;
   Shares shares;
   EstimateStatus status = EstimateStatus::kIdentified;
 };

@@ -1,8 +1,8 @@
 // ident: presets with published values.
 #include "ident/validation/synthetic_truth.h"
 
+#include "datasets/files/names.h"
 #include "ident/fit/fit_setup.h"
-#include "ident/parameters/option_names.h"
 
 namespace pushid {
 

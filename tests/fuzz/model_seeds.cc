@@ -33,7 +33,7 @@ FittedModel OfPreset(const std::string& name) {
                                 3.0,
                                 3.18,
                                 Interval{0.1, spec.lower, spec.upper},
-                                TotalError{0.2, spec.lower, spec.upper},
+                                Interval{0.2, spec.lower, spec.upper},
                                 {},
                                 status});
     if (spec.free) result.uncertainty.estimates.push_back(result.estimates.back());

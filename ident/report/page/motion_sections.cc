@@ -13,7 +13,7 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/force_story.h"
 #include "ident/prediction/prediction.h"
-#include "ident/problem/behaviour_text.h"
+#include "ident/problem/behaviour.h"
 #include "ident/report/parameter_sections.h"
 #include "ident/report/report_text.h"
 #include "ident/uncertainty/clusters.h"
@@ -459,8 +459,8 @@ constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has a
 std::string ValueText(const Estimate& e) {
   std::string text = e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
   if (e.lower95 < e.upper95) {
-    const double lower = e.total ? e.total->lower95 : e.lower95;
-    const double upper = e.total ? e.total->upper95 : e.upper95;
+    const double lower = e.total ? e.total->lower : e.lower95;
+    const double upper = e.total ? e.total->upper : e.upper95;
     const double from = ShownEnd(e.value, lower, upper), to = ShownEnd(e.value, upper, lower);
     text += std::isfinite(from) && std::isfinite(to)
                 ? " (" + Rounded(from, 3) + " to " + Rounded(to, 3) + ")"

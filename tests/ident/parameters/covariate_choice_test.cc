@@ -1,7 +1,7 @@
 // The words of --covariate.
 #include <gtest/gtest.h>
 
-#include "ident/parameters/option_names.h"
+#include "ident/parameters/parameter_table.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -1,10 +1,9 @@
 // What a report says of a person after a push, in every combination of findings: no sentence may
 // contradict another.
-#include "ident/problem/behaviour_text.h"
-
 #include <gtest/gtest.h>
 
 #include "ident/model/fitted_model.h"
+#include "ident/problem/behaviour.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_text.h"
 #include "tests/test_support.h"

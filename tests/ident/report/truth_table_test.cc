@@ -46,7 +46,7 @@ TEST(TruthTable, CountsTotalIntervalsToo) {
   EXPECT_FALSE(Contains(TruthTable(result, {{"narrow", 4.0}}), "total"));
   for (Estimate& e : result.estimates) {
     e.total.emplace();
-    e.total->lower95 = 0.0, e.total->upper95 = 5.0;
+    e.total->lower = 0.0, e.total->upper = 5.0;
   }
   const std::string table = TruthTable(result, {{"narrow", 4.0}, {"wide", 2.0}});
   EXPECT_TRUE(Contains(table, "1 of 2 intervals cover the truth"));

@@ -204,7 +204,8 @@ TEST(SummedCost, LanesSumToWhatRowsDo) {
   const FitProblem problem(recordings, UnbiasedFit(TinyStudy()));
   FitPoint point = problem.NominalPoint();
   FitProblem::Built built = problem.Build(&point, 0);
-  const RecordingSums expected = SumRecordings(EvaluateRows(built), point);
+  const ResidualRows rows = EvaluateRows(built);
+  const RecordingSums expected = SumRows(rows, point, rows.RowsOfData());
   const SummedCost summed(&built, StructuredSecants(false), {});
   std::vector<double> at = summed.Values(), elsewhere = at;
   for (double& value : elsewhere) value += 0.01;

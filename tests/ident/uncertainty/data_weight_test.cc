@@ -86,7 +86,8 @@ TEST(DataWeight, TellsTheSumsOfRecordings) {
   problem.SetWeights(weights);
   weights.effective_weight = EstimateEffectiveWeight(problem, point, &sums);
   problem.SetWeights(weights);
-  const RecordingSums anew = SumRecordings(EvaluateRows(problem, point), point);
+  const ResidualRows rows = EvaluateRows(problem, point);
+  const RecordingSums anew = SumRows(rows, point, rows.RowsOfData());
   ASSERT_EQ(sums.at, anew.at);
   const auto& [information, gradient] = anew.sums;
   EXPECT_LT((sums.sums.information - information).norm(), 1e-9 * information.norm());
@@ -113,7 +114,8 @@ TEST(DataWeight, WithoutRecordingsTheRestOfTheCostIsLeft) {
   FitPoint point = problem.NominalPoint();
   for (double& value : point.shared) value *= 1.1;
   const double all = CostAt(problem, point);
-  const double data = 0.5 * SumRecordings(EvaluateRows(problem, point), point).squares;
+  const ResidualRows rows = EvaluateRows(problem, point);
+  const double data = 0.5 * rows.residuals(rows.RowsOfData()).squaredNorm();
   EXPECT_GT(data, 0.0);
   EXPECT_NEAR(CostAt(problem.WithoutRecordings(), point), all - data, 1e-9 * all);
 }

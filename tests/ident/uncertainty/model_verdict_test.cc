@@ -116,9 +116,9 @@ TEST(ModelVerdict, TotalErrorsAreLargerThanThoseOfTheDataAlone) {
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kFixed) continue;
     ASSERT_TRUE(e.total.has_value()) << e.name;
-    EXPECT_GT(e.total->error, 0.9 * e.standard_error) << e.name;
-    EXPECT_LT(e.total->lower95, e.value) << e.name;
-    EXPECT_GT(e.total->upper95, e.value) << e.name;
+    EXPECT_GT(e.total->standard_error, 0.9 * e.standard_error) << e.name;
+    EXPECT_LT(e.total->lower, e.value) << e.name;
+    EXPECT_GT(e.total->upper, e.value) << e.name;
   }
 }
 
@@ -131,8 +131,8 @@ TEST(ModelVerdict, TotalErrorsFollowWhatIsStated) {
   }
   const FitResult sure = FitOf(recordings);
   for (const char* name : {"mu", "Kp_theta", "a_x"}) {
-    EXPECT_LT(FindEstimate(sure.estimates, name)->total->error,
-              0.95 * FindEstimate(plain.estimates, name)->total->error)
+    EXPECT_LT(FindEstimate(sure.estimates, name)->total->standard_error,
+              0.95 * FindEstimate(plain.estimates, name)->total->standard_error)
         << name;
   }
 }

@@ -51,11 +51,7 @@ std::unique_ptr<Solved> SolveSmall(int recordings, double prior_sigma) {
 }
 
 std::vector<int> RowsOf(const ResidualRows& score, int cluster, bool inside) {
-  std::vector<int> rows;
-  for (int i = 0; i < score.residuals.size(); ++i) {
-    if ((score.cluster_of_row[i] == cluster) == inside) rows.push_back(i);
-  }
-  return rows;
+  return score.RowsWhere([&](int c) { return (c == cluster) == inside; });
 }
 
 void ExpectRelativelyEqual(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double tolerance) {
