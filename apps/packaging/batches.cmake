@@ -1,8 +1,9 @@
 # Compiles the sources of a target in batches, each of one subfolder: what a source of this project costs is mostly its
 # headers, which a batch reads and instantiates once. So within a subfolder no two sources may give one name to different
 # things, not even in anonymous namespaces.
-#   pushid_batches(TARGET [COMMON])
-# With COMMON the sources of all subfolders are batched together, and no two of all may do so. SKIP_UNITY_BUILD_INCLUSION leaves a source alone.
+#   pushid_batches(TARGET [COMMON] [FOLDER,FOLDER ...])
+# With COMMON the sources of all subfolders are batched together, those of folders named with commas too; no two of these may
+# do so then. SKIP_UNITY_BUILD_INCLUSION leaves a source alone.
 set(PUSHID_BATCH_SIZE 18 CACHE STRING "Sources compiled together at most; 1 compiles each alone")
 function(pushid_batches target)
   get_target_property(sources ${target} SOURCES)
@@ -13,11 +14,14 @@ function(pushid_batches target)
       continue()
     endif()
     get_filename_component(folder ${source} ABSOLUTE)
-    file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
     get_filename_component(folder ${folder} DIRECTORY)
-    if("COMMON" IN_LIST ARGN)
-      set(folder common)
-    endif()
+    file(RELATIVE_PATH name ${CMAKE_CURRENT_SOURCE_DIR} ${folder})
+    file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${folder})
+    foreach(together ${ARGN})
+      if(together STREQUAL "COMMON" OR ",${together}," MATCHES ",${name},")
+        string(TOLOWER ${together} folder)
+      endif()
+    endforeach()
     string(MAKE_C_IDENTIFIER "${folder}" folder)
     list(APPEND folders ${folder})
     list(APPEND sources_of_${folder} ${source})

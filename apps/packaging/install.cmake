@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS pushid_options EXPORT pushid_targets)
 set_target_properties(pushid_options PROPERTIES EXPORT_NAME options)
-foreach(library ${PUSHID_LIBRARIES})
+foreach(library ${PUSHID_LIBRARIES} generators forecasts)
   set_target_properties(pushid_${library} PROPERTIES EXPORT_NAME ${library})
   install(TARGETS pushid_${library} EXPORT pushid_targets
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
@@ -28,7 +28,7 @@ install(FILES ${PROJECT_BINARY_DIR}/pushidConfig.cmake ${PROJECT_BINARY_DIR}/pus
         DESTINATION ${package_folder} COMPONENT development)
 
 set(private_folder ${CMAKE_INSTALL_LIBDIR}/pushid)
-install(TARGETS pushid_shared LIBRARY DESTINATION ${private_folder} COMPONENT programs NAMELINK_SKIP)
+install(TARGETS pushid_shared pushid_forecasts_shared LIBRARY DESTINATION ${private_folder} COMPONENT programs NAMELINK_SKIP)
 get_property(programs GLOBAL PROPERTY PUSHID_PROGRAMS)
 foreach(program ${programs})
   set_target_properties(${program} PROPERTIES INSTALL_RPATH "$ORIGIN/../${private_folder}")
