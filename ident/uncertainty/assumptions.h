@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ident/problem/residual_rows.h"
+#include "ident/uncertainty/clusters.h"
 
 namespace pushid {
 
@@ -25,5 +26,16 @@ inline constexpr double kScaleStep = 1e-4;
 
 // The assumptions of a problem that can have an effect.
 std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint& point);
+
+// With all that is taken as it is: what the covariances of a fit (uncertainty.h) are computed from.
+// curvature: with second derivatives, unless feet step or there are too many columns.
+struct ScoredFit {
+  ResidualRows score;
+  std::vector<FittedColumn> columns;
+  Eigen::VectorXd unit;
+  Clusters clusters;
+  Clustering clustering;
+};
+ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point, bool curvature = true);
 
 }  // namespace pushid

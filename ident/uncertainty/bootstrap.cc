@@ -6,6 +6,7 @@
 #include <map>
 
 #include "datasets/files/random.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"

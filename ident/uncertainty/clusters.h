@@ -16,13 +16,13 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
-#include "ident/problem/residual_rows.h"
 
 namespace pushid {
 
 class FitProblem;
 struct FitPoint;
 struct RecordingSums;
+struct ResidualRows;
 
 // A person is an id, whatever they weighed that day.
 struct Clusters {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/problem/statistics.h"
 #include "ident/solver/structured_secants.h"
 #include "models/decompositions.h"

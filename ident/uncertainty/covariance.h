@@ -23,7 +23,6 @@
 #include <string>
 #include <vector>
 
-#include "ident/problem/residual_rows.h"
 #include "ident/uncertainty/clusters.h"
 
 namespace pushid {
@@ -123,16 +122,5 @@ Covariance NaiveCovariance(const ResidualRows& score, const Eigen::VectorXd& uni
 // The sums of some rows, by the point that they were evaluated at.
 RecordingSums SumRows(const ResidualRows& score, const FitPoint& point,
                       const std::vector<int>& rows);
-
-// What the covariances of a fit (uncertainty.h) are computed from. curvature: with second
-// derivatives, unless feet step or there are too many columns.
-struct ScoredFit {
-  ResidualRows score;
-  std::vector<FittedColumn> columns;
-  Eigen::VectorXd unit;
-  Clusters clusters;
-  Clustering clustering;
-};
-ScoredFit ScoreAt(const FitProblem& problem, const FitPoint& point, bool curvature = true);
 
 }  // namespace pushid

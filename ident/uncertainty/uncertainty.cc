@@ -10,6 +10,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
+#include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"

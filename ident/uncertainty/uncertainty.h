@@ -31,6 +31,7 @@ namespace pushid {
 
 class FitProblem;
 struct FitPoint;
+struct FittedColumn;  // residual_rows.h
 
 enum class EstimateStatus {
   // The data's share is above 80 %, priors and settling together pull it by less than half a

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/covariance.h"
 #include "tests/ident/nist_models.h"

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/residual_rows.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
 #include "tests/ident/fit_samples.h"
