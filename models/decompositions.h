@@ -24,10 +24,6 @@ double SpectralRadius(const Eigen::MatrixXd& a);
 // A^-1 b of a symmetric semi-definite A, by LDLT.
 Eigen::MatrixXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 Eigen::VectorXd SolveSymmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
-// A^-1 B', row-major as Eigen's own solve of a transpose: products with it depend on that in the
-// last bit.
-Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> SolveSymmetricTransposed(
-    const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 // Whether A is positive definite, beyond what rounding may hide.
 bool IsPositiveDefinite(const Eigen::MatrixXd& a);
 
@@ -44,7 +40,7 @@ Eigen::MatrixXd SolveLeastNorm(const Eigen::MatrixXd& a, const Eigen::MatrixXd& 
 Eigen::VectorXd SolveLeastNorm(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
 Eigen::MatrixXd PseudoInverse(const Eigen::MatrixXd& a);
 
-// By an LU decomposition with full pivoting: pivots below `threshold` of the largest are zero.
+// By a QR decomposition with pivoting: pivots below `threshold` of the largest are zero.
 int Rank(const Eigen::MatrixXd& a, double threshold);
 
 // R of A = Q R, for at least as many rows as columns.
@@ -61,7 +57,8 @@ RightSingular DecomposeRight(const Eigen::MatrixXd& a);
 // to `to` with the least squares (Kabsch 1976).
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& a);
 
-// The shortest turn of one direction into another, which Eigen decomposes where they are opposite.
+// The shortest turn of one direction into another; about some axis beside them where they are
+// opposite.
 Eigen::Quaterniond TurnBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
 }  // namespace pushid

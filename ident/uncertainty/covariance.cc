@@ -59,7 +59,7 @@ void SplitHessian(const ResidualRows& score, const Eigen::MatrixXd& back, Covari
                   score.Information(score.RowsOf(FitProblem::kNetworkCluster));
   const Eigen::MatrixXd sum =
       back.transpose() * (c->by_data + c->by_prior + c->by_settling + c->by_pooling) * back;
-  c->inverse_of_parts = back * SolveSymmetricTransposed(sum, back);
+  c->inverse_of_parts = back * SolveSymmetric(sum, Eigen::MatrixXd(back.transpose()));
   c->prior_gradient = score.Gradient(prior);
   c->settling_gradient = score.Gradient(settling);
 }
@@ -173,7 +173,7 @@ Covariance ComputeCovariance(const ResidualRows& score, const Eigen::VectorXd& u
       c.curvature = score.curvature;
     }
   }
-  c.inverse_hessian = back * SolveSymmetricTransposed(hessian, back);
+  c.inverse_hessian = back * SolveSymmetric(hessian, Eigen::MatrixXd(back.transpose()));
   c.scatter = ClusteredScatter(score, clustering, back, hessian, c.inverse_hessian);
   if (clustering.recordings.count > 1) {
     const Clustering by_recording{
