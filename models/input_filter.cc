@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "models/ipm.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

@@ -17,7 +17,8 @@
 #include <array>
 #include <vector>
 
-#include "models/rollout.h"
+#include "models/process_noise.h"
+#include "models/scene.h"
 
 namespace pushid {
 

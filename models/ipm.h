@@ -254,20 +254,20 @@ Matrix4<T> InverseDynamicsJacobian(const BodyOf<T>& body, const Angles<T>& angle
 // d(M a + C + g_n / g G) at fixed acceleration a, by the logarithms of the point's mass and of the
 // pendulum's length: the first is a factor of all but the cart's own inertia, the second stands
 // once in the cart's rows, and in those of the angles once or twice. g: g_n, m/s^2.
-inline Eigen::Matrix<double, 4, 2> InverseDynamicsByBody(const BodyOf<double>& body,
-                                                         const Angles<double>& angles,
-                                                         const Vector4<double>& qd,
-                                                         const Vector4<double>& a,
-                                                         double g = kGravity) {
-  const Matrix4<double> mass = MassMatrix(body, angles);
-  const Vector4<double> gravity = (g / kGravity) * Gravity(body, angles);
-  const Eigen::Vector2d once =
-      mass.bottomLeftCorner<2, 2>() * a.head<2>() + gravity.tail<2>();  // of the angles
-  Vector4<double> by_mass = mass * a + Coriolis(body, angles, qd) + gravity;
-  by_mass.head<2>() -= body.mass * a.head<2>();
-  Eigen::Matrix<double, 4, 2> by;
+template <typename T>
+Eigen::Matrix<T, 4, 2> InverseDynamicsByBody(const BodyOf<T>& body, const Angles<T>& angles,
+                                             const Vector4<T>& qd, const Vector4<T>& a,
+                                             double g = kGravity) {
+  const Matrix4<T> mass = MassMatrix(body, angles);
+  const Vector4<T> gravity = (g / kGravity) * Gravity(body, angles);
+  const Eigen::Matrix<T, 2, 1> once =
+      mass.template bottomLeftCorner<2, 2>() * a.template head<2>() +
+      gravity.template tail<2>();  // of the angles
+  Vector4<T> by_mass = mass * a + Coriolis(body, angles, qd) + gravity;
+  by_mass.template head<2>() -= body.mass * a.template head<2>();
+  Eigen::Matrix<T, 4, 2> by;
   by << by_mass, by_mass;
-  by.col(1).tail<2>() += by_mass.tail<2>() - once;
+  by.col(1).template tail<2>() += by_mass.template tail<2>() - once;
   return by;
 }
 

@@ -197,4 +197,7 @@ NetForce<T> NetForceAt(const Scene& scene, const ModelOptions& options, const Se
   return force;
 }
 
+// The parts of the net force that drove a rollout, for reports; the last frame's drive no step.
+using ForceTrace = FrameTable<NetForce<double>>;
+
 }  // namespace pushid

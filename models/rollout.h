@@ -13,19 +13,6 @@
 
 namespace pushid {
 
-// How a rollout ended.
-
-// Whether a rollout stayed in the model's domain, and if not, where it left it.
-struct RolloutStatus {
-  bool ok = true;
-  int frame = 0;
-  int person = 0;
-  std::string_view quantity;  // theta, phi, rod or "state" (not finite)
-};
-
-// The parts of the net force that drove a rollout, for reports; the last frame's drive no step.
-using ForceTrace = FrameTable<NetForce<double>>;
-
 // Quantity that has left the domain, or an empty name. A rod that does not move may have any
 // length.
 template <typename T>

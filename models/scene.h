@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <vector>
 
 #include "models/ground.h"
@@ -77,5 +78,13 @@ inline Scene SettlingScene(double mass, double impulse, int num_people = 1) {
                     HalfSinePush(scene.people[0].body, impulse, kPushFrames, scene.dt)));
   return scene;
 }
+
+// Whether a rollout stayed in the model's domain, and if not, where it left it.
+struct RolloutStatus {
+  bool ok = true;
+  int frame = 0;
+  int person = 0;
+  std::string_view quantity;  // theta, phi, rod or "state" (not finite)
+};
 
 }  // namespace pushid

@@ -1,9 +1,22 @@
-// models: local cubic least squares.
+// models: from a skeleton to the pendulum, and local cubic least squares.
 #include "models/skeleton_mapping.h"
+
+#include <algorithm>
+#include <cmath>
 
 #include "models/decompositions.h"
 
 namespace pushid {
+
+MappedPose MapSkeleton(const Vector3<double>& hip, const Vector3<double>& left_ankle,
+                       const Vector3<double>& right_ankle) {
+  const Vector3<double> cart = 0.5 * (left_ankle + right_ankle);
+  const double length = (hip - cart).norm();
+  const Vector3<double> u = (hip - cart) / length;
+  const double theta = std::asin(std::clamp(u.x(), -1.0, 1.0));
+  const double phi = std::atan2(-u.y(), u.z());
+  return {{cart.x(), cart.y(), theta, phi}, length, cart.z()};
+}
 
 std::vector<SmoothedSample> SavitzkyGolay(const std::vector<Eigen::Vector4d>& samples, int window,
                                           double dt) {

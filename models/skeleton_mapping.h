@@ -7,8 +7,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "models/ipm.h"
@@ -21,15 +19,8 @@ struct MappedPose {
   double cart_height;  // m
 };
 
-inline MappedPose MapSkeleton(const Vector3<double>& hip, const Vector3<double>& left_ankle,
-                              const Vector3<double>& right_ankle) {
-  const Vector3<double> cart = 0.5 * (left_ankle + right_ankle);
-  const double length = (hip - cart).norm();
-  const Vector3<double> u = (hip - cart) / length;
-  const double theta = std::asin(std::clamp(u.x(), -1.0, 1.0));
-  const double phi = std::atan2(-u.y(), u.z());
-  return {{cart.x(), cart.y(), theta, phi}, length, cart.z()};
-}
+MappedPose MapSkeleton(const Vector3<double>& hip, const Vector3<double>& left_ankle,
+                       const Vector3<double>& right_ankle);
 
 // Smoothing and differentiating a sampled signal by local polynomials.
 //

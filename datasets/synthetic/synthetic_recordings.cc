@@ -10,6 +10,7 @@
 #include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "models/ground.h"
+#include "models/rollout.h"
 
 namespace pushid {
 namespace {

@@ -24,7 +24,7 @@
 #include "datasets/manifest/recording.h"
 #include "models/options.h"
 #include "models/parameters.h"
-#include "models/rollout.h"
+#include "models/scene.h"
 
 namespace pushid {
 

@@ -29,7 +29,6 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/model/identified_model.h"
-#include "models/rollout.h"
 
 namespace pushid {
 

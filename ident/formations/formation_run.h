@@ -12,7 +12,6 @@
 #include "models/enum_names.h"
 #include "models/restoration/body.h"
 #include "models/restoration/postprocess.h"
-#include "models/rollout.h"
 #include "models/scene.h"
 
 namespace pushid {

@@ -5,7 +5,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/model/identified_model.h"
-#include "models/rollout.h"
+#include "models/scene.h"
 
 namespace pushid {
 

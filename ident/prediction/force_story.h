@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "ident/prediction/prediction.h"
-#include "models/rollout.h"
 
 namespace pushid {
 

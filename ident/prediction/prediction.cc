@@ -14,6 +14,7 @@
 #include "ident/prediction/predictive_bands.h"
 #include "ident/problem/own_axes.h"
 #include "models/learned_terms.h"
+#include "models/rollout.h"
 #include "models/scene_forces.h"
 
 namespace pushid {

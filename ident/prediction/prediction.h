@@ -10,8 +10,8 @@
 #include "ident/model/identified_model.h"
 #include "ident/model/model_rollout.h"
 #include "ident/observed/recording_filter.h"
+#include "models/net_force.h"
 #include "models/restoration/body.h"
-#include "models/rollout.h"
 
 namespace pushid {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "models/rollout.h"
+#include "models/scene.h"
 
 namespace pushid {
 

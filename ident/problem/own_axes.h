@@ -10,7 +10,6 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "models/net_force.h"
 #include "models/options.h"
-#include "models/rollout.h"
 
 namespace pushid {
 

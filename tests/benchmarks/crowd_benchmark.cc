@@ -11,6 +11,7 @@
 #include "datasets/files/random.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "models/formation.h"
+#include "models/rollout.h"
 #include "models/scene_forces.h"
 
 namespace pushid {

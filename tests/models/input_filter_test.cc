@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "models/rollout.h"
 #include "tests/models/model_samples.h"
 
 namespace pushid {
