@@ -95,11 +95,12 @@ Eigen::MatrixXf NextFrame(const CvaeSampler& sampler, const CvaeDecoder& decoder
                           const Eigen::MatrixXf& draws) {
   if (pendulum.rows() > 0)
     return decoder.Evaluate(sampler.Evaluate(condition, pendulum, draws), condition);
-  Eigen::MatrixXf sum = decoder.Evaluate(draws.col(0).replicate(1, condition.cols()), condition);
-  for (Eigen::Index k = 1; k < draws.cols(); ++k) {
-    sum += decoder.Evaluate(draws.col(k).replicate(1, condition.cols()), condition);
+  const Eigen::Index people = condition.cols();
+  Eigen::MatrixXf sum = decoder.Evaluate(draws.leftCols(people), condition);
+  for (int k = 1; k < kCvaeDraws; ++k) {
+    sum += decoder.Evaluate(draws.middleCols(k * people, people), condition);
   }
-  return sum / static_cast<float>(draws.cols());
+  return sum / static_cast<float>(kCvaeDraws);
 }
 
 void ListSampler(const std::string& name, int condition, CvaeSampler* sampler,
@@ -255,7 +256,7 @@ std::vector<BodyMotion> CvaeRestoration::Restore(
   std::vector<BodyFrames> frames;
   const CvaeLayout& layout = weights_.layout;
   Eigen::MatrixXf lower(layout.LowerFrame(), n), upper(layout.UpperFrame(), n);
-  Eigen::MatrixXf pendulum(layout.PendulumFrame(), n), draws(kLatent, NumDraws());
+  Eigen::MatrixXf pendulum(layout.PendulumFrame(), n), draws(kLatent, NumDraws() * n);
   int longest = 0;
   for (int i = 0; i < n; ++i) {
     at_rate.push_back(Resampled(people[i], 1.0 / kCvaeRate));
@@ -279,7 +280,7 @@ std::vector<BodyMotion> CvaeRestoration::Restore(
       }
       draw();
       StepLower(weights_, pendulum, draws, &lower);
-      if (layout.pendulum) draw();  // without one, z is that of the lower body
+      if (layout.halves) draw();
       StepUpper(weights_, pendulum, draws, lower, &upper);
     }
     for (int i = 0; i < n; ++i) {
@@ -307,8 +308,7 @@ Eigen::MatrixXf CvaeSampler::Evaluate(const Eigen::MatrixXf& condition,
   hidden = Stacked(hidden, pendulum);
   const Eigen::MatrixXf mu = Apply(mean, hidden);
   if (eps.size() == 0) return mu;
-  const Eigen::MatrixXf sigma = (0.5f * Apply(log_variance, hidden).array()).exp();
-  return mu + (sigma.array().colwise() * eps.col(0).array()).matrix();
+  return mu + (0.5f * Apply(log_variance, hidden).array()).exp().matrix().cwiseProduct(eps);
 }
 
 Eigen::MatrixXf CvaeDecoder::Evaluate(const Eigen::MatrixXf& z,

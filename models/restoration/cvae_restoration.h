@@ -102,9 +102,10 @@ BodyMotion Resampled(const BodyMotion& motion, double motion_dt, double dt, int 
 // there are no samplers: z is drawn from a standard normal three times a frame and the poses are
 // averaged, as LDP does in its ablation.
 //
-// A sampler gives a Gaussian: z is its mean (CvaeLatent::kMean), or mu + sigma eps, eps drawn anew
-// for every frame and half of the body (kDraw). The experts' outputs are blended, not
-// their weights: the same function, since a layer is linear, and one product for a whole crowd.
+// A sampler gives a Gaussian: z is its mean (CvaeLatent::kMean), or mu + sigma eps (kDraw). What is
+// drawn is drawn anew for every frame, person and half of the body. The experts' outputs are
+// blended, not their weights: the same function, since a layer is linear, and one product for a
+// whole crowd.
 
 inline constexpr int kLatent = 64, kExperts = 4, kCvaeHidden = 256, kGateHidden = 64;
 
@@ -116,7 +117,7 @@ constexpr EnumNames<CvaeLatent, 2> Names(CvaeLatent) {
 // Three layers, the pendulum concatenated at each: [x, p] -> 256 -> 256 -> mean and log-variance.
 struct CvaeSampler {
   DenseLayer first, second, mean, log_variance;
-  // eps: a column for everybody; none: the mean.
+  // eps: a column per person; none: the mean.
   Eigen::MatrixXf Evaluate(const Eigen::MatrixXf& condition, const Eigen::MatrixXf& pendulum,
                            const Eigen::MatrixXf& eps) const;
 };
@@ -140,9 +141,8 @@ struct CvaeWeights {
 inline constexpr int kCvaeDraws = 3;  // of z in a frame, without a pendulum
 
 // One frame on: scaled frames of everybody, a column each, in place. pendulum: scaled, of the next
-// frame. draws: standard normal numbers, kLatent x kCvaeDraws where there is no pendulum (z), one
-// column (eps) or none (the mean) with samplers; the same for everybody, so that the order of
-// people changes nothing.
+// frame. draws: standard normal numbers, a column per person: kCvaeDraws times everybody where
+// there is no pendulum (z), everybody once (eps) or none (the mean) with samplers.
 void StepLower(const CvaeWeights& weights, const Eigen::MatrixXf& pendulum,
                const Eigen::MatrixXf& draws, Eigen::MatrixXf* lower);
 // lower: already of the next frame. Nothing happens without halves.
@@ -169,7 +169,7 @@ class CvaeRestoration : public Restoration {
   }
 
  private:
-  int NumDraws() const;  // columns of draws in a step
+  int NumDraws() const;  // of a person, in a step of a half
 
   CvaeWeights weights_;
   std::function<NormalSource()> draws_;

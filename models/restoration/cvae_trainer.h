@@ -7,13 +7,14 @@
 // gradients through earlier frames.
 //   autoencoder: mean square error of the scaled frame + 0.005 KL to a standard normal, mean
 //                over the latent variable
-//   sampler:     squared difference of its Gaussian to the encoder's, mean over the latent
-//   variable:
-//                of the mean, and of the log-variance (own) or of sigma (published, Eq. 7); for the
-//                lower body also the foot-skate error of the output (below)
-// Training `published`: Adam, its rate from 1e-4 down to 1e-7 in a straight line, and the sampler's
-// output is decoded from a drawn z. `own` (default): AdamW with one cycle up to 1e-3, and z is the
-// sampler's mean. Published is no weight of the foot skate: it is chosen here.
+//   sampler:     squared difference of its Gaussian to the encoder's: published (Eq. 7)
+//                |mu - mu_e|^2 + |sigma - sigma_e|^2, own of mean and log-variance, mean over the
+//                latent variable; for the lower body also the foot-skate error of the output
+//                (below)
+// Training `published`: Adam, autoencoders from 1e-4 down to 1e-7 in a straight line, samplers at
+// 1e-4, and the sampler's output is decoded from a drawn z. `own` (default): AdamW with one cycle
+// up to 1e-3, and z is the sampler's mean. Published is no weight of the foot skate: it is chosen
+// here.
 // Source: Yue et al., CVPR 2024; autoencoders as in Ling et al., Character controllers using motion
 // VAEs, SIGGRAPH 2020. A round is a few hundred steps; after each the held-out sequences judge, and
 // of every stage's last part the best round is kept.
@@ -70,8 +71,21 @@ class CvaeTrainer : public Trainer {
   struct Torch;
 };
 
-// The foot-skate error (FSE) that the lower sampler is trained against, without LibTorch in
-// front, so that it can be tested by hand.
+// What is minimized, without LibTorch in front, so that it can be tested by hand. Frames scaled, a
+// column per sample.
+
+struct CvaeGaussian {
+  Eigen::MatrixXd mean, log_variance;
+};
+double CvaeAutoencoderLoss(const CvaeOptions& options, const CvaeGaussian& encoded,
+                           const Eigen::MatrixXd& output, const Eigen::MatrixXd& frame);
+// Without the foot skate.
+double CvaeSamplerLoss(CvaeTraining training, const CvaeGaussian& sampled,
+                       const CvaeGaussian& encoded);
+// done: share of the stage's steps.
+double CvaeLearningRate(const CvaeOptions& options, bool sampler, double done);
+
+// The foot-skate error (FSE) that the lower sampler is trained against.
 //
 //   FSE = mean over ankles with h < H of  100 |way| (2 - 2^(max(0, h) / H)),  cm a frame
 //

@@ -78,6 +78,25 @@ struct Gaussian {
   Tensor Draw() const { return mean + Sigma() * torch::randn_like(mean); }
 };
 
+Gaussian RowsOf(const CvaeGaussian& columns) {
+  return {RowsOf(columns.mean), RowsOf(columns.log_variance)};
+}
+
+Tensor AutoencoderLossOf(const CvaeOptions& options, const Gaussian& encoded, const Tensor& output,
+                         const Tensor& frame) {
+  const Tensor kl =
+      -0.5 * (1.0 + encoded.log_variance - encoded.mean.pow(2) - encoded.log_variance.exp()).mean();
+  return (output - frame).pow(2).mean() + options.kl_weight * kl;
+}
+
+Tensor SamplerLossOf(CvaeTraining training, const Gaussian& sampled, const Gaussian& encoded) {
+  const Tensor of_mean = (sampled.mean - encoded.mean).pow(2);
+  if (training == CvaeTraining::kPublished) {
+    return (of_mean + (sampled.Sigma() - encoded.Sigma()).pow(2)).sum(1).mean();
+  }
+  return of_mean.mean() + (sampled.log_variance - encoded.log_variance).pow(2).mean();
+}
+
 inline Tensor Join(const Tensor& a, const Tensor& b) { return torch::cat({a, b}, 1); }
 
 // [x, c] -> 256 -> 256 -> mean and log-variance; `again` is concatenated at the later layers.
@@ -231,7 +250,6 @@ struct CvaeStages {
   Tensor SamplerLoss(const Tensor& next, const Tensor& condition, const Tensor& pendulum,
                      Tensor* output);
   Tensor Skate(const Tensor& output, const Tensor& pendulum) const;
-  double LearningRate(double done) const;
   enum class Latent { kEncoder, kSampler, kPriorMean };
   Tensor RollOut(const CvaeSequences& s, Latent latent);
   double HeldLoss();
@@ -241,8 +259,6 @@ struct CvaeStages {
 namespace {
 
 constexpr double kTeacher = 0.14, kRamp = 0.14;  // shares of a stage's steps
-// Of the published training, from the first step to the last, in a straight line.
-constexpr double kFirstPublishedRate = 1e-4, kLastPublishedRate = 1e-7;
 
 Tensor Padded(const std::vector<const Eigen::MatrixXf*>& parts, int64_t longest) {
   Tensor all = torch::zeros({static_cast<int64_t>(parts.size()), longest, parts[0]->rows()});
@@ -256,6 +272,22 @@ Tensor Padded(const std::vector<const Eigen::MatrixXf*>& parts, int64_t longest)
 Tensor Positions(const Tensor& frames, int numbers) { return frames.slice(-1, 3, 3 + numbers); }
 
 }  // namespace
+
+double CvaeAutoencoderLoss(const CvaeOptions& options, const CvaeGaussian& encoded,
+                           const Eigen::MatrixXd& output, const Eigen::MatrixXd& frame) {
+  return AutoencoderLossOf(options, RowsOf(encoded), RowsOf(output), RowsOf(frame)).item<double>();
+}
+
+double CvaeSamplerLoss(CvaeTraining training, const CvaeGaussian& sampled,
+                       const CvaeGaussian& encoded) {
+  return SamplerLossOf(training, RowsOf(sampled), RowsOf(encoded)).item<double>();
+}
+
+double CvaeLearningRate(const CvaeOptions& options, bool sampler, double done) {
+  constexpr double kFirst = 1e-4, kLast = 1e-7;
+  if (options.training == CvaeTraining::kOwn) return options.learning_rate * OneCycle(done);
+  return sampler ? kFirst : kFirst + (kLast - kFirst) * done;
+}
 
 CvaeSequences Gather(const std::vector<CvaeSequence>& sequences) {
   CvaeSequences all;
@@ -277,7 +309,8 @@ void CvaeStages::StartStage() {
     PredictLower(&held);
   }
   // Without weight decay AdamW is Adam.
-  optimizer = MakeOptimizer(Trained(), LearningRate(0.0), Published() ? 0.0 : 1e-4);
+  optimizer =
+      MakeOptimizer(Trained(), CvaeLearningRate(options, Sampler(), 0.0), Published() ? 0.0 : 1e-4);
   step = 0;
   rollout_left = 0;
   best_loss = kWorstCvaeLoss;
@@ -310,8 +343,7 @@ void CvaeStages::NewBatch() {
 Tensor CvaeStages::AutoencoderLoss(const Tensor& next, const Tensor& condition, Tensor* output) {
   const Gaussian g = Half().Encode(next, condition);
   *output = Half().decoder->Forward(g.Draw(), condition);
-  const Tensor kl = -0.5 * (1.0 + g.log_variance - g.mean.pow(2) - g.log_variance.exp()).mean();
-  return (*output - next).pow(2).mean() + options.kl_weight * kl;
+  return AutoencoderLossOf(options, g, *output, next);
 }
 
 // FSE of the batch's outputs, with what they started from, in m.
@@ -332,23 +364,16 @@ Tensor CvaeStages::SamplerLoss(const Tensor& next, const Tensor& condition, cons
     wanted = Half().Encode(next, condition);
   }
   const Gaussian g = Half().Sample(condition, pendulum);
-  const Tensor width =
-      Published() ? g.Sigma() - wanted.Sigma() : g.log_variance - wanted.log_variance;
-  Tensor loss = (g.mean - wanted.mean).pow(2).mean() + width.pow(2).mean();
+  Tensor loss = SamplerLossOf(options.training, g, wanted);
   *output = Half().decoder->Forward(Published() ? g.Draw() : g.mean, condition);
   if (!Upper()) loss = loss + options.skate_weight * Skate(*output, pendulum);
   return loss;
 }
 
-double CvaeStages::LearningRate(double done) const {
-  if (!Published()) return options.learning_rate * OneCycle(done);
-  return kFirstPublishedRate + (kLastPublishedRate - kFirstPublishedRate) * done;
-}
-
 double CvaeStages::Step() {
   if (rollout_left == 0) NewBatch();
   const double done = static_cast<double>(step) / options.steps[stage];
-  SetLearningRate(optimizer.get(), LearningRate(done));
+  SetLearningRate(optimizer.get(), CvaeLearningRate(options, Sampler(), done));
   const Tensor next = Frames(training).index({rows, first + at + 1});
   const Tensor pendulum = training.pendulum.index({rows, first + at + 1});
   Tensor lower_next;

@@ -109,6 +109,37 @@ TEST(CvaeTrainerTest, ParametersAreLdps) {
   EXPECT_EQ(trainer.NumParameters(), (std::array<int64_t, 4>{865536, 136960, 1097904, 159232}));
 }
 
+// One sample of two latent variables. mu = (1, 2), mu_e = (0, 4): 1 + 4 = 5. Log-variances 0 and
+// 2 ln 3, so sigma = (1, 3), and sigma_e = (1, 1): 0 + 4. Eq. 7 is their sum, 9. Ours has means,
+// 5 / 2, and log-variances, (2 ln 3)^2 / 2 = 2.4139.
+TEST(CvaeTrainerTest, LossOfTheSamplerByHand) {
+  CvaeGaussian sampled{Eigen::MatrixXd(2, 1), Eigen::MatrixXd(2, 1)}, encoded = sampled;
+  sampled.mean << 1.0, 2.0, sampled.log_variance << 0.0, 2.0 * std::log(3.0);
+  encoded.mean << 0.0, 4.0, encoded.log_variance << 0.0, 0.0;
+  EXPECT_NEAR(CvaeSamplerLoss(CvaeTraining::kPublished, sampled, encoded), 9.0, 1e-12);
+  EXPECT_NEAR(CvaeSamplerLoss(CvaeTraining::kOwn, sampled, encoded), 2.5 + 2.4139, 1e-4);
+}
+
+// Errors 1 and 3: a mean square of 5. KL of N(1, 1) is 0.5, of N(0, 4) -0.5 (1 + ln 4 - 4) =
+// 0.80685: a mean of 0.653426, times 0.005.
+TEST(CvaeTrainerTest, LossOfTheAutoencoderByHand) {
+  CvaeGaussian encoded{Eigen::MatrixXd(2, 1), Eigen::MatrixXd(2, 1)};
+  encoded.mean << 1.0, 0.0, encoded.log_variance << 0.0, std::log(4.0);
+  const Eigen::MatrixXd output = Eigen::Vector2d(2.0, 1.0), frame = Eigen::Vector2d(1.0, 4.0);
+  EXPECT_NEAR(CvaeAutoencoderLoss({}, encoded, output, frame), 5.0 + 0.005 * 0.653426, 1e-8);
+}
+
+// Half of the way from 1e-4 to 1e-7 is 5.005e-5.
+TEST(CvaeTrainerTest, PublishedRatesByHand) {
+  CvaeOptions options;
+  options.training = CvaeTraining::kPublished;
+  for (const auto& [done, rate] :
+       {std::pair(0.0, 1e-4), std::pair(0.5, 5.005e-5), std::pair(1.0, 1e-7)}) {
+    EXPECT_NEAR(CvaeLearningRate(options, false, done), rate, 1e-15);
+    EXPECT_EQ(CvaeLearningRate(options, true, done), 1e-4);
+  }
+}
+
 TEST(CvaeTrainerTest, TheChainWithoutLibTorchIsTheTrainedOne) {
   CvaeWeights scalings;
   const auto sequences = Sequences(3, &scalings);

@@ -18,7 +18,7 @@ NormalSource Draws() {
   return [random] { return random->Normal(); };
 }
 
-// Their hip is the rod's tip.
+// Nothing is drawn, and their hip is the rod's tip.
 Restorations KindsOnTheTip() {
   Restorations kinds;
   kinds.push_back(std::make_unique<RigidRestoration>());
@@ -28,20 +28,32 @@ Restorations KindsOnTheTip() {
   kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae()));
   kinds.push_back(
       std::make_unique<CvaeRestoration>(RandomCvae(3, {CvaeCoordinates::kTip, true, false})));
+  return kinds;
+}
+
+Restorations KindsWithoutDraws() {
+  Restorations kinds = KindsOnTheTip();
+  kinds.push_back(std::make_unique<WindowRestoration>(RandomWindow(3, RestorationView::kPose)));
+  kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae(1, {CvaeCoordinates::kLdp})));
+  return kinds;
+}
+
+// Of LDP's chain, by the sampler and without a pendulum.
+Restorations KindsThatDraw(const std::function<NormalSource()>& draws) {
+  Restorations kinds;
   auto drawn = std::make_unique<CvaeRestoration>(RandomCvae());
-  drawn->DrawLatent(Draws);
+  drawn->DrawLatent(draws);
   kinds.push_back(std::move(drawn));
+  for (const bool halves : {true, false}) {
+    const CvaeLayout layout = {CvaeCoordinates::kTip, false, halves};
+    kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae(1, layout), draws));
+  }
   return kinds;
 }
 
 Restorations AllKinds() {
-  Restorations kinds = KindsOnTheTip();
-  kinds.push_back(std::make_unique<WindowRestoration>(RandomWindow(3, RestorationView::kPose)));
-  kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae(1, {CvaeCoordinates::kLdp})));
-  for (const bool halves : {true, false}) {
-    const CvaeLayout layout = {CvaeCoordinates::kTip, false, halves};
-    kinds.push_back(std::make_unique<CvaeRestoration>(RandomCvae(1, layout), Draws));
-  }
+  Restorations kinds = KindsWithoutDraws();
+  for (auto& kind : KindsThatDraw(Draws)) kinds.push_back(std::move(kind));
   return kinds;
 }
 
@@ -79,7 +91,7 @@ TEST(RestorationTest, TheOrderOfPeopleMakesNoDifference) {
   const RestorationInput a = MovingPerson(StandingPose(), 80, 30);
   const RestorationInput b = MovingPerson(Placed(StandingPose(), 0.4, {1, 2, 0}), 62, 30);
   const RestorationInput c = MovingPerson(Mirrored(StandingPose()), 95, 24);
-  for (const auto& restoration : AllKinds()) {
+  for (const auto& restoration : KindsWithoutDraws()) {
     const std::vector<BodyMotion> first = restoration->Restore({a, b, c});
     const std::vector<BodyMotion> second = restoration->Restore({c, a, b});
     // Sums in another order differ in the last bits of single precision.
@@ -121,12 +133,28 @@ TEST(CvaeLatentTest, ADrawIsTheMeanAndSigmaTimesTheDraw) {
   Random random(3);
   const Eigen::MatrixXf condition = RandomMatrix(CvaeLayout().LowerFrame(), 2, 1.0, &random);
   const Eigen::MatrixXf pendulum = RandomMatrix(kPendulumFrame, 2, 1.0, &random);
-  const Eigen::MatrixXf eps = RandomMatrix(kLatent, 1, 1.0, &random);
+  const Eigen::MatrixXf eps = RandomMatrix(kLatent, 2, 1.0, &random);
   const Eigen::MatrixXf mean = sampler.Evaluate(condition, pendulum, {});
   const Eigen::MatrixXf drawn = sampler.Evaluate(condition, pendulum, eps);
-  for (int person : {0, 1}) {
-    EXPECT_LT((drawn.col(person) - mean.col(person) - 2.0f * eps).norm(), 1e-5f);
+  EXPECT_LT((drawn - mean - 2.0f * eps).norm(), 1e-5f);
+}
+
+// Two people, 4 steps of 64 numbers: by the sampler once for each of two halves, 2 4 64 2 = 1024;
+// without a pendulum three times, for two halves 3072 and for one 1536. Twins are drawn apart.
+TEST(CvaeLatentTest, EveryPersonAndHalfHasADrawOfItsOwn) {
+  int count = 0;
+  const auto counted = [&count]() -> NormalSource {
+    return [&count, draw = Draws()] { return ++count, draw(); };
+  };
+  const RestorationInput person = MovingPerson(StandingPose(), 80, 5);
+  std::vector<int> counts;
+  for (const auto& restoration : KindsThatDraw(counted)) {
+    count = 0;
+    const std::vector<BodyMotion> twins = restoration->Restore({person, person});
+    EXPECT_GT(Largest(twins[0], twins[1]), 1e-3);
+    counts.push_back(count);
   }
+  EXPECT_EQ(counts, (std::vector<int>{1024, 3072, 1536}));
 }
 
 TEST(CvaeLatentTest, DrawsRepeatByTheirSourceAndVanishWithSigma) {
