@@ -179,8 +179,9 @@ struct ContactTerm {
 //     F_theta = -s k  iff  s theta_n >= 0.1 or s theta_j <= -0.1
 //   and with s = sign(y_j - y_n), F_phi = +s k  iff  s phi_n <= -0.1 or s phi_j >= 0.1:
 //   push away when I lean towards the neighbour or the neighbour leans towards me.
-// for d < range (Eq. 10 and 11, and the supplement's table). Equal coordinates count as "behind".
-// Not mutual: what n gets from j is not what j gets from n.
+// for d < range (Eq. 10 and 11, and the supplement's table, in which j is behind n where x_n > x_j
+// and otherwise in front: so is who stands level, s = +1; the release has such a j behind). Not
+// mutual: what n gets from j is not what j gets from n.
 
 inline constexpr double kLdpStep = 1.0 / 60.0;  // s
 inline constexpr double kLdpLean = 0.1;         // rad
@@ -201,9 +202,9 @@ struct LdpTorqueSigns {
 };
 inline LdpTorqueSigns LdpTable(const Vector4<double>& n, const Vector4<double>& j) {
   LdpTorqueSigns signs;
-  int s = j[0] - n[0] > 0.0 ? 1 : -1;
+  int s = n[0] - j[0] > 0.0 ? -1 : 1;
   if (s * n[2] >= kLdpLean || s * j[2] <= -kLdpLean) signs.theta = -s;
-  s = j[1] - n[1] > 0.0 ? 1 : -1;
+  s = n[1] - j[1] > 0.0 ? -1 : 1;
   if (s * n[3] <= -kLdpLean || s * j[3] >= kLdpLean) signs.phi = s;
   return signs;
 }

@@ -207,9 +207,14 @@ std::shared_ptr<const LearnedTerms> LargeNetworkSolution::Network(LearnedTerms l
   return std::make_shared<const LearnedTerms>(std::move(like));
 }
 
+LargeNetworkOptions OptionsFor(const LearnedTerms& learned) {
+  LargeNetworkOptions options;
+  if (learned.shape.biased()) options.rate = options.last_rate = 3e-4;
+  return options;
+}
+
 Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,
                                              const LargeNetworkProgress& progress) {
-  constexpr double kLastRate = 0.01;
   if (const MaybeError error = CheckFit(fit)) return *error;
   Result<std::vector<ShortenedRecording>> failing = FailingAtTheStart(fit);
   if (!failing.ok()) return failing.error();
@@ -226,9 +231,9 @@ Result<LargeNetworkSolution> FitLargeNetwork(const LargeNetworkFit& fit,
   Adam adam(static_cast<Eigen::Index>(x.size()));
   Clip clip;
   const int passes = fit.options.passes;
+  const double fall = fit.options.last_rate / fit.options.rate;
   for (int pass = 0; pass <= passes; ++pass) {
-    const double rate =
-        pass == 0 ? 0.0 : fit.options.rate * std::pow(kLastRate, double(pass) / passes);
+    const double rate = pass == 0 ? 0.0 : fit.options.rate * std::pow(fall, double(pass) / passes);
     double steepest = 0.0;
     const auto [cost, failures] = batches.value().Pass(x, [&](Eigen::ArrayXd* gradient) {
       steepest = std::max(steepest, gradient->abs().maxCoeff());

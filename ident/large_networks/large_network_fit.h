@@ -10,11 +10,11 @@
 // and the same seed give the same bits.
 //
 // Adam (Kingma and Ba, 2015) with its usual constants, as LDP trains, on kRecordingsOfAStep
-// recordings at a time, dealt out once and taken in random order. The rate falls to a hundredth of
-// options.rate. A gradient more than twice as long as those before on average is shortened to that:
-// it tells of somebody who is about to fall. Where a rollout leaves the domain, the frames before
-// count. (L-BFGS on all recordings ends at the first switch of LDP's forces.) Parameters have no
-// bounds here: keep them fixed, or hold them by priors on the fitted scale.
+// recordings at a time, dealt out once and taken in random order. A gradient more than twice as
+// long as those before on average is shortened to that: it tells of somebody who is about to fall.
+// Where a rollout leaves the domain, the frames before count. (L-BFGS on all recordings ends at the
+// first switch of LDP's forces.) Parameters have no bounds here: keep them fixed, or hold them by
+// priors on the fitted scale.
 #pragma once
 
 #include <functional>
@@ -31,11 +31,13 @@ namespace pushid {
 inline constexpr int kRecordingsOfAStep = 8;
 
 struct LargeNetworkOptions {
-  double rate = 1e-3;         // at first
-  int passes = 200;           // over all recordings
-  uint64_t seed = 1;          // of their order
-  double weight_sigma = 1.0;  // of the prior that ties the weights to zero; 0: none
+  double rate = 1e-3, last_rate = 1e-5;  // at first, and in the last pass
+  int passes = 200;                      // over all recordings
+  uint64_t seed = 1;                     // of their order
+  double weight_sigma = 1.0;             // of the prior that ties the weights to zero; 0: none
 };
+// With the rates of what is trained: LDP's networks have 3e-4 throughout, as published.
+LargeNetworkOptions OptionsFor(const LearnedTerms& learned);
 
 // What holds a shared parameter, on the fitted scale.
 struct SharedPrior {

@@ -35,6 +35,7 @@ Result<FitOptions> TrainByGradient(const std::vector<PendulumRecording>& recordi
   }
   fit.shared_prior = SharedPriors(options.table, fit.map);
   fit.sigmas = options.sigmas;
+  fit.options = OptionsFor(*options.model.learned);
   fit.options.weight_sigma = options.network_prior;
   fit.options.seed = options.seed;
   const Result<LargeNetworkSolution> trained =

@@ -60,7 +60,7 @@ constexpr uint64_t kRodSeed = 7919, kPairSeed = 104729;
 // Before the sizes; the second is LDP's.
 constexpr std::string_view kNetworkTerm = "network:", kLdpNetworkTerm = "ldp_network:";
 constexpr int kLdpHidden = 256, kLdpEmbedding = 32;
-constexpr char kLdpRod[] = "256-128-256";
+constexpr char kLdpRod[] = "128-128";
 
 // A size between 1 and kLargestSize, or 0.
 int Size(const std::string& text) {
@@ -72,7 +72,7 @@ int Size(const std::string& text) {
   return size <= kLargestSize ? size : 0;
 }
 
-// "256-128-256"; empty where it is no list of sizes.
+// "128-128"; empty where it is no list of sizes.
 std::vector<int> HiddenSizes(const std::string& text) {
   std::vector<int> hidden;
   for (const std::string& size : SplitList(text, '-')) hidden.push_back(Size(size));
@@ -146,7 +146,7 @@ Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
   shape.hidden = HiddenSizes(colon == std::string::npos ? usual : text.substr(colon + 1));
   if (shape.layered() && !shape.hidden.empty()) return shape;
   return Error{flag + " is '" + text +
-               "'; it must be constant, linear, mlp:4 or, as LDP's, ldp:256-128-256 (hidden sizes "
+               "'; it must be constant, linear, mlp:4 or, as LDP's, ldp:128-128 (hidden sizes "
                "of 1 to " +
                std::to_string(kLargestSize) + ", at most " + std::to_string(kMostLayers) +
                " layers)"};

@@ -4,7 +4,7 @@
 //   mlp:4, gru:8, lstm:16           kind and hidden size (4 where it is left out)
 //   lstm:256:32                     with an embedding of 32 before it
 //   ldp:256:32                      LDP's, with biases and the mass; it always has an embedding
-//   constant, linear, mlp:4, ldp:256-128-256                     a law of the rod
+//   constant, linear, mlp:4, ldp:128-128                          a law of the rod
 //   network:8-8, ldp_network:512-512, among the terms of an interaction    hidden sizes
 // JSON: {"kind": "gru", "hidden": 8, "embedding": 0,
 //        "rod": {"kind": "mlp", "hidden": [4]}, "interaction": {"hidden": [4], "ldp": false},

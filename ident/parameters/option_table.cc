@@ -288,7 +288,7 @@ Row RodRow() {
   Row row = WordsRow("rod", OptionStage::kModel,
                      "the rod's length: constant, or a state that a learned law changes, together "
                      "with the cart's height: linear, mlp:4 (hidden sizes); or LDP's, whose cart "
-                     "keeps its height, ldp:256-128-256",
+                     "keeps its height, ldp:128-128",
                      [](const std::string& text, FitOptions* o) -> MaybeError {
                        const Result<RodShape> rod = ParseRod("--rod", text);
                        if (!rod.ok()) return rod.error();

@@ -351,7 +351,7 @@ FitOptions LdpPublishedPreset() {
   o.model.cart_derivative = CartDerivative::kBackward;
   o.model.push = PushUse::kAdded;
   o.model.learned =
-      InitialNetwork({NetworkKind::kLdp, 256, 32}, o.seed, {RodKind::kLdp, {256, 128, 256}});
+      InitialNetwork({NetworkKind::kLdp, 256, 32}, o.seed, {RodKind::kLdp, {128, 128}});
   o.sigmas = kLdpSigmas;
   o.estimate_weights = false;
   o.effective_weight = 1.0;

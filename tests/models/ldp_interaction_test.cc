@@ -69,9 +69,14 @@ TEST(LdpTable, ThirtySixSignsOfTheTable) {
   check(kRight, 0.0, -0.3, 3);
 }
 
-TEST(LdpTable, EqualCoordinatesCountAsBehindAndTheLimitBelongsToTheTable) {
-  EXPECT_EQ(LdpTable({1, 1, -0.1, 0}, {1, 1, 0, 0}).theta, 1);
-  EXPECT_EQ(LdpTable({1, 1, 0, 0.1}, {1, 1, 0, 0}).phi, -1);
+// x_nj = 0 is not above 0, so j is not behind n but in front, and for y to the left: of two who
+// stand level, each is pushed back that leans forwards, and to the right that leans to the left.
+TEST(LdpTable, WhoStandsLevelIsInFrontAndTheLimitBelongsToTheTable) {
+  EXPECT_EQ(LdpTable({1, 1, 0.1, 0}, {1, 1, 0, 0}).theta, -1);
+  EXPECT_EQ(LdpTable({1, 1, -0.1, 0}, {1, 1, 0, 0}).theta, 0);
+  EXPECT_EQ(LdpTable({1, 1, 0, -0.1}, {1, 1, 0, 0}).phi, 1);
+  EXPECT_EQ(LdpTable({1, 1, 0, 0.1}, {1, 1, 0, 0}).phi, 0);
+  EXPECT_EQ(LdpTable({0, 1, 0, -0.1}, {0.4, 1, 0, 0}).phi, 1) << "the next in a line";
   EXPECT_EQ(LdpTable({0, 0, 0.0999, 0}, {1, 0, 0, 0}).theta, 0);
 }
 
@@ -89,8 +94,23 @@ TEST(LdpPublished, ForceByHand) {
   EXPECT_NEAR(force.on_n[1], 0.0, 1e-9);
   EXPECT_EQ(force.on_n[2], -100.0);
   EXPECT_EQ(force.on_j[2], 100.0);
-  EXPECT_EQ(force.on_n[3], 0.0) << "equal y counts as to the right: phi < 0 leans away";
+  EXPECT_EQ(force.on_n[3], 70.0) << "level counts as to the left: phi < 0 leans at the other";
+  EXPECT_EQ(force.on_j[3], 0.0);
   EXPECT_FALSE(Between(terms, At(0, 0, 0.2, 0), At(0.5, 0, 0, 0)).acts) << "out of range";
+}
+
+// Eq. 11 with v = v_j - v_n, dt = 1/60 s. n at 0 with -2 m/s, j 0.3 m ahead with 4 m/s: r = -0.3,
+// dt v = 0.1, |r| = 0.3, |r - dt v| = 0.4, so b = 0.5 sqrt(0.7^2 - 0.1^2) = sqrt(0.12) = 0.34641,
+// U = 150 exp(-b / 0.5) = 75.0245, db/dr = -2 0.7 / (4 b) = -1.010363, and the force on n is
+// U db/dr / 0.5 = -151.604 N. (n - j would have b = 0.5 sqrt(0.5^2 - 0.1^2) = 0.24495.)
+TEST(LdpPublished, VelocityOfTheEllipseByHand) {
+  InteractionTerms terms;
+  terms.ldp_published = true;
+  EXPECT_NEAR(LdpEllipse<double>({-0.3, 0.0}, {6.0, 0.0}), std::sqrt(0.12), 1e-9);
+  const PairForce<double> force =
+      Between(terms, At(0.0, 0.0, 0.0, 0.0, -2.0), At(0.3, 0.0, 0.0, 0.0, 4.0));
+  EXPECT_NEAR(force.on_n[0], -151.604, 1e-3);
+  EXPECT_NEAR(force.on_j[0], 151.604, 1e-3) << "r and v both turn";
 }
 
 // -grad U by central differences, of carts that move.

@@ -60,7 +60,7 @@ TEST(SelfNetworkIo, RodsAreReadAndWritten) {
     EXPECT_EQ(RodName(shape.value()), text);
   }
   EXPECT_EQ(RodName(ParseRod("f", "mlp").value()), "mlp:4");
-  EXPECT_EQ(RodName(ParseRod("f", "ldp").value()), "ldp:256-128-256");
+  EXPECT_EQ(RodName(ParseRod("f", "ldp").value()), "ldp:128-128");
   for (const char* text : {"", "none", "gru:4", "linear:4", "constant:1", "mlp:", "mlp:0", "mlp:4-",
                            "mlp:-4", "mlp:4--4", "mlp:4:4", "mlp:99999", "mlp:1-1-1-1-1-1-1-1-1"}) {
     EXPECT_TRUE(Contains(ProblemOf(ParseRod("--rod", text)), "--rod is '" + std::string(text)));
