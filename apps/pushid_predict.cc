@@ -32,8 +32,8 @@ DEFINE_int32(frames, 0, "frames to predict; 0: as many as the recording has");
 DEFINE_double(push_scale, pushid::ChangedPushes{}.scale,
               "what-if: multiply the recorded pushes by this, as in 1.37");
 DEFINE_string(push_again, "",
-              "what-if: frames at which the recorded push comes again, comma-separated, as in "
-              "40,80; --frames gives it time");
+              "what-if: frames at which the recorded push comes again, comma-separated, with its "
+              "strength against the first, as in 40,80:1.5; --frames gives it time");
 DEFINE_string(poses_out, "", "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");
 DEFINE_string(json_out, "", "--restoration: joint positions of every person and frame (JSON)");
 
@@ -60,12 +60,15 @@ ChangedPushes ChangedPushesFromCommandLine() {
   changed.scale = FLAGS_push_scale;
   for (const std::string& spaced : SplitList(FLAGS_push_again)) {
     const std::string word(Trimmed(spaced));
+    const size_t colon = word.find(':');
     std::int64_t frame = 0;
-    if (!ParseInteger(word, &frame) || std::abs(frame) > kMostFrames) {
+    double times = 1.0;
+    if (!ParseInteger(word.substr(0, colon), &frame) || std::abs(frame) > kMostFrames ||
+        (colon != std::string::npos && !ParseDouble(word.substr(colon + 1), &times))) {
       throw Error{"--push_again: " + Quoted(word) +
-                  " is not a frame's number; give numbers as in 40,80"};
+                  " is not a frame's number; give numbers as in 40,80 or 40:1.5"};
     }
-    changed.again.push_back(static_cast<int>(frame));
+    changed.again.emplace_back(static_cast<int>(frame), times);
   }
   return changed;
 }
@@ -172,9 +175,7 @@ int Run() {
       OrFail(PredictFrom(model, recording, ObservedFrames(), FLAGS_frames, ForecastUseFlag()));
   const Prediction& prediction = predicted;
   if (!prediction.status.ok) {
-    std::fprintf(stderr, "pushid-predict: recording %s: %s\n", recording.id.c_str(),
-                 OutsideText(prediction.status).c_str());
-    return kFitFailed;
+    return Fail("recording " + recording.id + ": " + OutsideText(prediction.status), kFitFailed);
   }
   const int code = restoration.given() ? WriteBodies(restoration, recordings.front(), prediction)
                                        : WritePendulums(recording, prediction);

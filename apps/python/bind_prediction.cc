@@ -126,8 +126,8 @@ py::dict PredictOn(const Model& model, const SharedRecording& recording, int obs
                    const std::vector<int>& push_again, const std::string& forecast) {
   const IdentifiedModel identified = With(model, set);
   const ForecastUse use = ForecastFrom(forecast);
-  const PendulumRecording seen =
-      PushedAs({push_scale, push_again}, MakePendulumRecording(*recording), observed, frames);
+  const PendulumRecording seen = PushedAs({push_scale, {push_again.begin(), push_again.end()}},
+                                          MakePendulumRecording(*recording), observed, frames);
   if (observed < 0 || frames < 0 || samples < 0) {
     Raise(Fault::kUsage, Error{"observed, frames and samples must not be negative"});
   }

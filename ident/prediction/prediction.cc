@@ -173,11 +173,15 @@ int FirstPushStart(const Scene& scene) {
   return start;
 }
 
-MaybeError CheckAgain(const std::vector<int>& again, const Scene& scene, int frames) {
+MaybeError CheckAgain(const std::vector<PushAgain>& again, const Scene& scene, int frames) {
   const int length = scene.LastPushEnd() - FirstPushStart(scene);
   int end = scene.LastPushEnd();
-  for (int frame : again) {
+  for (const auto& [frame, times] : again) {
     const std::string start = "--push_again: frame " + std::to_string(frame);
+    if (!(times > 0.0) || !std::isfinite(times)) {
+      return Error{start + " has the strength " + Rounded(times, 3) +
+                   "; it must be a positive number, as in 40:1.5"};
+    }
     if (frame < 0) return Error{start + " is negative; frames count from 0"};
     if (frame < end) {
       return Error{start +
@@ -213,11 +217,11 @@ MaybeError CheckChangedPushes(const ChangedPushes& changed, const PendulumRecord
 
 PendulumRecording WithPushes(PendulumRecording recording, const ChangedPushes& changed) {
   if (changed.scale != 1.0) recording.scene = ScalePushes(recording.scene, changed.scale);
-  const std::vector<ScenePush> pushes = recording.scene.pushes;
-  for (int frame : changed.again) {
-    const int later = frame - FirstPushStart(recording.scene);
-    for (ScenePush push : pushes) {
-      push.start_frame += later;
+  const Scene once = recording.scene;
+  for (const auto& [frame, times] : changed.again) {
+    Scene later = ScalePushes(once, times);
+    for (ScenePush& push : later.pushes) {
+      push.start_frame += frame - FirstPushStart(once);
       recording.scene.pushes.push_back(std::move(push));
     }
   }
@@ -229,8 +233,9 @@ std::string ChangedPushesText(const ChangedPushes& changed, const PendulumRecord
   text += "the recorded push";
   if (changed.again.empty()) return text;
   text += ", at frames " + std::to_string(FirstPushStart(recording.scene));
-  for (int frame : changed.again) {
-    text += (frame == changed.again.back() ? " and " : ", ") + std::to_string(frame);
+  for (const auto& [frame, times] : changed.again) {
+    text += (frame == changed.again.back().frame ? " and " : ", ") + std::to_string(frame);
+    if (times != 1.0) text += " (" + Rounded(times, 4) + " times)";
   }
   return text;
 }

@@ -76,7 +76,7 @@ Warnings InputWarnings(const IdentifiedModel& model,
 //
 //   ChangedPushes changed;
 //   changed.scale = 1.37;      // every force and torque times so much
-//   changed.again = {40, 80};  // the push comes three times
+//   changed.again = {40, {80, 2.0}};  // the push comes three times, at last twice as hard
 //   if (MaybeError error = CheckChangedPushes(changed, recording, frames)) ...
 //   Predict(model, WithPushes(recording, changed), frames);
 //
@@ -84,23 +84,29 @@ Warnings InputWarnings(const IdentifiedModel& model,
 // that frame; of several pushes, all come again at their distances. The recorded motion is no
 // reference for what follows.
 
+struct PushAgain {
+  int frame;
+  double times;  // as strong as the first
+  PushAgain(int at, double strength = 1.0) : frame(at), times(strength) {}
+};
+
 struct ChangedPushes {
   double scale = 1.0;
-  std::vector<int> again;  // frames, ascending
+  std::vector<PushAgain> again;  // frames ascending
 
   bool Any() const { return scale != 1.0 || !again.empty(); }
 };
 
 // The options are named --push_scale and --push_again. frames: how many are predicted. Errors: a
-// scale that is not positive; nothing to change; a push that begins before the one before it has
-// ended (a net force says nothing of two at once), or after the prediction.
+// scale or strength that is not positive; nothing to change; a push that begins before the one
+// before it has ended (a net force says nothing of two at once), or after the prediction.
 MaybeError CheckChangedPushes(const ChangedPushes& changed, const PendulumRecording& recording,
                               int frames);
 
 // Everything but the pushes stays, the recorded motion too.
 PendulumRecording WithPushes(PendulumRecording recording, const ChangedPushes& changed);
 
-// "1.37 times the recorded push, at frames 0, 40 and 80".
+// "1.37 times the recorded push, at frames 0, 40 and 80 (2 times)".
 std::string ChangedPushesText(const ChangedPushes& changed, const PendulumRecording& recording);
 
 // What a model sees from ground that moves, as the laboratory sees it: for files and pictures.

@@ -155,14 +155,15 @@ TEST_F(PredictAppTest, HarderPushesAndRepeatedOnes) {
   EXPECT_TRUE(Contains(predict({"--push_scale=1"}).out, "hipADE"));
   ASSERT_EQ(predict({"--push_scale=1.2", "--frames=120"}).exit_code, 0);
   EXPECT_GT(LastNumber(out, "hip_x_m"), once + 0.02);
-  run = predict({"--push_again=40,80", "--frames=120"});
+  run = predict({"--push_again=40,80:1.5", "--frames=120"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(Contains(run.out, "the recorded push, at frames 0, 40 and 80; no recorded motion"));
+  EXPECT_TRUE(Contains(run.out, "at frames 0, 40 and 80 (1.5 times); no recorded motion"));
   EXPECT_GT(LastNumber(out, "hip_x_m"), once + 0.1);
 
   const std::pair<std::vector<std::string>, const char*> bad[] = {
       {{"--push_scale=0"}, "--push_scale is 0; it must be a positive number"},
       {{"--push_again=40,x"}, "--push_again: 'x' is not a frame's number"},
+      {{"--push_again=40:x"}, "--push_again: '40:x' is not a frame's number"},
       {{"--push_again=2"}, "--push_again: frame 2 comes before the push before it has ended"},
       {{"--push_again=80"}, "frame 80 is too late for the 45 frames that are predicted"},
       {{"--push_again=40", "--observed=12"}, "--push_again for another push than made it"}};

@@ -48,6 +48,16 @@ TEST(ChangedPushes, APushComesAgainOnTheSamePerson) {
   EXPECT_EQ(scene.LastPushEnd(), 22);
 }
 
+// Three phases: 10 and 30 N, times 1.5, then times 2.
+TEST(ChangedPushes, EachComesWithItsStrength) {
+  const Scene scene = WithPushes(Pushed(), {1.0, {{15, 1.5}, {50, 2.0}}}).scene;
+  ASSERT_EQ(scene.pushes.size(), 3u);
+  EXPECT_EQ(scene.pushes[0].force[1][0], 30.0);
+  EXPECT_EQ(scene.pushes[1].force[1][0], 45.0);
+  EXPECT_EQ(scene.pushes[2].force[1][0], 60.0);
+  EXPECT_EQ(scene.pushes[2].mean[0], 40.0);
+}
+
 TEST(ChangedPushes, SeveralPushesKeepTheirDistances) {
   PendulumRecording recording = Pushed();
   recording.scene.pushes.push_back(recording.scene.pushes[0]);
@@ -60,7 +70,7 @@ TEST(ChangedPushes, SeveralPushesKeepTheirDistances) {
   EXPECT_EQ(scene.pushes[3].person, 0);
 }
 
-std::string Message(double scale, std::vector<int> again, int frames = 40) {
+std::string Message(double scale, std::vector<PushAgain> again, int frames = 40) {
   const MaybeError error = CheckChangedPushes({scale, std::move(again)}, Pushed(), frames);
   return error ? error->ToString() : "";
 }
@@ -76,6 +86,7 @@ TEST(ChangedPushes, ErrorsNameTheFlagAndTheReason) {
   EXPECT_TRUE(Contains(Message(1.0, {20, 21}), "frame 21 comes before"));
   EXPECT_TRUE(Contains(Message(1.0, {39}), "--push_again: frame 39 is too late for the 40 frames"));
   EXPECT_TRUE(Contains(Message(1.0, {-1}), "frame -1 is negative"));
+  EXPECT_TRUE(Contains(Message(1.0, {{20, 0.0}}), "frame 20 has the strength 0; it must be"));
   PendulumRecording calm = Pushed();
   calm.scene.pushes.clear();
   EXPECT_TRUE(
@@ -86,6 +97,8 @@ TEST(ChangedPushes, WhatIsSaidOfThem) {
   EXPECT_EQ(ChangedPushesText({1.37, {}}, Pushed()), "1.37 times the recorded push");
   EXPECT_EQ(ChangedPushesText({1.0, {40, 80}}, Pushed()),
             "the recorded push, at frames 3, 40 and 80");
+  EXPECT_EQ(ChangedPushesText({1.0, {{15, 1.5}, {50, 2.0}}}, Pushed()),
+            "the recorded push, at frames 3, 15 (1.5 times) and 50 (2 times)");
 }
 
 // Until the second push, a prediction with it is the one without it; its first row drives the step
