@@ -86,7 +86,7 @@ int Run(const std::string& word, const std::vector<std::string>& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  SetProgramName(argv[0]);
+  StartLog(argv[0]);
   const std::string command = argc > 1 ? argv[1] : "help";
   const std::vector<std::string> arguments(argv + std::min(argc, 2), argv + argc);
   if (command == "--version") {

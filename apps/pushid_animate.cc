@@ -61,10 +61,7 @@ void Explain(const std::string& who, const PendulumRecording& recording,
 }
 
 int LeftDomain(const RolloutStatus& status, const std::string& what) {
-  std::fprintf(stderr, "pushid-animate: %s%s of person %d leaves the model's domain at frame %d\n",
-               what.empty() ? "" : ("with " + what + " ").c_str(),
-               std::string(status.quantity).c_str(), status.person, status.frame);
-  return kFitFailed;
+  return Fail((what.empty() ? "" : "with " + what + " ") + OutsideText(status), kFitFailed);
 }
 
 int Run() {
@@ -77,7 +74,7 @@ int Run() {
       LoadFlaggedRestoration(flags, static_cast<int>(recordings.front().people.size()));
   const Result<BodyRecording> recording = MakeBodyRecording(recordings.front());
   if (!recording.ok() && Given("restoration")) return Fail(recording.error());
-  if (!recording.ok()) Warn(recording.error().ToString() + "; only pendulums are shown");
+  if (!recording.ok()) LOG(WARNING) << recording.error().ToString() << "; only pendulums are shown";
 
   const PendulumRecording pendulum = MakePendulumRecording(recordings.front());
   WarnGrouped(InputWarnings(model, {pendulum}));

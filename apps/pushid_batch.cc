@@ -180,14 +180,12 @@ int RunJobs(const BatchPlan& plan, const std::vector<BatchJob>& all,
   std::printf("%d done, %d failed, %d done before; results in %s\n", o.done, o.failed, o.skipped,
               plan.dir.c_str());
   if (o.elsewhere > 0) {
-    Warn("left to another pushid-batch that is running them: " + CountText(o.elsewhere, "job") +
-         "; when it has finished, --gather writes the complete table");
+    LOG(WARNING) << "left to another pushid-batch that is running them: "
+                 << CountText(o.elsewhere, "job")
+                 << "; when it has finished, --gather writes the complete table";
   }
-  for (const std::string& reason : o.unrecorded) Warn("a job failed: " + reason);
-  if (o.interrupted) {
-    std::fprintf(stderr, "pushid-batch: interrupted; run the same command to continue\n");
-    return kInterrupted;
-  }
+  for (const std::string& reason : o.unrecorded) LOG(WARNING) << "a job failed: " << reason;
+  if (o.interrupted) return Fail("interrupted; run the same command to continue", kInterrupted);
   return o.failed > 0 ? kFitFailed : kDone;
 }
 

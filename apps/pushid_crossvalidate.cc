@@ -197,7 +197,8 @@ int Run() {
   OrFail(CheckGroups(pendulums, ParseLabelKeys(FLAGS_group_by)));
   const Candidates candidates = CandidatesOf(setups, &pendulums);
   const FitOptions& options = candidates[0].second;
-  for (const std::string& warning : OptionWarnings(GivenFitFlags(), options)) Warn(warning);
+  for (const std::string& warning : OptionWarnings(GivenFitFlags(), options))
+    LOG(WARNING) << warning;
   const Predictors predictors = MakePredictors(candidates);
   CheckNames(predictors);
   const Candidates noisy = drawn > 0 ? NoisyModels(candidates) : Candidates();

@@ -52,7 +52,8 @@ int Run() {
       Resampled(MakePendulumRecordings(recordings), ClusterBy::kAuto, Seed(), FLAGS_replica);
 
   FitOptions options = OrFail(setup.For(pendulums));
-  for (const std::string& warning : OptionWarnings(GivenFitFlags(), options)) Warn(warning);
+  for (const std::string& warning : OptionWarnings(GivenFitFlags(), options))
+    LOG(WARNING) << warning;
   Warnings unit_warnings;
   const MaybeError unprepared = PrepareFit(pendulums, &options, &unit_warnings);
   WarnGrouped(unit_warnings);
@@ -66,10 +67,7 @@ int Run() {
               Rounded(cost, 6));
   });
   line.Finish();
-  if (!result.ok()) {
-    std::fprintf(stderr, "pushid-fit: the fit failed: %s\n", result.message.c_str());
-    return kFitFailed;
-  }
+  if (!result.ok()) return Fail("the fit failed: " + result.message, kFitFailed);
   result.warnings.insert(result.warnings.begin(), file_warnings.begin(), file_warnings.end());
   model.provenance = ProvenanceOfRun();
   model.provenance.model_file = FLAGS_model_out;
@@ -81,8 +79,7 @@ int Run() {
     std::printf("model written to %s\n", FLAGS_model_out.c_str());
   }
   if (result.converged) return kDone;
-  std::fprintf(stderr, "pushid-fit: the fit did not converge: %s\n", result.message.c_str());
-  return kFitFailed;
+  return Fail("the fit did not converge: " + result.message, kFitFailed);
 }
 
 }  // namespace

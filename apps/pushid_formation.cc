@@ -116,7 +116,7 @@ Places PlacesOfFile() {
   const std::vector<CrowdPlace> read =
       OrFail(PlacesAt(OrFail(ReadTrajectoryText(FLAGS_formation)), frame));
   const std::string odd = OddSpacing(read);
-  if (!odd.empty()) Warn(FLAGS_formation + ": " + odd);
+  if (!odd.empty()) LOG(WARNING) << FLAGS_formation << ": " << odd;
   Places places;
   for (const CrowdPlace& place : read) {
     places.positions.push_back(place.position);
@@ -408,12 +408,8 @@ std::string LeftDomainAdvice(double fps) {
 }
 
 int LeftDomain(const RolloutStatus& status, double dt) {
-  std::fprintf(stderr,
-               "%s: %s of person %d leaves the model's domain at frame %d; %s; nothing "
-               "is written\n",
-               ProgramName().c_str(), std::string(status.quantity).c_str(), status.person,
-               status.frame, LeftDomainAdvice(1.0 / dt).c_str());
-  return kFitFailed;
+  return Fail(OutsideText(status) + "; " + LeftDomainAdvice(1.0 / dt) + "; nothing is written",
+              kFitFailed);
 }
 
 // Takes the parameters of the named setting, or condition, for every person.

@@ -455,7 +455,7 @@ void WarnOfPushKinds(const GeneratorSettings& settings,
   std::set<std::string> told;
   for (const BodyRecording& recording : recordings) {
     const std::string other = OtherPushKinds(settings, recording.pendulum.scene);
-    if (!other.empty() && told.insert(other).second) Warn(other);
+    if (!other.empty() && told.insert(other).second) LOG(WARNING) << other;
   }
 }
 

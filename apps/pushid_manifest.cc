@@ -133,9 +133,10 @@ int Run() {
   CheckFilesKept(manifest, path);
   if (FLAGS_update) manifest = Updated(path, manifest.recordings);
   OrFail(WriteManifest(path, manifest));
-  for (const std::string& warning : made.warnings) Warn(warning);
-  for (const Error& error : made.unreadable) Warn("left out: " + error.ToString());
-  for (const std::string& id : made.without_push) Warn("recording " + id + " has no push");
+  for (const std::string& warning : made.warnings) LOG(WARNING) << warning;
+  for (const Error& error : made.unreadable) LOG(WARNING) << "left out: " << error.ToString();
+  for (const std::string& id : made.without_push)
+    LOG(WARNING) << "recording " << id << " has no push";
   std::printf("%zu recordings from %d files (%d others in the folder) written to %s\n",
               manifest.recordings.size(), made.files, made.others, path.c_str());
   std::printf("check them with: pushid-inspect %s\n", path.c_str());

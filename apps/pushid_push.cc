@@ -211,7 +211,7 @@ MadePush FromSensor(const PushFlags& flags, const Recording& recorded,
     OrFail(OutputFiles().CheckNotRead("--sensor", sensor.file));
   }
   const SensorPush made = OrFail(PushFromSensors(setup, recorded, recording, FLAGS_person));
-  for (const std::string& warning : made.warnings) Warn(warning);
+  for (const std::string& warning : made.warnings) LOG(WARNING) << warning;
   return MadePush{made.push, PushKind::kExternal, made.how};
 }
 
@@ -226,8 +226,8 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
   const EstimatedPush push = OrFail(EstimatePush(recording, window, options));
   for (int t = window.start; t < window.end; ++t) {
     if (recording.Weight(FLAGS_person, t) > 0.0) continue;
-    Warn("hip or ankles are missing at frame " + std::to_string(t) +
-         " of the push: the force there is computed from interpolated positions");
+    LOG(WARNING) << "hip or ankles are missing at frame " << std::to_string(t)
+                 << " of the push: the force there is computed from interpolated positions";
     break;
   }
   return MadePush{push.push, push.kind,
@@ -238,10 +238,10 @@ MadePush ByInverseDynamics(const PushFlags& flags, const PendulumRecording& reco
 void WarnOfFirstRow(const std::string& id, const MadePush& made) {
   if (!FirstRowStandsOut(made.push.force)) return;
   const std::string force = Rounded(made.push.force[0].head<2>().norm(), 3);
-  Warn("recording " + id + ": the first row, " + force +
-       " N, stands out: the person already moves when the window begins; begin earlier "
-       "(--frames), or set --initial_velocity=estimated" +
-       (made.push.start_frame == 0 ? " in the manifest" : ""));
+  LOG(WARNING) << "recording " << id << ": the first row, " << force
+               << " N, stands out: the person already moves when the window begins; begin earlier "
+                  "(--frames), or set --initial_velocity=estimated"
+               << (made.push.start_frame == 0 ? " in the manifest" : "");
 }
 
 void PrintPush(const RecordingsPush& of, double dt) {
@@ -264,8 +264,9 @@ void PrintPush(const RecordingsPush& of, double dt) {
   std::printf("impulse %s, %s; peak %s N\n", towards(impulse[0], "forwards", "backwards").c_str(),
               towards(impulse[1], "to the left", "to the right").c_str(), Rounded(peak, 3).c_str());
   if (std::fabs(impulse[1]) > std::fabs(impulse[0])) {
-    Warn("recording " + of.id +
-         ": the push is sideways rather than forwards; check `up` and `forward` in the manifest");
+    LOG(WARNING)
+        << "recording " << of.id
+        << ": the push is sideways rather than forwards; check `up` and `forward` in the manifest";
   }
   std::printf("written to %s\n", of.file.c_str());
 }
@@ -334,7 +335,8 @@ int Run() {
     for (Finding& finding : FindingsOf(pushed)) findings.push_back(std::move(finding));
     pushes.push_back({recorded.id, OutOf(recorded.id), made});
   }
-  for (const std::string& warning : FindingTexts(FitFindings(std::move(findings)))) Warn(warning);
+  for (const std::string& warning : FindingTexts(FitFindings(std::move(findings))))
+    LOG(WARNING) << warning;
   // Every refusal comes before the first file is written.
   Manifest manifest;
   if (FLAGS_update) manifest = WithPushes(pushes, OverwriteGiven());

@@ -58,7 +58,7 @@ void WriteFigures(const Report& report) {
     OrFail(WriteFileAtomically(path, text));
   }
   OrFail(folder.Commit());
-  std::fprintf(stderr, "figures and tables written to %s\n", FLAGS_figures_out.c_str());
+  LOG(INFO) << "figures and tables written to " << FLAGS_figures_out;
 }
 
 // The recordings to draw: those of the flags, or those that were fitted.
@@ -77,9 +77,9 @@ int WriteWhole(const FittedModel& model) {
   if (FiguresAsked()) WriteFigures(report);
   if (FLAGS_html_out.empty()) return kDone;
   OrFail(WriteFileAtomically(FLAGS_html_out, ToPage(report)));
-  std::fprintf(stderr, "report written to %s\n", FLAGS_html_out.c_str());
+  LOG(INFO) << "report written to " << FLAGS_html_out;
   if (recordings.empty()) {
-    Warn("without --recordings the report shows no motion and no figure");
+    LOG(WARNING) << "without --recordings the report shows no motion and no figure";
   }
   return kDone;
 }

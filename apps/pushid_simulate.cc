@@ -209,12 +209,13 @@ int Run() {
   study.model = truth.options;
   study.parameters = truth.parameters;
   if (study.people_in_row > 1 && !study.model.interaction.Any()) {
-    Warn("the people of --model do not act on each other: only the pushed one of a group moves");
+    LOG(WARNING)
+        << "the people of --model do not act on each other: only the pushed one of a group moves";
   }
   const std::vector<SyntheticRecording> made = OrFail(MakeSyntheticRecordings(study));
   for (const std::string& warning :
        ExtrapolationWarnings(truth, MakePendulumRecordings(Recordings(made)))) {
-    Warn(warning);
+    LOG(WARNING) << warning;
   }
   OrFail(WriteSyntheticRecordings(FLAGS_out, study, made));
   PrintTruth(truth, study);

@@ -62,9 +62,10 @@ DEFINE_string(sees, pushid::NameOf(pushid::RestorationTrainingOptions{}.view),
               "pose and the push, cvae the previous pose)");
 DEFINE_bool(halves, pushid::RestorationTrainingOptions{}.halves,
             "cvae: a network for the lower and one for the upper body (false: one for both)");
-DEFINE_string(training, pushid::NameOf(pushid::RestorationTrainingOptions{}.training),
-              "cvae: pushid's training (own), or as published: Adam at 1e-4 falling to 1e-7, sigma "
-              "compared, the latent variable drawn, no predicted pendulums (published)");
+DEFINE_string(
+    training, pushid::NameOf(pushid::RestorationTrainingOptions{}.training),
+    "cvae: pushid's training (own), or as published: Adam at 1e-4 (autoencoders: falling to "
+    "1e-7), sigma compared, the latent variable drawn, no predicted pendulums (published)");
 DEFINE_string(out, "", "folder to write: restoration.json, weights.npy, curve.svg");
 DEFINE_string(json_out, "", "--crossvalidate: write the scores here (JSON)");
 DEFINE_bool(check, TrainRestorationFlags{}.check,
@@ -231,7 +232,7 @@ int Train(const TrainRestorationFlags& flags, const std::vector<BodyRecording>& 
       recordings, all, options,
       [&line](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
-  std::fprintf(stderr, "%s", SizesText(trained.sizes).c_str());
+  LOG(INFO) << SizesText(trained.sizes);
   RestorationFile file = trained.file;
   file.training = TrainingJson(recordings, options.more, trained);
   const std::string title = NameOf(options.training.kind) + " restoration, " +

@@ -2,7 +2,6 @@
 #include "apps/flags/command_line.h"
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #include <sys/mman.h>
@@ -135,6 +134,7 @@ std::string FlagHelp(bool full) {
     add(heading, "--" + flag.name + value, flag.description);
   }
   add("general", "--flagfile=FILE", "read flags from a file, one per line");
+  add("general", "--v=0", "1: say every step of long work, and what the solver logs");
   add("general", "--help, -h, --helpfull", "print this");
   add("general", "--version", "print the version");
   if (!named.empty()) add(kRarelyChanged, named, "--helpfull describes them");
@@ -318,16 +318,12 @@ std::vector<std::string> ChangedFlags() {
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
            std::vector<std::string>* words) {
   SetBlasThreads(1);
-  SetProgramName(argv[0]);
+  StartLog(argv[0]);
   gflags::SetUsageMessage(usage);
   gflags::SetVersionString(Version());
-  // Failures of the solver are reported by our own messages; --minloglevel=0 shows its log.
-  FLAGS_minloglevel = google::GLOG_FATAL;
-  FLAGS_logtostderr = true;
   if (MaybeError error = CheckFlags(argc, argv)) return Fail(*error);
   gflags::ParseCommandLineNonHelpFlags(&argc, &argv, true);
-  google::InitGoogleLogging(argv[0]);
-  if (FLAGS_quiet) HideProgress();
+  if (FLAGS_quiet) FLAGS_minloglevel = google::GLOG_WARNING;
   if (Asked("help") || Asked("helpfull") || Asked("helpshort")) {
     std::printf("%s\n%s", usage.c_str(), FlagHelp(Asked("helpfull")).c_str());
     return kDone;

@@ -37,8 +37,7 @@ int PrintFutures(const IdentifiedModel& model, const PendulumRecording& recordin
   const Futures futures =
       OrFail(DrawFutures(model, recording, FLAGS_samples, kFuturesSeed, num_frames));
   if (futures.paths.empty()) {
-    std::fprintf(stderr, "every drawn future leaves the model's domain\n");
-    return kFitFailed;
+    return Fail("every drawn future leaves the model's domain", kFitFailed);
   }
   std::printf("%zu drawn futures, hips at the last frame (median and central 90 %%):\n%s",
               futures.paths.size(), LastFrameText(futures).c_str());

@@ -37,9 +37,9 @@ FittedModel ReadFlaggedModel() {
                 " is no model that comes with the programs; there is pushid:synthetic_group (" +
                 read.error().ToString() + ")"};
   }
-  Warn(FLAGS_model +
-       " was fitted to synthetic people (pushid-simulate), not to recorded ones: it "
-       "shows what the programs do; fit your own recordings for numbers about people");
+  LOG(WARNING) << FLAGS_model
+               << " was fitted to synthetic people (pushid-simulate), not to recorded ones: it "
+                  "shows what the programs do; fit your own recordings for numbers about people";
   return std::move(read).value();
 }
 

@@ -44,9 +44,10 @@ namespace {
 void WarnOfCrowd(const RestorationFlags& flags, int people) {
   if (people < 2) return;
   if (OrFail(LearnedAlone(flags.name))) {
-    Warn(flags.name +
-         " was trained on people pushed alone; in groups its bodies stay on tiptoe when others "
-         "push them: train one with --more_settings=groups");
+    LOG(WARNING)
+        << flags.name
+        << " was trained on people pushed alone; in groups its bodies stay on tiptoe when others "
+           "push them: train one with --more_settings=groups";
   }
 }
 

@@ -1,32 +1,19 @@
-// apps: what every executable does the same way: exit codes, errors and warnings, progress, Ctrl-C,
-// the threads of the BLAS; no program replaces what it reads, nor one of its outputs by another.
-//
-// stdout carries the result, stderr log and progress. Exit codes: 0 done, 1 bad usage or data, 2
-// the fit failed.
+// apps: what every executable does the same way: errors thrown, the threads of the BLAS; no program
+// replaces what it reads, nor one of its outputs by another.
 #pragma once
 
 #include <initializer_list>
 #include <string>
 #include <vector>
 
+#include "apps/support/log.h"
 #include "datasets/files/error.h"
 #include "datasets/files/names.h"
-#include "datasets/loading/warning.h"
-#include "ident/problem/parallel.h"
 
 namespace pushid {
 
 struct FittedModel;  // ident/model/fitted_model.h
 
-inline constexpr int kDone = 0, kBadInput = 1, kFitFailed = 2;
-
-// The program's name, as messages begin with it; path: argv[0].
-void SetProgramName(const std::string& path);
-const std::string& ProgramName();
-
-// "pushid-fit: error: ..." on stderr; returns kBadInput.
-int Fail(const Error& error);
-int Fail(const std::string& message);
 // Returns the value, or throws the Error, which RunApp prints once everything that was open is
 // closed. The libraries under the programs return their errors.
 template <typename T>
@@ -37,39 +24,12 @@ T OrFail(Result<T> result) {
 inline void OrFail(const MaybeError& error) {
   if (error) throw *error;
 }
-void Warn(const std::string& message);
-// Warnings that differ only in the recording are printed as one.
-void WarnGrouped(const Warnings& warnings);
 
 std::string Version();
 
 // A model's file, with date, host, threads and the seconds since `begin` (of Now()).
 MaybeError WriteModelFile(const std::string& path, const FittedModel& model, int num_threads,
                           double begin);
-
-// Hides all ProgressLines from now on (--quiet).
-void HideProgress();
-
-// One line that is redrawn on a terminal, plain lines (at most one a second) elsewhere; on stderr.
-class ProgressLine {
- public:
-  ~ProgressLine();
-  void Show(const std::string& text);
-  void Finish();  // ends the line; also done by the destructor
-
-  // Progress of many jobs: "recording 3 of 32". The line must outlive it.
-  JobProgress OfJobs(const std::string& what);
-
- private:
-  double last_shown_ = -1.0;
-  size_t width_ = 0;
-};
-
-inline constexpr int kInterrupted = 130;  // as shells count SIGINT
-
-// From now on SIGINT ends the process with "pushid-fit: interrupted; WHAT". what: what is kept, and
-// how to start again; a second call replaces it.
-void SayWhenInterrupted(const std::string& what);
 
 // The threads of the system's BLAS, which sparse normal equations and training ask for
 // products; does nothing where the BLAS is another one, or the user has said
@@ -80,24 +40,6 @@ void SayWhenInterrupted(const std::string& what);
 // may need. Products that threads share also round otherwise, so that results would depend on how
 // many cores a machine has.
 void SetBlasThreads(int num_threads);
-
-// The message of a training into this folder that Ctrl-C stops.
-std::string KeptCheckpoints(const std::string& folder);
-
-// Progress of a training: "window, epoch 12: 43 %, 12 s left", where the time left follows from the
-// share done so far. Steps differ in what stands before their last word.
-class TrainingLine {
- public:
-  TrainingLine();
-  void Show(const std::string& step, double done);
-  void Finish() { line_.Finish(); }
-  double Seconds() const;  // since it was made
-
- private:
-  ProgressLine line_;
-  std::string step_;
-  double made_, start_ = 0.0, done_at_start_ = 0.0;
-};
 
 // Outputs are known by their flags' names (out, *_out), inputs by the list in
 // app_support.cc; so the check holds for every program at once.

@@ -75,6 +75,20 @@ TEST_F(CommandLineTest, CtrlCSaysWhatIsKept) {
   EXPECT_FALSE(std::filesystem::exists(Path("m.json")));
 }
 
+// Steps are counted in lines; without --v at most one a second.
+TEST_F(CommandLineTest, TheLogHasSeveritiesAndSaysEveryStep) {
+  const auto log = [this](const std::string& how) {
+    return RunApp("pushid-fit", {Recordings(), "--fix=mu_y=10", how}).err;
+  };
+  const std::string quiet = log("--quiet"), all = log("--v=1");
+  for (const std::string& text : {quiet, all}) {
+    EXPECT_TRUE(Contains(text, "pushid-fit: warning: --fix=mu_y=10 does nothing")) << text;
+  }
+  EXPECT_FALSE(Contains(quiet, "fitting")) << quiet;
+  EXPECT_TRUE(Contains(all, "iteration 1, cost")) << all;
+  EXPECT_TRUE(Contains(all, "iteration 2, cost")) << all;
+}
+
 TEST_F(CommandLineTest, RepeatedCandidatesAreAllCompared) {
   const AppRun run =
       RunApp("pushid-crossvalidate",
