@@ -2,14 +2,15 @@
 
     python3 tests/studies/ldp.py [BLOCK ...] [--recordings=MANIFEST] [--folds=4] [--jobs=N] [--write]
 
-single     the five metrics of held-out single people (models/README.md); half an hour of one core
+single     the five metrics of held-out single people (models/README.md); 40 minutes of one core
 groups     the same of groups; an hour
-strength   MPJPE by the strength of the push; the same runs
-quarter    trained on a quarter of the recordings, single people, first fold; ten minutes
-ablation   parts of the restoration left out, single people, first fold; a quarter of an hour
-strong     pushes 1.37 times as strong, and three pushes, of the first fold's held-out single people; seconds
-people     ten people in a line and 13 in a diamond, from recorded people; a minute
-sizes      number of weights beside the paper's; seconds
+strength   MPJPE by the strength of the push; the runs of single and groups
+quarter    groups, all folds, trained on a quarter of the recordings; those of groups and half an hour
+ablation   groups, all folds, parts of the restoration left out; those of groups and an hour and a half
+strong     1.3736 times the strongest push, and a weak, a medium and a strong one at frames 0, 15 and 50, on the first
+           fold's held-out single people; a minute
+people     ten people in a line, and 13 in a diamond of whom three are pushed, from recorded people; a quarter of an hour
+sizes      number of weights beside the paper's; a minute
 
 Without --recordings the published recordings of PUSHID_RECORDINGS. Where the manifest's recordings have a `split` (train or
 eval, as python3 -m pushid.ldp writes it), that is used; otherwise folds, stratified by setting and strength. As published
@@ -20,6 +21,7 @@ where LibTorch is found.
 import collections
 import concurrent.futures
 import csv
+import functools
 import hashlib
 import json
 import math
@@ -34,7 +36,11 @@ METRICS = [("MPJPE_m", "MPJPE, m"), ("hipADE_m", "hipADE, m"), ("hipFDE_m", "hip
            ("FSE_cm", "FSE, cm a frame")]
 # The paper's tables, on its own split; what its released weights gave on that split (hips alone).
 CLAIMS = {"single": (0.097, 0.086, 0.171, 0.002, 0.131), "groups": (0.106, 0.092, 0.218, 0.003, 0.069)}
+# Its released weights lack the interaction network, which was never released.
 RELEASED = {"single": (None, 0.212, 0.352, None, None), "groups": (None, 0.125, 0.280, None, None)}
+RELEASED_NAME = {"single": "its released weights, its split",
+                 "groups": "its released weights, without the interaction network, its split"}
+EXTRA_STRONG = 1.3736  # of the strongest push
 
 PUBLISHED_FIT = ["--preset=ldp_published"]
 PUBLISHED_BODIES = ["--kind=cvae", "--training=published", "--coordinates=ldp"]
@@ -98,17 +104,21 @@ def folds(setting):
 
 
 class Trained:
-    """A pendulum's model and a restoration, trained on a fold."""
+    """A pendulum's model and, once asked for, a restoration, trained on a fold."""
 
     def __init__(self, fold, fit, bodies):
         _, train, held = fold
-        self.train, self.held = written(train), written(held)
+        self.train, self.held, self.flags = written(train), written(held), bodies
         self.fitted = studies.run("pushid-fit", f"--recordings={self.train}", *fit, out="model_out")
+
+    @functools.cached_property
+    def restoration(self):
         program = studies.program_bytes(os.path.join(studies.BIN, "pushid-train-restoration"))
-        key = hashlib.sha256(program + "\0".join([self.fitted.path, *bodies]).encode()).hexdigest()[:16]
-        self.restoration = os.path.join(studies.KEPT, f"ldp-bodies-{key}")
-        self.bodies = studies.run("pushid-train-restoration", f"--recordings={self.train}",
-                                  f"--model={self.fitted.path}", f"--out={self.restoration}", *bodies, out=None)
+        key = hashlib.sha256(program + "\0".join([self.fitted.path, *self.flags]).encode()).hexdigest()[:16]
+        folder = os.path.join(studies.KEPT, f"ldp-bodies-{key}")
+        self.seconds = studies.run("pushid-train-restoration", f"--recordings={self.train}", f"--model={self.fitted.path}",
+                                   f"--out={folder}", *self.flags, out=None).seconds
+        return folder
 
     def hips(self):
         return studies.run("pushid-evaluate", f"--recordings={self.held}", f"--model={self.fitted.path}").json
@@ -157,14 +167,23 @@ def rows_of(json_of_fold, held):
     return [dict(r, person=person[r["id"]], strength=strength[r["id"]]) for r in json_of_fold["recordings"]]
 
 
-def evaluated(setting, train, *flags):
+def trained_on(made, train, setting):
+    """Of these folds, in parallel, with their bodies."""
+    def one(fold):
+        trained = train(setting, fold)
+        return trained, trained.restoration
+
+    return [trained for trained, _ in in_parallel([lambda f=f: one(f) for f in made])]
+
+
+def evaluated(setting, train, *flags, made=None):
     """Of all folds: recordings' scores, and the seconds that pendulum and bodies took."""
-    made = folds(setting)
-    trained = in_parallel([lambda f=f: train(setting, f) for f in made])
+    made = made or folds(setting)
+    trained = trained_on(made, train, setting)
     rows = []
     for one, fold in zip(trained, made):
         rows += rows_of(one.scores(*flags), fold[2])
-    return rows, [t.fitted.seconds for t in trained], [t.bodies.seconds for t in trained]
+    return rows, [t.fitted.seconds for t in trained], [t.seconds for t in trained]
 
 
 def cells(rows):
@@ -182,7 +201,7 @@ def claim(values):
 
 def tables(setting):
     rows = [["claim of the paper, its split", None, *claim(CLAIMS[setting]), "900, with bodies", None],
-            ["its released weights, its split", None, *claim(RELEASED[setting]), None, None]]
+            [RELEASED_NAME[setting], None, *claim(RELEASED[setting]), None, None]]
     for name, train, flags in [("as published, z its mean", published, ["--postprocess=none"]),
                                ("as published, z drawn", published, ["--postprocess=none", "--latent=draw"]),
                                ("pushid's own", own, [])]:
@@ -211,36 +230,53 @@ def strength():
 
 
 def quarter():
-    made = folds("single")[:1]
     rows = []
     for name, part in [("all", 1), ("a quarter", 4)]:
-        less = [(n, train[::part], held) for n, train, held in made]
-        trained = in_parallel([lambda f=f: published("single", f) for f in less])
-        scores = []
-        for one, fold in zip(trained, less):
-            scores += rows_of(one.scores("--postprocess=none"), fold[2])
+        less = [(n, train[::part], held) for n, train, held in folds("groups")]
+        scores, _, _ = evaluated("groups", published, "--postprocess=none", made=less)
         rows.append([f"{name} ({len(less[0][1])} recordings)", *cells(scores)])
-    return studies.table(["as published, trained on", "rolled out", *[title for _, title in METRICS]], rows)
+    return studies.table(["as published, groups, trained on", "rolled out", *[title for _, title in METRICS]], rows)
+
+
+# The paper's Table 2: MPJPE, hipADE and hipFDE of groups, its split.
+ABLATION = [("lower then upper, pendulum", [], (0.106, 0.092, 0.218)),
+            ("one network, pendulum", ["--nohalves"], (0.110, 0.094, 0.242)),
+            ("lower then upper, no pendulum, three draws averaged", ["--sees=pose"], (0.206, 0.184, 0.320)),
+            ("one network, no pendulum, three draws averaged", ["--sees=pose", "--nohalves"], (0.217, 0.195, 0.341))]
 
 
 def ablation():
     rows = []
-    for name, bodies in [("lower then upper, pendulum", []), ("one network, pendulum", ["--nohalves"]),
-                         ("lower then upper, no pendulum, three draws averaged", ["--sees=pose"]),
-                         ("one network, no pendulum, three draws averaged", ["--sees=pose", "--nohalves"])]:
+    for name, bodies, said in ABLATION:
         own_flags = [b for b in PUBLISHED_BODIES if not (b.startswith("--coordinates") and "--sees=pose" in bodies)]
-        made = folds("single")[:1]
-        trained = in_parallel([lambda f=f: Trained(f, PUBLISHED_FIT, [*own_flags, *bodies]) for f in made])
-        scores = []
-        for one, fold in zip(trained, made):
-            scores += rows_of(one.scores("--postprocess=none"), fold[2])
-        rows.append([name, *cells(scores)])
-    return studies.table(["as published", "rolled out", *[title for _, title in METRICS]], rows)
+        scores, _, _ = evaluated("groups", lambda _, fold, b=[*own_flags, *bodies]: Trained(fold, PUBLISHED_FIT, b),
+                                 "--postprocess=none")
+        rows.append([name, *cells(scores), " / ".join(number(v) for v in said)])
+    return studies.table(["as published, groups", "rolled out", *[title for _, title in METRICS],
+                          "claim: MPJPE / hipADE / hipFDE"], rows)
 
 
-def path_of(trained, recording, *flags):
+def peak(e):
+    """The largest horizontal force of a recording's push, N."""
+    files = [e["push_csv"]] if "push_csv" in e else [p["csv"] for p in e["pushes"]]
+    forces = []
+    for path in files:
+        with open(path, encoding="utf-8") as file:
+            forces += [math.hypot(float(r["fx"]), float(r["fy"])) for r in csv.DictReader(file)]
+    return max(forces)
+
+
+def pushed_as(e, other):
+    """A recording with the push of another."""
+    def of_push(key):
+        return key.startswith("push") and key != "pushed_person"
+
+    return {**{k: v for k, v in e.items() if not of_push(k)}, **{k: v for k, v in other.items() if of_push(k)}}
+
+
+def path_of(trained, manifest, recording, *flags):
     """Hip by frame of person 0, or None where the rollout left the domain."""
-    done = studies.run("pushid-predict", f"--recordings={trained.held}", f"--model={trained.fitted.path}",
+    done = studies.run("pushid-predict", f"--recordings={manifest}", f"--model={trained.fitted.path}",
                        f"--id={recording}", *flags, out="out", keep=True, ending="csv", may_fail=True)
     if done.failed:
         return None
@@ -250,18 +286,26 @@ def path_of(trained, recording, *flags):
 
 def strong():
     fold = folds("single")[0]
+    _, train, held = fold
+    strongest = written([pushed_as(e, max(train, key=peak)) for e in held])
+    means = {kind: statistics.mean(peak(e) for e in train if e["magnitude"] == kind)
+             for kind in ("weak", "medium", "strong")}
+    again = ",".join(f"{at}:{means[kind] / means['weak']:.3f}" for at, kind in [(15, "medium"), (50, "strong")])
+    every, weak = [e["id"] for e in held], [e["id"] for e in held if e["magnitude"] == "weak"]
     rows = []
     for system, trained in [("as published", published("single", fold)), ("pushid's own", own("single", fold))]:
-        for name, flags in [("as recorded", ["--frames=180"]), ("1.37 times", ["--frames=180", "--push_scale=1.37"]),
-                            ("three times, 1 s apart", ["--frames=300", "--push_again=60,120"])]:
-            paths = [path_of(trained, e["id"], *flags) for e in fold[2]]
+        for name, manifest, ids, flags in [
+                ("as recorded", trained.held, every, []),
+                (f"{EXTRA_STRONG} times the strongest", strongest, every, [f"--push_scale={EXTRA_STRONG}"]),
+                (f"weak ones, again at {again}", trained.held, weak, [f"--push_again={again}"])]:
+            paths = [path_of(trained, manifest, i, "--frames=240", *flags) for i in ids]
             whole = [p for p in paths if p]
             lean = [max(abs(float(row["theta_rad"])) for row in p) for p in whole]
             way = [math.hypot(*(float(p[-1][k]) - float(p[0][k]) for k in ("hip_x_m", "hip_y_m"))) for p in whole]
             speed = [math.hypot(float(p[-1]["xd_m_s"]), float(p[-1]["yd_m_s"])) for p in whole]
             still = sum(v < 0.1 for v in speed)
-            rows.append([system, name, f"{len(whole)} of {len(paths)}", number(statistics.median(lean), 2),
-                         number(statistics.median(way), 2), f"{still} of {len(whole)}"])
+            rows.append([system, name, f"{len(whole)} of {len(paths)}", number(statistics.median(lean), 2) if lean else None,
+                         number(statistics.median(way), 2) if way else None, f"{still} of {len(whole)}"])
     return studies.table(["", "push", "rolled out", "largest lean, rad (median)", "way of the hip, m (median)",
                           "slower than 0.1 m/s at the end"], rows)
 
@@ -271,7 +315,7 @@ def people():
     rows = []
     for system, trained in [("as published", published("groups", fold)), ("pushid's own", own("groups", fold))]:
         for name, flags in [("ten in a line", ["--formation=line", "--people=10"]),
-                            ("13 in a diamond", ["--formation=diamond", "--people=13"])]:
+                            ("13 in a diamond, three pushed", ["--formation=diamond", "--people=13", "--pushed=0,1,2"])]:
             done = studies.run("pushid-formation", f"--model={trained.fitted.path}", *flags,
                                f"--recordings={trained.train}", f"--restoration={trained.restoration}", "--push=80",
                                "--duration=4", out="csv_out", ending="csv", may_fail=True)
@@ -286,17 +330,19 @@ def people():
             fastest = [max(math.hypot(float(r["xd_m_s"]), float(r["yd_m_s"])) for r in p) for p in by_person.values()]
             rows.append([system, name, f"{sum(v > 0.1 for v in fastest)} of {len(fastest)}", number(max(fastest), 2),
                          number(done.seconds / max(len(p) for p in by_person.values()) * 1e3, 2)])
-    return studies.table(["80 N s on the first", "", "faster than 0.1 m/s", "fastest, m/s",
+    return studies.table(["80 N s on each who is pushed", "", "faster than 0.1 m/s", "fastest, m/s",
                           "ms a frame, with reading and bodies"], rows)
 
 
 def sizes():
-    trained = published("single", folds("single")[0])
-    with open(os.path.join(trained.restoration, "restoration.json"), encoding="utf-8") as file:
+    # Of two recordings and hardly any step: sizes are the same.
+    alone, groups = (Trained(("two", folds(s)[0][1][:2], []), PUBLISHED_FIT, [*PUBLISHED_BODIES, "--effort=0.001"])
+                     for s in CLAIMS)
+    with open(os.path.join(alone.restoration, "restoration.json"), encoding="utf-8") as file:
         counted = json.load(file)["training"]["parameters"]
     bodies = sum(counted.values())
-    counted["self force, rod"] = len(trained.fitted.json["self_network"]["weights"])
-    counted["self force, rod, interaction"] = len(published("groups", folds("groups")[0]).fitted.json["self_network"]["weights"])
+    counted["self force, rod"] = len(alone.fitted.json["self_network"]["weights"])
+    counted["self force, rod, interaction"] = len(groups.fitted.json["self_network"]["weights"])
     counted["single people, in all"] = bodies + counted["self force, rod"]
     counted["groups, in all"] = bodies + counted["self force, rod, interaction"]
     others = {"lower autoencoder": "865,536 (release)", "upper autoencoder": "1,097,904 (release)",
@@ -305,6 +351,6 @@ def sizes():
 
 
 if __name__ == "__main__":
-    studies.main(__file__, {"single": lambda: tables("single"), "groups": lambda: tables("groups"), "strength": strength,
-                            "quarter": quarter, "ablation": ablation,  "strong": strong,
+    studies.main(__file__, {"single": lambda: tables("single"), "groups": lambda: tables("groups"),
+                            "strength": strength, "quarter": quarter, "ablation": ablation, "strong": strong,
                             "people": people, "sizes": sizes})
