@@ -9,11 +9,9 @@ namespace pushid {
 Result<IdentifiedModel> SyntheticTruth(const SyntheticOptions& study, const std::string& set) {
   const Stance stance = study.model.stance;
   const bool groups = study.people_in_row > 1, slide = stance == Stance::kSlide;
-  const Result<FitOptions> made =
-      MakeFitOptions({{"preset", groups ? "group" : "tail"},
-                      {"stance", NameOf(study.model.stance)},
-                      {"process_noise", NameOf(study.model.process_noise)},
-                      {"delay", NameOf(study.model.delay)}});
+  const Result<FitOptions> made = MakeFitOptions({{"preset", groups ? "group" : "tail"},
+                                                  {"stance", NameOf(study.model.stance)},
+                                                  {"delay", NameOf(study.model.delay)}});
   if (!made.ok()) return made.error();
   const FitOptions& preset = made.value();
   const ParameterSet<double> published =
@@ -21,6 +19,7 @@ Result<IdentifiedModel> SyntheticTruth(const SyntheticOptions& study, const std:
              : (groups ? PublishedGroupParameters() : PublishedTailParameters());
   IdentifiedModel model;
   model.options = preset.model;
+  model.options.process_noise = study.model.process_noise;  // which no fit by rollouts has
   model.table = preset.table;
   model.parameters = preset.table.Values();
   for (Parameter id : preset.table.Free()) {

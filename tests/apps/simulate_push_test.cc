@@ -66,6 +66,12 @@ TEST_F(SimulateAppTest, TheTruthOfGroupsIsFound) {
   EXPECT_TRUE(Contains(alone.err, "do not act on each other"));
 }
 
+// Noise is no term of the preset's fit: --set had said that sigma_x does nothing.
+TEST_F(SimulateAppTest, NoiseHasItsNumbers) {
+  Simulate("made", {"--truth_noise=diagonal", "--set=sigma_x=12", "--people=2"});
+  EXPECT_TRUE(Contains(run_.out, "sigma_x"));
+}
+
 // Feet that hold and step, with default flags: errors of the fit hold the truth of most parameters.
 TEST_F(SimulateAppTest, TheTruthMayStand) {
   const std::string manifest = Simulate("made", {"--stance=steps", "--people=5"});
