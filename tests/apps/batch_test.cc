@@ -43,18 +43,31 @@ TEST_F(BatchTest, OneBadVariantCostsItsOwnJobsOnly) {
   EXPECT_EQ(Table("out"), rows);
 }
 
-// A replica of a batch is the fit with --replica.
-TEST_F(BatchTest, ReplicasAreThoseOfFits) {
-  Batch(Plan("bootstrap = 2\nseed = 7", {{"physics", ""}}));
+// A replica of a batch is the fit with --replica, and the bootstrap's, but for the weights of the
+// data: the bootstrap keeps the fit's, a replica estimates its own.
+TEST_F(BatchTest, ReplicasAreThoseOfTheBootstrap) {
+  const std::string free = "--settling_weight=0";
+  const std::string model = FitModel("model.json", {"--seed=7", free});
+  Succeeded(
+      RunApp("pushid-check", {"--model=" + model, Recordings(), "--bootstrap=2", "--seed=7"}));
+  const nlohmann::ordered_json bootstrap = Json(model)["bootstrap"];
+  size_t mu = 0;
+  while (bootstrap["parameters"][mu]["name"] != "mu") ++mu;
+  Batch(Plan("bootstrap = 2\nseed = 7", {{"physics", "\"" + free + "\""}}));
   const nlohmann::ordered_json summary = Json(Path("out/summary.json"));
   ASSERT_EQ(summary["jobs"].size(), 3u);
   for (int replica : {0, 1, 2}) {
-    std::vector<std::string> flags = {"--seed=7"};
+    std::vector<std::string> flags = {"--seed=7", free};
     if (replica > 0) flags.push_back("--replica=" + std::to_string(replica));
-    const double own = Json(FitModel("model.json", flags))["values"]["mu"].get<double>();
+    const double own = Json(FitModel("again.json", flags))["values"]["mu"].get<double>();
     EXPECT_NEAR(summary["jobs"][replica]["parameters"]["mu"]["value"].get<double>(), own,
                 1e-9 * std::abs(own))
         << replica;
+    bool found = replica == 0;
+    for (const auto& row : bootstrap["values"]) {
+      found = found || std::abs(row[mu].get<double>() / own - 1.0) < 0.01;
+    }
+    EXPECT_TRUE(found) << "replica " << replica << ": mu " << own;
   }
 }
 
