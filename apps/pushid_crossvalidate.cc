@@ -23,7 +23,6 @@
 #include "ident/prediction/predictive_bands.h"
 #include "ident/problem/folds.h"
 #include "ident/validation/crossvalidation.h"
-#include "ident/validation/held_out_spread.h"
 #include "ident/validation/scores_report.h"
 
 DEFINE_string(scheme, pushid::NameOf(pushid::FoldScheme::kStratified),
@@ -105,23 +104,19 @@ void ReadScheme(FoldScheme* scheme) {
 
 using Predictors = std::vector<Predictor>;
 
-// The candidates from which futures can be drawn.
-Candidates NoisyModels(const Candidates& candidates) {
-  Candidates noisy;
-  for (const auto& [name, candidate] : candidates) {
-    if (candidate.model.process_noise != ProcessNoise::kNone) noisy.emplace_back(name, candidate);
-  }
+// Futures are drawn of candidates with process noise, of which there must be one.
+void CheckDrawn(const Candidates& candidates) {
+  if (DrawnFutures() == 0) return;
   if (Given("observed")) {
     throw Error{
         "--samples draws futures from frame 0, and --observed predicts from a later frame: leave "
         "one out"};
   }
-  if (noisy.empty()) {
-    throw Error{
-        "--samples: no candidate has process noise to draw from; add "
-        "--likelihood=innovation"};
+  for (const auto& [name, candidate] : candidates) {
+    if (candidate.model.process_noise != ProcessNoise::kNone) return;
   }
-  return noisy;
+  throw Error{
+      "--samples: no candidate has process noise to draw from; add --likelihood=innovation"};
 }
 
 // After observed frames the restarted model takes the place of ridge regression and template, which
@@ -154,13 +149,16 @@ Predictors MakePredictors(const Candidates& candidates) {
   Predictors predictors;
   const int observed = ObservedFrames();
   for (const auto& [name, candidate] : candidates) {
-    if (observed > 0 && candidate.model.push_tail == PushTail::kNone) {
-      throw Error{"--observed: '" + name +
-                  "' has no push tail, which --observed estimates from the first frames; give it "
-                  "--push_tail=exponential (the presets tail and group have it)"};
-    }
+    const bool noisy = candidate.model.process_noise != ProcessNoise::kNone;
+    predictors.push_back(ModelPredictor(name, candidate, observed, FramesUse::kForecast,
+                                        ForecastUseFlag(),
+                                        {noisy ? DrawnFutures() : 0, kFuturesSeed}));
+  }
+  if (FLAGS_bands) {
+    BandOptions asked;
+    asked.seed = Seed();
     predictors.push_back(
-        ModelPredictor(name, candidate, observed, FramesUse::kForecast, ForecastUseFlag()));
+        BandPredictor(candidates[0].first + ", bands", candidates[0].second, asked));
   }
   if (FLAGS_yardsticks) AddBaselines(candidates[0].second, &predictors);
   return predictors;
@@ -188,7 +186,6 @@ int Run() {
   FoldScheme scheme;
   ReadScheme(&scheme);
   const Setups setups = SetupsFromFlags();
-  const int drawn = DrawnFutures();
   CheckFlags(setups);
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   CheckPushed(recordings);
@@ -201,7 +198,7 @@ int Run() {
     LOG(WARNING) << warning;
   const Predictors predictors = MakePredictors(candidates);
   CheckNames(predictors);
-  const Candidates noisy = drawn > 0 ? NoisyModels(candidates) : Candidates();
+  CheckDrawn(candidates);
   const std::vector<Fold> folds = OrFail(
       FLAGS_folds_file.empty() ? MakeFolds(pendulums, scheme, FLAGS_folds, FLAGS_repeats, Seed())
                                : ReadFolds(FLAGS_folds_file, pendulums));
@@ -214,27 +211,9 @@ int Run() {
                                         line.OfJobs(predictor.name + ": fold"), bodies,
                                         ParseLabelKeys(FLAGS_group_by)));
   }
-  std::vector<HeldOutFutures> futures;
-  for (const auto& [name, model] : noisy) {
-    futures.push_back(CrossValidateFutures(name, pendulums, folds, model, drawn, kFuturesSeed,
-                                           NumThreads(), line.OfJobs(name + ", futures: fold")));
-  }
-  std::vector<BandCoverage> bands;
-  if (FLAGS_bands) {
-    BandOptions asked;
-    asked.seed = Seed();
-    bands = CrossValidateBands(pendulums, folds, options, asked, NumThreads(),
-                               line.OfJobs("bands: fold"));
-  }
   line.Finish();
   std::printf("%s", CrossValidationText(validations).c_str());
-  if (FLAGS_bands) std::printf("\n%s", BandCoverageText(bands).c_str());
-  if (!futures.empty()) std::printf("\n%s", HeldOutFuturesText(pendulums, futures).c_str());
-  if (!FLAGS_json_out.empty()) {
-    nlohmann::ordered_json json = ScoresJson(validations);
-    for (const HeldOutFutures& one : futures) json["futures"].push_back(ToJson(one.summary));
-    OrFail(WriteJson(FLAGS_json_out, json));
-  }
+  if (!FLAGS_json_out.empty()) OrFail(WriteJson(FLAGS_json_out, ScoresJson(validations)));
   return kDone;
 }
 

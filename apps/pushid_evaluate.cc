@@ -17,7 +17,6 @@
 #include "ident/parameters/presets.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/prediction.h"
-#include "ident/validation/held_out_spread.h"
 #include "ident/validation/scores_report.h"
 
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
@@ -68,17 +67,12 @@ int Run() {
   OrFail(CheckGroups(pendulums, group_by));
   const std::optional<BodyEvaluation> bodies = Bodies(restoration, model, recordings);
   WarnGrouped(InputWarnings(model, pendulums));
-  const Evaluation evaluation =
-      Evaluate(model, pendulums, ObservedFrames(), group_by, ForecastUseFlag());
+  const Evaluation evaluation = Evaluate(model, pendulums, ObservedFrames(), group_by,
+                                         ForecastUseFlag(), {drawn, kFuturesSeed});
   std::printf("%s", EvaluationText(evaluation, FLAGS_per_recording).c_str());
   std::printf("\n%s", StepsReport(pendulums, FLAGS_per_recording).c_str());
   nlohmann::ordered_json json = ResultHead(kScoresSchema);
   json.update(ToJson(evaluation));
-  if (drawn > 0) {
-    const auto futures = OrFail(EvaluateFutures(model, pendulums, drawn, kFuturesSeed));
-    std::printf("\n%s", FuturesText(std::vector<FuturesSummary>{futures}).c_str());
-    json["futures"] = ToJson(futures);
-  }
   AddStepsJson(pendulums, &json);
   if (bodies) {
     std::printf("\n%s", BodyText(*bodies).c_str());

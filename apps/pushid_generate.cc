@@ -335,18 +335,17 @@ int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags)
               flags.folder});
   }
   const double before = Now();
-  const ForecastErrors errors = ErrorsOf(windows, Forecasts(*loaded.generator, windows), layout);
+  const std::vector<Trajectories> forecasts = Forecasts(*loaded.generator, windows);
   const double per_window = (Now() - before) / static_cast<double>(windows.size());
-  std::printf("%s", ForecastErrorsText(errors).c_str());
-  Json json = ResultHead("pushid-forecasts/1");
-  json.update(ToJson(errors));
-  json["baselines"]["zero_velocity"] = ToJson(ErrorsOf(windows, ZeroVelocity(windows), layout));
+  std::vector<std::vector<SampledFuture>> samples;
   if (flags.samples > 0 && flags.target_window < 0) {
-    const ForecastSpread spread =
-        SpreadOf(windows, Samples(*loaded.generator, windows, flags), layout);
-    std::printf("\n%s", ForecastSpreadText(spread).c_str());
-    AddSpreadJson(spread, &json);
+    samples = Samples(*loaded.generator, windows, flags);
   }
+  const ForecastScores scores = ScoresOf(windows, forecasts, layout, samples);
+  std::printf("%s", ForecastScoresText(scores).c_str());
+  Json json = ResultHead("pushid-forecasts/1");
+  json.update(ToJson(scores));
+  json["baselines"]["zero_velocity"] = ToJson(ScoresOf(windows, ZeroVelocity(windows), layout));
   if (flags.Shows() || flags.target_window >= 0) {
     const ForecastScene scene = SceneOfWindow(loaded, flags, windows, &json);
     ShowForecast(scene, flags);

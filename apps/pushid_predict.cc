@@ -184,8 +184,7 @@ int Run() {
     std::printf("%s; no recorded motion to compare with\n",
                 ChangedPushesText(changed, recording).c_str());
   }
-  std::printf("%s%s", PredictedStepsText(recording, prediction).c_str(),
-              EffectText(prediction).c_str());
+  std::printf("%s", PredictedStepsText(recording, prediction).c_str());
   return PrintFutures(model, recording, FLAGS_frames);
 }
 

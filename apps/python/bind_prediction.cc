@@ -345,7 +345,7 @@ py::dict ResponseDict(const FrequencyResponse& response) {
       "phase_error"_a = column([](const FrequencyBin& bin) { return bin.phase_error; }),
       "coherence"_a = column([](const FrequencyBin& bin) { return bin.coherence; }),
       "people"_a = column([](const FrequencyBin& bin) { return double(bin.people); }));
-  if (response.model.empty()) return dict;
+  if (!response.has_model) return dict;
   dict["model_gain"] = column([](const FrequencyBin& bin) { return std::exp(bin.model_log_gain); });
   dict["model_phase"] = column([](const FrequencyBin& bin) { return bin.model_phase; });
   return dict;

@@ -6,7 +6,6 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/fit/fit.h"
-#include "ident/observed/recording_filter.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/advice.h"
 #include "ident/report/report_text.h"
@@ -40,11 +39,6 @@ MaybeError CheckAgainst(const ModelChecks& checks, const FitOptions& options,
     return Error{
         "--horizon_check compares rollouts of many lengths: leave --likelihood out, and choose a "
         "network that is small enough to be refitted (not trained by its gradient)"};
-  }
-  if (checks.learn_forecasts && options.model.push_tail == PushTail::kNone) {
-    return Error{
-        "--learn_forecasts needs a push tail, and the model has none; add --push_tail=exponential "
-        "(the presets tail and group have it)"};
   }
   if (checks.design.empty() || checks.design == "all") return std::nullopt;
   std::string known = "all";
@@ -193,11 +187,6 @@ MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
 MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int num_threads,
                         FittedModel* model) {
   FitResult& fit = model->fit;
-  if (!fit.recording_effect) {
-    return Error{
-        "the model tells no effects of recordings, which forecasts estimate first; it "
-        "needs a push tail, and a recording with a push"};
-  }
   const FitProblem problem(recordings, fit.options);
   const FitPoint& optimum = fit.Best().to;
   fit.forecasts = CrossFitForecasts(problem, optimum, ModelOf(fit), recordings, num_threads);

@@ -58,7 +58,7 @@ MaybeError AddProfiles(const std::vector<PendulumRecording>& recordings,
 MaybeError AddBootstrap(const std::vector<PendulumRecording>& recordings,
                         const BootstrapOptions& options, const JobProgress& progress,
                         FittedModel* model);
-// Learns what predictions from first frames need. Error: the model has no push tail.
+// Learns what predictions from first frames need. Error: every recording leaves the model's domain.
 MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int num_threads,
                         FittedModel* model);
 void AddHorizonCheck(const std::vector<PendulumRecording>& recordings, int num_threads,

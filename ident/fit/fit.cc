@@ -11,7 +11,6 @@
 #include "ident/fit/step_probability.h"
 #include "ident/fit/weighted_solve.h"
 #include "ident/model/push_range.h"
-#include "ident/observed/recording_filter.h"
 #include "ident/problem/folds.h"
 #include "ident/problem/parallel.h"
 #include "ident/solver/solver.h"
@@ -80,8 +79,6 @@ void AddFittedTo(const std::vector<PendulumRecording>& recordings, FitResult* re
   if (steps && steps->stepped > 0 && steps->stepped < steps->tracks) {
     result->step_probability = steps;
   }
-  result->recording_effect =
-      FitRecordingEffect(ModelOf(*result), recordings, result->options.num_threads);
 }
 
 void AddWarnings(const SolvedFit& fit, FitResult* result) {
@@ -142,10 +139,10 @@ FitResult Judge(const SolvedFit& fit) {
   AddUnitErrors(problem, optimum, &result);
   result.contrast = ContrastAt(problem, optimum, result.uncertainty);
 
-  // The recordings that it was fitted to: their pushes, steps and effects.
+  // The recordings that it was fitted to: their pushes and steps.
   work.Add("tables");
   AddFittedTo(problem.recordings(), &result);
-  work.Add("recording effects");
+  work.Add("steps");
 
   // Residuals: what the model leaves unexplained, recording by recording.
   result.diagnostics = Diagnose(problem, fit.Best(), result.uncertainty);
@@ -199,11 +196,8 @@ Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings
                                  : RefitWithout(solved.problem, optimum, model, fold));
   }
   if (!forecasts) return models;
-  model.recording_effect = FitRecordingEffect(model, recordings, options.num_threads);
-  if (model.recording_effect) {
-    model.forecasts =
-        CrossFitForecasts(solved.problem, optimum, model, recordings, options.num_threads);
-  }
+  model.forecasts =
+      CrossFitForecasts(solved.problem, optimum, model, recordings, options.num_threads);
   return models;
 }
 
@@ -267,9 +261,7 @@ std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optim
   ParallelFor(static_cast<int>(held_out.size()), num_threads, [&](int f) {
     std::optional<IdentifiedModel> refitted = RefitWithout(problem, optimum, model, held_out[f]);
     if (!refitted) return;
-    refitted->recording_effect =
-        FitRecordingEffect(*refitted, Without(problem.recordings(), held_out[f]));
-    if (refitted->recording_effect) made[f].emplace(FoldModel{*std::move(refitted), held_out[f]});
+    made[f].emplace(FoldModel{*std::move(refitted), held_out[f]});
   });
   std::vector<FoldModel> folds;
   for (std::optional<FoldModel>& fold : made) {

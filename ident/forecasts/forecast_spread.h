@@ -30,53 +30,36 @@ namespace pushid {
 
 using HorizonErrors = std::array<double, kHorizonFrames.size()>;  // m
 
-struct ActionErrors {
+// Means over windows, by horizon; m, and coverage as a share.
+struct WindowScores {
   int windows = 0;
   HorizonErrors mpjpe{};
+  HorizonErrors coverage{}, crps{}, energy{}, probable{}, best{};  // of sampled futures
 };
 
-struct ForecastErrors {
-  std::map<std::string, ActionErrors> actions;
-  ActionErrors mean;  // of the actions
+struct ForecastScores {
+  std::map<std::string, WindowScores> actions;
+  WindowScores mean;     // of the actions
+  bool sampled = false;  // whether there were futures
 };
 
-// forecasts: one per window.
-ForecastErrors ErrorsOf(const std::vector<ForecastWindow>& windows,
-                        const std::vector<Trajectories>& forecasts, const ParticleLayout& layout);
+// Below 19 samples the 5 % quantile would stand before the first.
+inline constexpr int kLeastSamples = 19;
+
+// forecasts: one per window. samples: [window][future], or none at all.
+ForecastScores ScoresOf(const std::vector<ForecastWindow>& windows,
+                        const std::vector<Trajectories>& forecasts, const ParticleLayout& layout,
+                        const std::vector<std::vector<SampledFuture>>& samples = {});
 
 // The last observed pose, held.
 std::vector<Trajectories> ZeroVelocity(const std::vector<ForecastWindow>& windows);
 
-// {"mean": {"MPJPE_mm": {"80": ...}}, "actions": {"walking": {"windows": 8, "MPJPE_mm": {...}}}}
-nlohmann::ordered_json ToJson(const ForecastErrors& errors);
-// "walking  9.1  18.8 ..." a line an action, with a head and the mean.
-std::string ForecastErrorsText(const ForecastErrors& errors);
-
-inline constexpr double kSpreadLevel = 0.9;
-// Below 19 samples the 5 % quantile would stand before the first.
-inline constexpr int kLeastSamples = 19;
-
-struct SpreadScores {
-  HorizonErrors coverage{}, crps{}, energy{}, probable{}, best{};
-};
-
-struct ForecastSpread {
-  std::map<std::string, SpreadScores> actions;
-  SpreadScores mean;
-};
-
-// The value at quantile p of sorted values.
-double SampleQuantile(const std::vector<double>& sorted, double p);
-
-// samples: [window][future].
-ForecastSpread SpreadOf(const std::vector<ForecastWindow>& windows,
-                        const std::vector<std::vector<SampledFuture>>& samples,
-                        const ParticleLayout& layout);
-
-// Adds "coverage_90", "CRPS_mm", "energy_score_mm", "most_probable_MPJPE_mm" and
-// "best_of_n_MPJPE_mm" by horizon beside the errors that `json` holds.
-void AddSpreadJson(const ForecastSpread& spread, nlohmann::ordered_json* json);
-std::string ForecastSpreadText(const ForecastSpread& spread);
+// {"mean": {"windows": 8, "MPJPE_mm": {"80": ...}}, "actions": {"walking": ...}}; of sampled
+// futures also "coverage_90", "CRPS_mm", "energy_score_mm", "most_probable_MPJPE_mm",
+// "best_of_n_MPJPE_mm".
+nlohmann::ordered_json ToJson(const ForecastScores& scores);
+// "walking  9.1  18.8 ..." a line an action, with a head and the mean; below it sampled futures.
+std::string ForecastScoresText(const ForecastScores& scores);
 
 // The most probable way to a pose (SDE's Fig. 5): among futures whose last pose is near a target,
 // the one whose transitions have the largest likelihood.

@@ -59,24 +59,6 @@ struct StepProbability {
   double ErrorAt(double margin) const;
 };
 
-// The effect b of one recording: with the spread of all (shrunk towards 0), and by itself.
-struct EffectOfRecording {
-  std::string id, person, condition;
-  double mean = 0.0, error = 0.0;
-  double alone = 0.0;
-};
-
-// How recordings differ from what the same push does to the mean person
-// (observed/recording_filter.h).
-struct RecordingEffect {
-  double spread = 0.0;                             // w
-  double spread_error = 0.0;                       // leaving out one cluster after the other
-  double error_scale = 0.1;                        // s, m
-  double explained = 0.0;                          // share of the squared error that b takes away
-  int clusters = 0;                                // people, or recordings where nobody comes twice
-  std::vector<EffectOfRecording> recordings = {};  // those that b acts on
-};
-
 // What forecasts a motion that was seen to begin (observed/first_frames.h): both together, or
 // one alone.
 enum class ForecastUse { kBoth, kPhysics, kInput };
@@ -98,10 +80,9 @@ struct ErrorScale {
 
 // How forecasts are put together (observed/first_frames.h).
 struct ForecastRule {
-  InputNoise noise;                             // of the filter that forecasts
-  double tail_strength = 1.0, tail_time = 1.0;  // its tail over the model's
-  double input_share = 0.6;                     // weight of the filter once enough was seen
-  std::array<ErrorScale, 3> errors;             // along the push, across, upwards
+  double tail = 1.0;                 // of the filter: how much stronger and longer than the model's
+  double input_time = 0.15;          // T, s
+  std::array<ErrorScale, 3> errors;  // along the push, across, upwards
   // Forecasts that all this was learned from were made by models fitted without them: how many
   // such models, and of how many recordings. No folds: the model itself was all there was.
   int folds = 0, recordings = 0;
@@ -114,10 +95,8 @@ struct ModelFacts {
   std::optional<PushRange> push_range;  // that it was fitted to; none in files older than it
   // None where nobody stepped or everybody did, and in older files.
   std::optional<StepProbability> step_probability;
-  // For what first frames tell; none without a push tail, and in older files.
-  std::optional<RecordingEffect> recording_effect;
-  std::optional<ForecastRule> forecasts;
-  Behaviour behaviour;  // whether its people settle
+  std::optional<ForecastRule> forecasts;  // from first frames; learned where asked
+  Behaviour behaviour;                    // whether its people settle
 };
 
 struct FitResult;

@@ -263,22 +263,6 @@ void Fields(Archive& a, StepProbability& p) {
 }
 
 template <class Archive>
-void Fields(Archive& a, EffectOfRecording& e) {
-  PUSHID_FIELDS(a, e, id, person, condition);
-  a("effect", e.mean);
-  PUSHID_FIELDS(a, e, error, alone);
-}
-
-template <class Archive>
-void Fields(Archive& a, RecordingEffect& e) {
-  a("spread", e.spread);
-  a("spread_standard_error", e.spread_error);
-  a("error_scale_m", e.error_scale);
-  PUSHID_FIELDS(a, e, explained, clusters, recordings);
-  a.Check(e.spread >= 0.0 && e.error_scale > 0.0, "recording_effect has numbers that cannot be");
-}
-
-template <class Archive>
 void Fields(Archive& a, ErrorScale& e) {
   PUSHID_FIELDS(a, e, coefficients, quantiles);
   a.Check(e.coefficients.allFinite() &&
@@ -289,27 +273,15 @@ void Fields(Archive& a, ErrorScale& e) {
 }
 
 template <class Archive>
-void Fields(Archive& a, InputNoise& n) {
-  a("force_time_s", n.force_time);
-  a("force_m_s2", n.force);
-  a("measured_m", n.measured);
-  a("measured_time_s", n.measured_time);
-  a.Check(n.force_time > 0.0 && n.force > 0.0 && n.measured > 0.0 && n.measured_time > 0.0,
-          "a filter of unknown forces has numbers that cannot be");
-}
-
-template <class Archive>
 void Fields(Archive& a, ForecastRule& f) {
-  a("input", f.noise);
-  PUSHID_FIELDS(a, f, tail_strength, tail_time, input_share);
+  a("tail", f.tail);
+  a("input_time_s", f.input_time);
   a.Group("errors", [&f](auto& g) {
     constexpr const char* kAxes[] = {"along", "across", "upwards"};
     for (int i = 0; i < 3; ++i) g(kAxes[i], f.errors[i]);
   });
   PUSHID_FIELDS(a, f, folds, recordings);
-  a.Check(
-      f.tail_strength > 0.0 && f.tail_time > 0.0 && f.input_share >= 0.0 && f.input_share <= 1.0,
-      "forecasts have numbers that cannot be");
+  a.Check(f.tail > 0.0 && f.input_time >= 0.0, "forecasts have numbers that cannot be");
 }
 
 template <class Archive>
@@ -516,7 +488,6 @@ void ModelFields(Archive& a, FittedModel& model, const RunInfo& run) {
   a.Optional("push_range", fit.push_range);
   a.Optional("step_probability", fit.step_probability);
   a.Optional("likelihood", fit.likelihood);
-  a.Optional("recording_effect", fit.recording_effect);
   a.Optional("forecasts", fit.forecasts);
   if (a.Has("self_network", options.learned != nullptr)) {
     a.Written("self_network", [&] { return ToJson(*options.learned); });

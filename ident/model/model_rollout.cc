@@ -6,15 +6,14 @@
 
 #include "ident/problem/own_axes.h"
 #include "models/learned_terms.h"
-#include "models/turn.h"
-#include "residuals/cost_functions/lane_tables.h"
+#include "models/rollout.h"
 #include "residuals/cost_functions/rollout_problem.h"
 
 namespace pushid {
 namespace {
 
-// A push gives nobody more momentum for the mass than any that the model was fitted to, before the
-// recording's own effect: beyond those, nothing is known of tails, and in proportion to the rows
+// A push gives nobody more momentum for the mass than any that the model was fitted to: beyond
+// those, nothing is known of tails, and in proportion to the rows
 // they run away. Rows are measured and stay. Of several pushes on a person the strongest counts.
 void BoundTails(const PushRange& range, const PendulumRecording& recording,
                 std::vector<ParameterSet<double>>* sets) {
@@ -30,31 +29,10 @@ void BoundTails(const PushRange& range, const PendulumRecording& recording,
   }
 }
 
-HipPaths HipsOf(const Scene& scene, const ModelOptions& options,
-                const std::vector<ParameterSet<double>>& parameters, int frames) {
-  RolloutPath<double> path;
-  HipPaths hips;
-  if (!Rollout<double>(scene, options, parameters, InitialVelocities(scene), frames, &path).ok) {
-    return hips;
-  }
-  const bool moves = RodMoves(options);
-  for (int n = 0; n < scene.num_people(); ++n) {
-    const Body& body = scene.people[n].body;
-    hips.emplace_back();
-    for (int t = 0; t < frames; ++t) {
-      const PendulumState<double>& state = path.At(t, n);
-      hips[n].push_back(
-          HipPosition(moves ? BodyNow(body, state.rod, parameters[n][kRodLift]) : body, state.q));
-    }
-  }
-  return hips;
-}
-
 }  // namespace
 
 std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
-                                                    const PendulumRecording& recording,
-                                                    double effect) {
+                                                    const PendulumRecording& recording) {
   std::vector<ParameterSet<double>> sets;
   const ParameterMap map = model.table.Map();
   const std::vector<std::vector<double>> covariates = CovariatesOf(recording, map.covariates);
@@ -65,42 +43,26 @@ std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model
   if (model.options.push_tail != PushTail::kNone && model.push_range) {
     BoundTails(*model.push_range, recording, &sets);
   }
-  for (ParameterSet<double>& set : sets) ApplyEffect(effect, &set);
   return sets;
 }
 
-void ApplyEffect(double effect, ParameterSet<double>* parameters) {
-  for (Parameter id : {kTailGain, kTailBase}) (*parameters)[id] *= std::exp(effect);
-}
-
-std::vector<HipPaths> HipsOfRollouts(const IdentifiedModel& model,
-                                     const PendulumRecording& recording,
-                                     const std::vector<double>& effects, int frames) {
-  const double angle = OwnAxes(recording, model.options.directions);
-  const TurnedAxes back(-angle);
-  const Scene scene = SceneInOwnAxes(recording, model.options);
-  const std::vector<ParameterSet<double>> without = PeoplesParameters(model, recording);
-  std::vector<std::vector<ParameterSet<double>>> parameters;
-  for (double effect : effects) {
-    parameters.push_back(without);
-    for (ParameterSet<double>& set : parameters.back()) ApplyEffect(effect, &set);
-  }
-  std::vector<HipPaths> all;
-  if (HasLanes(scene, model.options)) {
-    std::vector<ParameterSet<double>> of_person;
-    for (const auto& sets : parameters) of_person.push_back(sets[0]);
-    for (HipPath& path : HipsSideBySide(scene, model.options, of_person, frames)) {
-      all.push_back(path.empty() ? HipPaths() : HipPaths{std::move(path)});
-    }
-  } else {
-    for (const auto& sets : parameters) all.push_back(HipsOf(scene, model.options, sets, frames));
-  }
-  for (HipPaths& hips : all) {
-    for (HipPath& path : hips) {
-      for (Vector3<double>& hip : path) hip = back.Point(hip);
+HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& recording,
+                       int frames) {
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
+  RolloutPath<double> path;
+  HipPaths hips;
+  if (!RolloutInOwnAxes(recording, model.options, parameters, frames, &path).ok) return hips;
+  for (int n = 0; n < recording.num_people(); ++n) {
+    const Body& body = recording.scene.people[n].body;
+    hips.emplace_back();
+    for (int t = 0; t < frames; ++t) {
+      const PendulumState<double>& state = path.At(t, n);
+      hips[n].push_back(HipPosition(
+          RodMoves(model.options) ? BodyNow(body, state.rod, parameters[n][kRodLift]) : body,
+          state.q));
     }
   }
-  return all;
+  return hips;
 }
 
 std::string OutsideText(const RolloutStatus& status) {

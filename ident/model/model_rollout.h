@@ -14,21 +14,13 @@ using HipPath = std::vector<Vector3<double>>;
 using HipPaths = std::vector<HipPath>;
 
 // One set for each person of the recording, moved by what is known of them where the model has
-// covariates: those of a mean person where it is not. effect: log factor on the tail
-// (observed/recording_filter.h).
+// covariates: those of a mean person where it is not.
 std::vector<ParameterSet<double>> PeoplesParameters(const IdentifiedModel& model,
-                                                    const PendulumRecording& recording,
-                                                    double effect = 0.0);
+                                                    const PendulumRecording& recording);
 
-// The log factor of a recording on the tail's horizontal force, both of its parts. Its torque
-// stays: scaled as well, people left out are predicted worse after first frames (after frame 6:
-// 0.094 against 0.086 m).
-void ApplyEffect(double effect, ParameterSet<double>* parameters);
-
-// Everybody's hips in rollouts with each of some effects; none where one leaves the model's domain.
-std::vector<HipPaths> HipsOfRollouts(const IdentifiedModel& model,
-                                     const PendulumRecording& recording,
-                                     const std::vector<double>& effects, int frames);
+// Everybody's hips in a rollout; none where it leaves the model's domain.
+HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& recording,
+                       int frames);
 
 // "theta of person 0 leaves the model's domain at frame 31"
 std::string OutsideText(const RolloutStatus& status);

@@ -91,14 +91,6 @@ double PushSpeed(const PendulumRecording& recording) {
   return speed;
 }
 
-double WholePushSpeed(const IdentifiedModel& model, const PendulumRecording& recording) {
-  double speed = 0.0;
-  for (const ScenePush& push : recording.scene.pushes) {
-    speed += ImpulsePerMass(model, recording, push);
-  }
-  return speed;
-}
-
 PushRange FittedPushRange(const IdentifiedModel& model,
                           const std::vector<PendulumRecording>& recordings) {
   PushRange range;

@@ -16,8 +16,6 @@ namespace pushid {
 
 // What the recorded rows alone give people, m/s; tails not counted.
 double PushSpeed(const PendulumRecording& recording);
-// What all of them give the people, with the tails that the model gives them, m/s.
-double WholePushSpeed(const IdentifiedModel& model, const PendulumRecording& recording);
 PushRange FittedPushRange(const IdentifiedModel& model,
                           const std::vector<PendulumRecording>& recordings);
 

@@ -7,6 +7,11 @@
 #include <utility>
 
 namespace pushid {
+namespace {
+
+constexpr double kErrorWindow = 0.05;  // s, of which an error of velocity is the mean
+
+}  // namespace
 
 SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
   SeenFrame seen{HipsAt(recording, frame), {}};
@@ -14,26 +19,24 @@ SeenFrame FrameAt(const PendulumRecording& recording, int frame) {
   return seen;
 }
 
-FirstFrames::FirstFrames(const IdentifiedModel& model, const ForecastRule& rule,
-                         const PendulumRecording& recording, int frames)
+FirstFrames::FirstFrames(const IdentifiedModel& model, double tail,
+                         const PendulumRecording& recording, HipPaths rollout, int frames)
     : recording_(&recording),
-      filter_(model, recording, frames),
-      input_(ForecastFilter(model, rule, recording, frames)),
-      beside_(recording.hip.size(), Vector3<double>::Zero()) {
-  for (const auto& hip : recording.hip) last_.push_back(hip[0]);
-}
+      rollout_(std::move(rollout)),
+      frames_(frames),
+      input_(ForecastFilter(model, tail, recording, frames)),
+      beside_(recording.hip.size(), Vector3<double>::Zero()) {}
+
+double FirstFrames::seconds() const { return (observed() - 1) * recording_->scene.dt; }
 
 void FirstFrames::Observe(SeenFrame frame) {
   if (observed() >= frames()) return;
-  filter_.Observe(frame.hips);
-  std::vector<bool> seen;
-  for (size_t n = 0; n < last_.size(); ++n) {
-    seen.push_back(frame.hips.Sees(static_cast<int>(n)));
-    if (seen.back()) last_[n] = frame.hips.hip[n];
-  }
   if (input_) {
+    std::vector<bool> seen;
+    for (size_t n = 0; n < beside_.size(); ++n)
+      seen.push_back(frame.hips.Sees(static_cast<int>(n)));
     input_->Observe(frame.states, seen);
-    for (size_t n = 0; n < last_.size(); ++n) {
+    for (size_t n = 0; n < beside_.size(); ++n) {
       if (!seen[n] || !input_->status().ok) continue;
       beside_[n] = frame.hips.hip[n] - HipPosition(recording_->scene.people[n].body,
                                                    input_->State(static_cast<int>(n)).q);
@@ -42,9 +45,47 @@ void FirstFrames::Observe(SeenFrame frame) {
   seen_.push_back(std::move(frame));
 }
 
-TwoForecasts FirstFrames::Forecasts(const HipPaths& rollout) const {
+// Frame 0 always was.
+int FirstFrames::LastSeen(int person, int until) const {
+  while (until > 0 && !seen_[until - 1].hips.Sees(person)) --until;
+  return until;
+}
+
+Vector3<double> FirstFrames::HipAt(int person, int frame) const {
+  return frame == 0 ? recording_->hip[person][0] : seen_[frame - 1].hips.hip[person];
+}
+
+std::vector<Vector3<double>> FirstFrames::LastHips() const {
+  std::vector<Vector3<double>> hips;
+  for (int n = 0; n < recording_->num_people(); ++n) {
+    hips.push_back(HipAt(n, LastSeen(n, observed() - 1)));
+  }
+  return hips;
+}
+
+HipPath FirstFrames::Physics(int person) const {
+  const double dt = recording_->scene.dt;
+  const int window = std::max(1, static_cast<int>(std::lround(kErrorWindow / dt)));
+  const int last = LastSeen(person, observed() - 1);
+  const int before = LastSeen(person, std::max(0, last - window));
+  const auto error = [&](int frame) -> Vector3<double> {
+    if (frame == 0) return Vector3<double>::Zero();
+    return HipAt(person, frame) - rollout_[person][frame];
+  };
+  const Vector3<double> off = error(last);
+  Vector3<double> velocity = Vector3<double>::Zero();
+  if (last > before) velocity = (off - error(before)) / ((last - before) * dt);
+  HipPath path;
+  for (int t = observed(); t < frames_; ++t) {
+    const double reach = kErrorTime * (1.0 - std::exp(-(t - last) * dt / kErrorTime));
+    path.push_back(rollout_[person][t] + off + reach * velocity);
+  }
+  return path;
+}
+
+TwoForecasts FirstFrames::Forecasts() const {
   TwoForecasts two;
-  if (!rollout.empty()) two.physics = filter_.ForecastOf(rollout);
+  for (size_t n = 0; n < rollout_.size(); ++n) two.physics.push_back(Physics(static_cast<int>(n)));
   if (!input_) return two;
   two.input_status = input_->Forecast(&two.input_path);
   if (!two.input_status.ok) return two;
@@ -105,14 +146,14 @@ double QuantileAt(const std::vector<double>& quantiles, double share) {
 
 }  // namespace
 
-std::optional<double> InputShare(double input_share, const HipPaths& physics, const HipPaths& input,
+std::optional<double> InputShare(double input_time, const HipPaths& physics, const HipPaths& input,
                                  double seconds, ForecastUse use) {
   const bool asks_physics = use != ForecastUse::kInput && !physics.empty();
   const bool asks_input = use != ForecastUse::kPhysics && !input.empty();
   if (!asks_physics && !asks_input) return std::nullopt;
   if (!asks_input) return 0.0;
   if (!asks_physics) return 1.0;
-  return seconds < kPhysicsAlone ? 0.0 : input_share;
+  return seconds < kPhysicsAlone ? 0.0 : std::min(1.0, std::sqrt(input_time / seconds));
 }
 
 HipPaths Blended(double share, const HipPaths& physics, const HipPaths& input) {

@@ -1,13 +1,17 @@
 // ident: a motion that was seen to begin, and what comes of it.
 //
 // Two forecast:
-//   physics    the rollout by what the push and the recording's effect say, and on it what is left
-//              of its error (recording_filter.h)
+//   physics    the rollout from frame 0, moved to where the hip was seen last and on by what is
+//              left of its error of velocity v, of the last 0.05 s:
+//                0.3 s (1 - exp(-h / 0.3 s)) v,   h the time ahead
 //   input      the pendulum from the state that a filter with an unknown force finds
-//              (recording_filter.h), the force dying out; push and tail act as known
+//              (scene_filter.h), the force dying out; push and tail act as known
 // One rule says who has the word: until a quarter of a second was seen physics, from then on
-// (1 - w) physics + w input with w = ForecastRule::input_share. Where one of the two has nothing to
-// say it is the other.
+// (1 - w) physics + w input with
+//   w = min(1, sqrt(T / s)),   s the time seen, T = ForecastRule::input_time.
+// Where one of the two has nothing to say it is the other. Rejected: T / s, a constant w, weights
+// that grow with the time ahead; a log factor on the tail as the first frames tell it, and a Kalman
+// filter of the rollout's error: they forecast no better and were five times as long.
 //
 // An error on one axis (along the push, across, upwards) has the scale
 //   exp(coefficients . [1, log(h / 0.5 s), log((s + 0.05 s) / 0.35 s), log(v + 0.05 m/s)]),
@@ -21,9 +25,11 @@
 #include <vector>
 
 #include "ident/model/model_rollout.h"
-#include "ident/observed/recording_filter.h"
+#include "ident/observed/scene_filter.h"
 
 namespace pushid {
+
+inline constexpr double kErrorTime = 0.3;  // s, in which an error of velocity dies out
 
 // Everybody at one frame.
 struct SeenFrame {
@@ -43,35 +49,38 @@ struct TwoForecasts {
 class FirstFrames {
  public:
   // Of the recording only people, pushes and frame 0 are looked at; it and the model must outlive
-  // the object. frames: how far to look, in all.
-  FirstFrames(const IdentifiedModel& model, const ForecastRule& rule,
-              const PendulumRecording& recording, int frames);
+  // the object. rollout: the model's hips over as many frames as are looked at; empty: it left the
+  // domain. tail: of ForecastFilter.
+  FirstFrames(const IdentifiedModel& model, double tail, const PendulumRecording& recording,
+              HipPaths rollout, int frames);
 
   // The next frame; the first is frame 1. Not more than there are.
   void Observe(SeenFrame frame);
-  int observed() const { return filter_.observed(); }  // with frame 0
-  int frames() const { return filter_.frames(); }
-  double seconds() const { return filter_.seconds(); }  // after frame 0
-  const RecordingFilter& filter() const { return filter_; }
+  int observed() const { return static_cast<int>(seen_.size()) + 1; }  // with frame 0
+  int frames() const { return frames_; }
+  double seconds() const;  // after frame 0
   bool HasInput() const { return input_.has_value(); }
   const std::vector<SeenFrame>& seen() const { return seen_; }  // from frame 1 on
   // Where hips were seen last, by person.
-  const std::vector<Vector3<double>>& LastHips() const { return last_; }
+  std::vector<Vector3<double>> LastHips() const;
 
-  // rollout: the model's hips with the effect, over all frames; empty: it left the domain.
-  TwoForecasts Forecasts(const HipPaths& rollout) const;
+  TwoForecasts Forecasts() const;
 
  private:
+  int LastSeen(int person, int until) const;
+  Vector3<double> HipAt(int person, int frame) const;
+  HipPath Physics(int person) const;
+
   const PendulumRecording* recording_;
-  RecordingFilter filter_;
+  HipPaths rollout_;
+  int frames_;
   std::optional<SceneFilter> input_;
   std::vector<SeenFrame> seen_;
-  std::vector<Vector3<double>> last_;    // by person
   std::vector<Vector3<double>> beside_;  // by person: hip less the filter's, where last seen
 };
 
 // The weight w of the filter by the rule; none where nobody who is asked has anything to say.
-std::optional<double> InputShare(double input_share, const HipPaths& physics, const HipPaths& input,
+std::optional<double> InputShare(double input_time, const HipPaths& physics, const HipPaths& input,
                                  double seconds, ForecastUse use = ForecastUse::kBoth);
 HipPaths Blended(double share, const HipPaths& physics, const HipPaths& input);
 

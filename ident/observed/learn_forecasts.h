@@ -4,12 +4,13 @@
 // A model flatters itself on the recordings it was fitted to, the more so the later, and what is
 // learned there is wrong. So models fitted without a fold of the recordings forecast it, some
 // twelve times. From these forecasts come
-//   - the numbers of the filter that forecasts and the weight of what it says: of a few values
-//     those of the least mean distance of the hip;
+//   - the tail of the filter and T of the rule: of a few values those of the least mean distance of
+//     the hip where both have a word;
 //   - the scales and quantiles of errors: of every fold with numbers learned on the others.
 #pragma once
 
 #include <array>
+#include <iterator>
 #include <optional>
 #include <vector>
 
@@ -19,29 +20,33 @@ namespace pushid {
 
 // Fitted to all recordings but those held out (indices).
 struct FoldModel {
-  IdentifiedModel model;  // with its recording_effect
+  IdentifiedModel model;
   std::vector<int> held_out;
 };
 
-// model: with its recording_effect. folds: none where there is no model but that one, which would
-// flatter itself: only error scales are then learned. Nothing where no forecast can be made.
+// folds: none where there is no model but that one, which would flatter itself: only error scales
+// are then learned. Nothing where no recording stays in the model's domain.
 std::optional<ForecastRule> LearnForecasts(const IdentifiedModel& model,
                                            const std::vector<PendulumRecording>& recordings,
                                            const std::vector<FoldModel>& folds, int num_threads);
+
+// Tails of the filter over the model's that are tried.
+inline constexpr double kTails[] = {1.0, 1.5, 2.2};
 
 // One recording after its first frames, by [person][frame after them].
 struct ForecastTrial {
   int fold = 0, recording = 0;
   double seconds = 0.0, dt = 0.0;
   Eigen::Matrix3d axes;
-  HipPaths physics, input, measured;
+  HipPaths physics, measured;
+  std::array<HipPaths, std::size(kTails)> input;  // by each tail
   std::vector<std::vector<bool>> seen;
   std::vector<Vector3<double>> from;  // hips where they were seen last
 };
 
-// ForecastRule::input_share of the least mean distance over trials of every fold but one (-1: of
+// The rule's tail and time of the least mean distance over trials of every fold but one (-1: of
 // all).
-double LearnInputShare(const std::vector<ForecastTrial>& trials, int left_out = -1);
+ForecastRule LearnRule(const std::vector<ForecastTrial>& trials, int left_out = -1);
 // centre: of each trial.
 std::array<ErrorScale, 3> LearnErrorScales(const std::vector<ForecastTrial>& trials,
                                            const std::vector<HipPaths>& centre);

@@ -225,6 +225,8 @@ StepTiming TimingOf(const PendulumRecording& recording, const Prediction& predic
   return timing;
 }
 
+}  // namespace
+
 bool AnybodyFalls(const Prediction& prediction) {
   for (int t = 0; t < prediction.path.num_frames(); ++t) {
     for (int n = 0; n < prediction.path.num_people(); ++n) {
@@ -233,8 +235,6 @@ bool AnybodyFalls(const Prediction& prediction) {
   }
   return false;
 }
-
-}  // namespace
 
 std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
                                             const Prediction& prediction) {
@@ -286,20 +286,20 @@ RecordingScore ScoreOf(const IdentifiedModel& model, const PendulumRecording& re
   return score;
 }
 
-// Of frames that were seen by us but not by the predictor.
-void AddInside(const PendulumRecording& recording, const HipDistribution& hips, int observed,
-               RecordingScore* score) {
+// inside: whether a value at a frame, of the hip's x or y, lies in the central share.
+template <typename Inside, typename CrpsOf>
+void AddBands(const PendulumRecording& recording, int from, const Inside& inside,
+              const CrpsOf& crps, RecordingScore* score) {
   const int person = recording.pushed_person;
   double frames = 0.0;
-  for (int t = observed; t < recording.num_frames(); ++t) {
+  for (int t = from; t < recording.num_frames(); ++t) {
     if (recording.Weight(person, t) == 0.0) continue;
     frames += 1.0;
     for (int axis : {0, 1}) {
       const double value = recording.hip[person][t][axis];
-      const double off = std::abs(hips.Cdf(person, t - observed, axis, value) - 0.5);
-      (axis == 0 ? score->inside90_x : score->inside90_y) += off <= 0.45 ? 1.0 : 0.0;
-      (axis == 0 ? score->inside50_x : score->inside50_y) += off <= 0.25 ? 1.0 : 0.0;
-      score->crps += 0.5 * hips.Crps(person, t - observed, axis, value);
+      (axis == 0 ? score->inside90_x : score->inside90_y) += inside(t, axis, value, 0.9);
+      (axis == 0 ? score->inside50_x : score->inside50_y) += inside(t, axis, value, 0.5);
+      score->crps += 0.5 * crps(t, axis, value);
     }
   }
   if (frames == 0.0) return;
@@ -308,9 +308,32 @@ void AddInside(const PendulumRecording& recording, const HipDistribution& hips, 
 
 }  // namespace
 
+void ScoreDraws(const PendulumRecording& recording, const DrawnPaths& draws,
+                RecordingScore* score) {
+  const auto values = [&](int t, int axis) {
+    return ValuesAt(draws, recording.pushed_person, static_cast<size_t>(t), axis);
+  };
+  AddBands(
+      recording, 1,
+      [&](int t, int axis, double value, double share) {
+        return Within(values(t, axis), value, share) ? 1.0 : 0.0;
+      },
+      [&](int t, int axis, double value) { return Crps(values(t, axis), value); }, score);
+}
+
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
-                          int observed, ForecastUse use) {
-  if (observed == 0) return ScoreOf(model, recording, Predict(model, recording), 0);
+                          int observed, ForecastUse use, const Draws& draws) {
+  if (observed == 0) {
+    RecordingScore score = ScoreOf(model, recording, Predict(model, recording), 0);
+    if (draws.count == 0 || !score.failure.empty()) return score;
+    const Result<Futures> futures = DrawFutures(model, recording, draws.count, draws.seed);
+    if (!futures.ok()) return FailedScore(recording, futures.error().message);
+    if (futures.value().paths.size() < 2) {
+      return FailedScore(recording, "fewer than two drawn futures stay in the model's domain");
+    }
+    ScoreDraws(recording, futures.value().paths, &score);
+    return score;
+  }
   Result<OnlinePredictor> made =
       OnlinePredictor::Make(model, recording, recording.num_frames(), use);
   if (!made.ok()) return FailedScore(recording, made.error().message);
@@ -319,8 +342,16 @@ RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording&
   const Prediction prediction = predictor.Predict();
   RecordingScore score = ScoreOf(model, recording, prediction, observed);
   if (!score.failure.empty()) return score;
-  score.effect = prediction.effect;
-  AddInside(recording, predictor.Distribution(prediction), observed, &score);
+  const HipDistribution hips = predictor.Distribution(prediction);
+  const int person = recording.pushed_person;
+  AddBands(
+      recording, observed,
+      [&](int t, int axis, double value, double share) {
+        const double off = std::abs(hips.Cdf(person, t - observed, axis, value) - 0.5);
+        return off <= 0.5 * share ? 1.0 : 0.0;
+      },
+      [&](int t, int axis, double value) { return hips.Crps(person, t - observed, axis, value); },
+      &score);
   return score;
 }
 
@@ -352,16 +383,19 @@ const ScoreSummary& Evaluation::Baseline(const std::string& key) const {
 }
 
 Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
-                    int observed, const LabelKeys& group_by, ForecastUse use) {
+                    int observed, const LabelKeys& group_by, ForecastUse use, const Draws& draws) {
   const auto summary = [&](bool bands, const auto& score) {
     std::vector<RecordingScore> scores;
     for (const PendulumRecording& recording : recordings) scores.push_back(score(recording));
     return Summarize(recordings, std::move(scores), observed, bands, group_by);
   };
   Evaluation evaluation;
-  evaluation.model = summary(observed > 0, [&](const PendulumRecording& recording) {
-    return ScoreModel(model, recording, observed, use);
-  });
+  evaluation.model =
+      summary(observed > 0 || draws.count > 0, [&](const PendulumRecording& recording) {
+        const int index = static_cast<int>(&recording - recordings.data());
+        return ScoreModel(model, recording, observed, use,
+                          {draws.count, SeedOfRecording(draws.seed, index)});
+      });
   for (const pushid::Baseline& baseline : kBaselines) {
     if (baseline.needs_frames && observed == 0) continue;
     evaluation.baselines.push_back(

@@ -5,9 +5,10 @@
 // kBaselines, and where first frames were seen the model started anew there.
 //
 // Where the first k frames were seen (online_predictor.h), frame 0 among them, they are in every
-// prediction as they were. after_hipADE is the mean over the frames behind them; inside90_x and
-// inside90_y are the share of these in which the pushed person's hip lies in the 90 % band. The
-// baselines then go on from frame k - 1.
+// prediction as they were. after_hipADE is the mean over the frames behind them, and the baselines
+// go on from frame k - 1. Of predictions that are distributions (there, and of drawn paths)
+// inside90_x and inside90_y are the share of the predicted frames in which the pushed person's hip
+// lies in the 90 % band, crps the mean of the CRPS of x and y: the lower, the better.
 #pragma once
 
 #include <map>
@@ -19,6 +20,7 @@
 #include "ident/figures/text_table.h"
 #include "ident/model/model_rollout.h"
 #include "ident/parameters/fit_options.h"
+#include "ident/prediction/futures.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
@@ -156,7 +158,7 @@ inline constexpr HipMetric kHipMetrics[] = {
     {{"hipFDE", "m"}, &HipMetrics::hip_fde},
 };
 
-// Those of predictions that have seen first frames, and of their bands.
+// Those of predictions that have seen first frames, and of distributions.
 inline constexpr HipMetric kAfterMetric = {{"after_hipADE", "m"}, &HipMetrics::after_hip_ade};
 inline constexpr HipMetric kThirdMetrics[] = {
     {{"first_third_hipADE", "m"}, &HipMetrics::first_third},
@@ -192,8 +194,7 @@ struct RecordingScore : HipMetrics {
   std::string pushed = {};            // whose id; Summarize fills it in
   // One per person; empty where the model says nothing of steps, and after a failure.
   std::vector<StepPrediction> steps = {};
-  EffectEstimate effect = {};  // of the recording, where first frames were seen
-  HipPaths predicted = {};     // of more than one person; groups are judged together
+  HipPaths predicted = {};  // of more than one person; groups are judged together
 };
 
 struct MeanScore : HipMetrics {
@@ -221,14 +222,27 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
 // Errors: --observed below 1, or no frame left to predict in a recording, which is named.
 MaybeError CheckObserved(const std::vector<PendulumRecording>& recordings, int observed);
 
+// Whether anybody leans beyond kFallAngle.
+bool AnybodyFalls(const Prediction& prediction);
+
 // Who was predicted to step, and who did; empty where either is not known.
 std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
                                             const Prediction& prediction);
 
-// Scores in the order of recordings; a failed rollout is a named failure.
-// observed: frames seen first, 0: none; the model must say how recordings differ.
+// Bands of drawn paths.
+void ScoreDraws(const PendulumRecording& recording, const DrawnPaths& draws, RecordingScore* score);
+
+// How many futures are drawn from frame 0, and from which seed on (futures.h); none: no bands.
+struct Draws {
+  int count = 0;
+  uint64_t seed = 1;
+};
+
+// Scores in the order of recordings; a failed rollout is a named failure, and so are fewer than two
+// futures. observed: frames seen first, 0: none; the model must say how recordings differ.
 RecordingScore ScoreModel(const IdentifiedModel& model, const PendulumRecording& recording,
-                          int observed = 0, ForecastUse use = ForecastUse::kBoth);
+                          int observed = 0, ForecastUse use = ForecastUse::kBoth,
+                          const Draws& draws = {});
 RecordingScore ScoreReanchored(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed);
 
@@ -253,6 +267,6 @@ struct Evaluation {
 };
 Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumRecording>& recordings,
                     int observed = 0, const LabelKeys& group_by = UsualGroups(),
-                    ForecastUse use = ForecastUse::kBoth);
+                    ForecastUse use = ForecastUse::kBoth, const Draws& draws = {});
 
 }  // namespace pushid

@@ -11,22 +11,20 @@
 
 #include "ident/prediction/prediction.h"
 #include "ident/problem/own_axes.h"
-#include "models/net_force.h"
 
 namespace pushid {
 namespace {
 
-double MeanOf(const std::vector<double>& x, int first, int frames) {
-  double sum = 0.0;
-  for (int t = first; t < first + frames; ++t) sum += x[t];
-  return sum / frames;
+using Eigen::ArrayXcd;
+using Eigen::ArrayXd;
+
+Eigen::Map<const ArrayXd> Part(const std::vector<double>& x, int first, int frames) {
+  return {x.data() + first, frames};
 }
 
 double Variance(const std::vector<double>& x, int first, int frames) {
-  const double mean = MeanOf(x, first, frames);
-  double sum = 0.0;
-  for (int t = first; t < first + frames; ++t) sum += (x[t] - mean) * (x[t] - mean);
-  return sum / frames;
+  const auto part = Part(x, first, frames);
+  return (part - part.mean()).square().mean();
 }
 
 double Spread(const std::vector<double>& x) {
@@ -34,19 +32,15 @@ double Spread(const std::vector<double>& x) {
 }
 
 // Bins from 0 Hz to half the rate.
-std::vector<std::complex<double>> Transformed(const std::vector<double>& x, int first,
-                                              const Segmenting& segments) {
+ArrayXcd Transformed(const std::vector<double>& x, int first, const Segmenting& segments) {
   const int frames = segments.frames;
-  const double mean = MeanOf(x, first, frames);
-  std::vector<double> segment(frames);
-  for (int t = 0; t < frames; ++t) {
-    const double hann = 0.5 - 0.5 * std::cos(2.0 * M_PI * t / frames);
-    segment[t] = (x[first + t] - mean) * (segments.periodic ? 1.0 : hann);
+  Eigen::VectorXd segment = Part(x, first, frames) - Part(x, first, frames).mean();
+  for (int t = 0; t < frames && !segments.periodic; ++t) {
+    segment[t] *= 0.5 - 0.5 * std::cos(2.0 * M_PI * t / frames);
   }
-  std::vector<std::complex<double>> bins;
+  Eigen::VectorXcd bins;
   Eigen::FFT<double>().fwd(bins, segment);
-  bins.resize(frames / 2 + 1);
-  return bins;
+  return bins.head(frames / 2 + 1);
 }
 
 }  // namespace
@@ -89,15 +83,14 @@ Segmenting SegmentsOf(const std::vector<double>& input, double dt) {
 }
 
 void CrossSpectra::Add(const CrossSpectra& other) {
-  if (uu.empty()) {
+  if (uu.size() == 0) {
     *this = other;
     return;
   }
-  const size_t bins = std::min(uu.size(), other.uu.size());
-  uu.resize(bins), yy.resize(bins), yu.resize(bins);
-  for (size_t i = 0; i < bins; ++i) {
-    uu[i] += other.uu[i], yy[i] += other.yy[i], yu[i] += other.yu[i];
-  }
+  const Eigen::Index bins = std::min(uu.size(), other.uu.size());
+  uu = (uu.head(bins) + other.uu.head(bins)).eval();
+  yy = (yy.head(bins) + other.yy.head(bins)).eval();
+  yu = (yu.head(bins) + other.yu.head(bins)).eval();
   averages += other.averages;
 }
 
@@ -106,41 +99,35 @@ double CrossSpectra::Coherence(int bin) const {
   return power > 0.0 ? std::norm(yu[bin]) / power : 0.0;
 }
 
+std::vector<int> CrossSpectra::CoherentBins(bool periodic) const {
+  std::vector<int> bins;
+  if (averages <= 1.0) return bins;  // of a single segment it is 1, whatever it holds
+  const double by_chance = std::max(0.3, 1.0 - std::pow(0.05, 1.0 / (averages - 1.0)));
+  const double least = (periodic ? 1e-4 : 1e-6) * uu.tail(uu.size() - 1).maxCoeff();
+  for (int i = 1; i < uu.size(); ++i) {
+    if (uu[i] > least && Coherence(i) > by_chance) bins.push_back(i);
+  }
+  return bins;
+}
+
 CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<double>& output,
                             const Segmenting& segments, double dt) {
   const int frames = segments.frames, end = static_cast<int>(std::min(input.size(), output.size()));
-  const size_t bins = frames / 2 + 1;
-  CrossSpectra spectra{1.0 / (frames * dt), 0.0, {}, {}, {}};
-  spectra.uu.resize(bins), spectra.yy.resize(bins), spectra.yu.resize(bins);
+  const ArrayXd none = ArrayXd::Zero(frames / 2 + 1);
+  CrossSpectra spectra{1.0 / (frames * dt), 0.0, none, none, none.cast<std::complex<double>>()};
   int count = 0;
   for (int first = segments.first; first + frames <= end; first += segments.step, ++count) {
-    const auto u = Transformed(input, first, segments), y = Transformed(output, first, segments);
-    for (size_t i = 0; i < bins; ++i) {
-      spectra.uu[i] += std::norm(u[i]);
-      spectra.yy[i] += std::norm(y[i]);
-      spectra.yu[i] += y[i] * std::conj(u[i]);
-    }
+    const ArrayXcd u = Transformed(input, first, segments);
+    const ArrayXcd y = Transformed(output, first, segments);
+    spectra.uu += u.abs2();
+    spectra.yy += y.abs2();
+    spectra.yu += y * u.conjugate();
   }
   // Overlapping by half under Hann's window, 11 segments are as good as 9 independent ones.
   spectra.averages = segments.periodic ? 1.0 + (count - 1.0) * segments.step / frames
                      : count < 2       ? count
                                        : 9.0 / 11.0 * count;
   return spectra;
-}
-
-std::vector<int> BinsWithPower(const CrossSpectra& spectra, bool periodic) {
-  std::vector<int> bins;
-  const double most = *std::max_element(spectra.uu.begin() + 1, spectra.uu.end());
-  for (size_t i = 1; i < spectra.uu.size(); ++i) {
-    if (spectra.uu[i] > (periodic ? 1e-4 : 1e-6) * most) bins.push_back(static_cast<int>(i));
-  }
-  return bins;
-}
-
-bool IsCoherent(const CrossSpectra& spectra, int bin) {
-  if (spectra.averages <= 1.0) return false;  // of a single segment it is 1, whatever it holds
-  const double by_chance = 1.0 - std::pow(0.05, 1.0 / (spectra.averages - 1.0));
-  return spectra.Coherence(bin) > std::max(0.3, by_chance);
 }
 
 namespace {
@@ -213,66 +200,43 @@ std::optional<ContinuousInput> ContinuousInputOf(const PendulumRecording& record
   return best;
 }
 
-// One value per frame; where the person was not seen, that of the frame before.
+// One value per frame; where there is none, that of the frame before.
 std::vector<double> OutputSeries(const PendulumRecording& recording, int person, int plane,
-                                 LoopOutput output, const ModelOptions& options,
-                                 const ParameterSet<double>& p) {
-  const Scene& scene = recording.scene;
-  const Body& own = scene.people[person].body;
-  const BodyOf<double> body =
-      DynamicBody<double>(options, own, p, options.stance == Stance::kFixed);
+                                 LoopOutput output) {
+  const Body& own = recording.scene.people[person].body;
   const std::vector<PendulumState<double>>& states = recording.states[person];
-  const int frames = recording.num_frames();
-  const bool angle = output == LoopOutput::kAngle, plates = recording.HasPlates(person);
-  const auto seen = [&](int t) { return recording.Weight(person, t) > 0.0; };
-  std::vector<double> series(frames, 0.0);
-  for (int t = 0; t < frames; ++t) {
-    const GroundStep& ground = scene.ground.StepAt(t);
+  std::vector<double> series(recording.num_frames(), 0.0);
+  for (int t = 0; t < recording.num_frames(); ++t) {
     if (t > 0) series[t] = series[t - 1];
-    if (!seen(t)) continue;
-    if (angle) {
+    if (recording.Weight(person, t) <= 0.0) continue;
+    if (output == LoopOutput::kAngle) {
       const Vector3<double> origin = Vector3<double>::Zero();  // angles do not ask for it
-      series[t] = InLaboratory(scene.ground, t, origin, states[t]).q[2 + plane];
-    } else if (plates) {
-      const PlateFrame& frame = recording.plates[person][t];
-      if (frame.weight <= 0.0) continue;
-      const double arm = frame.centre[plane] - (states[t].q[plane] - states[0].q[plane]);
-      const double sum = own.mass * ground.gravity * arm + own.cart_height * frame.shear[plane];
-      series[t] = plane == 0 ? -sum : sum;
-    } else if (t + 1 < frames && seen(t + 1) && seen(std::max(t - 1, 0))) {
-      Vector4<double> push = PushForceAt(scene, person, t);
-      if (options.body == BodyModel::kTable) push *= p[kPushGain];
-      const Vector4<double> a = (states[t + 1].qd - states[t].qd) / scene.dt + ground.acceleration;
-      const Vector4<double> more =
-          (ground.gravity / kGravity - 1.0) * Gravity(body, Angles<double>(states[t].q)) - push;
-      series[t] = (InverseDynamics(body, states[t], a) + more)[2 + plane];
+      series[t] = InLaboratory(recording.scene.ground, t, origin, states[t]).q[2 + plane];
+      continue;
     }
+    const PlateFrame& frame = recording.plates[person][t];
+    if (frame.weight <= 0.0) continue;
+    const double arm = frame.centre[plane] - (states[t].q[plane] - states[0].q[plane]);
+    const double sum = own.mass * recording.scene.ground.StepAt(t).gravity * arm +
+                       own.cart_height * frame.shear[plane];
+    series[t] = plane == 0 ? -sum : sum;
   }
   return series;
 }
 
 // Means of log gains, and of phases about that of their sum, with their standard errors.
-FrequencyBin MeanOver(const std::vector<std::complex<double>>& responses) {
+FrequencyBin MeanOver(const ArrayXcd& responses) {
   const double n = static_cast<double>(responses.size());
-  FrequencyBin mean;
-  std::complex<double> directions = 0.0;
-  for (const auto& one : responses) {
-    mean.log_gain += std::log(std::abs(one));
-    directions += one / std::abs(one);
-  }
-  mean.log_gain /= n;
-  const auto away = [](const std::complex<double>& one, double from) {
-    return std::remainder(std::arg(one) - from, 2.0 * M_PI);
+  const std::complex<double> sum = (responses / responses.abs().cast<std::complex<double>>()).sum();
+  const ArrayXcd logs = (responses / (sum / std::abs(sum))).log();
+  const auto error = [n](const ArrayXd& of) {
+    return std::sqrt((of - of.mean()).square().sum() / (n - 1.0) / n);
   };
-  double off = 0.0, gains = 0.0, phases = 0.0;
-  for (const auto& one : responses) off += away(one, std::arg(directions));
-  mean.phase = std::remainder(std::arg(directions) + off / n, 2.0 * M_PI);
-  for (const auto& one : responses) {
-    gains += std::pow(std::log(std::abs(one)) - mean.log_gain, 2);
-    phases += std::pow(away(one, mean.phase), 2);
-  }
-  mean.log_gain_error = std::sqrt(gains / (n - 1.0) / n);
-  mean.phase_error = std::sqrt(phases / (n - 1.0) / n);
+  FrequencyBin mean;
+  mean.log_gain = logs.real().mean();
+  mean.phase = std::remainder(std::arg(sum) + logs.imag().mean(), 2.0 * M_PI);
+  mean.log_gain_error = error(logs.real());
+  mean.phase_error = error(logs.imag());
   return mean;
 }
 
@@ -288,18 +252,6 @@ struct SegmentGroup {
   std::map<std::string, PersonSpectra> people;  // by subject
 };
 
-void AddModel(const SegmentGroup& group, FrequencyBin* bin) {
-  std::vector<std::complex<double>> answers;
-  for (const auto& [name, person] : group.people) {
-    if (!person.loop) return;
-    const LoopAnswer answer = person.loop->Answer(group.response.input, bin->hz, person.lever);
-    answers.push_back(group.response.output == LoopOutput::kAngle ? answer.angle : answer.torque);
-  }
-  const FrequencyBin mean = MeanOver(answers);
-  bin->model_log_gain = mean.log_gain;
-  bin->model_phase = mean.phase;
-}
-
 // A bin is taken or left by everybody's spectra: to take those people alone whose coherence is high
 // would take those whose noise happens to be along their answer.
 FrequencyResponse ResponseOf(const SegmentGroup& group) {
@@ -309,26 +261,31 @@ FrequencyResponse ResponseOf(const SegmentGroup& group) {
     response.people.push_back(name);
     all.Add(person.spectra);
   }
-  for (int i : BinsWithPower(all, response.periodic)) {
-    if (!IsCoherent(all, i)) continue;
-    std::vector<std::complex<double>> answers;
-    for (const auto& [name, person] : group.people) answers.push_back(person.spectra.Response(i));
-    FrequencyBin bin = MeanOver(answers);
-    bin.hz = i * all.step_hz;
-    bin.people = static_cast<int>(answers.size());
-    const double c = bin.coherence = all.Coherence(i);
-    if (bin.people == 1) {
+  const Eigen::Index people = static_cast<Eigen::Index>(group.people.size());
+  for (int i : all.CoherentBins(response.periodic)) {
+    const double hz = i * all.step_hz, c = all.Coherence(i);
+    ArrayXcd measured(people), models(people);
+    Eigen::Index n = 0;
+    for (const auto& [name, person] : group.people) {
+      measured[n] = person.spectra.Response(i);
+      if (person.loop) {
+        const LoopAnswer answer = person.loop->Answer(response.input, hz, person.lever);
+        models[n] = response.output == LoopOutput::kAngle ? answer.angle : answer.torque;
+      }
+      ++n;
+    }
+    FrequencyBin bin = MeanOver(measured);
+    bin.hz = hz;
+    bin.people = static_cast<int>(people);
+    bin.coherence = c;
+    if (people == 1) {
       bin.log_gain_error = bin.phase_error = std::sqrt((1.0 - c) / (2.0 * c * all.averages));
     }
-    AddModel(group, &bin);
+    if (response.has_model) {
+      const FrequencyBin model = MeanOver(models);
+      bin.model_log_gain = model.log_gain, bin.model_phase = model.phase;
+    }
     response.bins.push_back(bin);
-  }
-  if (response.bins.empty() || !group.people.begin()->second.loop) return response;
-  const double from = response.bins.front().hz, to = response.bins.back().hz;
-  for (int i = 0; i < 120; ++i) {
-    FrequencyBin& bin = response.model.emplace_back();
-    bin.hz = from * std::pow(to / from, i / 119.0);
-    AddModel(group, &bin);
   }
   return response;
 }
@@ -354,18 +311,19 @@ void Gather(const PendulumRecording& recording, const ModelOptions& options,
     if (group->people.empty()) {
       response.input = input->kind, response.plane = input->plane, response.output = output;
       response.periodic = segments.periodic, response.segment_s = seconds;
+      response.has_model = WithoutLinearLoop(options).empty();
     }
     ++response.recordings;
     for (int n = 0; n < recording.num_people(); ++n) {
       if (input->kind == Disturbance::kForce && n != input->person) continue;
+      if (output == LoopOutput::kTorque && !recording.HasPlates(n)) continue;
       PersonSpectra& person = group->people[recording.subject_ids[n]];
-      const auto series = OutputSeries(recording, n, input->plane, output, options, parameters[n]);
+      const auto series = OutputSeries(recording, n, input->plane, output);
       person.spectra.Add(CrossSpectraOf(input->series, series, segments, dt));
       person.lever = input->lever;
-      if (WithoutLinearLoop(options).empty()) {
+      if (response.has_model) {
         person.loop.emplace(options, recording.scene.people[n].body, parameters[n], input->plane);
       }
-      response.by_plates |= output == LoopOutput::kTorque && recording.HasPlates(n);
     }
   }
 }
@@ -430,7 +388,7 @@ TextTable FrequencyTable(const std::vector<FrequencyResponse>& responses) {
   for (const FrequencyResponse& response : responses) {
     for (const FrequencyBin& bin : response.bins) {
       const auto model = [&](double value) {
-        return response.model.empty() ? TableCell("") : TableCell(value);
+        return response.has_model ? TableCell(value) : TableCell("");
       };
       table.Add({response.Key(), response.InputUnit(), response.OutputUnit(), bin.hz,
                  std::exp(bin.log_gain), std::exp(bin.log_gain - bin.log_gain_error),

@@ -8,14 +8,14 @@
 // over people, with its standard error: from people to people, or of one person by the coherence.
 // The model's is in closed form (problem/linear_loop.h), averaged over the same people.
 // Input: of the ground's shift (m) or tilt (rad) and of external pushes (N), in both planes, what
-// accelerates a person most. Output: the angle of the body in the laboratory (rad), and the ankles'
-// torque (N m) by platforms (ground.h; less that at rest), else by inverse dynamics:
+// accelerates a person most. Output: the angle of the body in the laboratory (rad), and where there
+// are force platforms the ankles' torque (N m; ground.h; less that at rest):
 //   about theta  tau = -F_z (p_x - x) - h F_x,   about phi  tau = F_z (p_y - y) + h F_y
-//   tau = [M (a + A) + C + (g_n / g) G - Q_push] in the angle's row
 // Sources: Welch, IEEE Trans. Audio Electroacoust. 1967; Bendat and Piersol, Random Data, 2010,
 // section 9.2.4: the random error of log |H| and of the phase is sqrt((1 - c) / (2 c K)).
 #pragma once
 
+#include <Eigen/Core>
 #include <complex>
 #include <string>
 #include <vector>
@@ -40,23 +40,23 @@ int PeriodOf(const std::vector<double>& series);
 Segmenting SegmentsOf(const std::vector<double>& input, double dt);
 
 struct CrossSpectra {
-  double step_hz = 0.0;        // between bins
-  double averages = 0.0;       // K; where segments overlap, of those as good as independent
-  std::vector<double> uu, yy;  // by bin, from 0 Hz on
-  std::vector<std::complex<double>> yu;
+  double step_hz = 0.0;   // between bins
+  double averages = 0.0;  // K; where segments overlap, of those as good as independent
+  Eigen::ArrayXd uu, yy;  // by bin, from 0 Hz on
+  Eigen::ArrayXcd yu;
 
   // Of as many bins as both have; the other's segments must last as long.
   void Add(const CrossSpectra& other);
   std::complex<double> Response(int bin) const { return yu[bin] / uu[bin]; }
   double Coherence(int bin) const;
+  // Bins where the input has at least 1e-6 of its largest power (periodic: 1e-4, which only lines
+  // have), and whose coherence is at least 0.3 and beyond what two independent series have in one
+  // of 20 cases.
+  std::vector<int> CoherentBins(bool periodic) const;
 };
 
 CrossSpectra CrossSpectraOf(const std::vector<double>& input, const std::vector<double>& output,
                             const Segmenting& segments, double dt);
-// Where the input has at least 1e-6 of its largest power (periodic: 1e-4, which only lines have).
-std::vector<int> BinsWithPower(const CrossSpectra& spectra, bool periodic);
-// At least 0.3, and beyond what two independent series have in one of 20 cases.
-bool IsCoherent(const CrossSpectra& spectra, int bin);
 
 enum class LoopOutput { kAngle, kTorque };
 
@@ -67,7 +67,7 @@ struct FrequencyBin {
   double coherence = 0.0;                       // of their spectra together
   double log_gain = 0.0, log_gain_error = 0.0;  // natural logarithm
   double phase = 0.0, phase_error = 0.0;
-  double model_log_gain = 0.0, model_phase = 0.0;  // 0 without a closed form
+  double model_log_gain = 0.0, model_phase = 0.0;  // FrequencyResponse::has_model
 };
 
 // A kind of disturbance in one plane, and one output.
@@ -75,13 +75,12 @@ struct FrequencyResponse {
   Disturbance input = Disturbance::kGroundShift;
   int plane = 0;  // 0: x and theta, 1: y and phi
   LoopOutput output = LoopOutput::kAngle;
-  bool periodic = false;   // at the frequencies of sums of sines; else by Welch
-  bool by_plates = false;  // torque
+  bool periodic = false;  // at the frequencies of sums of sines; else by Welch
   int recordings = 0;
   double segment_s = 0.0;
   std::vector<std::string> people;
   std::vector<FrequencyBin> bins;
-  std::vector<FrequencyBin> model;  // hz, model_*: dense as a line; empty without a closed form
+  bool has_model = false;  // it has a closed form
 
   std::string InputUnit() const;   // "m", "rad", "N"
   std::string OutputUnit() const;  // "rad", "N m"

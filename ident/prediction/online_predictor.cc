@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "models/rollout.h"
 
 namespace pushid {
@@ -20,13 +18,10 @@ Eigen::Vector2d CartUnder(const Body& body, const Vector3<double>& hip, const Ve
 }  // namespace
 
 MaybeError CheckLearnsFromFrames(const IdentifiedModel& model) {
-  if (model.recording_effect && model.forecasts) return std::nullopt;
-  const bool tail = model.options.push_tail != PushTail::kNone;
+  if (model.forecasts) return std::nullopt;
   return Error{
-      tail ? "the model has learned no forecasts, which predictions from observed frames need: add "
-             "them with pushid-check --learn_forecasts (or fit with it)"
-           : "the model has no push tail, which predictions from observed frames need: fit one "
-             "with --push_tail=exponential (the presets tail and group have it)",
+      "the model has learned no forecasts, which predictions from observed frames need: add them "
+      "with pushid-check --learn_forecasts",
       model.source};
 }
 
@@ -35,7 +30,9 @@ OnlinePredictor::OnlinePredictor(const IdentifiedModel& model, const PendulumRec
     : model_(&model),
       recording_(&recording),
       use_(use),
-      frames_(std::make_unique<FirstFrames>(model, *model.forecasts, recording, num_frames)) {}
+      rollout_(pushid::Predict(model, recording, num_frames)),
+      frames_(std::make_unique<FirstFrames>(model, model.forecasts->tail, recording, rollout_.hip,
+                                            num_frames)) {}
 
 Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
                                               const PendulumRecording& recording, int num_frames,
@@ -48,16 +45,10 @@ Result<OnlinePredictor> OnlinePredictor::Make(const IdentifiedModel& model,
         "unknown forces; leave --forecast=input out",
         model.source};
   }
-  if (predictor.frames_->filter().ok()) return Result<OnlinePredictor>(std::move(predictor));
-  return Error{"recording " + recording.id +
-               ": people leave the model's domain with any push tail"};
+  return Result<OnlinePredictor>(std::move(predictor));
 }
 
 void OnlinePredictor::Observe(SeenFrame frame) { frames_->Observe(std::move(frame)); }
-
-EffectEstimate OnlinePredictor::effect() const {
-  return frames_->filter().Effect(*model_->recording_effect);
-}
 
 void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
                                   Prediction* prediction) const {
@@ -94,19 +85,18 @@ void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
 }
 
 Prediction OnlinePredictor::Predict() const {
-  Prediction prediction = pushid::Predict(*model_, *recording_, frames_->frames(), effect().mean);
+  Prediction prediction = rollout_;
   prediction.observed = observed();
-  prediction.effect = effect();
   if (!prediction.status.ok || observed() == 1) return prediction;
-  const TwoForecasts two = frames_->Forecasts(prediction.hip);
-  const std::optional<double> input_share =
-      InputShare(model_->forecasts->input_share, two.physics, two.input, frames_->seconds(), use_);
-  if (!input_share) {
+  const TwoForecasts two = frames_->Forecasts();
+  const std::optional<double> share =
+      InputShare(model_->forecasts->input_time, two.physics, two.input, frames_->seconds(), use_);
+  if (!share) {
     prediction.status = two.input_status;  // asked alone, and left the domain
     prediction.hip.clear();
     return prediction;
   }
-  SetForecast(two, *input_share, &prediction);
+  SetForecast(two, *share, &prediction);
   return prediction;
 }
 
@@ -115,7 +105,7 @@ HipDistribution OnlinePredictor::Distribution(const Prediction& prediction) cons
   for (const HipPath& hip : prediction.hip) {
     centre.emplace_back(hip.begin() + observed(), hip.end());
   }
-  return HipDistribution(model_->forecasts->errors, frames_->filter().Axes(), std::move(centre),
+  return HipDistribution(model_->forecasts->errors, PushAxes(*recording_), std::move(centre),
                          frames_->LastHips(), frames_->seconds(), recording_->scene.dt);
 }
 
@@ -153,14 +143,6 @@ Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecor
     prediction.bands.push_back(std::move(band));
   }
   return prediction;
-}
-
-std::string EffectText(const Prediction& prediction) {
-  if (prediction.observed == 0 || prediction.effect.error == 0.0) return "";
-  const EffectEstimate& b = prediction.effect;
-  return "tail " + Rounded(std::exp(b.mean), 3) + " times that of the mean recording (b " +
-         Rounded(b.mean, 2) + " +- " + Rounded(b.error, 2) + "), from " +
-         CountText(prediction.observed, "frame") + "\n";
 }
 
 }  // namespace pushid

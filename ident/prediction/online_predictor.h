@@ -2,8 +2,8 @@
 //
 //   auto predictor = OnlinePredictor::Make(model, scene, 120);   // frames to look ahead, in all
 //   while (camera.Next()) {
-//     predictor.value().Observe(people);                         // a few microseconds
-//     const Prediction prediction = predictor.value().Predict(); // one rollout
+//     predictor.value().Observe(people);
+//     const Prediction prediction = predictor.value().Predict();
 //   }
 //
 // Who forecasts and how forecasts are put together stands in observed/first_frames.h. Frames that
@@ -22,14 +22,13 @@
 
 namespace pushid {
 
-// Errors: a model that knows nothing of how recordings differ.
+// Errors: a model that has learned no forecasts.
 MaybeError CheckLearnsFromFrames(const IdentifiedModel& model);
 
 class OnlinePredictor {
  public:
   // recording: people, pushes and frame 0; its later frames are not looked at. Both must outlive
-  // the predictor. Errors: those of CheckLearnsFromFrames; a rollout that leaves the domain
-  // whatever the effect.
+  // the predictor. Errors: those of CheckLearnsFromFrames; a filter that there is not.
   static Result<OnlinePredictor> Make(const IdentifiedModel& model,
                                       const PendulumRecording& recording, int num_frames,
                                       ForecastUse use = ForecastUse::kBoth);
@@ -37,7 +36,6 @@ class OnlinePredictor {
   // The next frame, frame 1 first; nothing once all frames were seen.
   void Observe(SeenFrame frame);
   int observed() const { return frames_->observed(); }  // with frame 0
-  EffectEstimate effect() const;
   // Without bands, which take longer than all the rest.
   Prediction Predict() const;
   // Of the hips behind those seen in a prediction that did not fail.
@@ -51,6 +49,7 @@ class OnlinePredictor {
   const IdentifiedModel* model_;
   const PendulumRecording* recording_;
   ForecastUse use_;
+  Prediction rollout_;
   std::unique_ptr<FirstFrames> frames_;
 };
 
@@ -59,9 +58,5 @@ class OnlinePredictor {
 Result<Prediction> PredictFrom(const IdentifiedModel& model, const PendulumRecording& recording,
                                int observed, int num_frames = 0,
                                ForecastUse use = ForecastUse::kBoth);
-
-// "tail 1.2 times that of the mean recording (b 0.18 +- 0.21), from 12 frames"; empty where nothing
-// was seen.
-std::string EffectText(const Prediction& prediction);
 
 }  // namespace pushid

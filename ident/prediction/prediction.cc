@@ -31,10 +31,10 @@ void AddSteps(const IdentifiedModel& model, const PendulumRecording& recording,
 
 }  // namespace
 
-Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording, int num_frames,
-                   double effect) {
+Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
+                   int num_frames) {
   const int frames = num_frames > 0 ? num_frames : recording.num_frames();
-  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording, effect);
+  const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
   Prediction prediction;
   prediction.parts = ReportedParts(model.options);
   prediction.rod_moves = RodMoves(model.options);

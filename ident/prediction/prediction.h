@@ -9,7 +9,6 @@
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
 #include "ident/model/model_rollout.h"
-#include "ident/observed/recording_filter.h"
 #include "models/net_force.h"
 #include "models/restoration/body.h"
 
@@ -37,10 +36,9 @@ struct Prediction {
   bool feet_step = false;        // the path has feet that step
   // One per person; empty after a failure and where the model says nothing of steps.
   std::vector<PredictedStep> steps;
-  // Where first frames were seen (online_predictor.h): how many, with frame 0, what they say of the
-  // recording, and a band for each person. 0 and none otherwise.
+  // Where first frames were seen (online_predictor.h): how many, with frame 0, and a band for each
+  // person. 0 and none otherwise.
   int observed = 0;
-  EffectEstimate effect;
   std::vector<HipBand> bands;
 
   double Lift(int person) const { return rod_lift[rod_lift.size() == 1 ? 0 : person]; }
@@ -51,10 +49,9 @@ struct Prediction {
   }
 };
 
-// From frame 0 and the push alone. num_frames: 0 means as many as the recording has. effect: the
-// recording's own (observed/recording_filter.h).
+// From frame 0 and the push alone. num_frames: 0 means as many as the recording has.
 Prediction Predict(const IdentifiedModel& model, const PendulumRecording& recording,
-                   int num_frames = 0, double effect = 0.0);
+                   int num_frames = 0);
 
 // Writes frame, time and, per person, q, qd, hip and the net force with its parts as CSV, and the
 // rod's length and the cart's height where the model has a law for them;

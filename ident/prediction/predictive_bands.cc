@@ -6,6 +6,7 @@
 
 #include "datasets/files/random.h"
 #include "ident/model/push_range.h"
+#include "ident/problem/statistics.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "models/decompositions.h"
 
@@ -70,28 +71,16 @@ BandPoint PointOf(const Prediction& prediction, int frame, int person) {
   return PointOf(prediction.hip[person][frame], prediction.path.At(frame, person));
 }
 
-// Moves a band so that its middle is the rollout at the estimate.
-void MoveTo(const Prediction& rollout, int person, PathBand* band) {
-  for (size_t t = 0; t < band->middle.size(); ++t) {
-    const BandPoint by = PointOf(rollout, static_cast<int>(t), person) - band->middle[t];
-    for (auto* row :
-         {&band->lower90, &band->lower50, &band->middle, &band->upper50, &band->upper90}) {
-      (*row)[t] += by;
-    }
-  }
-}
-
-// Quantiles over samples of one person's path.
-PathBand QuantilesOf(const std::vector<std::vector<BandPoint>>& paths) {
+// Quantiles over draws of one person's path.
+PathBand QuantilesOf(const DrawnPaths& draws, int person) {
   PathBand band;
   std::vector<BandPoint>* const rows[] = {&band.lower90, &band.lower50, &band.middle, &band.upper50,
                                           &band.upper90};
-  const size_t frames = paths[0].size();
+  const size_t frames = draws[0][person].size();
   for (auto* row : rows) row->assign(frames, BandPoint::Zero());
-  std::vector<double> values(paths.size());
   for (size_t t = 0; t < frames; ++t) {
     for (int axis = 0; axis < BandPoint::RowsAtCompileTime; ++axis) {
-      for (size_t s = 0; s < paths.size(); ++s) values[s] = paths[s][t][axis];
+      const std::vector<double> values = ValuesAt(draws, person, t, axis);
       for (size_t q = 0; q < 5; ++q) (*rows[q])[t][axis] = Quantile(values, kShares[q]);
     }
   }
@@ -149,17 +138,22 @@ std::vector<ErrorPath> ErrorPaths(const FitResult& result,
   return paths;
 }
 
-std::vector<std::vector<std::vector<BandPoint>>> DrawPaths(
-    const FitResult& result, const std::vector<ParameterSet<double>>& samples,
-    const std::vector<ErrorPath>& errors, const PendulumRecording& recording, uint64_t seed,
-    int num_frames) {
+std::vector<double> ValuesAt(const DrawnPaths& draws, int person, size_t frame, int axis) {
+  std::vector<double> values;
+  for (const auto& draw : draws) values.push_back(draw[person][frame][axis]);
+  return values;
+}
+
+DrawnPaths DrawPaths(const FitResult& result, const std::vector<ParameterSet<double>>& samples,
+                     const std::vector<ErrorPath>& errors, const PendulumRecording& recording,
+                     uint64_t seed, int num_frames) {
   const double speed = PushSpeed(recording);
   Random random(seed);
   std::vector<const ErrorPath*> others;
   for (const ErrorPath& error : errors) {
     if (error.recording != recording.id) others.push_back(&error);
   }
-  std::vector<std::vector<std::vector<BandPoint>>> draws;
+  DrawnPaths draws;
   const IdentifiedModel model = ModelOf(result);
   for (const ParameterSet<double>& sample : samples) {
     const double draw = random.Unit();
@@ -185,22 +179,35 @@ std::vector<std::vector<std::vector<BandPoint>>> DrawPaths(
   return draws;
 }
 
+DrawnPaths PathsAround(const FitResult& result, const std::vector<ParameterSet<double>>& samples,
+                       const std::vector<ErrorPath>& errors, const PendulumRecording& recording,
+                       uint64_t seed) {
+  DrawnPaths draws = DrawPaths(result, samples, errors, recording, seed);
+  const Prediction rollout = Predict(ModelOf(result), recording);
+  if (draws.empty() || !rollout.status.ok) return draws;
+  for (int n = 0; n < recording.scene.num_people(); ++n) {
+    for (size_t t = 0; t < draws[0][n].size(); ++t) {
+      BandPoint by = PointOf(rollout, static_cast<int>(t), n);
+      for (int axis = 0; axis < by.size(); ++axis) {
+        by[axis] -= Quantile(ValuesAt(draws, n, t, axis), 0.5);
+      }
+      for (auto& draw : draws) draw[n][t] += by;
+    }
+  }
+  return draws;
+}
+
 PredictiveBands ComputeBands(const FitResult& result,
                              const std::vector<ParameterSet<double>>& samples,
                              const std::vector<ErrorPath>& errors,
                              const PendulumRecording& recording, uint64_t seed) {
-  const auto draws = DrawPaths(result, samples, errors, recording, seed);
+  const DrawnPaths draws = PathsAround(result, samples, errors, recording, seed);
   PredictiveBands bands;
   bands.id = recording.id;
   bands.samples = static_cast<int>(samples.size());
   bands.failed = bands.samples - static_cast<int>(draws.size());
-  if (draws.empty()) return bands;
-  const Prediction rollout = Predict(ModelOf(result), recording);
-  for (int n = 0; n < recording.scene.num_people(); ++n) {
-    std::vector<std::vector<BandPoint>> paths;
-    for (const auto& draw : draws) paths.push_back(draw[n]);
-    bands.people.push_back(QuantilesOf(paths));
-    if (rollout.status.ok) MoveTo(rollout, n, &bands.people.back());
+  for (int n = 0; n < recording.scene.num_people() && !draws.empty(); ++n) {
+    bands.people.push_back(QuantilesOf(draws, n));
   }
   return bands;
 }

@@ -1,4 +1,4 @@
-// ident: correlations over time.
+// ident: correlations over time, quantiles, tails.
 #include "ident/problem/statistics.h"
 
 #include <Eigen/Core>
@@ -92,6 +92,32 @@ double StudentQuantile95(double v) {
     if (std::abs(step) < 1e-12 * t) break;
   }
   return t;
+}
+
+double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::nan("");
+  std::sort(values.begin(), values.end());
+  const double last = static_cast<double>(values.size()) - 1.0;
+  const double at = std::clamp(share * static_cast<double>(values.size() + 1) - 1.0, 0.0, last);
+  const size_t below = static_cast<size_t>(at);
+  const size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+bool Within(const std::vector<double>& draws, double value, double share) {
+  const double outside = 0.5 * (1.0 - share);
+  return Quantile(draws, outside) <= value && value <= Quantile(draws, 1.0 - outside);
+}
+
+double Crps(std::vector<double> draws, double value) {
+  std::sort(draws.begin(), draws.end());
+  const double n = static_cast<double>(draws.size());
+  double to_value = 0.0, apart = 0.0;
+  for (size_t i = 0; i < draws.size(); ++i) {
+    to_value += std::abs(draws[i] - value);
+    apart += draws[i] * (2.0 * static_cast<double>(i) + 1.0 - n);  // sum over pairs, sorted
+  }
+  return to_value / n - apart / (n * (n - 1.0));
 }
 
 }  // namespace pushid

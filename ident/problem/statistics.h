@@ -1,5 +1,5 @@
 // ident: statistics of residuals and errors: correlations over time, means with their errors,
-// medians, and tails of chi-squared and Student's t.
+// medians, quantiles and scores of draws, and tails of chi-squared and Student's t.
 #pragma once
 
 #include <algorithm>
@@ -32,6 +32,26 @@ inline double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+// The value at a share of the sorted ones, interpolated: the i-th of n stands at i / (n + 1).
+double Quantile(std::vector<double> values, double share);
+
+// Whether the value lies in the central `share` of the draws.
+bool Within(const std::vector<double>& draws, double value, double share);
+
+// Unbiased CRPS of draws against a value, and of vectors the energy score: the mean distance of
+// draws to the value less half of that between draws (Gneiting and Raftery 2007, Eq. 20 and 22).
+double Crps(std::vector<double> draws, double value);
+template <typename Vector>
+double EnergyScore(const std::vector<Vector>& draws, const Vector& value) {
+  double to_value = 0.0, apart = 0.0;
+  for (size_t i = 0; i < draws.size(); ++i) {
+    to_value += (draws[i] - value).norm();
+    for (size_t j = 0; j < i; ++j) apart += (draws[i] - draws[j]).norm();
+  }
+  const double n = static_cast<double>(draws.size());
+  return to_value / n - apart / (n * (n - 1.0));
 }
 
 // Two-sided 95 % quantile of Student's t; at least one degree of freedom.

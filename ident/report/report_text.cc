@@ -135,12 +135,10 @@ std::string ForecastText(const ForecastRule& f) {
           : "by the model that was fitted to them: too few people or recordings to leave some out, "
             "so expect larger errors on new recordings";
   return "From a quarter of a second of first frames on (--observed) the rollout and a filter with "
-         "an unknown force are combined; the filter has the weight " +
-         Rounded(f.input_share, 2) + ". Forecasts of " + std::to_string(f.recordings) +
-         " recordings " + judged + ". The unknown force dies out in " +
-         Rounded(f.noise.force_time, 2) + " s; the filter's tail is " +
-         Rounded(f.tail_strength, 2) + " times as strong and " + Rounded(f.tail_time, 2) +
-         " times as long as the model's.\n";
+         "an unknown force are combined; after half a second the filter has the weight " +
+         Rounded(std::min(1.0, std::sqrt(f.input_time / 0.5)), 2) + ". Forecasts of " +
+         std::to_string(f.recordings) + " recordings " + judged + ". The filter's tail is " +
+         Rounded(f.tail, 2) + " times as strong and as long as the model's.\n";
 }
 
 namespace {

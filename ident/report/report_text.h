@@ -9,7 +9,6 @@
 #include "ident/figures/text_table.h"
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
-#include "ident/observed/recording_filter.h"
 #include "ident/report/estimate_tables.h"
 #include "ident/report/verdict_text.h"
 

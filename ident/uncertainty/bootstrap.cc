@@ -7,6 +7,7 @@
 
 #include "datasets/files/random.h"
 #include "ident/problem/residual_rows.h"
+#include "ident/problem/statistics.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
@@ -156,16 +157,6 @@ std::vector<PendulumRecording> Resampled(const std::vector<PendulumRecording>& r
     drawn.insert(drawn.end(), counts[i], recordings[i]);
   }
   return drawn;
-}
-
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return std::nan("");
-  std::sort(values.begin(), values.end());
-  const double last = static_cast<double>(values.size()) - 1.0;
-  const double at = std::clamp(share * static_cast<double>(values.size() + 1) - 1.0, 0.0, last);
-  const size_t below = static_cast<size_t>(at);
-  const size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
 Result<Bootstrap> ComputeBootstrap(const FitProblem& problem, const FitPoint& estimate,

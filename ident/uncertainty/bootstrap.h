@@ -71,7 +71,4 @@ inline double DistinctResamples(int units) {
   return number;
 }
 
-// Linear between the sorted values, the i-th of n standing for i / (n + 1).
-double Quantile(std::vector<double> values, double share);
-
 }  // namespace pushid

@@ -9,11 +9,24 @@
 
 #include "ident/fit/fit.h"
 #include "ident/fit/step_probability.h"
-#include "ident/observed/recording_filter.h"
+#include "ident/observed/scene_filter.h"
 #include "models/decompositions.h"
 
 namespace pushid {
 namespace {
+
+// Of recordings that no fit predicts.
+FoldPrediction WithoutFit(const std::vector<PendulumRecording>& recordings,
+                          const std::vector<int>& test, const std::string& why) {
+  FoldPrediction prediction;
+  for (int i : test) {
+    RecordingScore& failed = prediction.scores.emplace_back();
+    failed.id = recordings[i].id;
+    failed.frames = recordings[i].num_frames();
+    failed.failure = "no fit without it: " + why;
+  }
+  return prediction;
+}
 
 constexpr double kRidgeStrength = 1.0;  // on standardized features
 
@@ -102,35 +115,57 @@ FoldPrediction ScoreRidge(const std::vector<PendulumRecording>& recordings,
 }  // namespace
 
 Predictor ModelPredictor(const std::string& name, FitOptions options, int observed, FramesUse use,
-                         ForecastUse forecast) {
-  const bool bands = observed > 0 && use == FramesUse::kForecast;
+                         ForecastUse forecast, const Draws& draws) {
+  const bool learns = observed > 0 && use == FramesUse::kForecast;
   options.num_threads = 1;  // the folds run in parallel
   const auto fit_and_score = [=](const std::vector<PendulumRecording>& recordings,
                                  const std::vector<int>& train, const std::vector<int>& test) {
-    Result<IdentifiedModel> solved = SolveModel(Picked(recordings, train), options, bands);
-    if (solved.ok() && bands && !solved.value().forecasts) {
+    Result<IdentifiedModel> solved = SolveModel(Picked(recordings, train), options, learns);
+    if (solved.ok() && learns && !solved.value().forecasts) {
       solved = Error{"no recording stays in the model's domain"};
     }
+    if (!solved.ok()) return WithoutFit(recordings, test, solved.error().message);
+    const IdentifiedModel& model = solved.value();
     FoldPrediction prediction;
-    if (solved.ok()) prediction.behaviour = solved.value().behaviour;
+    prediction.behaviour = model.behaviour;
     for (int i : test) {
-      if (!solved.ok()) {
-        RecordingScore failed;
-        failed.id = recordings[i].id;
-        failed.frames = recordings[i].num_frames();
-        failed.failure = "no fit without it: " + solved.error().message;
-        prediction.scores.push_back(failed);
-        continue;
-      }
-      const IdentifiedModel& model = solved.value();
       prediction.scores.push_back(use == FramesUse::kReanchored
                                       ? ScoreReanchored(model, recordings[i], observed)
-                                      : ScoreModel(model, recordings[i], observed, forecast));
+                                      : ScoreModel(model, recordings[i], observed, forecast,
+                                                   {draws.count, SeedOfRecording(draws.seed, i)}));
       prediction.scores.back().fell_harder = FallsWhenPushedHarder(model, recordings[i]);
     }
     return prediction;
   };
-  return {name, fit_and_score, observed, bands};
+  return {name, fit_and_score, observed, learns || draws.count > 0};
+}
+
+Predictor BandPredictor(const std::string& name, FitOptions options, const BandOptions& bands) {
+  options.num_threads = 1;
+  const auto fit_and_score = [=](const std::vector<PendulumRecording>& recordings,
+                                 const std::vector<int>& train, const std::vector<int>& test) {
+    const std::vector<PendulumRecording> training = Picked(recordings, train);
+    FitOptions own = options;
+    if (MaybeError error = PrepareFit(training, &own)) {
+      return WithoutFit(recordings, test, error->message);
+    }
+    const FitResult result = Fit(training, own);
+    if (!result.ok()) return WithoutFit(recordings, test, "it fails");
+    const auto samples = SampleParameters(result, bands);
+    const std::vector<ErrorPath> errors = ErrorPaths(result, training);
+    const IdentifiedModel model = ModelOf(result);
+    FoldPrediction prediction;
+    prediction.behaviour = model.behaviour;
+    for (int i : test) {
+      prediction.scores.push_back(ScoreModel(model, recordings[i]));
+      RecordingScore& score = prediction.scores.back();
+      if (!score.failure.empty()) continue;
+      ScoreDraws(recordings[i],
+                 PathsAround(result, samples.value(), errors, recordings[i], bands.seed), &score);
+    }
+    return prediction;
+  };
+  return {name, fit_and_score, 0, true};
 }
 
 Predictor BaselinePredictor(const Baseline& baseline, int observed) {
@@ -222,8 +257,6 @@ FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums
       sum.*metric.value += score.*metric.value;
       result.*metric.value += score.*metric.value;
     }
-    sum.effect.mean += score.effect.mean;
-    sum.effect.error += score.effect.error;
     sum.propagation.Add(score.propagation);
     AddMargins(score.steps, &sum.steps);
     propagation.push_back(&score.propagation);
@@ -270,8 +303,6 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const P
     if (sums.counts[i] == 0 && mean.failure.empty()) continue;  // never held out
     if (sums.counts[i] > 0) {
       for (const HipMetric& metric : AllHipMetrics()) mean.*metric.value /= sums.counts[i];
-      mean.effect.mean /= sums.counts[i];
-      mean.effect.error /= sums.counts[i];
       mean.propagation.Divide(sums.counts[i]);
       for (StepPrediction& step : mean.steps) step.margin /= sums.counts[i];
     }

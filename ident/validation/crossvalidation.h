@@ -84,7 +84,10 @@ enum class FramesUse { kForecast, kReanchored };
 // as in ScoreModel.
 Predictor ModelPredictor(const std::string& name, FitOptions options, int observed = 0,
                          FramesUse use = FramesUse::kForecast,
-                         ForecastUse forecast = ForecastUse::kBoth);
+                         ForecastUse forecast = ForecastUse::kBoth, const Draws& draws = {});
+
+// The same fit's rollouts with their predictive bands.
+Predictor BandPredictor(const std::string& name, FitOptions options, const BandOptions& bands);
 
 // One of kBaselines; nothing is fitted.
 Predictor BaselinePredictor(const Baseline& baseline, int observed = 0);

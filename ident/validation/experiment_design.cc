@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
-#include "ident/prediction/prediction.h"
+#include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/uncertainty/assumptions.h"
@@ -56,30 +56,28 @@ size_t IndexOf(const ExperimentDesign& design, const std::string& parameter) {
 }  // namespace
 
 std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording>& recordings) {
-  std::vector<double> strength, duration, mass;
+  ValueRange strength, duration, mass;
   int measured = 0;  // more pushes that are than those that are not
   for (const PendulumRecording& r : recordings) {
-    const std::vector<ScenePush>& pushes = r.scene.pushes;
     double peak = 0.0;
-    for (const ScenePush& push : pushes) {
+    for (const ScenePush& push : r.scene.pushes) {
       measured += push.kind == PushKind::kExternal ? 1 : -1;
       for (const Vector4<double>& row : push.force) {
         peak = std::max(peak, row.head<2>().norm() / r.scene.people[push.person].body.mass);
       }
     }
-    strength.push_back(peak);
-    duration.push_back(pushes.empty() ? 0.1
-                                      : static_cast<double>(pushes[0].force.size()) * r.scene.dt);
-    mass.push_back(r.scene.people[r.pushed_person].body.mass);
+    strength.Add(peak);
+    duration.Add(r.scene.pushes.empty()
+                     ? 0.1
+                     : static_cast<double>(r.scene.pushes[0].force.size()) * r.scene.dt);
+    mass.Add(r.scene.people[r.pushed_person].body.mass);
   }
-  for (auto* values : {&strength, &duration, &mass}) std::sort(values->begin(), values->end());
-  const double weak = strength.front(), strong = strength.back();
   std::vector<CandidatePush> candidates;
   for (double direction : kDirections) {
-    for (double a : {weak, 0.5 * (weak + strong), strong}) {
+    for (double a : {strength.lower, 0.5 * (strength.lower + strength.upper), strength.upper}) {
       for (double height : {0.8, 1.0}) {
-        for (double s : {duration.front(), duration.back()}) {
-          for (double kg : {mass.front(), mass.back()}) {
+        for (double s : {duration.lower, duration.upper}) {
+          for (double kg : {mass.lower, mass.upper}) {
             if (measured <= 0) candidates.push_back({direction, a, height, s, kg, false});
             candidates.push_back({direction, a, height, measured > 0 ? s : 2.0 * s, kg, true});
           }
@@ -109,23 +107,16 @@ PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estim
     const Vector3<double> f(size * std::cos(angle), size * std::sin(angle), 0.0);
     force.push_back(GeneralizedForce<double>(body, Vector4<double>::Zero(), f, push.height));
   }
-  const PushKind kind = push.sensor ? PushKind::kExternal : PushKind::kNet;
-  candidate.scene.pushes = {MakeScenePush(0, 0, kind, force)};
+  candidate.scene.pushes = {
+      MakeScenePush(0, 0, push.sensor ? PushKind::kExternal : PushKind::kNet, force)};
   IdentifiedModel model;
   model.options = problem.options().model;
   model.parameters = problem.Parameters(estimate, "");
   const Prediction expected = Predict(model, candidate, frames);
-  if (!expected.status.ok) return candidate;
+  if (!expected.status.ok || AnybodyFalls(expected)) return candidate;
   candidate.hip = expected.hip;
-  candidate.states.resize(1);
-  for (int t = 0; t < frames; ++t) {
-    candidate.states[0].push_back(expected.path.At(t, 0));
-    const PendulumState<double>& state = candidate.states[0].back();
-    if (state.q.tail<2>().cwiseAbs().maxCoeff() > kFallAngle) {
-      candidate.states.clear();
-      return candidate;
-    }
-  }
+  candidate.states.emplace_back();
+  for (int t = 0; t < frames; ++t) candidate.states[0].push_back(expected.path.At(t, 0));
   candidate.rod_length = {std::vector<double>(frames, kReferenceRod)};
   return candidate;
 }

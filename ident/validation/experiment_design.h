@@ -36,7 +36,7 @@ struct DesignRow {
 };
 
 struct ExperimentDesign {
-  std::string refused;  // why there is none: too few recordings
+  std::string refused;  // why there is none
   std::vector<std::string> parameters, units;
   std::vector<double> standard_error;  // now
   std::vector<DesignRow> rows;         // candidates that fall are left out
@@ -64,7 +64,7 @@ Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
 // The best `count` of them, and after a gap the least useful one.
 Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
                               int count);
-// With a heading and the present error.
+// The best ten, with a heading and the present error.
 Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter);
 
 }  // namespace pushid

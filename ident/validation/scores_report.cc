@@ -91,17 +91,21 @@ TextTable TableOf(const std::vector<std::string>& header, size_t text_from) {
 
 std::string ObservedText(const ScoreSummary& summary) {
   if (summary.observed == 0) return "";
-  std::string text = "the first " + CountText(summary.observed, "frame was", "frames were") +
-                     " seen, which have no error; after_hipADE: mean over the others";
-  if (!summary.bands) return text + "\n";
-  const char* const axes[] = {" (x)", " (y)"};
-  text += "\n90 % bands hold ";
-  for (int i : {0, 1}) {
-    const auto value = kBandMetrics[i].value;
-    text += (i > 0 ? " and " : "") +
-            ScoreText(summary.mean.*value, summary.mean.error.*value, summary.mean) + axes[i];
-  }
-  return text + " of these frames of the pushed person\n";
+  return "the first " + CountText(summary.observed, "frame was", "frames were") +
+         " seen, which have no error; after_hipADE: mean over the others\n";
+}
+
+// Of predictions that are distributions.
+std::string BandsText(const std::string& name, const ScoreSummary& summary) {
+  if (!summary.bands) return "";
+  const auto text = [&](double HipMetrics::*value) {
+    return ScoreText(summary.mean.*value, summary.mean.error.*value, summary.mean);
+  };
+  return name + ": 90 % bands hold " + text(&HipMetrics::inside90_x) + " (x) and " +
+         text(&HipMetrics::inside90_y) +
+         " (y) of the predicted frames of the pushed person, 50 % " +
+         text(&HipMetrics::inside50_x) + " and " + text(&HipMetrics::inside50_y) + "; CRPS " +
+         text(&HipMetrics::crps) + " m\n";
 }
 
 void AddGroups(const std::vector<const ScoreSummary*>& summaries, const ShownMetrics& shown,
@@ -188,7 +192,8 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   std::vector<const ScoreSummary*> all = {&m};
   all.insert(all.end(), baselines.begin(), baselines.end());
   AddGroups(all, shown, &table);
-  text += table.ToString() + WithoutLabelText(m.without_label) + ErrorsText(m) + ObservedText(m);
+  text += table.ToString() + WithoutLabelText(m.without_label) + ErrorsText(m) + ObservedText(m) +
+          BandsText("model", m);
   if (m.steps.known()) text += "\n" + StepScoresText({{"model", &m.steps}});
   if (m.propagation.recordings == 0) return text;
   std::vector<PropagationColumn> columns = {{"model", &m.propagation}};
@@ -360,6 +365,9 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   text += table.ToString() + ErrorsText(candidates[0].summary) +
           ObservedText(candidates[0].summary) +
           "fell harder: when pushed 1.4 times as hard, until 40 frames past the recording's end\n";
+  for (const CrossValidation& candidate : candidates) {
+    text += BandsText(candidate.predictor, candidate.summary);
+  }
   for (size_t i = 1; i < candidates.size(); ++i) {
     text += ConclusionText(Compare(candidates[0], candidates[i])) + "\n";
   }
@@ -487,10 +495,6 @@ void RecordingFields(Archive& a, RecordingScore& r, const ScoreSummary& of) {
     a("failure", r.failure);
   } else {
     MetricFields(a, r, MetricsOf(of.observed, of.bands));
-    if (a.Has("effect", of.bands)) {
-      a("effect", r.effect.mean);
-      a("effect_error", r.effect.error);
-    }
   }
   a("fell", r.fell);
   // Entries for other readers than ours.

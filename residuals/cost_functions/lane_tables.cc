@@ -180,50 +180,6 @@ void LaneTables::Roll(const LaneInputs& in, LaneSums sums, LaneOutputs out) cons
   lanes_->roll(in, sums, out);
 }
 
-std::vector<std::vector<Vector3<double>>> HipsSideBySide(
-    const Scene& scene, const ModelOptions& options,
-    const std::vector<ParameterSet<double>>& parameters, int frames) {
-  const PersonLanes& lanes = BestPersonLanes();
-  const size_t width = static_cast<size_t>(lanes.lanes);
-  const int steps = NumSteps(scene, frames);
-  LaneTables tables(lanes, frames, NumTails(scene, options), steps);
-  const Vector3<double> nowhere = Vector3<double>::Zero();
-  for (int lane = 0; lane < static_cast<int>(std::min(width, parameters.size())); ++lane) {
-    tables.Set(lane, scene, options, frames);
-    for (int t = 0; t < steps; ++t) tables.SetMeasured(lane, t, nowhere, {}, 1.0);
-  }
-  LaneInputs in = tables.Inputs();
-  in.sigmas.hip = 1.0;  // of what was not measured, the residual is the hip
-  LaneParameters of_lanes(lanes.lanes);
-  std::vector<double> failed(width), squares(width);
-  std::vector<double> residuals((frames - 1) * kFrameResiduals * width);
-  LaneOutputs out;
-  out.failed = failed.data();
-  out.squares = squares.data();
-  out.residuals = residuals.data();
-  const ScenePerson& person = scene.people[0];
-  std::vector<std::vector<Vector3<double>>> hips(parameters.size());
-  for (size_t first = 0; first < parameters.size(); first += width) {
-    const size_t count = std::min(width, parameters.size() - first);
-    for (size_t lane = 0; lane < count; ++lane) {
-      of_lanes.Set(static_cast<int>(lane), parameters[first + lane], {});
-    }
-    of_lanes.In(&in);
-    tables.Roll(in, LaneSums::kNone, out);
-    for (size_t lane = 0; lane < count; ++lane) {
-      if (failed[lane] != 0.0) continue;
-      std::vector<Vector3<double>>& path = hips[first + lane];
-      path.reserve(static_cast<size_t>(frames));
-      path.push_back(HipPosition(person.body, person.start.q));
-      for (int t = 1; t < frames; ++t) {
-        const double* const hip = residuals.data() + (t - 1) * kFrameResiduals * width + lane;
-        path.push_back({hip[0], hip[width], hip[2 * width]});
-      }
-    }
-  }
-  return hips;
-}
-
 bool HasLanes(const RolloutProblem& problem) {
   return HasLanes(problem.recording->scene, problem.options) && !problem.recording->HasPlates() &&
          problem.sigmas.loss == FrameLoss::kHip;

@@ -71,12 +71,6 @@ int NumSteps(const Scene& scene, int frames);
 // Pushes on the person with a tail.
 int NumTails(const Scene& scene, const ModelOptions& options);
 
-// Hips, frame by frame, of rollouts of a scene that has lanes under each set of parameters; none
-// where one leaves the model's domain.
-std::vector<std::vector<Vector3<double>>> HipsSideBySide(
-    const Scene& scene, const ModelOptions& options,
-    const std::vector<ParameterSet<double>>& parameters, int frames);
-
 // Recordings of people alone, rolled out and summed up side by side (person_lanes.h).
 //
 // A recording's numbers do not depend on those beside it, nor on how many these are, to the last

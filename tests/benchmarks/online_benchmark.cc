@@ -13,8 +13,6 @@ constexpr int kFrames = 30, kAhead = 60;
 IdentifiedModel ModelOfBenchmark(bool groups) {
   IdentifiedModel model;
   model.parameters = PublishedTailParameters();
-  model.recording_effect = RecordingEffect{};
-  model.recording_effect->spread = 0.4;
   model.forecasts = ForecastRule{};
   if (!groups) return model;
   model.options.interaction.spring = model.options.interaction.damping = true;

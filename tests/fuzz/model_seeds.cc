@@ -52,8 +52,7 @@ FittedModel OfPreset(const std::string& name) {
   result.best_start = 0;
   result.warnings = {Warning("a warning")};
   result.step_probability = StepProbability{{0.5, 30.0}, Eigen::Matrix2d::Identity(), 20, 12, 5};
-  result.recording_effect = RecordingEffect{};
-  result.recording_effect->recordings = {{"r0", "S0", "p", 0.1, 0.2, 0.15}};
+  result.forecasts = ForecastRule{};
   model.provenance.version = "0.1.0";
   model.provenance.configuration = {{"seed", "1"}, {"preset", name}};
   model.provenance.changed_flags = {"preset"};

@@ -24,8 +24,8 @@ struct PlantedEffects {
   uint64_t seed = 1;
 };
 
-// The law of observed/recording_filter.h drawn step by step, on the scale of a recording: along the
-// push, across and upwards.
+// An error of velocity that dies out in 0.3 s, added up, and a little noise; on the scale of a
+// recording: along the push, across and upwards.
 inline std::vector<Vector3<double>> DrawnErrors(int frames, double dt, double scale,
                                                 Random* random) {
   const double r = std::exp(-dt / 0.3);
@@ -53,21 +53,22 @@ inline std::vector<Vector3<double>> DrawnErrors(int frames, double dt, double sc
   return errors;
 }
 
-// The model's own motions with effects and errors. `effects`: what was drawn.
+// The model's own motions with errors, of tails that differ from recording to recording.
 inline std::vector<PendulumRecording> PlantEffects(const IdentifiedModel& model,
                                                    std::vector<PendulumRecording> recordings,
-                                                   const PlantedEffects& planted,
-                                                   std::vector<double>* effects = nullptr) {
+                                                   const PlantedEffects& planted) {
   Random random(planted.seed);
   for (PendulumRecording& recording : recordings) {
-    const double b = planted.spread * random.Normal();
-    if (effects != nullptr) effects->push_back(b);
-    const Prediction motion = Predict(model, recording, 0, b);
+    IdentifiedModel own = model;
+    const double factor = std::exp(planted.spread * random.Normal());
+    for (Parameter id : {kTailGain, kTailBase}) own.parameters[id] *= factor;
+    const Prediction motion = Predict(own, recording);
     EXPECT_TRUE(motion.status.ok);
     const Eigen::Vector2d u = PushDirection(recording);
     Eigen::Matrix3d axes;
     axes << u.x(), -u.y(), 0, u.y(), u.x(), 0, 0, 0, 1;
-    const double scale = planted.error_scale * WholePushSpeed(model, recording);
+    const double scale =
+        planted.error_scale * FittedPushRange(model, {recording}).impulse_per_mass.upper;
     for (int n = 0; n < recording.num_people(); ++n) {
       const auto errors = DrawnErrors(recording.num_frames(), recording.scene.dt, scale, &random);
       for (int t = 0; t < recording.num_frames(); ++t) {

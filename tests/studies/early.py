@@ -10,7 +10,6 @@ thirds      each third of what is to come, beside the best baseline; after perso
 bands       share of hips inside 50 and 90 % bands, and CRPS; after person and groups seconds
 forecasters each forecaster alone, a person left out; seconds
 unseen      people of another simulator whose push goes on unseen (unseen_pushes.py; the Python module); a minute
-population  how recordings of single people differ; seconds
 
 Times are those of two cores.
 """
@@ -122,26 +121,6 @@ def first():
     return studies.table(["held out", "physics: mean / last, m", "template", "ridge", "constant velocity", "static"], rows)
 
 
-def population():
-    fitted = studies.check(studies.fit("single"), "--learn_forecasts").json
-    effect, forecasts = fitted["recording_effect"], fitted["forecasts"]
-    rows = [["spread w of b", with_error(effect["spread"], effect["spread_standard_error"])],
-            ["error scale s, m", number(effect["error_scale_m"])],
-            ["share of the squared error that b takes away", number(effect["explained"], 2)],
-            ["weight of the filter", number(forecasts["input_share"], 2)],
-            ["time in which the unknown force dies out, s", number(forecasts["input"]["force_time_s"], 2)],
-            ["tail of the filter over the model's: strength, time",
-             f"{number(forecasts['tail_strength'], 2)}, {number(forecasts['tail_time'], 2)}"]]
-    for key in ("person", "condition"):
-        names = sorted({r[key] for r in effect["recordings"]})
-        means = []
-        for name in names:
-            own = [r["effect"] for r in effect["recordings"] if r[key] == name]
-            means.append(f"{name} {sum(own) / len(own):+.2f}")
-        rows.append([f"mean b by {key}", ", ".join(means)])
-    return studies.table(["32 recordings of single people", ""], rows)
-
-
 def unseen():
     sys.path.insert(0, os.path.join(os.path.dirname(studies.BIN), "python"))
     import numpy as np
@@ -172,4 +151,4 @@ def unseen():
 
 if __name__ == "__main__":
     studies.main(__file__, {"first": first, "single": single, "person": person, "groups": groups, "thirds": thirds,
-                            "bands": bands, "forecasters": forecasters, "unseen": unseen, "population": population})
+                            "bands": bands, "forecasters": forecasters, "unseen": unseen})

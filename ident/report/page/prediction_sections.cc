@@ -103,12 +103,7 @@ namespace {
 constexpr double kDegrees = 180.0 / M_PI;
 constexpr char kErrorLook[] = "fill:none;stroke:#8a8f98;stroke-width:1.2";
 
-void AddPoint(double x, double value, double error, Chart* chart) {
-  if (error > 0.0) chart->lines.push_back({{{x, value - error}, {x, value + error}}, kErrorLook});
-  chart->lines.push_back({{{x, value}}, kMeasuredLook, true});
-}
-
-// Measured points with their errors over the model's curve, over a logarithmic frequency. Phases go
+// Measured points with their errors over the model's line, over a logarithmic frequency. Phases go
 // on without jumps: of the model from its lowest frequency on, of each point as near to the model
 // as may be, or to the point before where there is no model.
 Figure BodeFigure(const FrequencyResponse& response) {
@@ -120,39 +115,38 @@ Figure BodeFigure(const FrequencyResponse& response) {
   gain.logarithmic_y = true;
   coherence.y_from = 0.0, coherence.y_to = 1.05;
   double lowest = INFINITY, highest = -INFINITY;
-  const auto cover = [&](double log, double error) {
-    lowest = std::min(lowest, log - error), highest = std::max(highest, log + error);
-  };
-  // The angle in degrees that is nearest to another, by multiples of 360.
-  const auto nearest = [](double angle, std::optional<double> to) {
-    return to ? *to + std::remainder(kDegrees * angle - *to, 360.0) : kDegrees * angle;
+  const auto add = [](double x, double value, double error, Chart* chart) {
+    if (error > 0.0) chart->lines.push_back({{{x, value - error}, {x, value + error}}, kErrorLook});
+    chart->lines.push_back({{{x, value}}, kMeasuredLook, true});
   };
   ChartLine gains{{}, kPredictedLook}, phases{{}, kPredictedLook};
   std::optional<double> beside;
-  for (const FrequencyBin& bin : response.model) {
-    const double x = std::log10(bin.hz), log = bin.model_log_gain / M_LN10;
-    beside = nearest(bin.model_phase, beside);
-    gains.points.emplace_back(x, log);
-    phases.points.emplace_back(x, *beside);
-    cover(log, 0.0);
+  // The multiple of 360 degrees away that is nearest to what stands beside it.
+  const auto nearest = [&beside](double angle) {
+    return beside ? *beside + std::remainder(kDegrees * angle - *beside, 360.0) : kDegrees * angle;
+  };
+  for (const FrequencyBin& bin : response.bins) {
+    const double x = std::log10(bin.hz), log = bin.log_gain / M_LN10;
+    const double model = (response.has_model ? bin.model_log_gain : bin.log_gain) / M_LN10;
+    const double error = bin.log_gain_error / M_LN10;
+    if (response.has_model) {
+      beside = nearest(bin.model_phase);
+      gains.points.emplace_back(x, model);
+      phases.points.emplace_back(x, *beside);
+    }
+    const double measured = nearest(bin.phase);
+    if (!response.has_model) beside = measured;
+    add(x, log, error, &gain);
+    add(x, measured, kDegrees * bin.phase_error, &phase);
+    add(x, bin.coherence, 0.0, &coherence);
+    lowest = std::min({lowest, log - error, model}),
+    highest = std::max({highest, log + error, model});
   }
   Figure figure;
   figure.legend = {{"measured, one standard error", kErrorLook}};
-  if (!response.model.empty()) {
-    gain.lines.push_back(gains), phase.lines.push_back(phases);
+  if (response.has_model) {
+    gain.lines.insert(gain.lines.begin(), gains), phase.lines.insert(phase.lines.begin(), phases);
     figure.legend.push_back({"model", kPredictedLook});
-  }
-  size_t at = 0;
-  for (const FrequencyBin& bin : response.bins) {
-    const double x = std::log10(bin.hz);
-    const double log = bin.log_gain / M_LN10, error = bin.log_gain_error / M_LN10;
-    while (at + 1 < response.model.size() && response.model[at].hz < bin.hz) ++at;
-    if (!response.model.empty()) beside = phases.points[at].second;
-    beside = nearest(bin.phase, beside);
-    AddPoint(x, log, error, &gain);
-    AddPoint(x, *beside, kDegrees * bin.phase_error, &phase);
-    AddPoint(x, bin.coherence, 0.0, &coherence);
-    cover(log, error);
   }
   gain.y_from = std::floor(lowest);  // a power of ten at both ends
   gain.y_to = std::max(std::ceil(highest), *gain.y_from + 1.0);
@@ -167,9 +161,7 @@ std::string CaptionOf(const FrequencyResponse& response) {
          CountText(people, "person", "people") +
          (response.periodic ? "; the excited frequencies, in periods of " + seconds
                             : "; Welch's method, segments of " + seconds) +
-         (response.output == LoopOutput::kAngle ? ""
-          : response.by_plates                  ? "; torque by force platforms"
-                                                : "; torque by inverse dynamics") +
+         (response.output == LoopOutput::kAngle ? "" : "; torque by force platforms") +
          (people == 1 ? "; errors by the coherence." : "; errors from person to person.");
 }
 

@@ -6,7 +6,6 @@
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
-#include "ident/observed/recording_filter.h"
 #include "ident/prediction/prediction.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"
@@ -84,7 +83,7 @@ TEST(CrossFit, ErrorsAreThoseOfOthers) {
   const auto of_itself = LearnForecasts(ModelOf(result), recordings, {}, 1);
   ASSERT_TRUE(of_itself.has_value());
   EXPECT_EQ(of_itself->folds, 0);
-  EXPECT_EQ(of_itself->input_share, ForecastRule().input_share);
+  EXPECT_EQ(of_itself->input_time, ForecastRule().input_time);
   const auto scale = [](const ForecastRule& rule) {
     return std::exp(rule.errors[0].coefficients.dot(ScaleFeatures(0.5, 0.0, 0.5)));
   };

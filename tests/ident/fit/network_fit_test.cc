@@ -8,7 +8,6 @@
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/model/model_json.h"
-#include "ident/observed/recording_filter.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/solver.h"
@@ -46,20 +45,6 @@ TEST(NetworkFit, LeavesPhysicsAloneWhereThereIsNothingToLearn) {
   ASSERT_TRUE(result.ok()) << result.message;
   EXPECT_NEAR(result.parameters[kKpTheta], synthetic.parameters[kKpTheta],
               0.1 * synthetic.parameters[kKpTheta]);
-}
-
-// The effect of recordings was once estimated with the network's first weights, before the fit.
-TEST(NetworkFit, EffectsOfRecordingsAreThoseOfTheFittedNetwork) {
-  const Study study = PlantedStudy(PlantedNetwork({NetworkKind::kMlp, 2}), 0.002);
-  FitOptions options = study.options;
-  options.model.push_tail = PushTail::kExponential;
-  options.model.learned = InitialNetwork({NetworkKind::kMlp, 2}, 1);
-  const FitResult result = Fit(study.training, options);
-  ASSERT_TRUE(result.recording_effect.has_value());
-  const auto again = FitRecordingEffect(ModelOf(result), study.training);
-  ASSERT_TRUE(again.has_value());
-  EXPECT_EQ(result.recording_effect->spread, again->spread);
-  EXPECT_EQ(result.recording_effect->error_scale, again->error_scale);
 }
 
 TEST(NetworkFit, ThreadsDoNotMatter) {

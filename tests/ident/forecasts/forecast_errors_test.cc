@@ -26,7 +26,7 @@ TEST(ForecastErrorsTest, ByHand) {
   for (int t = 0; t < 25; ++t) window.future(1, t) = 0.02f * static_cast<float>(t + 1);
   ForecastWindow still{"stand", Trajectories::Zero(3, 25), Trajectories::Zero(3, 25)};
   const std::vector<ForecastWindow> windows = {window, still, window};
-  const ForecastErrors errors = ErrorsOf(windows, ZeroVelocity(windows), OneParticle());
+  const ForecastScores errors = ScoresOf(windows, ZeroVelocity(windows), OneParticle());
   EXPECT_NEAR(errors.actions.at("walk").mpjpe[0], 0.02, 1e-7);  // frame 1, 80 ms: 4 cm / 2
   EXPECT_NEAR(errors.actions.at("walk").mpjpe[4], 0.25, 1e-6);  // frame 24: 50 cm / 2
   EXPECT_NEAR(errors.mean.mpjpe[4], 0.125, 1e-6);               // actions count alike
@@ -60,7 +60,7 @@ class RealForecastTest : public ::testing::Test {
     mocap_ = std::move(read);
     windows_ = MakeForecastWindows(mocap_, ForecastProtocol::kValidation, 1);
   }
-  void Expect(const ActionErrors& errors, const HorizonErrors& expected_mm, double tolerance_mm) {
+  void Expect(const WindowScores& errors, const HorizonErrors& expected_mm, double tolerance_mm) {
     for (size_t k = 0; k < expected_mm.size(); ++k) {
       EXPECT_NEAR(1e3 * errors.mpjpe[k], expected_mm[k], tolerance_mm) << k;
     }
@@ -70,7 +70,7 @@ class RealForecastTest : public ::testing::Test {
 };
 
 TEST_F(RealForecastTest, ZeroVelocityScoresAsPublished) {
-  const auto errors = ErrorsOf(windows_, ZeroVelocity(windows_), mocap_.skeleton.layout);
+  const auto errors = ScoresOf(windows_, ZeroVelocity(windows_), mocap_.skeleton.layout);
   Expect(errors.actions.at("basketball"), {23.50, 45.64, 85.90, 103.47, 173.92}, 0.05);
   Expect(errors.actions.at("basketball_signal"), {8.76, 16.54, 30.81, 37.18, 65.16}, 0.05);
   Expect(errors.actions.at("directing_traffic"), {14.88, 28.87, 54.77, 66.33, 119.01}, 0.05);
@@ -95,7 +95,7 @@ TEST_F(RealForecastTest, RidgeScoresAsPublished) {
     for (const ForecastWindow& window : windows_) {
       forecasts.push_back(ridge.Forecast(window.observed));
     }
-    Expect(ErrorsOf(windows_, forecasts, mocap_.skeleton.layout).mean, mpjpe_mm, 0.1);
+    Expect(ScoresOf(windows_, forecasts, mocap_.skeleton.layout).mean, mpjpe_mm, 0.1);
   }
 }
 

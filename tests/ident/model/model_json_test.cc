@@ -232,9 +232,9 @@ TEST(ResultJson, DamageIsNamed) {
   // Any entry of the top gone is an error, never a crash.
   for (const auto& [key, value] : good.items()) {
     // Older models have none.
-    static const std::set<std::string> kLater = {
-        "schema",           "format_version", "diagnostics", "changed_flags", "push_range",
-        "recording_effect", "feet",           "verdict",     "forecasts"};
+    static const std::set<std::string> kLater = {"schema",        "format_version", "diagnostics",
+                                                 "changed_flags", "push_range",     "feet",
+                                                 "verdict",       "forecasts"};
     if (kLater.count(key) > 0) continue;
     json = good;
     json.erase(key);

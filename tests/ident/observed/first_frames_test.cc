@@ -16,20 +16,21 @@ const HipPaths kInput = {HipPath(60, Vector3<double>(1.0, 0.0, 1.0))};
 
 TEST(InputShare, PhysicsHasTheWordFirst) {
   for (double seconds : {0.0, 0.1, 0.24}) {
-    EXPECT_EQ(InputShare(0.6, kPhysics, kInput, seconds), 0.0);
+    EXPECT_EQ(InputShare(0.15, kPhysics, kInput, seconds), 0.0);
   }
-  for (double seconds : {0.25, 1.0}) EXPECT_EQ(InputShare(0.6, kPhysics, kInput, seconds), 0.6);
+  EXPECT_NEAR(*InputShare(0.15, kPhysics, kInput, 0.6), 0.5, 1e-12);
+  EXPECT_EQ(InputShare(0.6, kPhysics, kInput, 0.5), 1.0);
   const HipPaths blended = Blended(0.6, kPhysics, kInput);
   EXPECT_NEAR(blended[0][29].x(), 0.6, 1e-12);
   EXPECT_NEAR(blended[0][29].z(), 1.0, 1e-12);
 }
 
 TEST(InputShare, IsOfWhoIsThere) {
-  EXPECT_EQ(InputShare(0.6, kPhysics, {}, 0.4), 0.0);
-  EXPECT_EQ(InputShare(0.6, {}, kInput, 0.1), 1.0);
-  EXPECT_EQ(InputShare(0.6, kPhysics, kInput, 0.4, ForecastUse::kPhysics), 0.0);
-  EXPECT_EQ(InputShare(0.6, kPhysics, kInput, 0.0, ForecastUse::kInput), 1.0);
-  EXPECT_FALSE(InputShare(0.6, kPhysics, {}, 0.4, ForecastUse::kInput));
+  EXPECT_EQ(InputShare(0.15, kPhysics, {}, 0.4), 0.0);
+  EXPECT_EQ(InputShare(0.15, {}, kInput, 0.1), 1.0);
+  EXPECT_EQ(InputShare(0.15, kPhysics, kInput, 0.4, ForecastUse::kPhysics), 0.0);
+  EXPECT_EQ(InputShare(0.15, kPhysics, kInput, 0.0, ForecastUse::kInput), 1.0);
+  EXPECT_FALSE(InputShare(0.15, kPhysics, {}, 0.4, ForecastUse::kInput));
   EXPECT_EQ(Blended(0.0, kPhysics, {}), kPhysics);
   EXPECT_EQ(Blended(1.0, {}, kInput), kInput);
 }
@@ -49,27 +50,32 @@ std::vector<ForecastTrial> PlantedTrials() {
     trial.measured = {path};
     trial.seen = {std::vector<bool>(40, true)};
     trial.from = {path[0]};
-    trial.physics = trial.input = {path};
+    trial.physics = {path};
     for (Vector3<double>& hip : trial.physics[0]) hip += off;
-    for (Vector3<double>& hip : trial.input[0]) hip -= off;
+    for (size_t k = 0; k < trial.input.size(); ++k) {
+      trial.input[k] = {path};
+      for (Vector3<double>& hip : trial.input[k][0]) hip -= (k == 1 ? 1.0 : 2.0) * off;
+    }
     trials.push_back(trial);
   }
   return trials;
 }
 
-// A filter that knows the answers is believed, one that knows nothing is not; of two that err alike
-// to both sides the middle is right; and a fold does not teach its own weight.
+// A filter that knows the answers is believed, one that knows nothing is not; of three tails the
+// best is taken, and a fold does not teach its own rule.
 TEST(LearnForecasts, FindsHowMuchTheFilterIsRight) {
   std::vector<ForecastTrial> right = PlantedTrials(), wrong = right, leaking = right;
-  for (ForecastTrial& trial : right) trial.input = trial.measured;
+  for (ForecastTrial& trial : right) trial.input[2] = trial.measured;
   for (ForecastTrial& trial : wrong) trial.physics = trial.measured;
   for (ForecastTrial& trial : leaking) {
-    (trial.fold == 2 ? trial.input : trial.physics) = trial.measured;
+    (trial.fold == 2 ? trial.input[0] : trial.physics) = trial.measured;
   }
-  EXPECT_EQ(LearnInputShare(right), 1.0);
-  EXPECT_EQ(LearnInputShare(wrong), 0.0);
-  EXPECT_NEAR(LearnInputShare(PlantedTrials()), 0.5, 0.11);
-  EXPECT_EQ(LearnInputShare(leaking, 2), 0.0);
+  EXPECT_EQ(LearnRule(right).input_time, 0.6);
+  EXPECT_EQ(LearnRule(right).tail, kTails[2]);
+  EXPECT_EQ(LearnRule(wrong).input_time, 0.0);
+  EXPECT_EQ(LearnRule(PlantedTrials()).tail, kTails[1]);
+  EXPECT_EQ(LearnRule(PlantedTrials()).input_time, 0.15);  // about the middle of the two
+  EXPECT_EQ(LearnRule(leaking, 2).input_time, 0.0);
 }
 
 // Errors of known scale: their 50 and 90 % bands hold as many.

@@ -6,7 +6,9 @@
 #include "ident/fit/fit_setup.h"
 #include "ident/fit/step_probability.h"
 #include "ident/model/model_rollout.h"
+#include "ident/prediction/evaluation.h"
 #include "ident/problem/own_axes.h"
+#include "ident/problem/statistics.h"
 #include "models/rollout.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
@@ -60,38 +62,29 @@ SyntheticOptions NoisyStudy() {
   return study;
 }
 
-// Under the truth the bands hold what they say, in x, y and both angles.
-TEST(Futures, OfTheTruthHoldWhatTheySay) {
-  const SyntheticOptions study = NoisyStudy();
-  const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  const auto summary = Unwrapped(EvaluateFutures(TruthOf(study, BaseTable()), recordings, 99, 1));
-  for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
-    const std::string name = kFuturesMetrics[i].name;
-    if (name.find("inside90") == 0) {
-      EXPECT_NEAR(summary.mean[i].mean, 0.9, 0.1) << name;
-    }
-    if (name.find("inside50") == 0) {
-      EXPECT_NEAR(summary.mean[i].mean, 0.5, 0.12) << name;
-    }
-  }
+MeanScore Scored(const SyntheticOptions& study, const IdentifiedModel& model, int draws) {
+  return Evaluate(model, MakePendulums(study), 0, UsualGroups(), ForecastUse::kBoth, {draws, 1})
+      .model.mean;
 }
 
-// Proper scores: other widths than the truth's score worse.
+// Under the truth the bands hold what they say.
+TEST(Futures, OfTheTruthHoldWhatTheySay) {
+  const MeanScore mean = Scored(NoisyStudy(), TruthOf(NoisyStudy(), BaseTable()), 99);
+  EXPECT_NEAR(mean.inside90_x, 0.9, 0.1);
+  EXPECT_NEAR(mean.inside90_y, 0.9, 0.1);
+  EXPECT_NEAR(mean.inside50_x, 0.5, 0.12);
+  EXPECT_NEAR(mean.inside50_y, 0.5, 0.12);
+}
+
+// A proper score: other widths than the truth's score worse.
 TEST(Futures, TheTruthScoresBest) {
-  const SyntheticOptions study = NoisyStudy();
-  const std::vector<PendulumRecording> recordings = MakePendulums(study);
-  const auto scored = [&](double factor) {
-    IdentifiedModel model = TruthOf(study, BaseTable());
+  const auto crps = [](double factor) {
+    IdentifiedModel model = TruthOf(NoisyStudy(), BaseTable());
     for (int id = kSigmaX; id <= kSigmaPhi; ++id) model.parameters[id] *= factor;
-    return EvaluateFutures(model, recordings, 60, 1).value();
+    return Scored(NoisyStudy(), model, 60).crps;
   };
-  const FuturesSummary truth = scored(1.0), narrow = scored(0.2), wide = scored(4.0);
-  for (size_t i = 0; i < std::size(kFuturesMetrics); ++i) {
-    const std::string name = kFuturesMetrics[i].name;
-    if (name != "energy" && name != "crps_x" && name != "deviance") continue;
-    EXPECT_LT(truth.mean[i].mean, narrow.mean[i].mean) << name;
-    EXPECT_LT(truth.mean[i].mean, wide.mean[i].mean) << name;
-  }
+  EXPECT_LT(crps(1.0), crps(0.2));
+  EXPECT_LT(crps(1.0), crps(4.0));
 }
 
 // Feet step in as many draws as P(step) says.

@@ -9,6 +9,7 @@
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/problem/statistics.h"
 #include "ident/report/report_text.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"

@@ -94,18 +94,15 @@ TEST(ScoresJsonTest, FirstFramesComeBack) {
   scores.observed = 12;
   scores.bands = true;
   scores.recordings[0].after_hip_ade = 0.12;
-  scores.recordings[0].effect = {0.3, 0.1};
   scores.mean.after_hip_ade = 0.12;
   scores.mean.error.inside90_x = 0.04;
   const nlohmann::ordered_json json = ToJson(scores, true);
   EXPECT_EQ(json["observed"], 12);
   EXPECT_EQ(json["mean"]["after_hipADE_m"], 0.12);
   EXPECT_EQ(json["mean"]["inside90_x_standard_error_share"], 0.04);
-  EXPECT_EQ(json["recordings"][0]["effect"], 0.3);
   const ScoreSummary read = Unwrapped(ScoresFromJson(json, "scores.json"));
   EXPECT_EQ(ToJson(read, false), ToJson(scores, false));
   EXPECT_EQ(read.recordings[0].after_hip_ade, 0.12);
-  EXPECT_EQ(read.recordings[0].effect.error, 0.1);
   EXPECT_EQ(MetricsText(scores.recordings[0], 2, 12),
             "hipADE 0.1 m, hipFDE 0.33 m, after hipADE 0.12 m");
 }

@@ -161,31 +161,6 @@ TEST(LaneGroup, TellsResidualsWithoutTheRobustWeight) {
   }
 }
 
-// Nine sets are more than a vector holds. The last falls.
-TEST(LaneTables, HipsAreThoseOfRollouts) {
-  const Crowd crowd(kRegimes[0]);
-  const PendulumRecording& recording = crowd.recordings[2];
-  const ModelOptions& options = crowd.problems[2]->options;
-  const int frames = recording.num_frames();
-  std::vector<ParameterSet<double>> sets(9, WithTailBase());
-  for (size_t i = 0; i < sets.size(); ++i) sets[i][kTailGain] = 0.1 * static_cast<double>(i);
-  sets.back()[kKpTheta] = -2e4;
-  const auto hips = HipsSideBySide(recording.scene, options, sets, frames);
-  ASSERT_EQ(hips.size(), sets.size());
-  EXPECT_TRUE(hips.back().empty());
-  for (size_t i = 0; i + 1 < sets.size(); ++i) {
-    RolloutPath<double> path;
-    ASSERT_TRUE(Rollout<double>(recording.scene, options, {sets[i]},
-                                InitialVelocities(recording.scene), frames, &path)
-                    .ok);
-    ASSERT_EQ(hips[i].size(), static_cast<size_t>(frames));
-    for (int t = 0; t < frames; ++t) {
-      const Vector3<double> expected = HipPosition(recording.scene.people[0].body, path.At(t, 0).q);
-      EXPECT_LT((hips[i][t] - expected).norm(), 1e-12) << i << ", " << t;
-    }
-  }
-}
-
 TEST(LaneGroup, WhoElseIsThereChangesNoBit) {
   const Crowd crowd(kRegimes[0]);
   const int most = BestPersonLanes().lanes;
