@@ -52,8 +52,8 @@ void CheckFlags() {
   if (FLAGS_jobs < 1) throw Error{"--jobs must be at least 1"};
 }
 
-// The last line on stderr of a command that fails, without the name of who says it; nothing when
-// it does not fail.
+// The last line on stderr of a command that fails, without the program's name; empty when it
+// succeeds.
 std::string ComplaintOf(const std::vector<std::string>& command) {
   std::FILE* pipe = popen((ShellText(command) + " 2>&1 >/dev/null").c_str(), "r");
   if (pipe == nullptr) return command[0] + " cannot be started";
@@ -73,9 +73,9 @@ std::string ComplaintOf(const std::vector<std::string>& command) {
   return last;
 }
 
-// The flags of the variants of these jobs, checked by the programs themselves before any job
-// starts: a flag misspelt would fail in every job, one after the other. Errors: what the program
-// says, with the plan's line; there is no program that trains.
+// Checks the flags of these jobs' variants by the programs themselves before any job starts: a
+// misspelt flag would fail in every job, one after the other. Errors: what the program says, with
+// the plan's line; there is no program that trains.
 void CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
                    const std::string& bin) {
   using Flags = std::vector<std::string>;
@@ -100,7 +100,7 @@ void CheckVariants(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
       throw wrong("a restoration needs " + trainer + ", which is only built with LibTorch",
                   variant.restoration_line);
     }
-    // Which model and where to is said by each job.
+    // Each job names its model and its output.
     check({trainer, "--check", "--model=model.json", "--out=restoration"}, *variant.restoration,
           variant.restoration_line);
   }

@@ -83,7 +83,7 @@ std::vector<PendulumRecording> LoadFitted(FittedModel* model) {
   return OrFail(AsFitted(MakePendulumRecordings(loaded), model->fit));
 }
 
-// A model says how it was made: with these flags too.
+// Adds these flags to the record of how the model was made.
 void AddToProvenance(Provenance* from) {
   const std::map<std::string, std::string> now = EffectiveFlags();
   std::vector<std::string>& known = from->changed_flags;

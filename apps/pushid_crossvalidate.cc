@@ -135,7 +135,7 @@ void AddBaselines(const FitOptions& options, Predictors* predictors) {
   }
 }
 
-// Two of one name could not be told apart in the tables.
+// Two candidates of one name could not be distinguished in the tables.
 void CheckNames(const Predictors& predictors) {
   std::set<std::string> names;
   for (const Predictor& predictor : predictors) {

@@ -18,6 +18,7 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/prediction.h"
 #include "ident/validation/scores_report.h"
+#include "ident/validation/steps_report.h"
 
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");
@@ -35,7 +36,7 @@ RestorationFlags CheckedFlags() {
   return restoration;
 }
 
-// Bodies beside pendulums, where --restoration asks for them; else nothing.
+// Evaluates bodies beside pendulums, where --restoration asks for them.
 std::optional<BodyEvaluation> Bodies(const RestorationFlags& flags, const IdentifiedModel& model,
                                      const std::vector<Recording>& recordings) {
   if (!flags.given()) return std::optional<BodyEvaluation>();

@@ -136,7 +136,7 @@ Places FormationPlaces() {
   return {FormationPositions(Shape(), FLAGS_people, FLAGS_spacing), {}};
 }
 
-// Counted from the back, whatever the file's ids.
+// People are counted from the back, whatever the file's ids.
 std::vector<int> PushedPeople(const Places& places) {
   std::vector<int> people;
   std::set<int> seen;
@@ -211,7 +211,7 @@ void CheckFormationNumbers() {
                 "--recordings gives the recorded people's mass and rod length; leave out --{}");
 }
 
-// Their first poses; nobody without the flag.
+// First poses of the people; empty without the flag.
 std::vector<Pose> PlaceFlaggedPeople(Scene* scene) {
   if (FLAGS_recordings.empty()) return std::vector<Pose>();
   LoadOptions options;
@@ -340,7 +340,7 @@ void PrintFitWarnings(const FittedModel& model) {
   }
 }
 
-// Why there is no one speed of the push; empty where there is.
+// The reason why the push has no single speed; empty where it has one.
 std::string WhyNoSpeed(const Scene& scene) {
   const size_t pushes = scene.pushes.size();
   const bool one_person = std::all_of(
@@ -350,7 +350,7 @@ std::string WhyNoSpeed(const Scene& scene) {
   return pushes > 1 ? "; no speed: there are several pushes" : "";
 }
 
-// Beyond these the draws behind an interval take longer than the simulation should.
+// With more people the draws behind an interval take longer than the simulation should.
 constexpr int kMostPeopleForBands = 60;
 
 std::string SpeedText(const WaveSpeed& wave, const WaveBands& bands) {
@@ -378,7 +378,7 @@ std::string SpeedText(const WaveSpeed& wave, const WaveBands& bands) {
   return text;
 }
 
-// held: what no draw moves.
+// held: parameters that no draw changes.
 void PrintWave(const FormationRun& run, const WaveBands& bands, const std::string& held,
                bool setting) {
   const auto moved =
@@ -444,7 +444,7 @@ void CheckOutputFlags(int people, bool bodies) {
   if (!FLAGS_bvh_out.empty()) OrFail(CheckOutputFolder("bvh_out", FLAGS_bvh_out));
 }
 
-// Up to the first that fails. bodies: none where pages show pendulums.
+// Writes outputs up to the first that fails. bodies: none where pages show pendulums.
 void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
                   std::vector<BodyMotion> bodies, const std::string& title) {
   const auto write = [](const std::string& file, auto writer) {

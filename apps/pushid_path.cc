@@ -74,7 +74,7 @@ nlohmann::ordered_json ActionJson(const ProbablePath& path) {
           {"divergence_action", path.divergence_action}};
 }
 
-// The CSV of the path and the JSON.
+// Writes the CSV of the path and the JSON.
 int Write(const ProbablePath& path, double dt, const nlohmann::ordered_json& json) {
   if (!FLAGS_out.empty()) {
     OrFail(WritePathCsv(FLAGS_out, path, dt));

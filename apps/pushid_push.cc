@@ -37,8 +37,8 @@ DEFINE_string(initial_velocity, "auto",
 
 DEFINE_string(sensor, "",
               "force sensor: CSV file time,force or time,fx,fy,fz (s, N); any CSV, STO, MOT or C3D "
-              "with --sensor_column; or several that act together, or one of which more is to be "
-              "said: a JSON list, see datasets/README.md");
+              "with --sensor_column; or, for several sensors or further "
+              "properties, a JSON list (datasets/README.md)");
 DEFINE_string(sensor_column, "",
               "force sensor: the column, the common part of three (ground_force_v), the analog "
               "channel, or platform:1");
@@ -90,7 +90,7 @@ void CheckSensors() {
   CheckNeeds({"estimate_offset"}, {"sensor"});
   for (const std::string& flag : kOfOneSensor) {
     if (!SensorsListed() || !Given(flag.c_str())) continue;
-    throw Error{"--" + flag + " is said by the list, " + FLAGS_sensor + "; leave it out"};
+    throw Error{"--" + flag + " is given in the list, " + FLAGS_sensor + "; leave it out"};
   }
   if (!(FLAGS_height >= 0.0 && FLAGS_height <= 2.0)) {
     throw Error{"--height must be a fraction of the rod between 0 and 2"};
@@ -116,7 +116,7 @@ bool HasPlace(const std::string& path) { return path.find(kPlace) != std::string
 
 std::string OutOf(const std::string& id) { return WithId(FLAGS_out, id); }
 
-// A flag of the other way would be taken and do nothing.
+// A flag of the other method would be taken and have no effect.
 void CheckInverseDynamics() {
   for (const char* flag : {"frames", "initial_velocity"}) {
     if (!FLAGS_sensor.empty() && Given(flag)) {
@@ -281,7 +281,7 @@ void PrintEntry(const RecordingsPush& of) {
               of.made.push.start_frame);
 }
 
-// The push in the place of what the entry says of pushes on this person.
+// Replaces the entry's push on this person.
 void SetPush(const RecordingsPush& of, bool overwrite, ManifestRecording* entry) {
   const int person = of.made.push.person;
   std::string there = entry->pushed_person == person ? entry->push_csv : "";
@@ -337,7 +337,7 @@ int Run() {
   }
   for (const std::string& warning : FindingTexts(FitFindings(std::move(findings))))
     LOG(WARNING) << warning;
-  // Every refusal comes before the first file is written.
+  // All checks come before the first file is written.
   Manifest manifest;
   if (FLAGS_update) manifest = WithPushes(pushes, OverwriteGiven());
   for (size_t i = 0; i < pushes.size(); ++i) {

@@ -49,7 +49,7 @@ void CheckFigureFlags() {
               FLAGS_figures_out};
 }
 
-// The folder as a whole, or nothing of it.
+// Writes the whole folder or nothing of it.
 void WriteFigures(const Report& report) {
   AtomicFolder folder;
   OrFail(folder.Open(FLAGS_figures_out));

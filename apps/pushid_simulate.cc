@@ -70,7 +70,7 @@ namespace {
 
 using namespace pushid;
 
-// The library checks them too, but knows no flags.
+// The library checks the same ranges, but does not know the flags' names.
 void CheckRecordingNumbers() {
   CheckRange("people", FLAGS_people, 1, 10000);
   CheckRange("recordings_per_person", FLAGS_recordings_per_person, 1, 10000);
@@ -150,11 +150,12 @@ void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
   }
 }
 
-// --clips, --turns and --laboratory (allowed[0], of this value) draw all but these themselves.
+// Throws where flags beside --clips, --turns or --laboratory (allowed[0], with this value) have no
+// effect.
 void CheckNothingBut(const std::vector<std::string>& allowed, int count) {
   for (const std::string& name : ChangedFlags()) {
     if (std::find(allowed.begin(), allowed.end(), name) == allowed.end()) {
-      throw Error{"--" + name + " says nothing to --" + allowed[0] + "; leave it out"};
+      throw Error{"--" + name + " has no effect with --" + allowed[0] + "; leave it out"};
     }
   }
   Require("out", FLAGS_out, "name the folder to write");

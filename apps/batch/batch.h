@@ -60,7 +60,7 @@ struct BatchPlan {
   std::string dir;
   std::map<std::string, int> lines;  // of the keys of [data] and [jobs]
 
-  // An error about what the plan says under `key`, where more than the plan shows that it is wrong.
+  // An error about the plan's value under `key` that follows from more than the plan.
   Error ErrorAt(const std::string& key, const Error& error) const;
 };
 
@@ -94,8 +94,8 @@ std::vector<std::vector<std::string>> JobCommands(const BatchJob& job, const Bat
                                                   const std::string& folder,
                                                   const std::string& bin);
 
-// The part i of n (from 1) of the jobs, every n-th one. Jobs of the same id, of variants with the
-// same flags, are in one part.
+// Part i of n (from 1) of the jobs: every n-th one. Jobs of the same id (variants with the same
+// flags) are in one part.
 std::vector<BatchJob> Shard(const std::vector<BatchJob>& jobs, int i, int n);
 
 // Files that a job left in its folder: status.json, model.json and, for a fold, scores.json.
@@ -139,7 +139,7 @@ struct JobResult {
 
 std::string JobFolder(const BatchPlan& plan, const BatchJob& job);
 
-// Never an error: damage costs the one job, which the next run does again.
+// There are no errors: damage costs this job, which the next run does again.
 JobResult ReadResult(const BatchPlan& plan, const BatchJob& job);
 
 // Running a batch's jobs, several at a time, each in a folder and in processes of its own.
@@ -165,13 +165,14 @@ struct BatchOutcome {
   std::vector<std::string> unrecorded;  // why jobs failed whose folders could not take a status
 };
 
-// Errors: nothing can be written below the output folder; nothing is lost by trying again. What
-// hits one job's folder costs that job.
+// Errors: nothing can be written below the output folder; nothing is lost by trying again. A
+// failure in one job's folder costs that job.
 Result<BatchOutcome> RunBatch(const BatchPlan& plan, const std::vector<BatchJob>& jobs,
                               const BatchRunOptions& options,
                               const std::function<void(const BatchProgress&)>& progress);
 
-// The value of a key in a list in the order of first appearance; a new key gets an empty one.
+// The value of a key in a list in the order of first appearance; a new key is appended with an
+// empty value.
 template <typename Value>
 Value& ValueOf(const std::string& key, std::vector<std::pair<std::string, Value>>* list) {
   for (auto& [known, value] : *list) {
@@ -180,7 +181,7 @@ Value& ValueOf(const std::string& key, std::vector<std::pair<std::string, Value>
   return list->emplace_back(key, Value()).second;
 }
 
-// The table of a batch: one row a job, with what it found or why it failed.
+// The table of a batch: one row for each job, with what it found or why it failed.
 
 std::vector<JobResult> ReadResults(const BatchPlan& plan, const std::vector<BatchJob>& jobs);
 

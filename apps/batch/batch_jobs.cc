@@ -118,7 +118,7 @@ void Append(const Command& more, Command* command) {
   command->insert(command->end(), more.begin(), more.end());
 }
 
-// The flags of every program after the fit: recordings are read as those that were fitted.
+// The flags of every program after the fit: recordings are read as the fitted ones were.
 Command AfterFit(const std::string& program, const BatchJob& job, const BatchPlan& plan,
                  const std::vector<std::string>& ids, const std::string& model) {
   Command command = {program, "--model=" + model, "--recordings=" + plan.manifest,

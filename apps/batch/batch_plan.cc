@@ -2,7 +2,8 @@
 #include "apps/batch/batch.h"
 
 #define TOML_EXCEPTIONS 0
-// toml++ asserts what a zero byte in a plan breaks, just before it reports it as an error.
+// toml++ asserts something that a zero byte in a plan breaks, just before it reports it as an
+// error.
 #define TOML_ASSERT(condition) static_cast<void>(0)
 // toml++ 3.3 declares letters from U+00A1 to U+0499 impossible in its table of white space, which
 // leaves undefined what an umlaut outside of quotes does.
@@ -31,7 +32,7 @@
 namespace pushid {
 namespace {
 
-// Flags that no variant has, and what to do instead.
+// Flags that variants may not have, and what to do instead.
 const std::map<std::string, std::string> kOwnFlags = {
     {"recordings", "set it in [data]"},
     {"setting", "set it in [data]"},

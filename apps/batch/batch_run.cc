@@ -124,7 +124,7 @@ double Since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-// The last line that says why: a warning is of no such moment.
+// The last line of a log that gives a reason; warnings do not count.
 std::string LastLine(const std::string& path) {
   std::ifstream file(path);
   std::string last;
@@ -201,7 +201,8 @@ class Pool {
       ++outcome_.skipped;
       return;
     }
-    // Half-written, or failed. The folder itself stays: it is what is locked.
+    // A job that is half-written or failed is cleared; its folder stays, because it is what is
+    // locked.
     if (const MaybeError stuck = Empty(running.folder)) return Fail(running, stuck->ToString());
     running.commands = JobCommands(job, plan_, running.folder, options_.bin);
     running.begin = Clock::now();
@@ -288,7 +289,7 @@ class Pool {
     ++outcome_.done;
   }
 
-  // Costs this job only, unless nothing can be written at all.
+  // A failure here costs this job only, unless nothing can be written at all.
   void Fail(const Running& running, const std::string& reason) {
     ++outcome_.failed;
     if (!WriteStatus(running, reason)) return;

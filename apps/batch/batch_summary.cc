@@ -65,7 +65,7 @@ JobCell Number(double value, int digits) {
 
 JobCell Nothing() { return {}; }
 
-// A value that is not the data's own says so.
+// A value with its error and, unless the data identify it, its status.
 std::string EstimateText(const Estimate& e) {
   const std::string text = Rounded(e.value, 4), error = Rounded(e.standard_error, 3);
   return (std::isfinite(e.standard_error) ? text + " +- " + error : text) +
@@ -249,7 +249,7 @@ std::vector<std::pair<std::string, FoldScores>> ByGroup(const std::vector<JobRes
   return groups;
 }
 
-// "0.0123 +- 0.0045" of paired values; the error over folds.
+// "0.0123 +- 0.0045": mean of paired values with its error over folds.
 std::string MeanWithError(const std::vector<double>& values) {
   if (values.size() < 2) return "-";
   const MeanAndError mean = MeanOf(values);
@@ -282,9 +282,9 @@ std::vector<std::string> HeldOutRow(const std::string& group, const std::string&
   return cells;
 }
 
-// Errors of what was held out, a row a group and variant: means over those folds alone that all
-// variants have, so that none is judged by easier ones, and the difference to the first variant
-// with its standard error over folds. Says which folds are missing.
+// Errors on held-out recordings, a row for each group and variant: means over the folds that all
+// variants have, so that none is judged by easier ones, and the difference from the first variant
+// with its standard error over folds; and which folds are missing.
 TextTable HeldOutTable(const std::vector<JobResult>& rows) {
   std::vector<std::string> header = {"group", "variant", "folds compared"};
   const std::vector<Metric> metrics = HeldOutMetrics(rows);
@@ -339,7 +339,7 @@ struct BootstrapSpread {
   double standard_error, lower95, upper95;
 };
 
-// Groups of at least two replicas.
+// Spreads of groups with at least two replicas.
 std::vector<BootstrapSpread> SpreadOverReplicas(const std::vector<JobResult>& rows) {
   std::vector<BootstrapSpread> spreads;
   std::map<std::pair<std::string, std::string>, std::map<std::string, std::vector<double>>> drawn;

@@ -13,10 +13,10 @@
 
 namespace pushid {
 
-// postprocess_flags.cc: what makes restored bodies fit, as --postprocess lists it.
+// Corrections of restored bodies, by --postprocess (postprocess_flags.cc).
 PostprocessOptions PostprocessFromCommandLine();
 
-// published_flags.cc: the paper whose settings are asked for, sde or sdm; empty: none.
+// The paper whose settings are asked for, sde or sdm; empty: none (published_flags.cc).
 std::string PublishedFromCommandLine();
 
 // The flags by which an executable takes a restoration.
@@ -31,8 +31,8 @@ struct RestorationFlags {
 
 RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise = "");
 
-// people: the most there are in one recording. Warns where a restoration that never saw a group is
-// to make one.
+// people: the most in one recording. Warns where a restoration that never saw a group is used for
+// one.
 std::unique_ptr<Restoration> LoadFlaggedRestoration(const RestorationFlags& flags, int people);
 
 // "--poses_out needs bodies: name the folder ...".

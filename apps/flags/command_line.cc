@@ -63,7 +63,7 @@ bool Changed(const FlagInfo& flag) {
   return numbers ? now != before : flag.current_value != flag.default_value;
 }
 
-// Is given, and not a switch that is off by default and given as off.
+// Whether a flag is given, and not a switch that is off by default and given as off.
 bool Asks(const std::string& name) {
   const FlagInfo flag = gflags::GetCommandLineFlagInfoOrDie(name.c_str());
   const bool off = flag.type == "bool" && flag.current_value == "false" && !Changed(flag);
@@ -115,7 +115,7 @@ std::string HeadingOf(const FlagInfo& flag) {
   return "settings";
 }
 
-// full: what is rarely changed, too, is described and not only named.
+// full: options that are rarely changed are described too, not only named.
 std::string FlagHelp(bool full) {
   std::map<std::string, std::string> below;
   std::string named;
@@ -146,12 +146,12 @@ std::string FlagHelp(bool full) {
   return text;
 }
 
-// Names the program, and what may be meant.
+// The error names the program, and the flag that may have been meant.
 Error NoSuchFlag(const std::string& name) {
   std::vector<std::string> known;
   for (const FlagInfo& flag : OwnFlags()) known.push_back(flag.name);
   std::string meant = ClosestName(name, known);
-  // "out", where several things can be written.
+  // For "out" all outputs are suggested.
   for (const std::string& one : known) {
     if (!meant.empty() && !EndsWith(meant, "_" + name)) break;
     if (EndsWith(one, "_" + name)) meant += (meant.empty() ? "" : " or --") + one;
@@ -166,7 +166,7 @@ bool Asked(const char* flag) {
   return gflags::GetCommandLineOption(flag, &value) && value == "true";
 }
 
-// Sets the flag on the way, as gflags will again.
+// Checks a value by setting the flag, as gflags will again.
 MaybeError CheckValue(const gflags::CommandLineFlagInfo& flag, const std::string& value) {
   if (flag.type == "string" ||
       !gflags::SetCommandLineOption(flag.name.c_str(), value.c_str()).empty()) {
@@ -185,7 +185,7 @@ bool NamesFlag(const std::string& word) {
   return gflags::GetCommandLineFlagInfo(word.substr(2, word.find('=') - 2).c_str(), &flag);
 }
 
-// Names and values, before gflags sees them. `-h` becomes --help.
+// Checks names and values before gflags sees them. `-h` becomes --help.
 MaybeError CheckFlags(int argc, char** argv) {
   static char help[] = "--help";
   for (int i = 1; i < argc; ++i) {
@@ -221,7 +221,7 @@ MaybeError CheckFlags(int argc, char** argv) {
   return std::nullopt;
 }
 
-// A result that a full disk or a closed pipe swallowed must not look done.
+// A result that a full disk or a closed pipe swallowed is an error.
 int CheckPrinted(int exit_code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
   const int failed = Fail(std::string("stdout cannot be written: ") + std::strerror(errno));

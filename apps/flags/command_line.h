@@ -19,8 +19,8 @@ namespace pushid {
 int RunApp(int argc, char** argv, const std::string& usage, int (*run)(),
            std::vector<std::string>* words = nullptr);
 
-// A flag that is given several times would keep its last value alone: all of them, with the
-// separator between. Before RunApp.
+// Joins the values of a flag that is given several times, of which gflags would keep the last
+// alone. Called before RunApp.
 void JoinRepeated(const std::string& flag, char separator, int argc, char** argv);
 
 // Errors: one of `flags` is given and acts, and none of `others` does; `why` follows "--flag needs
@@ -36,20 +36,20 @@ void CheckExcludes(const std::vector<std::string>& flags, const std::string& oth
 // Whether a flag was given, even with its default's value.
 bool Given(const char* flag);
 
-// "--recordings is missing ..." when a flag that is needed is empty.
+// Throws "--recordings is missing ..." when a flag that is needed is empty.
 void Require(const std::string& flag, const std::string& value, const std::string& what);
 
-// "--spacing is -1; it must lie between ...". Written so that NaN fails.
+// Throws "--spacing is -1; it must lie between ..."; NaN is outside every range.
 void CheckRange(const char* flag, double value, double lowest, double highest);
-// The value that a flag has, into its place.
+// Copies the value of a flag to its target and checks it.
 template <typename Value, typename Target>
 void TakeInRange(const char* flag, Value value, double lowest, double highest, Target* target) {
   *target = value;
   CheckRange(flag, static_cast<double>(value), lowest, highest);
 }
 
-// --length_unit or --length_scale, whichever has a value, into its place. Errors: both; a unit or a
-// scale that is none.
+// Copies --length_unit or --length_scale, whichever has a value. Errors: both; an invalid unit or
+// scale.
 void TakeLength(const std::string& unit, double scale, std::optional<LengthUnit>* length_unit,
                 std::optional<double>* length_scale);
 
@@ -60,7 +60,7 @@ std::map<std::string, std::string> EffectiveFlags();
 // The beginning of a program's JSON: name of its format, version, effective flags.
 nlohmann::ordered_json ResultHead(const char* schema);
 
-// Names of those that are not at their defaults.
+// Names of flags that are not at their defaults.
 std::vector<std::string> ChangedFlags();
 
 }  // namespace pushid

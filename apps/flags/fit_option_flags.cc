@@ -24,7 +24,7 @@ void Register(const FitOptionRow& row, const std::string& help, const T& value) 
   gflags::FlagRegisterer(row.name.c_str(), words.back().c_str(), __FILE__, current, &values.back());
 }
 
-// Values are read by the rows, which say more than gflags does where one is wrong.
+// Rows parse the values, because their errors say more than those of gflags.
 bool RegisterFitFlags() {
   const FitOptions defaults;
   for (const FitOptionRow& row : FitOptionRows()) {

@@ -17,7 +17,7 @@ namespace pushid {
 
 ForecastUse ForecastUseFlag() {
   ForecastUse use = ForecastUse::kBoth;
-  ParseName("--forecast", FLAGS_forecast, &use);  // CheckObservedFlag has told of what is none
+  ParseName("--forecast", FLAGS_forecast, &use);  // CheckObservedFlag refuses other names
   return use;
 }
 
@@ -27,7 +27,7 @@ void CheckObservedFlag() {
   ForecastUse use;
   OrFail(ParseName("--forecast", FLAGS_forecast, &use));
   if (Given("forecast") && !Given("observed")) {
-    throw Error{"--forecast says who forecasts after observed frames: it needs --observed"};
+    throw Error{"--forecast needs --observed: it chooses who forecasts after observed frames"};
   }
   CheckObservedFlag({});
 }

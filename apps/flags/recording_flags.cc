@@ -110,7 +110,7 @@ std::vector<Recording> LoadFlaggedRecordings(const std::vector<std::string>& ids
   WarnGrouped(found);
   if (warnings != nullptr) *warnings = found;
   if (!recordings.ok()) throw recordings.error();
-  // Pushes may be written again where they were read; a motion cannot be had back.
+  // Pushes may be written where they were read; a motion must not be overwritten.
   const OutputFiles outputs;
   for (const ManifestRecording& entry : manifest.value().recordings) {
     std::vector<std::string> files = entry.motion;
@@ -166,13 +166,13 @@ void CheckPushed(const std::vector<Recording>& recordings) {
     if (!recording.pushes.empty() || !recording.ground.empty()) continue;
     if (recording.people[0].weight == std::vector<double>(recording.num_frames(), 0.0)) {
       throw Error{"recording " + recording.id +
-                      " was measured by force plates alone, on ground that does not move: nothing "
-                      "in it tells what moved the person; give its \"ground\", or leave it out "
+                      " was measured by force plates alone, on ground that does not move, so "
+                      "nothing explains the motion; give its \"ground\", or leave it out "
                       "(--leave_out)",
                   FLAGS_recordings};
     }
     throw Error{"recording " + recording.id +
-                    " has no push, and no ground that moves: estimate a push with pushid-push, or "
+                    " has neither a push nor moving ground: estimate a push with pushid-push, or "
                     "leave it out (--leave_out)",
                 FLAGS_recordings};
   }

@@ -55,8 +55,8 @@ Provenance ProvenanceOfRun();
 // Throws where a recording has no push: without one there is nothing to learn from.
 void CheckPushed(const std::vector<Recording>& recordings);
 
-// overwrite_flag.cc: --overwrite, of the programs that write what a person may have edited or
-// cannot make again.
+// --overwrite (overwrite_flag.cc), for programs whose outputs a person may have edited or cannot
+// make again.
 bool OverwriteGiven();
 
 // An Error where the file is there and --overwrite is not given. flag names the file. besides: what

@@ -40,7 +40,7 @@ RestorationFlags RestorationFlagsFromCommandLine(const std::string& otherwise) {
 
 namespace {
 
-// A restoration that never saw a group is to make one.
+// Warns where a restoration that never saw a group is used for one.
 void WarnOfCrowd(const RestorationFlags& flags, int people) {
   if (people < 2) return;
   if (OrFail(LearnedAlone(flags.name))) {

@@ -23,7 +23,7 @@
 namespace pushid {
 namespace {
 
-// A document as Python has it; the texts that stand for numbers JSON does not know are numbers.
+// A JSON document as Python objects; texts that stand for infinity and NaN become numbers.
 py::object FromJson(const nlohmann::ordered_json& json) {
   if (json.is_null()) return py::none();
   if (json.is_boolean()) return py::bool_(json.get<bool>());
@@ -49,7 +49,7 @@ py::object FromJson(const nlohmann::ordered_json& json) {
 
 using Advised = std::vector<std::pair<std::string, std::string>>;
 
-// The model with what it advises as calls.
+// The model with its advice as calls.
 FittedModel InCalls(const Model& model, const Advised& calls) {
   FittedModel fitted = *model.fitted;
   fitted.advice.clear();

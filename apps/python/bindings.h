@@ -41,7 +41,7 @@ auto WithoutGil(Compute compute) {
   return compute();
 }
 
-// Progress of something long: looks for signals, so that Ctrl-C ends it, and tells `callable`.
+// Progress of a long computation: checks for signals, so that Ctrl-C ends it, and calls `callable`.
 // Called without the GIL.
 template <typename... Args>
 auto CallbackOf(const py::object& callable) {
@@ -61,7 +61,7 @@ inline JobProgress JobsOf(const py::object& callable) { return CallbackOf<int, i
 // Flags and programs as options and calls: "--fix=mu=0" -> "fix={"mu": 0}", "pushid-push" ->
 // "pushid.estimate_push".
 std::string InPython(const std::string& text);
-// Equal ones, or those that differ only in the recording, once.
+// Warnings once each, where they are equal or differ only in the recording.
 std::vector<std::string> InPython(const Warnings& warnings);
 // Warns by Python's warnings.warn.
 void Warn(const std::string& text);

@@ -50,7 +50,7 @@ void SetBlasThreads(int num_threads) {
   auto* const set = Loaded<void(int)>("openblas_set_num_threads");
   if (set == nullptr || std::getenv("OPENBLAS_NUM_THREADS") != nullptr) return;
   set(num_threads);
-  // Ends those that look for work; the next product that wants them starts them again.
+  // Ends threads that look for work; the next product that needs them starts them again.
   auto* const end_threads = Loaded<int()>("blas_thread_shutdown_");
   if (num_threads == 1 && end_threads != nullptr) end_threads();
 }
@@ -63,7 +63,8 @@ constexpr const char* kInputs[] = {"recordings", "model",    "physics",  "truth"
                                    "sensor",     "masses",   "mapping",  "generator",
                                    "plan",       "flagfile", "formation"};
 
-// Through symbolic and hard links too. One file that exists is never another that does not.
+// Compares files through symbolic and hard links too. A file that exists is never the same as one
+// that does not.
 bool Same(const std::string& a, const std::string& b) {
   std::error_code failed, unknown;
   const bool same = fs::equivalent(a, b, failed);
@@ -81,7 +82,7 @@ Error BothName(const std::string& a, const std::string& b, const std::string& pa
   return Error{a + " and " + b + " both name " + path + "; give each a file of its own"};
 }
 
-// The name of a flag says what it writes or, of pages and pictures, its help in brackets.
+// The kind of output by the flag's name or, for pages and pictures, by its help in brackets.
 struct OutputKind {
   const char *flag, *help, *ending;
 };
@@ -96,7 +97,7 @@ bool Writes(const std::string& name, const std::string& help, const OutputKind& 
          (kind.help != nullptr && help.find(kind.help) != std::string::npos);
 }
 
-// A page under the name of a picture, say.
+// Refuses, for instance, a page under the name of a picture.
 MaybeError CheckKind(const std::string& name, const std::string& path, const std::string& help) {
   for (const OutputKind& kind : kKinds) {
     if (!Writes(name, help, kind) || EndsWith(path, kind.ending)) continue;
@@ -108,7 +109,7 @@ MaybeError CheckKind(const std::string& name, const std::string& path, const std
   return std::nullopt;
 }
 
-// A file that would hold something else than its name says.
+// Refuses a file whose content would differ from what its name says.
 MaybeError CheckEnding(const std::string& file) {
   const size_t dot = file.rfind('.');
   if (dot == std::string::npos) return std::nullopt;
@@ -156,7 +157,7 @@ MaybeError CheckOutputs() {
     gflags::CommandLineFlagInfo flag;
     const bool known = gflags::GetCommandLineFlagInfo(input, &flag);
     if (!known || flag.is_default || flag.current_value.empty()) continue;
-    // A formation may be a word as well as a file.
+    // A formation may be a word instead of a file.
     if (flag.name == "formation" && !fs::is_regular_file(flag.current_value)) continue;
     for (const std::string& path : ManifestPaths(flag.current_value)) {
       if (MaybeError error = outputs.CheckNotRead("--" + flag.name, path)) return error;

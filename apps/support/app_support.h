@@ -52,7 +52,8 @@ inline bool IsOutputFlag(const std::string& name) {
 // Checks, before a long run, that the named outputs (not empty) can be written.
 MaybeError CheckOutputFiles(std::initializer_list<std::string> files);
 
-// Between the flags, as they are given. RunApp asks for it before anything is done.
+// Checks that no output would replace an input or another output. RunApp calls it before anything
+// is done.
 MaybeError CheckOutputs();
 
 // The files that the output flags name.

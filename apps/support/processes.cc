@@ -24,7 +24,7 @@ namespace {
 constexpr int kCannotStart = 127;
 constexpr std::size_t kLongestArgument = 128 * 1024 - 1;  // Linux: MAX_ARG_STRLEN
 
-// Between fork and exec: only calls that are safe there.
+// Runs between fork and exec, where only some calls are safe.
 [[noreturn]] void RunInChild(const ChildSpec& spec, char* const* argv, pid_t parent, int out,
                              int err) {
   setpgid(0, 0);  // so that a terminal's Ctrl-C reaches the batch alone
@@ -47,7 +47,7 @@ constexpr std::size_t kLongestArgument = 128 * 1024 - 1;  // Linux: MAX_ARG_STRL
   _exit(kCannotStart);
 }
 
-// A flag that is longer goes by way of a file beside the outputs, --flagfile.
+// A longer flag is passed by a file beside the outputs, --flagfile.
 Result<std::vector<std::string>> Shortened(const ChildSpec& spec) {
   std::vector<std::string> words = spec.command;
   for (std::size_t i = 1; i < words.size(); ++i) {
@@ -153,7 +153,7 @@ FolderLock::~FolderLock() {
 Result<bool> FolderLock::Take(const std::string& folder) {
   descriptor_ = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor_ < 0) return Error{"cannot be opened: " + std::string(strerror(errno)), folder};
-  // A file system that knows no locks is no reason to do nothing.
+  // On a file system without locks the job runs without one.
   return flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 

@@ -32,7 +32,7 @@ std::string OwnFolder();
 // arguments. Returns only where that fails.
 Error RunInstead(const std::string& name, const std::vector<std::string>& arguments);
 
-// A command as a shell takes it, every word quoted.
+// A command for a shell, every word quoted.
 std::string ShellText(const std::vector<std::string>& command);
 
 struct ChildEnd {
@@ -66,7 +66,7 @@ class FolderLock {
   int descriptor_ = -1;
 };
 
-// SIGINT, SIGTERM and SIGCHLD as things to read. Nothing happens between two looks: the signals are
+// Reads SIGINT, SIGTERM and SIGCHLD. Nothing happens between two calls of Wait: the signals are
 // blocked as long as this lives.
 class SignalReader {
  public:

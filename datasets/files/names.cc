@@ -66,7 +66,7 @@ std::string ClosestName(const std::string& word, const std::vector<std::string>&
 
 std::string Suggestion(const std::string& word, const std::vector<std::string>& known) {
   const std::string meant = ClosestName(word, known);
-  return meant.empty() ? "" : "; is " + meant + " meant?";
+  return meant.empty() ? "" : "; did you mean " + meant + "?";
 }
 
 std::string Joined(const std::vector<std::string>& texts, const std::string& between) {

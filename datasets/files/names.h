@@ -24,7 +24,7 @@ std::string CountText(std::size_t number, const std::string& noun, const std::st
 // Most names of a file that an error lists.
 inline constexpr std::size_t kNamesInErrors = 8;
 
-// "there is no joint 'Hip'; it has Hips, Spine, ... (75 joints); is Hips meant?"
+// "there is no joint 'Hip'; it has Hips, Spine, ... (75 joints); did you mean Hips?"
 Error UnknownNameError(const std::string& path, const std::string& noun,
                        const std::vector<std::string>& names, const std::string& name);
 
@@ -32,7 +32,7 @@ Error UnknownNameError(const std::string& path, const std::string& noun,
 // or like none of them.
 std::string ClosestName(const std::string& word, const std::vector<std::string>& known);
 
-// "; is hip meant?", or nothing.
+// "; did you mean hip?", or nothing.
 std::string Suggestion(const std::string& word, const std::vector<std::string>& known);
 
 // "a,b" as a and b; none of an empty text.

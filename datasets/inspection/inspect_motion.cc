@@ -1,4 +1,5 @@
-// datasets: what can be seen of a motion before anything is fitted.
+#include "datasets/inspection/inspect_motion.h"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -6,7 +7,6 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/units.h"
-#include "datasets/inspection/inspection.h"
 #include "datasets/loading/motion_preparation.h"
 
 namespace pushid {

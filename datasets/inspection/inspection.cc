@@ -18,6 +18,7 @@
 #include "datasets/formats/motion_formats.h"
 #include "datasets/formats/trajectories.h"
 #include "datasets/inspection/findings.h"
+#include "datasets/inspection/inspect_motion.h"
 #include "datasets/loading/ground_record.h"
 #include "datasets/loading/load_recordings.h"
 #include "datasets/loading/plate_record.h"

@@ -12,11 +12,8 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "datasets/formats/point_motion.h"
 #include "datasets/loading/foot_steps.h"
-#include "datasets/manifest/body_roles.h"
 #include "datasets/manifest/column_mapping.h"
-#include "datasets/manifest/joint_choice.h"
 
 namespace pushid {
 
@@ -75,19 +72,5 @@ std::string InspectionText(const Inspection& inspection);
 
 // As above, with names and numbers: {"file", "format", "facts", "warnings", "ground", "plates"}.
 nlohmann::ordered_json InspectionJson(const Inspection& inspection);
-
-// Two points of the pelvis, one on each side, as indices; empty where there are none.
-struct PelvisSides {
-  std::vector<int> left{}, right{};
-  bool known() const { return !left.empty() && !right.empty(); }
-};
-// The anterior iliac spines, or the hip joints, where the file has them itself.
-PelvisSides SidesOf(const Result<BodyRoles>& roles);
-
-// A motion: unit, axes, rate, gaps, jumps, standing height, a static start, the onset of the push,
-// steps. Adds facts, warnings and the picture's data. `joints`: indices into motion.names, all of
-// which were read; without them only rate, gaps and jumps are looked at. pelvis: alike.
-void InspectMotion(const PointMotion& motion, const std::optional<PendulumJoints>& joints,
-                   const PelvisSides& pelvis, Inspection* inspection);
 
 }  // namespace pushid

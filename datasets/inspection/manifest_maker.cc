@@ -98,7 +98,8 @@ class Maker {
       const std::string meant = ClosestName(name, kUnderstood);
       if (meant.empty() || pattern_.Has(meant)) continue;
       made_.warnings.push_back("the pattern has {" + name +
-                               "}, which only tells recordings apart; is {" + meant + "} meant?");
+                               "}, which only distinguishes recordings; did you mean {" + meant +
+                               "}?");
     }
   }
 

@@ -88,7 +88,7 @@ ManifestGround ReadGroundKey(const JsonDocument& document, JsonFields* fields) {
   }
   if (!given.failed() && !ground.markers.empty() && ground.markers.size() < 3) {
     given.Fail("markers", "names " + std::to_string(ground.markers.size()) +
-                              "; three or more tell a shift from a tilt");
+                              "; a shift and a tilt differ only with three or more");
   }
   ground.quantity = given.Choice("quantity", GroundQuantity::kDisplacement);
   ground.start_s = ReadStart(&given);
@@ -134,7 +134,7 @@ bool ReadPlatesAlone(JsonFields* fields) {
   if (motion != "none") {
     fields->Fail("motion", "is " + Quoted(motion) +
                                "; it may be \"none\", for a person on force plates without "
-                               "markers; motion files stand under " +
+                               "markers; motion files are listed under " +
                                MotionKeys());
     return false;
   }

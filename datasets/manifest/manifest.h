@@ -131,8 +131,8 @@ std::string ResolvePath(const std::string& manifest_path, const std::string& fil
 // Keys of a recording that this program knows.
 const std::vector<std::string>& ManifestKeys();
 
-// "has the key 'push_scv', which is not known and not used; is push_csv meant?" for each. Keys that
-// are like no known one are a user's own, and fine.
+// "has the key 'push_scv', which is not known and not used; did you mean push_csv?" for each. Keys
+// that are like no known one are a user's own, and fine.
 std::vector<std::string> MisspeltKeys(const ManifestRecording& entry);
 
 // Which recordings a run uses: indices into manifest.recordings, in the manifest's order.

@@ -220,7 +220,7 @@ class Panel {
     for (double tick : numbers ? y_.Ticks(3) : std::vector<double>()) {
       if (chart_.logarithmic_y && tick != std::floor(tick)) continue;
       grid.push_back({left_, y_(tick), right_, y_(tick)});
-      // The names of lanes stand below.
+      // Names of lanes stand below the plot.
       if ((!chart_.lanes.empty() && y_(tick) > bottom_ - 6) || below - y_(tick) < kLine) continue;
       below = y_(tick);
       svg_.Text(left_ - 5, y_(tick) + 3.5,
@@ -229,7 +229,7 @@ class Panel {
     svg_.Lines(grid, "grid");
   }
 
-  // Logarithms of 1, 2 and 5 times powers of ten; over many of the powers alone.
+  // Ticks at 1, 2 and 5 times powers of ten, as logarithms; over many powers at these alone.
   static std::vector<double> Powers(const SvgScale& scale) {
     std::vector<double> ticks;
     for (double power = std::floor(scale.from()); power <= scale.to(); ++power) {
@@ -287,7 +287,7 @@ double HeightOf(const Chart& chart, double width) {
     const double metre = (width - m.left - m.right) / (*chart.x_to - *chart.x_from);
     return m.top + m.bottom + metre * (*chart.y_to - *chart.y_from);
   }
-  // Lower where it is narrower; strips of a row or two keep their height.
+  // Panels are lower where they are narrower; strips of a row or two keep their height.
   if (chart.y_categories.empty())
     return chart.bare_y ? chart.height : chart.height * std::clamp(width / chart.width, 0.8, 1.0);
   const Margins margins(chart, width);
@@ -300,7 +300,7 @@ void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg) {
 
 namespace {
 
-// A panel may get so much narrower than wanted before fewer stand side by side.
+// Least share of its wanted width to which a panel shrinks before fewer stand side by side.
 constexpr double kNarrowest = 0.65;
 constexpr double kLegendRow = 18, kHeading = 22;
 
@@ -309,7 +309,7 @@ double EntryWidth(const LegendEntry& entry) {
   return 44 + 6.6 * static_cast<double>(entry.name.size());
 }
 
-// Entries by line, so that none is wider than the picture.
+// Splits the entries into lines, so that none is wider than the picture.
 std::vector<std::vector<LegendEntry>> LegendLines(const std::vector<LegendEntry>& entries,
                                                   double width) {
   std::vector<std::vector<LegendEntry>> lines;

@@ -13,8 +13,8 @@ namespace pushid {
 
 using ChartPoints = std::vector<std::pair<double, double>>;
 
-// Told apart on light and on dark paper, by the colour-blind and in grey. Those of many panels are
-// classes of SvgStyle.
+// Looks that differ on light and on dark paper, for the colour-blind and in grey. Those of many
+// panels are classes of SvgStyle.
 inline constexpr char kMeasuredLook[] = "ink";
 inline constexpr char kPredictedLook[] = "predicted";
 inline constexpr char kWideBandLook[] = "band wide";
@@ -24,8 +24,8 @@ inline constexpr char kDotLook[] = "stroke:none;fill:#3b82f6";
 inline constexpr char kLimitLook[] = "fill:none;stroke-dasharray:5 4;stroke:#d55e00";
 inline constexpr char kMarkLook[] = "fill:none;stroke-width:1.2;stroke:#d55e00";
 
-// Wanted width of a panel: three fit beside each other on a page, one on a telephone and in a
-// column of a journal; of small panels four, one and two.
+// Wanted width of a panel: three fit side by side on a page, one on a telephone and in a journal's
+// column; of small panels four, one and two.
 inline constexpr double kPanelWidth = 332, kPanelHeight = 190;
 inline constexpr double kSmallWidth = 250, kSmallHeight = 160;
 
@@ -40,7 +40,7 @@ struct ChartBand {
   std::string look;
 };
 
-// A strip under the plot with bars along x: when something is so.
+// A strip under the plot with bars along x over the times of a state.
 struct ChartLane {
   std::string name;
   std::vector<std::pair<double, double>> bars;
@@ -53,7 +53,7 @@ struct ChartBar {
   std::string look, tooltip;
 };
 
-// Written in the plot, its middle there.
+// A label in the plot, centred there.
 struct ChartLabel {
   double x = 0.0, y = 0.0;
   std::string text, look;
@@ -82,7 +82,7 @@ struct Chart {
   std::vector<std::string> x_categories = {};
   std::vector<std::vector<double>> cells = {};  // [row][column]; NaN: "-"
   double full_cell = 1.0;
-  // Wanted; rows of categories have their own height.
+  // Wanted height; rows of categories have their own.
   double width = kPanelWidth, height = kPanelHeight;
 
   void Shrink() { width = kSmallWidth, height = kSmallHeight; }
@@ -102,10 +102,10 @@ struct Figure {
 
 // Height of a panel that is drawn so wide.
 double HeightOf(const Chart& chart, double width);
-// Axes and labels lie within the box.
+// Draws a chart; axes and labels lie within the box.
 void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg);
 
-// A picture of its own, as wide as wanted.
+// Draws a panel as a picture of its own, as wide as wanted.
 SvgPicture DrawPanel(const Chart& chart);
 // Draws all panels in one picture, as many side by side as fit.
 SvgPicture DrawFigure(const Figure& figure, double width, const std::string& title);

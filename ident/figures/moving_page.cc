@@ -72,7 +72,7 @@ std::string ForScript(std::string json) {
   return json;
 }
 
-// The motion keeps most of the window, and the page is longer than that.
+// The motion fills most of the window; the page is longer than that.
 std::string FiguresHtml(const std::vector<std::string>& figures) {
   if (figures.empty()) return "";
   std::string html = "<style>body{height:auto}canvas{flex:none;height:80vh}" +

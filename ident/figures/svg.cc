@@ -32,7 +32,8 @@ using Points = std::vector<std::pair<double, double>>;
 
 constexpr double kTolerance = 0.4;  // pixels
 
-// Douglas and Peucker: keeps the farthest point of a stretch while it is too far from the chord.
+// Simplifies a line (Douglas and Peucker): keeps the farthest point of a stretch while it is too
+// far from the chord.
 void Thin(const Points& points, size_t first, size_t last, std::vector<bool>* kept) {
   const auto [x1, y1] = points[first];
   const double dx = points[last].first - x1, dy = points[last].second - y1;
@@ -53,7 +54,7 @@ void Thin(const Points& points, size_t first, size_t last, std::vector<bool>* ke
   Thin(points, at, last, kept);
 }
 
-// Coordinates are most of a page: tenths of a pixel, and from one point to the next.
+// Coordinates are most of a page, so they are tenths of a pixel, and relative to the point before.
 class PathData {
  public:
   void MoveTo(double x, double y) {
@@ -78,7 +79,7 @@ class PathData {
     x_ = to_x;
     y_ = to_y;
   }
-  // A minus parts numbers as well as a space does.
+  // A minus sign separates numbers as well as a space does.
   void Append(long tenths, bool first) {
     if (tenths < 0) {
       text_ += '-';
@@ -95,7 +96,7 @@ class PathData {
   long x_ = 0, y_ = 0;
 };
 
-// "-0.5" with U+2212: a hyphen before a digit, and at the start of a word.
+// Writes "-0.5" with U+2212 for a hyphen before a digit at the start of a word.
 std::string WithMinusSigns(std::string_view text) {
   std::string with;
   for (size_t i = 0; i < text.size(); ++i) {

@@ -17,10 +17,10 @@
 
 namespace pushid {
 
-// `&`, `<`, `>` and quotes for text and attributes; control characters become spaces.
+// Escapes `&`, `<`, `>` and quotes for text and attributes; control characters become spaces.
 std::string EscapeXml(std::string_view text);
 
-// Shortest of two decimals: enough for a pixel.
+// The shortest text with two decimals, enough for a pixel.
 std::string SvgNumber(double value);
 
 // The style sheet that every picture carries, for a page that holds many.
@@ -36,13 +36,13 @@ struct SvgLine {
 
 class SvgPicture {
  public:
-  // title: what a screen reader says and a browser's tab shows.
+  // title: read by screen readers and shown by a browser's tab.
   SvgPicture(double width, double height, std::string_view title);
 
   // `look`: a CSS declaration ("fill:#fff;opacity:0.5") where it has a colon, else class names.
   void Rect(const SvgBox& box, std::string_view look, std::string_view tooltip = "");
   void Line(double x1, double y1, double x2, double y2, std::string_view look);
-  // Many of one look as one element: a page of panels is mostly grid.
+  // Draws many lines of one look as one element: a page of panels is mostly grid.
   void Lines(const std::vector<SvgLine>& lines, std::string_view look);
   void Circle(double x, double y, double radius, std::string_view look,
               std::string_view tooltip = "");
@@ -83,7 +83,7 @@ class SvgScale {
   double operator()(double value) const;
   double from() const { return from_; }
   double to() const { return to_; }
-  // Multiples of 1, 2 or 5 times a power of ten within the range, about `wanted` of them.
+  // Ticks at multiples of 1, 2 or 5 times a power of ten within the range, about `wanted` of them.
   std::vector<double> Ticks(int wanted) const;
 
  private:

@@ -13,8 +13,8 @@
 
 namespace pushid {
 
-// Words and counts as they are; other numbers at full precision, for files. Tables for readers
-// round (Rounded).
+// A cell: words and counts as they are; other numbers at full precision, for files. Tables for
+// readers round (Rounded).
 struct TableCell {
   TableCell(std::string words) : text(std::move(words)) {}
   TableCell(const char* words) : text(words) {}
@@ -36,7 +36,7 @@ class TextTable {
   explicit TextTable(std::vector<std::string> header)
       : TextTable(header, std::vector<bool>(header.size(), true)) {}
   TextTable(std::vector<std::string> header, std::vector<bool> left);
-  // The first column is words, the others are numbers.
+  // A table whose first column is words and whose others are numbers.
   static TextTable OfNumbers(std::vector<std::string> header);
 
   void Add(std::vector<std::string> row);
@@ -49,7 +49,7 @@ class TextTable {
   bool empty() const { return rows_.size() < 2; }
   std::string ToString() const;
 
-  // The header first; a gap is an empty row.
+  // All rows, the header first; a gap is an empty row.
   const std::vector<std::vector<std::string>>& rows() const { return rows_; }
   bool IsWords(size_t column) const { return left_[column]; }
 

@@ -130,16 +130,16 @@ void AddSlowness(MeasuredWave* wave) {
   wave->quantile = StudentQuantile95(freedom);
 }
 
-// "0.75 m/s (95 %: 0.5 to 1.3, ...)"; what the onsets leave open where they tell no speed.
+// "0.75 m/s (95 %: 0.5 to 1.3, ...)"; or why the onsets give no speed.
 std::string SpeedOf(double slowness, double half_width, const std::string& from) {
   const double slowest = slowness + half_width, fastest = slowness - half_width;
-  if (!(slowest > 0.0)) return "none: who is farther away starts earlier";
+  if (!(slowest > 0.0)) return "none: people farther away start earlier";
   const std::string interval = fastest > 0.0
                                    ? Rounded(1.0 / slowest, 3) + " to " + Rounded(1.0 / fastest, 3)
                                    : "above " + Rounded(1.0 / slowest, 3);
   const std::string ending = "95 %: " + interval + ", from " + from;
   return slowness > 0.0 ? Rounded(1.0 / slowness, 3) + " m/s (" + ending + ")"
-                        : "none can be told (" + ending + ")";
+                        : "it cannot be determined (" + ending + ")";
 }
 
 MaybeError CheckOnePointAPerson(const std::string& path, std::optional<MotionFormat> format) {
@@ -296,7 +296,7 @@ std::string WaveText(const MeasuredWave& wave) {
                Rounded(person.displaced, 2)});
   }
   text += table.ToString() + "speed of the onset: ";
-  if (!wave.slowness) return text + "none of fewer than three people who move\n";
+  if (!wave.slowness) return text + "none: fewer than three people move\n";
   return text +
          SpeedOf(*wave.slowness, wave.quantile * wave.error,
                  "the scatter of " + std::to_string(movers) + " onsets about a line") +

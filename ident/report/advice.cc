@@ -341,7 +341,7 @@ void Adviser::Recordings() {
 void Adviser::Intervals() {
   if (model_.profiles.empty()) {
     const bool late = Acts(kReactionDelay, result_.options.model);
-    Add(late ? "Its profile shows how well the delay is told from damping."
+    Add(late ? "A profile shows how well the data distinguish the delay from damping."
              : "The intervals assume a quadratic cost; profiles show its true shape.",
         Check().Set("profile", late ? "reaction_delay" : "all").Set("num_threads", "2"));
   }

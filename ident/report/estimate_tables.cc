@@ -552,37 +552,6 @@ std::string GainRange(const LoopNumbers& numbers) {
          (numbers.gain_up ? Rounded(*numbers.gain_up, 2) : "any");
 }
 
-std::string Sentence(const NamedLoop& loop) {
-  const LoopNumbers& n = loop.numbers;
-  std::string text =
-      "The loop, " + loop.name + ": stiffness " + Rounded(n.stiffness_ratio, 3) + " times m g l";
-  if (!n.stable) {
-    return text + "; UNSTABLE at rest, it grows at " + Rounded(n.fastest_growth, 2) +
-           " 1/s: there are no margins.";
-  }
-  if (n.damping_ratio) {
-    text += ", damping ratio " + Rounded(*n.damping_ratio, 2) + " of the oscillation at " +
-            Rounded(*n.natural_hz, 2) + " Hz that dies out last";
-  } else {
-    text += ", no oscillation";
-  }
-  if (n.phase_margin) {
-    text += "; phase margin " + Rounded(kDegrees * *n.phase_margin, 2) + " degrees at " +
-            Rounded(*n.crossover_hz, 2) + " Hz";
-  }
-  if (n.delay_margin) {
-    text += "; feedback that comes another " + Rounded(*n.delay_margin, 2) +
-            " s later (delay margin) is unstable";
-  }
-  if (n.gain_down || n.gain_up) {
-    text += "; so is feedback " +
-            (n.gain_down ? Rounded(*n.gain_down, 2) + " times as strong or less" : std::string()) +
-            (n.gain_down && n.gain_up ? ", or " : "") +
-            (n.gain_up ? Rounded(*n.gain_up, 2) + " times as strong or more" : std::string());
-  }
-  return text + ".";
-}
-
 }  // namespace
 
 TextTable LoopTable(const FitResult& result) {
@@ -597,12 +566,6 @@ TextTable LoopTable(const FitResult& result) {
                OrDash(n.phase_margin, 3, kDegrees), OrDash(n.delay_margin, 2), GainRange(n)});
   }
   return table;
-}
-
-std::string LoopText(const FitResult& result) {
-  std::string text;
-  for (const NamedLoop& loop : LoopsOf(result)) text += Sentence(loop) + "\n";
-  return text;
 }
 
 std::string LagText(const FitResult& result) {

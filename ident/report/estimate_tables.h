@@ -56,7 +56,6 @@ std::string ContrastText(const FitResult& result);
 // oscillation, phase and delay margin, factors between which the gains may change. Feet that slide
 // have none.
 TextTable LoopTable(const FitResult& result);
-std::string LoopText(const FitResult& result);
 // The delay that the residuals ask for and the model leaves out.
 std::string LagText(const FitResult& result);
 

@@ -13,7 +13,7 @@
 #include "ident/report/advice.h"
 #include "ident/report/parameter_sections.h"
 #include "ident/report/report_text.h"
-#include "ident/validation/scores_report.h"
+#include "ident/validation/steps_report.h"
 
 namespace pushid {
 namespace {
@@ -121,14 +121,14 @@ ReportSection ProvenanceSection(const FittedModel& model) {
 
 ReportSection LoopSection(const FittedModel& model) {
   ReportSection section{"loop", "The identified loop"};
-  section.Say(LoopText(model.fit));
-  if (section.paragraphs.empty()) return section;
+  const TextTable loop = LoopTable(model.fit);
+  if (loop.empty()) return section;
   section.Say(
       "These are numbers of the linearized model of a person of 85 kg with a rod of 0.95 m at "
       "rest. "
       "Phase and delay margin: how much later feedback may come; the last column: between which "
       "factors its gains may change.");
-  section.Show("", LoopTable(model.fit));
+  section.Show("", loop);
   return section;
 }
 

@@ -153,7 +153,7 @@ std::string CheckText(const ModelVerdict& v) {
          std::to_string(v.freedom) + " degrees of freedom; less than " + Rounded(kVerdictLevel, 2) +
          " contradicts)" +
          (std::isnan(v.motion.explained)
-              ? std::string("; nobody saw the motion.")
+              ? std::string("; the motion was not recorded.")
               : "; it explains " + Rounded(100.0 * v.motion.explained, 3) +
                     " % of the hip's squared displacement in the median "
                     "recording.");

@@ -12,7 +12,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/json_archive.h"
-#include "ident/validation/crossvalidation.h"
+#include "ident/validation/steps_report.h"
 
 namespace pushid {
 namespace {
@@ -123,25 +123,6 @@ void AddGroups(const std::vector<const ScoreSummary*>& summaries, const ShownMet
   }
 }
 
-std::string OnsetText(int frame) { return frame < 0 ? "-" : std::to_string(frame); }
-
-// A line per recording of several people.
-std::string OnsetsText(const std::vector<RecordingScore>& scores) {
-  TextTable table({"onset frames", "measured / predicted, from the pushed person on"});
-  for (const RecordingScore& score : scores) {
-    std::vector<std::string> by_rank(score.propagation.people.size());
-    for (const PersonPropagation& person : score.propagation.people) {
-      by_rank[person.rank] =
-          OnsetText(person.onset_measured) + "/" + OnsetText(person.onset_predicted);
-    }
-    std::string line;
-    for (const std::string& cell : by_rank)
-      line += cell + std::string(9 - std::min<size_t>(8, cell.size()), ' ');
-    if (!line.empty()) table.Add({score.id, line});
-  }
-  return table.ToString();
-}
-
 }  // namespace
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
@@ -164,9 +145,6 @@ std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
       table.Add(row);
     }
     text += table.ToString() + "\n";
-    if (evaluation.model.propagation.recordings > 0) {
-      text += OnsetsText(evaluation.model.recordings) + "\n";
-    }
   }
   std::vector<std::string> header = {
       Joined(MetricNames(shown), " / ") + " in " + kHipMetrics[0].unit, "recordings", "model"};

@@ -1,13 +1,12 @@
-// ident: the steps that people took in recordings, in words and as JSON.
+#include "ident/validation/steps_report.h"
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/figures/text_table.h"
 #include "ident/problem/statistics.h"
-#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {

@@ -226,7 +226,7 @@ TEST_F(BadUsageTest, WhatIfsAndIds) {
   const std::string out = "--out=" + Path("out.csv");
   const std::vector<UsageCase> cases = {
       {{"--set=mew=1"}, {"--set", "'mew'"}},
-      {{"--set=Kp_thta=1"}, {"--set", "'Kp_thta'", "is Kp_theta meant?\n"}},
+      {{"--set=Kp_thta=1"}, {"--set", "'Kp_thta'", "did you mean Kp_theta?\n"}},
       {{"--set=mu"}, {"--set", "mu"}},
       {{"--set=mu=fast"}, {"--set", "'mu=fast'"}},
       {{"--set=tail_time=0"}, {"--set", "tail_time = 0"}},

@@ -53,7 +53,7 @@ TEST_F(LaboratoryApp, FindsTheStiffnessAndSaysThatTheModelIsWrong) {
 TEST_F(LaboratoryApp, OtherFlagsAreRefused) {
   EXPECT_TRUE(
       Refused(RunApp("pushid-simulate", {"--laboratory=2", "--people=3", "--out=" + Path("a")}),
-              {"--people says nothing to --laboratory"}));
+              {"--people has no effect with --laboratory"}));
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--laboratory=-1", "--out=" + Path("a")}),
                       {"--laboratory is -1"}));
   const AppRun run = RunProgram(

@@ -95,7 +95,7 @@ def test_a_misspelt_parameter_is_guessed(result):
 
 
 def test_options_are_those_of_the_flags(made):
-    with pytest.raises(pushid.UsageError, match="is 'friction' meant"):
+    with pytest.raises(pushid.UsageError, match="did you mean 'friction'"):
         pushid.fit(made[0], fricton="anisotropic")
     with pytest.raises(pushid.UsageError, match="preset"):
         pushid.fit(made[0], preset="nonsense")

@@ -85,7 +85,7 @@ TEST_F(DiffusionAppTest, GroupsWithoutAPushAreForecastAndTheirStatesCompared) {
   EXPECT_EQ(built_in["group_metrics"].dump(), from_file["group_metrics"].dump());
   WriteText("wrong.csv", "recording,frame,person,symbol\nturns_1,0,T1,speak\n");
   EXPECT_TRUE(Refused(generate({"--states=" + Path("wrong.csv")}),
-                      {"wrong.csv:2", "turns_1", "is turns_01 meant?"}));
+                      {"wrong.csv:2", "turns_1", "did you mean turns_01?"}));
 }
 
 TEST_F(DiffusionAppTest, AsSdmIsPublished) {

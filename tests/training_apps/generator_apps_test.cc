@@ -90,7 +90,7 @@ TEST_F(GeneratorAppTest, SdeAsPublishedOnSyntheticClips) {
   EXPECT_TRUE(Refused(Train("g", {"--without=bones"}), {"--without needs --published=sde"}));
   EXPECT_TRUE(Refused(Train("g", {"--published=sde", "--without=legs"}), {"names 'legs'"}));
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {"--clips=2", "--people=3", "--out=x"}),
-                      {"--people says nothing to --clips"}));
+                      {"--people has no effect with --clips"}));
 }
 
 // Particles hold siMLPe beside them.

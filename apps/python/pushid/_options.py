@@ -39,7 +39,7 @@ def given(asked):
         if name in known:
             continue
         near = difflib.get_close_matches(name, known, 1)
-        raise _pushid.UsageError(f"there is no option '{name}'" + (f"; is '{near[0]}' meant?" if near else
+        raise _pushid.UsageError(f"there is no option '{name}'" + (f"; did you mean '{near[0]}'?" if near else
                                                                    "; pushid.options() lists them"))
     return [(name, text_of(name, value)) for name, value in asked.items() if value is not None]
 

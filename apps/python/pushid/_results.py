@@ -94,7 +94,7 @@ class Result:
         if name in derived:
             return _parameter(derived[name], "derived")
         near = difflib.get_close_matches(name, [*self.names, *derived], 1)
-        raise KeyError(f"there is no parameter '{name}'" + (f"; is '{near[0]}' meant?" if near else ""))
+        raise KeyError(f"there is no parameter '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
 
     @property
     def covariance(self):

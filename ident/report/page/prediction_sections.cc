@@ -10,6 +10,7 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/validation/experiment_design.h"
 #include "ident/validation/scores_report.h"
+#include "ident/validation/steps_report.h"
 
 namespace pushid {
 namespace {

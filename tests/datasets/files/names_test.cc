@@ -15,7 +15,7 @@ TEST(MeantNameTest, TheNearestOfThoseThatAreNear) {
   EXPECT_EQ(ClosestName("nu", known), "") << "short words are near to too much";
   EXPECT_EQ(ClosestName("Spine", known), "");
   EXPECT_EQ(ClosestName("mu", known), "") << "it is known";
-  EXPECT_EQ(Suggestion("LeftFot", known), "; is LeftFoot meant?");
+  EXPECT_EQ(Suggestion("LeftFot", known), "; did you mean LeftFoot?");
   EXPECT_EQ(Suggestion("Spine", known), "");
 }
 

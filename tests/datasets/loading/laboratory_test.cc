@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
         std::tuple(
             "misspelt", kGround, "time,x,tehta\n0,0,0\n0.01,0,0\n0.02,0,0\n",
             "wrong.csv:1: recording 'S01_00_weak': the column 'tehta' is not known, and would "
-            "be read as none; is theta meant?"),
+            "be read as none; did you mean theta?"),
         std::tuple("no_time", kGround, "x,y\n0,1\n1,2\n2,3\n", "no column called time"),
         std::tuple("neither", R"({"ground": {"start": 1}})", "", "needs either \"csv\""),
         std::tuple("two_markers", R"({"ground": {"markers": ["a", "b"]}})", "", "three or more"),

@@ -114,7 +114,7 @@ TEST_F(LoadRecordingsTest, KeysNearToKnownOnesAreWarnedAbout) {
     ASSERT_TRUE(with_key(key));
     ASSERT_EQ(warnings_.size(), 1u) << key;
     EXPECT_TRUE(Contains(warnings_[0].text, std::string("has the key '") + key + "'"));
-    EXPECT_TRUE(Contains(warnings_[0].text, std::string("is ") + meant + " meant?"));
+    EXPECT_TRUE(Contains(warnings_[0].text, std::string("did you mean ") + meant + "?"));
   }
   ASSERT_TRUE(with_key("anomalies"));
   EXPECT_TRUE(warnings_.empty());

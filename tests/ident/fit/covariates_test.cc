@@ -154,7 +154,7 @@ TEST(Covariates, BadInputIsNamed) {
     std::string contrast, covariates, message;
   };
   const std::vector<Case> cases = {
-      {"", "Kp_thet ~ age", "'Kp_thet', which is not a parameter; is Kp_theta meant?"},
+      {"", "Kp_thet ~ age", "'Kp_thet', which is not a parameter; did you mean Kp_theta?"},
       {"", "Kp_x ~ age", "Kp_x, which is fixed; free it first (--free=Kp_x)"},
       {"", "mu ~ agee", "'agee', a number that nobody has; there are age, height, mass, rod, shoe"},
       {"", "mu ~ weight", "there are age, height, mass, rod, shoe"},

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/prediction/predicted_steps.h"
-#include "ident/validation/scores_report.h"
+#include "ident/validation/steps_report.h"
 #include "tests/test_support.h"
 
 namespace pushid {

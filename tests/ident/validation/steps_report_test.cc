@@ -1,9 +1,10 @@
 // Steps of recordings in words and as JSON, against a case worked by hand.
+#include "ident/validation/steps_report.h"
+
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "ident/validation/scores_report.h"
 #include "tests/test_support.h"
 
 namespace pushid {
