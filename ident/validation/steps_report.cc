@@ -94,8 +94,6 @@ void AddStepsJson(const std::vector<PendulumRecording>& recordings, Json* json) 
 
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kFewForAuc = 3;
 
 std::string FifthText(const StepFifth& fifth) {
@@ -139,17 +137,15 @@ std::string StepProbabilityText(const StepProbability& p) {
 
 TextTable StepScoresTable(const NamedStepScores& scores) {
   std::vector<std::string> header = {"who steps"};
-  std::vector<bool> left = {true};
   NamedStepScores known;
   size_t fifths = 0;
   for (const auto& [name, score] : scores) {
     if (!score->known()) continue;
     known.emplace_back(name, score);
     header.push_back(name);
-    left.push_back(true);
     fifths = std::max(fifths, score->fifths.size());
   }
-  TextTable table(header, left);
+  TextTable table(header);
   if (known.empty()) return table;
   const auto add = [&](const std::string& title, const auto& cell) {
     std::vector<std::string> row = {title};
