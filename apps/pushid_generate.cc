@@ -31,7 +31,6 @@
 #include "ident/model/identified_model.h"
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"
-#include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
 #include "ident/validation/scores_report.h"
 
@@ -39,30 +38,17 @@ namespace {
 
 using namespace pushid;
 
-struct GenerateFlags {
-  std::string model;   // folder of the generator
-  std::string folder;  // of clips
+// What follows from several flags.
+struct GenerateOptions {
   GeneratorChanges changes;
+  int scored_samples = 1;  // of every group, each scored by itself
   ForecastProtocol protocol = ForecastProtocol::kValidation;
-  int samples = 0;                 // futures of every window; 0: none
-  uint64_t seed = 1;               // of the samples
-  std::string action;              // of the window to show; empty: the first
-  int window = 0;                  // which of the action's
-  std::string id;                  // of the recording to show
-  int observed = 0;                // frames shown to diffusion; 0: as it was made for
-  int frames = 0;                  // of the shown motion in all; 0: as many as the recording
-  std::string states, states_out;  // files of states of people; empty: none
-  std::string physics;             // file of a model; empty: none
-  int target_window = -1;          // whose end is the target of the path search; -1: none
-  std::string json_out, poses_out, svg_out, html_out;
-
-  bool Shows() const { return !poses_out.empty() || !svg_out.empty() || !html_out.empty(); }
 };
 
 // Poses of the strip.
 inline constexpr int kStripPoses = 6;
 
-const GenerateFlags kFlags;
+const GenerateOptions kOptions;
 
 }  // namespace
 
@@ -70,21 +56,21 @@ DEFINE_string(model, "", "folder that pushid-train-generator --out wrote");
 DEFINE_string(folder, "",
               "particles: the folder of clips, with skeleton.json in it or in its parent");
 DEFINE_string(
-    protocol, pushid::NameOf(kFlags.protocol),
-    "particles: windows to forecast: test (eight drawn per clip, from test/ if there is one), "
+    protocol, pushid::NameOf(kOptions.protocol),
+    "particles: windows to forecast: test (eight drawn per clip of test/ or of subject 5), "
     "validation (from the last clip of every action) or all");
 DEFINE_int32(
-    samples, kFlags.samples,
+    samples, 0,
     "particles: number of sampled futures per window, for coverage, CRPS, energy score and "
     "the fan in pictures; 0: none");
-DEFINE_uint64(seed, kFlags.seed, "seed of the sampled futures");
+DEFINE_uint64(seed, 1, "seed of the sampled futures");
 DEFINE_int32(
-    observed, kFlags.observed,
+    observed, 0,
     "diffusion: number of observed frames, 1 for the first poses and the push; 0: as trained");
 DEFINE_string(physics, "",
               "diffusion: model that pushid-fit --model_out wrote, to blend with and to show");
 DEFINE_int32(
-    frames, kFlags.frames,
+    frames, 0,
     "diffusion: length of the shown forecast, frames, also past the recording's end; 0: as "
     "long as the recording");
 DEFINE_string(states, "",
@@ -92,10 +78,10 @@ DEFINE_string(states, "",
               "(recording,frame,person,symbol), for SSCP and transitions; empty: built-in states");
 DEFINE_string(csv_out, "", "diffusion: write the states of the recordings here (CSV)");
 DEFINE_string(action, "", "particles: action of the window to show; empty: the first");
-DEFINE_int32(window, kFlags.window, "particles: which of the action's windows to show, from 0 on");
+DEFINE_int32(window, 0, "particles: which of the action's windows to show, from 0 on");
 DEFINE_string(id, "", "diffusion: the recording to show");
 DEFINE_int32(
-    target_window, kFlags.target_window,
+    target_window, -1,
     "particles, --samples: show the most probable of them that ends like this window of the "
     "action; -1: none");
 DEFINE_string(json_out, "", "write the errors here (JSON)");
@@ -104,10 +90,8 @@ DEFINE_string(poses_out, "",
               "and forecast ones (.bvh)");
 DEFINE_string(svg_out, "", "a strip of poses (SVG)");
 DEFINE_string(html_out, "", "a page with the forecast over the recorded motion (HTML)");
-DEFINE_string(sampler, pushid::NameOf(kFlags.changes.diffusion.sampler),
-              "diffusion: sampler: renoised or ddpm");
-DEFINE_int32(steps, kFlags.changes.diffusion.steps, "diffusion: number of sampling steps");
-DEFINE_double(blend, kFlags.changes.diffusion.blend,
+DEFINE_int32(steps, kOptions.changes.diffusion.steps, "diffusion: number of sampling steps");
+DEFINE_double(blend, kOptions.changes.diffusion.blend,
               "diffusion: blend of the hip paths, from 0 (forecast) to 1 (physics)");
 DEFINE_string(without, "",
               "particles: parts of the forecast that are left out, comma-separated: ridge, simlpe "
@@ -117,9 +101,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+bool Shows() {
+  return !FLAGS_poses_out.empty() || !FLAGS_svg_out.empty() || !FLAGS_html_out.empty();
+}
+
 void ReadChanges(GeneratorChanges* changes) {
   DiffusionGeneratorOptions& diffusion = changes->diffusion;
-  OrFail(ParseName("--sampler", FLAGS_sampler, &diffusion.sampler));
   TakeInRange("steps", FLAGS_steps, 1, kDiffusionTime, &diffusion.steps);
   TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &diffusion.blend);
   for (const std::string& part : SplitList(FLAGS_without)) {
@@ -136,80 +123,67 @@ void ReadChanges(GeneratorChanges* changes) {
 }
 
 // The forecast of a network by itself, on the windows of the tables; samples as in the paper.
-void SetPublished(GenerateFlags* flags) {
-  const std::string paper = PublishedFromCommandLine();
-  if (paper == "sde") {
-    if (!Given("protocol")) flags->protocol = ForecastProtocol::kTest;
-    flags->changes.particles.project_bones = false;
-    flags->changes.particles.noise_memory = 0.0;
-  } else if (paper == "sdm") {
-    DiffusionGeneratorOptions& sdm = flags->changes.diffusion;
-    if (!Given("sampler")) sdm.sampler = DiffusionSampler::kDdpm;
+void SetPublished(GenerateOptions* options) {
+  const std::optional<GeneratorKind> published = PublishedKind();
+  if (published == GeneratorKind::kParticles) {
+    if (!Given("protocol")) options->protocol = ForecastProtocol::kTest;
+    options->changes.particles.project_bones = false;
+  } else if (published == GeneratorKind::kDiffusion) {
+    DiffusionGeneratorOptions& sdm = options->changes.diffusion;
     if (!Given("steps")) sdm.steps = kDiffusionTime;
-    sdm.averaged = 8;
-    sdm.mirrored = false;
-    sdm.settle = Settling::kNone;
+    options->scored_samples = sdm.averaged;
+    sdm.averaged = 1;
+    sdm.settle = false;
+    sdm.postprocess = {false, 0, false, false};
   }
 }
 
-void ReadNumbers(GenerateFlags* flags) {
+void CheckNumbers() {
   if (FLAGS_samples != 0) CheckRange("samples", FLAGS_samples, kLeastSamples, 10000);
-  TakeInRange("window", FLAGS_window, 0, 1e9, &flags->window);
-  TakeInRange("target_window", FLAGS_target_window, -1, 1e9, &flags->target_window);
-  TakeInRange("observed", FLAGS_observed, 0, 1000, &flags->observed);
-  TakeInRange("frames", FLAGS_frames, 0, 10000, &flags->frames);
+  CheckRange("window", FLAGS_window, 0, 1e9);
+  CheckRange("target_window", FLAGS_target_window, -1, 1e9);
+  CheckRange("observed", FLAGS_observed, 0, 1000);
+  CheckRange("frames", FLAGS_frames, 0, 10000);
   OrFail(CheckPosesPath("--poses_out", FLAGS_poses_out));
-  if (flags->target_window >= 0 && FLAGS_samples == 0) {
+  if (FLAGS_target_window >= 0 && FLAGS_samples == 0) {
     throw Error{"--target_window needs --samples, among which it looks"};
   }
 }
 
 // Errors: flags that say something to generators of the other kind alone, or that this kind needs.
-void CheckKindFlags(const GenerateFlags& flags, GeneratorKind kind) {
+void CheckKindFlags(const GenerateOptions& options, GeneratorKind kind) {
   const bool groups = RowOf(kind).groups;
   std::vector<const char*> foreign = {"folder",        "action",  "window", "protocol",
                                       "target_window", "without", "samples"};
   if (!groups) {
-    foreign = {"recordings", "setting", "id",      "observed", "physics", "frames",
-               "states",     "csv_out", "sampler", "steps",    "blend"};
+    foreign = {"recordings", "setting", "id",      "observed", "physics",
+               "frames",     "states",  "csv_out", "steps",    "blend"};
   }
+  if (PublishedKind().value_or(kind) != kind) foreign.push_back("published");
   for (const char* flag : foreign) {
     if (!Given(flag)) continue;
     throw Error{std::string("--") + flag + " has no effect on a generator of " + NameOf(kind),
                 FLAGS_model};
   }
   if (!groups) return Require("folder", FLAGS_folder, "name the folder of the clips");
-  if (flags.Shows()) Require("id", FLAGS_id, "name the recording to show");
-  if (flags.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
+  if (Shows()) Require("id", FLAGS_id, "name the recording to show");
+  if (options.changes.diffusion.blend > 0.0 && FLAGS_physics.empty()) {
     throw Error{"--blend needs --physics, the model to blend with"};
   }
   CheckRecordingFlags();
 }
 
-GenerateFlags GenerateFlagsFromCommandLine() {
-  GenerateFlags flags;
+GenerateOptions OptionsFromCommandLine() {
+  GenerateOptions options;
   Require("model", FLAGS_model, "name the folder that pushid-train-generator --out wrote");
-  OrFail(ParseName("--protocol", FLAGS_protocol, &flags.protocol));
-  ReadNumbers(&flags);
-  ReadChanges(&flags.changes);
-  SetPublished(&flags);
-  flags.model = FLAGS_model;
-  flags.folder = FLAGS_folder;
-  flags.changes.seed = FLAGS_seed;
-  flags.physics = FLAGS_physics;
-  flags.states = FLAGS_states;
-  flags.states_out = FLAGS_csv_out;
-  flags.samples = FLAGS_samples;
-  flags.seed = FLAGS_seed;
-  flags.action = FLAGS_action;
-  flags.id = FLAGS_id;
-  flags.json_out = FLAGS_json_out;
-  flags.poses_out = FLAGS_poses_out;
-  flags.svg_out = FLAGS_svg_out;
-  flags.html_out = FLAGS_html_out;
+  OrFail(ParseName("--protocol", FLAGS_protocol, &options.protocol));
+  CheckNumbers();
+  ReadChanges(&options.changes);
+  SetPublished(&options);
+  options.changes.seed = FLAGS_seed;
   OrFail(CheckOutputFiles(
-      {flags.json_out, flags.poses_out, flags.svg_out, flags.html_out, flags.states_out}));
-  return flags;
+      {FLAGS_json_out, FLAGS_poses_out, FLAGS_svg_out, FLAGS_html_out, FLAGS_csv_out}));
+  return options;
 }
 
 // Windows of clips forecast, sampled and shown, and paths to a pose.
@@ -234,15 +208,14 @@ std::vector<Trajectories> Forecasts(const MotionGenerator& generator,
 }
 
 std::vector<std::vector<SampledFuture>> Samples(const MotionGenerator& generator,
-                                                const std::vector<ForecastWindow>& windows,
-                                                const GenerateFlags& flags) {
-  Random random(flags.seed);
+                                                const std::vector<ForecastWindow>& windows) {
+  Random random(FLAGS_seed);
   const NormalSource normal = [&random] { return random.Normal(); };
   ProgressLine line;
   std::vector<std::vector<SampledFuture>> all;
   for (const ForecastWindow& window : windows) {
     all.push_back(
-        generator.Sample({{window.observed}}, kForecastFrames, flags.samples, normal).front());
+        generator.Sample({{window.observed}}, kForecastFrames, FLAGS_samples, normal).front());
     line.Show("sampling futures: window " + std::to_string(all.size()) + " of " +
               std::to_string(windows.size()));
   }
@@ -263,9 +236,8 @@ size_t FindWindow(const std::vector<ForecastWindow>& windows, const std::string&
 }
 
 // The scene's forecast becomes the most probable path to the target; its outcome goes to `json`.
-void SearchPath(const GenerateFlags& flags, const Eigen::VectorXf& target, ForecastScene* scene,
-                Json* json) {
-  scene->title += ", towards the end of window " + std::to_string(flags.target_window);
+void SearchPath(const Eigen::VectorXf& target, ForecastScene* scene, Json* json) {
+  scene->title += ", towards the end of window " + std::to_string(FLAGS_target_window);
   const PathChoice choice =
       OrFail(MostProbablePath(scene->futures, target, kTargetDistance, scene->layout));
   (*json)["path"] = {{"future", choice.future + 1},
@@ -273,107 +245,82 @@ void SearchPath(const GenerateFlags& flags, const Eigen::VectorXf& target, Forec
                      {"distance_m", choice.distance},
                      {"log_likelihood", choice.log_likelihood}};
   std::printf("%d of %d futures end near window %d; the most probable is the %d., %s m from it\n",
-              choice.near, flags.samples, flags.target_window, choice.future + 1,
+              choice.near, FLAGS_samples, FLAGS_target_window, choice.future + 1,
               Rounded(choice.distance, 3).c_str());
   scene->forecast = scene->futures[choice.future].motion;
 }
 
 // The window's forecast and futures; of a search its outcome goes to `json`.
-ForecastScene SceneOfWindow(const LoadedGenerator& loaded, const GenerateFlags& flags,
+ForecastScene SceneOfWindow(const MotionGenerator& generator,
                             const std::vector<ForecastWindow>& windows, Json* json) {
-  const size_t at = FindWindow(windows, flags.action, flags.window);
+  const size_t at = FindWindow(windows, FLAGS_action, FLAGS_window);
   const ForecastWindow& window = windows[at];
   ForecastScene scene;
-  scene.dt = 1.0 / loaded.settings.rate;
-  scene.layout = loaded.settings.layout;
-  scene.title = window.action + ", window " + std::to_string(flags.window);
+  scene.dt = 1.0 / kForecastRate;
+  scene.layout = generator.layout();
+  scene.title = window.action + ", window " + std::to_string(FLAGS_window);
   scene.observed = window.observed;
   scene.recorded = window.future;
-  scene.forecast = loaded.generator->Forecast({{window.observed}}, kForecastFrames).front();
-  if (flags.samples > 0) {
-    Random random(flags.seed);
-    const NormalSource normal = [&random] { return random.Normal(); };
-    scene.futures =
-        loaded.generator->Sample({{window.observed}}, kForecastFrames, flags.samples, normal)
-            .front();
-  }
-  if (flags.target_window < 0) return scene;
-  const size_t target = FindWindow(windows, flags.action, flags.target_window);
+  scene.forecast = generator.Forecast({{window.observed}}, kForecastFrames).front();
+  if (FLAGS_samples > 0) scene.futures = Samples(generator, {window}).front();
+  if (FLAGS_target_window < 0) return scene;
+  const size_t target = FindWindow(windows, FLAGS_action, FLAGS_target_window);
   const Eigen::VectorXf end = windows[target].future.rightCols(1);
-  SearchPath(flags, end, &scene, json);
+  SearchPath(end, &scene, json);
   return scene;
 }
 
 // Writes the files of --poses_out, --svg_out and --html_out; their names go to stdout.
-void ShowForecast(const ForecastScene& scene, const GenerateFlags& flags) {
-  if (!flags.poses_out.empty()) {
-    const auto files = OrFail(WritePoses(flags.poses_out, scene));
+void ShowForecast(const ForecastScene& scene) {
+  if (!FLAGS_poses_out.empty()) {
+    const auto files = OrFail(WritePoses(FLAGS_poses_out, scene));
     for (const std::string& file : files) std::printf("%s\n", file.c_str());
   }
   const auto write = [](const std::string& file, const std::string& content) {
     OrFail(WriteFileAtomically(file, content));
     std::printf("%s\n", file.c_str());
   };
-  if (!flags.svg_out.empty()) write(flags.svg_out, ForecastStripSvg(scene, kStripPoses));
-  if (!flags.html_out.empty()) write(flags.html_out, ForecastPageHtml(scene));
+  if (!FLAGS_svg_out.empty()) write(FLAGS_svg_out, ForecastStripSvg(scene, kStripPoses));
+  if (!FLAGS_html_out.empty()) write(FLAGS_html_out, ForecastPageHtml(scene));
 }
 
-int GenerateFromClips(const LoadedGenerator& loaded, const GenerateFlags& flags) {
-  const MocapFolder mocap = OrFail(ReadMocapFolder(flags.folder));
-  const ParticleLayout& layout = loaded.settings.layout;
+int FromClips(const TrainedNetworks& trained, const GenerateOptions& options) {
+  const auto generator = trained.Make(options.changes);
+  const MocapFolder mocap = OrFail(ReadMocapFolder(FLAGS_folder));
+  const ParticleLayout& layout = generator->layout();
   if (mocap.skeleton.layout.names != layout.names) {
     return Fail(Error{"these clips have " + std::to_string(mocap.skeleton.layout.num_particles()) +
                           " particles, which are not the " +
                           std::to_string(layout.num_particles()) + " particles of the generator",
-                      flags.folder});
+                      FLAGS_folder});
   }
-  const auto windows =
-      MakeForecastWindows(mocap, flags.protocol, flags.protocol == ForecastProtocol::kAll ? 8 : 0);
+  const auto windows = MakeForecastWindows(mocap, options.protocol,
+                                           options.protocol == ForecastProtocol::kAll ? 8 : 0);
   if (windows.empty()) {
-    return Fail(
-        Error{"no clip of --protocol=" + NameOf(flags.protocol) + " is long enough for a window",
-              flags.folder});
+    return Fail(Error{"there is no clip of --protocol=" + NameOf(options.protocol) +
+                          " that is long enough for a window",
+                      FLAGS_folder});
   }
   const double before = Now();
-  const std::vector<Trajectories> forecasts = Forecasts(*loaded.generator, windows);
+  const std::vector<Trajectories> forecasts = Forecasts(*generator, windows);
   const double per_window = (Now() - before) / static_cast<double>(windows.size());
   std::vector<std::vector<SampledFuture>> samples;
-  if (flags.samples > 0 && flags.target_window < 0) {
-    samples = Samples(*loaded.generator, windows, flags);
-  }
+  if (FLAGS_samples > 0 && FLAGS_target_window < 0) samples = Samples(*generator, windows);
   const ForecastScores scores = ScoresOf(windows, forecasts, layout, samples);
   std::printf("%s", ForecastScoresText(scores).c_str());
   Json json = ResultHead("pushid-forecasts/1");
   json.update(ToJson(scores));
   json["baselines"]["zero_velocity"] = ToJson(ScoresOf(windows, ZeroVelocity(windows), layout));
-  if (flags.Shows() || flags.target_window >= 0) {
-    const ForecastScene scene = SceneOfWindow(loaded, flags, windows, &json);
-    ShowForecast(scene, flags);
+  if (Shows() || FLAGS_target_window >= 0) {
+    ShowForecast(SceneOfWindow(*generator, windows, &json));
   }
   json["run"] = {{"seconds_per_window", per_window}};
-  if (flags.json_out.empty()) return kDone;
-  OrFail(WriteJson(flags.json_out, json));
+  if (FLAGS_json_out.empty()) return kDone;
+  OrFail(WriteJson(FLAGS_json_out, json));
   return kDone;
 }
 
 // Groups forecast and shown.
-
-Prediction PredictBeside(const LoadedGenerator& loaded, const IdentifiedModel& physics,
-                         const BodyRecording& recording, int frames) {
-  const Prediction predicted =
-      OrFail(PredictFrom(physics, recording.pendulum, ShownToPhysics(loaded.settings), frames));
-  if (predicted.status.ok) return predicted;
-  throw Error{"recording " + recording.pendulum.id + ": " + OutsideText(predicted.status) +
-                  "; leave out --physics",
-              physics.source};
-}
-
-// The hips that physics predict; none without physics.
-GroupHips HipsBeside(const LoadedGenerator& loaded, const std::optional<IdentifiedModel>& physics,
-                     const BodyRecording& recording, int frames) {
-  if (!physics) return GroupHips();
-  return PendulumHips(recording, PredictBeside(loaded, *physics, recording, frames));
-}
 
 std::vector<std::string> WriteGroup(const std::string& path, const BodyScene& scene) {
   if (IsBodyFile(path)) return OrFail(WriteBodyBvh(path, scene));
@@ -382,68 +329,75 @@ std::vector<std::string> WriteGroup(const std::string& path, const BodyScene& sc
 }
 
 // The model of --physics; nothing where none is named.
-std::optional<IdentifiedModel> LoadPhysics(const std::string& file) {
-  if (file.empty()) return std::nullopt;
-  IdentifiedModel model = ModelOf(OrFail(ReadFittedModel(file)).fit);
-  model.source = file;
+std::optional<IdentifiedModel> LoadPhysics() {
+  if (FLAGS_physics.empty()) return std::nullopt;
+  IdentifiedModel model = ModelOf(OrFail(ReadFittedModel(FLAGS_physics)).fit);
+  model.source = FLAGS_physics;
   return model;
 }
 
 // A recording's forecast by a generator of any kind, to its end or for `frames` frames in all;
 // the generator gets physics that see as many frames.
-std::vector<BodyMotion> GenerateWith(const LoadedGenerator& loaded, const BodyRecording& recording,
+std::vector<BodyMotion> GenerateWith(const GeneratorSettings& settings,
+                                     const MotionGenerator& generator,
+                                     const BodyRecording& recording,
                                      const std::optional<IdentifiedModel>& physics,
                                      int frames = 0) {
-  const GroupHips hips = HipsBeside(loaded, physics, recording, frames);
-  return OrFail(GenerateBodies(loaded.settings, *loaded.generator, recording, hips, frames));
+  GroupHips hips;
+  if (physics) {
+    hips = PendulumHips(recording, OrFail(PredictBeside(settings, *physics, recording, frames)));
+  }
+  return OrFail(GenerateBodies(settings, generator, recording, hips, frames));
 }
 
 // The states of --states, or the built-in ones; writes --csv_out.
-SocialCues FlaggedCues(const GenerateFlags& flags, const std::vector<BodyRecording>& recordings) {
+SocialCues FlaggedCues(const std::vector<BodyRecording>& recordings) {
   SocialCues cues;
-  if (!flags.states.empty()) {
-    const StateTable table = OrFail(ReadStates(flags.states));
+  if (!FLAGS_states.empty()) {
+    const StateTable table = OrFail(ReadStates(FLAGS_states));
     std::vector<std::string> ids;
     for (const ManifestRecording& entry : FlaggedManifest().value().recordings) {
       ids.push_back(entry.id);
     }
     cues = OrFail(SocialCuesOf(table, ids, recordings));
   }
-  if (flags.states_out.empty()) return cues;
-  OrFail(WriteStates(flags.states_out, StatesInUse(recordings, cues)));
+  if (FLAGS_csv_out.empty()) return cues;
+  OrFail(WriteStates(FLAGS_csv_out, StatesInUse(recordings, cues)));
   return cues;
 }
 
 // Writes the files of --poses_out, --svg_out and --html_out: everybody recorded, forecast, and
 // beside them the pendulums of the physics; the page shows the figures too. Returns the files'
 // names.
-std::vector<std::string> ShowGroup(const LoadedGenerator& loaded, const GenerateFlags& flags,
+std::vector<std::string> ShowGroup(const GeneratorSettings& settings,
+                                   const TrainedNetworks& trained, const GenerateOptions& options,
                                    const BodyRecording& recording,
                                    const std::optional<IdentifiedModel>& physics,
                                    const std::vector<std::string>& figures) {
-  const auto bodies = GenerateWith(loaded, recording, physics, flags.frames);
+  const auto bodies =
+      GenerateWith(settings, *trained.Make(options.changes), recording, physics, FLAGS_frames);
   Animation animation;
-  animation.title = recording.pendulum.id + ", " + NameOf(loaded.kind);
+  animation.title = recording.pendulum.id + ", " + NameOf(trained.kind());
   animation.dt = recording.pendulum.scene.dt;
   AddRecorded(recording.pendulum, recording.bodies, &animation);
   AddForecast(recording.pendulum.subject_ids, bodies, &animation);
   AddPushes(recording.pendulum, &animation);
   animation.figures = figures;
   if (physics) {
-    const Prediction predicted = PredictBeside(loaded, *physics, recording, flags.frames);
+    const Prediction predicted = OrFail(PredictBeside(settings, *physics, recording, FLAGS_frames));
     AddPrediction(recording.pendulum, predicted, {}, &animation);
   }
   std::vector<std::string> files;
-  if (!flags.poses_out.empty()) {
-    files = WriteGroup(flags.poses_out, SceneOf(recording, bodies));
+  if (!FLAGS_poses_out.empty()) {
+    files = WriteGroup(FLAGS_poses_out, SceneOf(recording, bodies));
   }
-  if (!flags.svg_out.empty()) {
-    OrFail(WriteFileAtomically(flags.svg_out, PoseStrip(animation, kStripPoses).ToString()));
-    files.push_back(flags.svg_out);
+  if (!FLAGS_svg_out.empty()) {
+    OrFail(WriteFileAtomically(FLAGS_svg_out, PoseStrip(animation, kStripPoses).ToString()));
+    files.push_back(FLAGS_svg_out);
   }
-  if (!flags.html_out.empty()) {
-    OrFail(WriteFileAtomically(flags.html_out, AnimationHtml({animation})));
-    files.push_back(flags.html_out);
+  if (!FLAGS_html_out.empty()) {
+    OrFail(WriteFileAtomically(FLAGS_html_out, AnimationHtml({animation})));
+    files.push_back(FLAGS_html_out);
   }
   return files;
 }
@@ -458,62 +412,80 @@ void WarnOfPushKinds(const GeneratorSettings& settings,
   }
 }
 
-int FromGroups(const LoadedGenerator& loaded, const GenerateFlags& flags) {
-  const std::optional<IdentifiedModel> physics = LoadPhysics(flags.physics);
-  const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
-  const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
+// The forecasts of one generator, and of the baselines.
+BodyScores ScoreGroups(const GeneratorSettings& settings, const MotionGenerator& generator,
+                       const std::vector<BodyRecording>& bodies,
+                       const std::optional<IdentifiedModel>& physics, double* seconds) {
+  const int observed = settings.observed, seen = SeenByBaselines(observed);
   BodyScores scores;
-  const BodyRecording* shown = nullptr;
-  for (const BodyRecording& recording : bodies) {
-    if (recording.pendulum.id == flags.id) shown = &recording;
-  }
-  if (flags.Shows() && shown == nullptr) {
-    return Fail(Error{"--id is '" + flags.id + "', which is not one of the recordings"});
-  }
-  WarnOfPushKinds(loaded.settings, bodies);
-  const SocialCues cues = FlaggedCues(flags, bodies);
-  double seconds = 0.0;
   for (const BodyRecording& recording : bodies) {
     const double before = Now();
-    const auto generated = GenerateWith(loaded, recording, physics);
-    seconds += (Now() - before) / static_cast<double>(bodies.size());
-    const int observed = loaded.settings.observed, seen = SeenByBaselines(observed);
-    const auto score = [&](const char* name, const std::vector<BodyMotion>& forecast) {
-      scores[name].push_back(ScoreBodies(recording, forecast, observed));
+    const auto generated = GenerateWith(settings, generator, recording, physics);
+    *seconds += (Now() - before) / static_cast<double>(bodies.size());
+    const auto score = [&](const char* name, const std::vector<BodyMotion>& forecast, int first) {
+      scores[name].push_back(ScoreBodies(recording, forecast, first));
     };
-    score("generator", generated);
-    if (observed > 1) {
-      scores["generator_all_frames"].push_back(ScoreBodies(recording, generated));
-    }
-    score("static", StaticBodies(recording, seen));
-    score("constant_velocity", ConstantVelocityBodies(recording, seen));
+    score("generator", generated, observed);
+    if (observed > 1) score("generator_all_frames", generated, 1);
+    score("static", StaticBodies(recording, seen), observed);
+    score("constant_velocity", ConstantVelocityBodies(recording, seen), observed);
   }
-  BodyEvaluation evaluation = SummarizeAll(bodies, scores);
-  const std::optional<SocialReport> social = CompareSocially(bodies, cues, &evaluation);
-  std::printf("%s\n%s", BodyText(evaluation).c_str(), TimedErrorsText(evaluation).c_str());
-  if (social) std::printf("\n%s", SocialText(*social).c_str());
-  if (flags.Shows()) {
+  return scores;
+}
+
+int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
+  const std::optional<IdentifiedModel> physics = LoadPhysics();
+  const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
+  const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
+  const BodyRecording* shown = nullptr;
+  for (const BodyRecording& recording : bodies) {
+    if (recording.pendulum.id == FLAGS_id) shown = &recording;
+  }
+  if (Shows() && shown == nullptr) {
+    return Fail(Error{"--id is '" + FLAGS_id + "', which is not one of the recordings"});
+  }
+  GeneratorSettings settings = trained.settings;
+  if (FLAGS_observed > 0) settings.observed = FLAGS_observed;
+  WarnOfPushKinds(settings, bodies);
+  const SocialCues cues = FlaggedCues(bodies);
+  double seconds = 0.0;
+  std::vector<Json> samples;
+  GeneratorChanges changes = options.changes;
+  for (int k = 0; k < options.scored_samples; ++k, ++changes.seed) {
+    BodyEvaluation evaluation = SummarizeAll(
+        bodies, ScoreGroups(settings, *trained.Make(changes), bodies, physics, &seconds));
+    const std::optional<SocialReport> social = CompareSocially(bodies, cues, &evaluation);
+    AddBodyJson(evaluation, &samples.emplace_back());
+    if (social) samples.back()["social"] = ToJson(*social);
+    if (k > 0) continue;
+    if (options.scored_samples > 1) std::printf("the first sample of each recording\n");
+    std::printf("%s\n%s", BodyText(evaluation).c_str(), TimedErrorsText(evaluation).c_str());
+    if (social) std::printf("\n%s", SocialText(*social).c_str());
+    if (!Shows()) continue;
     const std::vector<std::string> figures =
         social ? SocialFigures(*social, "generator") : std::vector<std::string>();
-    for (const std::string& file : ShowGroup(loaded, flags, *shown, physics, figures)) {
+    for (const std::string& file :
+         ShowGroup(settings, trained, options, *shown, physics, figures)) {
       std::printf("%s\n", file.c_str());
     }
   }
   Json json = ResultHead(kScoresSchema);
-  AddBodyJson(evaluation, &json);
-  if (social) json["social"] = ToJson(*social);
-  if (flags.json_out.empty()) return kDone;
+  json.update(MeanOfSamples(samples));
+  if (options.scored_samples > 1) {
+    std::printf("\n%d samples, each scored, in the mean: %s\n", options.scored_samples,
+                MetricsText(OrFail(MeanBodyMetrics(json, FLAGS_model)), 3).c_str());
+  }
+  if (FLAGS_json_out.empty()) return kDone;
   json["run"] = {{"seconds_per_recording", seconds}};
-  OrFail(WriteJson(flags.json_out, json));
+  OrFail(WriteJson(FLAGS_json_out, json));
   return kDone;
 }
 
 int Run() {
-  const GenerateFlags flags = GenerateFlagsFromCommandLine();
-  LoadedGenerator loaded = OrFail(LoadGenerator(flags.model, flags.changes));
-  CheckKindFlags(flags, loaded.kind);
-  if (flags.observed > 0) loaded.settings.observed = flags.observed;
-  return RowOf(loaded.kind).groups ? FromGroups(loaded, flags) : GenerateFromClips(loaded, flags);
+  const GenerateOptions options = OptionsFromCommandLine();
+  const TrainedNetworks trained = OrFail(ReadGenerator(FLAGS_model));
+  CheckKindFlags(options, trained.kind());
+  return RowOf(trained.kind()).groups ? FromGroups(trained, options) : FromClips(trained, options);
 }
 
 }  // namespace

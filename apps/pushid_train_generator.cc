@@ -28,17 +28,14 @@ namespace {
 
 using namespace pushid;
 
+// What follows from several flags.
 struct TrainGeneratorFlags {
   GeneratorTrainingOptions options;
-  std::string folder;     // of clips
-  bool hold_out = true;   // validation clips, or a share of the recordings, show how it goes
-  int observed = 1;       // frames of a recording that the generator is shown
-  std::string out;        // folder of the generator
-  int crossvalidate = 0;  // folds, instead of writing a generator; 0: off
+  bool hold_out = true;  // validation clips, or a share of the recordings, show how it goes
+  int phases = 2;        // of every clip, whose every second frame is one of the protocol
   FoldScheme scheme = FoldScheme::kStratified;
   std::optional<FitOptions> physics;  // of the pendulum
   GeneratorChanges changes;           // how held-out recordings are forecast
-  std::string json_out;               // scores of the cross-validation; empty: none
 };
 
 const TrainGeneratorFlags kFlags;
@@ -59,16 +56,16 @@ DEFINE_string(folder, "",
 DEFINE_bool(
     hold_out, kFlags.hold_out,
     "show how the training goes on the validation clips, or on 15 % of the recordings, which "
-    "are not learned from; off: learn from these too");
+    "are not learned from; off, the default of --published: learn from these too");
 DEFINE_int32(
-    observed, kFlags.observed,
+    observed, 1,
     "diffusion: number of observed frames in use and in scoring; 1: the first poses and the "
     "push");
 DEFINE_string(out, "", "folder to write: generator.json, weights.npy, curve.svg");
 DEFINE_string(scheme, NameOf(FoldScheme::kStratified),
               "--crossvalidate: stratified (folds by setting, strength and subject) or interleaved "
               "(recordings of a setting assigned to folds in turn)");
-DEFINE_int32(crossvalidate, kFlags.crossvalidate,
+DEFINE_int32(crossvalidate, 0,
              "diffusion: number of folds: instead of writing a generator, train in every fold and "
              "score the held-out recordings; 0: off");
 DEFINE_string(physics, "",
@@ -93,8 +90,9 @@ DEFINE_string(pooling, pushid::NameOf(kOptions.diffusion.structure.pooling),
 DEFINE_string(
     without, "",
     "--published=sde: what of it is left out, comma-separated: particles (poses alone go "
-    "in and come out), noise (and Eq. 6), draw (Eq. 6 with its determinant instead), bones "
-    "(Eq. 11), critic (Eq. 12)");
+    "in and come out), operator (poses come out), gru (an LSTM instead), noise (and Eq. 6), draw "
+    "(Eq. 6 with its determinant instead), bones (Eq. 11), critic (Eq. 12), protocol (also the "
+    "frames between those of the protocol, but not the last clip of every action)");
 DEFINE_uint64(seed, kOptions.seed, "the first of --seeds, and the seed of the folds");
 DEFINE_int32(num_threads, kOptions.num_threads,
              "threads of the training; only a single thread is bit-reproducible");
@@ -104,14 +102,16 @@ namespace {
 // Lyu et al., ACM MM 2021: particles alone, f and g trained together by Eq. 6 as printed, Eq.
 // 10-12, one GRU. The paper does not give the weights of its losses in a form that fits metres;
 // these were chosen here.
-void SetSde(GeneratorTrainingOptions* options) {
-  options->seeds = 1;
+void SetSde(TrainGeneratorFlags* flags) {
+  GeneratorTrainingOptions* options = &flags->options;
+  flags->phases = 1;
   options->correction = false;
   options->ridge_share = options->simlpe_share = 0.0;
   ParticleTrainingOptions& sde = options->particles;
   sde.batch = 32;
   sde.constant_rate = sde.even_frames = sde.together = true;
-  sde.structure.poses = sde.structure.skip = sde.structure.correlated_noise = false;
+  sde.structure.poses = sde.structure.skip = false;
+  sde.structure.noisy_input = true;
   sde.jitter = sde.mirrored = sde.distance = 0.0;
   sde.noise_loss = NoiseLoss::kDrawn;
   sde.squared = 10.0;
@@ -119,21 +119,29 @@ void SetSde(GeneratorTrainingOptions* options) {
   sde.critic = 0.001;
   for (const std::string& part : SplitList(FLAGS_without)) {
     if (part == "particles") {
-      sde.structure.particles = false;
+      sde.structure.particles = sde.structure.summed = false;
       sde.structure.poses = true;
+    } else if (part == "operator") {
+      sde.structure.summed = false;
+    } else if (part == "gru") {
+      sde.structure.lstm = true;
     } else if (part == "noise") {
       sde.together = false;
       sde.noise_steps = 0;
-      sde.structure.correlated_noise = true;
+      sde.structure.noisy_input = false;
     } else if (part == "draw") {
       sde.noise_loss = NoiseLoss::kLikelihood;
     } else if (part == "bones") {
       sde.bones = 0.0;
     } else if (part == "critic") {
       sde.critic = 0.0;
+    } else if (part == "protocol") {
+      flags->phases = 2;
+      flags->hold_out = true;
     } else {
-      throw Error{"--without names '" + part +
-                  "'; it must list particles, noise, draw, bones or critic"};
+      throw Error{
+          "--without names '" + part +
+          "'; it must list particles, operator, gru, noise, draw, bones, critic or protocol"};
     }
   }
 }
@@ -144,23 +152,29 @@ void SetSdm(DiffusionTrainingOptions* sdm) {
   sdm->groups = 8;
   sdm->structure = {SocialPooling::kMeanAll, SocialJoin::kBottleneck, MotionFrame::kOwn};
   sdm->joint_weight = sdm->difference_weight = sdm->bystanders = 0.0;
-  sdm->turn = sdm->size = 0.0;  // own frames are turned and scaled already
+  sdm->mirrored = sdm->turn = sdm->size = 0.0;
+  sdm->observed_weight = 1.0;
 }
 
-void ReadPublished(GeneratorTrainingOptions* options) {
-  const std::string paper = PublishedFromCommandLine();
-  if (paper != "sde" && Given("without")) throw Error{"--without needs --published=sde"};
-  if (paper.empty()) return;
-  const GeneratorKind kind = paper == "sde" ? GeneratorKind::kParticles : GeneratorKind::kDiffusion;
-  if (Given("kind") && options->kind != kind) {
-    throw Error{"--published=" + paper + " needs --kind=" + NameOf(kind)};
+void ReadPublished(TrainGeneratorFlags* flags) {
+  GeneratorTrainingOptions* options = &flags->options;
+  const std::optional<GeneratorKind> kind = PublishedKind();
+  if (kind != GeneratorKind::kParticles && Given("without")) {
+    throw Error{"--without needs --published=sde"};
   }
-  options->kind = kind;
-  if (paper == "sde") {
-    SetSde(options);
-  } else {
-    SetSdm(&options->diffusion);
+  if (!kind) return;
+  const std::string paper = RowOf(*kind).paper;
+  if (Given("kind") && options->kind != *kind) {
+    throw Error{"--published=" + paper + " needs --kind=" + NameOf(*kind)};
   }
+  if (FLAGS_crossvalidate > 0) {
+    throw Error{"--crossvalidate scores forecasts of pushid's own; leave out --published=" + paper};
+  }
+  options->kind = *kind;
+  options->seeds = 1;
+  flags->hold_out = false;
+  if (*kind == GeneratorKind::kParticles) SetSde(flags);
+  if (*kind == GeneratorKind::kDiffusion) SetSdm(&options->diffusion);
 }
 
 void ReadNumbers(TrainGeneratorFlags* flags) {
@@ -168,7 +182,7 @@ void ReadNumbers(TrainGeneratorFlags* flags) {
   CheckRange("seeds", FLAGS_seeds, 0, 20);
   CheckRange("steps", FLAGS_steps, 0, 1e6);
   CheckRange("batch", FLAGS_batch, 0, 4096);
-  TakeInRange("observed", FLAGS_observed, 1, 1000, &flags->observed);
+  CheckRange("observed", FLAGS_observed, 1, 1000);
   TakeInRange("blend", FLAGS_blend, 0.0, 1.0, &flags->changes.diffusion.blend);
   TakeInRange("num_threads", FLAGS_num_threads, 1, 1024, &options.num_threads);
   TakeInRange("simlpe_steps", FLAGS_simlpe_steps, 1, 1e6, &options.simlpe.steps);
@@ -223,17 +237,13 @@ TrainGeneratorFlags TrainGeneratorFlagsFromCommandLine() {
   GeneratorTrainingOptions& options = flags.options;
   OrFail(ParseName("--kind", FLAGS_kind, &options.kind));
   options.seeds = RowOf(options.kind).seeds;
-  ReadPublished(&options);
+  ReadPublished(&flags);
   ReadNumbers(&flags);
   OrFail(ParseName("--scheme", FLAGS_scheme, &flags.scheme));
   if (FLAGS_crossvalidate == 0 && Given("scheme")) throw Error{"--scheme needs --crossvalidate"};
   CheckKind(RowOf(options.kind));
   OrFail(CheckOutputFiles({FLAGS_json_out}));
-  flags.folder = FLAGS_folder;
-  flags.hold_out = FLAGS_hold_out;
-  flags.out = FLAGS_out;
-  flags.crossvalidate = FLAGS_crossvalidate;
-  flags.json_out = FLAGS_json_out;
+  if (Given("hold_out")) flags.hold_out = FLAGS_hold_out;
   options.seed = FLAGS_seed;
   if (FLAGS_physics.empty()) return flags;
   const FittedModel physics = OrFail(ReadFittedModel(FLAGS_physics));
@@ -251,24 +261,25 @@ int CrossValidate(const TrainGeneratorFlags& flags, const std::vector<BodyRecord
   TrainingLine line;
   const GeneratorValidation validation = OrFail(CrossValidateGenerator(
       recordings, flags.options,
-      {flags.observed, flags.scheme, flags.crossvalidate, flags.physics, flags.changes},
+      {FLAGS_observed, flags.scheme, FLAGS_crossvalidate, flags.physics, flags.changes},
       [&](const std::string& step, double done) { line.Show(step, done); }));
   line.Finish();
   std::printf("%s", BodyText(validation.evaluation).c_str());
-  if (flags.json_out.empty()) return kDone;
+  if (FLAGS_json_out.empty()) return kDone;
   Json json = ResultHead(kScoresSchema);
   AddBodyJson(validation.evaluation, &json);
   json["run"] = {{"training_seconds", validation.training_seconds}};
-  OrFail(WriteJson(flags.json_out, json));
+  OrFail(WriteJson(FLAGS_json_out, json));
   return kDone;
 }
 
 // data: which clips or recordings, by name and hash.
 int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json& data) {
   SetForData(samples, &flags.options);
-  flags.options.checkpoint = Inside(flags.out, "checkpoint.bin");
+  flags.options.configuration = Json{Version(), EffectiveFlags()}.dump();
+  flags.options.checkpoint = Inside(FLAGS_out, "checkpoint.bin");
   OrFail(CheckWritable(flags.options.checkpoint));
-  SayWhenInterrupted(KeptCheckpoints(flags.out));
+  SayWhenInterrupted(KeptCheckpoints(FLAGS_out));
   TrainingLine line;
   TrainedGenerator trained =
       OrFail(TrainGenerator(samples, flags.options, [&](const TrainingPoint& point, double done) {
@@ -282,34 +293,34 @@ int Train(TrainGeneratorFlags flags, const GeneratorSamples& samples, const Json
   const std::string title =
       NameOf(flags.options.kind) + ", " + std::to_string(data.size()) + " motions";
   OrFail(
-      WriteFileAtomically(Inside(flags.out, "curve.svg"), TrainingCurveSvg(trained.curve, title)));
-  OrFail(WriteGenerator(flags.out, trained.networks));
+      WriteFileAtomically(Inside(FLAGS_out, "curve.svg"), TrainingCurveSvg(trained.curve, title)));
+  OrFail(WriteGenerator(FLAGS_out, trained.networks));
   std::printf("%s: %d seeds, %s s%s; %s\n", title.c_str(), flags.options.seeds,
               Rounded(line.Seconds(), 3).c_str(),
               trained.resumed ? " (resumed from a checkpoint)" : "",
-              Inside(flags.out, "generator.json").c_str());
+              Inside(FLAGS_out, "generator.json").c_str());
   return kDone;
 }
 
 constexpr double kHeldOut = 0.15;  // share of the recordings that only show how the training goes
 
 int FromClips(const TrainGeneratorFlags& flags) {
-  const MocapFolder mocap = OrFail(ReadMocapFolder(flags.folder));
-  OrFail(MakeFolder(flags.out));
+  const MocapFolder mocap = OrFail(ReadMocapFolder(FLAGS_folder));
+  OrFail(MakeFolder(FLAGS_out));
   Json data = Json::array();
   for (const MocapClip& clip : mocap.clips) {
     if (clip.is_test) continue;
     data.push_back({{"clip", clip.name}, {"content_hash", clip.content_hash}});
   }
-  return Train(flags, SamplesOf(mocap, !flags.hold_out), data);
+  return Train(flags, SamplesOf(mocap, !flags.hold_out, flags.phases), data);
 }
 
 int FromGroups(const TrainGeneratorFlags& flags) {
   const std::vector<Recording> recordings = LoadFlaggedRecordings({}, true);
   if (flags.physics) CheckPushed(recordings);  // groups move without a push too
   const std::vector<BodyRecording> bodies = OrFail(MakeBodyRecordings(recordings));
-  if (flags.crossvalidate > 0) return CrossValidate(flags, bodies);
-  OrFail(MakeFolder(flags.out));
+  if (FLAGS_crossvalidate > 0) return CrossValidate(flags, bodies);
+  OrFail(MakeFolder(FLAGS_out));
   Json data = Json::array();
   const std::vector<int> all = Others({}, static_cast<int>(bodies.size()));
   std::vector<int> learnt = all, held;
@@ -319,7 +330,7 @@ int FromGroups(const TrainGeneratorFlags& flags) {
   if (flags.hold_out && all.size() > 1) {
     SplitHeldOut(PendulumsOf(bodies), all, kHeldOut, flags.options.seed, &learnt, &held);
   }
-  return Train(flags, SamplesOf(bodies, learnt, held, flags.observed), data);
+  return Train(flags, SamplesOf(bodies, learnt, held, FLAGS_observed), data);
 }
 
 int Run() {

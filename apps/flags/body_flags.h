@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,8 +17,9 @@ namespace pushid {
 // Corrections of restored bodies, by --postprocess (postprocess_flags.cc).
 PostprocessOptions PostprocessFromCommandLine();
 
-// The paper whose settings are asked for, sde or sdm; empty: none (published_flags.cc).
-std::string PublishedFromCommandLine();
+enum class GeneratorKind;
+// The kind of generator whose paper's settings are asked for, if any (published_flags.cc).
+std::optional<GeneratorKind> PublishedKind();
 
 // The flags by which an executable takes a restoration.
 

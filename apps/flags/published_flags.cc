@@ -3,17 +3,19 @@
 
 #include "apps/flags/body_flags.h"
 #include "datasets/files/names.h"
+#include "ident/generators/generator_files.h"
 
 DEFINE_string(
     published, "",
-    "the settings of a paper: sde (Lyu et al., ACM MM 2021), sdm (Tanke et al., ICCV 2023); other "
-    "flags change them; empty: those of pushid");
+    "the settings of a paper: sde (particles; Lyu et al., ACM MM 2021), sdm (diffusion; Tanke et "
+    "al., ICCV 2023); other flags change them; empty: those of pushid");
 
 namespace pushid {
 
-std::string PublishedFromCommandLine() {
-  if (FLAGS_published.empty() || FLAGS_published == "sde" || FLAGS_published == "sdm") {
-    return FLAGS_published;
+std::optional<GeneratorKind> PublishedKind() {
+  if (FLAGS_published.empty()) return std::nullopt;
+  for (const GeneratorKindRow& row : kGeneratorKinds) {
+    if (FLAGS_published == row.paper) return row.value;
   }
   throw Error{"--published is " + Quoted(FLAGS_published) + ", not sde or sdm"};
 }

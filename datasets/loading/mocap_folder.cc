@@ -338,15 +338,13 @@ bool IsValidationClip(const MocapFolder& mocap, const MocapClip& clip) {
 
 std::vector<ForecastWindow> MakeForecastWindows(const MocapFolder& mocap, ForecastProtocol protocol,
                                                 int stride) {
-  const bool has_test = std::any_of(mocap.clips.begin(), mocap.clips.end(),
-                                    [](const MocapClip& clip) { return clip.is_test; });
   std::vector<ForecastWindow> windows;
   for (const MocapClip& clip : mocap.clips) {
     const Trajectories motion = EverySecond(clip.motion, 0);
     const int frames = static_cast<int>(motion.cols());
     if (protocol == ForecastProtocol::kTest) {
-      if (clip.is_test != has_test) continue;
-      const bool paired = clip.is_test && clip.subject > 0;
+      if (!clip.is_test) continue;
+      const bool paired = clip.subject > 0;
       for (int start : paired ? PairedStarts(mocap, clip) : TestWindowStarts(frames)) {
         windows.push_back(WindowAt(clip, motion, start + kObservedFrames));
       }
@@ -362,11 +360,12 @@ std::vector<ForecastWindow> MakeForecastWindows(const MocapFolder& mocap, Foreca
   return windows;
 }
 
-std::vector<LearntMotion> LearntMotions(const MocapFolder& mocap, bool with_validation) {
+std::vector<LearntMotion> LearntMotions(const MocapFolder& mocap, bool with_validation,
+                                        int phases) {
   std::vector<LearntMotion> motions;
   for (const MocapClip& clip : mocap.clips) {
     if (clip.is_test || (!with_validation && IsValidationClip(mocap, clip))) continue;
-    for (int phase : {0, 1}) {
+    for (int phase = 0; phase < phases; ++phase) {
       motions.push_back({clip.action, EverySecond(clip.motion, phase), phase});
     }
   }

@@ -87,18 +87,20 @@ std::vector<std::pair<int, int>> PairedWindowStarts(int frames, int frames_of_ot
 // Whether a clip belongs to the validation split: subject 11, or the last of its action.
 bool IsValidationClip(const MocapFolder& mocap, const MocapClip& clip);
 
-// test: eight windows of every clip below test/, or of every clip where there is no such folder;
+// test: eight windows of every clip below test/, or of subject 5;
 // validation: of the validation clips every start that is a multiple of `stride`; all: the same of
 // every clip. stride 0: 8 in clips of more than a thousand windows, otherwise 2.
 std::vector<ForecastWindow> MakeForecastWindows(const MocapFolder& mocap, ForecastProtocol protocol,
                                                 int stride = 0);
 
-// Both phases of all clips to learn from, as motions at the protocol's rate.
+// All clips to learn from, as motions at the protocol's rate. phases: 2, or 1 for the lines of the
+// protocol alone.
 struct LearntMotion {
   std::string action;
   Trajectories motion;
   int phase = 0;  // 1: the lines that the protocol leaves out
 };
-std::vector<LearntMotion> LearntMotions(const MocapFolder& mocap, bool with_validation);
+std::vector<LearntMotion> LearntMotions(const MocapFolder& mocap, bool with_validation,
+                                        int phases = 2);
 
 }  // namespace pushid

@@ -75,11 +75,11 @@ std::string GroupsText(const BodyEvaluation& evaluation) {
 constexpr double kTouchHeight = 0.025;  // m
 constexpr double kCentimetres = 100.0;  // per m
 
-// The metrics of one person, but the FSE.
-BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted, int first_frame) {
+// The metrics of one person, but the FSE, over frames first_frame .. end - 1.
+BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted, int first_frame,
+                        int end) {
   BodyMetrics sum{};
-  const int frames = static_cast<int>(recorded.size());
-  for (int t = first_frame; t < frames; ++t) {
+  for (int t = first_frame; t < end; ++t) {
     const Pose error = predicted[t] - recorded[t];
     const Eigen::Vector3d hip = error.col(0);
     sum[kMpjpe] += error.colwise().norm().mean();
@@ -90,35 +90,21 @@ BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted,
     const Pose carried = recorded[t].colwise() + hip;
     sum[kBoundMpjpe] += (carried - recorded[t]).colwise().norm().mean();
   }
-  for (double& value : sum) value /= frames - first_frame;
-  sum[kHipFde] = (predicted.back() - recorded.back()).col(0).norm();
+  for (double& value : sum) value /= end - first_frame;
+  sum[kHipFde] = (predicted[end - 1] - recorded[end - 1]).col(0).norm();
   return sum;
 }
 
-TimedError ErrorAt(const std::vector<BodyMotion>& recorded,
-                   const std::vector<BodyMotion>& predicted, int frame) {
-  TimedError error;
-  const double people = static_cast<double>(recorded.size());
-  for (size_t n = 0; n < recorded.size(); ++n) {
-    const Pose difference = predicted[n][frame] - recorded[n][frame];
-    const Eigen::Vector3d hip = difference.col(kBodyHip);
-    error.root += hip.norm() / people;
-    error.pose += (difference.colwise() - hip).colwise().norm().mean() / people;
-  }
-  return error;
-}
-
-TimedMean MeanAt(const std::vector<const BodyScore*>& scores, size_t second) {
-  TimedMean at;
+// Of the recordings that last so long.
+BodyMean MeanAt(const std::vector<const BodyScore*>& scores, size_t second) {
+  BodyMean mean;
   for (const BodyScore* score : scores) {
     if (!score->at[second]) continue;
-    ++at.recordings;
-    at.mean.root += score->at[second]->root;
-    at.mean.pose += score->at[second]->pose;
+    ++mean.recordings;
+    for (int m = 0; m < kNumBodyMetrics; ++m) mean.value[m] += (*score->at[second])[m];
   }
-  at.mean.root /= std::max(1, at.recordings);
-  at.mean.pose /= std::max(1, at.recordings);
-  return at;
+  for (double& value : mean.value) value /= std::max(1, mean.recordings);
+  return mean;
 }
 
 std::optional<GroupMetrics> GroupsOf(const std::vector<BodyRecording>& recordings,
@@ -284,12 +270,12 @@ Json ToJson(const BodySummary& summary, bool with_recordings) {
   if (summary.groups) json["group_metrics"] = ToJson(*summary.groups);
   json["errors_at"] = Json::array();
   for (size_t i = 0; i < summary.at.size(); ++i) {
-    const TimedMean& at = summary.at[i];
-    const auto metres = [&at](double value) { return at.recordings > 0 ? Json(value) : Json(); };
-    json["errors_at"].push_back({{"seconds", kErrorSeconds[i]},
-                                 {"recordings", at.recordings},
-                                 {"root_m", metres(at.mean.root)},
-                                 {"pose_m", metres(at.mean.pose)}});
+    const BodyMean& at = summary.at[i];
+    Json row = {{"seconds", kErrorSeconds[i]}, {"recordings", at.recordings}};
+    for (const auto& [name, metric] : kTimedErrors) {
+      row[std::string(name) + "_m"] = at.recordings > 0 ? Json(at.value[metric]) : Json();
+    }
+    json["errors_at"].push_back(row);
   }
   return json;
 }
@@ -322,18 +308,18 @@ Result<BodyMetrics> MeanBodyMetrics(const Json& json, const std::string& file) {
 }
 
 std::string TimedErrorsText(const BodyEvaluation& evaluation) {
-  std::vector<std::string> header = {"m, after the last shown frame"};
-  for (const char* what : {"root", "pose"}) {
+  std::vector<std::string> header = {"m, mean from the last shown frame"};
+  for (const auto& [what, metric] : kTimedErrors) {
     for (const int seconds : kErrorSeconds) {
-      header.push_back(std::string(what) + " " + std::to_string(seconds) + " s");
+      header.push_back(std::string(what) + " to " + std::to_string(seconds) + " s");
     }
   }
   TextTable table = TextTable::OfNumbers(header);
   for (const auto& [name, summary] : evaluation) {
     std::vector<std::string> row = {Spaced(name)};
-    for (double TimedError::*part : {&TimedError::root, &TimedError::pose}) {
-      for (const TimedMean& at : summary.at) {
-        row.push_back(at.recordings > 0 ? Cell(at.mean.*part) : "none");
+    for (const auto& [what, metric] : kTimedErrors) {
+      for (const BodyMean& at : summary.at) {
+        row.push_back(at.recordings > 0 ? Cell(at.value[metric]) : "none");
       }
     }
     table.Add(row);
@@ -399,11 +385,18 @@ BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMoti
   score.frames = recording.num_frames();
   score.first_frame = first_frame;
   const int people = recording.num_people();
+  const auto up_to = [&](int end) {
+    BodyMetrics mean{};
+    for (int n = 0; n < people; ++n) {
+      const BodyMetrics of = ScorePerson(recording.bodies[n], predicted[n], first_frame, end);
+      for (int m = 0; m < kNumBodyMetrics; ++m) mean[m] += of[m] / people;
+    }
+    return mean;
+  };
+  score.value = up_to(score.frames);
   int touching = 0;
-  for (int n = 0; n < people; ++n) {
-    const BodyMetrics of_person = ScorePerson(recording.bodies[n], predicted[n], first_frame);
-    for (int m = 0; m < kNumBodyMetrics; ++m) score.value[m] += of_person[m] / people;
-    const double skate = FootSkate(predicted[n], first_frame);
+  for (const BodyMotion& motion : predicted) {
+    const double skate = FootSkate(motion, first_frame);
     if (skate < 0.0) continue;
     score.value[kFse] += skate;
     ++touching;
@@ -411,8 +404,8 @@ BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMoti
   score.value[kFse] /= std::max(1, touching);
   for (size_t i = 0; i < kErrorSeconds.size(); ++i) {
     const double after = kErrorSeconds[i] / recording.pendulum.scene.dt;
-    const int frame = first_frame - 1 + static_cast<int>(std::lround(after));
-    if (frame < score.frames) score.at[i] = ErrorAt(recording.bodies, predicted, frame);
+    const int end = first_frame + static_cast<int>(std::lround(after));
+    if (end <= score.frames) score.at[i] = up_to(end);
   }
   if (people > 1) score.predicted = predicted;
   return score;

@@ -19,6 +19,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ident/bodies/body_recording.h"
@@ -75,12 +76,11 @@ inline constexpr BodyMetricRow kBodyMetrics[kNumBodyMetrics] = {
 // "MPJPE 0.1 m, hipADE 0.1 m, ..."
 std::string MetricsText(const BodyMetrics& metrics, int digits);
 
-// Errors a while after the last shown frame (Tanke et al., ICCV 2023, Tables 1 and 2), means over
-// people, m: root is |hip - recorded hip|, pose the mean joint error with hips aligned.
+// Errors up to a time after the last shown frame, means over the frames until then and over people,
+// m, as MRT (Wang et al., NeurIPS 2021) has them and SDM's Tables 1 and 2 after it.
 inline constexpr std::array<int, 3> kErrorSeconds = {1, 2, 3};
-struct TimedError {
-  double root = 0.0, pose = 0.0;
-};
+inline constexpr std::pair<const char*, BodyMetric> kTimedErrors[] = {
+    {"total", kMpjpe}, {"root", kHipAde}, {"pose", kRelativeMpjpe}};
 
 struct BodyScore {
   std::string id;
@@ -89,8 +89,8 @@ struct BodyScore {
   std::string failure;                     // why there is no score; such a recording is in no mean
   std::vector<BodyMotion> predicted = {};  // of more than one person; groups are judged together
   int first_frame = 1;                     // that counts
-  // Errors at kErrorSeconds, where the recording lasts so long.
-  std::array<std::optional<TimedError>, kErrorSeconds.size()> at = {};
+  // Errors up to kErrorSeconds, where the recording lasts so long; without FSE.
+  std::array<std::optional<BodyMetrics>, kErrorSeconds.size()> at = {};
 };
 
 // predicted: one motion per person, with as many frames as the recording, which are more than
@@ -107,15 +107,10 @@ struct BodyMean {
   BodyMetrics value{}, error{};  // mean and its standard error
 };
 
-struct TimedMean {
-  int recordings = 0;  // that last so long
-  TimedError mean;
-};
-
 struct BodySummary {
   std::vector<BodyScore> recordings;
   BodyMean mean, frame_weighted;
-  std::array<TimedMean, kErrorSeconds.size()> at;
+  std::array<BodyMean, kErrorSeconds.size()> at;  // of the recordings that last so long; no errors
   ByLabel<BodyMean> by;
   WithoutLabel without_label;          // in no group of `by`
   std::optional<GroupMetrics> groups;  // of all recordings of more than one person, if any
@@ -169,7 +164,7 @@ nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);
 
 // A row per predictor, a column per metric; then the restoration by label.
 std::string BodyText(const BodyEvaluation& evaluation);
-// Root and pose errors at fixed times (TimedError), a row per predictor.
+// Errors up to fixed times (kTimedErrors), a row per predictor.
 std::string TimedErrorsText(const BodyEvaluation& evaluation);
 
 }  // namespace pushid

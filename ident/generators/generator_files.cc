@@ -95,9 +95,13 @@ template <class Archive>
 void Fields(Archive& a, ParticleStructure& s) {
   PUSHID_FIELDS(a, s, skip, particles);
   if (a.Has("poses")) a("poses", s.poses);  // this and those below: older files have none
-  if (a.Has("correlated_noise")) a("correlated_noise", s.correlated_noise);
+  s.summed = Archive::kReads ? s.particles : s.summed;
+  if (a.Has("summed")) a("summed", s.summed);
+  if (a.Has("lstm")) a("lstm", s.lstm);
+  if (a.Has("noisy_input")) a("noisy_input", s.noisy_input);
   if (a.Has("corrected_frames")) a("corrected_frames", s.corrected_frames);
   a.Check(s.particles || s.poses, "particles or poses must be true");
+  a.Check(!s.noisy_input || s.particles != s.poses, "noisy_input needs one of particles and poses");
   a.Check(s.corrected_frames >= 0 && s.corrected_frames <= kMostCorrected,
           "corrected_frames must be 0 to 100000");
 }
@@ -131,9 +135,7 @@ SharedNetworks ReadParticles(const Json& json, const GeneratorSettings& settings
                              TensorReader* reader) {
   const auto networks = std::make_shared<TrainedParticles>();
   TrainedParticles& trained = *networks;
-  ParticleStructure structure;
-  structure.correlated_noise = false;  // as in files without that entry
-  ReadJson(json, &structure);
+  const auto structure = FromJson<ParticleStructure>(json);
   trained.jitter = json.at("jitter");
   trained.ridge_share = ReadShare(json, "ridge_share");
   trained.simlpe_share = ReadShare(json, "simlpe_share");
@@ -259,12 +261,7 @@ MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trai
                             trained.settings.training, trained.of_kind->Tensors()});
 }
 
-std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
-                                               const GeneratorChanges& changes) {
-  return trained.of_kind->Make(trained.settings, changes);
-}
-
-Result<LoadedGenerator> LoadGenerator(const std::string& folder, const GeneratorChanges& changes) {
+Result<TrainedNetworks> ReadGenerator(const std::string& folder) {
   const Result<TensorFolder> read =
       ReadTensorFolder(kGeneratorFolder, folder, Listed(AllNames<GeneratorKind>(), ","), IsKind);
   if (!read.ok()) return read.error();
@@ -280,7 +277,7 @@ Result<LoadedGenerator> LoadGenerator(const std::string& folder, const Generator
   if (!reader.problem().empty()) {
     return Error{reader.problem() + "; train again with this version", path};
   }
-  return LoadedGenerator{trained.kind(), trained.settings, MakeGenerator(trained, changes)};
+  return trained;
 }
 
 }  // namespace pushid

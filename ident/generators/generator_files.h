@@ -78,14 +78,15 @@ struct GeneratorKindRow {
   // Recordings of groups whose people see each other, which physics may blend with, shown any
   // number of frames. Otherwise clips of motion capture, one body by itself.
   bool groups;
-  int seeds;  // networks that are averaged, if no flag says otherwise
+  int seeds;          // networks that are averaged, if no flag says otherwise
+  const char* paper;  // whose settings --published takes
   GeneratorReader* read;
 };
 
 inline constexpr GeneratorKindRow kGeneratorKinds[] = {
     {"particles", GeneratorKind::kParticles, "displacements with learned drift and noise", false, 3,
-     ReadParticles},
-    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, 1,
+     "sde", ReadParticles},
+    {"diffusion", GeneratorKind::kDiffusion, "whole groups of interacting people", true, 1, "sdm",
      ReadDiffusion},
 };
 
@@ -122,6 +123,9 @@ struct TrainedNetworks {
   SharedNetworks of_kind;
 
   GeneratorKind kind() const { return of_kind->kind(); }
+  std::unique_ptr<MotionGenerator> Make(const GeneratorChanges& changes = {}) const {
+    return of_kind->Make(settings, changes);
+  }
 };
 
 // Frames that physics beside a generator see, as it does: one is the first, which everybody has.
@@ -131,19 +135,8 @@ inline int ShownToPhysics(const GeneratorSettings& settings) {
 
 MaybeError WriteGenerator(const std::string& folder, const TrainedNetworks& trained);
 
-struct LoadedGenerator {
-  GeneratorKind kind = GeneratorKind::kParticles;
-  GeneratorSettings settings;
-  std::unique_ptr<MotionGenerator> generator;
-};
-
 // Errors: no such folder, settings or tensors that are missing or do not fit.
-Result<LoadedGenerator> LoadGenerator(const std::string& folder,
-                                      const GeneratorChanges& changes = {});
-
-// The same of what was just trained.
-std::unique_ptr<MotionGenerator> MakeGenerator(const TrainedNetworks& trained,
-                                               const GeneratorChanges& changes = {});
+Result<TrainedNetworks> ReadGenerator(const std::string& folder);
 
 // The networks of each kind of generator, as its trainer leaves them and its file holds
 // them.

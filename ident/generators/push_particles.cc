@@ -7,6 +7,8 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/manifest/recording.h"
+#include "ident/model/model_rollout.h"
+#include "ident/prediction/online_predictor.h"
 
 namespace pushid {
 
@@ -62,6 +64,16 @@ GroupHips PendulumHips(const BodyRecording& recording, const Prediction& predict
     hips.push_back(std::move(hip));
   }
   return hips;
+}
+
+Result<Prediction> PredictBeside(const GeneratorSettings& settings, const IdentifiedModel& physics,
+                                 const BodyRecording& recording, int frames) {
+  Result<Prediction> predicted =
+      PredictFrom(physics, recording.pendulum, ShownToPhysics(settings), frames);
+  if (!predicted.ok() || predicted.value().status.ok) return predicted;
+  return Error{"recording " + recording.pendulum.id + ": physics " +
+                   OutsideText(predicted.value().status) + "; leave out --physics",
+               physics.source};
 }
 
 std::vector<ObservedMotion> GroupOf(const BodyRecording& recording, const GroupHips& hips) {

@@ -27,6 +27,11 @@ PushedParticles ParticlesOf(const BodyRecording& recording, int person);
 using GroupHips = std::vector<Eigen::Matrix3Xf>;
 GroupHips PendulumHips(const BodyRecording& recording, const Prediction& prediction);
 
+// What physics predict that see as many frames as the generator. Errors: a model that leaves its
+// domain.
+Result<Prediction> PredictBeside(const GeneratorSettings& settings, const IdentifiedModel& physics,
+                                 const BodyRecording& recording, int frames = 0);
+
 // Everybody of a recording, for generators whose people see each other; hips: or empty.
 std::vector<ObservedMotion> GroupOf(const BodyRecording& recording, const GroupHips& hips = {});
 

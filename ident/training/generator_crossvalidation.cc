@@ -5,7 +5,6 @@
 
 #include "ident/bodies/body_evaluation.h"
 #include "ident/model/model_rollout.h"
-#include "ident/prediction/online_predictor.h"
 #include "ident/problem/parallel.h"
 #include "ident/validation/crossvalidation.h"
 
@@ -49,13 +48,8 @@ class FoldJudge {
   Result<GroupHips> Hips(const BodyRecording& recording, const GeneratorSettings& settings,
                          std::map<std::string, BodyScore>* scores) const {
     if (!model_) return GroupHips();
-    const Result<Prediction> predicted =
-        PredictFrom(*model_, recording.pendulum, ShownToPhysics(settings));
+    const Result<Prediction> predicted = PredictBeside(settings, *model_, recording);
     if (!predicted.ok()) return predicted.error();
-    if (!predicted.value().status.ok) {
-      return Error{"recording " + recording.pendulum.id + ": physics " +
-                   OutsideText(predicted.value().status)};
-    }
     const Prediction& prediction = predicted.value();
     scores->emplace(
         "rigid",
@@ -74,8 +68,7 @@ class FoldJudge {
       if (!predicted.ok()) return predicted.error();
       hips = std::move(predicted.value());
     }
-    const auto bodies =
-        GenerateBodies(settings, *MakeGenerator(trained_, changes), recording, hips);
+    const auto bodies = GenerateBodies(settings, *trained_.Make(changes), recording, hips);
     if (!bodies.ok()) return bodies.error();
     (*scores)[name] = ScoreBodies(recording, bodies.value(), observed);
     if (name != "generator" || observed == 1) return std::nullopt;

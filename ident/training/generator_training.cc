@@ -6,7 +6,6 @@
 #include <set>
 
 #include "datasets/files/input_file.h"
-#include "datasets/files/number_text.h"
 #include "datasets/loading/mocap_folder.h"
 #include "ident/generators/generator_files.h"
 #include "ident/generators/push_particles.h"
@@ -22,34 +21,17 @@ void AddTo(ContentHash* hash, const Eigen::MatrixXf& values) {
              static_cast<size_t>(values.size()) * sizeof(float)});
 }
 
-template <typename... Number>
-std::string Joined(std::string key, const ContentHash& hash, Number... numbers) {
-  ((key += " " + DoubleText(static_cast<double>(numbers))), ...);
-  return key + " " + hash.Hex();
-}
-
-std::string KeyOf(const GeneratorSamples& samples, const ParticleTrainingOptions& o) {
+// Of the training of one seed: its data, and how it was asked for.
+std::string KeyOf(const GeneratorSamples& samples, const GeneratorTrainingOptions& options,
+                  const std::string& network, const TrainerOptions& of_seed) {
   ContentHash hash;
+  hash.Add(options.configuration);
   for (const auto* motions : {&samples.learnt, &samples.held}) {
     for (const LearntParticles& motion : *motions) {
       hash.Add(std::to_string(motion.group) + " " + std::to_string(motion.motion.cols()));
       AddTo(&hash, motion.motion);
     }
   }
-  return Joined("generator 5", hash, o.structure.skip, o.structure.particles, o.structure.poses,
-                o.structure.corrected_frames, o.observed, o.predicted, o.even_frames, o.steps,
-                o.noise_steps, o.batch, o.warm_up, o.learning_rate, o.constant_rate, o.clip,
-                o.jitter, o.mirrored, static_cast<int>(o.noise_loss), o.together, o.transitions,
-                o.distance, o.squared, o.bones, o.critic, o.changes, o.seed);
-}
-
-std::string KeyOf(const GeneratorSamples& samples, const SimlpeTrainingOptions& o) {
-  return "simlpe " + std::to_string(o.blocks) + " " + DoubleText(o.weight_decay) + " " +
-         KeyOf(samples, static_cast<const ParticleTrainingOptions&>(o));
-}
-
-std::string KeyOf(const GeneratorSamples& samples, const DiffusionTrainingOptions& o) {
-  ContentHash hash;
   for (const auto* groups : {&samples.groups, &samples.held_groups}) {
     for (const ObservedGroup& group : *groups) {
       hash.Add(std::to_string(group.size()));
@@ -60,41 +42,24 @@ std::string KeyOf(const GeneratorSamples& samples, const DiffusionTrainingOption
       }
     }
   }
-  return Joined("diffusion 3 " + NameOf(o.structure.pooling) + " " + NameOf(o.structure.join) +
-                    " " + NameOf(o.structure.frame),
-                hash, o.steps, o.groups, o.people_alone, o.warm_up, o.learning_rate, o.weight_decay,
-                o.clip, o.averaging, o.dropout, o.joint_weight, o.difference_weight, o.bystanders,
-                o.turn, o.size, o.dt, o.seed);
-}
-
-// The options of a seed.
-template <typename Options>
-Options OfSeed(Options options, int index, const TrainerOptions& of_all) {
-  options.seed = of_all.seed + static_cast<uint64_t>(index);
-  options.num_threads = of_all.num_threads;
-  return options;
+  return network + " " + std::to_string(of_seed.seed) + " " + hash.Hex();
 }
 
 std::string SeedsCheckpoint(const std::string& path, int index) {
   return path.empty() ? "" : path + "." + std::to_string(index + 1);
 }
 
-// Networks of so many seeds, from windows of motions.
-template <typename OfKind, typename Options, typename Network>
-MaybeError TrainSeeds(const GeneratorSamples& samples, const Options& of_kind, int seeds,
-                      const GeneratorTrainingOptions& options, const SeedRunner& run,
-                      std::vector<Network>* members) {
-  const int window = of_kind.observed + of_kind.predicted;
-  bool enough = false;
-  for (const LearntParticles& motion : samples.learnt) enough |= motion.motion.cols() >= window;
-  if (!enough) {
-    return Error{"there is nothing to train on: no motion has " + std::to_string(window) +
-                 " frames"};
-  }
+// Networks of so many seeds; data: what their trainer learns from.
+template <typename OfKind, typename Options, typename Network, typename... Data>
+MaybeError TrainSeeds(const char* name, const Options& of_kind, int seeds,
+                      const GeneratorSamples& samples, const GeneratorTrainingOptions& options,
+                      const SeedRunner& run, std::vector<Network>* members, const Data&... data) {
   for (int index = 0; index < seeds; ++index) {
-    const Options of_seed = OfSeed(of_kind, index, options);
-    OfKind trainer(samples.settings.layout, samples.learnt, samples.held, of_seed);
-    if (MaybeError error = run(&trainer, KeyOf(samples, of_seed))) return error;
+    Options of_seed = of_kind;
+    of_seed.seed = options.seed + static_cast<uint64_t>(index);
+    of_seed.num_threads = options.num_threads;
+    OfKind trainer(data..., of_seed);
+    if (MaybeError error = run(&trainer, KeyOf(samples, options, name, of_seed))) return error;
     members->push_back(trainer.Network());
   }
   return std::nullopt;
@@ -105,19 +70,25 @@ MaybeError TrainSeeds(const GeneratorSamples& samples, const Options& of_kind, i
 Result<SharedNetworks> TrainParticles(const GeneratorSamples& samples,
                                       const GeneratorTrainingOptions& options,
                                       const SeedRunner& run) {
+  const int window = options.particles.observed + options.particles.predicted;
+  bool enough = false;
+  for (const LearntParticles& motion : samples.learnt) enough |= motion.motion.cols() >= window;
+  if (!enough) {
+    return Error{"there is nothing to train on: no motion has " + std::to_string(window) +
+                 " frames"};
+  }
   const auto particles = std::make_shared<TrainedParticles>();
   particles->jitter = options.particles.jitter;
-  if (MaybeError error = TrainSeeds<ParticleTrainer>(samples, options.particles, options.seeds,
-                                                     options, run, &particles->members)) {
-    return *error;
+  particles->simlpe_share = options.simlpe_share;
+  MaybeError error = TrainSeeds<ParticleTrainer>(
+      "particles", options.particles, options.seeds, samples, options, run, &particles->members,
+      samples.settings.layout, samples.learnt, samples.held);
+  if (!error && options.simlpe_share > 0.0) {
+    error = TrainSeeds<SimlpeTrainer>("simlpe", options.simlpe, 1, samples, options, run,
+                                      &particles->partners.simlpe, samples.settings.layout,
+                                      samples.learnt, samples.held);
   }
-  if (options.simlpe_share > 0.0) {
-    if (MaybeError error = TrainSeeds<SimlpeTrainer>(samples, options.simlpe, 1, options, run,
-                                                     &particles->partners.simlpe)) {
-      return *error;
-    }
-    particles->simlpe_share = options.simlpe_share;
-  }
+  if (error) return *error;
   if (options.ridge_share > 0.0) {
     RidgeFit fit;
     for (const Trajectories& motion : samples.ridge) {
@@ -136,11 +107,10 @@ Result<SharedNetworks> TrainDiffusion(const GeneratorSamples& samples,
     return Error{"there is nothing to train on: diffusion is trained on recordings of pushes"};
   }
   const auto diffusion = std::make_shared<TrainedDiffusion>();
-  for (int index = 0; index < options.seeds; ++index) {
-    const DiffusionTrainingOptions of_seed = OfSeed(options.diffusion, index, options);
-    DiffusionTrainer trainer(samples.groups, samples.held_groups, of_seed);
-    if (MaybeError error = run(&trainer, KeyOf(samples, of_seed))) return *error;
-    diffusion->members.push_back(trainer.Network());
+  if (MaybeError error = TrainSeeds<DiffusionTrainer>("diffusion", options.diffusion, options.seeds,
+                                                      samples, options, run, &diffusion->members,
+                                                      samples.groups, samples.held_groups)) {
+    return *error;
   }
   return SharedNetworks(diffusion);
 }
@@ -182,14 +152,14 @@ std::vector<ObservedGroup> ObservedGroups(const std::vector<BodyRecording>& reco
 
 }  // namespace
 
-GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation) {
+GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation, int phases) {
   GeneratorSamples samples;
   samples.settings.observed = kObservedFrames;
   samples.settings.predicted = kForecastFrames;
   samples.settings.rate = kForecastRate;
   samples.settings.layout = mocap.skeleton.layout;
   std::map<std::string, int> actions;
-  for (LearntMotion& motion : LearntMotions(mocap, with_validation)) {
+  for (LearntMotion& motion : LearntMotions(mocap, with_validation, phases)) {
     const int action =
         actions.emplace(motion.action, static_cast<int>(actions.size())).first->second;
     if (motion.phase == 0) samples.ridge.push_back(motion.motion);

@@ -13,6 +13,7 @@ namespace pushid {
 // TrainerOptions::seed is the first network's.
 struct GeneratorTrainingOptions : TrainerOptions, CheckpointOptions, KindTrainingOptions {
   GeneratorKind kind = GeneratorKind::kParticles;
+  std::string configuration;  // what a checkpoint must have been made with, beside the data
   int seeds = RowOf(GeneratorKind::kParticles).seeds;  // networks that are averaged
   // Of particles: of the whole forecast at once (models/generators/particle_generator.h), and the
   // shares of the blend that they are part of.
@@ -28,9 +29,9 @@ struct GeneratorSamples {
   std::vector<ObservedGroup> groups, held_groups;  // of diffusion
 };
 
-// Both phases of all clips but those below test/; with_validation: also the validation clips, which
-// otherwise only show how the training goes.
-GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation);
+// All clips but those below test/; with_validation: also the validation clips, which otherwise only
+// show how the training goes. phases: as in LearntMotions.
+GeneratorSamples SamplesOf(const MocapFolder& mocap, bool with_validation, int phases = 2);
 
 // The groups of the recordings `among`, whole; those of `held` show how the training goes.
 GeneratorSamples SamplesOf(const std::vector<BodyRecording>& recordings,

@@ -4,6 +4,7 @@
 // those that are shown.
 #include "ident/validation/scores_report.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <tuple>
@@ -603,6 +604,27 @@ Result<ScoreSummary> ScoresFromJson(const Json& json, const std::string& file) {
             ReasonOf(error) + "; evaluate again",
         file};
   }
+}
+
+Json MeanOfSamples(const std::vector<Json>& samples) {
+  Json mean = samples.front();
+  if (mean.is_structured()) {
+    for (size_t i = 0; i < mean.size(); ++i) {
+      const auto at = static_cast<std::ptrdiff_t>(i);
+      std::vector<Json> parts;
+      for (const Json& sample : samples) parts.push_back(*std::next(sample.begin(), at));
+      *std::next(mean.begin(), at) = MeanOfSamples(parts);
+    }
+    return mean;
+  }
+  double sum = 0.0;
+  for (const Json& sample : samples) {
+    if (sample.is_null()) return nullptr;
+    if (sample.is_number()) sum += sample.get<double>();
+  }
+  const bool differ = std::any_of(samples.begin(), samples.end(),
+                                  [&mean](const Json& sample) { return sample != mean; });
+  return mean.is_number() && differ ? Json(sum / static_cast<double>(samples.size())) : mean;
 }
 
 }  // namespace pushid

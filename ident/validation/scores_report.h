@@ -23,6 +23,10 @@ nlohmann::ordered_json ToJson(const PairedDifference& difference);
 // person's propagation. Errors: keys that are missing or of another type.
 Result<ScoreSummary> ScoresFromJson(const nlohmann::ordered_json& json, const std::string& file);
 
+// Several samples of one forecast, each scored by itself, as SDM has it: the means of all numbers.
+// Whatever has no value in one of them has none; what is no number is the first's.
+nlohmann::ordered_json MeanOfSamples(const std::vector<nlohmann::ordered_json>& samples);
+
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording);
 // One column per summary: all recordings, one setting, one candidate.
 struct PropagationColumn {

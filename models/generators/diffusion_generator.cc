@@ -538,6 +538,20 @@ DiffusionNetwork TakeDiffusion(const std::string& name, const DiffusionStructure
   return network;
 }
 
+Eigen::MatrixXf NoisedAgain(const Eigen::MatrixXf& estimate, const Eigen::MatrixXf& noise,
+                            double u) {
+  const double a = SignalShare(u);
+  return static_cast<float>(std::sqrt(a)) * estimate +
+         static_cast<float>(std::sqrt(1.0 - a)) * noise;
+}
+
+void PutPast(const std::vector<Eigen::MatrixXf>& past, Eigen::MatrixXf* estimate) {
+  const Eigen::Index frames = estimate->cols() / static_cast<Eigen::Index>(past.size());
+  for (size_t n = 0; n < past.size(); ++n) {
+    estimate->middleCols(static_cast<Eigen::Index>(n) * frames, past[n].cols()) = past[n];
+  }
+}
+
 DiffusionGenerator::DiffusionGenerator(ParticleLayout layout, std::vector<DiffusionNetwork> members,
                                        double dt, const DiffusionGeneratorOptions& options,
                                        std::function<NormalSource()> noise)
@@ -567,12 +581,9 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
     estimate = denoise.Estimate(noisy, t);
     // The last estimate keeps what it makes of the frames seen: the seam is what it misses there.
     if (u <= 0.0) break;
-    for (int n = 0; n < count; ++n) estimate.middleCols(n * frames, seen) = past[n];
-    const BackwardStep back = StepBack(options_.sampler, t, u);
-    noisy = static_cast<float>(back.estimate) * estimate + static_cast<float>(back.noisy) * noisy;
-    if (back.noise <= 0.0) continue;
+    PutPast(past, &estimate);
     Draw(order, normal, &fresh);
-    noisy += static_cast<float>(back.noise) * fresh;
+    noisy = NoisedAgain(estimate, fresh, u);
   }
   std::vector<Trajectories> motions;
   for (int n = 0; n < count; ++n) {
@@ -580,7 +591,7 @@ std::vector<Trajectories> DiffusionGenerator::SampleWhole(const std::vector<Obse
         FromMotionRows(estimate.middleCols(n * frames, frames), people[n], network.scales));
   }
   for (Trajectories& motion : motions) {
-    if (options_.settle == Settling::kNone) break;
+    if (!options_.settle) break;
     Settle(options_.learnt_frames, options_.settling / dt_, &motion);
   }
   return motions;

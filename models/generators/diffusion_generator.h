@@ -234,15 +234,8 @@ DiffusionNetwork TakeDiffusion(const std::string& name, const DiffusionStructure
 //   x_t = sqrt(a_t) x_0 + sqrt(1 - a_t) e,  e ~ N(0, 1)
 //   a_t = f(t) / f(0),  f(t) = cos^2((t / T + s) / (1 + s) pi / 2)   the cosine schedule, s = 0.008
 //
-// The network estimates x_0 itself. From an estimate at t to an earlier time u < t:
-//
-//   renoised   x_u = sqrt(a_u) x_0 + sqrt(1 - a_u) e, e drawn anew (Eq. 5 of SDM)
-//   ddpm       the posterior of x_u given x_t and x_0
-
-enum class DiffusionSampler { kRenoised, kDdpm };
-constexpr EnumNames<DiffusionSampler, 2> Names(DiffusionSampler) {
-  return {{{"renoised", DiffusionSampler::kRenoised}, {"ddpm", DiffusionSampler::kDdpm}}};
-}
+// The network estimates x_0 itself, and noise of an earlier time u is added to it anew (Eq. 5 of
+// SDM). Rejected: the posterior of x_u given x_t and x_0 (DDPM), which errs as much or more.
 
 inline constexpr int kDiffusionTime = 1000;  // T
 
@@ -255,41 +248,22 @@ inline double SignalShare(double t) {
   return std::clamp(f(t) / f(0.0), 0.0, 1.0);
 }
 
-// x_u = estimate * x_0 + noisy * x_t + noise * e.
-struct BackwardStep {
-  double estimate = 0.0, noisy = 0.0, noise = 0.0;
-};
-inline BackwardStep StepBack(DiffusionSampler sampler, double t, double u) {
-  const double a = SignalShare(t), b = SignalShare(u);
-  if (u <= 0.0) return {1.0, 0.0, 0.0};
-  switch (sampler) {
-    case DiffusionSampler::kRenoised:
-      return {std::sqrt(b), 0.0, std::sqrt(1.0 - b)};
-    case DiffusionSampler::kDdpm: {
-      const double left = (1.0 - b) / (1.0 - a), step = a / b;  // of x_u in x_t
-      return {std::sqrt(b) * (1.0 - step) / (1.0 - a), std::sqrt(step) * left,
-              std::sqrt(left * (1.0 - step))};
-    }
-  }
-  return {};
-}
+// Eq. 6 of SDM: frames that were seen take the place of what is estimated for them. past: every
+// person's MotionRows of these frames.
+void PutPast(const std::vector<Eigen::MatrixXf>& past, Eigen::MatrixXf* estimate);
 
-// Past the frames of the longest motion learned from: steps fade until people rest, or the network
-// alone goes on (as in SDM).
-enum class Settling { kFade, kNone };
-constexpr EnumNames<Settling, 2> Names(Settling) {
-  return {{{"fade", Settling::kFade}, {"none", Settling::kNone}}};
-}
+// Eq. 5: x_u of an estimate of x_0.
+Eigen::MatrixXf NoisedAgain(const Eigen::MatrixXf& estimate, const Eigen::MatrixXf& noise,
+                            double u);
 
 struct DiffusionGeneratorOptions {
-  DiffusionSampler sampler = DiffusionSampler::kRenoised;
   int steps = 25;
   int averaged = 8;         // samples of a forecast
   bool mirrored = true;     // every other one of them of the group in the mirror
-  int learnt_frames = 128;  // of the longest motion learnt from; later ones settle
-  Settling settle = Settling::kFade;
-  double settling = 0.5;  // s, in which steps of later frames fade to 1/e
-  double blend = 0.0;     // share of the way to the pendulum's hip
+  int learnt_frames = 128;  // of the longest motion learnt from
+  bool settle = true;       // later ones fade; off: the network alone goes on, as in SDM
+  double settling = 0.5;    // s, in which steps of later frames fade to 1/e
+  double blend = 0.0;       // share of the way to the pendulum's hip
   PostprocessOptions postprocess = {true, 20};
   // Keeps what Forecast samples, for forecasts of the same people that differ by what is done to
   // samples afterwards (blend, postprocess).

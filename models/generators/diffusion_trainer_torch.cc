@@ -294,7 +294,6 @@ DiffusionBatch BatchOf(const GroupFeatures& features, const DiffusionStructure& 
 
 namespace {
 
-constexpr double kObservedWeight = 0.1;
 constexpr int kUsualPast = 20, kLeastPast = 2, kMostPast = 30;       // frames
 constexpr double kOneFrame = 0.5, kUsual = 0.3, kNothing = 0.15;     // shares of groups
 constexpr double kNearestBystander = 2.5, kFarthestBystander = 6.0;  // m
@@ -402,7 +401,7 @@ DiffusionBatch Joined(const std::vector<ObservedGroup>& groups, const std::vecto
     const GroupFeatures features = FeaturesOf(groups[g], scales, past[g], frames, options.dt);
     const DiffusionBatch one = WithoutMaps(features, options.structure);
     torch::Tensor of_person = torch::ones({frames, 1});
-    of_person.narrow(0, 0, past[g]).fill_(kObservedWeight);
+    of_person.narrow(0, 0, past[g]).fill_(options.observed_weight);
     for (const ObservedMotion& person : groups[g]) {
       truth.push_back(ToTensor(MotionRows(person, scales)));
       weights.push_back(of_person);
@@ -463,7 +462,8 @@ void DiffusionBatches::AddBystanders(ObservedGroup* group) const {
 }
 
 ObservedGroup DiffusionBatches::Varied(const ObservedGroup& group) const {
-  const GroupChange change{Uniform(0.0, 1.0) < 0.5, Uniform(-options_.turn, options_.turn),
+  const GroupChange change{Uniform(0.0, 1.0) < options_.mirrored,
+                           Uniform(-options_.turn, options_.turn),
                            1.0 + Uniform(-options_.size, options_.size)};
   ObservedGroup varied = Changed(group, change);
   if (group.size() > 1 && Uniform(0.0, 1.0) < options_.bystanders) AddBystanders(&varied);

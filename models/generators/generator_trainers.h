@@ -18,11 +18,12 @@ namespace pushid {
 // displacements say more. Adam, a warm-up, the rate down to nothing by a cosine, gradients clipped.
 
 // In SDE Eq. 6 trains drift and noise, f and g, together on the observed displacements. `together`
-// does that, in every step beside the losses of the forecast, which then is a sampled path: noise
-// is drawn and mapped by g at every frame (Eq. 2), and the losses of the forecast reach g as well.
+// does that, in every step beside the losses of the forecast. One draw w_1:K serves both: Eq. 6 has
+// it of frames 2 .. K, and g maps it into what the forecast is given (noisy_input of
+// ParticleStructure), so that the losses of the forecast reach g as well.
 
-// What transitions are charged. likelihood: -log N(p; f, g^2) with its determinant. drawn: Eq. 6 as
-// it is printed, |p - f - g w|^2 with w ~ N(0, 1) drawn, whose minimum is g = 0.
+// What transitions are charged. likelihood: -log N(p; f, g g^T) with its determinant. drawn: Eq. 6
+// as it is printed, |p - f - g w|^2 with w ~ N(0, 1) drawn, whose minimum is g = 0.
 enum class NoiseLoss { kLikelihood, kDrawn };
 
 struct LearntParticles {
@@ -48,12 +49,12 @@ struct ParticleTrainingOptions : TrainerOptions {
   double critic = 0.0;         // of a Wasserstein critic with gradient penalty (Eq. 12)
   double changes = 0.0;        // of the distance of displacements from frame to frame (siMLPe)
   NoiseLoss noise_loss = NoiseLoss::kLikelihood;
-  bool together = false;      // Eq. 6 trains f and g; there are no steps of noise then
+  bool together = false;      // Eq. 6 trains f and g, of noisy_input; there are no steps of noise
   double transitions = 0.01;  // weight of Eq. 6 where it trains both
 };
 
 inline constexpr int kFirstNoiseStep = 10;  // displacements before are not judged by the noise
-inline constexpr int kFirstTransition = 2;  // likewise where f and g are trained together
+inline constexpr int kFirstTransition = 1;  // of f and g trained together: t = 2 .. K of Eq. 6
 
 class ParticleTrainer : public Trainer {
  public:
@@ -105,7 +106,7 @@ class SimlpeTrainer : public Trainer {
 //   |x - x_0| + 2 |joint - joint_0| in m + 2 |the same differences of frames|, in means
 //
 // (SDM's Eq. 4 is the first term alone; the weights of the others are options),
-// where observed frames weigh 0.1 and those after the recording's end nothing. Into some groups
+// where observed frames weigh less and those after the recording's end nothing. Into some groups
 // people are put who stand far from all others and do nothing: from groups alone the network cannot
 // know that a push does not reach everybody. AdamW, a warm-up, the rate down to a fiftieth by a
 // cosine, gradients clipped; what is used is the exponential mean of the weights.
@@ -125,10 +126,12 @@ struct DiffusionTrainingOptions : TrainerOptions {
   double dropout = 0.1;      // of the statics, and of what the middle is given
   // Of the terms beside Eq. 4 of SDM; joints in m need the group's frame.
   double joint_weight = 2.0, difference_weight = 2.0;
-  double bystanders = 0.3;  // share of groups that get one or two
-  double turn = 0.12;       // rad, largest
-  double size = 0.05;       // share, largest
-  double dt = 1.0 / 60.0;   // s
+  double observed_weight = 0.1;  // of observed frames, in all terms
+  double bystanders = 0.3;       // share of groups that get one or two
+  double mirrored = 0.5;         // share of groups
+  double turn = 0.12;            // rad, largest
+  double size = 0.05;            // share, largest
+  double dt = 1.0 / 60.0;        // s
 };
 
 class DiffusionTrainer : public Trainer {

@@ -25,11 +25,15 @@ void ListTensors(const std::string& name, int coordinates, ParticleNetwork* netw
   fields->Matrix(name + ".pose_mean", coordinates, 1, &network->pose_mean);
   fields->Matrix(name + ".pose_spread", coordinates, 1, &network->pose_spread);
   fields->Matrix(name + ".step_spread", coordinates, 1, &network->step_spread);
-  fields->Layer(name + ".input", structure.NumInputs(coordinates), kParticleGates, &network->input);
-  fields->Layer(name + ".recurrent", kParticleHidden, kParticleGates, &network->recurrent);
+  fields->Layer(name + ".input", structure.NumInputs(coordinates), structure.NumGates(),
+                &network->input);
+  fields->Layer(name + ".recurrent", kParticleHidden, structure.NumGates(), &network->recurrent);
   fields->Layer(name + ".drift", kParticleHidden, coordinates, &network->drift);
   fields->Layer(name + ".noise", kParticleHidden, coordinates, &network->noise);
-  if (structure.correlated_noise) {
+  if (structure.noisy_input) {
+    fields->Layer(name + ".noise_below", kParticleHidden, coordinates * coordinates,
+                  &network->noise_below);
+  } else {
     fields->Matrix(name + ".noise_mix", coordinates, coordinates, &network->noise_mix);
   }
   if (structure.corrected_frames > 0) {
@@ -114,11 +118,11 @@ void ListTensors(const std::string& name, int observed, int coordinates, SimlpeN
 
 ParticleRollout::ParticleRollout(const ParticleNetwork& network,
                                  const std::vector<ObservedMotion>& people, int copies,
-                                 const Eigen::MatrixXf* jitter)
+                                 const Eigen::MatrixXf* jitter, const NormalSource* normal)
     : network_(network), people_(people), copies_(copies), jitter_(jitter) {
   const Eigen::Index count = static_cast<Eigen::Index>(people.size()) * copies;
   const int size = network.num_coordinates();
-  hidden_ = Eigen::MatrixXf::Zero(kParticleHidden, count);
+  hidden_ = memory_ = Eigen::MatrixXf::Zero(kParticleHidden, count);
   history_ = Eigen::MatrixXf::Zero(kSkipSteps * size, count);
   log_likelihood_ = Eigen::VectorXf::Zero(count);
   log_mix_ = network.noise_mix.diagonal().array().log().sum();
@@ -126,7 +130,7 @@ ParticleRollout::ParticleRollout(const ParticleNetwork& network,
     Eigen::MatrixXf pose(size, count);
     for (Eigen::Index n = 0; n < count; ++n) pose.col(n) = people[n / copies].frames.col(t);
     if (t == 0) pose_ = pose;
-    Observe(pose);
+    Observe(pose, normal);
   }
   shown_ = pose_;
   if (network.structure.corrected_frames > 0) PrepareCorrection();
@@ -149,7 +153,28 @@ void ParticleRollout::PrepareCorrection() {
   correction_ = Apply(network_.correction, elu);
 }
 
-void ParticleRollout::Observe(const Eigen::MatrixXf& pose) {
+Eigen::MatrixXf ParticleRollout::Mapped(const Eigen::MatrixXf& noise) {
+  const Array log_noise =
+      Apply(network_.noise, hidden_).array().min(kLargestLogNoise).max(kLeastLogNoise);
+  const float constant = 0.5f * std::log(2.0f * static_cast<float>(M_PI));
+  log_likelihood_ -=
+      (log_noise + 0.5f * noise.array().square() + constant).colwise().sum().matrix().transpose();
+  log_likelihood_.array() -= log_mix_;
+  const bool mixed = network_.noise_mix.size() > 0;
+  Eigen::MatrixXf mapped =
+      mixed ? Eigen::MatrixXf(network_.noise_mix.triangularView<Eigen::Lower>() * noise) : noise;
+  mapped.array() *= log_noise.exp();
+  if (!network_.structure.noisy_input) return mapped;
+  using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Eigen::MatrixXf below = Apply(network_.noise_below, hidden_);
+  for (Eigen::Index n = 0; n < noise.cols(); ++n) {
+    const Eigen::Map<const Rows> g(below.col(n).data(), noise.rows(), noise.rows());
+    mapped.col(n) += g.triangularView<Eigen::StrictlyLower>() * noise.col(n);
+  }
+  return mapped;
+}
+
+void ParticleRollout::Observe(const Eigen::MatrixXf& pose, const NormalSource* normal) {
   const ParticleStructure& structure = network_.structure;
   const int size = network_.num_coordinates();
   const Eigen::Index count = pose.cols();
@@ -167,9 +192,21 @@ void ParticleRollout::Observe(const Eigen::MatrixXf& pose) {
     seen = (pose.colwise() - network_.pose_mean).array().colwise() / network_.pose_spread.array();
     if (jitter_ != nullptr) seen += *jitter_;
   }
+  if (normal != nullptr) {
+    Eigen::MatrixXf noise(size, count);
+    for (float& value : noise.reshaped()) value = static_cast<float>((*normal)());
+    inputs += Mapped(noise);
+  }
   ++frame_;
   const Array in = Apply(network_.input, inputs), own = Apply(network_.recurrent, hidden_);
   const int h = kParticleHidden;
+  if (structure.lstm) {
+    const Array gates = in + own;
+    memory_ = Sigmoid(gates.middleRows(h, h)) * memory_.array() +
+              Sigmoid(gates.topRows(h)) * gates.middleRows(2 * h, h).tanh();
+    hidden_ = Sigmoid(gates.bottomRows(h)) * memory_.array().tanh();
+    return;
+  }
   const Array reset = Sigmoid(in.topRows(h) + own.topRows(h));
   const Array update = Sigmoid(in.middleRows(h, h) + own.middleRows(h, h));
   const Array fresh = (in.bottomRows(h) + reset * own.bottomRows(h)).tanh();
@@ -180,22 +217,10 @@ const Eigen::MatrixXf& ParticleRollout::Step(const Eigen::MatrixXf* noise) {
   Eigen::MatrixXf next = Apply(network_.drift, hidden_);
   if (network_.structure.HasSkip()) next.noalias() += network_.skip * history_;
   if (noise != nullptr) {
-    const Array log_noise =
-        Apply(network_.noise, hidden_).array().min(kLargestLogNoise).max(kLeastLogNoise);
-    const bool mixed = network_.noise_mix.size() > 0;
-    const Eigen::MatrixXf drawn =
-        mixed ? Eigen::MatrixXf(network_.noise_mix.triangularView<Eigen::Lower>() * *noise)
-              : *noise;
-    next.array() += log_noise.exp() * drawn.array();
-    const float constant = 0.5f * std::log(2.0f * static_cast<float>(M_PI));
-    log_likelihood_ = -(log_noise + 0.5f * noise->array().square() + constant)
-                           .colwise()
-                           .sum()
-                           .matrix()
-                           .transpose();
-    log_likelihood_.array() -= log_mix_;
+    log_likelihood_.setZero();
+    next += Mapped(*noise);
   }
-  const bool steps = network_.structure.particles;
+  const bool steps = network_.structure.summed;
   next.array().colwise() *= (steps ? network_.step_spread : network_.pose_spread).array();
   Observe(steps ? Eigen::MatrixXf(pose_ + next)
                 : Eigen::MatrixXf(next.colwise() + network_.pose_mean));
@@ -325,12 +350,13 @@ std::vector<std::vector<SampledFuture>> ParticleGenerator::Sample(
     std::vector<Trajectories> motions = Empty(people, share, frames);
     Eigen::MatrixXf jitter(layout_.num_coordinates(), static_cast<Eigen::Index>(motions.size()));
     for (float& value : jitter.reshaped()) value = static_cast<float>(options_.jitter * normal());
-    ParticleRollout rollout(members_[m], people, share, &jitter);
-    Eigen::VectorXf log_likelihood = Eigen::VectorXf::Zero(static_cast<int>(motions.size()));
+    const bool goes_in = members_[m].structure.noisy_input;
+    ParticleRollout rollout(members_[m], people, share, &jitter, goes_in ? &normal : nullptr);
+    Eigen::VectorXf log_likelihood = rollout.log_likelihood();
     ColouredNoise noise(layout_.num_coordinates(), log_likelihood.size(), options_);
     for (int t = 0; t < frames; ++t) {
-      const Eigen::MatrixXf& poses = rollout.Step(&noise.Next(normal));
-      log_likelihood += rollout.log_likelihood() + noise.log_likelihood_change();
+      const Eigen::MatrixXf& poses = rollout.Step(goes_in ? nullptr : &noise.Next(normal));
+      if (!goes_in) log_likelihood += rollout.log_likelihood() + noise.log_likelihood_change();
       for (size_t i = 0; i < motions.size(); ++i) {
         motions[i].col(t) = poses.col(static_cast<Eigen::Index>(i));
       }

@@ -22,13 +22,15 @@
 
 namespace pushid {
 
+inline constexpr int kParticleHidden = 256;
+
 // SDE's generator without its training: particles whose displacements follow a learned
 // drift and learned noise (Lyu et al., "Learning Human Motion Prediction via Stochastic
 // Differential Equations", ACM MM 2021, called SDE).
 //
 //   p_t     = (S_t - S_{t-1}) / step_spread            displacement of every coordinate; p_0 = 0
 //   h_t     = GRU([p_t, (S_t - pose_mean) / pose_spread], h_{t-1})
-//   p_{t+1} = f + g (M e),   e ~ N(0, 1)               the transition of SDE's Eq. 4
+//   p_{t+1} = f + g (M e),   e ~ N(0, 1)               the transition of SDE's Eq. 2
 //   f       = W h_t + b + sum_{k<9} A_k p_{t-k}        drift; A_0 = 1 and the rest 0 before
 //   log g   = V h_t + c, held within -6 .. 2           noise of every coordinate
 //   S_{t+1} = S_t + step_spread p_{t+1}                the pose operator, Eq. 7-9: an exact sum
@@ -40,28 +42,34 @@ namespace pushid {
 // last correction.
 //
 // M is lower triangular, and M M^T are the correlations of what the drift misses, (p_{t+1} - f) /
-// g, over the windows that were learned from: a wrist goes where its arm goes. In SDE M is 1, and
-// neighbours are torn apart. Rejected: M M^T = D + U U^T of rank 4, which spreads futures less well
-// and saves nothing at this size.
+// g, over the windows that were learned from: a wrist goes where its arm goes. Rejected:
+// M M^T = D + U U^T of rank 4, which spreads futures less well and saves nothing at this size.
+//
+// SDE itself (noisy_input) has sum_j g^ij w^j in the place of g M e. Every g^ij is a function of
+// h_t (linear, log g^ii as above), and g is lower triangular: any g g^T has such a g, which makes
+// the same noise. Its w_1:K belong to the K frames observed: to what goes in at frame k the cell
+// adds g(h_{k-1}) w_k, and the forecast frames have no noise of their own.
 //
 // The forecast is the path without noise; what is predicted is fed back. The cell is in PyTorch's
 // conventions. Rejected: a pose operator that is learned, as the released fragment has it (the sum
-// is what it has to be, and without it the error at 80 ms doubles); an LSTM, which is no better.
+// is what it has to be, and without it the error at 80 ms doubles).
 struct ParticleStructure {
-  bool skip = true;              // the sum over A_k
-  bool particles = true;         // off: poses go in alone, and the next pose comes out
-  bool poses = true;             // off: displacements go in alone, as in SDE
-  bool correlated_noise = true;  // off: M = 1
-  int corrected_frames = 0;      // U; 0: no correction
+  bool skip = true;          // the sum over A_k
+  bool particles = true;     // off: poses go in alone
+  bool summed = true;        // off: the next pose comes out, not its displacement
+  bool poses = true;         // off: displacements go in alone, as in SDE
+  bool lstm = false;         // in place of the GRU
+  bool noisy_input = false;  // the noise of SDE; either particles or poses go in then
+  int corrected_frames = 0;  // U; 0: no correction
 
-  bool HasSkip() const { return skip && particles; }
+  bool HasSkip() const { return skip && particles && summed; }
+  int NumGates() const { return (lstm ? 4 : 3) * kParticleHidden; }
   int NumInputs(int coordinates) const {
     return ((particles ? 1 : 0) + (poses ? 1 : 0)) * coordinates;
   }
 };
 
 inline constexpr int kSkipSteps = 9;
-inline constexpr int kParticleHidden = 256, kParticleGates = 3 * kParticleHidden;
 inline constexpr int kCorrectionTerms = 6, kCorrectionHidden = 256;
 inline constexpr float kLeastLogNoise = -6.0f, kLargestLogNoise = 2.0f;
 // Of a coordinate's noise, what no other coordinate shares (in variance): M has an inverse.
@@ -72,6 +80,7 @@ struct ParticleNetwork {
   Eigen::VectorXf pose_mean, pose_spread, step_spread;  // by coordinate; m
   DenseLayer input, recurrent;                          // of the gates, side by side
   DenseLayer drift, noise;
+  DenseLayer noise_below;  // g^ij of noisy_input, row after row; used where j < i
   DenseLayer correction_hidden, correction;
   Eigen::MatrixXf noise_mix;  // M, coordinates x coordinates; or empty
   Eigen::MatrixXf skip;       // coordinates x 9 coordinates, the newest step first
@@ -84,18 +93,23 @@ class ParticleRollout {
  public:
   // All people must have the same number of frames. Each stands `copies` times side by side.
   // jitter: what is added to the scaled pose that goes in, a column for every copy of every person.
+  // normal: draws w_1:K of a network with noisy_input; without it nothing is added.
   ParticleRollout(const ParticleNetwork& network, const std::vector<ObservedMotion>& people,
-                  int copies = 1, const Eigen::MatrixXf* jitter = nullptr);
+                  int copies = 1, const Eigen::MatrixXf* jitter = nullptr,
+                  const NormalSource* normal = nullptr);
 
   // The next frame: a column per person. With `noise` (coordinates x people, standard normal) a
   // sampled one.
   const Eigen::MatrixXf& Step(const Eigen::MatrixXf* noise = nullptr);
-  // Of the last step's transitions, per person: log density of the displacement in its units.
+  // Per person: log density of the last sampled displacement in its units, or of all w_1:K.
   const Eigen::VectorXf& log_likelihood() const { return log_likelihood_; }
   const Eigen::MatrixXf& pose() const { return shown_; }
 
  private:
-  void Observe(const Eigen::MatrixXf& pose);  // moves the cell on by a frame
+  // Moves the cell on by a frame.
+  void Observe(const Eigen::MatrixXf& pose, const NormalSource* normal = nullptr);
+  // g M e, or sum_j g^ij w^j, in the state that the cell is in; adds to the likelihood.
+  Eigen::MatrixXf Mapped(const Eigen::MatrixXf& noise);
 
   const ParticleNetwork& network_;
   const std::vector<ObservedMotion>& people_;
@@ -105,7 +119,7 @@ class ParticleRollout {
   void PrepareCorrection();
 
   int step_ = 0;  // of the forecast
-  Eigen::MatrixXf pose_, shown_, hidden_, history_;
+  Eigen::MatrixXf pose_, shown_, hidden_, memory_, history_;
   Eigen::MatrixXf correction_;  // 6 coordinates x people
   Eigen::VectorXf log_likelihood_;
   float log_mix_ = 0.0f;  // log of the determinant of M

@@ -11,11 +11,30 @@ namespace pushid {
 
 // Windows to learn from are tensors of [batch, frame, coordinate].
 
+// sum_j g^ij w^j of `draws` w. log_noise: log g^ii. below: NoiseBelow.
+inline torch::Tensor MappedNoise(const torch::Tensor& log_noise, const torch::Tensor& below,
+                                 const torch::Tensor& draws) {
+  const torch::Tensor own = log_noise.exp() * draws;
+  if (!below.defined()) return own;
+  return own + torch::matmul(below.tril(-1), draws.unsqueeze(-1)).squeeze(-1);
+}
+
+// Of transitions, by coordinate (NoiseLoss): `misses` of the drift, p - f; drawn: w.
+inline torch::Tensor TransitionLoss(NoiseLoss loss, const torch::Tensor& misses,
+                                    const torch::Tensor& log_noise, const torch::Tensor& below,
+                                    const torch::Tensor& drawn) {
+  if (loss == NoiseLoss::kDrawn) return (misses - MappedNoise(log_noise, below, drawn)).square();
+  if (!below.defined()) return log_noise + 0.5 * misses.square() * (-2.0 * log_noise).exp();
+  const torch::Tensor g = below.tril(-1) + torch::diag_embed(log_noise.exp());
+  const torch::Tensor w = torch::linalg_solve_triangular(g, misses.unsqueeze(-1), false);
+  return log_noise + 0.5 * w.squeeze(-1).square();
+}
+
 class ParticleModule : public torch::nn::Module {
  public:
   explicit ParticleModule(const ParticleNetwork& start)
       : structure_(start.structure), size_(start.num_coordinates()) {
-    const int gates = kParticleGates;
+    const int gates = structure_.NumGates();
     const double bound = 1.0 / std::sqrt(static_cast<double>(kParticleHidden));
     const auto uniform = [bound](std::vector<int64_t> shape) {
       return (2.0 * torch::rand(shape) - 1.0) * bound;
@@ -45,6 +64,11 @@ class ParticleModule : public torch::nn::Module {
     noise_ = register_parameter("noise", torch::zeros({size_, kParticleHidden}));
     noise_bias_ = register_parameter("noise_bias", torch::full({size_}, -1.0));
     noise_mix_ = register_buffer("noise_mix", torch::eye(size_));
+    if (!structure_.noisy_input) return;
+    noise_below_ =
+        register_module("noise_below", torch::nn::Linear(kParticleHidden, size_ * size_));
+    torch::nn::init::zeros_(noise_below_->weight);
+    torch::nn::init::zeros_(noise_below_->bias);
   }
 
   std::vector<torch::Tensor> DriftParameters() const {
@@ -58,31 +82,32 @@ class ParticleModule : public torch::nn::Module {
     }
     return all;
   }
-  std::vector<torch::Tensor> NoiseParameters() const { return {noise_, noise_bias_}; }
+  std::vector<torch::Tensor> NoiseParameters() const {
+    if (!structure_.noisy_input) return {noise_, noise_bias_};
+    return {noise_, noise_bias_, noise_below_->weight, noise_below_->bias};
+  }
 
   // Frames forecast after the first `observed`, [batch, frame, coordinate]. jitter: [batch, 1,
-  // coordinate], in spreads. noise: e of every frame, [batch, frame, coordinate], of a sampled
-  // path; undefined: the path without noise.
+  // coordinate], in spreads. noise: w_1:K of noisy_input, [batch, frame, coordinate]; undefined:
+  // none goes in.
   torch::Tensor Forecast(const torch::Tensor& batch, const torch::Tensor& jitter, int observed,
                          int predicted, const torch::Tensor& noise = {}) const {
     const torch::Tensor past = batch.narrow(1, 0, observed);
     const torch::Tensor steps = Steps(past);
-    torch::Tensor state = Run(Inputs(steps, past, jitter)).second;
-    const torch::Tensor correction = Correction(past, state, jitter, predicted);
+    CellState state = Run(Inputs(steps, past, jitter), noise).second;
+    const torch::Tensor correction = Correction(past, state.hidden, jitter, predicted);
     torch::Tensor pose = past.select(1, observed - 1), history = LastSteps(steps, observed);
     const torch::Tensor still = jitter.squeeze(1);
     std::vector<torch::Tensor> poses;
     for (int t = 0; t < predicted; ++t) {
       if (t > 0) {
         const torch::Tensor last = history.narrow(1, 0, size_);
-        state = torch::gru_cell(Inputs(last, pose, still), state, input_, recurrent_, input_bias_,
-                                recurrent_bias_);
+        state = Advanced(Inputs(last, pose, still), state);
       }
-      torch::Tensor next = Drift(state, history);
-      if (noise.defined()) next = next + LogNoise(state).exp() * noise.select(1, t);
+      const torch::Tensor next = Drift(state.hidden, history);
       const torch::Tensor moved =
-          structure_.particles ? pose + step_spread_ * next : pose_mean_ + pose_spread_ * next;
-      const torch::Tensor step = structure_.particles ? next : (moved - pose) / step_spread_;
+          structure_.summed ? pose + step_spread_ * next : pose_mean_ + pose_spread_ * next;
+      const torch::Tensor step = structure_.summed ? next : (moved - pose) / step_spread_;
       history = torch::cat({step, history.narrow(1, 0, (kSkipSteps - 1) * size_)}, 1);
       pose = moved;
       poses.push_back(pose);
@@ -103,9 +128,8 @@ class ParticleModule : public torch::nn::Module {
     std::vector<torch::Tensor> misses;
     for (int64_t t = first; t < frames; ++t) {
       const torch::Tensor drift = Drift(hidden.select(1, t - 1), LastSteps(steps, t));
-      const torch::Tensor truth = structure_.particles
-                                      ? steps.select(1, t)
-                                      : (batch.select(1, t) - pose_mean_) / pose_spread_;
+      const torch::Tensor truth =
+          structure_.summed ? steps.select(1, t) : (batch.select(1, t) - pose_mean_) / pose_spread_;
       misses.push_back(truth - drift);
     }
     return {torch::stack(misses, 1), hidden.narrow(1, first - 1, frames - first)};
@@ -114,6 +138,15 @@ class ParticleModule : public torch::nn::Module {
   torch::Tensor LogNoise(const torch::Tensor& hidden) const {
     return torch::clamp(torch::matmul(hidden, noise_.t()) + noise_bias_, kLeastLogNoise,
                         kLargestLogNoise);
+  }
+
+  // g^ij of states, of which only those below the diagonal are meant, [.., i, j]; undefined where g
+  // is diagonal.
+  torch::Tensor NoiseBelow(const torch::Tensor& hidden) const {
+    if (!structure_.noisy_input) return {};
+    std::vector<int64_t> shape = hidden.sizes().vec();
+    shape.back() = size_, shape.push_back(size_);
+    return torch::linear(hidden, noise_below_->weight, noise_below_->bias).reshape(shape);
   }
 
   // scatter: of misses over their noise, summed over frames; its correlations become those of the
@@ -132,7 +165,11 @@ class ParticleModule : public torch::nn::Module {
     network.recurrent = {ToMatrix(recurrent_), ToVector(recurrent_bias_)};
     network.drift = {ToMatrix(drift_), ToVector(drift_bias_)};
     network.noise = {ToMatrix(noise_), ToVector(noise_bias_)};
-    if (structure_.correlated_noise) network.noise_mix = ToMatrix(noise_mix_);
+    if (structure_.noisy_input) {
+      network.noise_below = ToLayer(noise_below_);
+    } else {
+      network.noise_mix = ToMatrix(noise_mix_);
+    }
     if (structure_.corrected_frames > 0) {
       network.correction_hidden = ToLayer(correction_hidden_);
       network.correction = ToLayer(correction_);
@@ -184,13 +221,40 @@ class ParticleModule : public torch::nn::Module {
     torch::Tensor drift = torch::addmm(drift_bias_, hidden, drift_.t());
     return structure_.HasSkip() ? torch::addmm(drift, history, skip_.t()) : drift;
   }
-  // The cell over all frames: all hidden states, and the last.
-  std::pair<torch::Tensor, torch::Tensor> Run(const torch::Tensor& inputs) const {
-    const torch::Tensor zero = torch::zeros({1, inputs.size(0), kParticleHidden});
-    const std::vector<torch::Tensor> weights = {input_, recurrent_, input_bias_, recurrent_bias_};
-    const auto [all, last] =
-        torch::gru(inputs, zero, weights, true, 1, 0.0, is_training(), false, true);
-    return {all, last.squeeze(0)};
+  struct CellState {
+    torch::Tensor hidden, memory;
+  };
+  CellState Advanced(const torch::Tensor& input, const CellState& from) const {
+    if (!structure_.lstm) {
+      return {torch::gru_cell(input, from.hidden, input_, recurrent_, input_bias_, recurrent_bias_),
+              {}};
+    }
+    const auto [hidden, memory] = torch::lstm_cell(input, {from.hidden, from.memory}, input_,
+                                                   recurrent_, input_bias_, recurrent_bias_);
+    return {hidden, memory};
+  }
+  // The cell over all frames: all hidden states, and the last state. noise: as in Forecast.
+  std::pair<torch::Tensor, CellState> Run(const torch::Tensor& inputs,
+                                          const torch::Tensor& noise = {}) const {
+    const torch::Tensor zero = torch::zeros({inputs.size(0), kParticleHidden});
+    if (!structure_.lstm && !noise.defined()) {
+      const std::vector<torch::Tensor> weights = {input_, recurrent_, input_bias_, recurrent_bias_};
+      const auto [all, last] =
+          torch::gru(inputs, zero.unsqueeze(0), weights, true, 1, 0.0, is_training(), false, true);
+      return {all, {last.squeeze(0), {}}};
+    }
+    CellState state = {zero, zero};
+    std::vector<torch::Tensor> all;
+    for (int64_t t = 0; t < inputs.size(1); ++t) {
+      torch::Tensor input = inputs.select(1, t);
+      if (noise.defined()) {
+        input = input +
+                MappedNoise(LogNoise(state.hidden), NoiseBelow(state.hidden), noise.select(1, t));
+      }
+      state = Advanced(input, state);
+      all.push_back(state.hidden);
+    }
+    return {torch::stack(all, 1), state};
   }
 
   ParticleStructure structure_;
@@ -198,6 +262,7 @@ class ParticleModule : public torch::nn::Module {
   torch::Tensor pose_mean_, pose_spread_, step_spread_;
   torch::Tensor input_, recurrent_, input_bias_, recurrent_bias_, drift_, drift_bias_, skip_;
   torch::Tensor noise_, noise_bias_, noise_mix_;
+  torch::nn::Linear noise_below_{nullptr};
   torch::nn::Linear correction_hidden_{nullptr}, correction_{nullptr};
   torch::Tensor sines_;  // of the correction, a row a frame
 };
@@ -333,23 +398,13 @@ struct WindowsRun : StepsRun<Run, Self> {
   }
 };
 
-// Of transitions, elementwise (NoiseLoss): `misses` of the drift, in the units of the noise.
-inline torch::Tensor TransitionLoss(NoiseLoss loss, const torch::Tensor& misses,
-                                    const torch::Tensor& log_noise) {
-  if (loss == NoiseLoss::kLikelihood) {
-    return log_noise + 0.5 * misses.square() * (-2.0 * log_noise).exp();
-  }
-  return (misses - log_noise.exp() * torch::randn_like(misses)).square();
-}
-
-// A Wasserstein critic of whole forecasts (SDE's Eq. 12): three layers of 256 on what moves from
-// the last observed frame on, in the pose's spreads.
+// A Wasserstein critic of whole forecasts (SDE's Eq. 12) on what moves from the last observed frame
+// on, in the pose's spreads: three fully connected layers, two of 256 and the third to the score.
 class ParticleCritic : public torch::nn::Module {
  public:
   ParticleCritic(int64_t inputs, torch::Tensor spread) : spread_(std::move(spread)) {
     layers_ = register_module(
         "layers", torch::nn::Sequential(torch::nn::Linear(inputs, kWidth), torch::nn::ELU(),
-                                        torch::nn::Linear(kWidth, kWidth), torch::nn::ELU(),
                                         torch::nn::Linear(kWidth, kWidth), torch::nn::ELU(),
                                         torch::nn::Linear(kWidth, 1)));
   }
@@ -358,9 +413,10 @@ class ParticleCritic : public torch::nn::Module {
   }
   torch::Tensor Score(const torch::Tensor& features) { return layers_->forward(features).mean(); }
 
-  // The critic's own loss: forecasts below truths, with a slope of 1 in between.
-  torch::Tensor Loss(const torch::Tensor& forecast, const torch::Tensor& truth) {
-    const torch::Tensor share = torch::rand({truth.size(0), 1});
+  // The critic's own loss: forecasts below truths, with a slope of 1 in between, where `share` of
+  // the way from forecast to truth is gone, [batch, 1].
+  torch::Tensor Loss(const torch::Tensor& forecast, const torch::Tensor& truth,
+                     const torch::Tensor& share) {
     const torch::Tensor between =
         (share * truth + (1.0 - share) * forecast).detach().requires_grad_(true);
     const torch::Tensor slope =

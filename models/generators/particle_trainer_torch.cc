@@ -150,12 +150,15 @@ struct ParticleTrainer::Torch : WindowsRun<Run, Torch, ParticleTrainingOptions> 
     return options.jitter * torch::randn({batch.size(0), 1, batch.size(2)});
   }
 
-  torch::Tensor NoiseLossOf(const torch::Tensor& batch, const torch::Tensor& jitter) const {
+  // drawn: w_1:K of Eq. 6 as printed.
+  torch::Tensor NoiseLossOf(const torch::Tensor& batch, const torch::Tensor& jitter,
+                            const torch::Tensor& drawn = {}) const {
     const int first =
         std::min(options.together ? kFirstTransition : kFirstNoiseStep, options.observed);
     const auto [misses, hidden] = module->Misses(batch, jitter, first, options.together);
-    const torch::Tensor charge =
-        TransitionLoss(options.noise_loss, misses, module->LogNoise(hidden));
+    const torch::Tensor w = drawn.defined() ? drawn.narrow(1, first, misses.size(1)) : drawn;
+    const torch::Tensor charge = TransitionLoss(
+        options.noise_loss, misses, module->LogNoise(hidden), module->NoiseBelow(hidden), w);
     return charge.sum() / static_cast<double>(charge.numel());
   }
 
@@ -180,14 +183,14 @@ struct ParticleTrainer::Torch : WindowsRun<Run, Torch, ParticleTrainingOptions> 
     const double rate = options.learning_rate * share;
     torch::Tensor drawn;
     if (options.together) {
-      drawn = torch::randn({batch.size(0), options.predicted, batch.size(2)});
+      drawn = torch::randn({batch.size(0), options.observed, batch.size(2)});
     }
     const torch::Tensor forecast =
         module->Forecast(batch, jitter, options.observed, options.predicted, drawn);
     torch::Tensor loss = losses(forecast, batch);
     if (options.together) {
       const torch::Tensor seen = batch.narrow(1, 0, options.observed);
-      loss = loss + options.transitions * NoiseLossOf(seen, jitter);
+      loss = loss + options.transitions * NoiseLossOf(seen, jitter, drawn);
     }
     const double shown = loss.item<double>();
     if (critic) {
@@ -195,7 +198,8 @@ struct ParticleTrainer::Torch : WindowsRun<Run, Torch, ParticleTrainingOptions> 
       const torch::Tensor made = critic->Features(forecast, last);
       const torch::Tensor real =
           critic->Features(batch.narrow(1, options.observed, options.predicted), last);
-      ImproveAt(rate, critics.get(), critic->parameters(), critic->Loss(made.detach(), real));
+      ImproveAt(rate, critics.get(), critic->parameters(),
+                critic->Loss(made.detach(), real, torch::rand({real.size(0), 1})));
       loss = loss - options.critic * critic->Score(made);
     }
     ImproveAt(rate, drift.get(), Trained(), kLossUnits * loss);

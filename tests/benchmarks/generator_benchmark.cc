@@ -18,8 +18,9 @@ ParticleNetwork Network() {
   network.pose_mean = Eigen::VectorXf::Zero(size);
   network.pose_spread = Eigen::VectorXf::Constant(size, 0.1f);
   network.step_spread = Eigen::VectorXf::Constant(size, 0.01f);
-  network.input = RandomLayer(kParticleGates, network.structure.NumInputs(size), 0.05, &random);
-  network.recurrent = RandomLayer(kParticleGates, kParticleHidden, 0.05, &random);
+  network.input =
+      RandomLayer(network.structure.NumGates(), network.structure.NumInputs(size), 0.05, &random);
+  network.recurrent = RandomLayer(network.structure.NumGates(), kParticleHidden, 0.05, &random);
   network.drift = RandomLayer(size, kParticleHidden, 0.03, &random);
   network.noise = RandomLayer(size, kParticleHidden, 0.03, &random);
   network.skip = RandomLayer(size, kSkipSteps * size, 0.01, &random).weights;

@@ -2,8 +2,6 @@
 
 groups     errors of the 49 recordings of groups, four folds, beside physics and baselines
 motion     what groups do: social states, words of motion, who moved first; with the same runs
-crowds     people who were not recorded, ahead of a group and beside it
-poolings   errors by how people see each other; ten minutes of one core each
 
 PUSHID_RECORDINGS is the folder of the recordings. The same runs serve both, a quarter of an hour of one core for
 diffusion and ten minutes for `window` bodies, which carry physics on the same folds.
@@ -52,14 +50,6 @@ def groups():
                          [[title, *errors(json)] for title, json in rows()])
 
 
-def poolings():
-    scored = [(pooling, studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion", *FOLDS,
-                                              f"--pooling={pooling}").json)
-              for pooling in ("local", "none")]
-    return studies.table(["held out, 4 folds", "MPJPE, m", "hipADE, m", "hipFDE, m", "MBLE, m", "FSE, cm a frame"],
-                         [[f"`{pooling}`", *errors(json)] for pooling, json in scored])
-
-
 def share(value):
     return "none" if value is None else number(value)
 
@@ -90,15 +80,5 @@ def of_fold(fold):
     return ",".join(ids)
 
 
-def crowds():
-    model = studies.on_recordings("pushid-train-generator", "groups", "--kind=diffusion",
-                                  f"--leave_out={of_fold(0)}", out="out").path
-    text = studies.run("pushid-bystander-study", f"--model={model}", f"--recordings={studies.MANIFEST}",
-                       f"--ids={of_fold(0)}", out=None).text
-    cells = [line.split(", ") for line in text.splitlines()[1:]]
-    return studies.table(["one fold held out", "error of the recorded people, m", "eight stand ahead", "eight stand 3 m aside",
-                          "way of those aside, m"], [["`local`", *(cell[1] for cell in cells), cells[2][2]]])
-
-
 if __name__ == "__main__":
-    studies.main(__file__, {"groups": groups, "motion": motion, "crowds": crowds, "poolings": poolings})
+    studies.main(__file__, {"groups": groups, "motion": motion})

@@ -12,7 +12,7 @@ coefficients of 12 frames, person by person. PUSHID_PEERS=published takes the pu
 PUSHID_PEERS_EFFORT multiplies the length of the training.
 
 Both see the recordings as they are published: 22 joints in the order of models/restoration/body.h, in mm, at 60 Hz. Folds are stratified by
-setting and strength, as those of the chain, but are not the same. The metrics are those of ident/bodies/body_metrics.cc.
+setting and strength, as those of the chain, but are not the same. The metrics are those of ident/bodies/body_evaluation.cc.
 Times are those of one core. Needs Debian's python3-torch (study_packages of tests/install_packages.sh) and
 pushid-train-restoration.
 """
@@ -347,21 +347,22 @@ def crossvalidated():
 
 
 def at_seconds(left_out, effort=0.1):
-    """MRT's errors of the root and of the pose at 1, 2 and 3 s of the recordings that it has not seen; None: none lasts."""
+    """MRT's total, root and pose errors up to 1, 2 and 3 s of the recordings that it has not seen; None: none lasts."""
     recordings = load()
     learnt = [r for r in recordings if r[0]["id"] not in left_out]
     early = folds(learnt, 7)[0]
     net = train_mrt([m for i, (_, m) in enumerate(learnt) if i not in early], [learnt[i][1] for i in early],
                     epochs=40 * effort)[0]
-    root, pose = {1: [], 2: [], 3: []}, {1: [], 2: [], 3: []}
+    total, root, pose = ({1: [], 2: [], 3: []} for _ in range(3))
     for entry, motions in recordings:
         error = (after(net, motions, GIVEN) - motions) if entry["id"] in left_out else motions[:, :0]
         for second in root:
-            frame = GIVEN - 1 + 60 * second
-            if frame < error.shape[1]:
-                root[second].append(error[:, frame, HIP].norm(dim=-1).mean().item())
-                pose[second].append((error[:, frame] - error[:, frame, HIP:HIP + 1]).norm(dim=-1).mean().item())
-    return [statistics.mean(of[s]) if of[s] else None for of in (root, pose) for s in of]
+            until = error[:, GIVEN:GIVEN + 60 * second]
+            if until.shape[1] < 60 * second:
+                continue
+            for of, part in ((total, until), (root, until[:, :, HIP]), (pose, until - until[:, :, HIP:HIP + 1])):
+                of[second].append(part.norm(dim=-1).mean().item())
+    return [statistics.mean(of[s]) if of[s] else None for of in (total, root, pose) for s in of]
 
 
 HEADER = ["held out, 5 folds", "given", "frames that count", "MPJPE, m", "hipADE, m", "hipFDE, m", "MBLE, m",

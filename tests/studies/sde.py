@@ -1,15 +1,15 @@
 """SDE (Lyu et al., ACM MM 2021) as published, pushid-train-generator --published=sde (models/generators/README.md).
 
 table2   its Table 2's layout: errors per action at five horizons, both readings of Eq. 6
-table3   its Table 3's layout: what is left out, one at a time, of what is published
+table3   its Table 3's layout: what is left out or replaced, one at a time, of what is published
 fig5     its Fig. 5 without a given end: the most probable of sampled futures, by action
 times    how long the commands of these tables took, one core
 
 PUSHID_MOCAP is a folder of clips (default ../shared/cmu_mocap beside the source): of CMU, of Human3.6M with a folder
 per subject, or made by pushid-simulate --clips. Windows are those of --protocol=test where clips are kept apart for
-it, otherwise of the validation clips. PUSHID_SDE_STEPS is the number of training steps of table2 and fig5
-(default 150; the rate is constant, so that shorter trainings are parts of longer ones), PUSHID_SDE_SHORT_STEPS that
-of table3 and times (default 150).
+it, otherwise of the validation clips, which are then not learned from. PUSHID_SDE_STEPS is the number of training
+steps of table2 and fig5 (default 150; the rate is constant, so that shorter trainings are parts of longer ones),
+PUSHID_SDE_SHORT_STEPS that of table3 and times (default 150).
 """
 import os
 import sys
@@ -22,11 +22,14 @@ STEPS = os.environ.get("PUSHID_SDE_STEPS", "150")
 SHORT = os.environ.get("PUSHID_SDE_SHORT_STEPS", "150")
 HAS_TEST = any(os.path.isdir(os.path.join(MOCAP, place)) for place in ("test", "S5"))
 PROTOCOL = f"--protocol={'test' if HAS_TEST else 'validation'}"
+HELD = [] if HAS_TEST else ["--hold_out=true"]
 SAMPLES = 39
 NAMED = ["walking", "eating", "smoking", "discussion"]  # Table 3's; all actions of a folder that lacks them
 ABLATIONS = [("as published", []),
              ("with the determinant, `--without=draw`", ["--without=draw"]),
              ("without particles, `--without=particles`", ["--without=particles"]),
+             ("without the pose operator (Eq. 7-9), `--without=operator`", ["--without=operator"]),
+             ("an LSTM in place of the GRU, `--without=gru`", ["--without=gru"]),
              ("without noise and Eq. 6, `--without=noise`", ["--without=noise"]),
              ("without bone lengths (Eq. 11), `--without=bones`", ["--without=bones"]),
              ("without the critic (Eq. 12), `--without=critic`", ["--without=critic"])]
@@ -35,7 +38,8 @@ ABLATIONS = [("as published", []),
 def train(steps, *flags):
     if not os.path.isdir(MOCAP):
         sys.exit(f"{MOCAP} holds no clips: PUSHID_MOCAP names their folder")
-    return studies.run("pushid-train-generator", "--published=sde", *CLIPS, f"--steps={steps}", *flags, out="out")
+    return studies.run("pushid-train-generator", "--published=sde", *CLIPS, *HELD, f"--steps={steps}", *flags,
+                       out="out")
 
 
 def evaluate(model, *flags):

@@ -91,13 +91,26 @@ TEST(DiffusionTrainerTest, EigenEstimatesWhatLibTorchDoes) {
   }
 }
 
-// Eq. 4 of SDM alone: the other terms are errors, which add to it.
-TEST(DiffusionTrainerTest, WithoutItsOtherTermsTheLossIsSmaller) {
-  DiffusionTrainingOptions options = QuickDiffusion(kStepsOfRound);
-  DiffusionTrainer all(PushedGroups(), PushedGroups(), options);
+// Eq. 4 of SDM by hand, with the network that has not learned: it estimates x_0 = 0. Of two people
+// of three frames one moves 0.1 m a frame. The hip's scale is sqrt((0.1^2 + 0.2^2) / 3 / 6) =
+// 0.0527046 m, and the only rows that are not 0 are 0.1 and 0.2 m over it: 5.69210 in all, of
+// 2 x 3 x 66 rows. Where frame 0, which is shown, weighs 0.1, there are 4.2 frames instead of 6.
+TEST(DiffusionTrainerTest, Equation4ByHand) {
+  ObservedGroup group(2);
+  for (ObservedMotion& person : group) person.frames = Trajectories::Zero(3 * kBodyJoints, 3);
+  group[1].place = {1.0f, 0.0f};
+  for (int j = 0; j < kBodyJoints; ++j) group[0].frames.row(3 * j) << 0.0f, 0.1f, 0.2f;
+  DiffusionTrainingOptions options = QuickDiffusion(0);
   options.joint_weight = options.difference_weight = 0.0;
-  DiffusionTrainer alone(PushedGroups(), PushedGroups(), options);
-  EXPECT_LT(alone.RunRound().training_loss, all.RunRound().training_loss);
+  const auto loss = [&] {
+    return DiffusionTrainer({group}, {group}, options).RunRound().validation_loss;
+  };
+  options.observed_weight = 1.0;
+  EXPECT_NEAR(loss(), 5.69210 / (6 * 66), 1e-6);
+  options.observed_weight = 0.1;
+  EXPECT_NEAR(loss(), 5.69210 / (4.2 * 66), 1e-6);
+  options.difference_weight = 2.0;  // pushid's other terms add to it
+  EXPECT_GT(loss(), 5.69210 / (4.2 * 66) + 1e-3);
 }
 
 }  // namespace

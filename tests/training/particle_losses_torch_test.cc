@@ -1,8 +1,6 @@
-// The losses of particles: SDE's Eq. 10 and 11 worked by hand, and the gradient of every loss (Eq.
-// 6 in both readings, 10, 11, 12) against central finite differences in double precision.
+// The losses of particles: SDE's Eq. 10 and 11 worked by hand; values of Eq. 6 and 12, and the
+// gradients of Eq. 6, against the numbers of sde_numbers.py.
 #include <gtest/gtest.h>
-
-#include <functional>
 
 #include "models/generators/particle_module_torch.h"
 #include "tests/models/generators/generator_samples.h"
@@ -19,8 +17,6 @@ ParticleTrainingOptions Weighing(double distance, double squared, double bones) 
   options.distance = distance, options.squared = squared, options.bones = bones;
   return options;
 }
-
-torch::Tensor Random(std::vector<int64_t> shape) { return torch::randn(shape, torch::kFloat64); }
 
 // One window of four particles.
 torch::Tensor Window(const torch::Tensor& pose) {
@@ -62,72 +58,86 @@ TEST(ParticleLossesTest, Equation11ByHand) {
   EXPECT_NEAR(losses(forecast, window).item<double>(), 2.0 * 0.1 / 4.0 / 3.0, 1e-6);
 }
 
-// loss: repeats its random draws; of values in double precision, which require gradients.
-void ExpectCorrectGradient(const std::vector<torch::Tensor>& values,
-                           const std::function<torch::Tensor()>& loss) {
-  constexpr double kStep = 1e-6;
-  const std::vector<torch::Tensor> gradients = torch::autograd::grad({loss()}, values);
-  double largest = 0.0;
-  for (size_t v = 0; v < values.size(); ++v) {
-    torch::Tensor flat = values[v].detach().view({-1});
-    for (int64_t i = 0; i < flat.numel(); i += 1 + flat.numel() / 10) {
-      const double at = flat[i].item<double>();
-      flat[i] = at + kStep;
-      const double above = loss().item<double>();
-      flat[i] = at - kStep;
-      const double below = loss().item<double>();
-      flat[i] = at;
-      const double gradient = gradients[v].reshape({-1})[i].item<double>();
-      EXPECT_NEAR(gradient, (above - below) / (2.0 * kStep), 1e-7 + 1e-5 * std::abs(gradient))
-          << "tensor " << v << ", entry " << i;
-      largest = std::max(largest, std::abs(gradient));
+torch::Tensor Doubles(std::vector<double> values, std::vector<int64_t> shape) {
+  return torch::tensor(values, torch::kFloat64).reshape(shape);
+}
+
+// Two transitions of three coordinates. Of `below` all that is not below the diagonal is 9, which
+// nothing may depend on.
+TEST(ParticleLossesTest, Equation6IsThatOfTheScript) {
+  const auto of_frames = [](std::vector<double> values) {
+    return Doubles(std::move(values), {2, 3}).requires_grad_(true);
+  };
+  const torch::Tensor misses = of_frames({0.5, -1.0, 0.25, -0.75, 0.5, 1.5});
+  const torch::Tensor log_noise = of_frames({0.1, -0.4, 0.3, -0.2, 0.0, -0.5});
+  const torch::Tensor below = Doubles({9, 9, 9, 0.2, 9, 9, -0.3, 0.4, 9,   //
+                                       9, 9, 9, 0.6, 9, 9, 0.1, -0.5, 9},  //
+                                      {2, 3, 3})
+                                  .requires_grad_(true);
+  const torch::Tensor w = Doubles({1.0, -0.5, 2.0, 0.3, -1.2, -0.7}, {2, 3});
+  const auto expect = [&](NoiseLoss reading, double value, std::vector<double> by_misses,
+                          std::vector<double> by_log_noise, std::vector<double> by_below) {
+    const torch::Tensor loss = TransitionLoss(reading, misses, log_noise, below, w).mean();
+    EXPECT_NEAR(loss.item<double>(), value, 1e-11);
+    const auto found = torch::autograd::grad({loss}, {misses, log_noise, below});
+    for (int t = 0; t < 2; ++t) {
+      const torch::Tensor g = found[2][t];
+      const torch::Tensor lower = torch::stack({g[1][0], g[2][0], g[2][1]});
+      EXPECT_NEAR((g.abs().sum() - lower.abs().sum()).item<double>(), 0.0, 1e-12);
+      for (int i = 0; i < 3; ++i) {
+        EXPECT_NEAR(found[0][t][i].item<double>(), by_misses[3 * t + i], 1e-11) << t << " " << i;
+        EXPECT_NEAR(found[1][t][i].item<double>(), by_log_noise[3 * t + i], 1e-11) << t << " " << i;
+        EXPECT_NEAR(lower[i].item<double>(), by_below[3 * t + i], 1e-11) << t << " " << i;
+      }
+    }
+  };
+  expect(NoiseLoss::kDrawn, 1.648858619573,
+         {-0.201723639359, -0.288279992327, -0.649905871717, -0.331873075308, 0.506666666667,
+          0.431523820600},
+         {0.222939099707, -0.096619928864, 1.754562330066, 0.081514407862, 0.608000000000,
+          0.183212699313},
+         {0.288279992327, 0.649905871717, -0.324952935859, -0.152000000000, -0.129457146180,
+          0.517828584720});
+  expect(NoiseLoss::kLikelihood, 1.346454193846,
+         {0.177398282765, -0.461057590631, 0.094802622442, -0.783131310163, 0.654357563247,
+          0.958838046104},
+         {0.077967525284, -0.336109139951, 0.068408503420, -0.420681815956, -0.520167474615,
+          -1.862638144258},
+         {0.208591079936, -0.042890480057, 0.154225909048, 0.599425599430, 0.878345575605,
+          -1.006426368415});
+  // Without what is below it g is diagonal: the first coordinate alone feels no difference.
+  const torch::Tensor diagonal = TransitionLoss(NoiseLoss::kLikelihood, misses, log_noise, {}, {});
+  const torch::Tensor full = TransitionLoss(NoiseLoss::kLikelihood, misses, log_noise, below, {});
+  EXPECT_NEAR(diagonal[0][0].item<double>(), full[0][0].item<double>(), 1e-12);
+  EXPECT_GT(std::abs((diagonal - full)[0][1].item<double>()), 0.01);
+}
+
+// A critic of the script's weights: weight (i, j) of layer l is 2 sin(1 + i + 3 j + l) /
+// sqrt(inputs), bias 0.1 cos(i + l). That it takes them shows how many layers it has.
+TEST(ParticleLossesTest, Equation12IsThatOfTheScript) {
+  ParticleCritic critic(6, torch::ones({6}, torch::kFloat64));
+  critic.to(torch::kFloat64);
+  const auto parameters = critic.parameters();
+  ASSERT_EQ(parameters.size(), 6u) << "three layers";
+  {
+    torch::NoGradGuard no_grad;
+    for (int l = 0; l < 3; ++l) {
+      const int64_t outputs = parameters[2 * l].size(0), inputs = parameters[2 * l].size(1);
+      EXPECT_EQ(outputs, l < 2 ? 256 : 1);
+      const torch::Tensor i = torch::arange(outputs, torch::kFloat64).unsqueeze(1);
+      const torch::Tensor j = torch::arange(inputs, torch::kFloat64);
+      parameters[2 * l].copy_((1 + i + 3 * j + l).sin() * 2.0 / std::sqrt(inputs));
+      parameters[2 * l + 1].copy_(0.1 * (i.squeeze(1) + l).cos());
     }
   }
-  EXPECT_GT(largest, 1e-4) << "a loss that depends on nothing";
-}
-
-class LossGradients : public testing::Test {
- protected:
-  void SetUp() override { torch::manual_seed(1); }
-};
-
-TEST_F(LossGradients, DistancesSquaresAndBones) {
-  const torch::Tensor window = Window(Standing());
-  const torch::Tensor forecast =
-      (window.narrow(1, kObserved, kPredicted) + 0.1 * Random({1, kPredicted, 12}))
-          .requires_grad_(true);
-  for (const ParticleTrainingOptions& options :
-       {Weighing(1.0, 0.0, 0.0), Weighing(0.0, 10.0, 0.0), Weighing(0.0, 0.0, 1.0)}) {
-    const ParticleLosses losses(FourParticles(), options);
-    ExpectCorrectGradient({forecast}, [&] { return losses(forecast, window); });
-  }
-}
-
-TEST_F(LossGradients, Equation6InEveryReading) {
-  const torch::Tensor misses = Random({2, 3, 4}).requires_grad_(true);
-  const torch::Tensor log_noise = (0.3 * Random({2, 3, 4})).requires_grad_(true);
-  for (NoiseLoss reading : {NoiseLoss::kLikelihood, NoiseLoss::kDrawn}) {
-    ExpectCorrectGradient({misses, log_noise}, [&] {
-      torch::manual_seed(7);  // the same w
-      return TransitionLoss(reading, misses, log_noise).mean();
-    });
-  }
-}
-
-// Both sides of Eq. 12: what the critic learns by, with its penalty of slopes, and what it says to
-// the forecast.
-TEST_F(LossGradients, Equation12AndItsPenalty) {
-  ParticleCritic critic(kPredicted * 12, torch::full({12}, 0.1, torch::kFloat64));
-  critic.to(torch::kFloat64);
-  const torch::Tensor last = Random({4, 1, 12});
-  const torch::Tensor forecast = (last + 0.3 * Random({4, kPredicted, 12})).requires_grad_(true);
-  const torch::Tensor truth = critic.Features(last + 0.3 * Random({4, kPredicted, 12}), last);
-  ExpectCorrectGradient({forecast}, [&] { return -critic.Score(critic.Features(forecast, last)); });
-  const torch::Tensor made = critic.Features(forecast, last).detach();
-  ExpectCorrectGradient(critic.parameters(), [&] {
-    torch::manual_seed(7);  // the same points in between
-    return critic.Loss(made, truth);
-  });
+  const torch::Tensor made =
+      Doubles({0.3, -0.2, 0.5, 0.1, -0.4, 0.6, -0.5, 0.2, 0.1, 0.7, 0.3, -0.1}, {2, 6});
+  const torch::Tensor real =
+      Doubles({0.1, 0.4, -0.3, 0.2, 0.2, 0.5, 0.6, -0.6, 0.2, -0.2, 0.4, 0.3}, {2, 6});
+  EXPECT_NEAR(critic.Score(made).item<double>(), -0.028164865, 1e-8);
+  EXPECT_NEAR(critic.Score(real).item<double>(), 0.076286115, 1e-8);
+  EXPECT_NEAR(critic.Loss(made, real, Doubles({0.25, 0.7}, {2, 1})).item<double>(), 6.6191003,
+              1e-5);
 }
 
 }  // namespace

@@ -75,11 +75,14 @@ TEST(ParticleTrainerTest, RepeatsItselfAndResumesToTheLastBit) {
 }
 
 TEST(ParticleTrainerTest, EigenForecastsWhatLibTorchDoes) {
-  std::vector<ParticleStructure> structures(5);
+  std::vector<ParticleStructure> structures(7);
   structures[1].skip = false;
-  structures[2].particles = false;
+  structures[2].particles = structures[2].summed = false;
   structures[3].corrected_frames = 5;  // of eight: later ones keep the last correction
   structures[4].poses = structures[4].skip = false;
+  structures[5].lstm = true;
+  structures[6] = structures[4];
+  structures[6].summed = false;
   for (size_t i = 0; i < structures.size(); ++i) {
     ParticleTrainingOptions options = QuickParticles();
     options.structure = structures[i];
@@ -98,8 +101,9 @@ TEST(ParticleTrainerTest, EigenForecastsWhatLibTorchDoes) {
 }
 
 // A random walk of 1 cm a frame: in units of its displacements the best drift is f = 0 and the best
-// noise g = 1, so log g = 0. Trained by Eq. 6 alone, in both readings: as printed, with w drawn,
-// |p - f - g w|^2 = 1 + g^2 in the mean is least without noise.
+// noise g = 1, so log g = 0; the second coordinate goes with the first, g^10 = 0.8. Trained by Eq.
+// 6 alone, in both readings: as printed, with w drawn, |p - f - g w|^2 = 1 + g^2 in the mean is
+// least without noise.
 TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
   std::vector<LearntParticles> motions;
   Random random(6);
@@ -108,11 +112,15 @@ TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
     for (int t = 1; t < 80; ++t) {
       walk.motion.col(t) = walk.motion.col(t - 1);
       for (float& x : walk.motion.col(t)) x += static_cast<float>(0.01 * random.Normal());
+      const float first = walk.motion(0, t) - walk.motion(0, t - 1);
+      float& second = walk.motion(1, t);
+      second = walk.motion(1, t - 1) + 0.8f * first + 0.6f * (second - walk.motion(1, t - 1));
     }
     motions.push_back(walk);
   }
   ParticleTrainingOptions options = QuickParticles();
-  options.structure.poses = options.structure.skip = options.structure.correlated_noise = false;
+  options.structure.poses = options.structure.skip = false;
+  options.structure.noisy_input = true;
   options.together = options.constant_rate = true;
   options.distance = options.mirrored = options.jitter = 0.0;
   options.transitions = 1.0;
@@ -138,6 +146,9 @@ TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
   EXPECT_NEAR(log_noise(likely), 0.0f, 0.15f);
   EXPECT_GT(likely.drift.weights.cwiseAbs().maxCoeff(), 0.0f) << "f is trained too";
   EXPECT_EQ(likely.noise_mix.size(), 0);
+  EXPECT_GT(likely.noise_below.bias(12), 0.15f) << "row 1, column 0";
+  EXPECT_LT(std::abs(likely.noise_below.bias(24)), 0.15f) << "row 2, column 0";
+  EXPECT_EQ(likely.noise_below.bias(1), 0.0f) << "nothing above the diagonal";
   EXPECT_LT(log_noise(trained(NoiseLoss::kDrawn)), -1.2f);
 }
 

@@ -69,16 +69,21 @@ TEST_F(GeneratorAppTest, TrainsForecastsSamplesAndShows) {
 // Clips that pushid-simulate makes, SDE's settings, and the windows of the tables.
 TEST_F(GeneratorAppTest, SdeAsPublishedOnSyntheticClips) {
   Succeeded(RunApp("pushid-simulate", {"--clips=2", "--frames=220", "--out=" + Path("made")}));
-  for (const char* without : {"--without=", "--without=draw"}) {
+  for (const char* without : {"--without=", "--without=draw,protocol", "--without=gru,operator"}) {
     Succeeded(
         RunApp("pushid-train-generator", {"--published=sde", "--folder=" + Path("made"), without,
                                           "--out=" + Path("s"), "--steps=10", "--quiet"}));
     const auto settings = Json("s/generator.json")["settings"];
     EXPECT_EQ(settings["poses"], false);
+    EXPECT_EQ(settings["noisy_input"], true);
+    EXPECT_EQ(settings["lstm"], settings["summed"] == false);
     EXPECT_EQ(settings["members"], 1);
     EXPECT_EQ(settings["simlpe_share"], 0.0);
-    Succeeded(RunApp("pushid-generate", {"--published=sde", "--folder=" + Path("made"),
-                                         "--model=" + Path("s"), "--json_out=" + Path("e.json")}));
+    const std::vector<std::string> generate = {"--published=sde", "--folder=" + Path("made"),
+                                               "--model=" + Path("s"), "--samples=19",
+                                               "--json_out=" + Path("e.json")};
+    EXPECT_TRUE(Refused(RunApp("pushid-generate", generate), {"no clip of --protocol=test"}));
+    Succeeded(RunApp("pushid-generate", With(generate, {"--protocol=validation"})));
     const auto errors = Json("e.json");
     EXPECT_EQ(errors["configuration"]["published"], "sde");
     EXPECT_EQ(errors["actions"].size(), 4u);

@@ -53,6 +53,8 @@ TEST_F(MocapFolderTest, ClipsStandInTheOrderOfTheirNumbersAndTheLastValidates) {
 }
 
 TEST_F(MocapFolderTest, TestClipsAreNeverLearntFrom) {
+  EXPECT_TRUE(MakeForecastWindows(Read(Path("")), ForecastProtocol::kTest).empty())
+      << "no other clips stand in for them";
   WriteText("test/sway/sway_1.txt", SmallClip(400, 0.3, 0));
   const MocapFolder mocap = Read(Path(""));
   EXPECT_EQ(LearntMotions(mocap, true).size(), 22u);

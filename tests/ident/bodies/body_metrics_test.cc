@@ -102,28 +102,33 @@ TEST(BodyMetricsTest, TheOrderOfPeopleMakesNoDifference) {
   for (int m = 0; m < kNumBodyMetrics; ++m) EXPECT_NEAR(one.value[m], other.value[m], 1e-15);
 }
 
-// One second is 60 frames; one recording lasts for it, none for two.
-TEST(BodyMetricsTest, ErrorsAtFixedTimes) {
+// One second is 60 frames; one recording lasts for it, none for two. All joints are t mm off at
+// frame t, the head 0.22 m more: the mean of t over 1 .. 60 is 30.5, and 0.22 / 22 is 0.01.
+TEST(BodyMetricsTest, ErrorsUpToFixedTimes) {
   const std::vector<BodyRecording> recordings = {Standing(70, "a"), Standing(40, "b")};
   std::vector<BodyScore> scores;
   for (const BodyRecording& recording : recordings) {
     std::vector<BodyMotion> predicted = recording.bodies;
     for (size_t t = 1; t < predicted[0].size(); ++t) {
       predicted[0][t].colwise() += Eigen::Vector3d(0.001 * t, 0, 0);
-      predicted[0][t].col(kBodyHead) += Eigen::Vector3d(0, 0, 0.22);
+      predicted[0][t].col(kBodyHead) += Eigen::Vector3d(0.22, 0, 0);
     }
     scores.push_back(ScoreBodies(recording, predicted));
     EXPECT_FALSE(ScoreBodies(recording, predicted, 30).at[1]);
   }
-  EXPECT_NEAR(ScoreBodies(recordings[0], recordings[0].bodies, 5).at[0]->root, 0.0, 1e-12);
+  EXPECT_NEAR(ScoreBodies(recordings[0], recordings[0].bodies, 5).at[0]->front(), 0.0, 1e-12);
   EXPECT_FALSE(ScoreBodies(recordings[0], recordings[0].bodies, 11).at[0]) << "frame 70 is no more";
   const BodySummary summary = SummarizeBodies(recordings, scores);
   EXPECT_EQ(summary.at[0].recordings, 1);
-  EXPECT_NEAR(summary.at[0].mean.root, 0.060, 1e-12);
-  EXPECT_NEAR(summary.at[0].mean.pose, 0.01, 1e-12);
+  const auto json = ToJson(summary, false)["errors_at"];
+  EXPECT_NEAR(json[0]["root_m"].get<double>(), 0.0305, 1e-12);
+  EXPECT_NEAR(json[0]["pose_m"].get<double>(), 0.01, 1e-12);
+  EXPECT_NEAR(json[0]["total_m"].get<double>(), 0.0405, 1e-12);
+  EXPECT_TRUE(json[1]["total_m"].is_null());
   EXPECT_EQ(summary.at[1].recordings, 0);
   const std::string text = TimedErrorsText({{"generator", summary}});
-  EXPECT_TRUE(Contains(text, "0.060"));
+  EXPECT_TRUE(Contains(text, "total to 1 s"));
+  EXPECT_TRUE(Contains(text, "0.041"));
   EXPECT_TRUE(Contains(text, "none"));
 }
 

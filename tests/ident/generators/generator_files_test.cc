@@ -28,9 +28,7 @@ class GeneratorFilesTest : public TempDirTest {
     particles.simlpe_share = 0.5;
     particles.jitter = 0.7;
   }
-  std::string ErrorOf(const std::string& folder, const GeneratorChanges& changes = {}) {
-    return ProblemOf(LoadGenerator(folder, changes));
-  }
+  std::string ErrorOf(const std::string& folder) { return ProblemOf(ReadGenerator(folder)); }
   std::string ErrorAfter(const std::string& from, const std::string& to) {
     EXPECT_FALSE(WriteGenerator(Path("g"), trained_));
     std::string text = ReadText(Path("g/generator.json"));
@@ -48,9 +46,8 @@ class GeneratorFilesTest : public TempDirTest {
 
 TEST_F(GeneratorFilesTest, ComeBackToTheLastBit) {
   ASSERT_FALSE(WriteGenerator(Path("g"), trained_));
-  const auto loaded = Unwrapped(LoadGenerator(Path("g")));
-  EXPECT_EQ(loaded.generator->Forecast(people_, 6)[0],
-            MakeGenerator(trained_)->Forecast(people_, 6)[0]);
+  const TrainedNetworks loaded = Unwrapped(ReadGenerator(Path("g")));
+  EXPECT_EQ(loaded.Make()->Forecast(people_, 6)[0], trained_.Make()->Forecast(people_, 6)[0]);
   const GeneratorSettings& settings = loaded.settings;
   EXPECT_EQ(settings.observed, 12);
   EXPECT_EQ(settings.layout.names, FourParticles().names);
@@ -65,12 +62,12 @@ TEST_F(GeneratorFilesTest, WhatMayChangeChanges) {
   GeneratorChanges changes;
   changes.ridge = false;
   changes.particles.project_bones = false;
-  const auto loaded = Unwrapped(LoadGenerator(Path("g"), changes));
+  const TrainedNetworks loaded = Unwrapped(ReadGenerator(Path("g")));
   ParticleGeneratorOptions options;
   options.ridge_share = 0.0, options.project_bones = false;
   const ParticleGenerator expected(FourParticles(), Particles().members, Particles().partners,
                                    options);
-  EXPECT_EQ(loaded.generator->Forecast(people_, 6)[0], expected.Forecast(people_, 6)[0]);
+  EXPECT_EQ(loaded.Make(changes)->Forecast(people_, 6)[0], expected.Forecast(people_, 6)[0]);
 }
 
 TEST_F(GeneratorFilesTest, MistakesAreNamed) {

@@ -122,5 +122,24 @@ TEST(ScoresJsonTest, DamageIsNamed) {
   EXPECT_FALSE(ScoresFromJson(nlohmann::ordered_json::array(), "x").ok());
 }
 
+// Two samples, one 0.1 m to the left and one 0.3 m to the right of what was recorded: each errs by
+// itself, 0.2 m in the mean, where their mean motion errs by 0.1 m.
+TEST(ScoresJsonTest, EachSampleCountsAndTheMeanIsTaken) {
+  const auto sample = [](double error, nlohmann::ordered_json sscp) {
+    return nlohmann::ordered_json{{"id", "a"},
+                                  {"frames", 90},
+                                  {"mean", {{"MPJPE_m", error}}},
+                                  {"by_frame", {0.5, std::move(sscp)}}};
+  };
+  const auto mean = MeanOfSamples({sample(0.1, 0.2), sample(0.3, 0.4)});
+  EXPECT_NEAR(mean["mean"]["MPJPE_m"].get<double>(), 0.2, 1e-12);
+  EXPECT_NEAR(mean["by_frame"][1].get<double>(), 0.3, 1e-12);
+  EXPECT_EQ(mean["by_frame"][0], 0.5);
+  EXPECT_TRUE(mean["frames"].is_number_integer());
+  EXPECT_EQ(mean["id"], "a");
+  EXPECT_TRUE(MeanOfSamples({sample(0.1, nullptr), sample(0.3, 0.4)})["by_frame"][1].is_null());
+  EXPECT_TRUE(MeanOfSamples({sample(0.1, 0.4), sample(0.3, nullptr)})["by_frame"][1].is_null());
+}
+
 }  // namespace
 }  // namespace pushid

@@ -51,7 +51,7 @@ TEST_F(DiffusionGeneratorTest, ForecastsRepeatThemselvesInAnyOrder) {
 
 // As published: everybody in their own frame, pooled at the bottleneck, without fading.
 TEST_F(DiffusionGeneratorTest, TheOrderOfPeopleMakesNoDifferenceAsPublished) {
-  options_.settle = Settling::kNone;
+  options_.settle = false;
   for (const SocialPooling pooling : {SocialPooling::kMeanAll, SocialPooling::kHeads}) {
     const DiffusionStructure published = {pooling, SocialJoin::kBottleneck, MotionFrame::kOwn};
     const auto forecast = Generator(1, published).Forecast(Seen(4, 5), 20);
@@ -85,6 +85,16 @@ TEST_F(DiffusionGeneratorTest, InTheMirrorAGroupDoesTheMirrorImage) {
   EXPECT_LT(largest_difference(), 1e-4f);
   options_.mirrored = false;
   EXPECT_GT(largest_difference(), 1e-3f);
+}
+
+// Eq. 6 by hand: two people of three frames each, of which two were seen.
+TEST(DiffusionPastTest, SeenFramesTakeTheirPlace) {
+  Eigen::MatrixXf estimate(1, 6);
+  estimate << 1, 2, 3, 4, 5, 6;
+  PutPast({Eigen::RowVector2f(10, 20), Eigen::RowVector2f(30, 40)}, &estimate);
+  Eigen::MatrixXf expected(1, 6);
+  expected << 10, 20, 3, 30, 40, 6;
+  EXPECT_EQ(estimate, expected);
 }
 
 TEST_F(DiffusionGeneratorTest, TheSeamFades) {
@@ -136,7 +146,7 @@ TEST_F(DiffusionGeneratorTest, LongForecastsSettle) {
   options_.learnt_frames = 1000;
   const Trajectories restless = Generator().Forecast(people, 200)[1];
   options_.learnt_frames = 60;
-  options_.settle = Settling::kNone;
+  options_.settle = false;
   EXPECT_EQ(Generator().Forecast(people, 200)[1], restless);
   EXPECT_EQ(Trajectories(whole.leftCols(58)), Trajectories(restless.leftCols(58)));
   const auto step = [](const Trajectories& motion, int t) {

@@ -17,22 +17,10 @@ TEST(DiffusionScheduleTest, FromAllSignalToNone) {
   for (int t = 1; t <= kDiffusionTime; ++t) EXPECT_LT(SignalShare(t), SignalShare(t - 1));
 }
 
-// Whatever the way back, x_u of an exact estimate has the share of signal and noise that the way
-// there gives it, and the last step is the estimate itself.
-TEST(DiffusionScheduleTest, StepsBackKeepTheShares) {
-  for (const auto& row : Names(DiffusionSampler{})) {
-    for (const auto& [t, u] : {std::pair(1000.0, 960.0), {500.0, 460.0}, {80.0, 40.0}}) {
-      const double a = SignalShare(t), b = SignalShare(u);
-      const BackwardStep step = StepBack(row.value, t, u);
-      EXPECT_NEAR(step.estimate + step.noisy * std::sqrt(a), std::sqrt(b), 1e-9) << row.name;
-      EXPECT_NEAR(step.noisy * step.noisy * (1.0 - a) + step.noise * step.noise, 1.0 - b, 1e-9)
-          << row.name << " " << t;
-    }
-    const BackwardStep last = StepBack(row.value, 40.0, 0.0);
-    EXPECT_EQ(last.estimate, 1.0);
-    EXPECT_EQ(last.noisy, 0.0);
-    EXPECT_EQ(last.noise, 0.0);
-  }
+// Eq. 5 at t = 500: sqrt(0.493844) 2 + sqrt(0.506156) 3.
+TEST(DiffusionScheduleTest, Equation5ByHand) {
+  const auto one = [](float value) { return Eigen::MatrixXf::Constant(1, 1, value); };
+  EXPECT_NEAR(NoisedAgain(one(2.0f), one(3.0f), 500.0)(0, 0), 3.539820f, 1e-5f);
 }
 
 TEST(DiffusionFeaturesTest, MotionsComeBack) {

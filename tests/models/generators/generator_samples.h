@@ -46,8 +46,8 @@ inline ParticleNetwork RandomParticles(uint64_t seed, const ParticleStructure& s
   network.pose_mean = SwayingMotion(50, 0.0f).rowwise().mean();
   network.pose_spread = Eigen::VectorXf::Constant(size, 0.1f);
   network.step_spread = Eigen::VectorXf::Constant(size, 0.01f);
-  network.input = RandomLayer(kParticleGates, structure.NumInputs(size), 0.1, &random);
-  network.recurrent = RandomLayer(kParticleGates, kParticleHidden, 0.05, &random);
+  network.input = RandomLayer(structure.NumGates(), structure.NumInputs(size), 0.1, &random);
+  network.recurrent = RandomLayer(structure.NumGates(), kParticleHidden, 0.05, &random);
   network.drift = RandomLayer(size, kParticleHidden, 0.03, &random);
   network.noise = RandomLayer(size, kParticleHidden, 0.03, &random);
   if (structure.corrected_frames > 0) {
@@ -56,7 +56,11 @@ inline ParticleNetwork RandomParticles(uint64_t seed, const ParticleStructure& s
         RandomLayer(kCorrectionHidden, kParticleHidden + terms, 0.05, &random);
     network.correction = RandomLayer(terms, kCorrectionHidden, 0.03, &random);
   }
-  network.noise_mix = Eigen::MatrixXf::Identity(size, size);
+  if (structure.noisy_input) {
+    network.noise_below = RandomLayer(size * size, kParticleHidden, 0.01, &random);
+  } else {
+    network.noise_mix = Eigen::MatrixXf::Identity(size, size);
+  }
   if (structure.HasSkip()) {
     network.skip = RandomLayer(size, kSkipSteps * size, 0.01, &random).weights;
     network.skip.leftCols(size) += Eigen::MatrixXf::Identity(size, size);

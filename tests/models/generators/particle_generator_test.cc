@@ -77,6 +77,38 @@ TEST(ParticleRolloutTest, NoiseMovesCoordinatesTogether) {
   EXPECT_NEAR(moved.log_likelihood()(0), -6.0 * (1.0 + std::log(2.0 * M_PI)) - std::log(0.8), 1e-4);
 }
 
+// SDE's w_1:K: of two frames, with a cell that takes its input as it is. g^00 = 2, g^10 = 0.5 and
+// other diagonals 1, so w = 1 adds 2, 1.5, 1, ... to what goes in, and log N(w) - log 2 a frame.
+TEST(ParticleRolloutTest, NoiseGoesInByHand) {
+  ParticleStructure structure;
+  structure.skip = structure.poses = false;
+  structure.noisy_input = true;
+  ParticleNetwork network = RandomParticles(1, structure);
+  for (DenseLayer* layer :
+       {&network.input, &network.recurrent, &network.drift, &network.noise, &network.noise_below}) {
+    layer->weights.setZero(), layer->bias.setZero();
+  }
+  // h = (1 - z) tanh(0.01 x) with z = 1/2 of the first twelve units, and f = h.
+  network.input.weights.block(2 * kParticleHidden, 0, 12, 12).diagonal().setConstant(0.01f);
+  network.drift.weights.leftCols(12).setIdentity();
+  network.noise.bias[0] = std::log(2.0f);
+  network.noise_below.bias[12] = 0.5f;
+  network.noise_below.bias[1] = 9.0f;  // above the diagonal
+  const std::vector<ObservedMotion> people = {
+      {Trajectories(SwayingMotion(1, 0.0f).replicate(1, 2))}};
+  const NormalSource ones = [] { return 1.0; };
+  ParticleRollout rollout(network, people, 1, nullptr, &ones);
+  EXPECT_NEAR(rollout.log_likelihood()(0),
+              2.0 * (-6.0 * (1.0 + std::log(2.0 * M_PI)) - std::log(2.0)), 1e-4);
+  const Eigen::VectorXf moved = (rollout.Step() - people[0].frames.col(1)) / 0.01f;
+  // h_1 = 0.5 tanh(0.01 x), h_2 = 0.5 tanh(0.01 x) + 0.5 h_1.
+  EXPECT_NEAR(moved[0], 0.75 * std::tanh(0.02), 1e-5);
+  EXPECT_NEAR(moved[1], 0.75 * std::tanh(0.015), 1e-5);
+  EXPECT_NEAR(moved[2], 0.75 * std::tanh(0.01), 1e-5);
+  ParticleRollout quiet(network, people);
+  EXPECT_TRUE(quiet.Step() == people[0].frames.col(1)) << "the forecast has no noise";
+}
+
 TEST(ParticleRolloutTest, PeopleTogetherAreAsPeopleAlone) {
   const ParticleNetwork network = RandomParticles(2);
   const std::vector<ObservedMotion> people = {{SwayingMotion(12, 0.0f)}, {SwayingMotion(12, 1.0f)}};
