@@ -30,6 +30,8 @@ struct Dual {
     return x;
   }
 
+  const T& Slope(int k) const { return v[k]; }
+
   Dual operator-() const { return {-a, -v}; }
   Dual& operator+=(const Dual& y) { return *this = *this + y; }
   Dual& operator-=(const Dual& y) { return *this = *this - y; }

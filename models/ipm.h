@@ -306,6 +306,11 @@ class FrameTable {
   FrameTable() = default;
   FrameTable(int num_frames, int num_people)
       : num_people_(num_people), values_(static_cast<size_t>(num_frames) * num_people) {}
+  // As new, in the room that is there.
+  void Reset(int num_frames, int num_people) {
+    num_people_ = num_people;
+    values_.assign(static_cast<size_t>(num_frames) * num_people, Value());
+  }
   Value& At(int frame, int person) { return values_[Index(frame, person)]; }
   const Value& At(int frame, int person) const { return values_[Index(frame, person)]; }
   // Everybody at one frame, in a row.

@@ -45,7 +45,6 @@ struct RodShape {
   RodKind kind = RodKind::kConstant;
   std::vector<int> hidden = {};  // layers of an MLP, at least one
 
-  static constexpr int kMostInputs = 12;
   static constexpr int kForceInputs = kMotionInputs;  // where the four of the self force start
   static constexpr int kRodInput = kForceInputs + 4;
 
@@ -111,13 +110,6 @@ T RodVelocity(const RodShape& shape, const T* weights, RodLayers<T>* layers) {
   if (shape.biased()) f += weights[below->size()];
   return kRodSpeed * f;
 }
-
-// Its derivatives by the inputs and, where by_weight is not null, by every weight, as RodVelocity
-// left the layers; by hand, from the output back.
-using RodInputGradient =
-    Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, RodShape::kMostInputs>;
-RodInputGradient RodVelocityGradient(const RodShape& shape, const double* weights,
-                                     const RodLayers<double>& layers, double* by_weight);
 
 // What people do to each other, learned: a small network beside contact, fitted with
 // everything else.

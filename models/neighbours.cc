@@ -78,4 +78,11 @@ PairFinder::PairFinder(const Scene& scene, const InteractionTerms& terms)
   grid_ = NeighbourGrid(std::move(rank));
 }
 
+void PairFinder::Near(int person, std::vector<int>* near, int from) const {
+  near->clear();
+  if (!Active()) return;
+  grid_.Near(
+      person, from, [this, person](int other) { return MayAct(person, other); }, near);
+}
+
 }  // namespace pushid

@@ -121,12 +121,7 @@ class PairFinder {
   }
 
   // Neighbours of a person in canonical order, from a place in it on.
-  void Near(int person, std::vector<int>* near, int from = 0) const {
-    near->clear();
-    if (!Active()) return;
-    grid_.Near(
-        person, from, [this, person](int other) { return MayAct(person, other); }, near);
-  }
+  void Near(int person, std::vector<int>* near, int from = 0) const;
   int Rank(int person) const { return grid_.Rank(person); }
   Pair Of(int n, int j) const {
     return {scene_->people[n].body, scene_->people[j].body, first_[n], first_[j]};

@@ -3,8 +3,7 @@
 //   predict: s <- step(s),  P <- A P A' + Q,  A = d step / ds,  Q = dt B M^-1 L L' M^-1 B'
 //   update:  S = P_qq + R,  P <- P - P_q S^-1 P_q',  s <- s + P_q S^-1 (z - q)
 // B = [dt; 1] as the step has it; A by dual numbers through the very forces of the rollout, over
-// any scalar, so that derivatives by parameters pass through it (or from a step with derivatives of
-// its own: residuals/sensitivities/net_force_jacobian.h). Sources: Jazwinski, Stochastic
+// any scalar, so that derivatives by parameters pass through it. Sources: Jazwinski, Stochastic
 // Processes and Filtering Theory, 1970 (8.8); as used by CTSM-R and ctsmTMB.
 //
 // Of several people each has a covariance of their own: what people do to each other is taken at
@@ -49,57 +48,62 @@ Eigen::Matrix<T, N, kColumns> SolveLower(const Eigen::Matrix<T, N, N>& lower,
   return columns;
 }
 
-// A step of everybody with its derivatives by each person's own state, by dual numbers.
-template <typename T>
+// A step of everybody with its derivatives by each person's own state, by a scalar D that holds a
+// value and eight derivatives.
+template <typename T, typename D = Dual<T, 8>>
 class DualStep {
  public:
   // All arguments must outlive the object.
   DualStep(const Scene& scene, const ModelOptions& options,
            const std::vector<ParameterSet<T>>& parameters)
-      : scene_(scene), parameters_(Duals(parameters)), forces_(scene, options, parameters_) {}
+      : scene_(scene), parameters_(Constants(parameters)), forces_(scene, options, parameters_) {}
   DualStep(const DualStep&) = delete;
   DualStep& operator=(const DualStep&) = delete;
 
   // states: of everybody at the frame that the next steps start from.
   void Begin(const std::vector<PendulumState<T>>& states) {
-    states_.clear();
-    for (const PendulumState<T>& state : states) {
-      PendulumState<D>& constant = states_.emplace_back();
+    states_.resize(states.size());
+    for (size_t n = 0; n < states.size(); ++n) {
       for (int i = 0; i < 4; ++i) {
-        constant.q[i] = D::Constant(state.q[i]);
-        constant.qd[i] = D::Constant(state.qd[i]);
+        states_[n].q[i] = D::Constant(states[n].q[i]);
+        states_[n].qd[i] = D::Constant(states[n].qd[i]);
       }
     }
   }
 
   // The person's velocity one step on, and its derivatives by [q, qd].
   Vector4<T> Velocity(int frame, int person, Eigen::Matrix<T, 4, 8>* by_state) {
+    Vector4<T> next;
+    Eigen::Matrix<T, 4, 8, Eigen::RowMajor> rows;
+    Velocity(frame, person, next.data(), rows.data());
+    *by_state = rows;
+    return next;
+  }
+  // The same into 4 numbers and 4 x 8, by rows.
+  void Velocity(int frame, int person, T* next, T* by_state) {
     const PendulumState<D> kept = states_[person];
     for (int i = 0; i < 4; ++i) {
-      states_[person].q[i].v[i] = T(1.0);
-      states_[person].qd[i].v[4 + i] = T(1.0);
+      states_[person].q[i] = D::Input(kept.q[i].a, i);
+      states_[person].qd[i] = D::Input(kept.qd[i].a, 4 + i);
     }
     forces_.Update(states_.data());
     forces_.Prepare(person, &scratch_);
     const NetForce<D> force = forces_.On(person, frame, states_[person].qd);
     const Vector4<D> qd = states_[person].qd + D(scene_.dt) * forces_.AccelerationOf(person, force);
     states_[person] = kept;
-    Vector4<T> next;
     for (int i = 0; i < 4; ++i) {
       next[i] = qd[i].a;
-      by_state->row(i) = qd[i].v.transpose();
+      for (int k = 0; k < 8; ++k) by_state[8 * i + k] = qd[i].Slope(k);
     }
-    return next;
   }
 
  private:
-  using D = Dual<T, 8>;
-  static std::vector<ParameterSet<D>> Duals(const std::vector<ParameterSet<T>>& parameters) {
-    std::vector<ParameterSet<D>> duals(parameters.size());
+  static std::vector<ParameterSet<D>> Constants(const std::vector<ParameterSet<T>>& parameters) {
+    std::vector<ParameterSet<D>> constants(parameters.size());
     for (size_t n = 0; n < parameters.size(); ++n) {
-      for (int i = 0; i < kNumParameters; ++i) duals[n][i] = D::Constant(parameters[n][i]);
+      for (int i = 0; i < kNumParameters; ++i) constants[n][i] = D::Constant(parameters[n][i]);
     }
-    return duals;
+    return constants;
   }
 
   const Scene& scene_;

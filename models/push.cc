@@ -9,6 +9,13 @@ double LogTailDuration(double push_duration) {
   return std::log(std::min(push_duration, kLongestTailDuration) / kTailReferenceDuration);
 }
 
+TailOf<double> TailAt(const ScenePush& push, double mass, int frame, double dt) {
+  const double force = push.mean.head<2>().norm();
+  return {push.mean, force > 0.0 ? mass / force : 0.0,
+          LogTailDuration(static_cast<double>(push.force.size()) * dt),
+          (frame - push.EndFrame()) * dt};
+}
+
 double TailImpulse(const ScenePush& push, double mass, const ParameterSet<double>& p, double dt) {
   if (push.kind == PushKind::kExternal || push.force.empty()) return 0.0;
   const TailOf<double> tail = TailAt(push, mass, push.EndFrame(), dt);

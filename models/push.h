@@ -142,12 +142,7 @@ struct TailOf {
 };
 
 // The tail of a push on a person of so many kg that has one at `frame` (TailActs).
-inline TailOf<double> TailAt(const ScenePush& push, double mass, int frame, double dt) {
-  const double force = push.mean.head<2>().norm();
-  return {push.mean, force > 0.0 ? mass / force : 0.0,
-          LogTailDuration(static_cast<double>(push.force.size()) * dt),
-          (frame - push.EndFrame()) * dt};
-}
+TailOf<double> TailAt(const ScenePush& push, double mass, int frame, double dt);
 
 // Adds the derivatives of TailForce.
 inline void AddTailJacobian(const ScenePush& push, double mass, const ParameterSet<double>& p,

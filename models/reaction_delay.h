@@ -28,14 +28,12 @@
 
 namespace pushid {
 
-// What a delayed state is made of: `weight[i]` times the state `back + i` frames ago, and the same
-// of its derivative by the delay, 1/s.
+// What a delayed state is made of: `weight[i]` times the state `back + i` frames ago.
 template <typename T>
 struct DelayedFrames {
   static constexpr int kCount = 4;
   int back;
   T weight[kCount];
-  T by_delay[kCount];
 
   DelayedFrames(const T& delay, double dt) {
     const double whole = std::floor(RealPart(delay) / dt);
@@ -43,19 +41,15 @@ struct DelayedFrames {
     const T u = delay * (1.0 / dt) - whole;
     const T u2 = u * u, u3 = u2 * u;
     // Values 1 .. 2 are beside t - d; 0 is later than both, 3 earlier.
-    const T w0 = 0.5 * (-u + 2.0 * u2 - u3), s0 = 0.5 * (-1.0 + 4.0 * u - 3.0 * u2);
-    const T w1 = 0.5 * (2.0 - 5.0 * u2 + 3.0 * u3), s1 = 0.5 * (-10.0 * u + 9.0 * u2);
-    const T w2 = 0.5 * (u + 4.0 * u2 - 3.0 * u3), s2 = 0.5 * (1.0 + 8.0 * u - 9.0 * u2);
-    const T w3 = 0.5 * (-u2 + u3), s3 = 0.5 * (-2.0 * u + 3.0 * u2);
-    const T w[] = {w0, w1, w2, w3}, s[] = {s0, s1, s2, s3};
+    const T w[] = {0.5 * (-u + 2.0 * u2 - u3), 0.5 * (2.0 - 5.0 * u2 + 3.0 * u3),
+                   0.5 * (u + 4.0 * u2 - 3.0 * u3), 0.5 * (-u2 + u3)};
     back = k - 1;
-    for (int i = 0; i < kCount; ++i) weight[i] = w[i], by_delay[i] = s[i] * (1.0 / dt);
+    for (int i = 0; i < kCount; ++i) weight[i] = w[i];
     if (k > 0) return;
     // What is later than now is on the line through the two before: twice the one less the other.
     back = 0;
-    const T first[] = {w1 + 2.0 * w0, w2 - w0, w3, T(0.0)};
-    const T slope[] = {s1 + 2.0 * s0, s2 - s0, s3, T(0.0)};
-    for (int i = 0; i < kCount; ++i) weight[i] = first[i], by_delay[i] = slope[i] * (1.0 / dt);
+    const T first[] = {w[1] + 2.0 * w[0], w[2] - w[0], w[3], T(0.0)};
+    for (int i = 0; i < kCount; ++i) weight[i] = first[i];
   }
 };
 
@@ -64,30 +58,26 @@ struct DelayedFrames {
 template <typename T>
 struct DelayedPlace {
   DelayedFrames<T> of_pose, of_rate;
-  bool rate_moves;  // with the delay
 
   DelayedPlace(const T& delay, double dt)
       : of_pose(delay, dt),
-        of_rate(RealPart(delay) > 0.5 * dt ? T(delay - 0.5 * dt) : T(0.0), dt),
-        rate_moves(RealPart(delay) > 0.5 * dt) {}
+        of_rate(RealPart(delay) > 0.5 * dt ? T(delay - 0.5 * dt) : T(0.0), dt) {}
 };
 
-// The state so long before frame `now`, and its derivative by the delay.
+// The state so long before frame `now`.
 template <typename T>
 struct DelayedState {
-  Vector4<T> q, qd, q_by_delay, qd_by_delay;
+  Vector4<T> q, qd;
 
   DelayedState(const RolloutPath<T>& path, int now, int person, const DelayedPlace<T>& place) {
     q.setConstant(T(0.0));
-    qd = q_by_delay = qd_by_delay = q;
+    qd = q;
     for (int i = 0; i < DelayedFrames<T>::kCount; ++i) {
       const PendulumState<T>& pose = path.At(std::max(now - place.of_pose.back - i, 0), person);
       q += place.of_pose.weight[i] * pose.q;
-      q_by_delay += place.of_pose.by_delay[i] * pose.q;
       const int at = now - place.of_rate.back - i;
       if (at < 0) continue;  // at rest
       qd += place.of_rate.weight[i] * path.At(at, person).qd;
-      if (place.rate_moves) qd_by_delay += place.of_rate.by_delay[i] * path.At(at, person).qd;
     }
   }
 };

@@ -95,7 +95,7 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
                       const FrameTable<Vector4<double>>* noise = nullptr) {
   const int people = scene.num_people();
   SceneForces<T> forces(scene, options, parameters, network_weights);
-  *path = RolloutPath<T>(num_frames, people);
+  path->Reset(num_frames, people);
   if (trace != nullptr) *trace = FrameTable<NetForce<T>>(num_frames, people);
   StartPath(scene, initial_velocity, path);
   return RollOn<T>(scene, &forces, 0, path, trace, noise);

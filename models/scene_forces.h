@@ -2,7 +2,6 @@
 // to each other and what networks answer.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "models/interaction.h"
@@ -70,11 +69,9 @@ class SceneForces {
   // The same for everybody, to the last bit.
   void PrepareAll() {
     for (Vector4<T>& received : received_) received.setZero();
-    acting_.clear();
     finder_.ForEachPair([this](int n, int j) {
       const PairForce<T> force = Between(n, j);
       if (!force.acts) return;
-      acting_.emplace_back(n, j);
       Receive(n, force, true);
       Receive(j, force, false);
     });
@@ -128,18 +125,12 @@ class SceneForces {
   }
   // As Update left it.
   const PosedPendulum<T>& state(int person) const { return states_[person]; }
-  // Who acted on whom at PrepareAll, as ForEachPair visits them.
-  const std::vector<std::pair<int, int>>& acting() const { return acting_; }
   // Null without a delay.
   const Perceived<T>* perceived(int person) const {
     return perceived_.empty() ? nullptr : &perceived_[person];
   }
-  // Of a model with a delay.
-  const DelayedPlaces<T>& delayed(int person) const { return delayed_[person]; }
   const SelfForce& self(int person) const { return self_[person]; }
   const Vector4<T>& received(int person) const { return received_[person]; }
-  // As Prepare left it; only where options have a network.
-  const NetworkState<T>& network(int person) const { return networks_[person].state; }
   // As Next left it; only where options have a law for the rod.
   const RodLayers<T>& rod(int person) const { return rods_[person]; }
   const PairFinder& pairs() const { return finder_; }
@@ -217,7 +208,6 @@ class SceneForces {
   std::vector<PosedPendulum<T>> states_;
   std::vector<DelayedPlaces<T>> delayed_;
   std::vector<Perceived<T>> perceived_;
-  std::vector<std::pair<int, int>> acting_;
 };
 
 }  // namespace pushid

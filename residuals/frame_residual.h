@@ -40,6 +40,15 @@ constexpr EnumNames<Likelihood, 3> Names(Likelihood) {
            {"innovation", Likelihood::kInnovation}}};
 }
 
+// Who differentiates a rollout.
+enum class DerivativesBy {
+  kAuto,     // the quickest there is: lanes (cost_functions/lane_tables.h) or jets
+  kAutodiff  // jets (jets/autodiff_rollout.h) alone
+};
+constexpr EnumNames<DerivativesBy, 2> Names(DerivativesBy) {
+  return {{{"auto", DerivativesBy::kAuto}, {"autodiff", DerivativesBy::kAutodiff}}};
+}
+
 inline constexpr int kFrameResiduals = 9;
 
 enum class FrameLoss { kHip, kLdp };
@@ -56,7 +65,7 @@ struct ResidualSigmas {
   double rate = 3.0;      // rad/s
   double robust = 0.5;    // pseudo-Huber scale d in sigmas (of |r|); 0 means plain least squares
   FrameLoss loss = FrameLoss::kHip;
-  // Of force platforms (cost_functions/plate_residual.h): N, and m of the centre of pressure.
+  // Of force platforms (plate_residual.h): N, and m of the centre of pressure.
   double shear = 10.0, centre = 0.005;
 
   // d of whole frames; 0 where each row has its own.
@@ -77,8 +86,6 @@ using MeasuredFrame = MeasuredFrameOf<double>;
 
 template <typename T>
 using FrameVector = Eigen::Matrix<T, kFrameResiduals, 1>;
-template <int kColumns, typename T = double>
-using FrameJacobian = Eigen::Matrix<T, kFrameResiduals, kColumns, Eigen::RowMajor>;
 
 // r before the robust weight. angles: of the state.
 // body: with the lengths of that frame (BodyNow, where the rod moves).
@@ -101,38 +108,6 @@ FrameVector<T> RawFrameResidual(const BodyOf<L>& body, const PendulumState<T>& s
   }
   if (sigmas.loss == FrameLoss::kLdp) r[8] = (state.rod - measured.rod) / sigmas.hip;
   return r;
-}
-
-// Its derivative by [q, qd], and by [rod, lift] where there are so many columns, with the lift.
-// Writes what is not always zero.
-template <int kColumns, typename T, typename L>
-void RawFrameJacobian(const BodyOf<L>& body, const L& lift, const PendulumState<T>& state,
-                      const Angles<T>& angles, const ResidualSigmas& sigmas,
-                      FrameJacobian<kColumns, T>* jacobian) {
-  const auto& [s_th, c_th, s_ph, c_ph] = angles;
-  const L scaled_rod = body.rod_length * (1.0 / sigmas.hip);
-  FrameJacobian<kColumns, T>& j = *jacobian;
-  j(0, 0) = j(1, 1) = T(1.0 / sigmas.hip);
-  j(3, 4) = j(4, 5) = T(1.0 / sigmas.velocity);
-  j(5, 2) = j(6, 3) = T(1.0 / sigmas.angle);
-  j(7, 6) = j(8, 7) = T(1.0 / sigmas.rate);
-  if (sigmas.loss == FrameLoss::kLdp) {
-    j(2, 7) = T(kLdpRateWeight / sigmas.rate);
-    j(8, 7) = T(0.0);
-    if constexpr (kColumns == 10) j(8, 8) = T(1.0 / sigmas.hip);
-    return;
-  }
-  j(0, 2) = scaled_rod * c_th;
-  j(1, 2) = scaled_rod * s_th * s_ph;
-  j(1, 3) = -scaled_rod * c_th * c_ph;
-  j(2, 2) = -scaled_rod * s_th * c_ph;
-  j(2, 3) = -scaled_rod * c_th * s_ph;
-  if constexpr (kColumns == 10) {
-    j(0, 8) = s_th / sigmas.hip;
-    j(1, 8) = -c_th * s_ph / sigmas.hip;
-    j(2, 8) = (c_th * c_ph - lift) / sigmas.hip;
-    j(2, 9) = -state.rod / sigmas.hip;
-  }
 }
 
 // w of the header; 1 for plain least squares.
@@ -158,25 +133,6 @@ struct RobustSlope {
     over_w = -0.5 * inverse_square * u / c;
   }
 };
-
-// w r and its derivative, times `weight`.
-template <typename Residual, typename Jacobian>
-Residual RobustlyWeighted(const Residual& r, double weight, double robust, Jacobian* jacobian) {
-  if (robust <= 0.0) {
-    *jacobian *= weight;
-    return weight * r;
-  }
-  const RobustSlope<double> slope(r.squaredNorm(), robust);
-  const double w = slope.w;
-  // Row by row, as vectors of the processor lie.
-  Eigen::Matrix<double, 1, Jacobian::ColsAtCompileTime> along = r[0] * jacobian->row(0);
-  for (Eigen::Index i = 1; i < r.size(); ++i) along += r[i] * jacobian->row(i);
-  along *= w * slope.over_w * weight;
-  for (Eigen::Index i = 0; i < r.size(); ++i) {
-    jacobian->row(i) = (weight * w) * jacobian->row(i) + r[i] * along;
-  }
-  return weight * w * r;
-}
 
 // A frame's rows of the Jacobian of w r, made those whose J'J is the robust cost's own Hessian but
 // for the model's second derivatives (Triggs et al. 2000, section 4.3): the Jacobian of w r counts
@@ -220,18 +176,5 @@ FrameVector<T> FrameResidual(const BodyOf<L>& body, const PendulumState<T>& stat
   }
   return T(measured.weight) * RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
 }
-
-// The analytic twin of FrameResidual: its value, and its derivative by [q, qd].
-FrameVector<double> FrameResidualWithJacobian(const Body& body, const PosedPendulum<double>& state,
-                                              const MeasuredFrame& measured,
-                                              const ResidualSigmas& sigmas,
-                                              FrameJacobian<8>* jacobian);
-
-// The same where the rod moves, with BodyNow(body, state.rod, lift): by [q, qd, rod, lift].
-FrameVector<double> MovingRodResidualWithJacobian(const Body& body, double lift,
-                                                  const PosedPendulum<double>& state,
-                                                  const MeasuredFrame& measured,
-                                                  const ResidualSigmas& sigmas,
-                                                  FrameJacobian<10>* jacobian);
 
 }  // namespace pushid

@@ -2,6 +2,7 @@
 //
 //   ExpectCorrectJacobian(cost, oracle, blocks, tolerance);   // against another cost function
 //   ExpectCorrectJacobian(cost, blocks, tolerance);           // against Ridders' differentiation
+//   ExpectDirectionalDerivatives(cost, blocks, tolerance);    // the same along a few directions
 // An entry is right when |actual - expected| <= relative * (largest |expected| of its column) +
 // absolute. Relative to the column, not to the entry: an entry that vanishes by cancellation
 // carries the rounding of its column. Outputs are filled with NaN first, so that an entry not
@@ -17,6 +18,7 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <random>
 #include <vector>
 
 namespace pushid {
@@ -168,6 +170,56 @@ inline void ExpectCorrectJacobian(const ceres::CostFunction& cost, const Paramet
   for (int size : cost.parameter_block_sizes()) oracle.AddParameterBlock(size);
   oracle.SetNumResiduals(cost.num_residuals());
   ExpectCorrectJacobian(cost, oracle, blocks, tolerance);
+}
+
+// J u against central differences along random directions u, in which all columns weigh alike:
+// every column at once for the price of a few residuals, where there are many models to go through.
+// relative: to the largest entry of J u.
+inline void ExpectDirectionalDerivatives(const ceres::CostFunction& cost,
+                                         const ParameterBlocks& blocks,
+                                         const JacobianTolerance& tolerance = {1e-6, 1e-11, 0.0}) {
+  constexpr int kDirections = 3;
+  constexpr double kStep = 1e-5;
+  const CostEvaluation at = EvaluateCost(cost, blocks, std::vector<bool>(blocks.size(), true));
+  ASSERT_TRUE(at.ok);
+  ExpectSameResiduals(EvaluateCost(cost, blocks, {}).residuals, at.residuals, 1e-11);
+  std::minstd_rand random(7);
+  std::uniform_real_distribution<double> size(0.5, 1.0);
+  for (int k = 0; k < kDirections; ++k) {
+    ParameterBlocks u = blocks;
+    Eigen::VectorXd along = Eigen::VectorXd::Zero(at.residuals.size());
+    for (size_t b = 0; b < blocks.size(); ++b) {
+      for (size_t i = 0; i < blocks[b].size(); ++i) {
+        const Eigen::VectorXd column = at.jacobians[b].col(static_cast<Eigen::Index>(i));
+        const double most = std::max(1.0, std::abs(blocks[b][i]));
+        const double slope = column.cwiseAbs().maxCoeff();
+        u[b][i] = (random() % 2 == 0 ? 1.0 : -1.0) * size(random) *
+                  (slope * most > 1.0 ? 1.0 / slope : most);
+        along += u[b][i] * column;
+      }
+    }
+    const auto difference = [&](double step) {
+      ParameterBlocks more = blocks, less = blocks;
+      for (size_t b = 0; b < blocks.size(); ++b) {
+        for (size_t i = 0; i < blocks[b].size(); ++i) {
+          more[b][i] += step * u[b][i];
+          less[b][i] -= step * u[b][i];
+        }
+      }
+      const CostEvaluation above = EvaluateCost(cost, more, {});
+      const CostEvaluation below = EvaluateCost(cost, less, {});
+      EXPECT_TRUE(above.ok && below.ok);
+      return ((above.residuals - below.residuals) / (2.0 * step)).eval();
+    };
+    const Eigen::VectorXd expected = (4.0 * difference(0.5 * kStep) - difference(kStep)) / 3.0;
+    Eigen::Index row = 0;
+    const double off = (along - expected).cwiseAbs().maxCoeff(&row);
+    // Written so that NaN on either side is wrong.
+    if (off <= tolerance.relative * expected.cwiseAbs().maxCoeff() + tolerance.absolute) continue;
+    ADD_FAILURE() << std::setprecision(17) << "along direction " << k << ", row " << row << ": "
+                  << along[row] << ", expected " << expected[row];
+    return;
+  }
 }
 
 }  // namespace pushid

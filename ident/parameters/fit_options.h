@@ -36,6 +36,8 @@ struct FitOptions {
   bool preset_priors = true;  // false: FreeTerms takes the weak priors away
 
   Likelihood likelihood = Likelihood::kTrajectory;  // by SetLikelihood (presets.h)
+  // Of the recordings' rollouts: kAutodiff to check the quick ones, a new law in particular.
+  DerivativesBy derivatives = DerivativesBy::kAuto;
 
   // Where they are estimated: where the estimation starts, and in a result what it found.
   ResidualSigmas sigmas;

@@ -372,6 +372,9 @@ std::vector<Row> ModelRows() {
           "(each measured state given the one before) or innovation (each measurement given all "
           "before it, with errors "
           "of measurement)"),
+      FieldRow<DerivativesBy>(
+          "derivatives", "", &O::derivatives,
+          "of rollouts: auto (the quickest there are), or autodiff (of the model's own formulas)"),
       BoolRow("preset_priors", "", &O::preset_priors, "keep the preset's weak priors"),
   };
 }

@@ -263,7 +263,7 @@ std::shared_ptr<const FitProblem::LaidOut> FitProblem::LayOut(int horizon) const
     if (Count(i) == 0) continue;
     made->rollouts[i].problem =
         MakeRolloutProblem(recordings()[i], options_.model, map_, options_.sigmas,
-                           Weight(i, horizon), Frames(i, horizon));
+                           Weight(i, horizon), Frames(i, horizon), options_.derivatives);
   }
   made->side_by_side = PutSideBySide(made->rollouts);
   return kept = std::move(made);
@@ -287,10 +287,8 @@ std::vector<FailedRollout> FailuresOf(const std::vector<RolloutAt>& rollouts,
   for (size_t i = 0; i < rollouts.size(); ++i) {
     const auto& [problem, blocks] = rollouts[i];
     if (problem == nullptr || sums[i].ok) continue;
-    SensitivityInputs inputs;
     RolloutPath<double> path;
-    const RolloutStatus status =
-        RollOut(*problem, blocks.data(), Derivatives::kNone, &inputs, &path, nullptr);
+    const RolloutStatus status = RollOut(*problem, blocks.data(), &path);
     if (!status.ok) failures.push_back({static_cast<int>(i), status});
   }
   return failures;

@@ -11,7 +11,7 @@
 #include "ident/problem/work.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
-#include "residuals/cost_functions/plate_residual.h"
+#include "residuals/plate_residual.h"
 #include "residuals/normal_equations.h"
 
 namespace pushid {

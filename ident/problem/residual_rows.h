@@ -107,7 +107,7 @@ void AddCurvature(const BuiltProblem& built, const Eigen::VectorXd& steps, bool 
                   ResidualRows* rows);
 
 // By recording, in sigmas without the robust loss: FrameResidual's, by frame from frame 1 on, then
-// person; then those of platforms (cost_functions/plate_residual.h). Empty where a rollout leaves
+// person; then those of platforms (residuals/plate_residual.h). Empty where a rollout leaves
 // the domain, and of recordings that do not count if only the others are wanted.
 using ResidualsByRecording = std::vector<std::vector<double>>;
 ResidualsByRecording RawResiduals(const FitProblem& problem, FitPoint point,

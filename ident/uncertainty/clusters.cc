@@ -13,7 +13,7 @@
 #include "ident/solver/structured_secants.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
-#include "residuals/cost_functions/plate_residual.h"
+#include "residuals/plate_residual.h"
 
 namespace pushid {
 

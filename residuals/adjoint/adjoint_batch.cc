@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "models/learned_terms.h"
-#include "residuals/sensitivities/learned_pair_jacobian.h"
-#include "residuals/sensitivities/net_force_jacobian.h"
+#include "residuals/adjoint/force_jacobians.h"
 
 namespace pushid {
 namespace {
@@ -330,10 +329,10 @@ void TouchingPeople::AddWeightGradient(double* gradient) {
 
 double AdjointGradient::Batch::AddResidual(int column, int frame, Adjoint* adjoint) const {
   const Walker& walker = walkers_[column];
-  FrameJacobian<10> jacobian;
+  FrameJacobian jacobian;
   const FrameVector<double> r =
-      MovingRodResidualWithJacobian(walker.body(), Parameters(column)[kRodLift], walker.path[frame],
-                                    walker.Measured(frame, rod_.has_value()), sigmas_, &jacobian);
+      FrameResidualWithJacobian(walker.body(), Parameters(column)[kRodLift], walker.path[frame],
+                                walker.Measured(frame, rod_.has_value()), sigmas_, &jacobian);
   const Eigen::Matrix<double, 10, 1> gradient =
       walker.weight * walker.weight * (jacobian.transpose() * r);
   adjoint->state += gradient.head<8>();

@@ -181,7 +181,8 @@ void LaneTables::Roll(const LaneInputs& in, LaneSums sums, LaneOutputs out) cons
 }
 
 bool HasLanes(const RolloutProblem& problem) {
-  return HasLanes(problem.recording->scene, problem.options) && !problem.recording->HasPlates() &&
+  return problem.derivatives == DerivativesBy::kAuto &&
+         HasLanes(problem.recording->scene, problem.options) && !problem.recording->HasPlates() &&
          problem.sigmas.loss == FrameLoss::kHip;
 }
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "residuals/sensitivities/net_force_jacobian.h"
+#include "residuals/jets/autodiff_rollout.h"
 
 namespace pushid {
 namespace {
@@ -67,8 +67,7 @@ RolloutStatus Innovations(const LikelihoodProblem& problem,
                           const std::vector<ParameterSet<T>>& parameters,
                           std::vector<GaussianDensity<T>>* densities) {
   const PendulumRecording& r = *problem.recording;
-  // Doubles take the analytic step.
-  using Step = std::conditional_t<std::is_same_v<T, double>, StepJacobian, DualStep<T>>;
+  using Step = std::conditional_t<std::is_same_v<T, double>, JetStep, DualStep<T>>;
   PendulumFilter<T, Step> filter(r.scene, problem.options, parameters);
   for (int t = 0; t + 1 < r.num_frames(); ++t) {
     const RolloutStatus status = filter.Predict(t);

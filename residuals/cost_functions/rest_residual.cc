@@ -1,4 +1,4 @@
-// residuals: settling by forward sensitivities, and the hinge on the free modes.
+// residuals: settling by rollouts with derivatives, and the hinge on the free modes.
 #include "residuals/cost_functions/rest_residual.h"
 
 #include <ceres/jet.h>

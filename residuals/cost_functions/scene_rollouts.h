@@ -6,8 +6,8 @@
 
 #include "models/rollout.h"
 #include "residuals/cost_functions/lane_tables.h"
+#include "residuals/jets/autodiff_rollout.h"
 #include "residuals/normal_equations.h"
-#include "residuals/sensitivities/rollout_sensitivities.h"
 
 namespace pushid {
 
@@ -46,7 +46,7 @@ class SceneRollouts {
   std::vector<Group> groups_;  // empty without lanes; then, by scene:
   std::vector<RolloutPath<double>> paths_;
   std::vector<int> last_;  // frame within the domain
-  std::vector<RolloutSensitivities> sensitivities_;
+  std::vector<StateColumns> sensitivities_;
 };
 
 }  // namespace pushid

@@ -4,12 +4,11 @@
 #if defined(__AVX2__) && defined(__FMA__)
 #define PUSHID_VECTOR_DOUBLES 4
 #include "residuals/lanes/person_lanes_loops.h"
-#include "residuals/lanes/stance_jet_loops.h"
 
 namespace pushid {
 
 const PersonLanes* PersonLanes256() {
-  static constexpr PersonLanes lanes = {"256-bit vectors", kWidth, RollLanes, StanceJet};
+  static constexpr PersonLanes lanes = {"256-bit vectors", kWidth, RollLanes};
   return &lanes;
 }
 

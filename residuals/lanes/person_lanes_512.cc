@@ -4,12 +4,11 @@
 #if defined(__AVX512F__) && defined(__AVX512DQ__)
 #define PUSHID_VECTOR_DOUBLES 8
 #include "residuals/lanes/person_lanes_loops.h"
-#include "residuals/lanes/stance_jet_loops.h"
 
 namespace pushid {
 
 const PersonLanes* PersonLanes512() {
-  static constexpr PersonLanes lanes = {"512-bit vectors", kWidth, RollLanes, StanceJet};
+  static constexpr PersonLanes lanes = {"512-bit vectors", kWidth, RollLanes};
   return &lanes;
 }
 

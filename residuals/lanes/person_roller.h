@@ -220,7 +220,7 @@ class Roller {
            (sum * 0.0 != Lanes(0.0));
   }
 
-  // The derivatives at the next frame (rollout_sensitivities.h); inverse: of the mass matrix, times
+  // The derivatives at the next frame by the chain rule, S <- A S + B; inverse: of the mass matrix, times
   // dt. A person alone does not care where the cart is: six columns of the state.
   void CarryOn(int t, Lanes acts, Lanes slides, const Force& a, const Matrix& inverse) {
     Eigen::Matrix<Lanes, 4, 6> by_state = Linearize(t, acts, slides);
@@ -305,8 +305,7 @@ class Roller {
       if (sums_ == LaneSums::kRobust) AddSquares(carried_.robust);
       return;
     }
-    FrameJacobian<8, Lanes> j;
-    RawFrameJacobian(self_.body, Lanes(0.0), state_, angles_, in_.sigmas, &j);
+    const Eigen::Matrix<Lanes, kFrameResiduals, 8> j = ByState();
     const auto at = [&](int row, int column) { return scale * j(row, column); };
     for (int c = 0; c < in_.columns; ++c) {
       const Lanes* const s = carried_.by_column + 8 * c;
@@ -329,6 +328,24 @@ class Roller {
     if (sums_ != LaneSums::kRobust) return;
     if (in_.sigmas.robust > 0.0) Correct(robust.w * robust.w * squares, weight);
     AddGram(carried_.rows, in_.columns + 1, carried_.robust);
+  }
+
+  // RawFrameResidual's derivative by [q, qd]; what is always zero is not written.
+  Eigen::Matrix<Lanes, kFrameResiduals, 8> ByState() const {
+    const auto& [s_th, c_th, s_ph, c_ph] = angles_;
+    const ResidualSigmas& sigmas = in_.sigmas;
+    const Lanes scaled_rod = self_.body.rod_length * (1.0 / sigmas.hip);
+    Eigen::Matrix<Lanes, kFrameResiduals, 8> j;
+    j(0, 0) = j(1, 1) = Lanes(1.0 / sigmas.hip);
+    j(3, 4) = j(4, 5) = Lanes(1.0 / sigmas.velocity);
+    j(5, 2) = j(6, 3) = Lanes(1.0 / sigmas.angle);
+    j(7, 6) = j(8, 7) = Lanes(1.0 / sigmas.rate);
+    j(0, 2) = scaled_rod * c_th;
+    j(1, 2) = scaled_rod * s_th * s_ph;
+    j(1, 3) = -scaled_rod * c_th * c_ph;
+    j(2, 2) = -scaled_rod * s_th * c_ph;
+    j(2, 3) = -scaled_rod * c_th * s_ph;
+    return j;
   }
 
   void AddSquares(Lanes* gram) const {

@@ -121,7 +121,7 @@ PackedPairs::PackedPairs(const PairShape& shape, const VectorKernels& kernels)
 
 void PackedPairs::Start(const double* weights) {
   weights_ = weights;
-  Forget();
+  first_ = {0};
   for (Layer& layer : layers_) layer.Pack(weights);
 }
 
@@ -171,24 +171,6 @@ void PackedPairs::Backward(int step, const Columns& outputs, Columns* inputs) {
     inputs->setZero(layer.width, n);
     right_.Pack(back.data(), n, layer.rows, layer.rows, 1);
     AddProduct(layer.transposed, right_, inputs->data(), layer.width);
-  }
-}
-
-void PackedPairs::Linearize(Columns* by_input) {
-  const int step = static_cast<int>(first_.size()) - 2, n = first_[step + 1] - first_[step];
-  *by_input = Eigen::Matrix4d::Identity().replicate(1, n);
-  if (n == 0) return;
-  Columns back;
-  for (size_t i = layers_.size(); i-- > 0;) {
-    const Layer& layer = layers_[i];
-    back.swap(*by_input);
-    for (int c = 0; c < n && !IsOutput(i); ++c) {
-      const Eigen::ArrayXd slope = Slopes(layer.values.col(first_[step] + c));
-      back.middleCols<4>(4 * c).array().colwise() *= slope;
-    }
-    by_input->setZero(layer.width, 4 * n);
-    right_.Pack(back.data(), 4 * n, layer.rows, layer.rows, 1);
-    AddProduct(layer.transposed, right_, by_input->data(), layer.width);
   }
 }
 

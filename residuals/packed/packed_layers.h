@@ -81,8 +81,6 @@ class PackedPairs {
 
   // Before the first step; weights: of the interaction alone, there until the last step back.
   void Start(const double* weights);
-  // All steps, for others by the same weights.
-  void Forget() { first_ = {0}; }
 
   // The next step. inputs: u, a column for each, maybe none. outputs: y before gate and mass, 4 x
   // as many.
@@ -90,10 +88,6 @@ class PackedPairs {
 
   // From the last step to the first: the adjoints of a step's outputs to those of its inputs.
   void Backward(int step, const Columns& outputs, Columns* inputs);
-
-  // Instead of that, of the last step forwards: d(outputs)/d(inputs). Four columns for each of the
-  // step's, one for each of its outputs.
-  void Linearize(Columns* by_input);
 
   // After the last step back: adds d(cost)/d(weights).
   void AddWeightGradient(double* gradient);

@@ -1,15 +1,13 @@
-// The derivatives of force terms that are written out or chained by hand, against what a formula
-// gives by itself: dual numbers or Jets over the term's own inputs. A hand-written one stays where
-// this shows that it pays; the headers of the terms quote the factors.
+// The derivatives of force terms that are written out for lanes (residuals/lanes) against what a
+// formula gives by itself: dual numbers or Jets over the term's own inputs. A hand-written one
+// stays where this shows that it pays; the headers of the terms quote the factors.
 //   pushid-benchmarks --benchmark_filter='Jacobian_'
 #include <benchmark/benchmark.h>
 #include <ceres/jet.h>
 
 #include "datasets/files/random.h"
-#include "models/interaction.h"
 #include "models/push.h"
 #include "models/self_force.h"
-#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 namespace {
@@ -101,52 +99,6 @@ void Jacobian_OfTail_ByJets(benchmark::State& state) {
   }
 }
 BENCHMARK(Jacobian_OfTail_ByJets)->Unit(benchmark::kNanosecond);
-
-struct Touching {
-  Pair pair{{80.0, 0.95, 0.0}, {70.0, 0.9, 0.0}, FirstPose(), FirstPose({0.45, 0.05, 0.0, 0.0})};
-  PendulumState<double> n, j;
-  ParameterSet<double> p{};
-  InteractionTerms terms;
-
-  Touching() {
-    n.q = {0.05, 0.0, 0.1, 0.02}, n.qd = {0.5, 0.0, 0.3, 0.0};
-    j.q = {0.45, 0.05, 0.02, 0.0}, j.qd = {0.1, 0.0, 0.1, 0.0};
-    p[kContactStiffness] = 2000.0, p[kContactDistance] = 0.6, p[kContactKappa] = 0.6;
-    p[kContactDamping] = 100.0, p[kContactHeight] = 0.5;
-    terms.spring = terms.damping = true;
-  }
-};
-
-void Jacobian_OfContact_Chained(benchmark::State& state) {
-  Touching touching;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(touching);
-    benchmark::DoNotOptimize(
-        ComputePairJacobian(touching.terms, touching.pair, touching.p, touching.n, touching.j));
-  }
-}
-BENCHMARK(Jacobian_OfContact_Chained)->Unit(benchmark::kNanosecond);
-
-// Over both states and contact's own five parameters.
-void Jacobian_OfContact_ByJets(benchmark::State& state) {
-  Touching touching;
-  constexpr int kContact = kContactHeight - kContactStiffness + 1;
-  using Jet = ceres::Jet<double, 16 + kContact>;
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(touching);
-    PendulumState<Jet> n, j;
-    ParameterSet<Jet> p;
-    for (int i = 0; i < 4; ++i) {
-      n.q[i] = Jet(touching.n.q[i], i), n.qd[i] = Jet(touching.n.qd[i], 4 + i);
-      j.q[i] = Jet(touching.j.q[i], 8 + i), j.qd[i] = Jet(touching.j.qd[i], 12 + i);
-    }
-    for (int i = 0; i < kContact; ++i) {
-      p[kContactStiffness + i] = Jet(touching.p[kContactStiffness + i], 16 + i);
-    }
-    benchmark::DoNotOptimize(InteractionBetween(touching.terms, touching.pair, p, n, j));
-  }
-}
-BENCHMARK(Jacobian_OfContact_ByJets)->Unit(benchmark::kNanosecond);
 
 }  // namespace
 }  // namespace pushid

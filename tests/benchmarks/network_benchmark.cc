@@ -1,5 +1,5 @@
 // What a self-force network costs over the 32 recordings of single people: a person-step, the full
-// Jacobian by hand-derived sensitivities and by Jets, an iteration of Levenberg-Marquardt with each
+// Jacobian by AutoDiffRollout and by Ceres' Jets, an iteration of Levenberg-Marquardt with each
 // of Ceres' solvers, and a whole solve. P counts all columns: seven physical ones and the weights.
 #include <benchmark/benchmark.h>
 #include <ceres/dynamic_autodiff_cost_function.h>
@@ -10,8 +10,8 @@
 #include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/presets.h"
 #include "ident/solver/solver.h"
+#include "residuals/jets/autodiff_rollout.h"
 #include "tests/benchmarks/benchmark_recordings.h"
-#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {
@@ -90,15 +90,14 @@ void MeasureJacobian(benchmark::State& state, const char* self_force, const Make
 
 void NetworkJacobian(benchmark::State& state, const char* self_force) {
   MeasureJacobian(state, self_force,
-                  [](const auto& rollout) { return std::make_unique<RolloutResidual>(rollout); });
+                  [](const auto& rollout) { return std::make_unique<AutoDiffRollout>(rollout); });
 }
 
 template <int kStride>
 void NetworkJacobianByJets(benchmark::State& state, const char* self_force) {
   MeasureJacobian(state, self_force, [](const auto& rollout) {
-    auto cost =
-        std::make_unique<ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, kStride>>(
-            new RolloutResidualFunctor{rollout});
+    auto cost = std::make_unique<ceres::DynamicAutoDiffCostFunction<RolloutResidual, kStride>>(
+        new RolloutResidual{rollout});
     for (int size : rollout->layout.BlockSizes()) cost->AddParameterBlock(size);
     cost->SetNumResiduals(rollout->num_residuals());
     return cost;

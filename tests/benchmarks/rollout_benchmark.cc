@@ -1,5 +1,5 @@
-// What one evaluation costs: a step, a rollout, and the full Jacobian over 32 recordings by forward
-// sensitivities (the library's way) against Jets at strides 4, 16 and full width (Ceres' own).
+// What one evaluation costs: a step, a rollout, and the full Jacobian over 32 recordings by
+// AutoDiffRollout (the library's way) against Jets at strides 4, 16 and full width (Ceres' own).
 //
 // P counts the columns of the whole problem; a recording of one person has only its own subject's:
 //   P =  6: 6 shared
@@ -11,8 +11,8 @@
 #include <memory>
 #include <set>
 
+#include "residuals/jets/autodiff_rollout.h"
 #include "tests/benchmarks/benchmark_recordings.h"
-#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {
@@ -154,17 +154,16 @@ void MeasureJacobian(benchmark::State& state, const Make& make) {
   state.SetLabel(problem.label);
 }
 
-void JacobianBySensitivities(benchmark::State& state) {
+void JacobianByAutodiff(benchmark::State& state) {
   MeasureJacobian(state,
-                  [](const auto& problem) { return std::make_unique<RolloutResidual>(problem); });
+                  [](const auto& problem) { return std::make_unique<AutoDiffRollout>(problem); });
 }
 
 template <int kStride>
 void JacobianByJets(benchmark::State& state) {
   MeasureJacobian(state, [](const auto& problem) {
-    auto cost =
-        std::make_unique<ceres::DynamicAutoDiffCostFunction<RolloutResidualFunctor, kStride>>(
-            new RolloutResidualFunctor{problem});
+    auto cost = std::make_unique<ceres::DynamicAutoDiffCostFunction<RolloutResidual, kStride>>(
+        new RolloutResidual{problem});
     for (int size : problem->layout.BlockSizes()) cost->AddParameterBlock(size);
     cost->SetNumResiduals(problem->num_residuals());
     return cost;
@@ -172,7 +171,7 @@ void JacobianByJets(benchmark::State& state) {
 }
 
 // The argument is P; full width is the number of columns of one recording.
-BENCHMARK(JacobianBySensitivities)->Unit(benchmark::kMillisecond)->Arg(6)->Arg(12)->Arg(64);
+BENCHMARK(JacobianByAutodiff)->Unit(benchmark::kMillisecond)->Arg(6)->Arg(12)->Arg(64);
 BENCHMARK(JacobianByJets<4>)->Unit(benchmark::kMillisecond)->Arg(6)->Arg(12)->Arg(64);
 BENCHMARK(JacobianByJets<16>)->Unit(benchmark::kMillisecond)->Arg(6)->Arg(12)->Arg(64);
 BENCHMARK(JacobianByJets<6>)->Unit(benchmark::kMillisecond)->Arg(6);

@@ -19,6 +19,7 @@ cmake -S "$source_dir/tests/install/consumer" -B "$scratch/consumer" -DCMAKE_BUI
   -DCMAKE_PREFIX_PATH="$scratch/moved" >/dev/null
 cmake --build "$scratch/consumer" >/dev/null
 "$scratch/consumer/own_law" "$scratch/study"
+"$scratch/consumer/rollout_fit" "${PUSHID_RECORDINGS:-$source_dir/../shared/fzj_push}/manifest.json"
 
 # Programs run from where they were put, and the batch finds those beside it.
 "$scratch/moved/bin/pushid-simulate" --out="$scratch/recordings" --people=1 --recordings_per_person=3 >/dev/null

@@ -30,37 +30,6 @@ std::vector<double> RandomWeights(int count, double size, Random* random) {
   return weights;
 }
 
-TEST(RodLaw, GradientByHandEqualsJets) {
-  using Jet = ceres::Jet<double, 100>;
-  Random random(71);
-  for (const RodShape& shape : EveryLawAndLdps()) {
-    const int weights = shape.num_weights(), inputs = shape.num_inputs();
-    ASSERT_LE(inputs + weights, 100);
-    for (double size : {0.0, 1e-8, 1.0}) {
-      SCOPED_TRACE(RodName(shape));
-      const std::vector<double> w = RandomWeights(weights, 1.5, &random);
-      RodLayers<double> layers(shape);
-      RodLayers<Jet> jets(shape);
-      for (int i = 0; i < inputs; ++i) {
-        layers.inputs[i] = random.Uniform(-size, size);
-        jets.inputs[i] = Jet(layers.inputs[i], i);
-      }
-      std::vector<Jet> wj;
-      for (int i = 0; i < weights; ++i) wj.emplace_back(w[i], inputs + i);
-      const double velocity = RodVelocity(shape, w.data(), &layers);
-      const Jet expected = RodVelocity(shape, wj.data(), &jets);
-      Eigen::VectorXd by_weight = Eigen::VectorXd::Constant(weights, NAN);
-      const RodInputGradient by_input =
-          RodVelocityGradient(shape, w.data(), layers, by_weight.data());
-      EXPECT_NEAR(velocity, expected.a, 1e-16);
-      ExpectClose(by_input, expected.v.head(inputs).transpose(), 1e-14, 1e-2);
-      // Those by b are differences of numbers of order 1.
-      ExpectClose(by_weight, expected.v.segment(inputs, weights), 1e-14, 1e-2);
-      EXPECT_EQ(RodVelocityGradient(shape, w.data(), layers, nullptr), by_input);
-    }
-  }
-}
-
 TEST(RodLaw, SizesAndNames) {
   const RodShape constant, linear{RodKind::kLinear, {}}, mlp{RodKind::kMlp, {256, 128, 256}};
   EXPECT_EQ(constant.num_weights(), 0);

@@ -5,9 +5,9 @@
 #include <ceres/jet.h>
 
 #include "models/modal_stability.h"
+#include "residuals/jets/autodiff_rollout.h"
 #include "tests/models/model_samples.h"
 #include "tests/residuals/residual_samples.h"
-#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {
@@ -178,8 +178,7 @@ TEST(OwnLaw, SensitivitiesAreThoseOfJets) {
     const auto problem = MakeRolloutProblem(recording, options, map, {}, 0.7, 0);
     ParameterBlocks blocks = RandomBlocks(map, problem->layout, p, 0.05, 0.0, &random);
     if (learned) blocks.back() = options.learned->weights;
-    ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), blocks,
-                          {1e-9, 1e-10, 1e-11});
+    ExpectDirectionalDerivatives(AutoDiffRollout(problem), blocks);
   }
 }
 

@@ -1,4 +1,4 @@
-// One frame's residual: the analytic twin, and the robust weight.
+// One frame's residual, and the robust weight.
 #include "residuals/frame_residual.h"
 
 #include <ceres/jet.h>
@@ -23,94 +23,6 @@ MeasuredFrame Measure(const PendulumState<double>& state) {
   return {HipPosition(kBody, state.q), state};
 }
 
-void ExpectTwins(const PendulumState<double>& state, const MeasuredFrame& measured,
-                 const ResidualSigmas& sigmas) {
-  using Jet = ceres::Jet<double, 8>;
-  const FrameVector<Jet> expected = FrameResidual(kBody, JetState<Jet>(state, 0), measured, sigmas);
-  FrameJacobian<8> jacobian;
-  jacobian.setConstant(std::nan(""));
-  const FrameVector<double> r =
-      FrameResidualWithJacobian(kBody, state, measured, sigmas, &jacobian);
-  const FrameVector<double> plain = FrameResidual(kBody, state, measured, sigmas);
-  for (int row = 0; row < kFrameResiduals; ++row) {
-    const double scale = std::max(1.0, std::abs(r[row]));
-    EXPECT_NEAR(r[row], expected[row].a, 1e-15 * scale);
-    EXPECT_NEAR(r[row], plain[row], 1e-15 * scale);
-    for (int column = 0; column < 8; ++column) {
-      const double value = expected[row].v[column];
-      EXPECT_NEAR(jacobian(row, column), value, 1e-12 * std::max(1.0, std::abs(value)))
-          << "row " << row << ", column " << column;
-    }
-  }
-}
-
-class FrameTwins : public testing::TestWithParam<double> {};  // the robust scale
-
-TEST_P(FrameTwins, AgreeInThreeRegimes) {
-  Random random(21);
-  ResidualSigmas sigmas;
-  sigmas.robust = GetParam();
-  const PendulumState<double> rest;
-  ExpectTwins(rest, Measure(rest), sigmas);
-  for (double magnitude : {1e-8, 1.2}) {
-    SCOPED_TRACE(magnitude);
-    for (int i = 0; i < 50; ++i) {
-      MeasuredFrame measured = Measure(UniformState(magnitude, &random));
-      measured.weight = i % 3 == 0 ? 1.0 : random.Uniform(0.0, 1.0);
-      measured.hip += Vector3<double>(0.02, -0.01, 0.03) * magnitude;
-      ExpectTwins(UniformState(magnitude, &random), measured, sigmas);
-    }
-  }
-}
-
-TEST_P(FrameTwins, OfLdpsLossAgreeToo) {
-  Random random(22);
-  ResidualSigmas sigmas = kLdpSigmas;
-  sigmas.robust = GetParam();
-  for (double magnitude : {0.0, 1e-8, 1.2}) {
-    SCOPED_TRACE(magnitude);
-    for (int i = 0; i < 20; ++i) {
-      MeasuredFrame measured = Measure(UniformState(magnitude, &random));
-      measured.weight = random.Uniform(0.0, 1.0);
-      ExpectTwins(UniformState(magnitude, &random), measured, sigmas);
-    }
-  }
-}
-
-// By [q, qd, rod, lift], for both losses, in three regimes.
-TEST_P(FrameTwins, OfMovingRodsAgreeToo) {
-  using Jet = ceres::Jet<double, 10>;
-  Random random(23);
-  for (const ResidualSigmas& base : {ResidualSigmas(), kLdpSigmas}) {
-    ResidualSigmas sigmas = base;
-    sigmas.robust = GetParam();
-    for (double magnitude : {0.0, 1e-8, 0.5}) {
-      for (int i = 0; i < 20; ++i) {
-        MeasuredFrame measured = Measure(UniformState(magnitude, &random));
-        measured.weight = random.Uniform(0.0, 1.0);
-        measured.rod = random.Uniform(-0.1, 0.1) * magnitude;
-        PendulumState<double> state = UniformState(magnitude, &random);
-        state.rod = random.Uniform(-0.2, 0.2) * magnitude;
-        const double lift = random.Uniform(-1.0, 1.0);
-        PendulumState<Jet> jets = JetState<Jet>(state, 0);
-        jets.rod = Jet(state.rod, 8);
-        const FrameVector<Jet> expected =
-            FrameResidual(BodyNow<Jet>(kBody, jets.rod, Jet(lift, 9)), jets, measured, sigmas);
-        FrameJacobian<10> jacobian;
-        jacobian.setConstant(std::nan(""));
-        const FrameVector<double> r = MovingRodResidualWithJacobian(
-            kBody, lift, PosedPendulum<double>(state), measured, sigmas, &jacobian);
-        for (int row = 0; row < kFrameResiduals; ++row) {
-          EXPECT_NEAR(r[row], expected[row].a, 1e-14 * std::max(1.0, std::abs(r[row])));
-          const auto derivative = expected[row].v.transpose();
-          const double scale = std::max(1.0, derivative.cwiseAbs().maxCoeff());
-          EXPECT_LT((jacobian.row(row) - derivative).cwiseAbs().maxCoeff(), 1e-12 * scale) << row;
-        }
-      }
-    }
-  }
-}
-
 // The sum of absolute errors, of the rate of phi itself and of the rod, by hand. Of the measured
 // rate of phi nothing is asked.
 TEST(FrameResidual, LdpsLossIsItsEquation6) {
@@ -126,8 +38,6 @@ TEST(FrameResidual, LdpsLossIsItsEquation6) {
   // Beyond the kink: d |r| - d^2 for each of the nine.
   EXPECT_NEAR(cost, 0.01 * sum / 0.1 - 9 * 1e-4, 1e-4);
 }
-
-INSTANTIATE_TEST_SUITE_P(PlainAndRobust, FrameTwins, testing::Values(0.0, 0.3, 1.0, 10.0));
 
 TEST(FrameResidual, IsInSigmasAndInOrder) {
   const ResidualSigmas sigmas{0.2, 0.5, 0.1, 2.0, 0.0};
@@ -188,10 +98,7 @@ TEST(FrameResidual, WeightOfTheFrame) {
     measured.weight = 0.25;
     EXPECT_LT((FrameResidual(kBody, state, measured, sigmas) - 0.25 * full).norm(), 1e-15);
     measured.weight = 0.0;
-    FrameJacobian<8> jacobian;
-    jacobian.setConstant(std::nan(""));
-    EXPECT_TRUE(FrameResidualWithJacobian(kBody, state, measured, sigmas, &jacobian).isZero(0.0));
-    EXPECT_TRUE(jacobian.isZero(0.0));
+    EXPECT_TRUE(FrameResidual(kBody, state, measured, sigmas).isZero(0.0));
   }
 }
 

@@ -1,11 +1,11 @@
-// tests: two pushed people of a model that learns, and derivatives by hand against Jets in regimes.
+// tests: two pushed people of a model that learns, and derivatives in regimes.
 #pragma once
 
 #include <ostream>
 #include <string>
 
+#include "residuals/jets/autodiff_rollout.h"
 #include "tests/residuals/residual_samples.h"
-#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 
@@ -35,8 +35,8 @@ inline PendulumRecording LearnedPair(const ModelOptions& options, double lean, d
 }
 
 // Weights and parameters at random, those of map fitted.
-inline void ExpectDerivativesEqualJets(const ModelOptions& options, ParameterMap map,
-                                       const Regime& regime, Random* random) {
+inline void ExpectDerivativesEqualDifferences(const ModelOptions& options, ParameterMap map,
+                                              const Regime& regime, Random* random) {
   map.num_weights = options.learned->num_weights();
   const PendulumRecording recording =
       LearnedPair(options, regime.lean, regime.push, regime.noise, random);
@@ -46,8 +46,7 @@ inline void ExpectDerivativesEqualJets(const ModelOptions& options, ParameterMap
   for (double& v : blocks[blocks.size() - 2])
     v = random->Uniform(-regime.velocity, regime.velocity);
   for (double& w : blocks.back()) w = random->Uniform(-regime.weight, regime.weight);
-  ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), blocks,
-                        {1e-10, regime.absolute, 1e-12});
+  ExpectDirectionalDerivatives(AutoDiffRollout(problem), blocks, {1e-6, regime.absolute, 0.0});
 }
 
 // The same residuals and derivatives by everything else, whether or not the weights are fitted.
@@ -60,7 +59,7 @@ inline void ExpectFixedWeightsAreTheModels(const ModelOptions& options, Random* 
     ParameterBlocks blocks = {SharedBlock(map, RecoveringParameters()),
                               std::vector<double>(8, 0.1)};
     if (map.num_weights > 0) blocks.push_back(options.learned->weights);
-    return EvaluateCost(RolloutResidual(problem), blocks, std::vector<bool>(blocks.size(), true));
+    return EvaluateCost(AutoDiffRollout(problem), blocks, std::vector<bool>(blocks.size(), true));
   };
   const CostEvaluation with = evaluate(fitted), without = evaluate(fixed);
   EXPECT_EQ(with.residuals, without.residuals);

@@ -20,12 +20,12 @@ MOST_LINES, MOST_FILES, MOST_FLAGS, MOST_FIT_FLAGS, SLACK = 84000, 481, 160, 45,
 FEATURES = [
     ("contrasts", 560, 560, r"ident/(fit/(covariates|contrast)|uncertainty/contrast|report/contrast)"),
     ("verdict", 1000, 1000, r"ident/(uncertainty/(model_verdict|assumptions)|report/verdict_text)"),
-    ("steps and stance", 1900, 2125, r"models/(stance|standing|support)|datasets/loading/foot_steps|ident/(parameters/pushed_feet|fit/step_probability|prediction/predicted_steps|validation/steps_report|report/page/standing)|residuals/(sensitivities/stance|lanes/stance)"),
-    ("laboratory", 2700, 2700, r"models/(ground|reaction_delay|turn)|datasets/(loading/(ground|plate|person_on_plates)|sensors/force_platform|manifest/laboratory_keys|inspection/inspect_laboratory)|residuals/(cost_functions/plate_residual)|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
+    ("steps and stance", 1749, 1749, r"models/(stance|standing|support)|datasets/loading/foot_steps|ident/(parameters/pushed_feet|fit/step_probability|prediction/predicted_steps|validation/steps_report|report/page/standing)"),
+    ("laboratory", 2021, 2021, r"models/(ground|reaction_delay|turn)|datasets/(loading/(ground|plate|person_on_plates)|sensors/force_platform|manifest/laboratory_keys|inspection/inspect_laboratory)|residuals/plate_residual|ident/(parameters/laboratory|fit/laboratory|prediction/laboratory)"),
     ("interaction", 450, 536, r"models/(contact|pair|interaction|ldp_interaction|neighbours)"),
     ("learned terms", 1200, 1200, r"models/(learned_terms|self_network)|ident/parameters/(learned_terms|self_network)|residuals/takeover"),
-    ("large networks", 1500, 1500, r"ident/(large_networks|solver/network_training)|residuals/adjoint"),
-    ("derivatives, lanes, kernels", 2300, 4660, r"models/dual|residuals/(packed|lanes|sensitivities|autodiff_force_law|normal_equations|cost_functions/(lane_|scene_rollouts|condensed))"),
+    ("large networks", 1396, 1396, r"ident/(large_networks|solver/network_training)|residuals/adjoint"),
+    ("derivatives, lanes, kernels", 2300, 3680, r"models/dual|residuals/(packed|lanes|jets|autodiff_force_law|normal_equations|cost_functions/(lane_|scene_rollouts|condensed))"),
     ("noise, likelihoods, paths", 1600, 1752, r"models/(process_noise|input_|pendulum_filter)|residuals/cost_functions/(likelihood|path)|ident/(solver/likelihood|forecasts/(most_probable|path))|apps/pushid_path"),
     ("diffusion", 1500, 1662, r"models/generators/diffusion|apps/flags/.*diffusion"),
     ("particles", 2400, 2400, r"models/(particles|generators/(particle|row_maps))|apps/flags/.*particle"),
@@ -53,7 +53,7 @@ FEATURES = [
     ("packaging, site", 500, 500, r"apps/(packaging|site|explore|quickstart|laboratory|mkdocs)|(models|residuals|datasets|ident|apps)/CMakeLists.txt"),
     ("flags", 900, 1736, r"apps/(flags|support|pushid\.cc|completion)"),
     ("fit, options, solver", 5500, 7930, r"ident/(fit|model|parameters|problem|solver|diagnostics|pushid\.h)|apps/pushid_fit"),
-    ("core model", 3200, 4261, r"models|residuals"),
+    ("core model", 3200, 4140, r"models|residuals"),
 ]
 
 

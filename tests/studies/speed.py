@@ -6,6 +6,8 @@ processes   tests/benchmarks/README.md; two minutes
 batch       tests/benchmarks/README.md; a batch of 101 fits; half a minute
 rivals      tests/benchmarks/README.md; the same fit in SciPy and PyTorch (python3-scipy, python3-torch); a minute
 limits      tests/benchmarks/README.md; what the processor could do in the same time; half a minute
+derivatives tests/benchmarks/README.md; whole fits by the quickest derivatives and by autodiff alone, and of earlier programs
+            where PUSHID_BEFORE names their folder; five minutes
 
 Times on one core, busy with nothing else if they are to be compared.
 """
@@ -25,12 +27,12 @@ from studies import number
 ROWS = [
     ("one step of the model / with feet that step", ["IpmStep", "IpmStepOfStance"]),
     ("one rollout of 72 frames", ["RolloutOfDoubles"]),
-    ("Jacobian of the 32 recordings by forward sensitivities, P = 6 / 12 / 64",
-     [f"JacobianBySensitivities/{p}" for p in (6, 12, 64)]),
+    ("Jacobian of the 32 recordings by autodiff, P = 6 / 12 / 64",
+     [f"JacobianByAutodiff/{p}" for p in (6, 12, 64)]),
     ("normal equations of the 32 recordings side by side, `tail` (8 columns): 256-bit / 128",
      [f"EquationsSideBySide/0/{w}" for w in (1, 0)]),
-    ("Jacobian by Jets, stride 4", [f"JacobianByJets<4>/{p}" for p in (6, 12, 64)]),
-    ("Jacobian by Jets, full width", ["JacobianByJets<6>/6", "JacobianByJets<12>/12", "JacobianByJets<28>/64"]),
+    ("Jacobian by Ceres' Jets, stride 4", [f"JacobianByJets<4>/{p}" for p in (6, 12, 64)]),
+    ("Jacobian by Ceres' Jets, full width", ["JacobianByJets<6>/6", "JacobianByJets<12>/12", "JacobianByJets<28>/64"]),
     ("solve of the 32 recordings, `tail` / `ldp`", ["SolveOnly/tail", "SolveOnly/ldp"]),
     ("the same 32 by the innovation likelihood, `tail`", ["SolveByInnovations"]),
     ("fit with uncertainty and behaviour, `tail` / `ldp`", ["WholeFit/tail", "WholeFit/ldp"]),
@@ -184,6 +186,32 @@ def rivals():
             f"\n\nMedians of five, in turns, one thread; {machine()}.")
 
 
+def derivatives():
+    """Whole fits, medians of five in turns."""
+    before = os.environ.get("PUSHID_BEFORE")
+    with tempfile.TemporaryDirectory() as folder:
+        laboratory = os.path.join(folder, "laboratory")
+        subprocess.run([os.path.join(studies.BIN, "pushid-simulate"), "--laboratory", f"--out={laboratory}"],
+                       check=True, stdout=subprocess.DEVNULL)
+        single = [f"--recordings={studies.MANIFEST}", "--setting=single"]
+        fits = {"the 32 recordings": single, "the 49 recordings of groups": [single[0], "--setting=groups"],
+                "... 32, `--self_force=mlp:4`": [*single, "--self_force=mlp:4"],
+                "... 32, `--delay=one`": [*single, "--delay=one"],
+                "`pushid-simulate --laboratory`, platforms": [f"--recordings={laboratory}/manifest.json"]}
+        kinds = {"auto": [studies.BIN, []], "autodiff": [studies.BIN, ["--derivatives=autodiff"]]}
+        if before:
+            kinds["before"] = [before, []]
+        rows = []
+        for title, flags in fits.items():
+            seconds = {kind: [] for kind in kinds}
+            for _ in range(5):
+                for kind, (programs, more) in kinds.items():
+                    command = [os.path.join(programs, "pushid-fit"), *flags, *more, "--quiet", "--num_threads=1"]
+                    seconds[kind].append(processor_seconds_once(*command))
+            rows.append([title, *(f"{number(statistics.median(of), 3)} s" for of in seconds.values())])
+    return f"{studies.table(['', *kinds], rows)}\n\nMedians of five, in turns, one thread; {machine()}."
+
+
 SOLVING = ("starts and horizons", "weights", "settling")  # purposes of run.work
 LANES = {"cost of": "CostsSideBySide", "normal equations of": "EquationsSideBySide"}
 
@@ -232,4 +260,4 @@ def machine():
 
 if __name__ == "__main__":
     studies.main(__file__, {"benchmarks": benchmarks, "crowds": crowds, "processes": processes, "batch": batch,
-                            "rivals": rivals, "limits": limits})
+                            "rivals": rivals, "limits": limits, "derivatives": derivatives})

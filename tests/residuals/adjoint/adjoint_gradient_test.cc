@@ -1,4 +1,4 @@
-// The adjoint gradient against J'r of the forward sensitivities, for every kind of network and
+// The adjoint gradient against J'r of the jets, for every kind of network and
 // several recordings of several people, in three regimes.
 #include "residuals/adjoint/adjoint_gradient.h"
 
@@ -98,7 +98,7 @@ TEST_P(AdjointTwins, GradientEqualsForwardSensitivities) {
         for (int i = 0; i < map.num_weights; ++i) {
           weights.push_back(random.Uniform(-regime.weight, regime.weight));
         }
-        const Gradient expected = ByForwardSensitivities(recordings, options, map, shared, weights);
+        const Gradient expected = ByJets(recordings, options, map, shared, weights);
         const double tolerance = learned.mlp() ? regime.mlp : 1e-10;
         for (const VectorKernels* kernels : SupportedVectorKernels()) {
           SCOPED_TRACE(kernels->name);
@@ -169,7 +169,7 @@ TEST(AdjointGradient, CountsTheFramesBeforeAFailure) {
       EXPECT_EQ(cost.status[i].quantity, expected[i].quantity) << i;
     }
     if (expected[2].frame == 1) shortened.erase(shortened.begin() + 2);  // nothing to compare
-    const Gradient right = ByForwardSensitivities(shortened, options, map, shared, weights);
+    const Gradient right = ByJets(shortened, options, map, shared, weights);
     EXPECT_NEAR(cost.cost, right.cost, 1e-12 * right.cost);
     ExpectSameVector(actual.shared, right.shared, 1e-10, "parameter");
     ExpectSameVector(actual.weights, right.weights, 1e-10, "weight");
@@ -251,7 +251,7 @@ TEST(AdjointGradient, KnowsAUsersOwnLaw) {
   ParameterSet<double> p = RecoveringParameters();
   p[kFirstOwnParameter] = 0.3;
   const std::vector<double> shared = SharedBlock(map, p), weights = options.learned->weights;
-  const Gradient expected = ByForwardSensitivities(recordings, options, map, shared, weights);
+  const Gradient expected = ByJets(recordings, options, map, shared, weights);
   auto adjoint = Unwrapped(AdjointGradient::Create(recordings, options, map, {}));
   const Gradient actual = ByAdjoint(&adjoint, shared, weights);
   EXPECT_NE(expected.shared[kFirstOwnParameter], 0.0);

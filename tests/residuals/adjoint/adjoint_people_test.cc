@@ -1,4 +1,4 @@
-// The adjoint gradient of people who touch: against J'r of the forward sensitivities in three
+// The adjoint gradient of people who touch: against J'r of the jets in three
 // regimes, against finite differences, in any order of people, and where one falls.
 #include "residuals/adjoint/adjoint_gradient.h"
 #include "tests/residuals/adjoint/gradients.h"
@@ -106,7 +106,7 @@ TEST_P(AdjointOfPeople, GradientEqualsForwardSensitivities) {
     const std::vector<PendulumRecording> made = Groups(model.options, regime, &random);
     const std::vector<AdjointRecording> recordings = Weighted(made);
     const Gradient expected =
-        ByForwardSensitivities(recordings, model.options, model.map, model.shared, model.weights);
+        ByJets(recordings, model.options, model.map, model.shared, model.weights);
     const Parameter apart =
         model.options.interaction.Contact() ? kContactDistance : kPotentialLength;
     EXPECT_TRUE(!regime.touching || expected.shared[apart] != 0.0);
@@ -149,7 +149,7 @@ void ExpectFiniteDifferences(AdjointGradient* adjoint, const Gradient& gradient,
   }
 }
 
-// Of a network too large for sensitivities to be quick, each person with parameters of its own.
+// Of a network too large for jets to be quick, each person with parameters of its own.
 TEST(AdjointOfPeople, GradientEqualsFiniteDifferences) {
   for (const GroupRegime& regime : {kQuiet, kPushed, kFalling}) {
     SCOPED_TRACE(regime.name);
@@ -181,7 +181,7 @@ TEST(AdjointOfPeople, HeldParametersAreThoseOfTheRecording) {
   std::vector<AdjointRecording> recordings = Weighted(made);
   for (AdjointRecording& r : recordings) r.held = {RandomRecoveringParameters(&random, 0.2)};
   const Gradient expected =
-      ByForwardSensitivities(recordings, model.options, model.map, model.shared, model.weights);
+      ByJets(recordings, model.options, model.map, model.shared, model.weights);
   auto adjoint = Unwrapped(AdjointGradient::Create(recordings, model.options, model.map, {}));
   const Gradient actual = ByAdjoint(&adjoint, model.shared, model.weights);
   EXPECT_NEAR(actual.cost, expected.cost, 1e-10 * expected.cost);
@@ -242,7 +242,7 @@ TEST(AdjointOfPeople, CountsTheFramesBeforeAFall) {
     ASSERT_GT(cost.status[1].frame, 9);
     shortened[1].horizon = cost.status[1].frame;
     const Gradient right =
-        ByForwardSensitivities(shortened, model.options, model.map, model.shared, model.weights);
+        ByJets(shortened, model.options, model.map, model.shared, model.weights);
     EXPECT_NEAR(cost.cost, right.cost, 1e-10 * right.cost);
     ExpectSameVector(actual.shared, right.shared, 1e-9, "parameter");
     ExpectSameVector(actual.weights, right.weights, 1e-9, "weight");

@@ -1,4 +1,4 @@
-// tests: the gradient of whole recordings by the adjoint and by forward sensitivities.
+// tests: the gradient of whole recordings by the adjoint and by jets.
 #pragma once
 
 #include <ceres/problem.h>
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "residuals/adjoint/adjoint_gradient.h"
+#include "residuals/jets/autodiff_rollout.h"
 #include "tests/residuals/residual_samples.h"
-#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 
@@ -19,16 +19,16 @@ struct Gradient {
   std::vector<double> shared, weights;
 };
 
-// Ceres' own sum over blocks of RolloutResidual. What is held: one set for all people of a
+// Ceres' own sum over blocks of AutoDiffRollout. What is held: one set for all people of a
 // recording.
-inline Gradient ByForwardSensitivities(const std::vector<AdjointRecording>& recordings,
+inline Gradient ByJets(const std::vector<AdjointRecording>& recordings,
                                        const ModelOptions& options, const ParameterMap& map,
                                        std::vector<double> shared, std::vector<double> weights) {
   ceres::Problem problem;
   for (const AdjointRecording& r : recordings) {
     ParameterMap own = map;
     if (!r.held.empty()) own.values = r.held.front();
-    problem.AddResidualBlock(new RolloutResidual(MakeRolloutProblem(*r.recording, options, own, {},
+    problem.AddResidualBlock(new AutoDiffRollout(MakeRolloutProblem(*r.recording, options, own, {},
                                                                     r.weight, r.horizon)),
                              nullptr, shared.data(), weights.data());
   }

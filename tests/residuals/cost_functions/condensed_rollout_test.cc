@@ -1,10 +1,10 @@
-// A rollout in few rows: J'J, J'r and cost are those of all rows, by sensitivities and by Jets.
+// A rollout in few rows: J'J, J'r and cost are those of all rows, by jets.
 #include "residuals/cost_functions/condensed_rollout.h"
 
 #include <Eigen/Core>
 
+#include "residuals/jets/autodiff_rollout.h"
 #include "tests/residuals/residual_samples.h"
-#include "tests/residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {
@@ -71,7 +71,7 @@ TEST(CondensedRollout, HasTheEquationsOfAllRows) {
   for (double robust : {0.0, 0.5}) {
     const CondensedSample s(robust);
     const std::vector<bool> all(s.blocks.size(), true);
-    const CostEvaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, all);
+    const CostEvaluation rows = EvaluateCost(AutoDiffRollout(s.problem), s.blocks, all);
     ASSERT_TRUE(rows.ok);
     const CostEvaluation condensed = EvaluateCost(CondensedRollout(s.problem), s.blocks, all);
     ASSERT_TRUE(condensed.ok);
@@ -82,7 +82,7 @@ TEST(CondensedRollout, HasTheEquationsOfAllRows) {
 
 TEST(CondensedRollout, KeepsTheCostWithoutDerivatives) {
   const CondensedSample s(0.5);
-  const CostEvaluation rows = EvaluateCost(RolloutResidual(s.problem), s.blocks, {});
+  const CostEvaluation rows = EvaluateCost(AutoDiffRollout(s.problem), s.blocks, {});
   const CostEvaluation condensed = EvaluateCost(CondensedRollout(s.problem), s.blocks, {});
   ASSERT_TRUE(rows.ok && condensed.ok);
   EXPECT_NEAR(condensed.residuals.norm(), rows.residuals.norm(), 1e-13 * rows.residuals.norm());
@@ -92,7 +92,7 @@ TEST(CondensedRollout, KeepsTheCostWithoutDerivatives) {
 TEST(CondensedRollout, PeopleKeepTheirOwnEquations) {
   const CondensedSample s(0.5);
   const CostEvaluation rows =
-      EvaluateCost(RolloutResidual(s.problem), s.blocks, std::vector<bool>(s.blocks.size(), true));
+      EvaluateCost(AutoDiffRollout(s.problem), s.blocks, std::vector<bool>(s.blocks.size(), true));
   const Eigen::MatrixXd jacobian = AllBlocks(rows);
   std::vector<const double*> blocks;
   for (const auto& block : s.blocks) blocks.push_back(block.data());

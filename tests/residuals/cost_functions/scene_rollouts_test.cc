@@ -50,7 +50,7 @@ void ExpectThoseOfRollouts(const std::vector<Scene>& scenes, const ModelOptions&
   for (int i = 0; i < total; ++i) {
     inputs.initial_velocity = InitialVelocities(scenes[i]);
     RolloutPath<double> path;
-    RolloutSensitivities expected;
+    StateColumns expected;
     ASSERT_TRUE(RolloutWithSensitivities(scenes[i], options, inputs, kEnd, &path, &expected).ok);
     for (int t = kBegin; t < frames[i]; ++t) {
       for (int n = 0; n < people; ++n) {

@@ -1,6 +1,8 @@
-// A whole recording's residual: forward sensitivities against Ceres' automatic differentiation of
-// the same residual, for every model; failures; horizons.
-#include "tests/residuals/rollout_residual.h"
+// A whole recording's residual: jets against differences for every model, and against Ceres' own
+// jets; every width of vectors; failures; horizons.
+#include "residuals/jets/autodiff_rollout.h"
+
+#include <ceres/dynamic_autodiff_cost_function.h>
 
 #include "tests/residuals/residual_samples.h"
 
@@ -40,7 +42,7 @@ std::ostream& operator<<(std::ostream& out, const RolloutRegime& regime) {
 class RolloutTwins : public testing::TestWithParam<RolloutRegime> {};
 
 // Every parameter fitted at once, some of them by subject, with free initial velocities.
-TEST_P(RolloutTwins, ForwardSensitivitiesEqualJetsForEveryModel) {
+TEST_P(RolloutTwins, DerivativesEqualDifferencesForEveryModel) {
   const RolloutRegime& regime = GetParam();
   Random random(41);
   const ParameterMap map = EveryParameterMap({kMu, kKpTheta, kKdPhi, kAx, kTailTorque, kTailTime});
@@ -55,10 +57,7 @@ TEST_P(RolloutTwins, ForwardSensitivitiesEqualJetsForEveryModel) {
         RandomBlocks(map, problem->layout, RandomRecoveringParameters(&random, regime.spread),
                      regime.deviation, regime.velocity, &random);
     ASSERT_EQ(blocks.size(), 4u);
-    // Ankles that hold against LDP's repulsion: torques of 100 N m nearly cancel.
-    const bool cancels = options.stance == Stance::kSteps && options.interaction.ldp_published;
-    ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), blocks,
-                          {1e-10, std::max(regime.absolute, cancels ? 3e-17 : 0.0), 1e-12});
+    ExpectDirectionalDerivatives(AutoDiffRollout(problem), blocks, {1e-6, regime.absolute, 0.0});
     if (HasFailure()) return;  // one model's report is enough
   }
 }
@@ -94,11 +93,10 @@ TEST(RolloutResidual, PeopleMayShareASubject) {
   const ParameterBlocks blocks =
       RandomBlocks(map, problem->layout, RecoveringParameters(), 0.1, 0.2, &random);
   ASSERT_EQ(blocks.size(), 3u);
-  ExpectCorrectJacobian(RolloutResidual(problem), *RolloutByJets(problem), blocks,
-                        {1e-10, 1e-13, 1e-12});
+  ExpectDirectionalDerivatives(AutoDiffRollout(problem), blocks);
 }
 
-// The oracle shares the rollout's lines; plain differences share nothing.
+// By every column alone.
 TEST(RolloutResidual, JacobianAgainstNumericDifferentiation) {
   Random random(43);
   ModelOptions options;
@@ -108,9 +106,69 @@ TEST(RolloutResidual, JacobianAgainstNumericDifferentiation) {
   const PendulumRecording recording = PushedPair(options, 0.1, 150.0, 0.02, &random);
   const auto problem = MakeRolloutProblem(recording, options, map, {}, 1.0, 0);
   ExpectCorrectJacobian(
-      RolloutResidual(problem),
+      AutoDiffRollout(problem),
       RandomBlocks(map, problem->layout, RecoveringParameters(), 0.1, 0.2, &random),
       {1e-7, 1e-8, 1e-12});
+}
+
+// The functor as Ceres' own users take it, and every width of vectors, whose bits are the same.
+TEST(RolloutResidual, JetsOfCeresAndOfEveryWidthAgree) {
+  Random random(44);
+  ModelOptions options;
+  options.interaction.spring = options.interaction.damping = true;
+  const ParameterMap map = EveryParameterMap({kKpTheta, kTailTime});
+  const PendulumRecording recording = PushedPair(options, 0.1, 150.0, 0.02, &random);
+  const auto problem = MakeRolloutProblem(recording, options, map, {}, 1.0, 0);
+  const ParameterBlocks blocks =
+      RandomBlocks(map, problem->layout, RecoveringParameters(), 0.1, 0.2, &random);
+  ceres::DynamicAutoDiffCostFunction<RolloutResidual, 16> ceres_own(new RolloutResidual{problem});
+  for (int size : problem->layout.BlockSizes()) ceres_own.AddParameterBlock(size);
+  ceres_own.SetNumResiduals(problem->num_residuals());
+  ExpectCorrectJacobian(AutoDiffRollout(problem), ceres_own, blocks, {1e-10, 1e-13, 1e-12});
+
+  std::vector<const double*> at;
+  for (const std::vector<double>& block : blocks) at.push_back(block.data());
+  const SensitivityInputs inputs = RolloutInputs(recording.scene, map, problem->layout, at.data());
+  std::vector<double> residuals, widest_residuals;
+  RowMajorMatrix rows, widest;
+  ASSERT_TRUE(RowsByJets(*problem, inputs, &widest_residuals, &widest).ok);
+  for (const RolloutJets* jets : SupportedRolloutJets()) {
+    ASSERT_TRUE(RowsByJets(*problem, inputs, &residuals, &rows, jets).ok);
+    EXPECT_EQ(residuals, widest_residuals) << jets->name;
+    EXPECT_TRUE(rows == widest) << jets->name;
+  }
+}
+
+// States without residuals: the path of the plain rollout, and its derivatives by
+// the initial velocity at frame 0.
+TEST(RolloutResidual, StatesAreThoseOfThePlainRollout) {
+  Random random(45);
+  for (const ModelOptions& options : EveryModelOptions()) {
+    SCOPED_TRACE(Describe(options));
+    const PendulumRecording recording = PushedPair(options, 0.1, 150.0, 0.0, &random);
+    SensitivityInputs inputs;
+    inputs.parameters.assign(2, RecoveringParameters());
+    inputs.initial_velocity = InitialVelocities(recording.scene);
+    inputs.entries.resize(2);
+    inputs.num_columns = 8;
+    inputs.velocity_column = 0;
+    RolloutPath<double> path;
+    StateColumns columns;
+    ASSERT_TRUE(
+        RolloutWithSensitivities(recording.scene, options, inputs, kRolloutFrames, &path, &columns)
+            .ok);
+    for (int t = 0; t < kRolloutFrames; ++t) {
+      for (int n = 0; n < 2; ++n) {
+        // Products of doubles are added up in vectors, in another order.
+        const PendulumState<double>& plain = recording.states[n][t];
+        ASSERT_LT((path.At(t, n).q - plain.q).norm(), 1e-11) << "frame " << t << ", person " << n;
+        ASSERT_LT((path.At(t, n).qd - plain.qd).norm(), 1e-10) << "frame " << t;
+      }
+    }
+    EXPECT_TRUE((columns.At(0, 0).block<4, 4>(4, 0).isIdentity(0.0)));
+    EXPECT_TRUE((columns.At(0, 1).block<4, 4>(4, 4).isIdentity(0.0)));
+    EXPECT_TRUE(columns.At(0, 0).topRows<4>().isZero(0.0));
+  }
 }
 
 ParameterBlocks TruthBlocks(const ParameterMap& map) {
@@ -123,7 +181,7 @@ TEST(RolloutResidual, VanishesAtTheTruth) {
   recording.initial_velocity = InitialVelocity::kZero;
   const ParameterMap map = EveryParameterMap({});
   const auto problem = MakeRolloutProblem(recording, {}, map, {}, 1.0, 0);
-  const CostEvaluation at_truth = EvaluateCost(RolloutResidual(problem), TruthBlocks(map), {true});
+  const CostEvaluation at_truth = EvaluateCost(AutoDiffRollout(problem), TruthBlocks(map), {true});
   ASSERT_TRUE(at_truth.ok);
   EXPECT_LT(at_truth.residuals.cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_GT(at_truth.jacobians[0].cwiseAbs().maxCoeff(), 0.1);
@@ -136,7 +194,7 @@ TEST(RolloutResidual, ShorterHorizonIsTheBeginningOfTheWhole) {
   const ParameterMap map = EveryParameterMap({});
   const auto evaluate = [&](int horizon, double weight) {
     const auto problem = MakeRolloutProblem(recording, {}, map, {}, weight, horizon);
-    return EvaluateCost(RolloutResidual(problem), TruthBlocks(map), {true});
+    return EvaluateCost(AutoDiffRollout(problem), TruthBlocks(map), {true});
   };
   const CostEvaluation whole = evaluate(0, 1.0);
   EXPECT_EQ(whole.residuals.size(), (kRolloutFrames - 1) * 2 * kFrameResiduals);
@@ -181,19 +239,19 @@ TEST_P(FailingRollout, ReturnsFalseAndNamesWhere) {
   map.values = RecoveringParameters();
   map.fitted = {{failure.parameter, Transform::kIdentity, -1}};
   const auto problem = MakeRolloutProblem(recording, {}, map, {}, 1.0, 0);
+  const AutoDiffRollout residual(problem);
   for (const std::vector<bool>& wanted : {std::vector<bool>{}, std::vector<bool>{true}}) {
-    const RolloutResidual residual(problem);
-    EXPECT_TRUE(residual.last_failure().ok);
     EXPECT_TRUE(EvaluateCost(residual, {{map.values[failure.parameter]}}, wanted).ok);
-    EXPECT_TRUE(residual.last_failure().ok);
     EXPECT_FALSE(EvaluateCost(residual, {{failure.value}}, wanted).ok);
-    EXPECT_FALSE(residual.last_failure().ok);
-    EXPECT_EQ(residual.last_failure().person, failure.person);
-    EXPECT_EQ(residual.last_failure().quantity, failure.quantity);
-    EXPECT_GT(residual.last_failure().frame, failure.after);
-    EXPECT_LT(residual.last_failure().frame, 150);
   }
-  EXPECT_FALSE(EvaluateCost(*RolloutByJets(problem), {{failure.value}}, {true}).ok);
+  const double* const blocks[] = {&failure.value};
+  std::vector<double> residuals(problem->num_residuals());
+  const RolloutStatus status = RolloutResidual::At(*problem, blocks, residuals.data());
+  EXPECT_FALSE(status.ok);
+  EXPECT_EQ(status.person, failure.person);
+  EXPECT_EQ(status.quantity, failure.quantity);
+  EXPECT_GT(status.frame, failure.after);
+  EXPECT_LT(status.frame, 150);
 }
 
 // An overflow leaves the domain while it is finite; a NaN spoils the first person at once.
@@ -217,7 +275,7 @@ TEST(RolloutResidual, FramesThatWereNotSeenDoNotCount) {
     std::vector<const double*> pointers;
     for (const auto& block : blocks) pointers.push_back(block.data());
     std::vector<double> residuals(problem->num_residuals(), std::nan(""));
-    EXPECT_TRUE(RolloutResidual(problem).Evaluate(pointers.data(), residuals.data(), nullptr));
+    EXPECT_TRUE(AutoDiffRollout(problem).Evaluate(pointers.data(), residuals.data(), nullptr));
     return residuals;
   };
   const std::vector<double> full = evaluate(recording);

@@ -11,7 +11,6 @@
 #include "models/ground.h"
 #include "models/net_force.h"
 #include "residuals/frame_residual.h"
-#include "residuals/sensitivities/net_force_jacobian.h"
 
 namespace pushid {
 
@@ -91,29 +90,5 @@ PlateVector<T> PlateResidual(const PlatePlace& place, const BodyOnPlates<T>& on_
   const double weight = place.Known() ? measured.weight : 0.0;
   return T(weight) * RobustWeight<T>(r.squaredNorm(), sigmas.robust) * r;
 }
-
-// Parameters that platforms see: those of the body, then the gain of a push.
-inline constexpr int kNumPlateParameters = kNumBodyParameters + 1;
-constexpr Parameter PlateParameter(int k) {
-  return k < kNumBodyParameters ? kBodyParameters[k] : kPushGain;
-}
-// Columns: q, qd, the next qd, then the parameters.
-inline constexpr int kPlateColumns = 12 + kNumPlateParameters;
-using PlateJacobian = Eigen::Matrix<double, kPlateResiduals, kPlateColumns, Eigen::RowMajor>;
-
-// BodyOnPlates with its derivatives by kBodyParameters.
-struct BodyOnPlatesJacobian : BodyOnPlates<double> {
-  BodyByParameters by;
-  Eigen::Matrix<double, kPlateResiduals, kNumBodyParameters> at_rest_by;
-
-  BodyOnPlatesJacobian(const Scene& scene, const ModelOptions& options, int person,
-                       const ParameterSet<double>& p);
-};
-
-// PlateResidual with its derivatives.
-PlateVector<double> PlateResidualWithJacobian(
-    const PlatePlace& place, const BodyOnPlatesJacobian& on_plates, const ParameterSet<double>& p,
-    const PendulumState<double>& state, const Vector4<double>& next_qd, const PlateFrame& measured,
-    const ResidualSigmas& sigmas, PlateJacobian* jacobian);
 
 }  // namespace pushid
