@@ -37,8 +37,8 @@ struct ForceStory {
 // The prediction must have stayed within its domain.
 ForceStory StoryOf(const PendulumRecording& recording, const Prediction& prediction, int person);
 
-// Of the bystander with most to tell: first still, then pushed by the one behind, then by the one
-// in front, is more than being pushed alone. Person -1 where there is no bystander.
+// The story of the bystander with most to tell: first still, then pushed by the one behind, then by
+// the one in front, is more than being pushed alone. Person -1 where there is no bystander.
 ForceStory RichestStory(const PendulumRecording& recording, const Prediction& prediction);
 
 // "X-11: 0 s still; 0.42 s pushed from behind by X-18, up to 230 N (31 N s); ..."

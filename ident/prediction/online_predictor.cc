@@ -57,7 +57,7 @@ void OnlinePredictor::SetForecast(const TwoForecasts& two, double input_share,
   const int from = observed();
   const double dt = recording_->scene.dt;
   for (int n = 0; n < recording_->num_people(); ++n) {
-    // Of the lean, where it was seen.
+    // The error of the lean, where it was seen.
     Eigen::Vector2d off = Eigen::Vector2d::Zero();
     if (seen.back().hips.Sees(n)) {
       off = (seen.back().states[n].q - prediction->path.At(from - 1, n).q).tail<2>();

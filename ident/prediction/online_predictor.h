@@ -38,7 +38,7 @@ class OnlinePredictor {
   int observed() const { return frames_->observed(); }  // with frame 0
   // Without bands, which take longer than all the rest.
   Prediction Predict() const;
-  // Of the hips behind those seen in a prediction that did not fail.
+  // The distribution of the hips behind those seen, in a prediction that did not fail.
   HipDistribution Distribution(const Prediction& prediction) const;
 
  private:

@@ -28,7 +28,7 @@ struct Footprint {
 // By landing. start: of frame 0; steps: by lift-off.
 std::vector<Footprint> Footprints(const PendulumState<double>& start,
                                   const std::vector<FootStep>& steps, int num_frames);
-// Of everybody, as recorded and as predicted; nobody's on ground that moves, and no predicted ones
+// Everybody's footprints, recorded and predicted; none on ground that moves, and no predicted ones
 // where the model's feet do not step, or where later frames than the first were seen.
 using FootprintsOfPeople = std::vector<std::vector<Footprint>>;
 FootprintsOfPeople RecordedFootprints(const PendulumRecording& recording);

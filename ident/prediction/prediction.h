@@ -20,7 +20,7 @@ struct PredictedStep {
   double probability = 0.0, error = 0.0;
 };
 
-// Of one person's hip, from the first unseen frame on, m.
+// The band of one person's hip, from the first unseen frame on, m.
 struct HipBand {
   std::vector<Vector3<double>> lower90, upper90;
 };

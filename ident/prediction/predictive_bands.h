@@ -52,7 +52,7 @@ Result<std::vector<ParameterSet<double>>> SampleParameters(const FitResult& resu
 // The model with other shared values; units keep their deviation from them on the fitted scale.
 IdentifiedModel WithShared(const IdentifiedModel& model, const ParameterSet<double>& shared);
 
-// Of the pushed person: measured less predicted, over impulse per mass, frame by frame.
+// The pushed person's error: measured less predicted, over impulse per mass, frame by frame.
 struct ErrorPath {
   std::string recording;
   std::vector<BandPoint> path;

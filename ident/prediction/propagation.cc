@@ -199,7 +199,8 @@ void AddContactFigures(const IdentifiedModel& model, const PendulumRecording& re
   }
   f[kContactWork] = {balance.TotalWork(), 1.0};
   f[kContactAbsorbed] = {balance.absorbed, 1.0};
-  // Of mutual contact alone: LDP's terms and networks push without taking anything first.
+  // Restitution is of mutual contact alone: LDP's terms and networks push without taking anything
+  // first.
   if (model.options.interaction.Mutual()) f[kRestitution] = {balance.returned, balance.absorbed};
 }
 

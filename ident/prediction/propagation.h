@@ -42,7 +42,7 @@ struct PersonPropagation {
   double distance = 0.0;                          // m, from the pushed person's cart at frame 0
   int onset_measured = -1, onset_predicted = -1;  // frames
   double peak_momentum_measured = 0.0, peak_momentum_predicted = 0.0;  // N s, along the push
-  // Of a model's rollout only.
+  // From a model's rollout only.
   double contact_work = 0.0;  // J done on this person by contact
   double impulse_on = 0.0;    // N s, I_k of this person's rank
 };

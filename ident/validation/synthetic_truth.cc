@@ -23,8 +23,7 @@ Result<IdentifiedModel> SyntheticTruth(const SyntheticOptions& study, const std:
   model.table = preset.table;
   model.parameters = preset.table.Values();
   for (Parameter id : preset.table.Free()) {
-    // Standing people touch as the preset has it.
-    // Who holds on, and who is late, are as the preset has them.
+    // People who stand, and delays, are as the preset has them.
     const bool of_delay = id >= kReactionDelay && id <= kPassiveDamping;
     if (stance == Stance::kFixed || of_delay) continue;
     if (!IsPairParameter(id) || slide) model.parameters[id] = published[id];
