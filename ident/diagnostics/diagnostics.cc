@@ -178,24 +178,6 @@ Leverage ComputeLeverage(const FitProblem& problem, const FitPoint& point,
   return l;
 }
 
-}  // namespace
-
-Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
-                     const Uncertainty& uncertainty) {
-  Diagnostics d;
-  d.start = DiagnoseStart(problem, best);
-  const ResidualsByRecording raw = RawResiduals(problem, best.to);
-  d.recordings = DiagnoseRecordings(problem, best.to, raw);
-  d.whiteness = DiagnoseWhiteness(problem, raw);
-  d.leverage = ComputeLeverage(problem, best.to, uncertainty);
-  for (const SolveStage& stage : best.stages) {
-    d.trace.insert(d.trace.end(), stage.trace.begin(), stage.trace.end());
-  }
-  return d;
-}
-
-namespace {
-
 constexpr double kNearbyWeight = 0.1;
 constexpr double kNoEffect = 1e-12;  // of the largest column, in typical sizes
 constexpr double kNearby = 2.0;      // factor of the second look
@@ -232,7 +214,30 @@ std::vector<std::string> WithoutEffect(const FitProblem& problem, const FitPoint
   return names;
 }
 
+// The recordings at the point where a solve starts.
+StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start) {
+  const ResidualRows score = EvaluateRows(problem, start.from);
+  const Conditioning at_start = ComputeConditioning(problem, start.from, score);
+  return {at_start.condition_number, at_start.null_directions,
+          WithoutEffect(problem, start.from, score), start.notes,
+          FitFindings(FindingsOf(problem.recordings()))};
+}
+
 }  // namespace
+
+Diagnostics Diagnose(const FitProblem& problem, const SolveStart& best,
+                     const Uncertainty& uncertainty) {
+  Diagnostics d;
+  d.start = DiagnoseStart(problem, best);
+  const ResidualsByRecording raw = RawResiduals(problem, best.to);
+  d.recordings = DiagnoseRecordings(problem, best.to, raw);
+  d.whiteness = DiagnoseWhiteness(problem, raw);
+  d.leverage = ComputeLeverage(problem, best.to, uncertainty);
+  for (const SolveStage& stage : best.stages) {
+    d.trace.insert(d.trace.end(), stage.trace.begin(), stage.trace.end());
+  }
+  return d;
+}
 
 bool TailCannotAct(const std::vector<PendulumRecording>& recordings) {
   for (const PendulumRecording& recording : recordings) {
@@ -293,14 +298,6 @@ MaybeError CheckEffects(const FitProblem& problem) {
   }
   return Error{list + (list.find(',') == std::string::npos ? " has" : " have") +
                " no effect on any of these recordings and cannot be fitted; use --fix=" + list};
-}
-
-StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start) {
-  const ResidualRows score = EvaluateRows(problem, start.from);
-  const Conditioning at_start = ComputeConditioning(problem, start.from, score);
-  return {at_start.condition_number, at_start.null_directions,
-          WithoutEffect(problem, start.from, score), start.notes,
-          FitFindings(FindingsOf(problem.recordings()))};
 }
 
 }  // namespace pushid

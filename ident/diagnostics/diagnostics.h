@@ -76,9 +76,6 @@ struct Diagnostics {
   std::vector<TracePoint> trace;  // of the best start
 };
 
-// The recordings at the point where a solve starts.
-StartDiagnostics DiagnoseStart(const FitProblem& problem, const SolveStart& start);
-
 // Whether every push is external, measured whole: then none has a tail.
 bool TailCannotAct(const std::vector<PendulumRecording>& recordings);
 

@@ -160,6 +160,49 @@ FitResult Judge(const SolvedFit& fit) {
   return result;
 }
 
+constexpr size_t kFolds = 4, kFewestUnits = 3;
+// Function tolerance: what a smaller one would change is little beside what people differ by.
+constexpr double kFoldTolerance = 1e-5;
+
+std::vector<std::vector<int>> FoldsOf(const FitProblem& problem) {
+  std::vector<std::vector<int>> units =
+      MakeResamplingUnits(problem.recordings(), ClusterBy::kAuto).units;
+  if (units.size() < kFewestUnits) {
+    units.clear();
+    for (size_t i = 0; i < problem.recordings().size(); ++i) units.push_back({static_cast<int>(i)});
+  }
+  std::vector<std::vector<int>> folds;
+  if (units.size() < kFewestUnits) return folds;
+  folds.resize(std::min(kFolds, units.size()));
+  for (size_t u = 0; u < units.size(); ++u) {
+    std::vector<int>& fold = folds[u % folds.size()];
+    fold.insert(fold.end(), units[u].begin(), units[u].end());
+  }
+  return folds;
+}
+
+// Solved again from the optimum, without the recordings held out (indices), by the weights of
+// residuals and the spreads of pooled units of the whole. None without a usable optimum.
+std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const FitPoint& optimum,
+                                            const IdentifiedModel& model,
+                                            const std::vector<int>& held_out) {
+  FitOptions options = problem.options();
+  options.num_threads = 1;
+  options.function_tolerance = std::max(kFoldTolerance, options.function_tolerance);
+  std::vector<int> counts(problem.recordings().size(), 1);
+  for (int i : held_out) counts[i] = 0;
+  const FitProblem others(problem.recordings(), options, counts);
+  const SolveStart fit = Refit(others, optimum);
+  if (!fit.usable) return std::nullopt;
+  IdentifiedModel refitted = model;
+  refitted.options = others.ModelAt(fit.to);
+  refitted.parameters = others.Parameters(fit.to, "");
+  for (auto& [unit, parameters] : refitted.by_unit) parameters = others.Parameters(fit.to, unit);
+  refitted.push_range.reset();
+  refitted.push_range = FittedPushRange(refitted, Without(problem.recordings(), held_out));
+  return refitted;
+}
+
 }  // namespace
 
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
@@ -206,51 +249,6 @@ Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordi
   Result<FoldedModels> models = SolveFolds(recordings, std::move(options), {}, forecasts);
   if (!models.ok()) return models.error();
   return std::move(models.value().whole);
-}
-
-namespace {
-
-constexpr size_t kFolds = 4, kFewestUnits = 3;
-// Function tolerance: what a smaller one would change is little beside what people differ by.
-constexpr double kFoldTolerance = 1e-5;
-
-std::vector<std::vector<int>> FoldsOf(const FitProblem& problem) {
-  std::vector<std::vector<int>> units =
-      MakeResamplingUnits(problem.recordings(), ClusterBy::kAuto).units;
-  if (units.size() < kFewestUnits) {
-    units.clear();
-    for (size_t i = 0; i < problem.recordings().size(); ++i) units.push_back({static_cast<int>(i)});
-  }
-  std::vector<std::vector<int>> folds;
-  if (units.size() < kFewestUnits) return folds;
-  folds.resize(std::min(kFolds, units.size()));
-  for (size_t u = 0; u < units.size(); ++u) {
-    std::vector<int>& fold = folds[u % folds.size()];
-    fold.insert(fold.end(), units[u].begin(), units[u].end());
-  }
-  return folds;
-}
-
-}  // namespace
-
-std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const FitPoint& optimum,
-                                            const IdentifiedModel& model,
-                                            const std::vector<int>& held_out) {
-  FitOptions options = problem.options();
-  options.num_threads = 1;
-  options.function_tolerance = std::max(kFoldTolerance, options.function_tolerance);
-  std::vector<int> counts(problem.recordings().size(), 1);
-  for (int i : held_out) counts[i] = 0;
-  const FitProblem others(problem.recordings(), options, counts);
-  const SolveStart fit = Refit(others, optimum);
-  if (!fit.usable) return std::nullopt;
-  IdentifiedModel refitted = model;
-  refitted.options = others.ModelAt(fit.to);
-  refitted.parameters = others.Parameters(fit.to, "");
-  for (auto& [unit, parameters] : refitted.by_unit) parameters = others.Parameters(fit.to, unit);
-  refitted.push_range.reset();
-  refitted.push_range = FittedPushRange(refitted, Without(problem.recordings(), held_out));
-  return refitted;
 }
 
 std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optimum,

@@ -29,15 +29,6 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
 Result<IdentifiedModel> SolveModel(const std::vector<PendulumRecording>& recordings,
                                    FitOptions options, bool forecasts = false);
 
-// A fitted model again, without a fold of its recordings, and what its forecasts then teach
-// (observed/learn_forecasts.h).
-
-// Solved again from the optimum, without the recordings held out (indices), by the weights of
-// residuals and the spreads of pooled units of the whole. None without a usable optimum.
-std::optional<IdentifiedModel> RefitWithout(const FitProblem& problem, const FitPoint& optimum,
-                                            const IdentifiedModel& model,
-                                            const std::vector<int>& held_out);
-
 // SolveModel, and beside it a model without each of some folds: refitted, which takes a fraction of
 // a solve, or, of fits that are too large to repeat and of networks, which would remember what is
 // held out, solved anew. None of a fold without a usable optimum.

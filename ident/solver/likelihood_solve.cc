@@ -1,4 +1,6 @@
 // ident: rounds of building and solving by a likelihood.
+#include "ident/solver/likelihood_solve.h"
+
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 

@@ -131,6 +131,27 @@ ProfileSide TraceProfile(const ProfileSearch& search, int sign, const HoldFit& h
 
 namespace {
 
+// A number to be profiled: one fitted parameter on its fitted scale, or a combination of natural
+// values.
+struct ProfileTarget {
+  std::string name, unit;
+  Transform transform = Transform::kIdentity;
+  int index = -1;                      // of the parameter; -1 for a combination
+  std::vector<double> coefficients{};  // of a combination, by fitted parameter
+  double constant = 0.0;               // what fixed parameters contribute
+
+  // Half-width over standard error; of a combination, that of its least known parameter.
+  double Quantile(const Uncertainty& uncertainty) const {
+    const std::vector<Estimate>& estimates = uncertainty.estimates;
+    if (index >= 0) return estimates[index].quantile;
+    double quantile = 0.0;
+    for (size_t i = 0; i < coefficients.size(); ++i) {
+      if (coefficients[i] != 0.0) quantile = std::max(quantile, estimates[i].quantile);
+    }
+    return quantile;
+  }
+};
+
 ProfileTarget CombinationTarget(const FitProblem& problem, const CombinationSpec& spec) {
   const ParameterMap& map = problem.map();
   ProfileTarget target{spec.name, spec.unit};
@@ -146,74 +167,81 @@ ProfileTarget CombinationTarget(const FitProblem& problem, const CombinationSpec
   return target;
 }
 
-}  // namespace
+// A profile to report: a target's, or a linear function of it in natural values; factors are
+// positive.
+struct ReportedProfile {
+  std::string name, unit;
+  size_t target;
+  double factor = 1.0, offset = 0.0;
+};
 
-double ProfileTarget::Quantile(const Uncertainty& uncertainty) const {
-  const std::vector<Estimate>& estimates = uncertainty.estimates;
-  if (index >= 0) return estimates[index].quantile;
-  double quantile = 0.0;
-  for (size_t i = 0; i < coefficients.size(); ++i) {
-    if (coefficients[i] != 0.0) quantile = std::max(quantile, estimates[i].quantile);
-  }
-  return quantile;
-}
-
-ProfilePlan::ProfilePlan(const FitProblem& problem) {
-  for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
-    const ParameterSpec& spec = problem.Spec(i);
-    targets_.push_back({spec.name, spec.unit, spec.transform, static_cast<int>(i)});
-    all_.push_back({spec.name, spec.unit, i});
-  }
-  for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
-    Add(CombinationTarget(problem, spec));
-  }
-}
-
-MaybeError ProfilePlan::Choose(const std::vector<std::string>& names) {
-  std::string known;
-  for (const ReportedProfile& r : all_) known += (known.empty() ? "" : ", ") + r.name;
-  for (const std::string& name : names) {
-    const auto at = std::find_if(all_.begin(), all_.end(),
-                                 [&name](const ReportedProfile& r) { return r.name == name; });
-    if (at == all_.end()) {
-      return Error{"there is no profile of '" + name + "'; free numbers are " + known};
+// Everything that moves, or what is named; each target once.
+class ProfilePlan {
+ public:
+  explicit ProfilePlan(const FitProblem& problem) {
+    for (size_t i = 0; i < problem.map().fitted.size(); ++i) {
+      const ParameterSpec& spec = problem.Spec(i);
+      targets_.push_back({spec.name, spec.unit, spec.transform, static_cast<int>(i)});
+      all_.push_back({spec.name, spec.unit, i});
     }
-    chosen_.push_back(*at);
+    for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
+      Add(CombinationTarget(problem, spec));
+    }
   }
-  if (names.empty()) chosen_ = all_;
-  return std::nullopt;
-}
 
-Profile ProfilePlan::Reported(const ReportedProfile& reported, Profile profile) const {
-  const Transform transform = targets_[reported.target].transform;
-  const auto natural = [&](double value) {
-    if (!std::isfinite(value)) return reported.factor * value;
-    return reported.factor * ToNatural(transform, value) + reported.offset;
-  };
-  profile.name = reported.name;
-  profile.unit = reported.unit;
-  profile.estimate = natural(profile.estimate);
-  profile.lower95 = natural(profile.lower95);
-  profile.upper95 = natural(profile.upper95);
-  for (ProfilePoint& point : profile.points) point.value = natural(point.value);
-  return profile;
-}
-
-void ProfilePlan::Add(const ProfileTarget& combination) {
-  const auto& c = combination.coefficients;
-  const auto moves = [](double coefficient) { return coefficient != 0.0; };
-  const auto first = std::find_if(c.begin(), c.end(), moves);
-  if (first == c.end()) return;
-  if (std::count_if(c.begin(), c.end(), moves) == 1) {
-    all_.push_back({combination.name, combination.unit, static_cast<size_t>(first - c.begin()),
-                    *first, combination.constant});
-    return;
+  // No names: all. Errors: a name of nothing that moves.
+  MaybeError Choose(const std::vector<std::string>& names) {
+    std::string known;
+    for (const ReportedProfile& r : all_) known += (known.empty() ? "" : ", ") + r.name;
+    for (const std::string& name : names) {
+      const auto at = std::find_if(all_.begin(), all_.end(),
+                                   [&name](const ReportedProfile& r) { return r.name == name; });
+      if (at == all_.end()) {
+        return Error{"there is no profile of '" + name + "'; free numbers are " + known};
+      }
+      chosen_.push_back(*at);
+    }
+    if (names.empty()) chosen_ = all_;
+    return std::nullopt;
   }
-  all_.push_back({combination.name, combination.unit, targets_.size()});
-  targets_.push_back(combination);
-}
 
-namespace {
+  const std::vector<ProfileTarget>& targets() const { return targets_; }
+  const std::vector<ReportedProfile>& chosen() const { return chosen_; }
+
+  // From its target's scale to natural values and its own name.
+  Profile Reported(const ReportedProfile& reported, Profile profile) const {
+    const Transform transform = targets_[reported.target].transform;
+    const auto natural = [&](double value) {
+      if (!std::isfinite(value)) return reported.factor * value;
+      return reported.factor * ToNatural(transform, value) + reported.offset;
+    };
+    profile.name = reported.name;
+    profile.unit = reported.unit;
+    profile.estimate = natural(profile.estimate);
+    profile.lower95 = natural(profile.lower95);
+    profile.upper95 = natural(profile.upper95);
+    for (ProfilePoint& point : profile.points) point.value = natural(point.value);
+    return profile;
+  }
+
+ private:
+  void Add(const ProfileTarget& combination) {
+    const auto& c = combination.coefficients;
+    const auto moves = [](double coefficient) { return coefficient != 0.0; };
+    const auto first = std::find_if(c.begin(), c.end(), moves);
+    if (first == c.end()) return;
+    if (std::count_if(c.begin(), c.end(), moves) == 1) {
+      all_.push_back({combination.name, combination.unit, static_cast<size_t>(first - c.begin()),
+                      *first, combination.constant});
+      return;
+    }
+    all_.push_back({combination.name, combination.unit, targets_.size()});
+    targets_.push_back(combination);
+  }
+
+  std::vector<ProfileTarget> targets_;
+  std::vector<ReportedProfile> all_, chosen_;
+};
 
 constexpr double kHold = 0.03;  // s_hold over the naive error
 // Where a held fit ends: changes of the cost, over the threshold, well below what crossings are
