@@ -7,6 +7,7 @@
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/parallel.h"
+#include "ident/problem/statistics.h"
 #include "ident/solver/solver.h"
 #include "ident/uncertainty/clusters.h"
 
@@ -22,6 +23,8 @@ constexpr double kRough = 1e-3;    // function tolerance on the way
 // twentieth moves the optimum near the edge, and from there along it by steps of ordinary length.
 constexpr double kDemandSteps[] = {0.05, 0.3, 1.0};
 constexpr double kLessExact = 100.0;  // function tolerances, of the steps before the last
+// Probability of a rise of twice the cost, below which the data contradict the demand.
+constexpr double kImprobable = 0.05;
 
 double Change(double from, double to) {
   return from > 0.0 && to > 0.0 ? std::abs(std::log(to / from)) : 1.0;
@@ -155,7 +158,8 @@ void Demand(double weight, FitProblem* problem, WeightedSolution* solved) {
                    std::isinf(CostAt(demands, held.to));
   if (!settling.unmet) {
     settling.rise = std::max(0.0, 2.0 * (CostAt(without, held.to) - best.cost));
-    settling.contradicted = Contradicted(settling.rise, without.SettlingUnits(best.to).size());
+    const int units = static_cast<int>(without.SettlingUnits(best.to).size());
+    settling.contradicted = ChiSquareTail(settling.rise, units) < kImprobable;
     settling.unmet = !settling.contradicted &&
                      SlowestSeconds(*problem, held.to) > WaitSeconds(problem->options().model);
   }

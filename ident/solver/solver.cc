@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <unsupported/Eigen/SpecialFunctions>
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/parallel.h"
@@ -233,12 +232,6 @@ constexpr double kWorthAnother = 50.0;
 constexpr int kMostFresh = 5;
 
 }  // namespace
-
-bool Contradicted(double rise, size_t units) {
-  constexpr double kImprobable = 0.05;
-  return Eigen::numext::igammac(0.5 * static_cast<double>(units), 0.5 * std::max(0.0, rise)) <
-         kImprobable;
-}
 
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, int num_threads,
                  RecordingSums known) {

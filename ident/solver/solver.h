@@ -34,11 +34,6 @@ SolveStage SolveBuilt(FitProblem::Built* built, const ceres::Solver::Options& op
 SolveStart Refit(const FitProblem& problem, const FitPoint& from, int num_threads = 1,
                  RecordingSums known = {});
 
-// Whether the recordings contradict a demand to settle: by how much it raises the cost of all else,
-// twice that, against the 95 % point of chi-squared with a degree of freedom for each of the units
-// that it is put to.
-bool Contradicted(double rise, size_t units);
-
 // The cost of all blocks that can be rolled out; infinite where a settling simulation cannot.
 double CostAt(const FitProblem& problem, FitPoint point);
 
