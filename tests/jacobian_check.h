@@ -211,11 +211,17 @@ inline void ExpectDirectionalDerivatives(const ceres::CostFunction& cost,
       EXPECT_TRUE(above.ok && below.ok);
       return ((above.residuals - below.residuals) / (2.0 * step)).eval();
     };
-    const Eigen::VectorXd expected = (4.0 * difference(0.5 * kStep) - difference(kStep)) / 3.0;
+    // A step may cross a kink of a residual, which the shorter ones miss.
     Eigen::Index row = 0;
-    const double off = (along - expected).cwiseAbs().maxCoeff(&row);
-    // Written so that NaN on either side is wrong.
-    if (off <= tolerance.relative * expected.cwiseAbs().maxCoeff() + tolerance.absolute) continue;
+    Eigen::VectorXd expected;
+    bool agrees = false;
+    for (double step = kStep; step > 1e-7 && !agrees; step *= 0.1) {
+      expected = (4.0 * difference(0.5 * step) - difference(step)) / 3.0;
+      const double off = (along - expected).cwiseAbs().maxCoeff(&row);
+      // Written so that NaN on either side is wrong.
+      agrees = off <= tolerance.relative * expected.cwiseAbs().maxCoeff() + tolerance.absolute;
+    }
+    if (agrees) continue;
     ADD_FAILURE() << std::setprecision(17) << "along direction " << k << ", row " << row << ": "
                   << along[row] << ", expected " << expected[row];
     return;

@@ -5,6 +5,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
+#include "datasets/formats/bvh_header.h"
 #include "datasets/formats/units.h"
 
 namespace pushid {

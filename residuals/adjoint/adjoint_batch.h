@@ -20,8 +20,7 @@ namespace pushid {
 //   L_s <- L_s + (dF_terms/ds)' f + (dg/ds)' (2 M y . f) + (du/ds)' u^,   s: the states of both
 //   L_p <- L_p + (dF_terms/dp)' f + (dg/dp)' (2 M y . f)
 // where u^ comes back through the network from y^ = 2 M g f (packed_layers.h). A person's step so
-// hands parts to the neighbours' states. Derivatives of terms and gate are those that sensitivities
-// are chained from (net_force_jacobian.h, learned_pair_jacobian.h).
+// hands parts to the neighbours' states. Derivatives of terms and gate: force_jacobians.h.
 //
 // Everybody is a column: the people of one recording side by side, one recording after the other.
 

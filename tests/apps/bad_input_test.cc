@@ -230,9 +230,10 @@ TEST_F(BadInputTest, FoldersAndDevicesAreNoFiles) {
 
 TEST_F(BadInputTest, ARecordingWithoutAPush) {
   DamageEntry([](ordered_json& r) { r.erase("push_csv"); });
-  EXPECT_TRUE(Refused(RunApp("pushid-fit", {Recordings()}), {id_, "no push", "pushid-push"}));
   EXPECT_TRUE(
-      Refused(RunApp("pushid-crossvalidate", {Recordings()}), {id_, "no push", "pushid-push"}));
+      Refused(RunApp("pushid-fit", {Recordings()}), {id_, "neither a push", "pushid-push"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-crossvalidate", {Recordings()}),
+                      {id_, "neither a push", "pushid-push"}));
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST_F(CheckTest, AdviceNamesTheFileOfTheModel) {
   const AppRun unkept = RunApp("pushid-fit", {Recordings()});
   EXPECT_TRUE(Contains(unkept.out, asks("FILE")));
   EXPECT_TRUE(
-      Contains(unkept.out, "FILE: keep the model first; fit again with --model_out=FILE\n"));
+      Contains(unkept.out, "FILE is the model, which --model_out=FILE of pushid-fit keeps."));
 }
 
 TEST_F(CheckTest, OtherRecordingsThanThoseOfTheFitAreNamed) {

@@ -191,13 +191,13 @@ def derivatives():
     before = os.environ.get("PUSHID_BEFORE")
     with tempfile.TemporaryDirectory() as folder:
         laboratory = os.path.join(folder, "laboratory")
-        subprocess.run([os.path.join(studies.BIN, "pushid-simulate"), "--laboratory", f"--out={laboratory}"],
+        subprocess.run([os.path.join(studies.BIN, "pushid-simulate"), "--laboratory=6", f"--out={laboratory}"],
                        check=True, stdout=subprocess.DEVNULL)
         single = [f"--recordings={studies.MANIFEST}", "--setting=single"]
         fits = {"the 32 recordings": single, "the 49 recordings of groups": [single[0], "--setting=groups"],
                 "... 32, `--self_force=mlp:4`": [*single, "--self_force=mlp:4"],
                 "... 32, `--delay=one`": [*single, "--delay=one"],
-                "`pushid-simulate --laboratory`, platforms": [f"--recordings={laboratory}/manifest.json"]}
+                "`pushid-simulate --laboratory=6`, platforms": [f"--recordings={laboratory}/manifest.json"]}
         kinds = {"auto": [studies.BIN, []], "autodiff": [studies.BIN, ["--derivatives=autodiff"]]}
         if before:
             kinds["before"] = [before, []]

@@ -125,7 +125,7 @@ TEST(ParticleTrainerTest, Equation6TrainsDriftAndNoiseTogether) {
   options.distance = options.mirrored = options.jitter = 0.0;
   options.transitions = 1.0;
   options.steps = 100;
-  options.learning_rate = 3e-3;
+  options.learning_rate = 1e-2;
   const auto trained = [&](NoiseLoss loss) {
     options.noise_loss = loss;
     ParticleTrainer trainer(FourParticles(), motions, {}, options);

@@ -17,7 +17,7 @@ class CvaeAppTest : public AppTest {
     model_ = "--model=" + FitModel();
   }
   AppRun Train(const std::string& out, std::vector<std::string> more) {
-    more.insert(more.end(), {Recordings(), model_, "--out=" + Path(out), "--quiet"});
+    more.insert(more.end(), {Recordings(), model_, "--out=" + Path(out)});
     return RunApp("pushid-train-restoration", more, 120);
   }
 

@@ -137,8 +137,8 @@ TEST_F(ManifestMakerTest, MisspeltNamesAreToldOf) {
   options_.pattern = "{subjct}_{magnitude}_{take}.bvh";
   const MadeManifest made = Unwrapped(MakeManifest(options_));
   ASSERT_EQ(made.warnings.size(), 2u) << "the masses are of nobody then";
-  EXPECT_TRUE(
-      Contains(made.warnings[0], "{subjct}, which only tells recordings apart; is {subject}"));
+  EXPECT_TRUE(Contains(made.warnings[0],
+                       "{subjct}, which only distinguishes recordings; did you mean {subject}?"));
 }
 
 TEST_F(ManifestMakerTest, PushesThatAreNoneAndMassesOfNobodyAreToldOf) {
