@@ -191,13 +191,21 @@ def derivatives():
     before = os.environ.get("PUSHID_BEFORE")
     with tempfile.TemporaryDirectory() as folder:
         laboratory = os.path.join(folder, "laboratory")
-        subprocess.run([os.path.join(studies.BIN, "pushid-simulate"), "--laboratory=6", f"--out={laboratory}"],
-                       check=True, stdout=subprocess.DEVNULL)
+        manifest = f"--recordings={laboratory}/manifest.json"
+
+        def run(program, *flags):
+            subprocess.run([os.path.join(studies.BIN, program), *flags], check=True, stdout=subprocess.DEVNULL)
+
+        run("pushid-simulate", "--laboratory=4", "--seed=1", f"--out={laboratory}")
+        ids = ",".join(sorted(name[:-4] for name in os.listdir(os.path.join(laboratory, "force"))))
+        run("pushid-push", manifest, f"--ids={ids}", f"--sensor={laboratory}/force/{{id}}.csv",
+            f"--out={laboratory}/push/{{id}}.csv", "--update", "--overwrite")
         single = [f"--recordings={studies.MANIFEST}", "--setting=single"]
         fits = {"the 32 recordings": single, "the 49 recordings of groups": [single[0], "--setting=groups"],
                 "... 32, `--self_force=mlp:4`": [*single, "--self_force=mlp:4"],
                 "... 32, `--delay=one`": [*single, "--delay=one"],
-                "`pushid-simulate --laboratory=6`, platforms": [f"--recordings={laboratory}/manifest.json"]}
+                "who stand on platforms, `--stance=fixed --delay=one`":
+                    [manifest, "--setting=standing", "--stance=fixed", "--delay=one"]}
         kinds = {"auto": [studies.BIN, []], "autodiff": [studies.BIN, ["--derivatives=autodiff"]]}
         if before:
             kinds["before"] = [before, []]
