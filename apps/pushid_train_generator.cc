@@ -128,6 +128,7 @@ void SetSde(TrainGeneratorFlags* flags) {
     } else if (part == "noise") {
       sde.together = false;
       sde.noise_steps = 0;
+      sde.noise_loss = NoiseLoss::kLikelihood;  // where --noise_steps trains it by itself
       sde.structure.noisy_input = false;
     } else if (part == "draw") {
       sde.noise_loss = NoiseLoss::kLikelihood;
