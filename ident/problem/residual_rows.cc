@@ -11,8 +11,8 @@
 #include "ident/problem/work.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
-#include "residuals/plate_residual.h"
 #include "residuals/normal_equations.h"
+#include "residuals/plate_residual.h"
 
 namespace pushid {
 namespace {

@@ -220,8 +220,8 @@ class Roller {
            (sum * 0.0 != Lanes(0.0));
   }
 
-  // The derivatives at the next frame by the chain rule, S <- A S + B; inverse: of the mass matrix, times
-  // dt. A person alone does not care where the cart is: six columns of the state.
+  // The derivatives at the next frame by the chain rule, S <- A S + B; inverse: of the mass matrix,
+  // times dt. A person alone does not care where the cart is: six columns of the state.
   void CarryOn(int t, Lanes acts, Lanes slides, const Force& a, const Matrix& inverse) {
     Eigen::Matrix<Lanes, 4, 6> by_state = Linearize(t, acts, slides);
     const Matrix rigid = InverseDynamicsJacobian(self_.body, angles_, state_.qd, a);

@@ -241,8 +241,7 @@ TEST(AdjointOfPeople, CountsTheFramesBeforeAFall) {
     }
     ASSERT_GT(cost.status[1].frame, 9);
     shortened[1].horizon = cost.status[1].frame;
-    const Gradient right =
-        ByJets(shortened, model.options, model.map, model.shared, model.weights);
+    const Gradient right = ByJets(shortened, model.options, model.map, model.shared, model.weights);
     EXPECT_NEAR(cost.cost, right.cost, 1e-10 * right.cost);
     ExpectSameVector(actual.shared, right.shared, 1e-9, "parameter");
     ExpectSameVector(actual.weights, right.weights, 1e-9, "weight");

@@ -21,9 +21,9 @@ struct Gradient {
 
 // Ceres' own sum over blocks of AutoDiffRollout. What is held: one set for all people of a
 // recording.
-inline Gradient ByJets(const std::vector<AdjointRecording>& recordings,
-                                       const ModelOptions& options, const ParameterMap& map,
-                                       std::vector<double> shared, std::vector<double> weights) {
+inline Gradient ByJets(const std::vector<AdjointRecording>& recordings, const ModelOptions& options,
+                       const ParameterMap& map, std::vector<double> shared,
+                       std::vector<double> weights) {
   ceres::Problem problem;
   for (const AdjointRecording& r : recordings) {
     ParameterMap own = map;
