@@ -96,8 +96,8 @@ Eigen::MatrixXd Triangle(const Eigen::MatrixXd& a) {
   return qr.matrixQR().topRows(a.cols()).triangularView<Eigen::Upper>();
 }
 
-// Of a square matrix with the same values and vectors: without the QR decompositions inside Eigen.s
-// own it compiles in a fraction of the time.
+// Takes a square matrix with the same values and vectors: without the QR decompositions inside
+// Eigen's own it compiles in a fraction of the time.
 RightSingular DecomposeRight(const Eigen::MatrixXd& a) {
   Eigen::MatrixXd square = Eigen::MatrixXd::Zero(a.cols(), a.cols());
   if (a.rows() > a.cols()) {

@@ -7,7 +7,7 @@
 
 namespace pushid {
 
-// Of a symmetric matrix, of which the lower triangle is read; values ascend.
+// Eigenvalues of a symmetric matrix, whose lower triangle is read; they ascend.
 struct SymmetricEigen {
   Eigen::VectorXd values;
   Eigen::MatrixXd vectors;  // a column each
@@ -16,7 +16,7 @@ struct SymmetricEigen {
 };
 SymmetricEigen DecomposeSymmetric(const Eigen::MatrixXd& a);
 
-// Of any square matrix.
+// Eigenvalues of any square matrix.
 Eigen::VectorXcd Eigenvalues(const Eigen::MatrixXd& a);
 // The largest absolute one.
 double SpectralRadius(const Eigen::MatrixXd& a);

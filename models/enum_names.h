@@ -83,7 +83,8 @@ std::string AnyName() {
   return Listed(AllNames<E>(), "or");
 }
 
-// Of a table in the order of its values; a static_assert(RowsAreInOrder(kTable)) beside it says so.
+// The row of a value; the table is in the order of values, which
+// static_assert(RowsAreInOrder(kTable)) checks.
 template <typename E>
 constexpr const auto& RowOf(E value) {
   return Names(value)[static_cast<size_t>(value)];

@@ -13,7 +13,7 @@ Eigen::Matrix3d Tilt(const GroundPose& pose) {
       .toRotationMatrix();
 }
 
-// Of ground that rests there: gravity along its axes.
+// A step of ground that rests there: gravity along its axes.
 GroundStep Still(const GroundPose& pose) {
   const Vector3<double> gravity = -kGravity * Tilt(pose).row(2).transpose();
   GroundStep step;
@@ -42,7 +42,7 @@ GroundMotion GroundThrough(std::vector<GroundPose> poses, double dt) {
   for (int t = 0; t < frames; ++t) {
     GroundStep step;
     if (frames > 1) {
-      // Of the last frame no step is taken; at the first the ground was at rest.
+      // No step is taken from the last frame; at the first the ground was at rest.
       const int at = std::min(t, frames - 2);
       const GroundPose& before = poses[std::max(at - 1, 0)];
       step.acceleration = (poses[at + 1] - 2.0 * poses[at] + before) / (dt * dt);

@@ -16,7 +16,7 @@
 
 namespace pushid {
 
-// Of the ground during the step from one frame to the next.
+// Motion of the ground during the step from one frame to the next.
 struct GroundStep {
   Vector4<double> acceleration = Vector4<double>::Zero();  // A, m/s^2 and rad/s^2
   double gravity = kGravity;                               // g_n: towards the ground, m/s^2
@@ -33,12 +33,12 @@ struct GroundMotion {
   GroundStep after;               // of ground that stays where the record ends
 
   bool moves() const { return !poses.empty(); }
-  // Of any frame: at rest where the ground does not move, or its record is over.
+  // The step from any frame: at rest where the ground does not move, or its record is over.
   const GroundStep& StepAt(int frame) const {
     const size_t at = static_cast<size_t>(frame);
     return at < steps.size() ? steps[at] : after;
   }
-  // The same; of ground that moves.
+  // The pose at any frame; the ground must move.
   const GroundPose& PoseAt(int frame) const {
     return poses[std::min(static_cast<size_t>(frame), poses.size() - 1)];
   }

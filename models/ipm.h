@@ -188,7 +188,7 @@ Vector4<T> Acceleration(const BodyOf<L>& body, const PendulumState<T>& state,
   return Acceleration(body, Angles<T>(state.q), state.qd, force);
 }
 
-// The same on ground that takes the cart's velocity after the step, qd + dt qdd, to that of the
+// Acceleration on ground that takes the cart's velocity after the step, qd + dt qdd, to that of the
 // feet, by `ground` (N s/m): implicit, so that any resistance is stable.
 template <typename T, typename L>
 Vector4<T> AccelerationOnGround(const BodyOf<L>& body, const Angles<T>& angles,

@@ -105,7 +105,7 @@ void AddPublishedFriction(const PendulumState<T>& state, NetForce<T>* force) {
   }
 }
 
-// The same of feet that stand and step: nothing slides, so that neither drag nor the terms of a
+// As above, for feet that stand and step: nothing slides, so neither drag nor the terms of a
 // sliding cart act.
 template <typename T>
 void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
@@ -123,8 +123,8 @@ void AddStanceForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForc
   (*force)[ForcePart::kBalance].template tail<2>() = of_stance.torque;
 }
 
-// The same of feet that hold, whatever happens; felt: by the ankles. While a push is the whole
-// force, its rows hold the feet's reaction.
+// As above, for feet that never move. felt: the delayed state to which the ankles react. While a
+// push is the whole force, its rows hold the feet's reaction.
 template <typename T>
 void AddStandingForces(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
                        const PendulumState<T>& state, const PendulumState<T>& felt,

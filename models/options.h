@@ -23,7 +23,8 @@ struct InteractionTerms {
   bool learned = false;
   bool learned_in_range = false;  // LDP's: of every neighbour, not of those who touch
 
-  // Those that ask how far the points of contact are apart, and those that ask it of the carts.
+  // Terms that depend on the distance of the points of contact, and terms that depend on that of
+  // the carts.
   bool Contact() const { return spring || damping || (learned && !learned_in_range); }
   bool AtCarts() const { return ldp_published || (learned && learned_in_range); }
   bool Any() const { return Contact() || AtCarts(); }

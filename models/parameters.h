@@ -42,7 +42,7 @@ constexpr bool IsMeasurementError(Parameter id) {
   return id == kMeasuredCart || id == kMeasuredHip;
 }
 
-// Of those with a row.
+// Names of the parameters with a row.
 inline constexpr std::array<std::string_view, kFirstOwnParameter> kParameterNames = {
 #define PUSHID_PARAMETER(id, name, ...) name,
     PUSHID_PARAMETERS(PUSHID_PARAMETER)

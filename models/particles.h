@@ -88,7 +88,7 @@ enum class Transitions {
 Eigen::MatrixXd CountTransitions(const std::vector<Symbols>& people, int num_symbols,
                                  Transitions which);
 
-// Of counts or shares, which are normalized here. No value where either of them is all zero.
+// Distance of counts or shares, which are normalized here. No value where either is all zero.
 std::optional<double> JensenShannon(const Eigen::MatrixXd& p, const Eigen::MatrixXd& q);
 
 }  // namespace pushid

@@ -79,7 +79,7 @@ class DualStep {
     *by_state = rows;
     return next;
   }
-  // The same into 4 numbers and 4 x 8, by rows.
+  // As above, into 4 numbers and 4 x 8, by rows.
   void Velocity(int frame, int person, T* next, T* by_state) {
     const PendulumState<D> kept = states_[person];
     for (int i = 0; i < 4; ++i) {

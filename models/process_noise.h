@@ -26,7 +26,7 @@ Matrix4<T> NoiseFactor(const Body& body, const ParameterSet<T>& p) {
   return factor;
 }
 
-// Of the measured q about the true one, where cart and hip are measured with independent errors on
+// Covariance of the measured q about the true one, where cart and hip have independent errors on
 // each axis, and the angles follow from both: theta about (hip_x - cart_x) / l, phi about
 // -(hip_y - cart_y) / l, to first order.
 template <typename T>

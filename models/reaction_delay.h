@@ -53,7 +53,7 @@ struct DelayedFrames {
   }
 };
 
-// Of what a delayed pose is made, and a delayed rate; delays shorter than half a frame do not reach
+// Weights of the frames that make a delayed pose and rate; delays below half a frame do not reach
 // the rates.
 template <typename T>
 struct DelayedPlace {
@@ -106,7 +106,7 @@ constexpr Parameter StepDelayOf(Delay delay) {
   return delay == Delay::kAnkleAndStep ? kStepDelay : kReactionDelay;
 }
 
-// Of the ankles and of steps: the same in all frames of a rollout.
+// Places of the ankles and of steps: the same in all frames of a rollout.
 template <typename T>
 struct DelayedPlaces {
   DelayedPlace<T> ankle, step;

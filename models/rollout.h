@@ -101,7 +101,7 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
   return RollOn<T>(scene, &forces, 0, path, trace, noise);
 }
 
-// Of doubles, compiled once (rollout.cc): it takes the compiler seconds.
+// The instances for doubles are compiled once (rollout.cc): it takes the compiler seconds.
 extern template RolloutStatus StepOn<double>(const Scene&, SceneForces<double>*, int,
                                              RolloutPath<double>*, FrameTable<NetForce<double>>*,
                                              const FrameTable<Vector4<double>>*);

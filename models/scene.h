@@ -35,7 +35,7 @@ struct Scene {
   int SettledFrame(const ModelOptions& model) const;
 };
 
-// The same scene with every push multiplied by `factor`.
+// A scene with every push multiplied by `factor`.
 inline Scene ScalePushes(Scene scene, double factor) {
   for (ScenePush& push : scene.pushes) {
     for (Vector4<double>& row : push.force) row *= factor;

@@ -44,7 +44,7 @@ class SceneForces {
     states_.assign(states, states + scene_->people.size());
     finder_.Update(Parameters(0), states_);
   }
-  // The same from a path that is known up to this frame.
+  // As above, from a path that is known up to this frame.
   void Update(const RolloutPath<T>& path, int frame) {
     Update(path.Frame(frame));
     perceived_.clear();
@@ -66,7 +66,7 @@ class SceneForces {
     AskNetwork(person);
   }
 
-  // The same for everybody, to the last bit.
+  // Prepares everybody, with the same bits.
   void PrepareAll() {
     for (Vector4<T>& received : received_) received.setZero();
     finder_.ForEachPair([this](int n, int j) {

@@ -40,7 +40,7 @@ struct LinearDrag {
   }
 };
 
-// The same and dry friction: -mu v - mu_c M g v / sqrt(v^2 + v_0^2), which holds no cart still but
+// Viscous and dry friction: -mu v - mu_c M g v / sqrt(v^2 + v_0^2), which holds no cart still but
 // brings it to a creep.
 struct CoulombDrag {
   static constexpr double kCreep = 0.01;  // v_0, m/s
@@ -209,7 +209,7 @@ struct SelfTerms {
     AddFrictionJacobian(p, qd, jacobian);
   }
 
-  // Of Balance and Linear alone.
+  // Jacobian of Balance and Linear alone.
   template <typename Set, typename T>
   void ControlJacobian(const Set& p, const PendulumState<T>& state, const Vector4<T>& qd_previous,
                        SelfJacobian<T>* jacobian) const {

@@ -177,7 +177,7 @@ class StanceStep : StanceNumbers {
            (1.0 + exp(Over(xi_) * (-1.0 / kSupportEdge)));
   }
 
-  // Of xi from the middle of the support, by its extent: a unit vector.
+  // Direction of xi from the middle of the support, by its extent: a unit vector.
   Horizontal<T> Direction() const {
     using std::sqrt;
     const T front = (RealPart(xi_[0]) < 0.0 ? p_.back : p_.front) + d_[0];
@@ -223,7 +223,7 @@ class StanceStep : StanceNumbers {
     const T from = rise * (0.5 * foot) * feet_.apart[0] + rest_[0];
     return {Forwards(T(0.0), from, d_[0] + kFootBack, d_[0] + FrontReach()), Sideways(foot, rise)};
   }
-  // Of c before the foremost ankle.
+  // Reach of c before the foremost ankle.
   T FrontReach() const {
     if (!body_.among_others || feet_.landed != 0) return p_.foot_front;
     const T falls = SmoothRise(T(feet_.clock * kLetsFall / p_.onset));

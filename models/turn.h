@@ -15,7 +15,7 @@ class TurnedAxes {
   // angle: rad, from the old x axis to the new one.
   explicit TurnedAxes(double angle) : c_(std::cos(angle)), s_(std::sin(angle)) {}
 
-  // Of a horizontal vector in the old axes, its part in the new ones.
+  // A horizontal vector of the old axes in the new ones.
   Eigen::Vector2d Horizontal(const Eigen::Vector2d& v) const {
     return {c_ * v[0] + s_ * v[1], -s_ * v[0] + c_ * v[1]};
   }

@@ -40,7 +40,7 @@ constexpr EnumNames<Likelihood, 3> Names(Likelihood) {
            {"innovation", Likelihood::kInnovation}}};
 }
 
-// Who differentiates a rollout.
+// How a rollout is differentiated.
 enum class DerivativesBy {
   kAuto,     // the quickest there is: lanes (cost_functions/lane_tables.h) or jets
   kAutodiff  // jets (jets/autodiff_rollout.h) alone
@@ -65,14 +65,14 @@ struct ResidualSigmas {
   double rate = 3.0;      // rad/s
   double robust = 0.5;    // pseudo-Huber scale d in sigmas (of |r|); 0 means plain least squares
   FrameLoss loss = FrameLoss::kHip;
-  // Of force platforms (plate_residual.h): N, and m of the centre of pressure.
+  // Force platforms (plate_residual.h): N, and m of the centre of pressure.
   double shear = 10.0, centre = 0.005;
 
   // d of whole frames; 0 where each row has its own.
   double OfFrames() const { return loss == FrameLoss::kHip ? robust : 0.0; }
 };
 
-// Those under which FrameLoss::kLdp weighs metres, radians and their rates alike, as LDP does.
+// Sigmas under which FrameLoss::kLdp weighs metres, radians and their rates alike, as LDP does.
 inline constexpr ResidualSigmas kLdpSigmas = {0.1, 0.1, 0.1, 0.1, 0.01, FrameLoss::kLdp};
 
 template <typename L>
@@ -118,7 +118,7 @@ T RobustWeight(const T& squared_norm, double robust) {
   return sqrt(2.0 / (1.0 + sqrt(1.0 + squared_norm / (robust * robust))));
 }
 
-// Of residuals that share one w: w, and twice dw/ds over w, of
+// Slope of residuals that share one w: w, and twice dw/ds over w, of
 //   d(w r) = w dr + r (2 dw/ds) r' dr, with c = sqrt(1 + s/d^2), w^2 = 2 / (1 + c) = 2 u
 template <typename T>
 struct RobustSlope {

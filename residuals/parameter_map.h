@@ -170,7 +170,7 @@ struct BlockLayout {
   int num_weights = 0;
   std::vector<int> first_acting;  // of each fitted parameter, then the end of the last
   std::vector<int> of_deviation;  // the fitted parameter of each
-  // Of each person, the value of each covariate; empty: no particular people.
+  // Values of each covariate for each person; empty: no particular people.
   std::vector<std::vector<double>> covariates;
 
   BlockLayout() = default;
@@ -184,10 +184,10 @@ struct BlockLayout {
   // First acting column of the initial velocities; negative when they are not fitted.
   int VelocityColumn() const;
   int WeightColumn() const;  // the same of what is learned
-  // Of one person, by acting column.
+  // Entries of one person, by acting column.
   std::vector<ColumnEntry> Entries(const ParameterMap& map, const ParameterSet<double>& set,
                                    int person) const;
-  // Of each column of the blocks: first and last of the acting columns whose sum it is.
+  // For each column of the blocks: first and last of the acting columns whose sum it is.
   std::vector<std::pair<int, int>> ActingOfColumns() const;
 
   // The parameters and initial velocities of every person, for any scalar.
@@ -200,7 +200,7 @@ struct BlockLayout {
     }
     return sets;
   }
-  // Of a person; null where they are of no particular one.
+  // Covariates of a person; null without particular people.
   const std::vector<double>* CovariatesOf(size_t person) const {
     return covariates.empty() ? nullptr : &covariates[person];
   }

@@ -19,7 +19,7 @@ inline constexpr int kPlateResiduals = 4;
 template <typename T>
 using PlateVector = GroundReactionOf<T>;
 
-// Of one person at one frame.
+// One person at one frame.
 struct PlatePlace {
   const Scene* scene;
   const ModelOptions* options;

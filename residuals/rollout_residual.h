@@ -157,7 +157,7 @@ std::optional<double> NumberOf(const PendulumRecording& recording, int person,
                                const std::string& key);
 std::string LabelOf(const PendulumRecording& recording, int person, const std::string& key);
 
-// Of a recording's residuals. free_velocity: whether initial velocities are among the blocks.
+// Layout of a recording's blocks. free_velocity: whether initial velocities are among them.
 BlockLayout LayoutOf(const PendulumRecording& recording, const ParameterMap& map,
                      bool free_velocity);
 

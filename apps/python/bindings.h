@@ -20,8 +20,8 @@ namespace pushid {
 
 namespace py = pybind11;
 
-// Whose fault an error is. Python sees DataError, UsageError and FitError with message, file and
-// line.
+// The origin of an error: the data, the call or the fit. Python sees DataError, UsageError and
+// FitError with message, file and line.
 enum class Fault { kData, kUsage, kFit };
 [[noreturn]] void Raise(Fault fault, const Error& error);
 

@@ -95,7 +95,7 @@ BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted,
   return sum;
 }
 
-// Of the recordings that last so long.
+// Mean over the recordings that last so long.
 BodyMean MeanAt(const std::vector<const BodyScore*>& scores, size_t second) {
   BodyMean mean;
   for (const BodyScore* score : scores) {

@@ -32,7 +32,7 @@ constexpr ScoreRow kScoreRows[] = {
 };
 constexpr size_t kHorizons = kHorizonFrames.size();
 
-// Of one window at the k-th horizon.
+// Scores one window at the k-th horizon.
 void ScoreSamples(const std::vector<SampledFuture>& samples, const ForecastWindow& window,
                   const ParticleLayout& layout, size_t k, WindowScores* scores) {
   const int frame = kHorizonFrames[k];

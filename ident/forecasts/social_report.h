@@ -69,7 +69,7 @@ struct SocialReport {
   std::vector<SocialRow> rows;
 };
 
-// Of every predictor of groups in the evaluation, whose measures of states it sets to these.
+// Compares every predictor of groups in the evaluation and sets its measures of states.
 // Nothing without groups.
 std::optional<SocialReport> CompareSocially(const std::vector<BodyRecording>& recordings,
                                             const SocialCues& cues, BodyEvaluation* evaluation);

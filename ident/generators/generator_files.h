@@ -104,7 +104,7 @@ inline constexpr GeneratorTrainer* kGeneratorTrainers[] = {TrainParticles, Train
 
 static_assert(std::size(kGeneratorTrainers) == std::size(kGeneratorKinds), "a kind has no trainer");
 
-// Of those that forecast whole groups, for messages.
+// Names of the kinds that forecast whole groups, for messages.
 inline std::string KindsOfGroups() {
   return AnyName<GeneratorKind>([](const GeneratorKindRow& row) { return row.groups; });
 }

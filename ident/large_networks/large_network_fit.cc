@@ -171,7 +171,7 @@ MaybeError CheckFit(const LargeNetworkFit& fit) {
   return std::nullopt;
 }
 
-// Those that fail at the start.
+// Recordings whose rollout fails at the start.
 Result<std::vector<ShortenedRecording>> FailingAtTheStart(const LargeNetworkFit& fit) {
   Result<AdjointGradient> whole =
       AdjointGradient::Create(fit.training, fit.model, fit.map, fit.sigmas);

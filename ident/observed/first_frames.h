@@ -48,7 +48,7 @@ struct TwoForecasts {
 
 class FirstFrames {
  public:
-  // Of the recording only people, pushes and frame 0 are looked at; it and the model must outlive
+  // Only people, pushes and frame 0 of the recording are read; it and the model must outlive
   // the object. rollout: the model's hips over as many frames as are looked at; empty: it left the
   // domain. tail: of ForecastFilter.
   FirstFrames(const IdentifiedModel& model, double tail, const PendulumRecording& recording,
@@ -84,7 +84,7 @@ std::optional<double> InputShare(double input_time, const HipPaths& physics, con
                                  double seconds, ForecastUse use = ForecastUse::kBoth);
 HipPaths Blended(double share, const HipPaths& physics, const HipPaths& input);
 
-// Of log scale, as above.
+// Features of the log scale, as above.
 Eigen::Vector4d ScaleFeatures(double ahead, double seconds, double speed);
 
 // Where hips will be.

@@ -172,7 +172,7 @@ std::array<ErrorScale, 3> LearnErrorScales(const std::vector<ForecastTrial>& tri
 std::optional<ForecastRule> LearnForecasts(const IdentifiedModel& model,
                                            const std::vector<PendulumRecording>& recordings,
                                            const std::vector<FoldModel>& folds, int num_threads) {
-  // Who forecasts what: folds, or the model itself.
+  // The models that forecast: those of the folds, or the model itself.
   std::vector<FoldModel> forecasters = folds;
   if (folds.empty()) {
     forecasters.push_back({model, std::vector<int>(recordings.size())});

@@ -29,7 +29,7 @@ namespace {
 
 constexpr double kForceTime = 0.06;  // s, in which the unknown force dies out
 
-// Of the reference person (self_terms.h).
+// Gains of the reference person (self_terms.h).
 void SetForecastGains(ParameterSet<double>* p) {
   for (Parameter id :
        {kMu, kMuY, kCoulombFriction, kKpX, kKpY, kKdX, kKdY, kBx, kBy, kTx, kTy, kCq, kDq}) {

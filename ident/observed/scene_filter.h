@@ -35,7 +35,7 @@ SeenHips HipsAt(const PendulumRecording& recording, int frame);
 
 class SceneFilter {
  public:
-  // Of the recording only people, pushes and frame 0 are looked at. parameters: one set for each
+  // Only people, pushes and frame 0 of the recording are read. parameters: one set for each
   // person. The model must outlive the filter. frames: how far to look, in all.
   SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
               const InputNoise& noise, const PendulumRecording& recording, int frames);

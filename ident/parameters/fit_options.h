@@ -16,7 +16,7 @@
 
 namespace pushid {
 
-// Whose errors are independent of each other.
+// The unit whose errors are independent of each other.
 enum class ClusterBy {
   kAuto,      // people where some were recorded more than once, otherwise recordings
   kSubject,   // people; where several share a recording, people and line-ups (two-way)
@@ -36,7 +36,7 @@ struct FitOptions {
   bool preset_priors = true;  // false: FreeTerms takes the weak priors away
 
   Likelihood likelihood = Likelihood::kTrajectory;  // by SetLikelihood (presets.h)
-  // Of the recordings' rollouts: kAutodiff to check the quick ones, a new law in particular.
+  // Derivatives of the recordings' rollouts: kAutodiff checks the quick ones.
   DerivativesBy derivatives = DerivativesBy::kAuto;
 
   // Where they are estimated: where the estimation starts, and in a result what it found.

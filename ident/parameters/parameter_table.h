@@ -39,7 +39,7 @@ struct ParameterSpec {
   // Standard deviation of a unit's deviation where it is pooled, as PoolingSigma has it.
   double pooling_sigma = kFirstPoolingSigma;
   std::optional<Prior> prior;
-  // Whose value it has; none where a flag names the parameter itself.
+  // The parameter whose value it takes; none where a flag names the parameter itself.
   std::optional<Parameter> tied_to;
   // Which parameter a slope moves, and by what (residuals/parameter_map.h).
   struct SlopeOf {

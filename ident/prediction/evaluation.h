@@ -46,7 +46,7 @@ struct ScoreClusters {
 
   // deviations: w (score - mean) of each. 0 of a single cluster.
   double ErrorOfMean(const std::vector<double>& deviations) const;
-  // Of one value for each score, all of one weight.
+  // Mean of one value for each score, all of one weight.
   MeanAndError Mean(const std::vector<double>& values) const;
 };
 
@@ -120,7 +120,7 @@ std::string WithoutLabelText(const WithoutLabel& counts);
 // observed: frames seen first, frame 0 among them; 0: until the last push ends, or the last frame
 // but ten (half of a short recording); of the static one frame 0 alone.
 HipPaths StaticBaseline(const PendulumRecording& recording, int observed = 0);
-// Of everybody: on from where they were seen last with the velocity since the frame before.
+// Everybody goes on from the last seen place with the velocity since the frame before.
 HipPaths ConstantVelocityBaseline(const PendulumRecording& recording, int observed = 0);
 // A quadratic through the last 0.23 s, whose acceleration fades with 0.25 s and whose velocity with
 // 1 s.
@@ -144,7 +144,7 @@ struct HipMetrics {
   double hip_ade = 0.0, hip_fde = 0.0;
   // Where first frames were seen; behind them, and in each third of these.
   double after_hip_ade = 0.0, first_third = 0.0, second_third = 0.0, last_third = 0.0;
-  // Of the pushed person's bands.
+  // Coverage and CRPS of the pushed person's bands.
   double inside90_x = 0.0, inside90_y = 0.0, inside50_x = 0.0, inside50_y = 0.0, crps = 0.0;
 };
 
@@ -158,7 +158,7 @@ inline constexpr HipMetric kHipMetrics[] = {
     {{"hipFDE", "m"}, &HipMetrics::hip_fde},
 };
 
-// Those of predictions that have seen first frames, and of distributions.
+// Metrics of predictions that have seen first frames, and of distributions.
 inline constexpr HipMetric kAfterMetric = {{"after_hipADE", "m"}, &HipMetrics::after_hip_ade};
 inline constexpr HipMetric kThirdMetrics[] = {
     {{"first_third_hipADE", "m"}, &HipMetrics::first_third},
@@ -177,7 +177,7 @@ using ShownMetrics = std::vector<HipMetric>;
 
 // The metrics of tables. observed: frames that were seen, 0: none.
 ShownMetrics TableMetrics(int observed);
-// Those of files. bands: of models, not of baselines.
+// Metrics that files hold. bands: models have them, baselines do not.
 ShownMetrics MetricsOf(int observed, bool bands);
 inline ShownMetrics AllHipMetrics() { return MetricsOf(1, true); }
 
@@ -225,7 +225,7 @@ MaybeError CheckObserved(const std::vector<PendulumRecording>& recordings, int o
 // Whether anybody leans beyond kFallAngle.
 bool AnybodyFalls(const Prediction& prediction);
 
-// Who was predicted to step, and who did; empty where either is not known.
+// Predicted and recorded steps; empty where either is not known.
 std::vector<StepPrediction> StepPredictions(const PendulumRecording& recording,
                                             const Prediction& prediction);
 

@@ -246,7 +246,7 @@ struct PersonSpectra {
   double lever = 0.0;
 };
 
-// Of segments that last as long.
+// Segments that last equally long.
 struct SegmentGroup {
   FrequencyResponse response;
   std::map<std::string, PersonSpectra> people;  // by subject

@@ -45,7 +45,7 @@ struct CrossSpectra {
   Eigen::ArrayXd uu, yy;  // by bin, from 0 Hz on
   Eigen::ArrayXcd yu;
 
-  // Of as many bins as both have; the other's segments must last as long.
+  // Adds the bins that both have; the other's segments must last as long.
   void Add(const CrossSpectra& other);
   std::complex<double> Response(int bin) const { return yu[bin] / uu[bin]; }
   double Coherence(int bin) const;

@@ -60,7 +60,7 @@ struct ErrorPath {
 std::vector<ErrorPath> ErrorPaths(const FitResult& result,
                                   const std::vector<PendulumRecording>& fitted);
 
-// Of every draw.
+// The value in every draw.
 std::vector<double> ValuesAt(const DrawnPaths& draws, int person, size_t frame, int axis);
 
 // Rollouts that left the domain are missing. num_frames: 0 means as many as the recording has.

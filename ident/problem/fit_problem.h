@@ -130,7 +130,7 @@ class FitProblem {
   // The options with the network of a point.
   ModelOptions ModelAt(const FitPoint& point) const;
 
-  // Whose settling is simulated: that of the shared parameters (""), and of each setting or
+  // Units whose settling is simulated: the shared parameters (""), and each setting or
   // condition where these differ in what acts then.
   std::vector<std::string> SettlingUnits(const FitPoint& point) const;
 

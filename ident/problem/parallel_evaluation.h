@@ -26,7 +26,7 @@ class ParallelEvaluation : public ceres::EvaluationCallback {
   // What to add to the problem in place of `cost`, which acts on `blocks`.
   std::unique_ptr<ceres::CostFunction> Wrap(std::unique_ptr<ceres::CostFunction> cost,
                                             const std::vector<double*>& blocks);
-  // Whose constant blocks need no derivatives.
+  // The constant blocks of this problem need no derivatives.
   void set_problem(const ceres::Problem* problem) { problem_ = problem; }
   // The groups of the rollouts that are wrapped.
   void set_side_by_side(std::shared_ptr<const std::vector<SideBySide>> groups) {

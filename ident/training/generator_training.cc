@@ -21,7 +21,7 @@ void AddTo(ContentHash* hash, const Eigen::MatrixXf& values) {
              static_cast<size_t>(values.size()) * sizeof(float)});
 }
 
-// Of the training of one seed: its data, and how it was asked for.
+// The key of one seed's training: its data and its options.
 std::string KeyOf(const GeneratorSamples& samples, const GeneratorTrainingOptions& options,
                   const std::string& network, const TrainerOptions& of_seed) {
   ContentHash hash;

@@ -15,7 +15,7 @@ struct GeneratorTrainingOptions : TrainerOptions, CheckpointOptions, KindTrainin
   GeneratorKind kind = GeneratorKind::kParticles;
   std::string configuration;  // what a checkpoint must have been made with, beside the data
   int seeds = RowOf(GeneratorKind::kParticles).seeds;  // networks that are averaged
-  // Of particles: of the whole forecast at once (models/generators/particle_generator.h), and the
+  // For particles: a correction of the whole forecast (models/generators/particle_generator.h), and
   // shares of the blend that they are part of.
   bool correction = true;
   double ridge_share = ParticleGeneratorOptions{}.ridge_share;

@@ -49,9 +49,9 @@ struct RestorationSample {
   const RestorationInput& person() const { return (*people)[index]; }
 };
 
-// Of every person of the recordings: the true pendulum, the predicted one (where the path is not
-// empty), and both in the mirror. predictions: in the order of `among`, or none. rod_moves: as for
-// RecordedPeople.
+// Samples of every person of the recordings: the true pendulum, the predicted one (if the path is
+// not empty), and both in the mirror. predictions: in the order of `among`, or none. rod_moves: as
+// for RecordedPeople.
 std::vector<RestorationSample> MakeSamples(const std::vector<BodyRecording>& recordings,
                                            const std::vector<int>& among,
                                            const std::vector<Prediction>& predictions,

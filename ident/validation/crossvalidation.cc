@@ -15,7 +15,7 @@
 namespace pushid {
 namespace {
 
-// Of recordings that no fit predicts.
+// The prediction of recordings without a fit.
 FoldPrediction WithoutFit(const std::vector<PendulumRecording>& recordings,
                           const std::vector<int>& test, const std::string& why) {
   FoldPrediction prediction;

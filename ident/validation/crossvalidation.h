@@ -86,7 +86,7 @@ Predictor ModelPredictor(const std::string& name, FitOptions options, int observ
                          FramesUse use = FramesUse::kForecast,
                          ForecastUse forecast = ForecastUse::kBoth, const Draws& draws = {});
 
-// The same fit's rollouts with their predictive bands.
+// A fit's rollouts with their predictive bands.
 Predictor BandPredictor(const std::string& name, FitOptions options, const BandOptions& bands);
 
 // One of kBaselines; nothing is fitted.

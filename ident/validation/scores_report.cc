@@ -96,7 +96,7 @@ std::string ObservedText(const ScoreSummary& summary) {
          " seen, which have no error; after_hipADE: mean over the others\n";
 }
 
-// Of predictions that are distributions.
+// Coverage of predictions that are distributions.
 std::string BandsText(const std::string& name, const ScoreSummary& summary) {
   if (!summary.bands) return "";
   const auto text = [&](double HipMetrics::*value) {

@@ -178,7 +178,7 @@ void ListTensors(const std::string& name, DiffusionNetwork* network, TensorField
   fields->Layer(name + ".direct", structure.NumInputs(), structure.NumMotion(), &network->direct);
 }
 
-// Who comes first, second, ... from the left to the right, and from the back to the front.
+// People in order from the left to the right, and from the back to the front.
 std::vector<int> ByPlace(const std::vector<ObservedMotion>& people) {
   std::vector<int> order(people.size());
   std::iota(order.begin(), order.end(), 0);

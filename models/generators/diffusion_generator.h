@@ -74,12 +74,12 @@ JointScales JointScalesOf(const std::vector<std::vector<ObservedMotion>>& groups
 // What a unit of a motion's row is, and in which frame rows are.
 struct MotionScales {
   MotionScales() = default;
-  // Of the group's frame.
+  // Scales of joints in the group's frame.
   template <typename OfJoints>
   MotionScales(const Eigen::MatrixBase<OfJoints>& of_joints) : joints(of_joints) {}
 
   JointScales joints = JointScales::Ones();
-  // Of joints seen from the hip at frame 0.
+  // Scaling of joints seen from the hip at frame 0.
   Scaling first_pose = {Eigen::VectorXf::Zero(kFirstPoseRows),
                         Eigen::VectorXf::Ones(kFirstPoseRows)};
   Eigen::VectorXf mean, spread;  // of people's own frames, kOwnFrameRows; otherwise empty

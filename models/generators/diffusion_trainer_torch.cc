@@ -275,9 +275,9 @@ class DiffusionBatches {
                    const DiffusionTrainingOptions& options);
 
   bool empty() const { return groups_.empty() && alone_.empty(); }
-  // Of a training step, with all that is random in it.
+  // The batch of a training step, with all that is random in it.
   DiffusionBatch Draw(int step) const;
-  // Of these groups as they are, of which the first frame is shown; at most `most`.
+  // The batch of these groups as recorded, the first frame shown; at most `most`.
   DiffusionBatch AsTheyAre(int most) const;
 
  private:

@@ -124,7 +124,7 @@ struct DiffusionTrainingOptions : TrainerOptions {
   double clip = 1.0;         // largest norm of the gradient
   double averaging = 0.998;  // of the weights, from step to step
   double dropout = 0.1;      // of the statics, and of what the middle is given
-  // Of the terms beside Eq. 4 of SDM; joints in m need the group's frame.
+  // Weights of the terms beside Eq. 4 of SDM; joints in m need the group's frame.
   double joint_weight = 2.0, difference_weight = 2.0;
   double observed_weight = 0.1;  // of observed frames, in all terms
   double bystanders = 0.3;       // share of groups that get one or two

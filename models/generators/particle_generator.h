@@ -72,7 +72,7 @@ struct ParticleStructure {
 inline constexpr int kSkipSteps = 9;
 inline constexpr int kCorrectionTerms = 6, kCorrectionHidden = 256;
 inline constexpr float kLeastLogNoise = -6.0f, kLargestLogNoise = 2.0f;
-// Of a coordinate's noise, what no other coordinate shares (in variance): M has an inverse.
+// Share of a coordinate's noise variance that no other coordinate shares: M has an inverse.
 inline constexpr float kOwnNoise = 0.01f;
 
 struct ParticleNetwork {
@@ -215,9 +215,9 @@ struct ParticleGeneratorOptions {
   double simlpe_share = 0.5;  // of siMLPe in the far future; 0 needs none
   bool project_bones = true;  // to the lengths of the last frame that was seen
   double jitter = 0.7;        // of the pose in sampled futures; as the members were trained
-  // Of the noise of sampled futures: e_t = memory e_{t-1} + sqrt(1 - memory^2) N(0, 1). Chosen on
-  // the validation split, where the noise that was learned, drawn anew every frame, covers 80 ms
-  // but too little of 1000 ms: errors of a forecast last.
+  // Memory of the noise of sampled futures: e_t = memory e_{t-1} + sqrt(1 - memory^2) N(0, 1).
+  // Chosen on the validation split, where the noise that was learned, drawn anew every frame,
+  // covers 80 ms but too little of 1000 ms: errors of a forecast last.
   double noise_memory = 0.32;
 };
 

@@ -19,7 +19,7 @@ inline torch::Tensor MappedNoise(const torch::Tensor& log_noise, const torch::Te
   return own + torch::matmul(below.tril(-1), draws.unsqueeze(-1)).squeeze(-1);
 }
 
-// Of transitions, by coordinate (NoiseLoss): `misses` of the drift, p - f; drawn: w.
+// The loss of transitions, by coordinate (NoiseLoss): `misses` of the drift, p - f; drawn: w.
 inline torch::Tensor TransitionLoss(NoiseLoss loss, const torch::Tensor& misses,
                                     const torch::Tensor& log_noise, const torch::Tensor& below,
                                     const torch::Tensor& drawn) {
@@ -115,7 +115,7 @@ class ParticleModule : public torch::nn::Module {
     return torch::stack(poses, 1) + correction;
   }
 
-  // Of the true motion: what the drift misses, e = p_{t+1} - f, and the hidden states, for t from
+  // On the true motion: what the drift misses, e = p_{t+1} - f, and the hidden states, for t from
   // `first` - 1 on. drift_learns: off: no gradients reach the drift and the cell.
   std::pair<torch::Tensor, torch::Tensor> Misses(const torch::Tensor& batch,
                                                  const torch::Tensor& jitter, int first,
@@ -194,7 +194,7 @@ class ParticleModule : public torch::nn::Module {
     }
     return torch::cat(last, 1);
   }
-  // Of frames, or of one.
+  // Inputs of all frames, or of one.
   torch::Tensor Inputs(const torch::Tensor& steps, const torch::Tensor& frames,
                        const torch::Tensor& jitter) const {
     std::vector<torch::Tensor> parts;
@@ -202,7 +202,7 @@ class ParticleModule : public torch::nn::Module {
     if (structure_.poses) parts.push_back((frames - pose_mean_) / pose_spread_ + jitter);
     return torch::cat(parts, -1);
   }
-  // Of all frames forecast, [batch, frame, coordinate]; hidden: after the last that was seen.
+  // Correction of all forecast frames, [batch, frame, coordinate]; hidden: after the last seen one.
   torch::Tensor Correction(const torch::Tensor& past, const torch::Tensor& hidden,
                            const torch::Tensor& jitter, int predicted) const {
     if (structure_.corrected_frames == 0) return torch::zeros({1});
@@ -329,7 +329,7 @@ class ParticleLosses {
     }
   }
 
-  // Of forecasts, [batch, frame, coordinate], against the windows they belong to; m.
+  // The loss of forecasts, [batch, frame, coordinate], against the windows they belong to; m.
   torch::Tensor operator()(const torch::Tensor& forecast, const torch::Tensor& batch) const {
     const torch::Tensor truth = batch.narrow(1, options_.observed, options_.predicted);
     const torch::Tensor share = frames_ * torch::ones({batch.size(0), options_.predicted});

@@ -103,9 +103,9 @@ struct PosedSkeleton {
 
 PosedSkeleton FitSkeleton(const Pose& rest, const Pose& wanted);
 
-// The same for any tree of joints, a column each. Every parent precedes its children, -1 is a root,
-// which goes where it is wanted; a joint turns towards its `aims`, joints further out, and without
-// any it goes with its parent.
+// As above, for any tree of joints, a column each. Every parent precedes its children, -1 is a
+// root, which goes where it is wanted; a joint turns towards its `aims`, joints further out, and
+// without any it goes with its parent.
 struct JointAims {
   std::vector<int> parents;
   std::vector<std::vector<int>> aims;

@@ -85,7 +85,7 @@ std::vector<Value> ResampledPath(const std::vector<Value>& values, double from_d
   return other;
 }
 
-// The same person at another rate, by linear interpolation; unchanged where the rates agree.
+// A person at another rate, by linear interpolation; unchanged where the rates agree.
 RestorationInput Resampled(const RestorationInput& person, double dt);
 // `frames` poses at dt of a motion at motion_dt.
 BodyMotion Resampled(const BodyMotion& motion, double motion_dt, double dt, int frames);

@@ -64,7 +64,7 @@ class CvaeTrainer : public Trainer {
   // from their first frame: of autoencoders with the encoder's z, of samplers with their own.
   CvaeWeights Best() const;
 
-  // Of the four stages' networks: 865536, 136960, 1097904, 159232; 0 of stages that are not.
+  // Weights of the four stages' networks: 865536, 136960, 1097904, 159232; 0 for absent stages.
   std::array<int64_t, 4> NumParameters() const;
 
  private:

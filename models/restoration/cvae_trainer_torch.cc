@@ -240,7 +240,7 @@ struct CvaeStages {
   bool Has(int which) const {
     return (layout().halves || which < 2) && (layout().pendulum || which % 2 == 0);
   }
-  // Of stages that the layout has not, 0.
+  // Steps of a stage; 0 where the layout does not have it.
   int Steps(int which) const { return Has(which) ? options.steps[which] : 0; }
   void StartStage();
   void FinishStage();

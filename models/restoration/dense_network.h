@@ -46,7 +46,7 @@ struct Scaling {
 };
 inline constexpr float kLargestScaled = 5.0f;
 
-// Of the columns; a row that hardly varies gets the spread `smallest`.
+// Mean and spread over the columns; a row that hardly varies gets the spread `smallest`.
 Scaling ScalingOf(const Eigen::MatrixXf& values, float smallest = 1e-3f);
 
 // The form in which files hold a network's numbers.

@@ -32,7 +32,7 @@ int InFront(const std::vector<BodyMotion>& people, size_t of) {
   return front;
 }
 
-// Of frame t > 0.
+// The symbol of frame t > 0.
 int PostureSymbol(const BodyMotion& body, size_t t, double dt) {
   for (const int ankle : {kRightAnkle, kLeftAnkle}) {
     const Eigen::Vector3d way = body[t].col(ankle) - body[t - 1].col(ankle);
@@ -77,7 +77,7 @@ constexpr int kMostSteps = 30;
 
 using Features = Eigen::Matrix<double, kStateFeatures, 1>;
 
-// Of one person at one frame, of what others see.
+// What others see of one person at one frame.
 struct Look {
   Eigen::Vector2d place = Eigen::Vector2d::Zero(), faces = Eigen::Vector2d::Zero();
   double gesture = 0.0;  // m/s
@@ -130,7 +130,7 @@ double Reach(const Pose& of, const Pose& other) {
   return std::min((of.col(kRightWrist) - back).norm(), (of.col(kLeftWrist) - back).norm());
 }
 
-// Of the others to a person.
+// Adds the features of the others as a person sees them.
 void AddOthers(const std::vector<const Pose*>& poses, const std::vector<Look>& looks, size_t n,
                Features* x) {
   double reach = INFINITY, facing = 0.0, least = INFINITY, gestures = 0.0, most = 0.0, to = 0.0;
@@ -339,7 +339,7 @@ StateClassifier::StateClassifier(const std::vector<const Annotated*>& groups, in
     Eigen::MatrixXd error = p;
     for (Eigen::Index i = 0; i < samples; ++i) error(labels[i], i) -= 1.0;
     const Eigen::MatrixXd gradient = error * x.transpose() + penalty * weights_;
-    // Of rows of weights one after the other.
+    // The Hessian is by the rows of the weights, one after the other.
     Eigen::MatrixXd hessian = penalty * Eigen::MatrixXd::Identity(num_symbols * d, num_symbols * d);
     for (int a = 0; a < num_symbols; ++a) {
       for (int b = 0; b <= a; ++b) {

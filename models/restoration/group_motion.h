@@ -79,7 +79,7 @@ class MotionWords {
 
   int size() const { return static_cast<int>(words_.size()); }
   const Word& word(int i) const { return words_[i]; }
-  // Of `motion` from a frame on.
+  // The word of `motion` from a frame on.
   static Word WordAt(const BodyMotion& motion, size_t begin);
   // first: any word, at best one that is near.
   int Nearest(const Word& word, int first = 0) const;
@@ -126,7 +126,7 @@ class StateClassifier {
     StateFeatures features;
     std::vector<Symbols> states;
   };
-  // Of num_symbols states, each of which somebody has at some frame or not.
+  // There are num_symbols states, each of which somebody has at some frame or not.
   StateClassifier(const std::vector<const Annotated*>& groups, int num_symbols);
 
   // The most probable states, [person][frame].

@@ -63,7 +63,7 @@ using Eigen::Vector3d;
 
 constexpr double kClearance = 0.05;  // m, of an ankle in the middle of its swing, at least
 
-// Of a foot in the air, from 0 to 1 and back to 0; 0 while it stands.
+// The lift of a foot: from 0 to 1 and back to 0 in the air, 0 while it stands.
 std::vector<double> LiftsOf(const std::vector<FootPath>& feet, bool left) {
   std::vector<double> lifts(feet.size(), 0.0);
   for (size_t t = 0; t < feet.size(); ++t) {

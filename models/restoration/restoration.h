@@ -45,7 +45,7 @@ inline constexpr RestorationKindRow kRestorationKinds[] = {
 constexpr const auto& Names(RestorationKind) { return kRestorationKinds; }
 static_assert(RowsAreInOrder(kRestorationKinds), "RowOf finds a row by its value");
 
-// Of those that can be trained, for messages: "window or cvae".
+// Names of the kinds that can be trained, for messages: "window or cvae".
 inline std::string TrainedRestorationKinds() {
   return AnyName<RestorationKind>([](const RestorationKindRow& row) { return row.trained; });
 }
@@ -161,7 +161,7 @@ FramePath<Vector4<double>> TurnedPath(const RestorationInput& person, double hea
 // People of a scene in their first poses, without pendulums: q is empty.
 std::vector<RestorationInput> PeopleOf(const Scene& scene, const std::vector<Pose>& first_poses);
 
-// The same person in the mirror plane y = 0.
+// A person mirrored in the plane y = 0.
 RestorationInput Mirrored(const RestorationInput& person);
 
 }  // namespace pushid

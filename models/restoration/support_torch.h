@@ -188,7 +188,7 @@ struct StepsRun : KeptRun<Run, Self> {
 
   virtual int AllSteps() const = 0;
   virtual double Step() = 0;  // takes a step; its loss
-  // Of the stage that a step belongs to.
+  // Name of the stage that a step belongs to.
   virtual const char* Stage(int of_step) const = 0;
   virtual int StageEnd(int /*of_step*/) const { return AllSteps(); }
   virtual double HeldLoss(int of_step) = 0;  // NaN where nothing is held

@@ -10,7 +10,7 @@
 
 namespace pushid {
 
-// Of NetForceAt, for models of sliding feet whose control is not late and whose body is a point.
+// Jacobian of NetForceAt, for sliding feet without a delay and a body that is a point.
 void NetForceJacobian(const Scene& scene, const ModelOptions& options, const SelfForce& self,
                       const ParameterSet<double>& p, int person, int frame,
                       const PendulumState<double>& state, const Vector4<double>& previous,

@@ -88,7 +88,7 @@ class CondensedRollout : public CondensedRows {
                       const RowsVisitor& visit) const override;
 
  private:
-  // Of a recording that has lanes; laid out where it is first asked for. Ceres evaluates a block
+  // Sums of one recording that has lanes; laid out at the first call. Ceres evaluates a block
   // from one thread at a time.
   RolloutSums Alone(double const* const* blocks, LaneSums sums) const;
   mutable std::unique_ptr<LaneGroup> alone_;

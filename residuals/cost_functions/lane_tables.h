@@ -41,7 +41,7 @@ class LaneTables {
   // are as the last of them.
   LaneTables(const PersonLanes& lanes, int frames, int num_tails, int steps);
 
-  // Who is in a lane. Options are those of all but for the tail.
+  // Puts a scene into a lane. All lanes share their options but for the tail.
   void Set(int lane, const Scene& scene, const ModelOptions& options, int frames);
   void SetMeasured(int lane, int frame, const Vector3<double>& hip,
                    const PendulumState<double>& state, double weight);
@@ -66,7 +66,7 @@ class LaneTables {
   std::vector<double> constants_, steps_, tails_;
 };
 
-// Those that differ where nothing is measured: until all pushes have ended.
+// Steps that differ where nothing is measured: until all pushes have ended.
 int NumSteps(const Scene& scene, int frames);
 // Pushes on the person with a tail.
 int NumTails(const Scene& scene, const ModelOptions& options);

@@ -15,8 +15,8 @@ namespace {
 constexpr int kLanes = 8;
 using LaneJet = ceres::Jet<double, kLanes>;
 
-// Of a value on the fitted scale: an optimum off by half of this step, far less than any parameter
-// is known to. Ten times smaller steps drown the Hessian of the uncertainty in rounding.
+// Step of a value on the fitted scale: the optimum is off by half of it, far less than any
+// parameter is known to. Ten times smaller steps drown the Hessian of the uncertainty in rounding.
 constexpr double kDifference = 3e-5;
 
 // Whether a push on the person stands for all that its step shows.

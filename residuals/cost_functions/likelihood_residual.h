@@ -67,7 +67,7 @@ double GaussianOffset(const double* shift) {
   return offset;
 }
 
-// Of one person in one frame.
+// Rows of one person in one frame.
 inline constexpr int kGaussianRows = 8;
 
 // A recording, its model and the blocks it hangs on.

@@ -20,7 +20,7 @@ class SceneRollouts {
   bool Roll(const std::vector<ParameterSet<double>>& parameters,
             const double* network_weights = nullptr);
   bool StaysInside(int scene) const { return inside_[scene]; }
-  // Of one that has left the domain, the last within.
+  // The state at a frame; of a scene that has left the domain, the last within.
   PendulumState<double> At(int scene, int frame, int person) const;
 
   // As RolloutWithSensitivities, of each scene so many frames; 0: of none. columns: those of the

@@ -14,7 +14,7 @@
 
 namespace pushid {
 
-// Of one step of one person.
+// Fields of one step of one person.
 enum LaneField {
   kLaneHip = 0,       // 3: measured
   kLanePose = 3,      // 4: q, measured
@@ -40,7 +40,7 @@ enum LaneConstant {
   kLaneStart,                     // 8: q and qd at frame 0
   kLaneConstants = kLaneStart + 8
 };
-// Of one tail.
+// Fields of one tail.
 enum LaneTail { kLaneMean = 0, kLaneMassPerForce = 4, kLaneLogDuration, kLaneEnd, kLaneTails };
 inline constexpr int kLaneParameters = kContactStiffness;  // those of a person alone come first
 

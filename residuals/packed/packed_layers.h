@@ -100,7 +100,7 @@ class PackedPairs {
 
   // What a layer sees of all steps.
   Columns& Below(size_t layer) { return layer == 0 ? inputs_ : layers_[layer - 1].values; }
-  // Of the hidden units, by their values.
+  // Slopes of the hidden units' activation, given their values.
   template <typename Values>
   Eigen::ArrayXXd Slopes(const Values& values) const {
     if (rectified_) return (values.array() > 0.0).template cast<double>();
