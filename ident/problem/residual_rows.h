@@ -3,9 +3,8 @@
 //
 //   EvaluateRows       rows of the cost: r in sigmas, times the weights of frames, recordings and
 //                      the robust loss, so that J'r is the gradient of the cost
-//   with assumptions   J also by what the fit takes as known; J'r and J'J of each person's frames
-//   up
-//                      to each horizon
+//   with assumptions   J also by what the fit takes as known; J'r and J'J of each person's
+//                      frames up to each horizon
 //   RawResiduals       r of every frame before any weight
 //
 // Columns: the fitted numbers on their scale, in the order of FitPoint::Flat, then the assumptions.

@@ -2,10 +2,8 @@
 // their derivatives by acting columns (parameter_map.h).
 //
 // Derivatives come from jets (jets/autodiff_rollout.h), whatever the model. One kind of recording
-// has something quicker: people alone whose feet slide, eight side by side with derivatives written
-// out (lane_tables.h), eight times as fast as jets. Hand-written sensitivities of all other terms
-// are no more: 2,000 lines, by which a Jacobian of people who touch took a fifth less time, and one
-// of a network of 56 columns a third of it (tests/studies/speed.py derivatives).
+// has derivatives written out: people alone whose feet slide, eight side by side (lane_tables.h),
+// with which a whole fit takes less than half of the time (tests/studies/speed.py derivatives).
 #pragma once
 
 #include <functional>
