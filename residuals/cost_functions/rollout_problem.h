@@ -36,9 +36,9 @@ using PlateRows = Eigen::Matrix<double, kPlateResiduals, Eigen::Dynamic, Eigen::
 using PlateVisitor = std::function<void(int frame, int person, const PlateVector<double>& residual,
                                         PlateRows* by_column)>;
 
-// What is on hand of a rollout's residuals, frame by frame from frame 1 on, then person by person.
-// The visitor may change the rows, which are there only with derivatives. plates: then those of
-// platforms, in the same way from frame 0 on; null: nobody asks.
+// Visits the residuals of a rollout, frame by frame from frame 1 on, then person by person. The
+// visitor may change the rows, which exist only with derivatives. plates: visits those of
+// platforms next, from frame 0 on; null: they are left out.
 RolloutStatus VisitFrames(const RolloutProblem& problem, double const* const* blocks,
                           Derivatives derivatives, const FrameVisitor& visit,
                           const PlateVisitor& plates = nullptr);
