@@ -77,6 +77,7 @@ class SignalReader {
     descriptor_ = signalfd(-1, &taken_, SFD_NONBLOCK | SFD_CLOEXEC);
   }
   ~SignalReader() {
+    Wait(0);  // an interrupt that came twice would end the process where signals are free again
     close(descriptor_);
     sigprocmask(SIG_SETMASK, &before_, nullptr);
   }

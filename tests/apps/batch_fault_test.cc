@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/support/processes.h"
 #include "tests/apps/batch_fixture.h"
 
 namespace pushid {
@@ -146,6 +148,18 @@ TEST_F(BatchFaultTest, InterruptedItGoesOnLater) {
   EXPECT_TRUE(Contains(rest.out, std::to_string(done) + " done before")) << run.out << rest.out;
   Succeeded(Batch(Plan("bootstrap = 30", {{"a", ""}}, "whole", "whole.toml"), {"--jobs=2"}));
   EXPECT_EQ(Table("out"), Table("whole"));
+}
+
+// As "timeout -s INT" sends it, to the process and then to its group.
+TEST(SignalReader, AnInterruptThatComesTwiceIsRead) {
+  {
+    SignalReader reader;
+    raise(SIGINT);
+    reader.Wait(0);
+    EXPECT_TRUE(reader.interrupted());
+    raise(SIGINT);
+  }
+  SUCCEED() << "the process is still there";
 }
 
 // Killed outright, it leaves no fit running.
