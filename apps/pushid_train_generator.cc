@@ -343,6 +343,7 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  pushid::RestartWithBlasOfProcessor(argv);
   return pushid::RunApp(
       argc, argv,
       "pushid-train-generator trains networks that continue observed motion, for pushid-generate.\n"

@@ -279,6 +279,7 @@ int Run() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  pushid::RestartWithBlasOfProcessor(argv);
   return pushid::RunApp(argc, argv,
                         "pushid-train-restoration trains the networks that convert the path of a "
                         "pendulum into the motion of a body.\n"

@@ -55,6 +55,18 @@ void SetBlasThreads(int num_threads) {
   if (num_threads == 1 && end_threads != nullptr) end_threads();
 }
 
+void RestartWithBlasOfProcessor(char** argv) {
+#if defined(__x86_64__) && defined(__GNUC__)
+  auto* const core = Loaded<const char*()>("openblas_get_corename");
+  if (core == nullptr || std::getenv("OPENBLAS_CORETYPE") != nullptr) return;
+  if (std::string(core()) != "Prescott" || !__builtin_cpu_supports("avx2")) return;
+  setenv("OPENBLAS_CORETYPE", __builtin_cpu_supports("avx512bw") ? "SkylakeX" : "Haswell", 1);
+  execv("/proc/self/exe", argv);  // where it fails, training goes on, slower
+#else
+  (void)argv;
+#endif
+}
+
 namespace {
 
 namespace fs = std::filesystem;

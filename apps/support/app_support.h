@@ -41,6 +41,11 @@ MaybeError WriteModelFile(const std::string& path, const FittedModel& model, int
 // many cores a machine has.
 void SetBlasThreads(int num_threads);
 
+// For programs that train, first of all. An OpenBLAS older than the processor takes its oldest
+// kernels, "Prescott", and training takes twice the time. It chooses when it is loaded, so the
+// program starts once more with OPENBLAS_CORETYPE set; nothing where the user has set that.
+void RestartWithBlasOfProcessor(char** argv);
+
 // Outputs are known by their flags' names (out, *_out), inputs by the list in
 // app_support.cc; so the check holds for every program at once.
 
