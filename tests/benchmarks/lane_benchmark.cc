@@ -75,7 +75,7 @@ void SumsSideBySide(benchmark::State& state) {
     }
   };
   counted = {};
-  static constexpr PersonLanes kCounted = {"counted", kWidth, RollLanes, nullptr};
+  static constexpr PersonLanes kCounted = {"counted", kWidth, RollLanes};
   evaluate(groups(kCounted), 1);
   const double operations = static_cast<double>(counted.sums_and_products);
   const PersonLanes& lanes = *SupportedPersonLanes()[state.range(1)];
