@@ -35,9 +35,8 @@
 #include "models/formation.h"
 #include "models/restoration/body.h"
 
-DEFINE_string(csv_out, "", "trajectories, one row per frame and person (CSV)");
+DEFINE_string(csv_out, "", "trajectories and forces, one row per frame and person (CSV)");
 DEFINE_string(out, "", "trajectories of the hips (.txt)");
-DEFINE_string(forces_out, "", "net forces, one row per frame, person and part (CSV)");
 DEFINE_string(bvh_out, "", "folder for the pendulums as BVH, with manifest.json and the pushes");
 DEFINE_string(svg_out, "", "picture of the wave (SVG): time across, person down, colour speed");
 DEFINE_string(html_out, "", "page of the moving people (HTML)");
@@ -306,12 +305,11 @@ std::string Fixed(double value, int decimals) {
 
 void PrintPeople(const FormationRun& run, bool named) {
   const bool steps = !run.prediction.steps.empty();
-  std::vector<std::string> header = {"person",   "x m",         "y m",    "onset s",
-                                     "peak m/s", "displaced m", "outcome"};
-  std::vector<bool> left = {false, false, false, false, false, false, true};
-  if (steps) header.push_back("P(step)"), left.push_back(false);
-  if (named) header.push_back("id"), left.push_back(true);
-  TextTable table(header, left);
+  std::vector<std::string> header = {">person",   ">x m",         ">y m",   ">onset s",
+                                     ">peak m/s", ">displaced m", "outcome"};
+  if (steps) header.push_back(">P(step)");
+  if (named) header.push_back("id");
+  TextTable table(header);
   for (int n = 0; n < run.num_people(); ++n) {
     const PersonSummary& person = run.summaries[n];
     const Vector4<double>& q = run.recording.scene.people[n].start.q;
@@ -439,8 +437,8 @@ void CheckOutputFlags(int people, bool bodies) {
   for (const char* flag : {"poses_out", "bodies_out"}) {
     if (!bodies && Given(flag)) throw NeedsRestoration(flag);
   }
-  OrFail(CheckOutputFiles({FLAGS_csv_out, FLAGS_out, FLAGS_forces_out, FLAGS_svg_out,
-                           FLAGS_html_out, FLAGS_poses_out, FLAGS_bodies_out}));
+  OrFail(CheckOutputFiles({FLAGS_csv_out, FLAGS_out, FLAGS_svg_out, FLAGS_html_out, FLAGS_poses_out,
+                           FLAGS_bodies_out}));
   if (!FLAGS_bvh_out.empty()) OrFail(CheckOutputFolder("bvh_out", FLAGS_bvh_out));
 }
 
@@ -454,7 +452,6 @@ void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
   write(FLAGS_csv_out,
         [&](auto& file) { return WriteTrajectoryCsv(file, run.recording, run.prediction); });
   write(FLAGS_out, [&](auto& file) { return WriteFormationTrajectories(file, run); });
-  write(FLAGS_forces_out, [&](auto& file) { return WriteForcesCsv(file, run); });
   write(FLAGS_svg_out,
         [&](auto& file) { return WriteFileAtomically(file, WaveSvg(run, title, onsets)); });
   BodyScene scene;

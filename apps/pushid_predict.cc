@@ -11,7 +11,6 @@
 #include "apps/flags/model_flags.h"
 #include "apps/flags/recording_flags.h"
 #include "apps/support/app_support.h"
-#include "datasets/files/json_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"
@@ -35,7 +34,6 @@ DEFINE_string(push_again, "",
               "what-if: frames at which the recorded push comes again, comma-separated, with its "
               "strength against the first, as in 40,80:1.5; --frames gives it time");
 DEFINE_string(poses_out, "", "--restoration: joint positions (CSV: frame, person, joint, x, y, z)");
-DEFINE_string(json_out, "", "--restoration: joint positions of every person and frame (JSON)");
 
 namespace {
 
@@ -46,7 +44,6 @@ constexpr int kMostFrames = 1000000;  // hours of motion
 // The first output that holds bodies; empty where there is none.
 std::string BodyOutput() {
   if (!FLAGS_poses_out.empty()) return "poses_out";
-  if (!FLAGS_json_out.empty()) return "json_out";
   return IsBodyFile(FLAGS_out) ? "out=" + FLAGS_out : "";
 }
 
@@ -96,7 +93,7 @@ RestorationFlags CheckedFlags() {
   CheckExcludes({"push_scale", "push_again"}, "observed",
                 "--observed is for the recorded motion, and --{} for "
                 "another push than made it; leave one out");
-  OrFail(CheckOutputFiles({FLAGS_poses_out, FLAGS_json_out, FLAGS_out}));
+  OrFail(CheckOutputFiles({FLAGS_poses_out, FLAGS_out}));
   return restoration;
 }
 
@@ -111,10 +108,6 @@ std::vector<std::string> WriteScene(const BodyScene& scene, const BodyRecording&
   if (!FLAGS_poses_out.empty()) {
     OrFail(WriteJointsCsv(FLAGS_poses_out, scene));
     files.push_back(FLAGS_poses_out);
-  }
-  if (!FLAGS_json_out.empty()) {
-    OrFail(WriteJson(FLAGS_json_out, ToJson(scene), -1));
-    files.push_back(FLAGS_json_out);
   }
   return files;
 }
@@ -140,7 +133,7 @@ int WriteBodies(const RestorationFlags& flags, const Recording& recorded,
               std::string(restoration->kind()).c_str());
   for (const std::string& file : files) std::printf("  %s\n", file.c_str());
   if (IsThatOfTheRecording()) {
-    std::printf("against the recording: %s\n", MetricsText(score.value, 3).c_str());
+    std::printf("against the recording: %s\n", MetricsText(kBodyMetrics, score.value, 3).c_str());
   }
   return kDone;
 }
@@ -151,7 +144,8 @@ int WritePendulums(const PendulumRecording& recording, const Prediction& predict
               prediction.path.num_frames(), FLAGS_out.c_str());
   if (IsThatOfTheRecording()) {
     const RecordingScore score = ScoreHip(recording, prediction.hip, prediction.observed);
-    std::printf("against the recording: %s\n", MetricsText(score, 3, prediction.observed).c_str());
+    std::printf("against the recording: %s\n",
+                MetricsText(TableMetrics(prediction.observed), score.value, 3).c_str());
   }
   return kDone;
 }

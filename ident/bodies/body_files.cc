@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
@@ -182,38 +181,6 @@ MaybeError WriteJointsCsv(const std::string& path, const BodyScene& scene) {
     }
   }
   return file.Commit();
-}
-
-nlohmann::ordered_json ToJson(const BodyScene& scene) {
-  const BodySkeleton first = scene.skeleton(0);
-  nlohmann::ordered_json json = {{"schema", "pushid-joints/1"},
-                                 {"id", scene.id},
-                                 {"dt_s", scene.dt},
-                                 {"joint_names", first.names},
-                                 {"joint_parents", first.parents}};
-  json["people"] = nlohmann::ordered_json::array();
-  for (int n = 0; n < scene.num_people(); ++n) {
-    const BodySkeleton skeleton = scene.skeleton(n);
-    nlohmann::ordered_json person = {{"subject", scene.subject_ids[n]}};
-    if (skeleton.names != first.names || skeleton.parents != first.parents) {
-      person["joint_names"] = skeleton.names;
-      person["joint_parents"] = skeleton.parents;
-    }
-    nlohmann::ordered_json frames = nlohmann::ordered_json::array();
-    for (const Pose& pose : scene.bodies[n]) {
-      const PosedJoints posed = Retarget(skeleton, pose);
-      nlohmann::ordered_json joints = nlohmann::ordered_json::array();
-      for (int j = 0; j < skeleton.num_joints(); ++j) {
-        nlohmann::ordered_json place = nlohmann::ordered_json::array();
-        for (int i = 0; i < 3; ++i) place.push_back(std::round(posed.positions(i, j) * 1e5) / 1e5);
-        joints.push_back(place);
-      }
-      frames.push_back(joints);
-    }
-    person["joints_m"] = frames;
-    json["people"].push_back(person);
-  }
-  return json;
 }
 
 }  // namespace pushid

@@ -1,9 +1,8 @@
-// ident: moving bodies as files: BVH for animation programs, CSV and JSON of the joints.
+// ident: moving bodies as files: BVH for animation programs, CSV of the joints.
 //
 // Every person moves in the skeleton that they came with (body_recording.h), joint by joint.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -46,10 +45,5 @@ bool IsBodyFile(const std::string& path);
 
 // frame,time_s,person,subject,joint,x_m,y_m,z_m
 MaybeError WriteJointsCsv(const std::string& path, const BodyScene& scene);
-
-// {"id", "dt_s", "joint_names", "joint_parents", "people": [{"subject", "joints_m": [frame][joint]
-// [x, y, z]}]}; numbers to a hundredth of a millimetre. A person whose joints are not those of the
-// first has joint_names and joint_parents too.
-nlohmann::ordered_json ToJson(const BodyScene& scene);
 
 }  // namespace pushid

@@ -11,7 +11,6 @@ namespace pushid {
 namespace {
 
 constexpr double kLane = 12;     // height, as that of its name
-constexpr double kRow = 16;      // of a category
 constexpr double kLetter = 7.1;  // width of a small one, about
 constexpr double kLine = 14;     // height of a small one with its space
 constexpr double kBoldLetter = 7.2;
@@ -107,7 +106,8 @@ class Panel {
     }
     for (const ChartBar& bar : chart_.bars) {
       const double from = Inside(bar.from), to = Inside(bar.to), y = y_(bar.row);
-      svg_.Rect({std::min(from, to), y - 0.36 * kRow, std::abs(to - from), 0.72 * kRow}, bar.look,
+      const double height = chart_.bar * chart_.row;
+      svg_.Rect({std::min(from, to), y - 0.5 * height, std::abs(to - from), height}, bar.look,
                 bar.tooltip);
     }
     for (double level : chart_.levels) svg_.Line(left_, y_(level), right_, y_(level), kLimitLook);
@@ -291,7 +291,7 @@ double HeightOf(const Chart& chart, double width) {
   if (chart.y_categories.empty())
     return chart.bare_y ? chart.height : chart.height * std::clamp(width / chart.width, 0.8, 1.0);
   const Margins margins(chart, width);
-  return margins.top + margins.bottom + kRow * static_cast<double>(chart.y_categories.size());
+  return margins.top + margins.bottom + chart.row * static_cast<double>(chart.y_categories.size());
 }
 
 void DrawChart(const Chart& chart, const SvgBox& box, SvgPicture* svg) {

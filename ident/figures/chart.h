@@ -84,6 +84,7 @@ struct Chart {
   double full_cell = 1.0;
   // Wanted height; rows of categories have their own.
   double width = kPanelWidth, height = kPanelHeight;
+  double row = 16, bar = 0.72;  // height of a row, and what of it a bar fills
 
   void Shrink() { width = kSmallWidth, height = kSmallHeight; }
 };

@@ -173,11 +173,10 @@ void SvgPicture::Line(double x1, double y1, double x2, double y2, std::string_vi
   body_ += "/>\n";
 }
 
-void SvgPicture::Circle(double x, double y, double radius, std::string_view look,
-                        std::string_view tooltip) {
+void SvgPicture::Circle(double x, double y, double radius, std::string_view look) {
   Open("circle", {{"cx", x}, {"cy", y}, {"r", radius}});
   Look(look);
-  body_ += tooltip.empty() ? "/>\n" : "><title>" + EscapeXml(tooltip) + "</title></circle>\n";
+  body_ += "/>\n";
 }
 
 void SvgPicture::Path(std::string_view data, std::string_view look) {

@@ -44,8 +44,7 @@ class SvgPicture {
   void Line(double x1, double y1, double x2, double y2, std::string_view look);
   // Draws many lines of one look as one element: a page of panels is mostly grid.
   void Lines(const std::vector<SvgLine>& lines, std::string_view look);
-  void Circle(double x, double y, double radius, std::string_view look,
-              std::string_view tooltip = "");
+  void Circle(double x, double y, double radius, std::string_view look);
   // Fewer than two points draw nothing; points within 0.4 pixels of the line are left
   // out.
   void Polyline(const std::vector<std::pair<double, double>>& points, std::string_view look);
@@ -54,8 +53,6 @@ class SvgPicture {
   void Text(double x, double y, std::string_view text, std::string_view look = "ink");
   // Text from (x, y) upwards.
   void TextUp(double x, double y, std::string_view text, std::string_view look = "ink");
-
-  double width() const { return width_; }
 
   std::string ToString() const;
   // The picture for a page that has SvgStyle: without a style sheet of its own.

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -79,7 +78,7 @@ ManifestRecording Entry(const FormationRun& run) {
   return entry;
 }
 
-constexpr double kWaveLeft = 112, kWaveTop = 40, kMapWidth = 610, kWaveWidth = 960, kSide = 770;
+constexpr double kWaveWidth = 960, kWaveHeight = 380;  // pixels, of all people
 constexpr double kFastWalk = 2.5;  // m/s; faster than that somebody falls, and colours saturate
 constexpr int kColours = 48;       // levels of speed that are told apart, either way
 constexpr char kPushFrame[] = "fill:none;stroke:#ff5a36;stroke-width:2";
@@ -87,150 +86,43 @@ constexpr char kBandBorder[] = "stroke:#000;stroke-width:4";
 constexpr char kBandLine[] = "stroke:#fff;stroke-width:2";
 constexpr char kOnsetDot[] = "fill:#fff;stroke:#000;stroke-width:1";
 
-class WavePicture {
- public:
-  WavePicture(const FormationRun& run, const std::string& title,
-              const std::vector<OnsetBand>& onsets)
-      : run_(run),
-        onsets_(onsets),
-        row_(std::clamp(380.0 / run.num_people(), 3.0, 30.0)),
-        bottom_(kWaveTop + row_ * run.num_people()),
-        time_(0.0, run.Seconds(run.num_frames()), kWaveLeft, kWaveLeft + kMapWidth),
-        svg_(kWaveWidth, std::max(bottom_ + 62.0, 400.0), title) {
-    for (const PersonSummary& person : run.summaries)
-      fastest_ = std::max(fastest_, person.peak_speed);
-    full_ = std::min(fastest_, kFastWalk);
-    svg_.Text(kWaveLeft, 22, title, "ink bold");
-  }
+// The colour goes with the root of the speed: a wave that fades stays visible.
+int LevelOf(double speed, double full) {
+  const double share = full > 0.0 ? std::sqrt(std::min(1.0, std::abs(speed) / full)) : 0.0;
+  const int level = static_cast<int>(std::lround(share * (kColours - 1)));
+  return speed < 0.0 ? -level : level;
+}
 
-  std::string Draw() {
-    for (int n = 0; n < run_.num_people(); ++n) Row(n);
-    for (int n = 0; n < run_.num_people(); ++n) Label(n);
-    Marks();
-    TimeAxis();
-    ColourBar();
-    return svg_.ToString();
-  }
+std::string LevelLook(int level) {
+  return "stroke:none;fill:" + SignedColourOf(level / (kColours - 1.0));
+}
 
- private:
-  double RowTop(int person) const { return kWaveTop + row_ * person; }
-  // The colour goes with the root of the speed: a wave that fades stays visible.
-  double Fraction(double speed) const {
-    return full_ > 0.0 ? std::sqrt(std::min(1.0, speed / full_)) : 0.0;
+// Frames of the same level are one bar. Speeds are negative of who goes back more than aside.
+void AddSpeeds(const FormationRun& run, int person, double full, Chart* chart) {
+  const auto level = [&](int t) { return LevelOf(SignedHipSpeed(run, person, t), full); };
+  for (int begin = 0, end = 0; begin < run.num_frames(); begin = end) {
+    while (end < run.num_frames() && level(end) == level(begin)) ++end;
+    chart->bars.push_back({static_cast<double>(person), run.Seconds(begin), run.Seconds(end),
+                           LevelLook(level(begin)), ""});
   }
-  // Negative for a person who goes back more than aside.
-  int Level(int person, int frame) const {
-    const double speed = SignedHipSpeed(run_, person, frame);
-    const int level = static_cast<int>(std::lround(Fraction(std::abs(speed)) * (kColours - 1)));
-    return speed < 0.0 ? -level : level;
-  }
+}
 
-  // Frames of the same level are one rectangle.
-  void Row(int person) {
-    for (int begin = 0, end = 0; begin < run_.num_frames(); begin = end) {
-      const int level = Level(person, begin);
-      while (end < run_.num_frames() && Level(person, end) == level) ++end;
-      const double x = time_(run_.Seconds(begin));
-      // Overlaps the next one, for rounded numbers would leave gaps.
-      const double overlap = end < run_.num_frames() ? 0.5 : 0.0;
-      svg_.Rect({x, RowTop(person), time_(run_.Seconds(end)) - x + overlap, row_},
-                "fill:" + SignedColourOf(level / (kColours - 1.0)));
+// A dot, over a light bar with dark ends, seen on every colour.
+void AddOnset(const FormationRun& run, int person, const std::vector<OnsetBand>& onsets,
+              Chart* chart) {
+  const int onset = run.summaries[person].onset_frame;
+  const double y = person;
+  if (onset < 0) return;
+  if (!onsets.empty() && onsets[person].moved > 0.0) {
+    const double from = onsets[person].from, to = onsets[person].to;
+    chart->lines.push_back({{{from, y}, {to, y}}, kBandBorder});
+    chart->lines.push_back({{{from, y}, {to, y}}, kBandLine});
+    for (double x : {from, to}) {
+      chart->lines.push_back({{{x, y - 0.3}, {x, y + 0.3}}, kBandBorder});
     }
   }
-
-  void Label(int person) {
-    const int every = row_ >= 11.0 ? 1 : row_ >= 5.0 ? 5 : 10;
-    const double y = RowTop(person) + 0.5 * row_ + 4.0;
-    if (person % every == 0) {
-      const Vector4<double>& q = run_.recording.scene.people[person].start.q;
-      svg_.Text(kWaveLeft - 8, y,
-                std::to_string(person) + "  (" + SvgNumber(q[0]) + ", " + SvgNumber(q[1]) + ")",
-                "ink small end");
-    }
-    const Outcome outcome = run_.summaries[person].outcome;
-    if (outcome == Outcome::kFell || (outcome == Outcome::kSlow && every == 1)) {
-      // There is no room for "slow to settle".
-      svg_.Text(kWaveLeft + kMapWidth + 4, y, outcome == Outcome::kSlow ? "slow" : NameOf(outcome),
-                "ink small");
-    }
-  }
-
-  void Marks() {
-    for (const ScenePush& push : run_.recording.scene.pushes) {
-      const double x = time_(run_.Seconds(push.start_frame));
-      svg_.Rect({x, RowTop(push.person) + 1, time_(run_.Seconds(push.EndFrame())) - x, row_ - 2},
-                kPushFrame);
-    }
-    for (int n = 0; n < run_.num_people(); ++n) {
-      const int onset = run_.summaries[n].onset_frame;
-      if (onset < 0) continue;
-      Band(n);
-      svg_.Circle(time_(run_.Seconds(onset)), RowTop(n) + 0.5 * row_, std::min(4.0, 0.4 * row_),
-                  kOnsetDot);
-    }
-  }
-
-  // Under the dot: a light bar with dark ends, seen on every colour.
-  void Band(int person) {
-    if (onsets_.empty() || onsets_[person].moved == 0.0) return;
-    const double y = RowTop(person) + 0.5 * row_, half = std::min(4.0, 0.3 * row_);
-    const double from = time_(onsets_[person].from), to = time_(onsets_[person].to);
-    svg_.Line(from, y, to, y, kBandBorder);
-    svg_.Line(from, y, to, y, kBandLine);
-    for (const double x : {from, to}) svg_.Line(x, y - half, x, y + half, kBandBorder);
-  }
-
-  void TimeAxis() {
-    svg_.Line(kWaveLeft, bottom_, kWaveLeft + kMapWidth, bottom_, "axis");
-    for (double t : time_.Ticks(8)) {
-      svg_.Line(time_(t), bottom_, time_(t), bottom_ + 4, "axis");
-      svg_.Text(time_(t), bottom_ + 17, SvgNumber(t), "ink small middle");
-    }
-    svg_.Text(kWaveLeft + 0.5 * kMapWidth, bottom_ + 33, "time (s)", "ink middle");
-    svg_.Text(kWaveLeft - 8, kWaveTop - 8, "person (x, y in m)", "faint small end");
-    const double y = bottom_ + 50;
-    svg_.Rect({kWaveLeft, y - 9, 16, 10}, kPushFrame);
-    svg_.Text(kWaveLeft + 22, y, "push", "faint small");
-    svg_.Circle(kWaveLeft + 68, y - 4, 4, kOnsetDot);
-    const std::string onset = "onset: the hip has moved 2 cm";
-    svg_.Text(
-        kWaveLeft + 78, y,
-        onset +
-            (onsets_.empty() ? "" : "; bar: 90 % interval from the uncertainty of the parameters"),
-        "faint small");
-  }
-
-  void ColourBar() {
-    constexpr double kHalf = 80.0, kStep = kHalf / kColours;
-    const double middle = kSide + kHalf;
-    svg_.Text(kSide, kWaveTop + 2, "speed of the hip (m/s)", "ink");
-    for (int k = -kColours; k < kColours; ++k) {
-      svg_.Rect({middle + kStep * k, kWaveTop + 10, kStep, 12},
-                "fill:" + SignedColourOf((k + 0.5) / kColours));
-    }
-    for (double v : SvgScale(0.0, full_, 0.0, 1.0).Ticks(2)) {
-      for (double side : {-1.0, 1.0}) {
-        const double x = middle + side * kHalf * Fraction(v);
-        svg_.Line(x, kWaveTop + 22, x, kWaveTop + 26, "axis");
-        if (v > 0.0 || side > 0.0) svg_.Text(x, kWaveTop + 37, SvgNumber(v), "ink small middle");
-      }
-    }
-    svg_.Text(kSide, kWaveTop + 51, "back", "ink small");
-    svg_.Text(middle + kHalf, kWaveTop + 51, "forward or aside", "ink small end");
-    svg_.Text(kSide, kWaveTop + 66,
-              full_ < fastest_
-                  ? "saturated from " + Rounded(full_, 3) + " on; fastest " + Rounded(fastest_, 3)
-                  : "full colour: " + Rounded(full_, 3) + ", the fastest",
-              "faint small");
-  }
-
-  const FormationRun& run_;
-  const std::vector<OnsetBand>& onsets_;  // empty: none are drawn
-  const double row_, bottom_;
-  const SvgScale time_;
-  double fastest_ = 0.0, full_ = 0.0;  // m/s; the speed of full colour
-  SvgPicture svg_;
-};
+  chart->lines.push_back({{{run.Seconds(onset), y}}, kOnsetDot, true});
+}
 
 constexpr double kSoleWidth = 0.09;                 // m
 constexpr double kAir = 0.15, kShortestFeet = 1.2;  // m
@@ -318,28 +210,6 @@ void FitMap(Chart* chart) {
 
 }  // namespace
 
-MaybeError WriteForcesCsv(const std::string& path, const FormationRun& run) {
-  AtomicFile file;
-  if (MaybeError failed = file.Open(path)) return failed;
-  file.Append("frame,time_s,person,part,fx_N,fy_N,ftheta_Nm,fphi_Nm\n");
-  const std::vector<ForcePart> parts = ActingParts(run);
-  const auto row = [&](int t, int n, std::string_view part, const Vector4<double>& f) {
-    char text[256];
-    std::snprintf(text, sizeof text, "%d,%.9g,%d,%.*s,%.9g,%.9g,%.9g,%.9g\n", t, run.Seconds(t), n,
-                  static_cast<int>(part.size()), part.data(), f[0] + 0.0, f[1] + 0.0, f[2] + 0.0,
-                  f[3] + 0.0);  // no -0
-    file.Append(text);
-  };
-  for (int t = 0; t < run.num_frames(); ++t) {
-    for (int n = 0; n < run.num_people(); ++n) {
-      const NetForce<double>& force = run.Force(n, t);
-      for (ForcePart part : parts) row(t, n, NameOf(part), force[part]);
-      row(t, n, "net", force.Total());
-    }
-  }
-  return file.Commit();
-}
-
 MaybeError WriteFormationTrajectories(const std::string& path, const FormationRun& run) {
   PointMotion motion;
   motion.rate_hz = 1.0 / run.recording.scene.dt;
@@ -381,7 +251,48 @@ MaybeError WriteFormationRecording(const std::string& folder, const FormationRun
 
 std::string WaveSvg(const FormationRun& run, const std::string& title,
                     const std::vector<OnsetBand>& onsets) {
-  return WavePicture(run, title, onsets).Draw();
+  double fastest = 0.0;
+  for (const PersonSummary& person : run.summaries) fastest = std::max(fastest, person.peak_speed);
+  const double full = std::min(fastest, kFastWalk);
+  Chart chart{"person (x, y in m); colour: speed of the hip", "time, s"};
+  chart.y_label = full < fastest
+                      ? "saturated from " + Rounded(full, 3) + " on; fastest " + Rounded(fastest, 3)
+                      : "full colour: " + Rounded(full, 3) + ", the fastest";
+  chart.width = kWaveWidth;
+  chart.row = std::clamp(kWaveHeight / run.num_people(), 3.0, 30.0);
+  chart.bar = 1.0;
+  chart.x_from = 0.0, chart.x_to = run.Seconds(run.num_frames());
+  const int every = chart.row >= 11.0 ? 1 : chart.row >= 5.0 ? 5 : 10;
+  for (int n = 0; n < run.num_people(); ++n) {
+    const Vector4<double>& q = run.recording.scene.people[n].start.q;
+    const Outcome outcome = run.summaries[n].outcome;
+    const bool told = outcome == Outcome::kFell || (outcome == Outcome::kSlow && every == 1);
+    chart.y_categories.push_back(n % every > 0 ? ""
+                                               : std::to_string(n) + "  (" + SvgNumber(q[0]) +
+                                                     ", " + SvgNumber(q[1]) + ")");
+    // There is no room for "slow to settle".
+    chart.y_notes.push_back(!told ? "" : outcome == Outcome::kSlow ? "slow" : NameOf(outcome));
+    AddSpeeds(run, n, full, &chart);
+    AddOnset(run, n, onsets, &chart);
+  }
+  for (const ScenePush& push : run.recording.scene.pushes) {
+    chart.bars.push_back({static_cast<double>(push.person), run.Seconds(push.start_frame),
+                          run.Seconds(push.EndFrame()), kPushFrame, ""});
+  }
+  Figure figure{{}, {chart}, title};
+  for (double share : {-1.0, -0.25, 0.0, 0.25, 1.0}) {
+    figure.legend.push_back({Rounded(std::abs(share) * full, 2) + " m/s" +
+                                 (share < 0.0   ? " back"
+                                  : share > 0.0 ? " forward or aside"
+                                                : ""),
+                             LevelLook(LevelOf(share * full, full))});
+  }
+  figure.legend.push_back({"push", kPushFrame});
+  figure.legend.push_back({"onset: the hip has moved 2 cm", kOnsetDot});
+  if (!onsets.empty()) {
+    figure.legend.push_back({"90 % interval from the uncertainty of the parameters", kBandBorder});
+  }
+  return DrawFigure(figure, kWaveWidth, title).ToString();
 }
 
 std::optional<Figure> FeetFigure(const FormationRun& run) {

@@ -13,10 +13,6 @@
 
 namespace pushid {
 
-// One row for each frame, person and part that acts anywhere, and for their sum, `net`:
-//   frame,time_s,person,part,fx_N,fy_N,ftheta_Nm,fphi_Nm
-MaybeError WriteForcesCsv(const std::string& path, const FormationRun& run);
-
 // The hips, as trajectories.h has them.
 MaybeError WriteFormationTrajectories(const std::string& path, const FormationRun& run);
 

@@ -70,8 +70,8 @@ TEST_F(SimulateFormationTest, TheShippedModelIsOfSyntheticPeople) {
 TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   const AppRun run =
       Succeeded(Simulate({"--formation=line", "--people=4", "--spacing=0.42", "--duration=3",
-                          "--csv_out=" + Path("line.csv"), "--forces_out=" + Path("forces.csv"),
-                          "--bvh_out=" + Path("line"), "--svg_out=" + Path("wave.svg")}));
+                          "--csv_out=" + Path("line.csv"), "--bvh_out=" + Path("line"),
+                          "--svg_out=" + Path("wave.svg")}));
   EXPECT_EQ(run.err, "");
   const std::vector<std::string> onsets = Onsets(run.out);
   ASSERT_EQ(onsets.size(), 4u) << run.out;
@@ -82,7 +82,7 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
 
   const std::string csv = ReadText(Path("line.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 4 * 181);
-  EXPECT_TRUE(Contains(ReadText(Path("forces.csv")), ",interaction,"));
+  EXPECT_TRUE(Contains(csv, ",interaction_x_N,"));
   const std::string text = ReadText(Path("wave.svg"));
   EXPECT_EQ(text.find("<svg"), 0u);
   EXPECT_TRUE(Contains(text, "4 people in a line, 0.42 m apart; 80 N s at 0 s on person 0"));
@@ -254,8 +254,8 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--bvh_out=" + alone_}, {"--bvh_out", "file"}},
       {{"--spacing=1"}, {"--formation is missing", "line, diamond or grid"}},
       {{"--formation=line", "--push=80@0,80@3", "--duration=2"}, {"--duration", "at 3 s"}},
-      {{"--formation=line", "--csv_out=" + Path("o"), "--forces_out=" + Path("./o")},
-       {"--csv_out and --forces_out", "file of its own"}},
+      {{"--formation=line", "--csv_out=" + Path("o.txt"), "--out=" + Path("./o.txt")},
+       {"--csv_out and --out", "file of its own"}},
   };
   const int files = CountFiles();
   for (const auto& one : cases) {

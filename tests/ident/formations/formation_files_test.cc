@@ -74,38 +74,9 @@ TEST_F(FormationFilesTest, FeetFromAbove) {
   EXPECT_EQ(rows[1][1], "predicted");
 }
 
-TEST_F(FormationFilesTest, PartsAddUpToTheNetForce) {
-  ASSERT_EQ(ProblemOf(WriteForcesCsv(Path("forces.csv"), run_)), "no error");
-  std::istringstream lines(ReadText(Path("forces.csv")));
-  std::string line;
-  std::getline(lines, line);
-  EXPECT_EQ(line, "frame,time_s,person,part,fx_N,fy_N,ftheta_Nm,fphi_Nm");
-  Vector4<double> sum = Vector4<double>::Zero();
-  int nets = 0;
-  while (std::getline(lines, line)) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream words(line);
-    double frame, time, person;
-    std::string part;
-    Vector4<double> force;
-    ASSERT_TRUE(words >> frame >> time >> person >> part >> force[0] >> force[1] >> force[2] >>
-                force[3])
-        << line;
-    if (part != "net") {
-      sum += force;
-      continue;
-    }
-    EXPECT_LT((sum - force).norm(), 1e-5) << line;
-    sum.setZero();
-    ++nets;
-  }
-  EXPECT_EQ(nets, 13 * 150);
-}
-
 TEST_F(FormationFilesTest, AFolderThatCannotBeMadeIsAnError) {
   const std::string file = WriteText("file", "");
   EXPECT_TRUE(WriteFormationRecording(file, run_).has_value());
-  EXPECT_TRUE(WriteForcesCsv(Path("none/forces.csv"), run_).has_value());
   EXPECT_EQ(CountFiles(), 1);
 }
 

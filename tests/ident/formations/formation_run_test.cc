@@ -113,7 +113,7 @@ TEST(FormationRun, WithoutInteractionNobodyElseMoves) {
 TEST(FormationPictures, ShowEverybody) {
   const FormationRun run = RunShape(FormationShape::kDiamond, 13, {0, 1, 3});
   const std::string wave = WaveSvg(run, "a < b");
-  for (const char* part : {"a &lt; b", ">12  (1.68, 0)<", ">speed of the hip (m/s)<"}) {
+  for (const char* part : {"a &lt; b", ">12  (1.68, 0)<", "colour: speed of the hip"}) {
     EXPECT_TRUE(Has(wave, part)) << part;
   }
   EXPECT_FALSE(Has(wave, "nan"));
@@ -144,8 +144,8 @@ TEST(FormationPictures, NobodyPushedNobodyMoves) {
 TEST(FormationPictures, RecoilIsNotDrawnAsTheWave) {
   // The pushed one of a line comes back; alone with as much friction no person does.
   const std::string line = WaveSvg(RunShape(FormationShape::kLine, 3, {0}), "line");
-  EXPECT_TRUE(Has(line, ">back<"));
-  EXPECT_TRUE(Has(line, ">forward or aside<"));
+  EXPECT_TRUE(Has(line, " m/s back<"));
+  EXPECT_TRUE(Has(line, " m/s forward or aside<"));
   const FormationRun run = RunShape(FormationShape::kLine, 3, {0});
   bool recoils = false;
   for (int t = 1; t < run.num_frames(); ++t) {
