@@ -118,8 +118,7 @@ std::vector<BatchJob> ChosenJobs(const std::vector<BatchJob>& all) {
 }
 
 int List(const BatchPlan& plan, const std::vector<BatchJob>& jobs) {
-  TextTable table({"id", "variant", "group", "replica", "recordings", "held_out", "folder"},
-                  {true, true, true, false, false, false, true});
+  TextTable table({"id", "variant", "group", ">replica", ">recordings", ">held_out", "folder"});
   for (const BatchJob& job : jobs) {
     table.Add({job.id, job.variant, job.group, std::to_string(job.replica),
                std::to_string(job.recordings.size()), std::to_string(job.held_out.size()),

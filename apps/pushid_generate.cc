@@ -472,8 +472,9 @@ int FromGroups(const TrainedNetworks& trained, const GenerateOptions& options) {
   Json json = ResultHead(kScoresSchema);
   json.update(MeanOfSamples(samples));
   if (options.scored_samples > 1) {
-    std::printf("\n%d samples, each scored, in the mean: %s\n", options.scored_samples,
-                MetricsText(OrFail(MeanBodyMetrics(json, FLAGS_model)), 3).c_str());
+    std::printf(
+        "\n%d samples, each scored, in the mean: %s\n", options.scored_samples,
+        MetricsText(kBodyMetrics, OrFail(MeanMetrics(json, kBodyMetrics, FLAGS_model)), 3).c_str());
   }
   if (FLAGS_json_out.empty()) return kDone;
   json["run"] = {{"seconds_per_recording", seconds}};

@@ -135,7 +135,7 @@ SyntheticOptions StudyFromCommandLine() {
 }
 
 void PrintTruth(const IdentifiedModel& truth, const SyntheticOptions& options) {
-  TextTable table({"parameter", "truth", "unit"}, {true, false, true});
+  TextTable table({"parameter", ">truth", "unit"});
   for (const ParameterSpec& spec : truth.table.specs) {
     const double value = truth.parameters[spec.id];
     const bool noise =

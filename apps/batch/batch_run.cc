@@ -70,16 +70,10 @@ void AddModel(const FitResult& fit, JobResult* result) {
 
 std::vector<HeldOutScore> ReadHeldOut(const std::string& path, bool bodies) {
   const JsonDocument document = OrFail(ReadJsonDocument(path));
-  const ScoreSummary hips = OrFail(ScoresFromJson(document.content, path));
+  const MetricList metrics = bodies ? kBodyMetrics : TableMetrics(0);
+  const Metrics means = OrFail(MeanMetrics(document.content, metrics, path));
   std::vector<HeldOutScore> scores;
-  if (!bodies) {
-    for (const HipMetric& metric : kHipMetrics) {
-      scores.push_back({metric, hips.mean.*metric.value});
-    }
-    return scores;
-  }
-  const BodyMetrics restored = OrFail(MeanBodyMetrics(document.content, path));
-  for (int m = 0; m < kNumBodyMetrics; ++m) scores.push_back({kBodyMetrics[m], restored[m]});
+  for (MetricId m : metrics) scores.push_back({kMetrics[m], means[m]});
   return scores;
 }
 

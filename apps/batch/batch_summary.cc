@@ -286,16 +286,14 @@ std::vector<std::string> HeldOutRow(const std::string& group, const std::string&
 // variants have, so that none is judged by easier ones, and the difference from the first variant
 // with its standard error over folds; and which folds are missing.
 TextTable HeldOutTable(const std::vector<JobResult>& rows) {
-  std::vector<std::string> header = {"group", "variant", "folds compared"};
+  std::vector<std::string> header = {"group", "variant", ">folds compared"};
   const std::vector<Metric> metrics = HeldOutMetrics(rows);
   for (const Metric& metric : metrics) {
-    header.push_back(std::string("held-out ") + metric.name + ", " + metric.unit);
-    header.push_back("minus the first variant");
+    header.push_back(std::string(">held-out ") + metric.name + ", " + metric.unit);
+    header.push_back(">minus the first variant");
   }
   header.push_back("folds missing");
-  std::vector<bool> words(header.size(), false);
-  words[0] = words[1] = words.back() = true;
-  TextTable table(header, words);
+  TextTable table(header);
   for (const auto& [group, scores] : ByGroup(rows)) {
     for (const std::string& variant : scores.variants) {
       table.Add(HeldOutRow(group, variant, scores, metrics));
@@ -306,9 +304,8 @@ TextTable HeldOutTable(const std::vector<JobResult>& rows) {
 
 // Counts of each variant, and how its estimates (replica 0) differ between groups.
 TextTable VariantTable(const std::vector<JobResult>& rows) {
-  TextTable table({"variant", "jobs done", "failed", "open", "over groups", "mean", "std deviation",
-                   "lowest", "highest"},
-                  {true, false, false, false, true, false, false, false, false});
+  TextTable table({"variant", ">jobs done", ">failed", ">open", "over groups", ">mean",
+                   ">std deviation", ">lowest", ">highest"});
   for (const auto& [name, v] : ByVariant(rows)) {
     std::vector<std::string> counts = {name};
     for (JobState state : {JobState::kDone, JobState::kFailed, JobState::kOpen}) {
@@ -365,9 +362,8 @@ std::vector<BootstrapSpread> SpreadOverReplicas(const std::vector<JobResult>& ro
 }
 
 TextTable BootstrapTable(const std::vector<JobResult>& rows) {
-  TextTable table({"variant", "group", "parameter", "estimate", "replicas", "bootstrap error",
-                   "2.5 %", "97.5 %"},
-                  {true, true, true, false, false, false, false, false});
+  TextTable table({"variant", "group", "parameter", ">estimate", ">replicas", ">bootstrap error",
+                   ">2.5 %", ">97.5 %"});
   for (const BootstrapSpread& s : SpreadOverReplicas(rows)) {
     if (table.rows().size() > kMostRowsOnPage) break;
     table.Add({s.job->variant, s.job->group, s.parameter, Rounded(s.estimate, 4),
@@ -385,7 +381,7 @@ TextTable WarningTable(const std::vector<JobResult>& rows) {
       ValueOf(warning, &warnings).push_back(&row);
     }
   }
-  TextTable table({"jobs", "the first", "warning"}, {false, true, true});
+  TextTable table({">jobs", "the first", "warning"});
   for (const auto& [warning, jobs] : warnings) {
     if (table.rows().size() > kMostRowsOnPage) break;
     table.Add({std::to_string(jobs.size()), jobs[0]->job->id.substr(0, 8), warning});
@@ -394,8 +390,7 @@ TextTable WarningTable(const std::vector<JobResult>& rows) {
 }
 
 TextTable FailureTable(const std::vector<JobResult>& rows) {
-  TextTable table({"failed", "variant", "group", "replica", "reason"},
-                  {true, true, true, false, true});
+  TextTable table({"failed", "variant", "group", ">replica", "reason"});
   for (const JobResult& row : rows) {
     if (row.status.state != JobState::kFailed || table.rows().size() > kMostRowsOnPage) continue;
     table.Add({row.job->id.substr(0, 8), row.job->variant, row.job->group,
@@ -407,14 +402,12 @@ TextTable FailureTable(const std::vector<JobResult>& rows) {
 TextTable JobTable(const std::vector<JobResult>& rows) {
   std::vector<JobColumn> columns;
   std::vector<std::string> header;
-  std::vector<bool> words;
   for (const JobColumn& column : JobColumns(rows)) {
     if (column.title.empty()) continue;
     columns.push_back(column);
-    header.push_back(column.title);
-    words.push_back(column.words);
+    header.push_back((column.words ? "" : ">") + column.title);
   }
-  TextTable table(header, words);
+  TextTable table(header);
   for (const JobResult& row : rows) {
     if (table.rows().size() > kMostRowsOnPage) break;
     std::vector<std::string> cells;

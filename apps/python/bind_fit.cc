@@ -299,13 +299,14 @@ using Json = nlohmann::ordered_json;
 // A number for each name; none where there are none.
 Json ByName(const std::vector<std::string>& names, const std::vector<double>& numbers) {
   Json json = Json::object();
-  for (size_t i = 0; i < numbers.size(); ++i) json[names[i]] = NumberJson(numbers[i]);
+  for (size_t i = 0; i < std::min(names.size(), numbers.size()); ++i) {
+    json[names[i]] = NumberJson(numbers[i]);
+  }
   return json;
 }
 
 Json PushesJson(const ExperimentDesign& design, const std::string& parameter) {
   Json rows = Json::array();
-  if (!design.refused.empty()) return rows;
   for (const DesignRow& row : Unwrapped(RankedRows(design, parameter), Fault::kUsage)) {
     rows.push_back({{"direction_deg", row.push.direction_deg},
                     {"acceleration", row.push.acceleration},
@@ -314,7 +315,7 @@ Json PushesJson(const ExperimentDesign& design, const std::string& parameter) {
                     {"mass_kg", row.push.mass_kg},
                     {"sensor", row.push.sensor},
                     {"error_ratio", ByName(design.parameters, row.error_ratio)},
-                    {"mean_error_ratio", NumberJson(row.volume_ratio)}});
+                    {"mean_error_ratio", NumberJson(row.error_ratio.back())}});
   }
   return rows;
 }
@@ -322,12 +323,16 @@ Json PushesJson(const ExperimentDesign& design, const std::string& parameter) {
 py::object DesignOf(const Model& model, const std::string& parameter) {
   const std::shared_ptr<const FittedTo> to = DataOf(model);
   const std::shared_ptr<const FittedModel> fitted = model.fitted;
-  const ExperimentDesign design =
+  const Result<ExperimentDesign> design =
       WithoutGil([&] { return DesignExperiments(to->pendulums, fitted->fit); });
-  const Json json = {{"text", Unwrapped(DesignText(design, parameter), Fault::kUsage)},
-                     {"standard_error", ByName(design.parameters, design.standard_error)},
-                     {"pushes", PushesJson(design, parameter)},
-                     {"no_push", design.refused}};
+  Json json = {{"text", Unwrapped(DesignText(design, parameter), Fault::kUsage)},
+               {"standard_error", Json::object()},
+               {"pushes", Json::array()},
+               {"no_push", design.ok() ? "" : design.error().message}};
+  if (design.ok()) {
+    json["standard_error"] = ByName(design.value().parameters, design.value().standard_error);
+    json["pushes"] = PushesJson(design.value(), parameter);
+  }
   return FromJson(json);
 }
 

@@ -9,18 +9,13 @@
 
 #include "ident/model/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
+#include "ident/validation/scores_report.h"
 #include "models/learned_terms.h"
 
 namespace pushid {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json MetricsJson(const BodyMetrics& value) {
-  Json json;
-  for (int m = 0; m < kNumBodyMetrics; ++m) json[kBodyMetrics[m].Key()] = value[m];
-  return json;
-}
 
 // Keys of `more` into `json`, objects into objects, lists entry by entry.
 void Merge(const Json& more, Json* json) {
@@ -44,17 +39,17 @@ std::string Cell(double value, double error = 0.0) {
   return text;
 }
 
-std::vector<std::string> Row(const std::string& name, const BodyMean& mean) {
+std::vector<std::string> Row(const std::string& name, const MeanScore& mean) {
   std::vector<std::string> row = {name, std::to_string(mean.recordings)};
-  for (int m = 0; m < kNumBodyMetrics; ++m) {
-    row.push_back(Cell(mean.value[m], kBodyMetrics[m].with_error ? mean.error[m] : 0.0));
+  for (MetricId m : kBodyMetrics) {
+    row.push_back(Cell(mean.value[m], kMetrics[m].with_error ? mean.error[m] : 0.0));
   }
   return row;
 }
 
 TextTable NewTable(const std::string& first) {
   std::vector<std::string> header = {first, "recordings"};
-  for (const BodyMetricRow& metric : kBodyMetrics) header.push_back(metric.Title());
+  for (MetricId m : kBodyMetrics) header.push_back(kMetrics[m].Title());
   return TextTable::OfNumbers(header);
 }
 
@@ -76,9 +71,9 @@ constexpr double kTouchHeight = 0.025;  // m
 constexpr double kCentimetres = 100.0;  // per m
 
 // The metrics of one person, but the FSE, over frames first_frame .. end - 1.
-BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted, int first_frame,
-                        int end) {
-  BodyMetrics sum{};
+Metrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted, int first_frame,
+                    int end) {
+  Metrics sum = Metrics::Zero();
   for (int t = first_frame; t < end; ++t) {
     const Pose error = predicted[t] - recorded[t];
     const Eigen::Vector3d hip = error.col(0);
@@ -90,20 +85,20 @@ BodyMetrics ScorePerson(const BodyMotion& recorded, const BodyMotion& predicted,
     const Pose carried = recorded[t].colwise() + hip;
     sum[kBoundMpjpe] += (carried - recorded[t]).colwise().norm().mean();
   }
-  for (double& value : sum) value /= end - first_frame;
+  sum /= end - first_frame;
   sum[kHipFde] = (predicted[end - 1] - recorded[end - 1]).col(0).norm();
   return sum;
 }
 
 // Mean over the recordings that last so long.
-BodyMean MeanAt(const std::vector<const BodyScore*>& scores, size_t second) {
-  BodyMean mean;
-  for (const BodyScore* score : scores) {
-    if (!score->at[second]) continue;
+MeanScore MeanAt(const std::vector<BodyScore>& scores, size_t second) {
+  MeanScore mean;
+  for (const BodyScore& score : scores) {
+    if (!score.failure.empty() || !score.at[second]) continue;
     ++mean.recordings;
-    for (int m = 0; m < kNumBodyMetrics; ++m) mean.value[m] += (*score->at[second])[m];
+    mean.value += *score.at[second];
   }
-  for (double& value : mean.value) value /= std::max(1, mean.recordings);
+  mean.value /= std::max(1, mean.recordings);
   return mean;
 }
 
@@ -119,28 +114,6 @@ std::optional<GroupMetrics> GroupsOf(const std::vector<BodyRecording>& recording
   }
   if (recorded.empty()) return std::nullopt;
   return CompareGroups(recorded, predicted);
-}
-
-using Scores = std::vector<const BodyScore*>;
-
-BodyMean Mean(const Scores& scores, bool by_frames) {
-  BodyMean mean;
-  mean.recordings = static_cast<int>(scores.size());
-  const auto weight = [by_frames](const BodyScore* s) {
-    return by_frames ? static_cast<double>(s->frames - s->first_frame) : 1.0;
-  };
-  double total = 0.0;
-  for (const BodyScore* s : scores) total += weight(s);
-  const double n = static_cast<double>(scores.size());
-  for (int m = 0; m < kNumBodyMetrics; ++m) {
-    double squares = 0.0;
-    for (const BodyScore* s : scores) mean.value[m] += weight(s) / total * s->value[m];
-    for (const BodyScore* s : scores) {
-      squares += std::pow(weight(s) / total * (s->value[m] - mean.value[m]), 2);
-    }
-    if (n > 1) mean.error[m] = std::sqrt(squares * n / (n - 1.0));
-  }
-  return mean;
 }
 
 }  // namespace
@@ -237,40 +210,19 @@ BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
   return SummarizeAll(recordings, all);
 }
 
-Json MeanJson(const BodyMean& mean) {
-  Json json = MetricsJson(mean.value);
-  for (int m = 0; m < kNumBodyMetrics; ++m) {
-    if (kBodyMetrics[m].with_error) json[kBodyMetrics[m].ErrorKey()] = mean.error[m];
-  }
-  json["recordings"] = mean.recordings;
-  return json;
-}
-
 Json ToJson(const BodySummary& summary, bool with_recordings) {
   Json json;
   if (with_recordings) {
     json["recordings"] = Json::array();
     for (const BodyScore& score : summary.recordings) {
-      Json row = {{"id", score.id}, {"frames", score.frames}};
-      if (score.failure.empty()) {
-        row.update(MetricsJson(score.value));
-      } else {
-        row["failure"] = score.failure;
-      }
-      json["recordings"].push_back(row);
+      json["recordings"].push_back(ScoreJson(score, kBodyMetrics));
     }
   }
-  json["mean"] = MeanJson(summary.mean);
-  json["frame_weighted"] = MeanJson(summary.frame_weighted);
-  for (const auto& [key, groups] : summary.by) {
-    Json& rows = json["by_" + key] = Json::object();
-    for (const auto& [name, mean] : groups) rows[name] = MeanJson(mean);
-  }
-  if (!summary.without_label.empty()) json["without_label"] = summary.without_label;
+  AddMeans(summary, kBodyMetrics, false, &json);
   if (summary.groups) json["group_metrics"] = ToJson(*summary.groups);
   json["errors_at"] = Json::array();
   for (size_t i = 0; i < summary.at.size(); ++i) {
-    const BodyMean& at = summary.at[i];
+    const MeanScore& at = summary.at[i];
     Json row = {{"seconds", kErrorSeconds[i]}, {"recordings", at.recordings}};
     for (const auto& [name, metric] : kTimedErrors) {
       row[std::string(name) + "_m"] = at.recordings > 0 ? Json(at.value[metric]) : Json();
@@ -293,20 +245,6 @@ void AddBodyJson(const BodyEvaluation& evaluation, Json* json) {
   }
 }
 
-Result<BodyMetrics> MeanBodyMetrics(const Json& json, const std::string& file) {
-  try {
-    BodyMetrics metrics{};
-    for (int m = 0; m < kNumBodyMetrics; ++m)
-      metrics[m] = json.at("mean").at(kBodyMetrics[m].Key());
-    return metrics;
-  } catch (const Json::exception& error) {
-    return Error{
-        "this is not a file of body scores from pushid-evaluate --restoration --json_out: " +
-            std::string(error.what()),
-        file};
-  }
-}
-
 std::string TimedErrorsText(const BodyEvaluation& evaluation) {
   std::vector<std::string> header = {"m, mean from the last shown frame"};
   for (const auto& [what, metric] : kTimedErrors) {
@@ -318,7 +256,7 @@ std::string TimedErrorsText(const BodyEvaluation& evaluation) {
   for (const auto& [name, summary] : evaluation) {
     std::vector<std::string> row = {Spaced(name)};
     for (const auto& [what, metric] : kTimedErrors) {
-      for (const BodyMean& at : summary.at) {
+      for (const MeanScore& at : summary.at) {
         row.push_back(at.recordings > 0 ? Cell(at.value[metric]) : "none");
       }
     }
@@ -355,14 +293,6 @@ std::string BodyText(const BodyEvaluation& evaluation) {
   return text;
 }
 
-std::string MetricsText(const BodyMetrics& metrics, int digits) {
-  std::string text;
-  for (int m = 0; m < kNumBodyMetrics; ++m) {
-    text += (m > 0 ? ", " : "") + kBodyMetrics[m].Text(metrics[m], digits);
-  }
-  return text;
-}
-
 double FootSkate(const BodyMotion& motion, int first_frame) {
   double sum = 0.0;
   int contacts = 0;
@@ -386,10 +316,9 @@ BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMoti
   score.first_frame = first_frame;
   const int people = recording.num_people();
   const auto up_to = [&](int end) {
-    BodyMetrics mean{};
+    Metrics mean = Metrics::Zero();
     for (int n = 0; n < people; ++n) {
-      const BodyMetrics of = ScorePerson(recording.bodies[n], predicted[n], first_frame, end);
-      for (int m = 0; m < kNumBodyMetrics; ++m) mean[m] += of[m] / people;
+      mean += ScorePerson(recording.bodies[n], predicted[n], first_frame, end) / people;
     }
     return mean;
   };
@@ -413,21 +342,17 @@ BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMoti
 
 BodySummary SummarizeBodies(const std::vector<BodyRecording>& recordings,
                             std::vector<BodyScore> scores, const LabelKeys& group_by) {
-  BodySummary summary;
-  summary.recordings = std::move(scores);
-  Scores all;
+  ScoreList all;
   std::vector<PendulumRecording> pendulums;
   for (size_t i = 0; i < recordings.size(); ++i) {
     pendulums.push_back(recordings[i].pendulum);
-    if (summary.recordings[i].failure.empty()) all.push_back(&summary.recordings[i]);
+    all.push_back(&scores[i]);
   }
-  summary.groups = GroupsOf(recordings, summary.recordings);
-  summary.mean = Mean(all, false);
-  summary.frame_weighted = Mean(all, true);
-  for (size_t i = 0; i < summary.at.size(); ++i) summary.at[i] = MeanAt(all, i);
-  summary.by = GroupScores(pendulums, summary.recordings, group_by,
-                           [](const Scores& group) { return Mean(group, false); });
-  summary.without_label = CountWithoutLabel(pendulums, summary.recordings, group_by);
+  BodySummary summary;
+  static_cast<ScoreMeans&>(summary) = MeansOf(pendulums, all, group_by, true);
+  summary.groups = GroupsOf(recordings, scores);
+  for (size_t i = 0; i < summary.at.size(); ++i) summary.at[i] = MeanAt(scores, i);
+  summary.recordings = std::move(scores);
   return summary;
 }
 

@@ -50,47 +50,16 @@ namespace pushid {
 //              shape is right
 // Means over recordings have standard errors over recordings, as those of hipADE.
 
-// A new metric is a value and a row here, and its formula in ScorePerson; means, files and tables
-// take it from there.
-enum BodyMetric {
-  kMpjpe,
-  kHipAde,
-  kHipFde,
-  kRelativeMpjpe,
-  kBoundMpjpe,
-  kMble,
-  kFse,
-  kNumBodyMetrics
-};
-using BodyMetrics = std::array<double, kNumBodyMetrics>;
-
-struct BodyMetricRow : Metric {
-  bool with_error;  // files and tables have its standard error
-};
-inline constexpr BodyMetricRow kBodyMetrics[kNumBodyMetrics] = {
-    {{"MPJPE", "m"}, true},          {{"hipADE", "m"}, true},       {{"hipFDE", "m"}, true},
-    {{"relative_MPJPE", "m"}, true}, {{"bound_MPJPE", "m"}, false}, {{"MBLE", "m"}, false},
-    {{"FSE", "cm"}, false},
-};
-
-// "MPJPE 0.1 m, hipADE 0.1 m, ..."
-std::string MetricsText(const BodyMetrics& metrics, int digits);
-
 // Errors up to a time after the last shown frame, means over the frames until then and over people,
 // m, as MRT (Wang et al., NeurIPS 2021) has them and SDM's Tables 1 and 2 after it.
 inline constexpr std::array<int, 3> kErrorSeconds = {1, 2, 3};
-inline constexpr std::pair<const char*, BodyMetric> kTimedErrors[] = {
+inline constexpr std::pair<const char*, MetricId> kTimedErrors[] = {
     {"total", kMpjpe}, {"root", kHipAde}, {"pose", kRelativeMpjpe}};
 
-struct BodyScore {
-  std::string id;
-  int frames = 0;
-  BodyMetrics value{};
-  std::string failure;                     // why there is no score; such a recording is in no mean
+struct BodyScore : Score {
   std::vector<BodyMotion> predicted = {};  // of more than one person; groups are judged together
-  int first_frame = 1;                     // that counts
   // Errors up to kErrorSeconds, where the recording lasts so long; without FSE.
-  std::array<std::optional<BodyMetrics>, kErrorSeconds.size()> at = {};
+  std::array<std::optional<Metrics>, kErrorSeconds.size()> at = {};
 };
 
 // predicted: one motion per person, with as many frames as the recording, which are more than
@@ -102,17 +71,10 @@ BodyScore ScoreBodies(const BodyRecording& recording, const std::vector<BodyMoti
 // ever touches the floor.
 double FootSkate(const BodyMotion& motion, int first_frame = 1);
 
-struct BodyMean {
-  int recordings = 0;
-  BodyMetrics value{}, error{};  // mean and its standard error
-};
-
-struct BodySummary {
+struct BodySummary : ScoreMeans {
   std::vector<BodyScore> recordings;
-  BodyMean mean, frame_weighted;
-  std::array<BodyMean, kErrorSeconds.size()> at;  // of the recordings that last so long; no errors
-  ByLabel<BodyMean> by;
-  WithoutLabel without_label;          // in no group of `by`
+  // Means of the recordings that last so long; no errors.
+  std::array<MeanScore, kErrorSeconds.size()> at;
   std::optional<GroupMetrics> groups;  // of all recordings of more than one person, if any
 };
 
@@ -156,10 +118,6 @@ BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
 // peers'), true_pendulum, recorded and restoration_drawn (ident/training/restoration_chain.h).
 void AddBodyJson(const BodyEvaluation& evaluation, nlohmann::ordered_json* json);
 
-// The means over recordings of what AddBodyJson added to. file: where it stands, for errors.
-Result<BodyMetrics> MeanBodyMetrics(const nlohmann::ordered_json& json, const std::string& file);
-
-nlohmann::ordered_json MeanJson(const BodyMean& mean);
 nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);
 
 // A row per predictor, a column per metric; then the restoration by label.

@@ -5,8 +5,16 @@
 
 namespace pushid {
 
+// A head that begins with ">" is that of a column of numbers as well.
 TextTable::TextTable(std::vector<std::string> header, std::vector<bool> left)
-    : rows_{std::move(header)}, left_(std::move(left)) {}
+    : left_(std::move(left)) {
+  for (size_t i = 0; i < header.size(); ++i) {
+    if (header[i].empty() || header[i][0] != '>') continue;
+    header[i].erase(0, 1);
+    left_[i] = false;
+  }
+  rows_.push_back(std::move(header));
+}
 
 TextTable TextTable::OfNumbers(std::vector<std::string> header) {
   std::vector<bool> left(header.size(), false);

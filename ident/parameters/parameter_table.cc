@@ -101,8 +101,7 @@ bool AnyPooled(const ParameterTable& table) {
 
 TextTable ParameterGlossary() {
   TextTable table(
-      {"name", "symbol", "unit", "without preset", "bounds", "meaning", "when to free it"},
-      {true, true, true, false, true, true, true});
+      {"name", "symbol", "unit", ">without preset", "bounds", "meaning", "when to free it"});
   for (const ParameterFacts& facts : AllParameterFacts()) {
     table.Add({std::string(facts.name), std::string(facts.symbol), std::string(facts.unit),
                Rounded(facts.nominal), Rounded(facts.lower) + " to " + Rounded(facts.upper),

@@ -141,26 +141,24 @@ HipPaths KinematicBaseline(const PendulumRecording& recording, int observed) {
   });
 }
 
-std::string MetricsText(const HipMetrics& metrics, int digits, int observed) {
+std::string MetricsText(const MetricList& metrics, const Metrics& values, int digits) {
   std::string text;
-  for (const HipMetric& metric : TableMetrics(observed)) {
-    text += (text.empty() ? "" : ", ") + metric.Text(metrics.*metric.value, digits);
+  for (MetricId m : metrics) {
+    text += (text.empty() ? "" : ", ") + kMetrics[m].Text(values[m], digits);
   }
   return text;
 }
 
-ShownMetrics TableMetrics(int observed) {
-  ShownMetrics metrics(std::begin(kHipMetrics), std::end(kHipMetrics));
-  if (observed > 0) metrics.push_back(kAfterMetric);
-  return metrics;
+MetricList TableMetrics(int observed) {
+  return observed > 0 ? MetricList{kHipAde, kHipFde, kAfterHipAde} : MetricList{kHipAde, kHipFde};
 }
 
-ShownMetrics MetricsOf(int observed, bool bands) {
-  ShownMetrics metrics = TableMetrics(observed);
-  if (observed > 0) {
-    metrics.insert(metrics.end(), std::begin(kThirdMetrics), std::end(kThirdMetrics));
+MetricList MetricsOf(int observed, bool bands) {
+  MetricList metrics;
+  for (int m = kHipAde; m < kMpjpe; ++m) {
+    const bool wanted = m >= kInside90 ? bands : m >= kAfterHipAde ? observed > 0 : true;
+    if (wanted) metrics.push_back(static_cast<MetricId>(m));
   }
-  if (bands) metrics.insert(metrics.end(), std::begin(kBandMetrics), std::end(kBandMetrics));
   return metrics;
 }
 
@@ -198,10 +196,10 @@ RecordingScore ScoreHip(const PendulumRecording& recording, const HipPaths& pred
         if (begin <= t - behind && t - behind < end) thirds[i].Add(weight, error);
       }
     }
-    score.hip_ade += all.Mean() / people;
-    score.hip_fde += final / people;
-    score.after_hip_ade += after.Mean() / people;
-    for (int i = 0; i < 3; ++i) score.*kThirdMetrics[i].value += thirds[i].Mean() / people;
+    score.value[kHipAde] += all.Mean() / people;
+    score.value[kHipFde] += final / people;
+    score.value[kAfterHipAde] += after.Mean() / people;
+    for (int i = 0; i < 3; ++i) score.value[kFirstThird + i] += thirds[i].Mean() / people;
   }
   score.propagation = ScorePropagation(recording, predicted);
   if (people > 1) score.predicted = predicted;
@@ -297,13 +295,12 @@ void AddBands(const PendulumRecording& recording, int from, const Inside& inside
     frames += 1.0;
     for (int axis : {0, 1}) {
       const double value = recording.hip[person][t][axis];
-      (axis == 0 ? score->inside90_x : score->inside90_y) += inside(t, axis, value, 0.9);
-      (axis == 0 ? score->inside50_x : score->inside50_y) += inside(t, axis, value, 0.5);
-      score->crps += 0.5 * crps(t, axis, value);
+      score->value[kInside90 + axis] += inside(t, axis, value, 0.9);
+      score->value[kInside50 + axis] += inside(t, axis, value, 0.5);
+      score->value[kCrps] += 0.5 * crps(t, axis, value);
     }
   }
-  if (frames == 0.0) return;
-  for (const HipMetric& metric : kBandMetrics) score->*metric.value /= frames;
+  if (frames > 0.0) score->value.segment<kCrps + 1 - kInside90>(kInside90) /= frames;
 }
 
 }  // namespace
@@ -412,42 +409,30 @@ Evaluation Evaluate(const IdentifiedModel& model, const std::vector<PendulumReco
   return evaluation;
 }
 
-double ScoreClusters::ErrorOfMean(const std::vector<double>& deviations) const {
-  if (count < 2) return 0.0;
-  std::vector<double> sums(count, 0.0);
+Metrics ScoreClusters::ErrorOfMean(const std::vector<Metrics>& deviations) const {
+  Metrics squares = Metrics::Zero();
+  if (count < 2) return squares;
+  std::vector<Metrics> sums(count, Metrics::Zero());
   for (size_t i = 0; i < deviations.size(); ++i) sums[of[i]] += deviations[i];
-  double squares = 0.0;
-  for (double sum : sums) squares += sum * sum;
-  return std::sqrt(squares * count / (count - 1.0));
+  for (const Metrics& sum : sums) squares += sum * sum;
+  return (squares * double(count) / (count - 1.0)).sqrt();
 }
 
-MeanAndError ScoreClusters::Mean(const std::vector<double>& values) const {
-  const double mean = MeanOf(values).mean, n = static_cast<double>(values.size());
-  std::vector<double> deviations;
-  for (double value : values) deviations.push_back((value - mean) / n);
-  return {mean, ErrorOfMean(deviations)};
-}
-
-ScoreClusters ClustersOf(const std::vector<std::string>& pushed) {
+ScoreClusters ClustersOf(const ScoreList& scores) {
   ScoreClusters clusters;
   std::map<std::string, int> people;
-  for (const std::string& person : pushed) {
-    clusters.of.push_back(people.emplace(person, static_cast<int>(people.size())).first->second);
+  for (const Score* score : scores) {
+    clusters.of.push_back(
+        people.emplace(score->pushed, static_cast<int>(people.size())).first->second);
   }
   clusters.count = static_cast<int>(people.size());
-  if (clusters.count > 1 && people.size() < pushed.size()) {
+  if (clusters.count > 1 && people.size() < scores.size()) {
     clusters.by = ClusterBy::kSubject;
     return clusters;
   }
-  clusters.count = static_cast<int>(pushed.size());
+  clusters.count = static_cast<int>(scores.size());
   std::iota(clusters.of.begin(), clusters.of.end(), 0);
   return clusters;
-}
-
-ScoreClusters ClustersOf(const std::vector<PendulumRecording>& recordings) {
-  std::vector<std::string> pushed;
-  for (const PendulumRecording& r : recordings) pushed.push_back(r.subject_ids[r.pushed_person]);
-  return ClustersOf(pushed);
 }
 
 std::string ClustersText(ClusterBy by, int count) {
@@ -496,73 +481,93 @@ std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& record
   return names;
 }
 
+WithoutLabel CountWithoutLabel(const std::vector<PendulumRecording>& recordings,
+                               const ScoreList& scores, const LabelKeys& keys) {
+  WithoutLabel counts;
+  for (const std::string& key : keys) {
+    const std::vector<std::string> names = GroupNames(recordings, key);
+    int with = 0, without = 0;
+    for (size_t i = 0; i < scores.size(); ++i) {
+      if (scores[i]->failure.empty()) ++(names[i].empty() ? without : with);
+    }
+    if (with > 0 && without > 0) counts[key] = without;
+  }
+  return counts;
+}
+
 namespace {
 
-using Group = std::vector<const RecordingScore*>;
-
-MeanScore Mean(const Group& scores, bool by_frames) {
+MeanScore Mean(const ScoreList& scores, bool by_frames, bool shares_first) {
   MeanScore mean;
-  const auto weight = [by_frames](const RecordingScore* s) {
-    return by_frames ? s->frames - 1 : 1.0;
-  };
-  double total = 0.0;
-  for (const RecordingScore* s : scores) total += weight(s);
   mean.recordings = static_cast<int>(scores.size());
   if (scores.empty()) return mean;
-  std::vector<std::string> pushed;
-  for (const RecordingScore* s : scores) pushed.push_back(s->pushed);
-  const ScoreClusters clusters = ClustersOf(pushed);
+  const auto weight = [by_frames](const Score* s) {
+    return by_frames ? s->frames - s->first_frame : 1.0;
+  };
+  double total = 0.0;
+  for (const Score* s : scores) total += weight(s);
+  const ScoreClusters clusters = ClustersOf(scores);
   mean.clustered_by = clusters.by;
   mean.clusters = clusters.count;
-  for (const HipMetric& metric : AllHipMetrics()) {
-    const auto value = metric.value;
-    for (const RecordingScore* s : scores) mean.*value += weight(s) * s->*value;
-    mean.*value /= total;
-    std::vector<double> deviations;
-    for (const RecordingScore* s : scores) {
-      deviations.push_back(weight(s) / total * (s->*value - mean.*value));
-    }
-    mean.error.*value = clusters.ErrorOfMean(deviations);
-  }
+  const double first = shares_first ? total : 1.0, last = shares_first ? 1.0 : total;
+  for (const Score* s : scores) mean.value += weight(s) / first * s->value;
+  mean.value /= last;
+  std::vector<Metrics> deviations;
+  for (const Score* s : scores) deviations.push_back(weight(s) / total * (s->value - mean.value));
+  mean.error = clusters.ErrorOfMean(deviations);
   return mean;
+}
+
+ScoreList Scored(const ScoreList& scores) {
+  ScoreList scored;
+  std::copy_if(scores.begin(), scores.end(), std::back_inserter(scored),
+               [](const Score* score) { return score->failure.empty(); });
+  return scored;
 }
 
 }  // namespace
 
+ScoreMeans MeansOf(const std::vector<PendulumRecording>& recordings, const ScoreList& scores,
+                   const LabelKeys& group_by, bool shares_first) {
+  const ScoreList all = Scored(scores);
+  return {Mean(all, false, shares_first), Mean(all, true, shares_first),
+          GroupScores(recordings, scores, group_by,
+                      [=](const ScoreList& group) { return Mean(group, false, shares_first); }),
+          CountWithoutLabel(recordings, scores, group_by)};
+}
+
 ScoreSummary Summarize(const std::vector<PendulumRecording>& recordings,
                        std::vector<RecordingScore> scores, int observed, bool bands,
                        const LabelKeys& group_by) {
-  ScoreSummary summary;
-  summary.observed = observed;
-  summary.bands = bands;
-  summary.recordings = std::move(scores);
-  Group all;
+  ScoreList all;
   std::vector<StepPrediction> steps;
   for (size_t i = 0; i < recordings.size(); ++i) {
-    RecordingScore& score = summary.recordings[i];
-    score.pushed = recordings[i].subject_ids[recordings[i].pushed_person];
-    if (!score.failure.empty()) continue;
-    all.push_back(&score);
-    steps.insert(steps.end(), score.steps.begin(), score.steps.end());
+    scores[i].pushed = recordings[i].subject_ids[recordings[i].pushed_person];
+    all.push_back(&scores[i]);
+    if (!scores[i].failure.empty()) continue;
+    steps.insert(steps.end(), scores[i].steps.begin(), scores[i].steps.end());
   }
-  summary.steps = ScoreSteps(steps);
-  const auto propagation = [](const Group& group) {
+  const auto propagation = [](const ScoreList& group) {
     std::vector<const PropagationScore*> of_group;
-    for (const RecordingScore* score : group) of_group.push_back(&score->propagation);
+    for (const Score* score : group) {
+      of_group.push_back(&static_cast<const RecordingScore*>(score)->propagation);
+    }
     return SummarizePropagation(of_group);
   };
-  summary.propagation = propagation(all);
-  const auto by_setting = GroupScores(recordings, summary.recordings, {kSettingLabel}, propagation);
+  ScoreSummary summary;
+  static_cast<ScoreMeans&>(summary) = MeansOf(recordings, all, group_by, false);
+  summary.observed = observed;
+  summary.bands = bands;
+  summary.steps = ScoreSteps(steps);
+  summary.propagation = propagation(Scored(all));
+  const auto by_setting = GroupScores(recordings, all, {kSettingLabel}, propagation);
   for (const auto& [name, of_setting] : by_setting.at(kSettingLabel)) {
     if (of_setting.recordings > 0) summary.propagation_by_setting[name] = of_setting;
   }
-  summary.mean = Mean(all, false);
-  summary.frame_weighted = Mean(all, true);
-  summary.by = GroupScores(recordings, summary.recordings, group_by,
-                           [](const Group& group) { return Mean(group, false); });
-  LabelKeys keys = group_by;
-  if (!summary.propagation_by_setting.empty()) keys.push_back(kSettingLabel);
-  summary.without_label = CountWithoutLabel(recordings, summary.recordings, keys);
+  if (!summary.propagation_by_setting.empty()) {
+    summary.without_label.merge(CountWithoutLabel(recordings, all, {kSettingLabel}));
+  }
+  summary.recordings = std::move(scores);
   return summary;
 }
 

@@ -11,6 +11,7 @@
 // lies in the 90 % band, crps the mean of the CRPS of x and y: the lower, the better.
 #pragma once
 
+#include <Eigen/Core>
 #include <map>
 #include <nlohmann/ordered_map.hpp>
 #include <string>
@@ -29,6 +30,62 @@
 
 namespace pushid {
 
+// The metrics of hips and of bodies, whose meaning bodies/body_evaluation.h has. A new metric is an
+// entry and a row here and its formula in ScoreHip or ScoreBodies; means, files, tables,
+// cross-validation and batches take it from there.
+enum MetricId : int {
+  kHipAde,
+  kHipFde,
+  kAfterHipAde,  // behind first frames that were seen, and in each third of these
+  kFirstThird,
+  kSecondThird,
+  kLastThird,
+  kInside90,  // coverage and CRPS of the pushed person's bands: x, then y
+  kInside50 = kInside90 + 2,
+  kCrps = kInside50 + 2,
+  kMpjpe,
+  kRelativeMpjpe,
+  kBoundMpjpe,
+  kMble,
+  kFse,
+  kNumMetrics
+};
+using Metrics = Eigen::Array<double, kNumMetrics, 1>;
+using MetricList = std::vector<MetricId>;
+
+struct MetricRow : Metric {
+  bool with_error;  // files and tables have its standard error
+};
+inline constexpr MetricRow kMetrics[kNumMetrics] = {
+    {{"hipADE", "m"}, true},
+    {{"hipFDE", "m"}, true},
+    {{"after_hipADE", "m"}, true},
+    {{"first_third_hipADE", "m"}, true},
+    {{"second_third_hipADE", "m"}, true},
+    {{"last_third_hipADE", "m"}, true},
+    {{"inside90_x", "share"}, true},
+    {{"inside90_y", "share"}, true},
+    {{"inside50_x", "share"}, true},
+    {{"inside50_y", "share"}, true},
+    {{"crps", "m"}, true},
+    {{"MPJPE", "m"}, true},
+    {{"relative_MPJPE", "m"}, true},
+    {{"bound_MPJPE", "m"}, false},
+    {{"MBLE", "m"}, false},
+    {{"FSE", "cm"}, false},
+};
+
+// The metrics of tables of hips. observed: frames that were seen, 0: none. The first is the one
+// that predictors are compared by where there is room for one.
+MetricList TableMetrics(int observed);
+// Metrics of hips that files hold. bands: models have them, baselines do not.
+MetricList MetricsOf(int observed, bool bands);
+inline const MetricList kBodyMetrics = {kMpjpe,      kHipAde, kHipFde, kRelativeMpjpe,
+                                        kBoundMpjpe, kMble,   kFse};
+
+// "hipADE 0.1 m, hipFDE 0.2 m"
+std::string MetricsText(const MetricList& metrics, const Metrics& values, int digits);
+
 // Scores by label, and whose scores are independent of each other: the standard errors of
 // their means.
 //
@@ -45,14 +102,8 @@ struct ScoreClusters {
   std::vector<int> of;  // cluster of each score
 
   // deviations: w (score - mean) of each. 0 of a single cluster.
-  double ErrorOfMean(const std::vector<double>& deviations) const;
-  // Mean of one value for each score, all of one weight.
-  MeanAndError Mean(const std::vector<double>& values) const;
+  Metrics ErrorOfMean(const std::vector<Metrics>& deviations) const;
 };
-
-// pushed: who was pushed, for each score (ids).
-ScoreClusters ClustersOf(const std::vector<std::string>& pushed);
-ScoreClusters ClustersOf(const std::vector<PendulumRecording>& recordings);
 
 // "4 people", "32 recordings"
 std::string ClustersText(ClusterBy by, int count);
@@ -70,50 +121,6 @@ MaybeError CheckGroups(const std::vector<PendulumRecording>& recordings, const L
 // What recordings are called by a key, one text each; empty where they have no such label.
 std::vector<std::string> GroupNames(const std::vector<PendulumRecording>& recordings,
                                     const std::string& key);
-
-// A value for each group: [key][text of the label], keys in the order of the list.
-template <typename T>
-using ByLabel = nlohmann::ordered_map<std::string, std::map<std::string, T>>;
-
-// of: the value of a list of scores. Scores that failed are in no group.
-template <typename Score, typename Of>
-auto GroupScores(const std::vector<PendulumRecording>& recordings, const std::vector<Score>& scores,
-                 const LabelKeys& keys, Of of) {
-  using Group = std::vector<const Score*>;
-  ByLabel<decltype(of(Group()))> by;
-  for (const std::string& key : keys) {
-    const std::vector<std::string> names = GroupNames(recordings, key);
-    std::map<std::string, Group> groups;
-    for (size_t i = 0; i < scores.size(); ++i) {
-      if (scores[i].failure.empty() && !names[i].empty()) groups[names[i]].push_back(&scores[i]);
-    }
-    auto& of_key = by[key];
-    for (const auto& [name, group] : groups) of_key[name] = of(group);
-  }
-  return by;
-}
-
-// By key: how many scores are in none of its groups, for want of the label; only where others have
-// it. Scores that failed do not count.
-using WithoutLabel = std::map<std::string, int>;
-
-template <typename Score>
-WithoutLabel CountWithoutLabel(const std::vector<PendulumRecording>& recordings,
-                               const std::vector<Score>& scores, const LabelKeys& keys) {
-  WithoutLabel counts;
-  for (const std::string& key : keys) {
-    const std::vector<std::string> names = GroupNames(recordings, key);
-    int with = 0, without = 0;
-    for (size_t i = 0; i < scores.size(); ++i) {
-      if (scores[i].failure.empty()) ++(names[i].empty() ? without : with);
-    }
-    if (with > 0 && without > 0) counts[key] = without;
-  }
-  return counts;
-}
-
-// A line for each key: "2 recordings have no setting: they are in no group by setting"
-std::string WithoutLabelText(const WithoutLabel& counts);
 
 // Predictions that ask no model.
 
@@ -138,77 +145,74 @@ inline constexpr Baseline kBaselines[] = {
     {"kinematic", "kinematic", KinematicBaseline, true},
 };
 
-// A new metric is a value here, a row in kHipMetrics and its formula in ScoreHip; means, files,
-// tables, cross-validation and batches take it from there.
-struct HipMetrics {
-  double hip_ade = 0.0, hip_fde = 0.0;
-  // Where first frames were seen; behind them, and in each third of these.
-  double after_hip_ade = 0.0, first_third = 0.0, second_third = 0.0, last_third = 0.0;
-  // Coverage and CRPS of the pushed person's bands.
-  double inside90_x = 0.0, inside90_y = 0.0, inside50_x = 0.0, inside50_y = 0.0, crps = 0.0;
-};
-
-struct HipMetric : Metric {
-  double HipMetrics::*value;
-};
-
-// The first is the one that predictors are compared by where there is room for one.
-inline constexpr HipMetric kHipMetrics[] = {
-    {{"hipADE", "m"}, &HipMetrics::hip_ade},
-    {{"hipFDE", "m"}, &HipMetrics::hip_fde},
-};
-
-// Metrics of predictions that have seen first frames, and of distributions.
-inline constexpr HipMetric kAfterMetric = {{"after_hipADE", "m"}, &HipMetrics::after_hip_ade};
-inline constexpr HipMetric kThirdMetrics[] = {
-    {{"first_third_hipADE", "m"}, &HipMetrics::first_third},
-    {{"second_third_hipADE", "m"}, &HipMetrics::second_third},
-    {{"last_third_hipADE", "m"}, &HipMetrics::last_third},
-};
-inline constexpr HipMetric kBandMetrics[] = {
-    {{"inside90_x", "share"}, &HipMetrics::inside90_x},
-    {{"inside90_y", "share"}, &HipMetrics::inside90_y},
-    {{"inside50_x", "share"}, &HipMetrics::inside50_x},
-    {{"inside50_y", "share"}, &HipMetrics::inside50_y},
-    {{"crps", "m"}, &HipMetrics::crps},
-};
-
-using ShownMetrics = std::vector<HipMetric>;
-
-// The metrics of tables. observed: frames that were seen, 0: none.
-ShownMetrics TableMetrics(int observed);
-// Metrics that files hold. bands: models have them, baselines do not.
-ShownMetrics MetricsOf(int observed, bool bands);
-inline ShownMetrics AllHipMetrics() { return MetricsOf(1, true); }
-
-// "hipADE 0.1 m, hipFDE 0.2 m"
-std::string MetricsText(const HipMetrics& metrics, int digits, int observed = 0);
-
-struct RecordingScore : HipMetrics {
+// A prediction of a recording, of hips or of bodies.
+struct Score {
   std::string id;
-  int frames = 0;
-  std::string failure;                // why there is no score; such a recording is in no mean
+  int frames = 0, first_frame = 1;  // all, and the first that counts
+  Metrics value = Metrics::Zero();
+  std::string failure;      // why there is no score; such a recording is in no mean
+  std::string pushed = {};  // whose id; empty: errors of means are clustered by recordings
+};
+using ScoreList = std::vector<const Score*>;
+ScoreClusters ClustersOf(const ScoreList& scores);
+
+struct RecordingScore : Score {
   bool fell = false;                  // a person leaned beyond 1.0 rad
   bool fell_harder = false;           // FallsWhenPushedHarder, where it was asked
   PropagationScore propagation = {};  // empty for a single person and after a failure
-  std::string pushed = {};            // whose id; Summarize fills it in
   // One per person; empty where the model says nothing of steps, and after a failure.
   std::vector<StepPrediction> steps = {};
   HipPaths predicted = {};  // of more than one person; groups are judged together
 };
 
-struct MeanScore : HipMetrics {
+struct MeanScore {
   int recordings = 0;
-  HipMetrics error;  // standard error of the mean (Summarize)
+  Metrics value = Metrics::Zero(), error = Metrics::Zero();  // mean and its standard error
   ClusterBy clustered_by = ClusterBy::kRecording;
   int clusters = 0;
 };
 
-struct ScoreSummary {
-  std::vector<RecordingScore> recordings;
+// A value for each group: [key][text of the label], keys in the order of the list.
+template <typename T>
+using ByLabel = nlohmann::ordered_map<std::string, std::map<std::string, T>>;
+
+// By key: how many scores are in none of its groups, for want of the label; only where others have
+// it. Scores that failed do not count.
+using WithoutLabel = std::map<std::string, int>;
+WithoutLabel CountWithoutLabel(const std::vector<PendulumRecording>& recordings,
+                               const ScoreList& scores, const LabelKeys& keys);
+// A line for each key: "2 recordings have no setting: they are in no group by setting"
+std::string WithoutLabelText(const WithoutLabel& counts);
+
+// of: the value of a list of scores. Scores that failed are in no group.
+template <typename Of>
+auto GroupScores(const std::vector<PendulumRecording>& recordings, const ScoreList& scores,
+                 const LabelKeys& keys, Of of) {
+  ByLabel<decltype(of(ScoreList()))> by;
+  for (const std::string& key : keys) {
+    const std::vector<std::string> names = GroupNames(recordings, key);
+    std::map<std::string, ScoreList> groups;
+    for (size_t i = 0; i < scores.size(); ++i) {
+      if (scores[i]->failure.empty() && !names[i].empty()) groups[names[i]].push_back(scores[i]);
+    }
+    auto& of_key = by[key];
+    for (const auto& [name, group] : groups) of_key[name] = of(group);
+  }
+  return by;
+}
+
+struct ScoreMeans {
   MeanScore mean, frame_weighted;
   ByLabel<MeanScore> by;
-  WithoutLabel without_label;      // in no group of `by`, or of the propagation by setting
+  WithoutLabel without_label;  // in no group of `by`
+};
+// scores in the order of recordings. shares_first: each score is multiplied by its share of the
+// weight and added, and not the sum divided in the end; files differ by it in the last digit.
+ScoreMeans MeansOf(const std::vector<PendulumRecording>& recordings, const ScoreList& scores,
+                   const LabelKeys& group_by, bool shares_first);
+
+struct ScoreSummary : ScoreMeans {
+  std::vector<RecordingScore> recordings;
   PropagationSummary propagation;  // over recordings of more than one person
   std::map<std::string, PropagationSummary> propagation_by_setting;  // none for single people
   StepScore steps;     // unknown where the model says nothing of them

@@ -128,10 +128,9 @@ std::string StepShares(const Futures& futures, size_t person) {
 }  // namespace
 
 std::string LastFrameText(const Futures& futures) {
-  std::vector<std::string> titles = {"person", "x m", "5 %", "95 %", "y m", "5 %", "95 %"};
-  std::vector<bool> left(titles.size(), false);
-  if (!futures.steps.empty()) titles.push_back("steps: share"), left.push_back(true);
-  TextTable table(titles, left);
+  std::vector<std::string> titles = {">person", ">x m", ">5 %", ">95 %", ">y m", ">5 %", ">95 %"};
+  if (!futures.steps.empty()) titles.push_back("steps: share");
+  TextTable table(titles);
   if (futures.paths.empty()) return "";
   for (size_t n = 0; n < futures.paths[0].size(); ++n) {
     std::vector<std::string> row = {std::to_string(n)};

@@ -168,9 +168,8 @@ std::string ModelVerdictText(const ModelVerdict& v) {
 }
 
 TextTable AssumptionTable(const FitResult& result) {
-  TextTable table({"taken as known", "stated", "recordings want", "t (stated in it)", "p",
-                   "by itself moves most"},
-                  {true, false, false, false, false, true});
+  TextTable table({"taken as known", ">stated", ">recordings want", ">t (stated in it)", ">p",
+                   "by itself moves most"});
   for (const AssumptionTest& test : result.verdict.assumptions) {
     std::string moves = test.moves.empty() ? "" : "nothing";
     double most = 1e-6;  // standard errors: differences of rollouts round by that

@@ -17,13 +17,11 @@ constexpr double kStopsEarly = 0.15;  // share of the recordings that stop the t
 constexpr int kScoredDraws = 3;       // of the latent variable, whose scores are averaged
 
 // Metric by metric; a failure is a failure of all.
-BodyScore MeanScore(const std::vector<BodyScore>& scores) {
+BodyScore MeanOfDraws(const std::vector<BodyScore>& scores) {
   BodyScore mean = scores.front();
-  for (double& value : mean.value) value = 0.0;
+  mean.value.setZero();
   for (const BodyScore& score : scores) {
-    for (int m = 0; m < kNumBodyMetrics; ++m) {
-      mean.value[m] += score.value[m] / static_cast<double>(scores.size());
-    }
+    mean.value += score.value / static_cast<double>(scores.size());
   }
   return mean;
 }
@@ -54,7 +52,7 @@ Result<BodyScores> ScoreTrained(const RestorationFile& file, const IdentifiedMod
     if (MaybeError error = ChooseLatent(drawn, restoration.value().get())) return *error;
     ScoreDrawn(model, *restoration.value(), options, recording, &scores);
   }
-  scores["restoration_drawn"] = {MeanScore(scores["restoration_drawn"])};
+  scores["restoration_drawn"] = {MeanOfDraws(scores["restoration_drawn"])};
   return scores;
 }
 

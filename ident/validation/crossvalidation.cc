@@ -253,15 +253,13 @@ FoldScore ScoreOf(const Fold& fold, const FoldPrediction& prediction, Sums* sums
     }
     ++scored;
     ++sums->counts[fold.held_out[k]];
-    for (const HipMetric& metric : AllHipMetrics()) {
-      sum.*metric.value += score.*metric.value;
-      result.*metric.value += score.*metric.value;
-    }
+    sum.value += score.value;
+    result.value += score.value;
     sum.propagation.Add(score.propagation);
     AddMargins(score.steps, &sum.steps);
     propagation.push_back(&score.propagation);
   }
-  for (const HipMetric& metric : AllHipMetrics()) result.*metric.value /= std::max(1, scored);
+  result.value /= std::max(1, scored);
   result.propagation = SummarizePropagation(propagation);
   return result;
 }
@@ -302,7 +300,7 @@ ScoreSummary SummaryOf(const std::vector<PendulumRecording>& recordings, const P
     RecordingScore& mean = sums.scores[i];
     if (sums.counts[i] == 0 && mean.failure.empty()) continue;  // never held out
     if (sums.counts[i] > 0) {
-      for (const HipMetric& metric : AllHipMetrics()) mean.*metric.value /= sums.counts[i];
+      mean.value /= sums.counts[i];
       mean.propagation.Divide(sums.counts[i]);
       for (StepPrediction& step : mean.steps) step.margin /= sums.counts[i];
     }
@@ -346,29 +344,24 @@ PairedDifference Compare(const CrossValidation& a, const CrossValidation& b) {
   difference.b = b.predictor;
   std::map<std::string, const RecordingScore*> of_a;
   for (const RecordingScore& score : a.summary.recordings) of_a[score.id] = &score;
-  std::vector<HipMetrics> pairs;
-  std::vector<std::string> pushed;
+  std::vector<Score> pairs;
   for (const RecordingScore& score : b.summary.recordings) {
     const auto found = of_a.find(score.id);
     if (found == of_a.end() || !score.failure.empty() || !found->second->failure.empty()) continue;
-    HipMetrics pair;
-    for (const HipMetric& metric : AllHipMetrics()) {
-      pair.*metric.value = score.*metric.value - found->second->*metric.value;
-    }
-    pairs.push_back(pair);
-    pushed.push_back(score.pushed);
+    pairs.push_back(score);
+    pairs.back().value -= found->second->value;
   }
-  const ScoreClusters clusters = ClustersOf(pushed);
+  ScoreList all;
+  for (const Score& pair : pairs) all.push_back(&pair);
+  const ScoreClusters clusters = ClustersOf(all);
   difference.clustered_by = clusters.by;
   difference.clusters = clusters.count;
   difference.recordings = static_cast<int>(pairs.size());
-  for (const HipMetric& metric : AllHipMetrics()) {
-    std::vector<double> values;
-    for (const HipMetrics& pair : pairs) values.push_back(pair.*metric.value);
-    const MeanAndError mean = clusters.Mean(values);
-    difference.*metric.value = mean.mean;
-    difference.error.*metric.value = mean.error;
-  }
+  const double n = difference.recordings;
+  for (const Score& pair : pairs) difference.value += pair.value / n;
+  std::vector<Metrics> deviations;
+  for (const Score& pair : pairs) deviations.push_back((pair.value - difference.value) / n);
+  difference.error = clusters.ErrorOfMean(deviations);
   return difference;
 }
 

@@ -35,8 +35,9 @@ struct Predictor {
   bool bands = false;  // whether they come with bands
 };
 
-struct FoldScore : HipMetrics {  // means over the fold's recordings
+struct FoldScore {
   std::string name;
+  Metrics value = Metrics::Zero();  // means over the fold's recordings
   int held_out = 0;
   int failures = 0, falls = 0;
   int falls_harder = 0;  // FallsWhenPushedHarder (evaluation.h)
@@ -67,12 +68,9 @@ CrossValidation CrossValidate(const std::vector<PendulumRecording>& recordings,
                               const LabelKeys& group_by = UsualGroups());
 
 // b minus a, recording by recording, with the standard error of its mean.
-struct PairedDifference : HipMetrics {
+struct PairedDifference : MeanScore {
   std::string a, b;
-  int recordings = 0, observed = 0;
-  HipMetrics error;  // clustered as those of means
-  ClusterBy clustered_by = ClusterBy::kRecording;
-  int clusters = 0;
+  int observed = 0;
 };
 PairedDifference Compare(const CrossValidation& a, const CrossValidation& b);
 

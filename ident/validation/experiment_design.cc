@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
@@ -47,10 +48,11 @@ MatrixXd SpreadOf(const MatrixXd& clustered, const MatrixXd& naive, int groups) 
   return root * root.transpose();
 }
 
-// Where the parameter stands among those with an error; past them for "all".
+// The column of errors of a parameter, of which "all" has the last; one more where there is none.
 size_t IndexOf(const ExperimentDesign& design, const std::string& parameter) {
   const std::vector<std::string>& names = design.parameters;
-  return static_cast<size_t>(std::find(names.begin(), names.end(), parameter) - names.begin());
+  const auto at = std::find(names.begin(), names.end(), parameter);
+  return (at - names.begin()) + (at == names.end() && parameter != "all" ? 1 : 0);
 }
 
 }  // namespace
@@ -121,9 +123,10 @@ PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estim
   return candidate;
 }
 
-ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
-                                   const Uncertainty& uncertainty, const Covariance& by_recording,
-                                   const std::vector<CandidatePush>& candidates) {
+Result<ExperimentDesign> DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
+                                           const Uncertainty& uncertainty,
+                                           const Covariance& by_recording,
+                                           const std::vector<CandidatePush>& candidates) {
   ExperimentDesign design;
   std::vector<int> known;
   for (int i = 0; i < problem.map().num_shared(); ++i) {
@@ -138,9 +141,8 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
   const int size = static_cast<int>(known.size());
   const int groups = static_cast<int>(problem.recordings().size());
   if (size == 0 || groups <= size) {
-    design.refused = "a design needs more recordings (" + std::to_string(groups) +
-                     ") than free parameters (" + std::to_string(size) + ")";
-    return design;
+    return Error{"a design needs more recordings (" + std::to_string(groups) +
+                 ") than free parameters (" + std::to_string(size) + ")"};
   }
   const MatrixXd now = by_recording.scatter.Covariance()(known, known), present = Inverse(now);
   const MatrixXd spread = SpreadOf(now, by_recording.naive(known, known), groups);
@@ -153,22 +155,19 @@ ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& es
     const MatrixXd told =
         SolveGeneral(MatrixXd::Identity(size, size) + information * spread, information);
     const MatrixXd then = Inverse(present + told);
-    DesignRow row{push, {}, std::pow(then.determinant() / now.determinant(), 0.5 / size)};
+    DesignRow row{push, {}};
     for (int i = 0; i < size; ++i) row.error_ratio.push_back(std::sqrt(then(i, i) / now(i, i)));
+    row.error_ratio.push_back(std::pow(then.determinant() / now.determinant(), 0.5 / size));
     design.rows.push_back(row);
   }
   return design;
 }
 
-ExperimentDesign DesignExperiments(const std::vector<PendulumRecording>& recordings,
-                                   const FitResult& result) {
+Result<ExperimentDesign> DesignExperiments(const std::vector<PendulumRecording>& recordings,
+                                           const FitResult& result) {
   const FitProblem problem(recordings, result.options);
   const auto estimate = problem.PointAt(result.starts[result.best_start].to.Flat());
-  if (!estimate) {
-    ExperimentDesign none;
-    none.refused = "a design needs the recordings that were fitted, as they were then";
-    return none;
-  }
+  if (!estimate) return Error{"a design needs the recordings that were fitted, as they were then"};
   const ScoredFit fit = ScoreAt(problem, *estimate);
   return DesignExperiments(
       problem, *estimate, result.uncertainty,
@@ -178,34 +177,31 @@ ExperimentDesign DesignExperiments(const std::vector<PendulumRecording>& recordi
 
 Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
                                           const std::string& parameter) {
-  if (!design.refused.empty()) return Error{design.refused};
   const size_t index = IndexOf(design, parameter);
-  const bool all = parameter == "all";
-  if (!all && index == design.parameters.size()) {
-    std::string known = "all";
-    for (const std::string& name : design.parameters) known += ", " + name;
-    return Error{"there is no error of '" + parameter + "' to reduce; choose from " + known};
+  if (index > design.parameters.size()) {
+    return Error{"there is no error of '" + parameter + "' to reduce; choose from all, " +
+                 Joined(design.parameters, ", ")};
   }
   std::vector<DesignRow> rows = design.rows;
-  std::stable_sort(rows.begin(), rows.end(), [&](const DesignRow& a, const DesignRow& b) {
-    return all ? a.volume_ratio < b.volume_ratio : a.error_ratio[index] < b.error_ratio[index];
+  std::stable_sort(rows.begin(), rows.end(), [index](const DesignRow& a, const DesignRow& b) {
+    return a.error_ratio[index] < b.error_ratio[index];
   });
   return rows;
 }
 
 Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
-                              int count) {
+                              size_t count) {
   const Result<std::vector<DesignRow>> ranked = RankedRows(design, parameter);
   if (!ranked.ok()) return ranked.error();
-  const bool all = parameter == "all";
+  const size_t index = IndexOf(design, parameter), all = design.parameters.size();
   std::vector<std::string> header = {"one more push", "m/s^2", "height", "s", "kg", "sensor"};
-  if (!all) header.push_back("error of " + parameter);
+  if (index != all) header.push_back("error of " + parameter);
   header.push_back("mean of all errors");
   TextTable table = TextTable::OfNumbers(header);
   const std::vector<DesignRow>& rows = ranked.value();
-  const size_t size = rows.size(), shown = std::min(size, static_cast<size_t>(count));
-  for (size_t i = 0; i < size; i = i + 1 < shown ? i + 1 : std::max(i + 1, size - 1)) {
-    if (i >= shown) table.AddGap();
+  for (size_t i = 0; i < rows.size();
+       i = i + 1 < count ? i + 1 : std::max(i + 1, rows.size() - 1)) {
+    if (i >= count) table.AddGap();
     const CandidatePush& push = rows[i].push;
     const auto direction =
         std::find(std::begin(kDirections), std::end(kDirections), push.direction_deg) - kDirections;
@@ -213,22 +209,24 @@ Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string&
     std::vector<std::string> cells = {kDirectionNames[direction], Rounded(push.acceleration, 3),
                                       Rounded(push.height, 2),    Rounded(push.duration_s, 2),
                                       Rounded(push.mass_kg, 3),   push.sensor ? "yes" : "no"};
-    if (!all) cells.push_back(change(rows[i].error_ratio[IndexOf(design, parameter)]));
-    cells.push_back(change(rows[i].volume_ratio));
+    if (index != all) cells.push_back(change(rows[i].error_ratio[index]));
+    cells.push_back(change(rows[i].error_ratio[all]));
     table.Add(cells);
   }
   return table;
 }
 
-Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter) {
-  if (!design.refused.empty()) return "no further push is proposed: " + design.refused + "\n";
+Result<std::string> DesignText(const Result<ExperimentDesign>& result,
+                               const std::string& parameter) {
+  if (!result.ok()) return "no further push is proposed: " + result.error().message + "\n";
+  const ExperimentDesign& design = result.value();
   const Result<TextTable> table = DesignTable(design, parameter, 10);
   if (!table.ok()) return table.error();
-  std::string text = "effect of one more recording, best first; last row: the least useful of " +
-                     std::to_string(design.rows.size()) + " candidates\n" +
-                     table.value().ToString();
-  if (parameter == "all") return text;
+  const std::string text = "effect of one more recording, best first; last row: the least useful " +
+                           ("of " + std::to_string(design.rows.size())) + " candidates\n" +
+                           table.value().ToString();
   const size_t index = IndexOf(design, parameter);
+  if (index == design.parameters.size()) return text;
   return text + "now: " + parameter + " +- " + Rounded(design.standard_error[index], 3) + " " +
          design.units[index] + "\n";
 }

@@ -31,12 +31,12 @@ struct CandidatePush {
 
 struct DesignRow {
   CandidatePush push;
-  std::vector<double> error_ratio;  // standard error with one more such recording over the present
-  double volume_ratio = 1.0;  // of det V, the P-th root of its square root: mean of the errors
+  // Standard errors with one more such recording over the present ones; behind them their mean, the
+  // P-th root of the square root of the ratio of det V.
+  std::vector<double> error_ratio;
 };
 
 struct ExperimentDesign {
-  std::string refused;  // why there is none
   std::vector<std::string> parameters, units;
   std::vector<double> standard_error;  // now
   std::vector<DesignRow> rows;         // candidates that fall are left out
@@ -50,21 +50,24 @@ std::vector<CandidatePush> DefaultCandidates(const std::vector<PendulumRecording
 PendulumRecording MakeCandidate(const FitProblem& problem, const FitPoint& estimate,
                                 const CandidatePush& push);
 
-// by_recording: the covariance at the estimate by clusters of one recording each.
-ExperimentDesign DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
-                                   const Uncertainty& uncertainty, const Covariance& by_recording,
-                                   const std::vector<CandidatePush>& candidates);
+// by_recording: the covariance at the estimate by clusters of one recording each. Errors: too few
+// recordings, or others than were fitted.
+Result<ExperimentDesign> DesignExperiments(const FitProblem& problem, const FitPoint& estimate,
+                                           const Uncertainty& uncertainty,
+                                           const Covariance& by_recording,
+                                           const std::vector<CandidatePush>& candidates);
 // With the default candidates, of a finished fit to these recordings.
-ExperimentDesign DesignExperiments(const std::vector<PendulumRecording>& recordings,
-                                   const FitResult& result);
+Result<ExperimentDesign> DesignExperiments(const std::vector<PendulumRecording>& recordings,
+                                           const FitResult& result);
 
 // By what they bring to a parameter, or to all together ("all"), best first.
 Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
                                           const std::string& parameter);
 // The best `count` of them, and after a gap the least useful one.
 Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
-                              int count);
-// The best ten, with a heading and the present error.
-Result<std::string> DesignText(const ExperimentDesign& design, const std::string& parameter);
+                              size_t count);
+// The best ten, with a heading and the present error; or why there is no design.
+Result<std::string> DesignText(const Result<ExperimentDesign>& design,
+                               const std::string& parameter);
 
 }  // namespace pushid

@@ -1,13 +1,10 @@
-// ident: scores to JSON and back, and in words and tables. Each list of entries of the JSON serves
-// writing and reading alike (parameters/json_archive.h). Units stand in the keys. Which metrics
-// there are depends on what was asked of the predictor, so the lists of what holds metrics take
-// those that are shown.
+// ident: scores as JSON, in words and in tables. Which metrics there are depends on what was asked
+// of the predictor.
 #include "ident/validation/scores_report.h"
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <tuple>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
@@ -37,37 +34,35 @@ std::string GroupTitle(const std::string& key, const ScoreSummary& summary) {
   return (one_of_several ? "pushed person" : key) + " ";
 }
 
-std::vector<std::string> MeanCells(const MeanScore& mean, const ShownMetrics& shown) {
+std::vector<std::string> MeanCells(const MeanScore& mean, const MetricList& shown) {
   std::vector<std::string> cells;
-  for (const HipMetric& metric : shown) {
-    cells.push_back(ScoreText(mean.*metric.value, mean.error.*metric.value, mean));
-  }
+  for (MetricId m : shown) cells.push_back(ScoreText(mean.value[m], mean.error[m], mean));
   return cells;
 }
 
 // Cells without errors; "-" where there is no score.
-std::vector<std::string> PlainCells(const HipMetrics& metrics, const ShownMetrics& shown,
+std::vector<std::string> PlainCells(const Metrics& values, const MetricList& shown,
                                     bool known = true) {
   std::vector<std::string> cells;
-  for (const HipMetric& metric : shown) {
-    cells.push_back(known ? Rounded(metrics.*metric.value, 3) : "-");
-  }
+  for (MetricId m : shown) cells.push_back(known ? Rounded(values[m], 3) : "-");
   return cells;
 }
 
-std::vector<std::string> Titles(const ShownMetrics& shown) {
+// The heads of columns of numbers.
+std::vector<std::string> Titles(const MetricList& shown) {
   std::vector<std::string> titles;
-  for (const HipMetric& metric : shown) titles.push_back(metric.Title());
+  for (MetricId m : shown) titles.push_back(">" + kMetrics[m].Title());
   return titles;
 }
 
-std::vector<std::string> MetricNames(const ShownMetrics& shown) {
+// "hipADE / hipFDE in m"
+std::string NamesText(const MetricList& shown) {
   std::vector<std::string> names;
-  for (const HipMetric& metric : shown) names.push_back(metric.name);
-  return names;
+  for (MetricId m : shown) names.push_back(kMetrics[m].name);
+  return Joined(names, " / ") + " in " + kMetrics[shown.front()].unit;
 }
 
-std::string MeanText(const MeanScore& mean, const ShownMetrics& shown) {
+std::string MeanText(const MeanScore& mean, const MetricList& shown) {
   return Joined(MeanCells(mean, shown), " / ");
 }
 
@@ -83,13 +78,6 @@ std::string ErrorsText(const ScoreSummary& summary) {
          (people ? "; within one person, over recordings" : "") + "\n";
 }
 
-// Text stands to the left in the first column and in those from `text_from` on.
-TextTable TableOf(const std::vector<std::string>& header, size_t text_from) {
-  std::vector<bool> left(header.size(), false);
-  for (size_t i = 0; i < left.size(); ++i) left[i] = i == 0 || i >= text_from;
-  return TextTable(header, left);
-}
-
 std::string ObservedText(const ScoreSummary& summary) {
   if (summary.observed == 0) return "";
   return "the first " + CountText(summary.observed, "frame was", "frames were") +
@@ -99,17 +87,15 @@ std::string ObservedText(const ScoreSummary& summary) {
 // Coverage of predictions that are distributions.
 std::string BandsText(const std::string& name, const ScoreSummary& summary) {
   if (!summary.bands) return "";
-  const auto text = [&](double HipMetrics::*value) {
-    return ScoreText(summary.mean.*value, summary.mean.error.*value, summary.mean);
+  const auto text = [&summary](int metric) {
+    return ScoreText(summary.mean.value[metric], summary.mean.error[metric], summary.mean);
   };
-  return name + ": 90 % bands hold " + text(&HipMetrics::inside90_x) + " (x) and " +
-         text(&HipMetrics::inside90_y) +
-         " (y) of the predicted frames of the pushed person, 50 % " +
-         text(&HipMetrics::inside50_x) + " and " + text(&HipMetrics::inside50_y) + "; CRPS " +
-         text(&HipMetrics::crps) + " m\n";
+  return name + ": 90 % bands hold " + text(kInside90) + " (x) and " + text(kInside90 + 1) +
+         " (y) of the predicted frames of the pushed person, 50 % " + text(kInside50) + " and " +
+         text(kInside50 + 1) + "; CRPS " + text(kCrps) + " m\n";
 }
 
-void AddGroups(const std::vector<const ScoreSummary*>& summaries, const ShownMetrics& shown,
+void AddGroups(const std::vector<const ScoreSummary*>& summaries, const MetricList& shown,
                TextTable* table) {
   for (const auto& [key, groups] : summaries[0]->by) {
     if (groups.size() < 2) continue;
@@ -128,48 +114,41 @@ void AddGroups(const std::vector<const ScoreSummary*>& summaries, const ShownMet
 
 std::string EvaluationText(const Evaluation& evaluation, bool per_recording) {
   std::string text;
-  const ShownMetrics shown = TableMetrics(evaluation.model.observed);
+  const MetricList shown = TableMetrics(evaluation.model.observed);
   if (per_recording) {
-    std::vector<std::string> header = {"recording", "frames"};
+    std::vector<std::string> header = {"recording", ">frames"};
     Append(Titles(shown), &header);
-    for (const BaselineSummary& baseline : evaluation.baselines) header.push_back(baseline.name);
+    for (const BaselineSummary& baseline : evaluation.baselines) {
+      header.push_back(">" + baseline.name);
+    }
     header.push_back("");
-    TextTable table = TableOf(header, header.size() - 1);
+    TextTable table(header);
     for (size_t i = 0; i < evaluation.model.recordings.size(); ++i) {
       const RecordingScore& r = evaluation.model.recordings[i];
       std::vector<std::string> row = {r.id, std::to_string(r.frames)};
-      Append(PlainCells(r, shown, r.failure.empty()), &row);
+      Append(PlainCells(r.value, shown, r.failure.empty()), &row);
       for (const BaselineSummary& baseline : evaluation.baselines) {
-        row.push_back(PlainCells(baseline.summary.recordings[i], shown)[0]);
+        row.push_back(PlainCells(baseline.summary.recordings[i].value, shown)[0]);
       }
       row.push_back(r.failure);
       table.Add(row);
     }
     text += table.ToString() + "\n";
   }
-  std::vector<std::string> header = {
-      Joined(MetricNames(shown), " / ") + " in " + kHipMetrics[0].unit, "recordings", "model"};
-  for (const BaselineSummary& baseline : evaluation.baselines) header.push_back(baseline.name);
-  std::vector<bool> left(header.size(), true);
-  left[1] = false;
-  TextTable table(header, left);
   const ScoreSummary& m = evaluation.model;
-  std::vector<const ScoreSummary*> baselines;
-  for (const BaselineSummary& baseline : evaluation.baselines) {
-    baselines.push_back(&baseline.summary);
-  }
-  // pick: the mean of a summary.
-  const auto add = [&](const std::string& name, const auto& pick) {
-    std::vector<std::string> row = {name, std::to_string(pick(m).recordings),
-                                    MeanText(pick(m), shown)};
-    for (const ScoreSummary* baseline : baselines) row.push_back(MeanText(pick(*baseline), shown));
-    table.Add(row);
-  };
-  add("mean over recordings", [](const ScoreSummary& of) -> const MeanScore& { return of.mean; });
-  add("frame-weighted",
-      [](const ScoreSummary& of) -> const MeanScore& { return of.frame_weighted; });
+  std::vector<std::string> header = {NamesText(shown), ">recordings", "model"};
   std::vector<const ScoreSummary*> all = {&m};
-  all.insert(all.end(), baselines.begin(), baselines.end());
+  for (const BaselineSummary& baseline : evaluation.baselines) {
+    header.push_back(baseline.name);
+    all.push_back(&baseline.summary);
+  }
+  TextTable table(header);
+  for (const auto& [name, mean] : {std::pair("mean over recordings", &ScoreMeans::mean),
+                                   {"frame-weighted", &ScoreMeans::frame_weighted}}) {
+    std::vector<std::string> row = {name, std::to_string((m.*mean).recordings)};
+    for (const ScoreSummary* one : all) row.push_back(MeanText(one->*mean, shown));
+    table.Add(row);
+  }
   AddGroups(all, shown, &table);
   text += table.ToString() + WithoutLabelText(m.without_label) + ErrorsText(m) + ObservedText(m) +
           BandsText("model", m);
@@ -259,8 +238,8 @@ namespace {
 // excludes zero.
 std::string ConclusionText(const PairedDifference& d) {
   if (d.clusters < 2) return d.b + " cannot be compared with " + d.a + ".";
-  const HipMetric& metric = kHipMetrics[0];
-  const double change = d.*metric.value, error = d.error.*metric.value;
+  const Metric& metric = kMetrics[kHipAde];
+  const double change = d.value[kHipAde], error = d.error[kHipAde];
   const std::string by = Rounded(std::abs(change), 2) + " +- " + Rounded(error, 2) + " " +
                          metric.unit + " of " + metric.name;
   const double half = StudentQuantile95(d.clusters - 1.0) * error;
@@ -277,18 +256,14 @@ std::string ConclusionText(const PairedDifference& d) {
 
 // A table by --group_by; empty where no label tells recordings apart.
 std::string HeldOutGroupsText(const std::vector<CrossValidation>& candidates,
-                              const ShownMetrics& shown) {
-  std::vector<std::string> header = {
-      Joined(MetricNames(shown), " / ") + " in " + kHipMetrics[0].unit + ", held out",
-      "recordings"};
+                              const MetricList& shown) {
+  std::vector<std::string> header = {NamesText(shown) + ", held out", ">recordings"};
   std::vector<const ScoreSummary*> summaries;
   for (const CrossValidation& candidate : candidates) {
     header.push_back(candidate.predictor);
     summaries.push_back(&candidate.summary);
   }
-  std::vector<bool> left(header.size(), true);
-  left[1] = false;
-  TextTable table(header, left);
+  TextTable table(header);
   AddGroups(summaries, shown, &table);
   return table.empty() ? "" : "\n" + table.ToString();
 }
@@ -299,28 +274,26 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
   std::string text;
   if (candidates.empty()) return text;
   const bool groups = candidates[0].summary.propagation.recordings > 0;
-  const ShownMetrics shown = TableMetrics(candidates[0].summary.observed);
-  std::vector<std::string> header = {"fold", "held out"};
+  const MetricList shown = TableMetrics(candidates[0].summary.observed);
+  std::vector<std::string> header = {"fold", ">held out"};
   Append(Titles(shown), &header);
-  Append({"failed", "fell"}, &header);
-  if (groups) Append({"onset error", "missed movers", "false movers"}, &header);
-  TextTable folds = TableOf(header, header.size());
+  Append({">failed", ">fell"}, &header);
+  if (groups) Append({">onset error", ">missed movers", ">false movers"}, &header);
+  TextTable folds(header);
   for (const FoldScore& fold : candidates[0].folds) {
     std::vector<std::string> row = {fold.name, std::to_string(fold.held_out)};
-    Append(PlainCells(fold, shown), &row);
+    Append(PlainCells(fold.value, shown), &row);
     Append({std::to_string(fold.failures), std::to_string(fold.falls)}, &row);
     if (groups) Append(FoldPropagationCells(fold.propagation), &row);
     folds.Add(row);
   }
   text += folds.ToString() + "\n";
-  const HipMetric& main = kHipMetrics[0];
   header = {"held out"};
-  Append(Titles(shown), &header);
-  Append({"frame-weighted", std::string(main.name) + " - " + candidates[0].predictor}, &header);
-  std::vector<bool> left(header.size(), true);
-  Append({"failed", "fell", "fell harder", "settle", groups ? "harder, farther" : ""}, &header);
-  left.resize(header.size(), false);
-  TextTable table(header, left);
+  for (MetricId m : shown) header.push_back(kMetrics[m].Title());
+  Append({"frame-weighted", kMetrics[kHipAde].name + (" - " + candidates[0].predictor), ">failed",
+          ">fell", ">fell harder", ">settle", groups ? ">harder, farther" : ">"},
+         &header);
+  TextTable table(header);
   const auto folds_that = [](int number, const CrossValidation& candidate) {
     return candidate.fits > 0 ? std::to_string(number) + " of " + std::to_string(candidate.fits)
                               : "";
@@ -330,9 +303,9 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
     const bool compared = &candidate != &candidates[0] && difference.recordings > 0;
     std::vector<std::string> row = {candidate.predictor};
     Append(MeanCells(candidate.summary.mean, shown), &row);
-    Append({Joined(PlainCells(candidate.summary.frame_weighted, shown), " / "),
-            compared ? Rounded(difference.*main.value, 2) + " +- " +
-                           Rounded(difference.error.*main.value, 2)
+    Append({Joined(PlainCells(candidate.summary.frame_weighted.value, shown), " / "),
+            compared ? Rounded(difference.value[kHipAde], 2) + " +- " +
+                           Rounded(difference.error[kHipAde], 2)
                      : "",
             std::to_string(candidate.failures), std::to_string(candidate.falls),
             candidate.fits > 0 ? std::to_string(candidate.falls_harder) : "",
@@ -368,17 +341,11 @@ std::string CrossValidationText(const std::vector<CrossValidation>& candidates) 
          (metrics.empty() ? "" : "\n" + GroupMetricsText(metrics));
 }
 
-// Scores of who steps.
+void Fields(JsonWriter& a, StepFifth& f) { PUSHID_FIELDS(a, f, tracks, predicted, observed); }
 
-template <class Archive>
-void Fields(Archive& a, StepFifth& f) {
-  PUSHID_FIELDS(a, f, tracks, predicted, observed);
-}
-
-template <class Archive>
-void Fields(Archive& a, StepScore& s) {
+void Fields(JsonWriter& a, StepScore& s) {
   PUSHID_FIELDS(a, s, tracks, stepped, people, brier, brier_error, auc, auc_error, fifths);
-  if (!a.Has("lift_off", s.lift_off.people > 0)) return;
+  if (s.lift_off.people == 0) return;
   a.Group("lift_off", [&](auto& g) {
     g("people", s.lift_off.people);
     g("median_error_s", s.lift_off.median);
@@ -400,36 +367,23 @@ void Fields(JsonWriter& a, StepPrediction& s) {
   a.OrNull("travel_m", travel);
 }
 
-// Propagation.
-
-template <class Archive>
-void Fields(Archive& a, PropagationMean& m) {
+void Fields(JsonWriter& a, PropagationMean& m) {
   a("value", m.value);
   a("standard_error", m.error);
   a("of", m.weight);
 }
 
-// Null where it is not known.
-template <class Archive>
-void FigureField(Archive& a, const char* key, PropagationMean& mean) {
-  std::optional<PropagationMean> known;
-  if (mean.known()) known = mean;
-  a.OrNull(key, known);
-  if (known) mean = *known;
-}
-
-template <class Archive>
-void Fields(Archive& a, PropagationSummary& s) {
+void Fields(JsonWriter& a, PropagationSummary& s) {
   a("recordings", s.recordings);
-  a.Written("onset_distance_m", [] { return kOnsetDistance; });
+  a("onset_distance_m", kOnsetDistance);
   PUSHID_FIELDS(a, s, movers, bystanders, missed_movers, false_movers);
   for (int i = 0; i < kNumPropagationFigures; ++i) {
-    FigureField(a, Info(static_cast<PropagationFigure>(i)).key, s.figures[i]);
+    const PropagationMean& mean = s.figures[i];
+    a.OrNull(Info(static_cast<PropagationFigure>(i)).key,
+             mean.known() ? std::optional(mean) : std::nullopt);
   }
-  if constexpr (!Archive::kReads) {
-    a.OrNull("speed_measured_m_per_s", Speed(s.figures[kSlownessMeasured]));
-    a.OrNull("speed_predicted_m_per_s", Speed(s.figures[kSlownessPredicted]));
-  }
+  a.OrNull("speed_measured_m_per_s", Speed(s.figures[kSlownessMeasured]));
+  a.OrNull("speed_predicted_m_per_s", Speed(s.figures[kSlownessPredicted]));
 }
 
 void Fields(JsonWriter& a, PersonPropagation& p) {
@@ -443,106 +397,74 @@ void Fields(JsonWriter& a, PersonPropagation& p) {
   a("contact_work_J", p.contact_work);
 }
 
-// Errors of the hip.
-
-template <class Archive>
-void MetricFields(Archive& a, HipMetrics& metrics, const ShownMetrics& shown) {
-  for (const HipMetric& metric : shown) a(metric.Key().c_str(), metrics.*metric.value);
-}
-
-template <class Archive>
-void ErrorFields(Archive& a, HipMetrics& errors, const ShownMetrics& shown) {
-  for (const HipMetric& metric : shown) a(metric.ErrorKey().c_str(), errors.*metric.value);
-}
-
-template <class Archive>
-void MeanFields(Archive& a, MeanScore& mean, const ShownMetrics& shown) {
-  MetricFields(a, mean, shown);
-  ErrorFields(a, mean.error, shown);
-  a("recordings", mean.recordings);
-  if (a.Has("clustered_by")) {
-    PUSHID_FIELDS(a, mean, clustered_by, clusters);
-  } else {  // older files: they were recordings
-    mean.clusters = mean.recordings;
-  }
-}
-
-template <class Archive>
-void RecordingFields(Archive& a, RecordingScore& r, const ScoreSummary& of) {
-  PUSHID_FIELDS(a, r, id, frames);
-  if (a.Has("failure", !r.failure.empty())) {
-    a("failure", r.failure);
-  } else {
-    MetricFields(a, r, MetricsOf(of.observed, of.bands));
-  }
-  a("fell", r.fell);
-  // Entries for other readers than ours.
-  if constexpr (!Archive::kReads) {
-    if (!r.propagation.people.empty()) a("people", r.propagation.people);
-    if (!r.steps.empty()) a("predicted_steps", r.steps);
-  }
-}
-
-// A reader has to know `bands` and the groups' keys and names: what the file has.
-template <class Archive>
-void SummaryFields(Archive& a, ScoreSummary& s, bool with_recordings) {
-  if (a.Has("observed", s.observed > 0)) a("observed", s.observed);
-  const ShownMetrics shown = MetricsOf(s.observed, s.bands);
-  const auto mean = [&shown](auto& g, const std::string& key, MeanScore& of) {
-    g.Group(key.c_str(), [&](auto& inner) { MeanFields(inner, of, shown); });
-  };
-  if (with_recordings) {
-    a.Rows("recordings", std::tie(s.recordings),
-           [&s](auto& row, size_t i) { RecordingFields(row, s.recordings[i], s); });
-  }
-  mean(a, "mean", s.mean);
-  mean(a, "frame_weighted", s.frame_weighted);
-  for (auto& [key, groups] : s.by) {
-    auto& means = groups;
-    a.Group(("by_" + key).c_str(), [&](auto& g) {
-      for (auto& [name, of_group] : means) mean(g, name, of_group);
-    });
-  }
-  if (a.Has("without_label", !s.without_label.empty())) a("without_label", s.without_label);
-  if (a.Has("propagation", s.propagation.recordings > 0)) {
-    a.Group("propagation", [&s](auto& g) {
-      Fields(g, s.propagation);
-      if (g.Has("by_setting", !s.propagation_by_setting.empty())) {
-        g("by_setting", s.propagation_by_setting);
-      }
-    });
-  }
-  if (a.Has("who_steps", s.steps.known())) a("who_steps", s.steps);
-}
-
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-// A table of folds: those of a cross-validation.
-void FoldFields(JsonWriter& a, FoldScore& fold, const ShownMetrics& shown) {
-  PUSHID_FIELDS(a, fold, name, held_out);
-  MetricFields(a, fold, shown);
-  PUSHID_FIELDS(a, fold, failures, falls);
-  if (fold.behaviour) a("behaviour", ToJson(*fold.behaviour));
-  if (fold.propagation.recordings > 0) a("propagation", fold.propagation);
+void AddMetrics(const Metrics& values, const MetricList& metrics, Json* json) {
+  for (MetricId m : metrics) (*json)[kMetrics[m].Key()] = NumberJson(values[m]);
 }
 
-// Which groups a file has, for SummaryFields.
-void ReadGroupNames(const Json& json, ScoreSummary* summary) {
-  for (const auto& [key, groups] : json.items()) {
-    if (key.rfind("by_", 0) != 0) continue;
-    auto& means = summary->by[key.substr(3)];
-    for (const auto& [name, mean] : groups.items()) means[name];
+Json MeanJson(const MeanScore& mean, const MetricList& metrics, bool with_clusters) {
+  Json json;
+  AddMetrics(mean.value, metrics, &json);
+  for (MetricId m : metrics) {
+    if (kMetrics[m].with_error) json[kMetrics[m].ErrorKey()] = NumberJson(mean.error[m]);
   }
+  json["recordings"] = mean.recordings;
+  if (!with_clusters) return json;
+  json["clustered_by"] = NameOf(mean.clustered_by);
+  json["clusters"] = mean.clusters;
+  return json;
+}
+
+void AddSummary(const ScoreSummary& s, bool with_recordings, Json* json) {
+  const MetricList metrics = MetricsOf(s.observed, s.bands);
+  if (s.observed > 0) (*json)["observed"] = s.observed;
+  if (with_recordings) (*json)["recordings"] = Json::array();
+  for (size_t i = 0; with_recordings && i < s.recordings.size(); ++i) {
+    const RecordingScore& r = s.recordings[i];
+    Json row = ScoreJson(r, metrics);
+    row["fell"] = r.fell;
+    if (!r.propagation.people.empty()) row["people"] = JsonOf(r.propagation.people);
+    if (!r.steps.empty()) row["predicted_steps"] = JsonOf(r.steps);
+    (*json)["recordings"].push_back(std::move(row));
+  }
+  AddMeans(s, metrics, true, json);
+  if (s.propagation.recordings > 0) {
+    Json& propagation = (*json)["propagation"] = JsonOf(s.propagation);
+    if (!s.propagation_by_setting.empty()) {
+      propagation["by_setting"] = JsonOf(s.propagation_by_setting);
+    }
+  }
+  if (s.steps.known()) (*json)["who_steps"] = JsonOf(s.steps);
 }
 
 }  // namespace
 
+Json ScoreJson(const Score& score, const MetricList& metrics) {
+  Json json = {{"id", score.id}, {"frames", score.frames}};
+  if (score.failure.empty()) {
+    AddMetrics(score.value, metrics, &json);
+  } else {
+    json["failure"] = score.failure;
+  }
+  return json;
+}
+
+void AddMeans(const ScoreMeans& means, const MetricList& metrics, bool with_clusters, Json* json) {
+  (*json)["mean"] = MeanJson(means.mean, metrics, with_clusters);
+  (*json)["frame_weighted"] = MeanJson(means.frame_weighted, metrics, with_clusters);
+  for (const auto& [key, groups] : means.by) {
+    Json& by = (*json)["by_" + key] = Json::object();
+    for (const auto& [name, mean] : groups) by[name] = MeanJson(mean, metrics, with_clusters);
+  }
+  if (!means.without_label.empty()) (*json)["without_label"] = means.without_label;
+}
+
 Json ToJson(const ScoreSummary& summary, bool with_recordings) {
   Json json;
-  JsonWriter writer(&json);
-  SummaryFields(writer, const_cast<ScoreSummary&>(summary), with_recordings);
+  AddSummary(summary, with_recordings, &json);
   return json;
 }
 
@@ -554,50 +476,48 @@ Json ToJson(const Evaluation& evaluation) {
   return json;
 }
 
-Json ToJson(const CrossValidation& validation) {
-  CrossValidation v = validation;
-  Json json;
-  JsonWriter a(&json);
-  a("name", v.predictor);
-  SummaryFields(a, v.summary, true);
-  PUSHID_FIELDS(a, v, failures, falls);
-  a("falls_when_pushed_harder", v.falls_harder);
-  if (v.groups) a("group_metrics", ToJson(*v.groups));
+Json ToJson(const CrossValidation& v) {
+  Json json = {{"name", v.predictor}};
+  AddSummary(v.summary, true, &json);
+  json["failures"] = v.failures;
+  json["falls"] = v.falls;
+  json["falls_when_pushed_harder"] = v.falls_harder;
+  if (v.groups) json["group_metrics"] = ToJson(*v.groups);
   if (v.fits > 0) {
-    a("fits", v.fits);
-    a("fits_that_settle", v.settling);
-    a("fits_that_move_lines_farther_the_harder", v.harder_farther);
-    a("slowest_to_settle_m_s", v.slowest_to_settle);
+    json["fits"] = v.fits;
+    json["fits_that_settle"] = v.settling;
+    json["fits_that_move_lines_farther_the_harder"] = v.harder_farther;
+    json["slowest_to_settle_m_s"] = NumberJson(v.slowest_to_settle);
   }
-  const ShownMetrics shown = MetricsOf(v.summary.observed, v.summary.bands);
-  a.Rows("folds", std::tie(v.folds),
-         [&](JsonWriter& row, size_t i) { FoldFields(row, v.folds[i], shown); });
+  json["folds"] = Json::array();
+  for (const FoldScore& fold : v.folds) {
+    Json row = {{"name", fold.name}, {"held_out", fold.held_out}};
+    AddMetrics(fold.value, MetricsOf(v.summary.observed, v.summary.bands), &row);
+    row["failures"] = fold.failures;
+    row["falls"] = fold.falls;
+    if (fold.behaviour) row["behaviour"] = ToJson(*fold.behaviour);
+    if (fold.propagation.recordings > 0) row["propagation"] = JsonOf(fold.propagation);
+    json["folds"].push_back(std::move(row));
+  }
   return json;
 }
 
-Json ToJson(const PairedDifference& difference) {
-  PairedDifference d = difference;
-  Json json;
-  JsonWriter a(&json);
-  a("from", d.a);
-  a("to", d.b);
-  a("recordings", d.recordings);
-  for (const HipMetric& metric : MetricsOf(d.observed, false)) {
-    a(metric.Key().c_str(), d.*metric.value);
-    a(metric.ErrorKey().c_str(), d.error.*metric.value);
+Json ToJson(const PairedDifference& d) {
+  Json json = {{"from", d.a}, {"to", d.b}, {"recordings", d.recordings}};
+  for (MetricId m : MetricsOf(d.observed, false)) {
+    json[kMetrics[m].Key()] = NumberJson(d.value[m]);
+    json[kMetrics[m].ErrorKey()] = NumberJson(d.error[m]);
   }
-  PUSHID_FIELDS(a, d, clustered_by, clusters);
+  json["clustered_by"] = NameOf(d.clustered_by);
+  json["clusters"] = d.clusters;
   return json;
 }
 
-Result<ScoreSummary> ScoresFromJson(const Json& json, const std::string& file) {
+Result<Metrics> MeanMetrics(const Json& json, const MetricList& metrics, const std::string& file) {
   try {
-    ScoreSummary summary;
-    summary.bands = json.at("mean").contains(kBandMetrics[0].Key());
-    ReadGroupNames(json, &summary);
-    JsonReader reader(json);
-    SummaryFields(reader, summary, true);
-    return summary;
+    Metrics values = Metrics::Zero();
+    for (MetricId m : metrics) values[m] = NumberFrom(json.at("mean").at(kMetrics[m].Key()));
+    return values;
   } catch (const std::exception& error) {
     return Error{
         "this is not a file of scores from pushid-evaluate --json_out, or it is damaged: " +

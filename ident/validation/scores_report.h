@@ -1,5 +1,5 @@
-// ident: evaluations, cross-validations and propagation as JSON, from which scores are read again,
-// and as text and tables for a terminal. Keys of the JSON carry their units.
+// ident: evaluations, cross-validations and propagation as JSON, and as text and tables for a
+// terminal. Keys of the JSON carry their units.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,9 +19,17 @@ nlohmann::ordered_json ToJson(const ScoreSummary& summary, bool with_recordings)
 nlohmann::ordered_json ToJson(const CrossValidation& validation);
 nlohmann::ordered_json ToJson(const PairedDifference& difference);
 
-// The model's scores of an Evaluation's JSON (or of one summary with its recordings), without each
-// person's propagation. Errors: keys that are missing or of another type.
-Result<ScoreSummary> ScoresFromJson(const nlohmann::ordered_json& json, const std::string& file);
+// A row of a table of recordings: id, frames, and the metrics or the failure.
+nlohmann::ordered_json ScoreJson(const Score& score, const MetricList& metrics);
+// Adds `mean`, `frame_weighted`, `by_KEY` and `without_label`. with_clusters: each says by what its
+// errors are clustered.
+void AddMeans(const ScoreMeans& means, const MetricList& metrics, bool with_clusters,
+              nlohmann::ordered_json* json);
+
+// The means over recordings in a file of scores, of hips or of bodies. Errors: keys that are
+// missing or of another type.
+Result<Metrics> MeanMetrics(const nlohmann::ordered_json& json, const MetricList& metrics,
+                            const std::string& file);
 
 // Several samples of one forecast, each scored by itself, as SDM has it: the means of all numbers.
 // Whatever has no value in one of them has none; what is no number is the first's.

@@ -53,7 +53,7 @@ inline FitResult FitWith(const Study& study, const NetworkShape& shape, uint64_t
 }
 
 inline double HeldOutAde(const Study& study, const FitResult& result) {
-  return Evaluate(ModelOf(result), study.held_out).model.mean.hip_ade;
+  return Evaluate(ModelOf(result), study.held_out).model.mean.value[kHipAde];
 }
 
 }  // namespace pushid

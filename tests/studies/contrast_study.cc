@@ -158,8 +158,7 @@ void Judge(const Kind& kind, int index, std::mutex* mutex, Found* found) {
 }
 
 int Run() {
-  TextTable table({"study", "parameter", "intervals that hold the truth, %", "p < 0.05, %"},
-                  {true, true, false, false});
+  TextTable table({"study", "parameter", ">intervals that hold the truth, %", ">p < 0.05, %"});
   std::string told;
   int failed = 0;
   for (const Kind& kind : kKinds) {

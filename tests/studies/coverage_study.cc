@@ -103,9 +103,8 @@ int Run() {
       [](int done, int total) {
         if (done % 50 == 0) std::fprintf(stderr, "data set %d of %d\n", done, total);
       });
-  TextTable table({"coverage, %", "clustered", "naive", "profile", "bootstrap", "bias / spread",
-                   "stated / real error"},
-                  {true, false, false, false, false, false, false});
+  TextTable table({"coverage, %", ">clustered", ">naive", ">profile", ">bootstrap",
+                   ">bias / spread", ">stated / real error"});
   for (size_t p = 0; p < free.size(); ++p) {
     const Tally& t = tallies[p];
     const double n = std::max(1, t.datasets);

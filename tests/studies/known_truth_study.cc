@@ -182,7 +182,7 @@ int Run() {
       EstimateStatus::kPriorHeld,  EstimateStatus::kUnidentifiable, EstimateStatus::kAtBound};
   std::vector<std::string> header = {"estimates: intervals that hold the truth, %"};
   for (EstimateStatus status : statuses) header.push_back(NameOf(status));
-  TextTable table(header, {true, false, false, false, false, false, false});
+  TextTable table = TextTable::OfNumbers(header);
   Tally sum;
   for (const auto& [id, tally] : all.tallies) {
     std::vector<std::string> row = {std::string(kParameterNames[id])};

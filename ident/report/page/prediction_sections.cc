@@ -25,7 +25,7 @@ StepScore ScoreOf(const std::vector<RecordingView>& views) {
 }
 
 ReportFigure ReliabilityFigure(const StepScore& score) {
-  TextTable numbers({"tracks", "predicted", "observed"}, {false, false, false});
+  TextTable numbers({">tracks", ">predicted", ">observed"});
   for (const StepFifth& fifth : score.fifths) {
     numbers.Add(
         {std::to_string(fifth.tracks), DoubleText(fifth.predicted), DoubleText(fifth.observed)});
@@ -205,9 +205,9 @@ ReportSection DesignSection(const ReportSource& source) {
         "person."};
     return section;
   }
-  const ExperimentDesign design = DesignExperiments(recordings, source.fit);
-  if (!design.refused.empty()) {
-    section.paragraphs = {"Left out: " + design.refused + "."};
+  const Result<ExperimentDesign> design = DesignExperiments(recordings, source.fit);
+  if (!design.ok()) {
+    section.paragraphs = {"Left out: " + design.error().message + "."};
     return section;
   }
   section.paragraphs = {
@@ -215,7 +215,7 @@ ReportSection DesignSection(const ReportSource& source) {
       "the estimate, for all parameters together (D-optimal); a design for one parameter ranks "
       "them "
       "for that alone (c-optimal)."};
-  section.Show("", DesignTable(design, "all", kBestPushes).value());
+  section.Show("", DesignTable(design.value(), "all", kBestPushes).value());
   return section;
 }
 

@@ -68,7 +68,7 @@ struct Rows {
   }
   FitResult Fitted(const PairShape& pair) const { return Fit(training, With(pair)); }
   double HeldOutAde(const FitResult& result) const {
-    return Evaluate(ModelOf(result), held_out).model.mean.hip_ade;
+    return Evaluate(ModelOf(result), held_out).model.mean.value[kHipAde];
   }
 };
 

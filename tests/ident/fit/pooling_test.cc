@@ -108,8 +108,8 @@ TEST(Pooling, SettingsKeepTheirOwnContact) {
             result.settings.at("far").at("contact_distance").value);
   EXPECT_NEAR(model.For("far")[kContactStiffness], 2500.0, 5.0);
   EXPECT_NEAR(model.For("elsewhere")[kContactDistance], std::sqrt(0.38 * 0.46), 0.01);
-  EXPECT_LT(ScoreModel(model, recordings.front()).hip_ade, 1e-3);
-  EXPECT_LT(ScoreModel(model, recordings.back()).hip_ade, 1e-3);
+  EXPECT_LT(ScoreModel(model, recordings.front()).value[kHipAde], 1e-3);
+  EXPECT_LT(ScoreModel(model, recordings.back()).value[kHipAde], 1e-3);
   int simulations = 0;
   for (const SettlingSimulation& d : result.behaviour.simulations) {
     simulations += d.setting == "near";

@@ -33,8 +33,8 @@ TEST(Evaluation, StaticByHand) {
   const RecordingScore score = ScoreHip(r, StaticBaseline(r));
   EXPECT_EQ(score.id, "a");
   EXPECT_EQ(score.frames, 4);
-  EXPECT_NEAR(score.hip_ade, (0.01 + 0.04 + 0.09) / 3.0, 1e-15);  // frame 0 does not count
-  EXPECT_NEAR(score.hip_fde, 0.09, 1e-15);
+  EXPECT_NEAR(score.value[kHipAde], (0.01 + 0.04 + 0.09) / 3.0, 1e-15);  // frame 0 does not count
+  EXPECT_NEAR(score.value[kHipFde], 0.09, 1e-15);
 }
 
 // The push ends at frame 2: known up to there, then 0.03 m a frame.
@@ -44,15 +44,15 @@ TEST(Evaluation, ConstantVelocityByHand) {
   const double expected[] = {0.0, 0.01, 0.04, 0.07, 0.10};
   for (int t = 0; t < 5; ++t) EXPECT_NEAR(path[0][t][0], expected[t], 1e-15) << t;
   const RecordingScore score = ScoreHip(r, path);
-  EXPECT_NEAR(score.hip_ade, (0.02 + 0.06) / 4.0, 1e-15);
-  EXPECT_NEAR(score.hip_fde, 0.06, 1e-15);
+  EXPECT_NEAR(score.value[kHipAde], (0.02 + 0.06) / 4.0, 1e-15);
+  EXPECT_NEAR(score.value[kHipFde], 0.06, 1e-15);
 }
 
 TEST(Evaluation, ConstantVelocityOfAPushBeyondTheEnd) {
   PendulumRecording r = Parabola("a", 4);
   r.scene.pushes[0].start_frame = 10;
   // Something is left to predict: frame 3, 0.09 m, by 0.03 m a frame from frame 2 on.
-  EXPECT_NEAR(ScoreHip(r, ConstantVelocityBaseline(r)).hip_fde, 0.02, 1e-15);
+  EXPECT_NEAR(ScoreHip(r, ConstantVelocityBaseline(r)).value[kHipFde], 0.02, 1e-15);
   r = Parabola("a", 30);
   r.scene.pushes[0].start_frame = 28;
   const HipPaths path = ConstantVelocityBaseline(r);
@@ -82,9 +82,9 @@ TEST(Evaluation, BaselinesAfterFirstFramesByHand) {
     EXPECT_NEAR(velocity[0][t][0], goes[t], 1e-15) << t;
   }
   const RecordingScore score = ScoreHip(r, still, 3);
-  EXPECT_NEAR(score.hip_ade, (0.05 + 0.12) / 4.0, 1e-15);
-  EXPECT_NEAR(score.after_hip_ade, (0.05 + 0.12) / 2.0, 1e-15);
-  EXPECT_NEAR(score.hip_fde, 0.12, 1e-15);
+  EXPECT_NEAR(score.value[kHipAde], (0.05 + 0.12) / 4.0, 1e-15);
+  EXPECT_NEAR(score.value[kAfterHipAde], (0.05 + 0.12) / 2.0, 1e-15);
+  EXPECT_NEAR(score.value[kHipFde], 0.12, 1e-15);
 }
 
 TEST(Evaluation, TheKinematicBaselineFades) {
@@ -155,30 +155,40 @@ TEST(Evaluation, PeopleCountTheSame) {
   PendulumRecording r = Parabola("a", 4);
   r.hip.push_back(std::vector<Vector3<double>>(4, Vector3<double>(0.0, 1.0, 1.0)));
   const RecordingScore score = ScoreHip(r, StaticBaseline(r));
-  EXPECT_NEAR(score.hip_ade, 0.5 * (0.01 + 0.04 + 0.09) / 3.0, 1e-15);
-  EXPECT_NEAR(score.hip_fde, 0.5 * 0.09, 1e-15);
+  EXPECT_NEAR(score.value[kHipAde], 0.5 * (0.01 + 0.04 + 0.09) / 3.0, 1e-15);
+  EXPECT_NEAR(score.value[kHipFde], 0.5 * 0.09, 1e-15);
+}
+
+RecordingScore Scored(double hip_ade, double hip_fde, const std::string& id, int frames) {
+  RecordingScore score;
+  score.id = id;
+  score.frames = frames;
+  score.value[kHipAde] = hip_ade;
+  score.value[kHipFde] = hip_fde;
+  return score;
 }
 
 TEST(Evaluation, BothMeansByHand) {
   const std::vector<PendulumRecording> recordings = {Parabola("a", 4), Parabola("b", 11),
                                                      Parabola("c", 6)};
-  RecordingScore a{{0.1, 0.2}, "a", 4, "", false}, b{{0.4, 0.6}, "b", 11, "", true};
-  RecordingScore c{{9.0, 9.0}, "c", 6, "theta of person 0 leaves the model's domain", true};
+  const RecordingScore a = Scored(0.1, 0.2, "a", 4), b = Scored(0.4, 0.6, "b", 11);
+  RecordingScore c = Scored(9.0, 9.0, "c", 6);
+  c.failure = "theta of person 0 leaves the model's domain";
   const ScoreSummary s = Summarize(recordings, {a, b, c});
   EXPECT_EQ(s.recordings.size(), 3u);  // named, but in no mean
   EXPECT_EQ(s.mean.recordings, 2);
-  EXPECT_NEAR(s.mean.hip_ade, 0.25, 1e-15);
-  EXPECT_NEAR(s.mean.hip_fde, 0.40, 1e-15);
+  EXPECT_NEAR(s.mean.value[kHipAde], 0.25, 1e-15);
+  EXPECT_NEAR(s.mean.value[kHipFde], 0.40, 1e-15);
   // Standard deviation 0.3 / sqrt(2), over sqrt(2).
-  EXPECT_NEAR(s.mean.error.hip_ade, 0.15, 1e-15);
-  EXPECT_NEAR(s.mean.error.hip_fde, 0.20, 1e-15);
-  EXPECT_NEAR(s.frame_weighted.hip_ade, (3 * 0.1 + 10 * 0.4) / 13.0, 1e-15);
-  EXPECT_NEAR(s.frame_weighted.hip_fde, (3 * 0.2 + 10 * 0.6) / 13.0, 1e-15);
+  EXPECT_NEAR(s.mean.error[kHipAde], 0.15, 1e-15);
+  EXPECT_NEAR(s.mean.error[kHipFde], 0.20, 1e-15);
+  EXPECT_NEAR(s.frame_weighted.value[kHipAde], (3 * 0.1 + 10 * 0.4) / 13.0, 1e-15);
+  EXPECT_NEAR(s.frame_weighted.value[kHipFde], (3 * 0.2 + 10 * 0.6) / 13.0, 1e-15);
   EXPECT_EQ(s.by.at("magnitude").at("weak").recordings, 1);
-  EXPECT_NEAR(s.by.at("magnitude").at("strong").hip_ade, 0.4, 1e-15);
-  EXPECT_EQ(s.by.at("magnitude").at("strong").error.hip_ade, 0.0);
+  EXPECT_NEAR(s.by.at("magnitude").at("strong").value[kHipAde], 0.4, 1e-15);
+  EXPECT_EQ(s.by.at("magnitude").at("strong").error[kHipAde], 0.0);
   EXPECT_EQ(s.by.at("subject").count("Sc"), 0u);
-  EXPECT_NEAR(s.by.at("subject").at("Sa").hip_fde, 0.2, 1e-15);
+  EXPECT_NEAR(s.by.at("subject").at("Sa").value[kHipFde], 0.2, 1e-15);
   EXPECT_EQ(s.by.at("setting").at("single").recordings, 2);
   EXPECT_TRUE(s.without_label.empty());
 }
@@ -189,12 +199,13 @@ TEST(Evaluation, AnyLabelGroupsScores) {
                                                Parabola("c", 4)};
   recordings[0].labels.Set("footwear", "boots");
   recordings[1].labels.Set("footwear", "boots");
-  RecordingScore a{{0.1, 0.2}, "a", 4, ""}, b{{0.4, 0.6}, "b", 4, ""}, c{{9.0, 9.0}, "c", 4, ""};
+  const RecordingScore a = Scored(0.1, 0.2, "a", 4), b = Scored(0.4, 0.6, "b", 4),
+                       c = Scored(9.0, 9.0, "c", 4);
   const ScoreSummary s =
       Summarize(recordings, {a, b, c}, 0, false, ParseLabelKeys("footwear, subject"));
   EXPECT_EQ(s.by.size(), 2u);
   EXPECT_EQ(s.by.at("footwear").size(), 1u);  // c has none
-  EXPECT_NEAR(s.by.at("footwear").at("boots").hip_ade, 0.25, 1e-15);
+  EXPECT_NEAR(s.by.at("footwear").at("boots").value[kHipAde], 0.25, 1e-15);
   EXPECT_EQ(s.without_label, (WithoutLabel{{"footwear", 1}}));
   EXPECT_EQ(WithoutLabelText(s.without_label),
             "1 recording has no footwear: it is in no group by footwear\n");
@@ -208,10 +219,11 @@ TEST(Evaluation, AnyLabelGroupsScores) {
 }
 
 TEST(Evaluation, NothingScored) {
-  RecordingScore failed{{0.0, 0.0}, "a", 4, "fails", true};
+  RecordingScore failed = Scored(0.0, 0.0, "a", 4);
+  failed.failure = "fails";
   const ScoreSummary s = Summarize({Parabola("a", 4)}, {failed});
   EXPECT_EQ(s.mean.recordings, 0);
-  EXPECT_EQ(s.mean.hip_ade, 0.0);
+  EXPECT_EQ(s.mean.value[kHipAde], 0.0);
   EXPECT_TRUE(s.by.at("subject").empty());
 }
 
@@ -219,9 +231,9 @@ TEST(Evaluation, TheTruthScoresZero) {
   const SyntheticOptions study = SmallStudy();
   const Evaluation e = Evaluate(TruthOf(study), MakePendulums(study));
   EXPECT_EQ(e.model.mean.recordings, 24);
-  EXPECT_LT(e.model.mean.hip_ade, 1e-9);
-  EXPECT_GT(e.Baseline("static").mean.hip_ade, 0.05);
-  EXPECT_GT(e.Baseline("constant_velocity").mean.hip_ade, 0.0);
+  EXPECT_LT(e.model.mean.value[kHipAde], 1e-9);
+  EXPECT_GT(e.Baseline("static").mean.value[kHipAde], 0.05);
+  EXPECT_GT(e.Baseline("constant_velocity").mean.value[kHipAde], 0.0);
   EXPECT_EQ(e.model.by.at("subject").size(), 4u);
 }
 
@@ -235,7 +247,7 @@ TEST(Evaluation, AFailedRolloutIsNamedAndInNoMean) {
   EXPECT_TRUE(Contains(failed.failure, "of person 0 leaves the model's domain at frame"));
   EXPECT_TRUE(failed.fell);
   EXPECT_EQ(e.model.mean.recordings, 23);
-  EXPECT_LT(e.model.mean.hip_ade, 1e-9);
+  EXPECT_LT(e.model.mean.value[kHipAde], 1e-9);
   EXPECT_EQ(e.Baseline("static").mean.recordings, 24);
 }
 

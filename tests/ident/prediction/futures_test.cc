@@ -70,10 +70,10 @@ MeanScore Scored(const SyntheticOptions& study, const IdentifiedModel& model, in
 // Under the truth the bands hold what they say.
 TEST(Futures, OfTheTruthHoldWhatTheySay) {
   const MeanScore mean = Scored(NoisyStudy(), TruthOf(NoisyStudy(), BaseTable()), 99);
-  EXPECT_NEAR(mean.inside90_x, 0.9, 0.1);
-  EXPECT_NEAR(mean.inside90_y, 0.9, 0.1);
-  EXPECT_NEAR(mean.inside50_x, 0.5, 0.12);
-  EXPECT_NEAR(mean.inside50_y, 0.5, 0.12);
+  EXPECT_NEAR(mean.value[kInside90], 0.9, 0.1);
+  EXPECT_NEAR(mean.value[kInside90 + 1], 0.9, 0.1);
+  EXPECT_NEAR(mean.value[kInside50], 0.5, 0.12);
+  EXPECT_NEAR(mean.value[kInside50 + 1], 0.5, 0.12);
 }
 
 // A proper score: other widths than the truth's score worse.
@@ -81,7 +81,7 @@ TEST(Futures, TheTruthScoresBest) {
   const auto crps = [](double factor) {
     IdentifiedModel model = TruthOf(NoisyStudy(), BaseTable());
     for (int id = kSigmaX; id <= kSigmaPhi; ++id) model.parameters[id] *= factor;
-    return Scored(NoisyStudy(), model, 60).crps;
+    return Scored(NoisyStudy(), model, 60).value[kCrps];
   };
   EXPECT_LT(crps(1.0), crps(0.2));
   EXPECT_LT(crps(1.0), crps(4.0));

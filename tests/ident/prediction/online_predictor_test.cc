@@ -41,9 +41,9 @@ TEST_F(OnlinePredictorTest, WithoutFramesIsThePredictionToTheBit) {
       EXPECT_EQ(first.path.At(t, 0).qd, plain.path.At(t, 0).qd);
     }
     const RecordingScore a = ScoreModel(model_, recording), b = ScoreModel(model_, recording, 1);
-    EXPECT_EQ(a.hip_ade, b.hip_ade);
-    EXPECT_EQ(a.hip_fde, b.hip_fde);
-    EXPECT_EQ(b.after_hip_ade, b.hip_ade);
+    EXPECT_EQ(a.value[kHipAde], b.value[kHipAde]);
+    EXPECT_EQ(a.value[kHipFde], b.value[kHipFde]);
+    EXPECT_EQ(b.value[kAfterHipAde], b.value[kHipAde]);
   }
 }
 
@@ -66,8 +66,8 @@ TEST_F(OnlinePredictorTest, FramesTell) {
   double without = 0.0, with = 0.0;
   for (size_t i = 0; i < recordings_.size(); ++i) {
     const PendulumRecording& r = recordings_[i];
-    without += ScoreHip(r, Predict(model_, r).hip, 40).after_hip_ade;
-    with += ScoreHip(r, After(i, 40, ForecastUse::kPhysics).Predict().hip, 40).after_hip_ade;
+    without += ScoreHip(r, Predict(model_, r).hip, 40).value[kAfterHipAde];
+    with += ScoreHip(r, After(i, 40, ForecastUse::kPhysics).Predict().hip, 40).value[kAfterHipAde];
   }
   EXPECT_LT(with, 0.6 * without);
 }
@@ -120,7 +120,7 @@ TEST_F(OnlinePredictorTest, BandsHoldWhatTheModelDraws) {
     double inside = 0.0;
     for (const PendulumRecording& r : recordings) {
       const RecordingScore score = ScoreModel(model_, r, observed);
-      inside += 0.5 * (score.inside90_x + score.inside90_y) / 100.0;
+      inside += 0.5 * (score.value[kInside90] + score.value[kInside90 + 1]) / 100.0;
     }
     // Errors have one shape at all times: late, when it is a narrower one, bands are too wide.
     EXPECT_NEAR(inside, 0.9, 0.06) << observed;

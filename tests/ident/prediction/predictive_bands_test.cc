@@ -105,8 +105,8 @@ TEST(PredictiveBands, HoldNewRecordingsAsOftenAsTheySay) {
                     BandPredictor("bands", UnbiasedFit(VaryingStudy()), BandOptions()), 2)
           .summary.mean;
   EXPECT_EQ(mean.recordings, 24);
-  EXPECT_NEAR(mean.inside90_x, 0.9, 0.1);
-  EXPECT_NEAR(mean.inside50_x, 0.5, 0.2);
+  EXPECT_NEAR(mean.value[kInside90], 0.9, 0.1);
+  EXPECT_NEAR(mean.value[kInside50], 0.5, 0.2);
 }
 
 }  // namespace

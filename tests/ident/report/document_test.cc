@@ -13,9 +13,9 @@ namespace pushid {
 namespace {
 
 Report SampleReport() {
-  TextTable table({"name", "value"}, {true, false});
+  TextTable table({"name", ">value"});
   table.Add({"a<b", "1"});
-  TextTable numbers({"time_s", "what"}, {true, true});
+  TextTable numbers({"time_s", "what"});
   numbers.Add({"0.5", "say \"x\", y"});
   ReportSection full{"full",
                      "Full & <whole>",

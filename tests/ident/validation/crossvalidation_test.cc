@@ -158,15 +158,15 @@ TEST(CrossValidation, HeldOutPredictionsOfTheRightModelAreGood) {
   EXPECT_EQ(model.predictor, "tail");
   EXPECT_EQ(model.folds.size(), 6u);
   EXPECT_EQ(model.summary.mean.recordings, 24);
-  EXPECT_LT(model.summary.mean.hip_ade, 1e-7);
+  EXPECT_LT(model.summary.mean.value[kHipAde], 1e-7);
   EXPECT_EQ(model.failures, 0);
   EXPECT_EQ(model.falls, 0);
   const CrossValidation still =
       CrossValidate(recordings, folds, BaselinePredictor(kBaselines[0]), 1);
-  EXPECT_GT(still.summary.mean.hip_ade, 0.05);
+  EXPECT_GT(still.summary.mean.value[kHipAde], 0.05);
   const CrossValidation ridge = CrossValidate(recordings, folds, RidgePredictor(), 1);
-  EXPECT_LT(ridge.summary.mean.hip_ade, still.summary.mean.hip_ade);
-  EXPECT_GT(ridge.summary.mean.hip_ade, model.summary.mean.hip_ade);
+  EXPECT_LT(ridge.summary.mean.value[kHipAde], still.summary.mean.value[kHipAde]);
+  EXPECT_GT(ridge.summary.mean.value[kHipAde], model.summary.mean.value[kHipAde]);
 }
 
 TEST(CrossValidation, ThreadsDoNotMatter) {
@@ -184,9 +184,9 @@ TEST(CrossValidation, ThreadsDoNotMatter) {
   EXPECT_EQ(reported, 6);
   ASSERT_EQ(one.summary.recordings.size(), two.summary.recordings.size());
   for (size_t i = 0; i < one.summary.recordings.size(); ++i) {
-    EXPECT_EQ(one.summary.recordings[i].hip_ade, two.summary.recordings[i].hip_ade);
+    EXPECT_EQ(one.summary.recordings[i].value[kHipAde], two.summary.recordings[i].value[kHipAde]);
   }
-  EXPECT_EQ(one.summary.mean.error.hip_fde, two.summary.mean.error.hip_fde);
+  EXPECT_EQ(one.summary.mean.error[kHipFde], two.summary.mean.error[kHipFde]);
 }
 
 // Scores 1, 2, 3, ... by recording; 10 more when it is asked the second time. Fails on one.
@@ -201,8 +201,8 @@ Predictor Scripted(int fails = -1) {
       RecordingScore score;
       score.id = recordings[i].id;
       score.frames = 5;
-      score.hip_ade = i + 1.0 + 10.0 * (*asked)[i]++;
-      score.hip_fde = 2.0 * score.hip_ade;
+      score.value[kHipAde] = i + 1.0 + 10.0 * (*asked)[i]++;
+      score.value[kHipFde] = 2.0 * score.value[kHipAde];
       if (i == fails) score.failure = "fell over";
       prediction.scores.push_back(score);
     }
@@ -217,12 +217,12 @@ TEST(CrossValidation, RepeatsAreAveragedBeforeTheMean) {
   const std::vector<Fold> folds = {{"a", {0, 1}}, {"b", {2}}, {"c", {0, 2}}};
   const CrossValidation result = CrossValidate(recordings, folds, Scripted(), 1);
   ASSERT_EQ(result.summary.recordings.size(), 3u);  // recording 3 was never held out
-  EXPECT_EQ(result.summary.recordings[0].hip_ade, (1.0 + 11.0) / 2.0);
-  EXPECT_EQ(result.summary.recordings[1].hip_ade, 2.0);
-  EXPECT_EQ(result.summary.recordings[2].hip_ade, (3.0 + 13.0) / 2.0);
-  EXPECT_NEAR(result.summary.mean.hip_ade, (6.0 + 2.0 + 8.0) / 3.0, 1e-12);
-  EXPECT_EQ(result.folds[2].hip_ade, (11.0 + 13.0) / 2.0);
-  EXPECT_EQ(result.folds[2].hip_fde, 11.0 + 13.0);
+  EXPECT_EQ(result.summary.recordings[0].value[kHipAde], (1.0 + 11.0) / 2.0);
+  EXPECT_EQ(result.summary.recordings[1].value[kHipAde], 2.0);
+  EXPECT_EQ(result.summary.recordings[2].value[kHipAde], (3.0 + 13.0) / 2.0);
+  EXPECT_NEAR(result.summary.mean.value[kHipAde], (6.0 + 2.0 + 8.0) / 3.0, 1e-12);
+  EXPECT_EQ(result.folds[2].value[kHipAde], (11.0 + 13.0) / 2.0);
+  EXPECT_EQ(result.folds[2].value[kHipFde], 11.0 + 13.0);
 }
 
 TEST(CrossValidation, FailuresAreCountedAndInNoMean) {
@@ -232,7 +232,7 @@ TEST(CrossValidation, FailuresAreCountedAndInNoMean) {
       CrossValidate(recordings, {{"a", {0, 1}}, {"b", {2}}}, Scripted(1), 1);
   EXPECT_EQ(result.failures, 1);
   EXPECT_EQ(result.folds[0].failures, 1);
-  EXPECT_EQ(result.folds[0].hip_ade, 1.0);
+  EXPECT_EQ(result.folds[0].value[kHipAde], 1.0);
   EXPECT_EQ(result.summary.mean.recordings, 2);
   EXPECT_EQ(result.summary.recordings[1].failure, "fell over");
 }
@@ -242,8 +242,10 @@ TEST(CrossValidation, PairedDifferenceByHand) {
     CrossValidation v;
     v.predictor = name;
     for (size_t i = 0; i < scores.size(); ++i) {
-      v.summary.recordings.push_back(
-          {{scores[i], 2.0 * scores[i]}, std::to_string(i), 5, "", false});
+      RecordingScore& score = v.summary.recordings.emplace_back();
+      score.id = std::to_string(i);
+      score.value[kHipAde] = scores[i];
+      score.value[kHipFde] = 2.0 * scores[i];
     }
     return v;
   };
@@ -252,11 +254,11 @@ TEST(CrossValidation, PairedDifferenceByHand) {
   a.summary.recordings[3].failure = "fell";
   const PairedDifference d = Compare(a, b);
   EXPECT_EQ(d.recordings, 3);
-  EXPECT_NEAR(d.hip_ade, 0.02, 1e-15);
+  EXPECT_NEAR(d.value[kHipAde], 0.02, 1e-15);
   // Deviations -0.01, 0.02, -0.01: variance 3e-4, over 3.
-  EXPECT_NEAR(d.error.hip_ade, std::sqrt(3e-4 / 3.0), 1e-15);
-  EXPECT_NEAR(d.hip_fde, 0.04, 1e-15);
-  EXPECT_NEAR(d.error.hip_fde, 2.0 * std::sqrt(3e-4 / 3.0), 1e-15);
+  EXPECT_NEAR(d.error[kHipAde], std::sqrt(3e-4 / 3.0), 1e-15);
+  EXPECT_NEAR(d.value[kHipFde], 0.04, 1e-15);
+  EXPECT_NEAR(d.error[kHipFde], 2.0 * std::sqrt(3e-4 / 3.0), 1e-15);
   EXPECT_EQ(d.a, "a");
   EXPECT_EQ(d.b, "b");
   EXPECT_EQ(d.clustered_by, ClusterBy::kRecording);
@@ -274,7 +276,7 @@ TEST(CrossValidation, ErrorsAreClusteredByPushedPerson) {
     recordings[i].id = scores[i].id = none[i].id = std::to_string(i);
     recordings[i].subject_ids = {i == 0 ? "S0" : "S1"};
     recordings[i].scene.people.resize(1);
-    scores[i].hip_ade = values[i];
+    scores[i].value[kHipAde] = values[i];
     scores[i].frames = none[i].frames = 5;
   }
   CrossValidation model, zero;
@@ -285,12 +287,12 @@ TEST(CrossValidation, ErrorsAreClusteredByPushedPerson) {
   const MeanScore& mean = model.summary.mean;
   EXPECT_EQ(mean.clustered_by, ClusterBy::kSubject);
   EXPECT_EQ(mean.clusters, 2);
-  EXPECT_NEAR(mean.error.hip_ade, 1.0, 1e-14);
+  EXPECT_NEAR(mean.error[kHipAde], 1.0, 1e-14);
   const PairedDifference d = Compare(zero, model);
   EXPECT_EQ(d.clustered_by, ClusterBy::kSubject);
   EXPECT_EQ(d.clusters, 2);
-  EXPECT_NEAR(d.hip_ade, 3.0, 1e-14);
-  EXPECT_NEAR(d.error.hip_ade, 1.0, 1e-14);
+  EXPECT_NEAR(d.value[kHipAde], 3.0, 1e-14);
+  EXPECT_NEAR(d.error[kHipAde], 1.0, 1e-14);
   // Three standard errors, and yet nothing: Student's t of one degree of freedom is 12.7.
   const std::string text = CrossValidationText({zero, model});
   EXPECT_TRUE(Contains(text, "model is not distinguishable from zero"));
@@ -299,7 +301,7 @@ TEST(CrossValidation, ErrorsAreClusteredByPushedPerson) {
   // Of one person there are recordings only: 2 3 6 by hand.
   const MeanScore& one = model.summary.by.at("subject").at("S1");
   EXPECT_EQ(one.clustered_by, ClusterBy::kRecording);
-  EXPECT_NEAR(one.error.hip_ade, std::sqrt(13.0 / 9.0), 1e-14);
+  EXPECT_NEAR(one.error[kHipAde], std::sqrt(13.0 / 9.0), 1e-14);
   // Who was weighed anew is the same person.
   recordings[3].scene.people[0].body.mass += 10.0;
   EXPECT_EQ(Summarize(recordings, scores).mean.clusters, 2);

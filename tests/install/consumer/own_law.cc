@@ -62,7 +62,7 @@ bool StudyRuns(const std::string& folder) {
     std::fprintf(stderr, "%s\n", study.error().ToString().c_str());
     return false;
   }
-  const double error = study.value().evaluation.model.mean.hip_ade;
+  const double error = study.value().evaluation.model.mean.value[kHipAde];
   std::printf("hipADE %.3g m\n", error);
   return error < 0.02 && study.value().bodies.size() == made.value().size();
 }
