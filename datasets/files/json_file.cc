@@ -125,24 +125,12 @@ std::size_t TooDeepAt(const std::string& text) {
 }
 
 // Some of the parser's exceptions know no position; its events do.
-struct ErrorFinder : nlohmann::json_sax<nlohmann::json> {
+struct ErrorFinder : nlohmann::detail::json_sax_acceptor<nlohmann::json> {
   std::size_t last_read = 0;  // the byte at which it could not go on: the end of the wrong token
   std::string message;
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
-  bool start_object(std::size_t) override { return true; }
-  bool key(string_t&) override { return true; }
-  bool end_object() override { return true; }
-  bool start_array(std::size_t) override { return true; }
-  bool end_array() override { return true; }
   bool parse_error(std::size_t bytes_read, const std::string&,
-                   const nlohmann::json::exception& exception) override {
+                   const nlohmann::json::exception& exception) {
     last_read = bytes_read > 0 ? bytes_read - 1 : 0;
     message = exception.what();
     return false;
