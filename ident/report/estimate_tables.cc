@@ -121,10 +121,9 @@ std::string PullText(const Estimate& e) {
 }  // namespace
 
 TextTable EstimateTable(const FitResult& result) {
-  TextTable table({"parameter", "value", "std error", "95 % interval", kTotalColumn,
-                   kTheseColumns[0], kTheseColumns[1], "unit", "status", "data/prior/settling, %",
-                   "prior shift, std errors", "prior"},
-                  {true, false, false, true, true, false, true, true, true, true, false, true});
+  TextTable table({"parameter", ">value", ">std error", "95 % interval", kTotalColumn,
+                   ">" + kTheseColumns[0], kTheseColumns[1], "unit", "status",
+                   "data/prior/settling, %", ">prior shift, std errors", "prior"});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed) {
@@ -148,30 +147,6 @@ TextTable EstimateTable(const FitResult& result) {
   table.DropIfEmpty({kTotalColumn});
   table.DropIfEmpty(kTheseColumns);
   return table;
-}
-
-std::string IdentifiedText(const FitResult& result) {
-  int free = 0, identified = 0;
-  std::string others;
-  for (const EnumName<EstimateStatus>& status : Names(EstimateStatus())) {
-    if (status.value == EstimateStatus::kFixed) continue;
-    std::string names;
-    for (const Estimate& e : result.estimates) {
-      if (e.status != status.value) continue;
-      ++free;
-      names += (names.empty() ? "" : ", ") + e.name;
-      identified += e.status == EstimateStatus::kIdentified;
-    }
-    if (status.value == EstimateStatus::kIdentified || names.empty()) continue;
-    others += "; " + std::string(status.name) + ": " + names;
-  }
-  const std::string all = std::to_string(free);
-  if (free > 0 && identified == free) {
-    return free == 1 ? "The free parameter is identified by the data."
-                     : "All " + all + " free parameters are identified by the data.";
-  }
-  return std::to_string(identified) + " of " + all + " free parameters " +
-         (identified == 1 ? "is" : "are") + " identified" + others + ".";
 }
 
 std::string SharesNote() {
@@ -240,9 +215,8 @@ std::string FeetOfFit(const FitResult& result) {
 }
 
 TextTable DerivedTable(const FitResult& result) {
-  TextTable table({"derived", "value", "std error", "95 % interval", kTheseColumns[0],
-                   kTheseColumns[1], "unit"},
-                  {true, false, false, true, false, true, true});
+  TextTable table({"derived", ">value", ">std error", "95 % interval", ">" + kTheseColumns[0],
+                   kTheseColumns[1], "unit"});
   for (const Combination& c : result.derived) {
     const bool fixed = c.standard_error == 0.0;
     table.Add({c.name, Rounded(c.value, 4), fixed ? "-" : Rounded(c.standard_error, 3),
@@ -372,9 +346,8 @@ std::string MotionText(double value) {
 }  // namespace
 
 TextTable BehaviourTable(const FitResult& result) {
-  TextTable table({"settling simulation", WaitText(result.options.model) + " after the push", "m/s",
-                   "rad from rest", "mean advance, m", "advance of pushed person, m"},
-                  {true, true, false, false, false, false});
+  TextTable table({"settling simulation", WaitText(result.options.model) + " after the push",
+                   ">m/s", ">rad from rest", ">mean advance, m", ">advance of pushed person, m"});
   const bool differ = SettingsDiffer(result.behaviour);
   for (const SettlingSimulation& d : result.behaviour.simulations) {
     table.Add({SettlingSimulationName(d, differ),
@@ -390,11 +363,9 @@ TextTable BehaviourTable(const FitResult& result) {
 TextTable PooledTable(const FitResult& result) {
   const bool by_setting = !result.settings.empty();
   std::vector<std::string> header = {result.options.pool_by};
-  std::vector<bool> left = {true};
-  if (!by_setting) header.push_back("kg"), left.push_back(false);
-  header.insert(header.end(), {"parameter", "value", "std error", "95 % interval", "unit"});
-  left.insert(left.end(), {true, false, false, true, true});
-  TextTable table(header, left);
+  if (!by_setting) header.push_back(">kg");
+  header.insert(header.end(), {"parameter", ">value", ">std error", "95 % interval", "unit"});
+  TextTable table(header);
   const auto add = [&table](const std::vector<std::string>& unit,
                             const std::map<std::string, Estimate>& pooled) {
     for (const auto& [name, e] : pooled) {
@@ -416,8 +387,7 @@ TextTable PooledTable(const FitResult& result) {
 TextTable SpreadTable(const FitResult& result) {
   const FitOptions& o = result.options;
   TextTable table(
-      {"pooled", "shared", "std error", "unit", "spread between " + o.pool_by + "s (1 sigma)"},
-      {true, false, false, true, true});
+      {"pooled", ">shared", ">std error", "unit", "spread between " + o.pool_by + "s (1 sigma)"});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = o.table.Find(e.name);
     if (spec == nullptr || !spec->free || !spec->pooled) continue;
@@ -494,9 +464,8 @@ std::string EffectNote(const FitResult& result) {
 }  // namespace
 
 TextTable ContrastTable(const Contrast& c) {
-  TextTable table({"parameter", c.first, c.second, "difference", "95 % interval", "unit",
-                   "effect, sd", "p", "Holm's p", "status"},
-                  {true, false, false, false, true, true, false, false, false, true});
+  TextTable table({"parameter", ">" + c.first, ">" + c.second, ">difference", "95 % interval",
+                   "unit", ">effect, sd", ">p", ">Holm's p", "status"});
   for (const ContrastRow& row : c.rows) {
     table.Add({row.name, Rounded(row.first, 4), Rounded(row.second, 4), Rounded(row.difference, 3),
                IntervalText(row.difference, row.lower95, row.upper95), row.unit,
@@ -555,9 +524,8 @@ std::string GainRange(const LoopNumbers& numbers) {
 }  // namespace
 
 TextTable LoopTable(const FitResult& result) {
-  TextTable table({"loop", "stiffness/(m g l)", "damping ratio", "oscillates at, Hz",
-                   "phase margin, deg", "delay margin, s", "gains stable at, times"},
-                  {true, false, false, false, false, false, true});
+  TextTable table({"loop", ">stiffness/(m g l)", ">damping ratio", ">oscillates at, Hz",
+                   ">phase margin, deg", ">delay margin, s", "gains stable at, times"});
   for (const NamedLoop& loop : LoopsOf(result)) {
     const LoopNumbers& n = loop.numbers;
     const auto if_stable = [&n](const std::string& text) { return n.stable ? text : "-"; };

@@ -17,8 +17,6 @@ double ShownEnd(double value, double end, double other_end);
 std::string IntervalText(double value, double lower, double upper);
 
 TextTable EstimateTable(const FitResult& result);
-// "All 7 free parameters are identified by the data.", or how many are, and which are not and why.
-std::string IdentifiedText(const FitResult& result);
 // The meaning of the table's columns of shares and shifts.
 std::string SharesNote();
 // How errors were estimated, and about whom they are.

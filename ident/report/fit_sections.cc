@@ -13,18 +13,105 @@
 #include "ident/report/advice.h"
 #include "ident/report/parameter_sections.h"
 #include "ident/report/report_text.h"
+#include "ident/uncertainty/clusters.h"
 #include "ident/validation/steps_report.h"
 
 namespace pushid {
 namespace {
 
-std::string VerdictText(const FitResult& result) {
-  std::string text = result.converged ? "The solve converged. " : "The solve did NOT converge. ";
-  text += IdentifiedText(result) + " ";
-  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
-  text += Capitalized(VerdictSentence(verdict, result.behaviour, result.options.model)) + ".";
-  if (result.behaviour.self_propelling) text += " Do not use the gains.";
+constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has all
+
+// "mu = 31.3 N s/m (20 to 42)", with the interval where there is one.
+std::string ValueText(const Estimate& e) {
+  std::string text = e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
+  if (e.lower95 < e.upper95) {
+    const double lower = e.total ? e.total->lower : e.lower95;
+    const double upper = e.total ? e.total->upper : e.upper95;
+    const double from = ShownEnd(e.value, lower, upper), to = ShownEnd(e.value, upper, lower);
+    text += std::isfinite(from) && std::isfinite(to)
+                ? " (" + Rounded(from, 3) + " to " + Rounded(to, 3) + ")"
+            : std::isfinite(from) ? " (above " + Rounded(from, 3) + ")"
+            : std::isfinite(to)   ? " (below " + Rounded(to, 3) + ")"
+                                  : " (undetermined)";
+  }
   return text;
+}
+
+std::vector<const Estimate*> With(const FitResult& result, EstimateStatus status) {
+  std::vector<const Estimate*> found;
+  for (const Estimate& e : result.estimates) {
+    if (e.status == status) found.push_back(&e);
+  }
+  return found;
+}
+
+std::string Listed(const std::vector<const Estimate*>& estimates) {
+  std::string text;
+  for (size_t i = 0; i < std::min(kNamed, estimates.size()); ++i) {
+    text += (i > 0 ? ", " : "") + ValueText(*estimates[i]);
+  }
+  const size_t more = estimates.size() - std::min(kNamed, estimates.size());
+  return text + (more > 0 ? " and " + std::to_string(more) + " more" : "");
+}
+
+std::string Known(const FitResult& result) {
+  const std::vector<const Estimate*> known = With(result, EstimateStatus::kIdentified);
+  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
+  return "What is known: " +
+         (known.empty() ? "these recordings alone identify no parameter"
+                        : "these recordings identify " + Listed(known)) +
+         "; " + VerdictSentence(verdict, result.behaviour, result.options.model) + "." +
+         (result.behaviour.self_propelling ? " Do not use the gains." : "");
+}
+
+// Which intervals ValueText shows, where it shows any.
+std::string Brackets(const FitResult& result) {
+  if (With(result, EstimateStatus::kIdentified).empty()) return "";
+  const bool total = std::any_of(result.estimates.begin(), result.estimates.end(),
+                                 [](const Estimate& e) { return e.total.has_value(); });
+  return total ? " In brackets: 95 % intervals, with the errors of what is taken as known."
+               : " In brackets: 95 % intervals.";
+}
+
+std::string NotKnown(const FitResult& result) {
+  std::string text;
+  const auto add = [&](EstimateStatus status, const std::string& words) {
+    const std::vector<const Estimate*> found = With(result, status);
+    if (!found.empty()) text += (text.empty() ? "" : "; ") + words + Listed(found);
+  };
+  add(EstimateStatus::kUnidentifiable, "not identifiable from these recordings: ");
+  add(EstimateStatus::kAtBound, "ended at a bound: ");
+  add(EstimateStatus::kPriorHeld,
+      "determined more by priors or constraints than by the recordings: ");
+  add(EstimateStatus::kModelDependent, "dependent on a model that does not fit: ");
+  add(EstimateStatus::kWeak, "with wide intervals: ");
+  const Uncertainty& u = result.uncertainty;
+  const std::string join = text.empty() ? "" : "; ";
+  if (u.about_people_like_them && u.num_people < kFewestPeople) {
+    text += join + "anything about people like these " + std::to_string(u.num_people) +
+            ", who are fewer than " + std::to_string(kFewestPeople);
+  } else if (u.clustered && u.num_clusters < kFewClusters) {
+    text += join + "with " + std::to_string(u.num_clusters) +
+            (u.clustered_by == ClusterBy::kSubject ? " people" : " recordings") +
+            " all intervals are rough";
+  }
+  return "What is not known: " + (text.empty() ? "no free parameter" : text) + ".";
+}
+
+std::string Next(const FittedModel& model) {
+  if (model.advice.empty()) return "What to do next: predict a push that was not fitted.";
+  return "What to do next: " + model.advice.front().sentence;
+}
+
+// Names, units and meanings of the free parameters.
+TextTable Legend(const FitResult& result) {
+  TextTable table({"name", "unit", "meaning"});
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* spec = result.options.table.Find(e.name);
+    if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
+    table.Add({e.name, e.unit == "1" ? "-" : e.unit, spec->meaning});
+  }
+  return table;
 }
 
 // What parameters are pooled by, if any.
@@ -42,9 +129,20 @@ double MeanExplained(const FitResult& result) {
 
 }  // namespace
 
+ReportSection ShortSection(const FittedModel& model, const std::string& more) {
+  ReportSection section{"short", "In short"};
+  section.Say(Known(model.fit) + Brackets(model.fit));
+  section.Say(NotKnown(model.fit));
+  section.Say(GainsText(model.fit));
+  section.Say(more);
+  section.Say(Next(model));
+  section.Show("what the names mean", Legend(model.fit));
+  return section;
+}
+
 ReportSection SummarySection(const FittedModel& model) {
   ReportSection section{"summary", "What was fitted"};
-  section.Say(VerdictText(model.fit));
+  section.Say(model.fit.converged ? "The solve converged." : "The solve did NOT converge.");
   const FitOptions& o = model.fit.options;
   TextTable facts({"what", "value"});
   const std::string by = PooledBy(o);
@@ -111,7 +209,7 @@ ReportSection ProvenanceSection(const FittedModel& model) {
   TextTable flags({"flag", "value"});
   for (const auto& [name, value] : model.provenance.configuration) flags.Add({"--" + name, value});
   section.Show("flags of the fit (empty: the preset's value)", flags);
-  TextTable files({"recording", "frames", "hash of its files"}, {true, false, true});
+  TextTable files({"recording", ">frames", "hash of its files"});
   for (const FittedRecording& r : model.fit.recordings) {
     files.Add({r.id, r.frames, r.content_hash});
   }
@@ -140,9 +238,8 @@ constexpr double kWorstShown = -300.0;  // % explained; bars of worse ones are c
 
 // The recordings that are explained least, and the parameter that changes most without each.
 TextTable WorstTable(std::vector<const RecordingDiagnostics*> worst, const Leverage& leverage) {
-  TextTable table({"explained least", "% of motion", "cost", "down-weighted frames",
-                   "change without it (std errors)"},
-                  {true, false, false, false, true});
+  TextTable table({"explained least", ">% of motion", ">cost", ">down-weighted frames",
+                   "change without it (std errors)"});
   for (size_t k = worst.size(); k-- > 0 && worst.size() - k <= kWorstRecordings;) {
     std::string change;
     for (size_t g = 0; g < leverage.recordings.size(); ++g) {
@@ -205,8 +302,7 @@ std::vector<OutlierRun> RunsOf(const Diagnostics& d) {
 }
 
 TextTable OutlierTable(const Diagnostics& d) {
-  TextTable table({"recording", "person", "frames", "worst error, sigmas", "least weight kept"},
-                  {true, false, true, false, false});
+  TextTable table({"recording", ">person", "frames", ">worst error, sigmas", ">least weight kept"});
   const std::vector<OutlierRun> runs = RunsOf(d);
   for (size_t i = 0; i < std::min(kMostOutliers, runs.size()); ++i) {
     const OutlierRun& run = runs[i];
@@ -355,8 +451,7 @@ struct CostAxis {
 ReportSection SolveSection(const FittedModel& model) {
   ReportSection section{"solve", "Solver convergence"};
   TextTable starts(
-      {"start", "cost", "iterations", "converged", "failed recordings", "solver's message"},
-      {true, false, false, true, false, true});
+      {"start", ">cost", ">iterations", "converged", ">failed recordings", "solver's message"});
   for (const SolveStart& s : model.fit.starts) {
     starts.Add({s.kind, s.usable ? Rounded(s.cost, 6) : "-", s.iterations,
                 s.converged ? "yes" : "no", s.failed.size(), s.message});

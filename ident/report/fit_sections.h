@@ -1,12 +1,16 @@
 // ident: sections of a report about a fit as a whole, which need no recordings.
 #pragma once
 
+#include <string>
+
 #include "ident/model/fitted_model.h"
 #include "ident/report/document.h"
 
 namespace pushid {
 
 // A section with nothing to say is empty and left out.
+// What is known, what is not, and what to do next; more: a paragraph before that.
+ReportSection ShortSection(const FittedModel& model, const std::string& more = "");
 ReportSection SummarySection(const FittedModel& model);
 ReportSection BehaviourSection(const FittedModel& model);
 ReportSection LoopSection(const FittedModel& model);

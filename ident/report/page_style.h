@@ -31,18 +31,10 @@ figcaption{color:var(--faint);font-size:.85rem;max-width:78ch}
 @media(max-width:1000px){nav{position:static}section{scroll-margin-top:1rem}table{font-size:.7rem}td{white-space:normal}}
 details{border-bottom:1px solid var(--line);padding:.3rem 0}
 summary{cursor:pointer}
-.controls{display:flex;flex-wrap:wrap;gap:.6rem 1.2rem;align-items:center;margin:.6rem 0}
-.controls label{display:flex;gap:.4rem;align-items:center}
 .moving{width:100%;height:34rem;border:1px solid var(--line);border-radius:4px}
-.g{stroke:var(--line)}.p{stroke:#3b82f6;stroke-width:4;stroke-opacity:.9}
-.b{stroke:var(--faint);stroke-width:1.6}
-circle.p{fill:#3b82f6;stroke:none}
-.a{stroke:#d55e00;stroke-width:4}
-.key span::before{content:"";display:inline-block;width:1.4em;height:4px;margin:0 .4em .2em 1em;background:var(--ink)}
-.key .predicted::before{background:#3b82f6}.key .body::before{background:var(--faint);height:2px}.key .pushed::before{background:#d55e00}
 :focus-visible{outline:2px solid var(--link);outline-offset:2px}
 @media print{:root{--paper:#fff;--ink:#000;--faint:#444;--line:#bbb;--box:#fff}
-nav,.controls{display:none}body{max-width:none}h2{break-after:avoid}svg{max-width:100%;height:auto}
+nav{display:none}body{max-width:none}h2{break-after:avoid}svg{max-width:100%;height:auto}
 pre{white-space:pre-wrap;overflow-wrap:anywhere}.scroll{overflow:visible}summary{break-after:avoid}
 table{font-size:.62rem}th,td{white-space:normal;padding-right:.35rem}td:last-child{min-width:0}
 svg .paper{fill:#fff}svg .ink,svg .axis{fill:#222}svg .faint{fill:#666}svg line.axis,svg path.axis,svg path.ink{stroke:#222;fill:none}svg line.grid,svg path.grid{stroke:#ddd}}

@@ -145,7 +145,6 @@ ReportFigure IntervalFigure(const FittedModel& model) {
 ReportSection ParameterSection(const FittedModel& model) {
   ReportSection section{"parameters", "Parameters"};
   section.paragraphs = {SharesNote(), ErrorsText(model.fit), ConventionText(model.fit)};
-  section.Say(GainsText(model.fit));
   section.Show("", EstimateTable(model.fit));
   section.Show("", DerivedTable(model.fit));
   if (model.fit.verdict.checked()) {

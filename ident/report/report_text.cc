@@ -98,8 +98,7 @@ Result<std::map<std::string, double>> ReadTruth(const std::string& manifest_path
 }
 
 std::string TruthTable(const FitResult& result, const std::map<std::string, double>& truth) {
-  TextTable table({"parameter", "truth", "fitted", "std error", "95 % interval", "unit", ""},
-                  {true, false, false, false, true, true, true});
+  TextTable table({"parameter", ">truth", ">fitted", ">std error", "95 % interval", "unit", ""});
   int covered = 0, compared = 0, by_total = 0, with_total = 0;
   for (const Estimate& e : result.estimates) {
     const auto known = truth.find(e.name);
@@ -168,9 +167,8 @@ std::optional<Interval> BootstrapInterval(const FittedModel& model, const std::s
 }
 
 TextTable IntervalTable(const FittedModel& model) {
-  TextTable table({"95 % intervals", "value", "clustered", "profile", "bootstrap", "unit", "class",
-                   "by the data alone"},
-                  {true, false, true, true, true, true, true, true});
+  TextTable table({"95 % intervals", ">value", "clustered", "profile", "bootstrap", "unit", "class",
+                   "by the data alone"});
   const auto add = [&](const auto& row) {
     const auto profile = ProfileInterval(model, row.name);
     const auto bootstrap = BootstrapInterval(model, row.name);
@@ -220,18 +218,19 @@ std::string ReportText(const FittedModel& model) {
                  result.options.preset + ": " + CountText(result.recordings.size(), "recording") +
                  (from.setting.empty() ? "" : " (" + from.setting + ")");
   report.subtitle = ModelVerdictText(result.verdict);
+  report.sections = {ShortSection(model)};
   for (const auto section :
        {SummarySection, ParameterSection, ContrastSection, UnitSection, IdentifiabilitySection,
         ProfileSection, BootstrapSection, HorizonCheckSection, BehaviourSection, LoopSection,
         RecordingSection, AdviceSection}) {
-    ReportSection shown = section(model);
+    report.sections.push_back(section(model));
+  }
+  for (ReportSection& shown : report.sections) {
     shown.figures.clear();
-    std::vector<ReportTable> open;  // what the page folds is left out
-    for (const ReportTable& table : shown.tables) {
-      if (table.caption.empty()) open.push_back(table);
-    }
-    shown.tables = open;
-    report.sections.push_back(std::move(shown));
+    // What the page folds is left out.
+    shown.tables.erase(std::remove_if(shown.tables.begin(), shown.tables.end(),
+                                      [](const auto& table) { return !table.caption.empty(); }),
+                       shown.tables.end());
   }
   return ToText(report);
 }

@@ -13,10 +13,9 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/prediction/force_story.h"
 #include "ident/prediction/prediction.h"
-#include "ident/problem/behaviour.h"
+#include "ident/report/fit_sections.h"
 #include "ident/report/parameter_sections.h"
 #include "ident/report/report_text.h"
-#include "ident/uncertainty/clusters.h"
 #include "ident/validation/scores_report.h"
 
 namespace pushid {
@@ -176,13 +175,13 @@ TextTable PathNumbers(const RecordingView& view) {
       const bool ok = run.prediction.status.ok, bands = !view.bands.people.empty();
       for (int axis : {0, 1}) add(true, run.recording.hip[n][t][axis]);
       for (int axis : {0, 1}) add(ok, ok ? run.prediction.hip[n][t][axis] : 0.0);
-      for (int axis : {0, 1}) {
-        add(bands, bands ? view.bands.people[n].lower90[t][axis] : 0.0);
-        add(bands, bands ? view.bands.people[n].upper90[t][axis] : 0.0);
-      }
-      for (int axis : {0, 1}) {
-        add(bands, bands ? view.bands.people[n].lower50[t][axis] : 0.0);
-        add(bands, bands ? view.bands.people[n].upper50[t][axis] : 0.0);
+      for (const auto& [lower, upper] : {std::pair(&PathBand::lower90, &PathBand::upper90),
+                                         {&PathBand::lower50, &PathBand::upper50}}) {
+        for (int axis : {0, 1}) {
+          for (auto edge : {lower, upper}) {
+            add(bands, bands ? (view.bands.people[n].*edge)[t][axis] : 0.0);
+          }
+        }
       }
       for (int row : {2, 3}) {
         add(true, run.recording.states[n][t].q[row]);
@@ -200,11 +199,8 @@ TextTable ForceNumbers(const FormationRun& run) {
   const std::vector<ForcePart> parts = ActingParts(run);
   for (int n = 0; n < run.num_people(); ++n) {
     for (int t = 0; t < run.num_frames(); ++t) {
-      const auto add = [&](std::string_view part, const Vector4<double>& force) {
-        std::vector<std::string> cells = {run.recording.subject_ids[n], std::to_string(t),
-                                          std::string(part)};
-        for (int i = 0; i < 4; ++i) cells.push_back(DoubleText(force[i]));
-        table.Add(cells);
+      const auto add = [&](std::string_view part, const Vector4<double>& f) {
+        table.Add({run.recording.subject_ids[n], t, std::string(part), f[0], f[1], f[2], f[3]});
       };
       add("net", run.Force(n, t).Total());
       for (ForcePart part : parts) add(NameOf(part), run.Force(n, t)[part]);
@@ -218,7 +214,7 @@ constexpr const char* kForceHeads[] = {"force along the push, N", "torque about 
 
 // Colours after Okabe and Ito: the colour-blind can tell them apart, on light and on dark paper. A
 // part without a colour of its own is grey and dotted.
-std::string PartColour(ForcePart part) {
+std::string PartLook(ForcePart part) {
   static const std::map<ForcePart, const char*> colours = {
       {ForcePart::kPush, "#d55e00"},
       {ForcePart::kTail, "#cc79a7"},
@@ -228,45 +224,33 @@ std::string PartColour(ForcePart part) {
       {ForcePart::kInteraction, "#9333ea"},
       {ForcePart::kNetwork, "#6b7280;stroke-dasharray:7 2"}};
   const auto found = colours.find(part);
-  return found == colours.end() ? "#999999;stroke-dasharray:2 2" : found->second;
-}
-
-std::string PartLook(ForcePart part) {
-  return "fill:none;stroke-width:1.5;stroke:" + PartColour(part);
+  return std::string("fill:none;stroke-width:1.5;stroke:") +
+         (found == colours.end() ? "#999999;stroke-dasharray:2 2" : found->second);
 }
 
 constexpr char kNetLook[] = "ink net";
 constexpr double kSmallestRange = 10.0;  // N or N m, so that little is not blown up
 constexpr double kNothing = 1e-6;        // N or N m
 
-struct ForceRange {
-  double lowest = 0.0, highest = 0.0;
-
-  void Add(double force) {
-    lowest = std::min(lowest, force);
-    highest = std::max(highest, force);
-  }
-};
-
-// The range of the forces in one panel.
-ForceRange RangeOf(const FormationRun& run, const std::vector<ForcePart>& parts, int person,
-                   int row) {
-  ForceRange range;
+// The range of the forces in one panel, zero in it.
+std::pair<double, double> RangeOf(const FormationRun& run, const std::vector<ForcePart>& parts,
+                                  int person, int row) {
+  std::pair<double, double> range{0.0, 0.0};
+  const auto add = [&range](double force) {
+    range = {std::min(range.first, force), std::max(range.second, force)};
+  };
   for (int t = 0; t < run.num_frames(); ++t) {
     const NetForce<double>& force = run.Force(person, t);
-    range.Add(force.Total()[row]);
-    for (ForcePart part : parts) range.Add(force[part][row]);
+    add(force.Total()[row]);
+    for (ForcePart part : parts) add(force[part][row]);
   }
   return range;
 }
 
 // The net force is drawn first and thick, so that a part that equals it shows on top.
-Chart ForceChart(const FormationRun& run, const std::vector<ForcePart>& parts, int person, int row,
-                 const ForceRange& scale) {
+Chart ForceChart(const FormationRun& run, const std::vector<ForcePart>& parts, int person,
+                 int row) {
   Chart chart{"", "time, s"};
-  const double air = 0.1 * std::max(kSmallestRange, scale.highest - scale.lowest);
-  chart.y_from = scale.lowest - air;
-  chart.y_to = scale.highest + air;
   const auto line = [&](auto force_at, const std::string& look) {
     ChartLine drawn{{}, look};
     bool acts = false;
@@ -291,23 +275,24 @@ Figure ForcesFigure(const FormationRun& run) {
   Figure figure;
   figure.legend = {{"net (the sum)", kNetLook}};
   for (ForcePart part : parts) figure.legend.push_back({std::string(NameOf(part)), PartLook(part)});
-  ForceRange shared[2];
+  std::pair<double, double> shared[2];
   for (int n = 0; n < run.num_people(); ++n) {
     for (int column : {0, 1}) {
-      const ForceRange range = RangeOf(run, parts, n, kRows[column]);
-      shared[column].Add(range.lowest);
-      shared[column].Add(range.highest);
-    }
-  }
-  for (int n = 0; n < run.num_people(); ++n) {
-    for (int column : {0, 1}) {
-      const ForceRange own = RangeOf(run, parts, n, kRows[column]);
-      Chart chart = ForceChart(run, parts, n, kRows[column], shared[column]);
+      const auto [lowest, highest] = RangeOf(run, parts, n, kRows[column]);
+      auto& [from, to] = shared[column];
+      from = std::min(from, lowest), to = std::max(to, highest);
+      Chart chart = ForceChart(run, parts, n, kRows[column]);
       chart.title = kForceHeads[column];
       if (run.num_people() > 1) chart.title = "person " + std::to_string(n) + ": " + chart.title;
-      if (own.highest - own.lowest < kNothing) chart.y_label = "nothing";
+      if (highest - lowest < kNothing) chart.y_label = "nothing";
       figure.panels.push_back(chart);
     }
+  }
+  for (size_t i = 0; i < figure.panels.size(); ++i) {
+    const auto& [from, to] = shared[i % 2];
+    const double air = 0.1 * std::max(kSmallestRange, to - from);
+    figure.panels[i].y_from = from - air;
+    figure.panels[i].y_to = to + air;
   }
   return figure;
 }
@@ -354,7 +339,8 @@ std::string FoldTitle(const RecordingView& view) {
   const PendulumRecording& r = view.run.recording;
   std::string title = r.id;
   if (view.run.prediction.status.ok) {
-    title += ": predicted " + MetricsText(ScoreHip(r, view.run.prediction.hip), 2);
+    title += ": predicted " +
+             MetricsText(TableMetrics(0), ScoreHip(r, view.run.prediction.hip).value, 2);
   }
   return title + (view.note.empty() ? "" : " (" + view.note + ")");
 }
@@ -375,7 +361,8 @@ std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
   std::vector<std::pair<double, const RecordingView*>> ranked;
   for (const RecordingView& view : source.views) {
     if (!view.run.prediction.status.ok) continue;
-    ranked.emplace_back(ScoreHip(view.run.recording, view.run.prediction.hip).hip_ade, &view);
+    ranked.emplace_back(ScoreHip(view.run.recording, view.run.prediction.hip).value[kHipAde],
+                        &view);
   }
   if (ranked.empty()) return std::nullopt;
   std::stable_sort(ranked.begin(), ranked.end(),
@@ -385,30 +372,28 @@ std::optional<ReportFigure> TypicalFigure(const ReportSource& source) {
   if (ranked.size() > 1) shown.emplace_back("worst", ranked.size() - 1);
   std::vector<LegendEntry> legend;
   std::vector<Chart> panels;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> header = PathNumbers(*ranked[0].second).rows()[0];
+  header.insert(header.begin(), {"which", "recording"});
+  TextTable numbers(header);
   for (const auto& [which, place] : shown) {
     const auto& [error, view] = ranked[place];
     panels.push_back(TypicalChart(*view, which + ": " + view->run.recording.id));
-    panels.back().x_label = "time, s (" + kHipMetrics[0].Text(error, 2) + ")";
+    panels.back().x_label = "time, s (" + kMetrics[kHipAde].Text(error, 2) + ")";
     if (legend.empty()) legend = LegendOf(*view);
     const TextTable path = PathNumbers(*view);
-    for (std::vector<std::string> row : path.rows()) {
-      const bool header = row[0] == "person";
-      if (header && !rows.empty()) continue;
-      row.insert(row.begin(),
-                 {header ? "which" : which, header ? "recording" : view->run.recording.id});
-      rows.push_back(row);
+    for (size_t i = 1; i < path.rows().size(); ++i) {
+      std::vector<std::string> row = path.rows()[i];
+      row.insert(row.begin(), {which, view->run.recording.id});
+      numbers.Add(row);
     }
   }
   legend.erase(std::remove_if(legend.begin(), legend.end(),
                               [](const LegendEntry& e) { return e.look == kLiftedLook; }),
                legend.end());
-  TextTable numbers(rows[0]);
-  for (size_t i = 1; i < rows.size(); ++i) numbers.Add(rows[i]);
   return ReportFigure{
       "typical",
       "Measured and predicted hips in typical recordings: of these " +
-          std::to_string(ranked.size()) + " those whose mean error (" + kHipMetrics[0].name +
+          std::to_string(ranked.size()) + " those whose mean error (" + kMetrics[kHipAde].name +
           ") is the smallest, the median and the largest. Predicted from the first frame and the "
           "push alone, with 50 % and 90 % bands; lengths are along the push, from where the pushed "
           "person starts.",
@@ -453,84 +438,6 @@ ReportSection MotionSection(const ReportSource& source) {
 
 namespace {
 
-constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has all
-
-// "mu = 31.3 N s/m (20 to 42)", with the interval where there is one.
-std::string ValueText(const Estimate& e) {
-  std::string text = e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
-  if (e.lower95 < e.upper95) {
-    const double lower = e.total ? e.total->lower : e.lower95;
-    const double upper = e.total ? e.total->upper : e.upper95;
-    const double from = ShownEnd(e.value, lower, upper), to = ShownEnd(e.value, upper, lower);
-    text += std::isfinite(from) && std::isfinite(to)
-                ? " (" + Rounded(from, 3) + " to " + Rounded(to, 3) + ")"
-            : std::isfinite(from) ? " (above " + Rounded(from, 3) + ")"
-            : std::isfinite(to)   ? " (below " + Rounded(to, 3) + ")"
-                                  : " (undetermined)";
-  }
-  return text;
-}
-
-std::vector<const Estimate*> With(const FitResult& result, EstimateStatus status) {
-  std::vector<const Estimate*> found;
-  for (const Estimate& e : result.estimates) {
-    if (e.status == status) found.push_back(&e);
-  }
-  return found;
-}
-
-std::string Listed(const std::vector<const Estimate*>& estimates) {
-  std::string text;
-  for (size_t i = 0; i < std::min(kNamed, estimates.size()); ++i) {
-    text += (i > 0 ? ", " : "") + ValueText(*estimates[i]);
-  }
-  const size_t more = estimates.size() - std::min(kNamed, estimates.size());
-  return text + (more > 0 ? " and " + std::to_string(more) + " more" : "");
-}
-
-std::string Known(const FitResult& result) {
-  const std::vector<const Estimate*> known = With(result, EstimateStatus::kIdentified);
-  const Verdict verdict = VerdictOf(result.behaviour, result.options.model);
-  return "What is known: " +
-         (known.empty() ? "these recordings alone identify no parameter"
-                        : "these recordings identify " + Listed(known)) +
-         "; " + VerdictSentence(verdict, result.behaviour, result.options.model) + ".";
-}
-
-// Which intervals ValueText shows, where it shows any.
-std::string Brackets(const FitResult& result) {
-  if (With(result, EstimateStatus::kIdentified).empty()) return "";
-  const bool total = std::any_of(result.estimates.begin(), result.estimates.end(),
-                                 [](const Estimate& e) { return e.total.has_value(); });
-  return total ? " In brackets: 95 % intervals, with the errors of what is taken as known."
-               : " In brackets: 95 % intervals.";
-}
-
-std::string NotKnown(const FitResult& result) {
-  std::string text;
-  const auto add = [&](EstimateStatus status, const std::string& words) {
-    const std::vector<const Estimate*> found = With(result, status);
-    if (!found.empty()) text += (text.empty() ? "" : "; ") + words + Listed(found);
-  };
-  add(EstimateStatus::kUnidentifiable, "not identifiable from these recordings: ");
-  add(EstimateStatus::kAtBound, "ended at a bound: ");
-  add(EstimateStatus::kPriorHeld,
-      "determined more by priors or constraints than by the recordings: ");
-  add(EstimateStatus::kModelDependent, "dependent on a model that does not fit: ");
-  add(EstimateStatus::kWeak, "with wide intervals: ");
-  const Uncertainty& u = result.uncertainty;
-  const std::string join = text.empty() ? "" : "; ";
-  if (u.about_people_like_them && u.num_people < kFewestPeople) {
-    text += join + "anything about people like these " + std::to_string(u.num_people) +
-            ", who are fewer than " + std::to_string(kFewestPeople);
-  } else if (u.clustered && u.num_clusters < kFewClusters) {
-    text += join + "with " + std::to_string(u.num_clusters) +
-            (u.clustered_by == ClusterBy::kSubject ? " people" : " recordings") +
-            " all intervals are rough";
-  }
-  return "What is not known: " + (text.empty() ? "no free parameter" : text) + ".";
-}
-
 // A sentence about how the push travels through groups, measured and predicted.
 std::string Travels(const PropagationSummary& p) {
   if (p.recordings == 0 || !p.figures[kSlownessMeasured].known()) return "";
@@ -549,42 +456,20 @@ std::string Travels(const PropagationSummary& p) {
          Rounded(p.movers, 4) + " people who moved.";
 }
 
-std::string Next(const FittedModel& model) {
-  if (model.advice.empty()) return "What to do next: predict a push that was not fitted.";
-  return "What to do next: " + model.advice.front().sentence;
-}
-
-// Names, units and meanings of the free parameters.
-TextTable Legend(const FitResult& result) {
-  TextTable table({"name", "unit", "meaning"});
-  for (const Estimate& e : result.estimates) {
-    const ParameterSpec* spec = result.options.table.Find(e.name);
-    if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
-    table.Add({e.name, e.unit == "1" ? "-" : e.unit, spec->meaning});
-  }
-  return table;
-}
-
 }  // namespace
 
 ReportSection LeadSection(const ReportSource& source) {
-  ReportSection section{"short", "In short"};
+  ReportSection section = ShortSection(source.model, Travels(source.propagation));
   if (const std::optional<ReportFigure> typical = TypicalFigure(source))
     section.figures.push_back(*typical);
   section.figures.push_back(IntervalFigure(source.model));
   const std::string verdict = ModelVerdictText(source.fit.verdict);
-  if (source.fit.verdict.fails() || !source.fit.verdict.none_identified.empty()) {
-    section.alarm = verdict;
+  section.verdict_first = !source.fit.verdict.fails() && source.fit.verdict.none_identified.empty();
+  if (section.verdict_first) {
+    section.paragraphs.insert(section.paragraphs.begin(), verdict);
   } else {
-    section.Say(verdict);
-    section.verdict_first = true;
+    section.alarm = verdict;
   }
-  section.Say(Known(source.fit) + Brackets(source.fit));
-  section.Say(NotKnown(source.fit));
-  section.Say(GainsText(source.fit));
-  section.Say(Travels(source.propagation));
-  section.Say(Next(source.model));
-  section.Show("what the names mean", Legend(source.fit));
   return section;
 }
 
