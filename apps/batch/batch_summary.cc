@@ -463,34 +463,19 @@ Report PageOf(const BatchPlan& plan, const std::vector<JobResult>& rows) {
   Report report;
   report.title = "pushid: batch of " + std::to_string(rows.size()) + " jobs";
   report.subtitle = plan.path + ", recordings " + plan.manifest + ", pushid " + Version();
-  ReportSection variants, failures, warnings, jobs;
-  variants.id = "variants";
-  variants.title = "Variants";
-  variants.tables = {{"estimates over groups", VariantTable(rows)}};
-  const TextTable bootstrap = BootstrapTable(rows), warned = WarningTable(rows);
-  const TextTable held_out = HeldOutTable(rows);
-  if (held_out.rows().size() > 1) {
-    variants.tables.push_back({"errors on held-out recordings", held_out});
-  }
-  if (bootstrap.rows().size() > 1) {
-    variants.tables.push_back({"bootstrap: spread over the replicas of each group", bootstrap});
-  }
-  failures.id = "failures";
-  failures.title = "Failures";
-  const TextTable failed = FailureTable(rows);
-  failures.paragraphs = {failed.rows().size() > 1 ? "The next run retries failed jobs." : "None."};
-  failures.tables = {{"", failed}};
-  warnings.id = "warnings";
-  warnings.title = "Warnings";
-  if (warned.rows().size() == 1) warnings.paragraphs = {"None."};
-  warnings.tables = {{"", warned}};
-  jobs.id = "jobs";
-  jobs.title = "Jobs";
+  ReportSection variants{"variants", "Variants"}, failures{"failures", "Failures"},
+      warnings{"warnings", "Warnings"}, jobs{"jobs", "Jobs"};
+  variants.Show("estimates over groups", VariantTable(rows));
+  variants.Show("errors on held-out recordings", HeldOutTable(rows));
+  variants.Show("bootstrap: spread over the replicas of each group", BootstrapTable(rows));
+  failures.Show("", FailureTable(rows));
+  failures.Say(failures.tables.empty() ? "None." : "The next run retries failed jobs.");
+  warnings.Show("", WarningTable(rows));
+  warnings.Say(warnings.tables.empty() ? "None." : "");
   if (rows.size() > kMostRowsOnPage) {
-    jobs.paragraphs = {"The first " + std::to_string(kMostRowsOnPage) +
-                       "; summary.csv has all of them."};
+    jobs.Say("The first " + std::to_string(kMostRowsOnPage) + "; summary.csv has all of them.");
   }
-  jobs.tables = {{"", JobTable(rows)}};
+  jobs.Show("", JobTable(rows));
   report.sections = {variants, failures, warnings, jobs};
   return report;
 }
@@ -510,14 +495,14 @@ void WriteSummary(const BatchPlan& plan, const std::vector<JobResult>& rows) {
 }
 
 std::string SummaryText(const std::vector<JobResult>& rows) {
-  const TextTable bootstrap = BootstrapTable(rows), failed = FailureTable(rows);
-  const TextTable held_out = HeldOutTable(rows);
+  const TextTable bootstrap = BootstrapTable(rows);
+  const bool few = bootstrap.rows().size() <= kMostRowsInText;
   std::string text = VariantTable(rows).ToString();
-  if (held_out.rows().size() > 1) text += "\n" + held_out.ToString();
-  if (bootstrap.rows().size() > 1 && bootstrap.rows().size() <= kMostRowsInText) {
-    text += "\n" + bootstrap.ToString();
+  for (const TextTable& table :
+       {HeldOutTable(rows), few ? bootstrap : TextTable({""}), FailureTable(rows)}) {
+    if (!table.empty()) text += "\n" + table.ToString();
   }
-  return text + (failed.rows().size() > 1 ? "\n" + failed.ToString() : "");
+  return text;
 }
 
 }  // namespace pushid
