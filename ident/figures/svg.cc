@@ -11,7 +11,7 @@ namespace pushid {
 namespace {
 
 // Viewers that do not know prefers-color-scheme show the light picture.
-constexpr char kLightStyle[] =
+constexpr char kStyle[] =
     "text{font:12px "
     "system-ui,Helvetica,Arial,sans-serif}.small{font-size:11px}.bold{font-weight:600}"
     ".middle{text-anchor:middle}.end{text-anchor:end}"
@@ -22,8 +22,7 @@ constexpr char kLightStyle[] =
     "path.net{stroke-width:3}"
     ".predicted{stroke-width:1.8;stroke:#3b82f6}"
     ".band{stroke:none;fill:#3b82f6}path.band{fill:#3b82f6}.wide{fill-opacity:.16}"
-    ".narrow{fill-opacity:.26}.lifted{fill:#8a8f98}";
-constexpr char kDarkStyle[] =
+    ".narrow{fill-opacity:.26}.lifted{fill:#8a8f98}"
     "@media(prefers-color-scheme:dark){.paper{fill:#15181c}.ink,.axis{fill:#e8e8e8}"
     ".faint{fill:#a0a0a0}line.axis,path.axis,path.ink{stroke:#e8e8e8;fill:none}"
     "line.grid,path.grid{stroke:#3a3f46}.ring{stroke:#e8e8e8}}";
@@ -113,10 +112,7 @@ std::string WithMinusSigns(std::string_view text) {
 
 }  // namespace
 
-std::string_view SvgStyle() {
-  static const std::string style = std::string(kLightStyle) + kDarkStyle;
-  return style;
-}
+std::string_view SvgStyle() { return kStyle; }
 
 std::string EscapeXml(std::string_view text) {
   constexpr std::string_view kSpecial = "&<>\"'";
@@ -229,21 +225,16 @@ void SvgPicture::TextAt(const std::string& place, std::string_view text, std::st
 }
 
 std::string SvgPicture::ToString() const {
-  return Drawn(width_, height_, "", "<style>" + std::string(SvgStyle()) + "</style>\n");
+  return Drawn("<style>" + std::string(SvgStyle()) + "</style>\n");
 }
 
-std::string SvgPicture::ToInline() const { return Drawn(width_, height_, "", ""); }
+std::string SvgPicture::ToInline() const { return Drawn(""); }
 
-std::string SvgPicture::ToPaper(double width_mm, std::string_view description) const {
-  return Drawn(width_mm, width_mm * height_ / width_, "mm",
-               "<desc>" + EscapeXml(description) + "</desc>\n<style>" + kLightStyle + "</style>\n");
-}
-
-std::string SvgPicture::Drawn(double width, double height, const char* unit,
-                              const std::string& head) const {
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + SvgNumber(width) + unit +
-         "\" height=\"" + SvgNumber(height) + unit + "\" viewBox=\"0 0 " + SvgNumber(width_) + ' ' +
-         SvgNumber(height_) + "\" role=\"img\">\n" + head + body_ + "</svg>\n";
+std::string SvgPicture::Drawn(const std::string& style) const {
+  const std::string width = SvgNumber(width_), height = SvgNumber(height_);
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height +
+         "\" viewBox=\"0 0 " + width + ' ' + height + "\" role=\"img\">\n" + style + body_ +
+         "</svg>\n";
 }
 
 SvgScale::SvgScale(double from, double to, double from_pixel, double to_pixel)

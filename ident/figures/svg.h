@@ -57,11 +57,9 @@ class SvgPicture {
   std::string ToString() const;
   // The picture for a page that has SvgStyle: without a style sheet of its own.
   std::string ToInline() const;
-  // The picture for print: always light, so wide, with a description.
-  std::string ToPaper(double width_mm, std::string_view description) const;
 
  private:
-  std::string Drawn(double width, double height, const char* unit, const std::string& head) const;
+  std::string Drawn(const std::string& style) const;
   void TextAt(const std::string& place, std::string_view text, std::string_view look);
   void Open(std::string_view element,
             std::initializer_list<std::pair<const char*, double>> numbers = {});

@@ -105,9 +105,7 @@ std::vector<const ReportFigure*> FiguresOf(const Report& report) {
 }
 
 std::vector<NamedText> FigureFiles(const Report& report) {
-  constexpr double kWidth = 85.0, kFont = 8.0;  // mm, points: of a journal's column
-  constexpr double kInch = 25.4, kPoints = 72.0, kSmallest = 11.0;  // mm, pt, pixels of a label
-  const double width = kWidth / kInch * kPoints * kSmallest / kFont;
+  constexpr double kWidth = 1000.0;  // pixels
   std::vector<NamedText> files;
   std::string captions = "# " + report.title + "\n";
   const auto caption = [&captions](const std::string& name, const std::string& text) {
@@ -115,8 +113,7 @@ std::vector<NamedText> FigureFiles(const Report& report) {
   };
   for (const ReportFigure* figure : FiguresOf(report)) {
     const std::string name = PlainName(figure->name);
-    files.emplace_back(name + ".svg",
-                       DrawFigure(figure->figure, width, name).ToPaper(kWidth, figure->caption));
+    files.emplace_back(name + ".svg", DrawFigure(figure->figure, kWidth, name).ToString());
     files.emplace_back(name + ".csv", CsvOf(figure->numbers));
     caption(name, figure->caption);
   }

@@ -72,8 +72,7 @@ std::vector<const ReportFigure*> FiguresOf(const Report& report);
 // A file's name and content.
 using NamedText = std::pair<std::string, std::string>;
 
-// Every figure as <name>.svg, as wide as a journal's column; what it draws and every table as
-// <name>.csv; captions.md.
+// Every figure as <name>.svg; what it draws and every table as <name>.csv; captions.md.
 std::vector<NamedText> FigureFiles(const Report& report);
 inline constexpr char kCaptionsFile[] = "captions.md";
 

@@ -67,8 +67,8 @@ TEST_F(LayoutTest, AReportOfManyParameters) {
   ExpectGoodLayout({Opened(ReadText(Path("report.html")))}, {0});
 }
 
-// In a journal's column.
-TEST_F(LayoutTest, FiguresForPapers) {
+// Each in a file of its own.
+TEST_F(LayoutTest, FiguresInFiles) {
   const std::string model = CheckedModel({"--profile=mu", "--bootstrap=9"});
   Succeeded(RunApp("pushid-report",
                    {"--model=" + model, Recordings(), "--figures_out=" + Path("figures")}));

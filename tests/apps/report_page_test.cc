@@ -81,7 +81,7 @@ TEST_F(ReportPage, LeadsWithPictures) {
   for (const int frame : {0, 1}) EXPECT_EQ(WhatItSaid(seen, frame), "seen at once");
 }
 
-TEST_F(ReportPage, FiguresAndTablesForPapers) {
+TEST_F(ReportPage, FiguresAndTablesAsFiles) {
   const std::string model = CheckedModel({"--profile=mu"});
   const std::vector<std::string> flags = {"--model=" + model, Recordings(), "--text",
                                           "--figures_out=" + Path("figures")};
@@ -106,14 +106,12 @@ TEST_F(ReportPage, FiguresAndTablesForPapers) {
         0u)
         << "rows of different lengths";
     const std::string svg = ReadText(Path("figures/" + name + ".svg"));
-    EXPECT_TRUE(Contains(svg, "width=\"85mm\""));
-    EXPECT_FALSE(Contains(svg, "prefers-color-scheme")) << "paper is light";
+    EXPECT_TRUE(Contains(svg, "<title>" + name + "</title>"));
     const size_t from = captions.find("**" + name + "** ");
     ASSERT_NE(from, std::string::npos);
     const size_t begin = from + name.size() + 5;
     const std::string caption = captions.substr(begin, captions.find('\n', begin) - begin);
     EXPECT_GT(caption.size(), 10u);
-    EXPECT_TRUE(Contains(svg, "<desc>" + EscapeXml(caption) + "</desc>"));
   }
   EXPECT_TRUE(Contains(ReadText(Path("figures/table_parameters_1.csv")), "parameter,value"));
 }

@@ -65,7 +65,7 @@ TEST(ReportDocument, FilesStayInTheirFolderAndQuote) {
   std::map<std::string, std::string> files;
   for (const auto& [name, text] : FigureFiles(SampleReport())) files[name] = text;
   EXPECT_EQ(files["a____b.csv"], "time_s,what\n0.5,\"say \"\"x\"\", y\"\n");
-  EXPECT_TRUE(Contains(files["a____b.svg"], "<desc>see</desc>"));
+  EXPECT_TRUE(Contains(files["a____b.svg"], "<title>a____b</title>"));
   EXPECT_EQ(files["table_full_1.csv"], "name,value\na<b,1\n");
   EXPECT_EQ(files["captions.md"],
             "# Title <&>\n\n**a____b** see\n\n**table_full_1** Full & <whole>: caption.\n");
