@@ -108,7 +108,7 @@ inline Result<Study> RunStudy(const StudyOptions& study) {
   if (auto error = PrepareFit(pendulums, &options.value())) return *error;
 
   // 5. Fit with Ceres: residuals (predicted - recorded) / sigma of whole rollouts, exact
-  //    derivatives, priors as residuals (residuals/cost_functions/rollout_problem.h).
+  //    derivatives, priors as residuals (residuals/rollout_residual.h).
   done.model.fit = Fit(pendulums, options.value());
   if (!done.model.fit.ok()) return Error{"the fit failed: " + done.model.fit.message};
 

@@ -4,7 +4,7 @@
 // The interface is in doubles, so that the library needs no template of its user's; the rollout,
 // whatever its scalar, chains its derivatives through value and Jacobian. A law is seldom derived
 // by hand: MakeForceLaw (residuals/autodiff_force_law.h) makes one from a templated functor. It
-// acts where balance and the linear terms act (scene_forces.h), counts as the person's own force
+// acts where balance and the linear terms act (step.h), counts as the person's own force
 // (learned_terms.h, free modes), and is the part "own" of the net force, together with other such
 // laws.
 #pragma once

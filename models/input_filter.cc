@@ -118,7 +118,7 @@ RolloutStatus InputFilter::Observe(const std::vector<PendulumState<double>>& mea
   if (!status_.ok || observed_ >= path_.num_frames()) return status_;
   const int people = scene_.num_people(), t = observed_ - 1;
   for (int n = 0; n < people; ++n) scene_.pushes[known_pushes_ + n].force[t] = Input(n);
-  SceneForces<double> forces(scene_, options_, parameters_);
+  ModelStep<double> forces(scene_, options_, parameters_);
   status_ = StepOn<double>(scene_, &forces, t, &path_);
   if (!status_.ok) return status_;
   ++observed_;
@@ -149,7 +149,7 @@ RolloutStatus InputFilter::Forecast(RolloutPath<double>* path) const {
       left *= planes_[n][0].input_decay();
     }
   }
-  SceneForces<double> forces(scene, options_, parameters_);
+  ModelStep<double> forces(scene, options_, parameters_);
   return RollOn<double>(scene, &forces, observed_ - 1, path);
 }
 

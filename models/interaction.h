@@ -1,11 +1,13 @@
 // models: what two people do to each other: contact, LDP's forces, and the sum of the terms that a
 // model asks for.
 //
-// A term is a struct with
+// A term is a row of PUSHID_PAIR_TERMS (model_rows.h) and a struct here: a law of contact has
+//   template <typename T> static T Force(const ParameterSet<T>&, const T& load, const T& rate);
+// and a term between carts
 //   template <typename T> static void Add(const Pair&, const ParameterSet<T>&,
-//                                         const PosedPendulum<T>& n, const PosedPendulum<T>& j,
+//                                         const PendulumState<T>& n, const PendulumState<T>& j,
 //                                         PairForce<T>*);
-// that adds the generalized forces [N, N, N m, N m] it exerts on both.
+// which adds the generalized forces [N, N, N m, N m] that it exerts on both.
 #pragma once
 
 #include <cmath>
@@ -131,44 +133,49 @@ T LoadBetween(const Pair& pair, const ParameterSet<T>& p, const Vector4<T>& q_n,
   return ContactLoad<T>(p, d, BetweenFirstContactPoints(pair, height));
 }
 
-// The horizontal force on n's point. r, v: n's point and its velocity, seen from j's; r0: at
-// frame 0. Zero without load.
-template <bool kSpring, bool kDamping, typename T>
-Vector2<T> ContactForce(const ParameterSet<T>& p, const Vector2<T>& r, const Vector2<T>& v,
-                        const Vector2<T>& r0) {
-  const T& kappa = p[kContactKappa];
-  const T d = ContactDistance(r, kappa);
-  const T x = ContactLoad(p, d, r0);
-  if (!(RealPart(x) > 0.0)) return Vector2<T>::Zero();
-  const Vector2<T> along(r[0] / d, kappa * kappa * r[1] / d);
-  T f = T(0.0);
-  if (kSpring) f += p[kContactStiffness] * x;
-  if (kDamping) f -= p[kContactDamping] * (along[0] * v[0] + along[1] * v[1]);
-  f *= x / (x + kContactOnset);
-  return f * along;
-}
-
-template <bool kSpring, bool kDamping>
-struct ContactTerm {
+// The laws of contact: N along the line, before the onset x / (x + w). rate: of the distance, m/s.
+struct ContactSpring {
   template <typename T>
-  static void Add(const Pair& pair, const ParameterSet<T>& p, const PosedPendulum<T>& n,
-                  const PosedPendulum<T>& j, PairForce<T>* force) {
-    const T& height = p[kContactHeight];
-    const Angles<T>&of_n = n.angles, &of_j = j.angles;
-    const Vector2<T> r =
-        ContactPoint(pair.body_n, n.q, of_n, height) - ContactPoint(pair.body_j, j.q, of_j, height);
-    // Free distances are never larger than the contact distance.
-    if (RealPart(ContactDistance(r, p[kContactKappa])) >= RealPart(p[kContactDistance])) return;
-    const Vector2<T> v = ContactVelocity(pair.body_n, of_n, n.qd, height) -
-                         ContactVelocity(pair.body_j, of_j, j.qd, height);
-    const Vector2<T> r0 = BetweenFirstContactPoints(pair, height);
-    const Vector2<T> f = ContactForce<kSpring, kDamping, T>(p, r, v, r0);
-    if (RealPart(f[0]) == 0.0 && RealPart(f[1]) == 0.0) return;
-    force->on_n += ContactGeneralizedForce<T>(pair.body_n, of_n, height, f[0], f[1]);
-    force->on_j += ContactGeneralizedForce<T>(pair.body_j, of_j, height, T(-f[0]), T(-f[1]));
-    force->acts = true;
+  static T Force(const ParameterSet<T>& p, const T& load, const T& /*rate*/) {
+    return p[kContactStiffness] * load;
   }
 };
+struct ContactDamping {
+  template <typename T>
+  static T Force(const ParameterSet<T>& p, const T& /*load*/, const T& rate) {
+    return -(p[kContactDamping] * rate);
+  }
+};
+
+// Adds what the laws of contact do to both.
+template <typename T>
+void AddContact(const InteractionTerms& terms, const Pair& pair, const ParameterSet<T>& p,
+                const PosedPendulum<T>& n, const PosedPendulum<T>& j, PairForce<T>* force) {
+  const T &height = p[kContactHeight], &kappa = p[kContactKappa];
+  const Vector2<T> r = ContactPoint(pair.body_n, n.q, n.angles, height) -
+                       ContactPoint(pair.body_j, j.q, j.angles, height);
+  const T d = ContactDistance(r, kappa);
+  // Free distances are never larger than the contact distance.
+  if (RealPart(d) >= RealPart(p[kContactDistance])) return;
+  const T x = ContactLoad(p, d, BetweenFirstContactPoints(pair, height));
+  if (!(RealPart(x) > 0.0)) return;
+  const Vector2<T> v = ContactVelocity(pair.body_n, n.angles, n.qd, height) -
+                       ContactVelocity(pair.body_j, j.angles, j.qd, height);
+  const Vector2<T> along(r[0] / d, kappa * kappa * r[1] / d);
+  const T rate = along[0] * v[0] + along[1] * v[1];
+  T f = T(0.0);
+#define PUSHID_TERM(id, Law) \
+  if (terms.id) f += Law::Force(p, x, rate);
+  PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_NO_PAIR_TERM)
+#undef PUSHID_TERM
+  f *= x / (x + kContactOnset);
+  const Vector2<T> on_n = f * along;
+  if (RealPart(on_n[0]) == 0.0 && RealPart(on_n[1]) == 0.0) return;
+  force->on_n += ContactGeneralizedForce<T>(pair.body_n, n.angles, height, on_n[0], on_n[1]);
+  force->on_j +=
+      ContactGeneralizedForce<T>(pair.body_j, j.angles, height, T(-on_n[0]), T(-on_n[1]));
+  force->acts = true;
+}
 
 // What people do to each other in LDP (Yue et al., CVPR 2024, section 3.2): a
 // repulsive potential between carts and torques against leaning on each other.
@@ -234,7 +241,7 @@ Vector4<double> Reals(const Vector4<T>& v) {
   return {RealPart(v[0]), RealPart(v[1]), RealPart(v[2]), RealPart(v[3])};
 }
 
-struct LdpPublishedTerm {
+struct LdpPublished {
   template <typename T>
   static void Add(const Pair&, const ParameterSet<T>& p, const PendulumState<T>& n,
                   const PendulumState<T>& j, PairForce<T>* force) {
@@ -259,21 +266,21 @@ struct LdpPublishedTerm {
 
 // The sum of the interaction terms a model asks for, between two people.
 
-// What two people do to each other; their poses as PosedPendulum or, to be posed here, as states.
+// Their poses as PosedPendulum or, to be posed here, as states.
 template <typename T>
 PairForce<T> InteractionBetween(const InteractionTerms& terms, const Pair& pair,
                                 const ParameterSet<T>& p,
                                 const std::common_type_t<PosedPendulum<T>>& n,
                                 const std::common_type_t<PosedPendulum<T>>& j) {
   PairForce<T> force;
-  if (terms.spring && terms.damping) {
-    ContactTerm<true, true>::Add(pair, p, n, j, &force);
-  } else if (terms.spring) {
-    ContactTerm<true, false>::Add(pair, p, n, j, &force);
-  } else if (terms.damping) {
-    ContactTerm<false, true>::Add(pair, p, n, j, &force);
-  }
-  if (terms.ldp_published) LdpPublishedTerm::Add(pair, p, n, j, &force);
+#define PUSHID_TERM(id, Law) terms.id ||
+  const bool contact = PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_NO_PAIR_TERM) false;
+#undef PUSHID_TERM
+  if (contact) AddContact<T>(terms, pair, p, n, j, &force);
+#define PUSHID_TERM(id, Law) \
+  if (terms.id) Law::Add(pair, p, n, j, &force);
+  PUSHID_PAIR_TERMS(PUSHID_NO_PAIR_TERM, PUSHID_TERM)
+#undef PUSHID_TERM
   return force;
 }
 

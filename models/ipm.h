@@ -229,48 +229,6 @@ Vector4<T> InverseDynamics(const BodyOf<L>& body, const PendulumState<T>& state,
   return MassMatrix(body, angles) * qdd + Coriolis(body, angles, state.qd) + Gravity(body, angles);
 }
 
-// d(M a + C + G)/d(theta, phi, thetad, phid) at fixed acceleration a. Written out: automatic
-// derivatives of these four rows took a tenth of a Jacobian. g: m/s^2, of the ground (ground.h).
-template <typename T>
-Matrix4<T> InverseDynamicsJacobian(const BodyOf<T>& body, const Angles<T>& angles,
-                                   const Vector4<T>& qd, const Vector4<T>& a, double g = kGravity) {
-  const auto& [s_th, c_th, s_ph, c_ph] = angles;
-  const T l = body.pendulum_length(), ml = body.point_mass() * l;
-  const T thd = qd[2], phd = qd[3], both = thd * thd + phd * phd;
-  const T s2 = 2.0 * s_th * c_th, c2 = c_th * c_th - s_th * s_th;
-  const T s_s = s_th * s_ph, s_c = s_th * c_ph, c_s = c_th * s_ph, c_c = c_th * c_ph;
-  Matrix4<T> by;  // rows x, y, theta, phi; by theta, phi and their rates
-  by << -s_th * a[2] - c_th * thd * thd, T(0.0), -2.0 * s_th * thd, T(0.0),  //
-      c_s * a[2] + s_c * a[3] + 2.0 * c_c * thd * phd - s_s * both,
-      s_c * a[2] + c_s * a[3] - 2.0 * s_s * thd * phd + c_c * both, 2.0 * (s_c * phd + c_s * thd),
-      2.0 * (s_c * thd + c_s * phd),  //
-      -s_th * a[0] + c_s * a[1] + l * c2 * phd * phd - g * c_c, s_c * a[1] + g * s_s, T(0.0),
-      l * s2 * phd,  //
-      s_c * a[1] - l * s2 * a[3] - 2.0 * l * c2 * thd * phd + g * s_s, c_s * a[1] - g * c_c,
-      -l * s2 * phd, -l * s2 * thd;
-  return ml * by;
-}
-
-// d(M a + C + g_n / g G) at fixed acceleration a, by the logarithms of the point's mass and of the
-// pendulum's length: the first is a factor of all but the cart's own inertia, the second stands
-// once in the cart's rows, and in those of the angles once or twice. g: g_n, m/s^2.
-template <typename T>
-Eigen::Matrix<T, 4, 2> InverseDynamicsByBody(const BodyOf<T>& body, const Angles<T>& angles,
-                                             const Vector4<T>& qd, const Vector4<T>& a,
-                                             double g = kGravity) {
-  const Matrix4<T> mass = MassMatrix(body, angles);
-  const Vector4<T> gravity = (g / kGravity) * Gravity(body, angles);
-  const Eigen::Matrix<T, 2, 1> once =
-      mass.template bottomLeftCorner<2, 2>() * a.template head<2>() +
-      gravity.template tail<2>();  // of the angles
-  Vector4<T> by_mass = mass * a + Coriolis(body, angles, qd) + gravity;
-  by_mass.template head<2>() -= body.mass * a.template head<2>();
-  Eigen::Matrix<T, 4, 2> by;
-  by << by_mass, by_mass;
-  by.col(1).template tail<2>() += by_mass.template tail<2>() - once;
-  return by;
-}
-
 // Bodies that are no point of nine tenths at the hip.
 //
 // A body with the share s of the mass M above the ankles, whose centre is c l up the rod (l: the

@@ -19,7 +19,8 @@
 #include <array>
 
 #include "models/dual.h"
-#include "models/net_force.h"
+#include "models/stance.h"
+#include "models/standing.h"
 
 namespace pushid {
 
@@ -43,7 +44,6 @@ Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSe
                          const PendulumState<T>& state, const Perceived<T>& perceived,
                          const Vector4<T>& previous) {
   Vector4<T> force = self.Own(p, state);
-  const auto value = [&p](Parameter id) { return p[id]; };
   if (stance == Stance::kSlide) {
     const Vector4<T> of_cart =
         self.Balance(p, perceived.step, previous) + self.Linear(p, perceived.step);
@@ -55,12 +55,12 @@ Vector4<T> ForceNearRest(Stance stance, const SelfForce& self, const ParameterSe
   } else if (stance == Stance::kSteps) {
     FeetState<T> feet;
     for (int i = 0; i < 2; ++i) feet.apart[i] = T(self.standing.apart[i]);
-    force.template tail<2>() += StanceAt<T>(self.standing, StanceParameters<T>(value), feet,
-                                            perceived.ankle, perceived.step)
-                                    .torque;
+    force.template tail<2>() +=
+        StanceAt<T>(self.standing, StanceParameters<T>(p), feet, perceived.ankle, perceived.step)
+            .torque;
   } else {
-    force.template tail<2>() += StandingTorque(self, StandingParameters<T>(value),
-                                               Angles<T>(perceived.ankle.q), perceived.ankle.qd);
+    force.template tail<2>() +=
+        StandingTorque(self, p, Angles<T>(perceived.ankle.q), perceived.ankle.qd);
   }
   return force;
 }

@@ -1,5 +1,5 @@
-// models: what a model may be made of, one row for each: laws of friction, self forces
-// and parameters. Names, flags, defaults, bounds, the glossary and what acts where
+// models: what a model may be made of, one row for each: laws of friction, self forces, terms
+// between people and parameters. Names, flags, defaults, bounds, the glossary and what acts where
 // are made from the rows (options.h, interaction.h, parameters.h).
 #pragma once
 
@@ -33,6 +33,15 @@
   Network(kLdp, "ldp", 4, true, true, true, Ldp)
 // clang-format on
 #define PUSHID_NO_SELF_FORCE(...)  // for tables of the other kind alone
+
+// What --interaction names: terms that add up, each a flag of InteractionTerms (options.h) and a
+// formula (interaction.h).
+//
+// Contact(id, Law): along the line between the points of contact, as long as these are loaded.
+// Carts(id, Law): of people whose carts are within the range; not mutual.
+#define PUSHID_PAIR_TERMS(Contact, Carts) \
+  Contact(spring, ContactSpring) Contact(damping, ContactDamping) Carts(ldp_published, LdpPublished)
+#define PUSHID_NO_PAIR_TERM(...)  // for tables of the other kind alone
 
 // X(id, name, symbol, unit, nominal, lower, upper, scale, transform, acts, freed, meaning, when): a
 // parameter.
@@ -184,7 +193,7 @@
     m.push_tail == PushTail::kExponential && m.stance != Stance::kFixed, false, \
     "speed from the tail's part that does not depend on the push", \
     "with pushes of different strength that cover only their first part") \
-  /* between people: contact first, in one piece (learned_pair_jacobian.cc) */ \
+  /* between people: contact first, in one piece */ \
   X(kContactStiffness, "contact_stiffness", "A", "N/m", 2000, 1, 1e5, 2000, kLog, \
     m.interaction.spring, m.interaction.spring, \
     "stiffness of contact between people", \

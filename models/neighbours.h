@@ -160,10 +160,4 @@ class PairFinder {
   std::vector<int> near_;
 };
 
-// Two people of a scene as an interaction sees them.
-inline Pair PairOf(const Scene& scene, int n, int j) {
-  const ScenePerson &a = scene.people[n], &b = scene.people[j];
-  return {a.body, b.body, FirstPose(a.start.q), FirstPose(b.start.q)};
-}
-
 }  // namespace pushid

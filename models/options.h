@@ -18,15 +18,22 @@ namespace pushid {
 // What people do to each other: terms that add up (interaction.h), and one for a learned force
 // (learned_terms.h), which has a size besides its name (ident/parameters/learned_terms_io.h).
 struct InteractionTerms {
-  bool spring = false, damping = false;  // of contact
-  bool ldp_published = false;            // LDP's potential and torques
+#define PUSHID_TERM(id, Law) bool id = false;
+  PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_TERM)
+#undef PUSHID_TERM
   bool learned = false;
   bool learned_in_range = false;  // LDP's: of every neighbour, not of those who touch
 
   // Terms that depend on the distance of the points of contact, and terms that depend on that of
   // the carts.
-  bool Contact() const { return spring || damping || (learned && !learned_in_range); }
-  bool AtCarts() const { return ldp_published || (learned && learned_in_range); }
+#define PUSHID_TERM(id, Law) id ||
+  bool Contact() const {
+    return PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_NO_PAIR_TERM)(learned && !learned_in_range);
+  }
+  bool AtCarts() const {
+    return PUSHID_PAIR_TERMS(PUSHID_NO_PAIR_TERM, PUSHID_TERM)(learned && learned_in_range);
+  }
+#undef PUSHID_TERM
   bool Any() const { return Contact() || AtCarts(); }
   // What one gets the other gives: contact alone.
   bool Mutual() const { return Any() && !learned && !AtCarts(); }
@@ -37,9 +44,10 @@ struct InteractionTermName {
   bool InteractionTerms::*member;
 };
 inline constexpr InteractionTermName kInteractionTerms[] = {
-    {"spring", &InteractionTerms::spring},
-    {"damping", &InteractionTerms::damping},
-    {"ldp_published", &InteractionTerms::ldp_published}};
+#define PUSHID_TERM(id, Law) {#id, &InteractionTerms::id},
+    PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_TERM)
+#undef PUSHID_TERM
+};
 
 // White forces that act on everybody beside all others (process_noise.h).
 enum class ProcessNoise {

@@ -2,9 +2,9 @@
 // measurement of q, where forces are disturbed and measurements err (process_noise.h).
 //   predict: s <- step(s),  P <- A P A' + Q,  A = d step / ds,  Q = dt B M^-1 L L' M^-1 B'
 //   update:  S = P_qq + R,  P <- P - P_q S^-1 P_q',  s <- s + P_q S^-1 (z - q)
-// B = [dt; 1] as the step has it; A by dual numbers through the very forces of the rollout, over
-// any scalar, so that derivatives by parameters pass through it. Sources: Jazwinski, Stochastic
-// Processes and Filtering Theory, 1970 (8.8); as used by CTSM-R and ctsmTMB.
+// B = [dt; 1] as the step has it; A by dual numbers through the very forces of the rollout.
+// Sources: Jazwinski, Stochastic Processes and Filtering Theory, 1970 (8.8); as used by CTSM-R and
+// ctsmTMB.
 //
 // Of several people each has a covariance of their own: what people do to each other is taken at
 // the filtered states, whose errors (millimetres) are small against the distances at which contact
@@ -50,18 +50,18 @@ Eigen::Matrix<T, N, kColumns> SolveLower(const Eigen::Matrix<T, N, N>& lower,
 
 // A step of everybody with its derivatives by each person's own state, by a scalar D that holds a
 // value and eight derivatives.
-template <typename T, typename D = Dual<T, 8>>
+template <typename D = Dual<double, 8>>
 class DualStep {
  public:
   // All arguments must outlive the object.
   DualStep(const Scene& scene, const ModelOptions& options,
-           const std::vector<ParameterSet<T>>& parameters)
+           const std::vector<ParameterSet<double>>& parameters)
       : scene_(scene), parameters_(Constants(parameters)), forces_(scene, options, parameters_) {}
   DualStep(const DualStep&) = delete;
   DualStep& operator=(const DualStep&) = delete;
 
   // states: of everybody at the frame that the next steps start from.
-  void Begin(const std::vector<PendulumState<T>>& states) {
+  void Begin(const std::vector<PendulumState<double>>& states) {
     states_.resize(states.size());
     for (size_t n = 0; n < states.size(); ++n) {
       for (int i = 0; i < 4; ++i) {
@@ -72,15 +72,15 @@ class DualStep {
   }
 
   // The person's velocity one step on, and its derivatives by [q, qd].
-  Vector4<T> Velocity(int frame, int person, Eigen::Matrix<T, 4, 8>* by_state) {
-    Vector4<T> next;
-    Eigen::Matrix<T, 4, 8, Eigen::RowMajor> rows;
+  Vector4<double> Velocity(int frame, int person, Eigen::Matrix<double, 4, 8>* by_state) {
+    Vector4<double> next;
+    Eigen::Matrix<double, 4, 8, Eigen::RowMajor> rows;
     Velocity(frame, person, next.data(), rows.data());
     *by_state = rows;
     return next;
   }
   // As above, into 4 numbers and 4 x 8, by rows.
-  void Velocity(int frame, int person, T* next, T* by_state) {
+  void Velocity(int frame, int person, double* next, double* by_state) {
     const PendulumState<D> kept = states_[person];
     for (int i = 0; i < 4; ++i) {
       states_[person].q[i] = D::Input(kept.q[i].a, i);
@@ -98,7 +98,8 @@ class DualStep {
   }
 
  private:
-  static std::vector<ParameterSet<D>> Constants(const std::vector<ParameterSet<T>>& parameters) {
+  static std::vector<ParameterSet<D>> Constants(
+      const std::vector<ParameterSet<double>>& parameters) {
     std::vector<ParameterSet<D>> constants(parameters.size());
     for (size_t n = 0; n < parameters.size(); ++n) {
       for (int i = 0; i < kNumParameters; ++i) constants[n][i] = D::Constant(parameters[n][i]);
@@ -108,46 +109,46 @@ class DualStep {
 
   const Scene& scene_;
   std::vector<ParameterSet<D>> parameters_;
-  SceneForces<D> forces_;
+  ModelStep<D> forces_;
   std::vector<PendulumState<D>> states_;
   std::vector<int> scratch_;
 };
 
 // Step: as DualStep is one.
-template <typename T, typename Step = DualStep<T>>
+template <typename Step = DualStep<>>
 class PendulumFilter {
  public:
-  using Covariance = Eigen::Matrix<T, 8, 8>;
+  using Covariance = Eigen::Matrix<double, 8, 8>;
   // What was expected of a measurement and what came: v ~ N(0, lower lower').
   struct Innovation {
-    Vector4<T> v;
-    Matrix4<T> lower;
+    Vector4<double> v;
+    Matrix4<double> lower;
   };
 
   // parameters: one entry per person. Starts at the scene's own start, whose place is a measurement
   // as well. Scene and options must outlive the filter.
   PendulumFilter(const Scene& scene, const ModelOptions& options,
-                 const std::vector<ParameterSet<T>>& parameters)
+                 const std::vector<ParameterSet<double>>& parameters)
       : scene_(scene),
         options_(options),
         parameters_(parameters),
         step_(scene_, options_, parameters_) {
     for (int n = 0; n < scene.num_people(); ++n) {
-      PendulumState<T>& state = states_.emplace_back();
-      state.q = scene.people[n].start.q.template cast<T>();
-      state.qd = scene.people[n].start.qd.template cast<T>();
+      PendulumState<double>& state = states_.emplace_back();
+      state.q = scene.people[n].start.q;
+      state.qd = scene.people[n].start.qd;
       Covariance start = Covariance::Zero();
-      start.template topLeftCorner<4, 4>() =
-          MeasurementCovariance<T>(scene.people[n].body, parameters[n]);
-      for (int i = 4; i < 8; ++i) start(i, i) = T(kStartRate * kStartRate);
+      start.topLeftCorner<4, 4>() =
+          MeasurementCovariance<double>(scene.people[n].body, parameters[n]);
+      for (int i = 4; i < 8; ++i) start(i, i) = kStartRate * kStartRate;
       covariances_.push_back(start);
     }
   }
 
   // From `frame` to the next.
   RolloutStatus Predict(int frame) {
-    std::vector<Vector4<T>> velocities;
-    Eigen::Matrix<T, 4, 8> by_state;
+    std::vector<Vector4<double>> velocities;
+    Eigen::Matrix<double, 4, 8> by_state;
     step_.Begin(states_);
     for (int n = 0; n < scene_.num_people(); ++n) {
       velocities.push_back(step_.Velocity(frame, n, &by_state));
@@ -165,52 +166,54 @@ class PendulumFilter {
   // weight: of the measurement, in (0, 1]; its errors are as much larger as that is less.
   Innovation Update(int person, const Vector4<double>& q, double weight) {
     Covariance& P = covariances_[person];
-    PendulumState<T>& state = states_[person];
-    const Matrix4<T> expected =
-        P.template topLeftCorner<4, 4>() +
-        MeasurementCovariance<T>(scene_.people[person].body, parameters_[person]) /
-            T(weight * weight);
-    const Innovation innovation{q.template cast<T>() - state.q, CholeskyFactor<T, 4>(expected)};
-    const Eigen::Matrix<T, 4, 8> rows =
-        SolveLower<T, 4, 8>(innovation.lower, P.template topRows<4>());
-    const Vector4<T> white = SolveLower<T, 4, 1>(innovation.lower, innovation.v);
-    const Eigen::Matrix<T, 8, 1> moved = rows.transpose() * white;
-    state.q += moved.template head<4>();
-    state.qd += moved.template tail<4>();
+    PendulumState<double>& state = states_[person];
+    const Matrix4<double> expected =
+        P.topLeftCorner<4, 4>() +
+        MeasurementCovariance<double>(scene_.people[person].body, parameters_[person]) /
+            (weight * weight);
+    const Innovation innovation{q - state.q, CholeskyFactor<double, 4>(expected)};
+    const Eigen::Matrix<double, 4, 8> rows =
+        SolveLower<double, 4, 8>(innovation.lower, P.topRows<4>());
+    const Vector4<double> white = SolveLower<double, 4, 1>(innovation.lower, innovation.v);
+    const Eigen::Matrix<double, 8, 1> moved = rows.transpose() * white;
+    state.q += moved.head<4>();
+    state.qd += moved.tail<4>();
     P -= rows.transpose().lazyProduct(rows);  // of such sizes Eigen would call its large kernel
     return innovation;
   }
 
-  const PendulumState<T>& state(int person) const { return states_[person]; }
+  const PendulumState<double>& state(int person) const { return states_[person]; }
   const Covariance& covariance(int person) const { return covariances_[person]; }
 
  private:
   // P one step on. With V = d qd' / ds and q' = q + dt qd', the new blocks follow from V P and Q.
-  void Spread(int n, const Eigen::Matrix<T, 4, 8>& by_state) {
+  void Spread(int n, const Eigen::Matrix<double, 4, 8>& by_state) {
     const Body& body = scene_.people[n].body;
-    const PendulumState<T>& state = states_[n];
-    const T dt = T(scene_.dt);
-    const Matrix4<T> gain = InverseMassMatrix<T>(body, Angles<T>(state.q), body.mass) *
-                            NoiseFactor<T>(body, parameters_[n]);
+    const PendulumState<double>& state = states_[n];
+    const double dt = scene_.dt;
+    const Matrix4<double> gain =
+        InverseMassMatrix<double>(body, Angles<double>(state.q), body.mass) *
+        NoiseFactor<double>(body, parameters_[n]);
     Covariance& P = covariances_[n];
-    const Eigen::Matrix<T, 4, 8> moved = by_state.lazyProduct(P);
-    const Matrix4<T> rates =
+    const Eigen::Matrix<double, 4, 8> moved = by_state.lazyProduct(P);
+    const Matrix4<double> rates =
         moved.lazyProduct(by_state.transpose()) + dt * (gain * gain.transpose());
-    const Matrix4<T> places_rates = moved.template leftCols<4>().transpose();  // cov(q, qd')
-    const Matrix4<T> mixed = places_rates + dt * rates;
-    const Matrix4<T> places = P.template topLeftCorner<4, 4>() +
-                              dt * (places_rates + places_rates.transpose()) + (dt * dt) * rates;
-    P.template topLeftCorner<4, 4>() = places;
-    P.template topRightCorner<4, 4>() = mixed;
-    P.template bottomLeftCorner<4, 4>() = mixed.transpose();
-    P.template bottomRightCorner<4, 4>() = rates;
+    const Matrix4<double> places_rates = moved.leftCols<4>().transpose();  // cov(q, qd')
+    const Matrix4<double> mixed = places_rates + dt * rates;
+    const Matrix4<double> places = P.topLeftCorner<4, 4>() +
+                                   dt * (places_rates + places_rates.transpose()) +
+                                   (dt * dt) * rates;
+    P.topLeftCorner<4, 4>() = places;
+    P.topRightCorner<4, 4>() = mixed;
+    P.bottomLeftCorner<4, 4>() = mixed.transpose();
+    P.bottomRightCorner<4, 4>() = rates;
   }
 
   const Scene& scene_;
   const ModelOptions& options_;
-  std::vector<ParameterSet<T>> parameters_;
+  std::vector<ParameterSet<double>> parameters_;
   Step step_;
-  std::vector<PendulumState<T>> states_;
+  std::vector<PendulumState<double>> states_;
   std::vector<Covariance> covariances_;
 };
 

@@ -114,45 +114,10 @@ struct TailOf {
     const T torque = p[kTailTorque] * (1.0 + share) * decay;
     return {gain * mean[0], gain * mean[1], torque * mean[2], torque * mean[3]};
   }
-  // Adds the derivatives of Force to a 4 x kNumParameters matrix; written out: 2.5 times as fast
-  // as Jets (tests/benchmarks, Jacobian_OfTail).
-  template <typename T, typename Matrix>
-  void AddJacobian(const ParameterSet<T>& p, const T& rate, const T& decay,
-                   Matrix* by_parameter) const {
-    const T share = BaseShare(p, rate);
-    const T by_base = mass_per_force * rate;  // of the share
-    const T per_time = 1.0 / p[kTailTime];
-    // d decay / d log tau = decay elapsed / tau, d share / d log tau = -share.
-    const T decay_by_tau = decay * elapsed * rate;
-    const T gain_by_tau = (p[kTailGain] + share) * decay_by_tau - share * decay;
-    const T torque_by_tau = p[kTailTorque] * ((1.0 + share) * decay_by_tau - share * decay);
-    for (int row = 0; row < 4; ++row) {
-      const T by_tau = (row < 2 ? gain_by_tau : torque_by_tau) * mean[row];
-      if (row < 2) {
-        (*by_parameter)(row, kTailGain) += decay * mean[row];
-        (*by_parameter)(row, kTailBase) += decay * by_base * mean[row];
-      } else {
-        (*by_parameter)(row, kTailTorque) += decay * (1.0 + share) * mean[row];
-        (*by_parameter)(row, kTailBase) += p[kTailTorque] * decay * by_base * mean[row];
-      }
-      (*by_parameter)(row, kTailTime) += by_tau * per_time;
-      (*by_parameter)(row, kTailExponent) += by_tau * log_duration;
-    }
-  }
 };
 
 // The tail of a push on a person of so many kg that has one at `frame` (TailActs).
 TailOf<double> TailAt(const ScenePush& push, double mass, int frame, double dt);
-
-// Adds the derivatives of TailForce.
-inline void AddTailJacobian(const ScenePush& push, double mass, const ParameterSet<double>& p,
-                            int frame, double dt,
-                            Eigen::Matrix<double, 4, kNumParameters>* by_parameter) {
-  if (!TailActs(push, frame)) return;
-  const TailOf<double> tail = TailAt(push, mass, frame, dt);
-  const double rate = tail.Rate(p);
-  tail.AddJacobian(p, rate, tail.Decay(rate), by_parameter);
-}
 
 // The tail's force at `frame`; zero where it does not act.
 template <typename T>

@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "models/dual.h"
 #include "models/ipm.h"
 #include "models/parameters.h"
 

@@ -3,10 +3,10 @@
 
 namespace pushid {
 
-template RolloutStatus StepOn<double>(const Scene&, SceneForces<double>*, int, RolloutPath<double>*,
+template RolloutStatus StepOn<double>(const Scene&, ModelStep<double>*, int, RolloutPath<double>*,
                                       FrameTable<NetForce<double>>*,
                                       const FrameTable<Vector4<double>>*);
-template RolloutStatus RollOn<double>(const Scene&, SceneForces<double>*, int, RolloutPath<double>*,
+template RolloutStatus RollOn<double>(const Scene&, ModelStep<double>*, int, RolloutPath<double>*,
                                       FrameTable<NetForce<double>>*,
                                       const FrameTable<Vector4<double>>*);
 template RolloutStatus Rollout<double>(const Scene&, const ModelOptions&,

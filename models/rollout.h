@@ -1,6 +1,4 @@
-// models: the rollout of a scene, frame by frame: M qdd + C + G = F_net (scene_forces.h),
-// semi-implicit Euler. Templated, so that the same lines serve doubles and automatic
-// differentiation.
+// models: the rollout of a scene, frame by frame by the step of the model (step.h).
 #pragma once
 
 #include <cmath>
@@ -9,7 +7,7 @@
 
 #include "models/ipm.h"
 #include "models/process_noise.h"
-#include "models/scene_forces.h"
+#include "models/step.h"
 
 namespace pushid {
 
@@ -30,7 +28,7 @@ std::string_view OutsideDomain(const Body& body, const PendulumState<T>& state) 
 // The step from frame t of a path to the next, or of the last frame the forces alone; arguments as
 // RollOn has them.
 template <typename T>
-RolloutStatus StepOn(const Scene& scene, SceneForces<T>* forces, int t, RolloutPath<T>* path,
+RolloutStatus StepOn(const Scene& scene, ModelStep<T>* forces, int t, RolloutPath<T>* path,
                      FrameTable<NetForce<T>>* trace = nullptr,
                      const FrameTable<Vector4<double>>* noise = nullptr) {
   const bool last = t + 1 == path->num_frames();
@@ -62,7 +60,7 @@ RolloutStatus StepOn(const Scene& scene, SceneForces<T>* forces, int t, RolloutP
 // null. noise: standard normal draws by frame and person that drive the process noise
 // (process_noise.h); null: none.
 template <typename T>
-RolloutStatus RollOn(const Scene& scene, SceneForces<T>* forces, int from, RolloutPath<T>* path,
+RolloutStatus RollOn(const Scene& scene, ModelStep<T>* forces, int from, RolloutPath<T>* path,
                      FrameTable<NetForce<T>>* trace = nullptr,
                      const FrameTable<Vector4<double>>* noise = nullptr) {
   const int steps = path->num_frames() - (trace == nullptr ? 1 : 0);
@@ -84,7 +82,7 @@ void StartPath(const Scene& scene, const std::vector<Vector4<T>>& initial_veloci
   }
 }
 
-// initial_velocity: as above; parameters and network_weights as in SceneForces. path is
+// initial_velocity: as above; parameters and network_weights as in ModelStep. path is
 // overwritten; on failure, trace and noise: RollOn.
 template <typename T>
 RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
@@ -94,7 +92,7 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
                       const T* network_weights = nullptr,
                       const FrameTable<Vector4<double>>* noise = nullptr) {
   const int people = scene.num_people();
-  SceneForces<T> forces(scene, options, parameters, network_weights);
+  ModelStep<T> forces(scene, options, parameters, network_weights);
   path->Reset(num_frames, people);
   if (trace != nullptr) *trace = FrameTable<NetForce<T>>(num_frames, people);
   StartPath(scene, initial_velocity, path);
@@ -102,10 +100,10 @@ RolloutStatus Rollout(const Scene& scene, const ModelOptions& options,
 }
 
 // The instances for doubles are compiled once (rollout.cc): it takes the compiler seconds.
-extern template RolloutStatus StepOn<double>(const Scene&, SceneForces<double>*, int,
+extern template RolloutStatus StepOn<double>(const Scene&, ModelStep<double>*, int,
                                              RolloutPath<double>*, FrameTable<NetForce<double>>*,
                                              const FrameTable<Vector4<double>>*);
-extern template RolloutStatus RollOn<double>(const Scene&, SceneForces<double>*, int,
+extern template RolloutStatus RollOn<double>(const Scene&, ModelStep<double>*, int,
                                              RolloutPath<double>*, FrameTable<NetForce<double>>*,
                                              const FrameTable<Vector4<double>>*);
 extern template RolloutStatus Rollout<double>(const Scene&, const ModelOptions&,

@@ -88,15 +88,6 @@ struct SelfForce : SelfTerms<double> {
     if (!laws.empty()) force += Own(p, state);
     return force;
   }
-
-  // Derivatives of Total, and of Effort; of the laws that a user brings, added.
-  using Jacobian = SelfJacobian<double>;
-  void TotalJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
-                     const Vector4<double>& qd_previous, Jacobian* jacobian) const;
-  void EffortJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
-                      const Vector4<double>& qd_previous, Jacobian* jacobian) const;
-  void AddOwnJacobian(const ParameterSet<double>& p, const PendulumState<double>& state,
-                      Jacobian* jacobian) const;
 };
 
 }  // namespace pushid

@@ -118,24 +118,6 @@ struct GainScaleOf {
 
 using GainScale = GainScaleOf<double>;
 
-// Derivatives of a person's own force.
-// by_state: 4 x 8 over [q, qd]; by_previous: diagonal of the (x, y) derivatives by qd_previous;
-// by_parameter: 4 x kNumParameters. All are overwritten, but for the columns of what no force of
-// a person alone has: these stay zero, since to clear them takes as long as the derivatives.
-template <typename T>
-struct SelfJacobian {
-  Eigen::Matrix<T, 4, 8> by_state = Eigen::Matrix<T, 4, 8>::Zero();
-  Eigen::Matrix<T, 2, 1> by_previous = Eigen::Matrix<T, 2, 1>::Zero();
-  Eigen::Matrix<T, 4, kNumParameters> by_parameter = Eigen::Matrix<T, 4, kNumParameters>::Zero();
-
-  void SetZero() {
-    by_state.setZero();
-    by_previous.setZero();
-    by_parameter.template leftCols<kFirstPairParameter>().setZero();
-    by_parameter.template rightCols<kNumOwnParameters>().setZero();
-  }
-};
-
 // One person's terms, with everything constant over a rollout computed once.
 template <typename L>
 struct SelfTerms {
@@ -178,135 +160,18 @@ struct SelfTerms {
     return force;
   }
 
-  // The rows of the cart, and all.
-  template <typename T>
-  Eigen::Matrix<T, 2, 1> LinearOnCart(const ParameterSet<T>& p,
-                                      const PendulumState<T>& state) const {
-    const L mass = body.mass;
-    const Vector4<T>& qd = state.qd;
-    const T e_th = state.q[2] - posture[0], e_ph = state.q[3] - posture[1];
-    const T speed = SmoothNorm(qd[0], qd[1]);
-    return {mass * (p[kAx] * e_th + p[kBx] * qd[2] - p[kCq] * speed * qd[0]),
-            mass * (-p[kAy] * e_ph - p[kBy] * qd[3] - p[kCq] * speed * qd[1])};
-  }
   template <typename T>
   Vector4<T> Linear(const ParameterSet<T>& p, const PendulumState<T>& state) const {
     const L mass = body.mass, ml2 = PointInertia();
     const Vector4<T>& qd = state.qd;
-    const Eigen::Matrix<T, 2, 1> cart = LinearOnCart(p, state);
-    return {cart[0], cart[1],
+    const T e_th = state.q[2] - posture[0], e_ph = state.q[3] - posture[1];
+    const T speed = SmoothNorm(qd[0], qd[1]);
+    return {mass * (p[kAx] * e_th + p[kBx] * qd[2] - p[kCq] * speed * qd[0]),
+            mass * (-p[kAy] * e_ph - p[kBy] * qd[3] - p[kCq] * speed * qd[1]),
             mass * p[kTx] * qd[0] - ml2 * p[kDq] * SmoothNorm(qd[2], T(0.0)) * qd[2],
             -mass * p[kTy] * qd[1] - ml2 * p[kDq] * SmoothNorm(qd[3], T(0.0)) * qd[3]};
   }
 
-  // Derivatives of Friction, and of all three. Friction's come from dual numbers over its own few
-  // inputs, so that a law of friction is its formula and its rows; those of balance and the linear
-  // terms are written out, which makes them some 30 times as fast (tests/benchmarks,
-  // Jacobian_OfSelfForce), and tests hold them against automatic ones.
-  template <typename Set, typename T>
-  void FrictionJacobian(const Set& p, const Vector4<T>& qd, SelfJacobian<T>* jacobian) const {
-    jacobian->SetZero();
-    AddFrictionJacobian(p, qd, jacobian);
-  }
-
-  // Jacobian of Balance and Linear alone.
-  template <typename Set, typename T>
-  void ControlJacobian(const Set& p, const PendulumState<T>& state, const Vector4<T>& qd_previous,
-                       SelfJacobian<T>* jacobian) const {
-    jacobian->SetZero();
-    AddControlJacobian(p, state, qd_previous, jacobian);
-  }
-
-  template <typename Set, typename T>
-  void MotionJacobian(const Set& p, const PendulumState<T>& state, const Vector4<T>& qd_previous,
-                      SelfJacobian<T>* jacobian) const {
-    FrictionJacobian(p, state.qd, jacobian);
-    AddControlJacobian(p, state, qd_previous, jacobian);
-  }
-
-  // Parts of the same: they add to by_state, and always write the same entries of the others. That
-  // of friction is flattened, so that dual numbers stay in registers.
-  template <typename Set, typename T>
-  [[gnu::flatten]] void AddFrictionJacobian(const Set& p, const Vector4<T>& qd,
-                                            SelfJacobian<T>* jacobian) const {
-    // By the cart's velocity and by friction's own parameters.
-    constexpr int kParameters = kKpX - kMu;
-    using FrictionDual = Dual<T, 2 + kParameters>;
-    struct {
-      std::array<FrictionDual, kParameters> own;
-      const FrictionDual& operator[](int id) const { return own[id - kMu]; }
-    } parameters;
-    Vector4<FrictionDual> velocity;
-    for (int i = 0; i < 2; ++i) velocity[i] = FrictionDual::Input(qd[i], i);
-    for (int i = 0; i < kParameters; ++i) {
-      parameters.own[i] = FrictionDual::Input(p[kMu + i], 2 + i);
-    }
-    const Vector4<FrictionDual> force = Friction(parameters, velocity);
-    for (int row = 0; row < 2; ++row) {
-      jacobian->by_state.row(row).template segment<2>(4) +=
-          force[row].v.template head<2>().transpose();
-      jacobian->by_parameter.row(row).template segment<kParameters>(kMu) =
-          force[row].v.template tail<kParameters>().transpose();
-    }
-  }
-
-  template <typename Set, typename T>
-  void AddControlJacobian(const Set& p, const PendulumState<T>& state,
-                          const Vector4<T>& qd_previous, SelfJacobian<T>* jacobian) const {
-    auto& by_state = jacobian->by_state;
-    auto& by_parameter = jacobian->by_parameter;
-    const T xd = state.qd[0], yd = state.qd[1], thd = state.qd[2], phd = state.qd[3];
-    const T e_th = state.q[2] - posture[0], e_ph = state.q[3] - posture[1];
-    by_state(0, 4) -= scale.force * p[kKpX];
-    by_state(1, 5) -= scale.force * p[kKpY];
-    by_state(2, 2) -= scale.stiffness * p[kKpTheta];
-    by_state(2, 6) -= scale.damping * p[kKdTheta];
-    by_state(3, 3) -= scale.stiffness * p[kKpPhi];
-    by_state(3, 7) -= scale.damping * p[kKdPhi];
-    by_parameter(0, kKpX) = -scale.force * xd;
-    by_parameter(1, kKpY) = -scale.force * yd;
-    by_parameter(2, kKpTheta) = -scale.stiffness * e_th;
-    by_parameter(2, kKdTheta) = -scale.damping * thd;
-    by_parameter(3, kKpPhi) = -scale.stiffness * e_ph;
-    by_parameter(3, kKdPhi) = -scale.damping * phd;
-    if (cart_derivative) {
-      const Eigen::Matrix<T, 2, 1> rate(scale.force * p[kKdX] / dt, scale.force * p[kKdY] / dt);
-      by_state(0, 4) -= rate[0];
-      by_state(1, 5) -= rate[1];
-      jacobian->by_previous = rate;
-      by_parameter(0, kKdX) = -scale.force * (xd - qd_previous[0]) / dt;
-      by_parameter(1, kKdY) = -scale.force * (yd - qd_previous[1]) / dt;
-    }
-    const L mass = body.mass, ml2 = PointInertia();
-    by_state(0, 2) += mass * p[kAx];
-    by_state(0, 6) += mass * p[kBx];
-    by_state(1, 3) -= mass * p[kAy];
-    by_state(1, 7) -= mass * p[kBy];
-    by_state(2, 4) += mass * p[kTx];
-    by_state(3, 5) -= mass * p[kTy];
-    by_parameter(0, kAx) = mass * e_th;
-    by_parameter(0, kBx) = mass * thd;
-    by_parameter(1, kAy) = -mass * e_ph;
-    by_parameter(1, kBy) = -mass * phd;
-    by_parameter(2, kTx) = mass * xd;
-    by_parameter(3, kTy) = -mass * yd;
-
-    const T speed = SmoothNorm(xd, yd);
-    const T drag = mass * p[kCq], over_speed = drag / speed;
-    by_state(0, 4) -= drag * speed + over_speed * xd * xd;
-    by_state(0, 5) -= over_speed * xd * yd;
-    by_state(1, 4) -= over_speed * xd * yd;
-    by_state(1, 5) -= drag * speed + over_speed * yd * yd;
-    by_parameter(0, kCq) = -mass * speed * xd;
-    by_parameter(1, kCq) = -mass * speed * yd;
-    const T rate_th = SmoothNorm(thd, T(0.0)), rate_ph = SmoothNorm(phd, T(0.0));
-    by_state(2, 6) -= ml2 * p[kDq] * (rate_th + thd * thd / rate_th);
-    by_state(3, 7) -= ml2 * p[kDq] * (rate_ph + phd * phd / rate_ph);
-    by_parameter(2, kDq) = -ml2 * rate_th * thd;
-    by_parameter(3, kDq) = -ml2 * rate_ph * phd;
-  }
-
- private:
   L PointInertia() const {
     return body.point_mass() * body.pendulum_length() * body.pendulum_length();
   }

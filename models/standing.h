@@ -26,21 +26,6 @@ inline constexpr double kMassAboveAnkles = 0.97;  // of the body's
 inline constexpr double kInertiaRatio = 1.15;     // about the ankles, over m h^2
 inline constexpr double kComOverHip = 1.09;       // k of an average body
 
-// The parameters of standing, which derivatives are taken by.
-template <typename T>
-struct StandingParameters {
-  static constexpr Parameter kIds[] = {kKpTheta, kKpPhi, kKdTheta, kKdPhi, kComHeight};
-  static constexpr int kCount = sizeof(kIds) / sizeof(kIds[0]);
-  T Kp[2], Kd[2], com_height;
-
-  // value(id): of a parameter.
-  template <typename Value>
-  explicit StandingParameters(const Value& value)
-      : Kp{value(kKpTheta), value(kKpPhi)},
-        Kd{value(kKdTheta), value(kKdPhi)},
-        com_height(value(kComHeight)) {}
-};
-
 inline bool IsPointAtHip(const Body& body) {
   return body.point_share == Body{}.point_share && body.pendulum_ratio == 1.0;
 }
@@ -63,13 +48,10 @@ inline double MomentPerComHeight(const Body& body) {
   return share * body.mass * body.rod_length;
 }
 
-// asin(s) / s by s^2: within 1e-4 up to 0.6 rad; and its derivative.
+// asin(s) / s by s^2: within 1e-4 up to 0.6 rad.
 template <typename T>
 T AngleOverSine(const T& s2) {
   return 1.0 + s2 * (1.0 / 6.0 + s2 * (3.0 / 40.0 + s2 * (5.0 / 112.0 + s2 * (35.0 / 1152.0))));
-}
-inline double AngleOverSineSlope(double s2) {
-  return 1.0 / 6.0 + s2 * (3.0 / 20.0 + s2 * (15.0 / 112.0 + s2 * (35.0 / 288.0)));
 }
 
 // What holds the posture, by com_height: N m over the sine of the lean.
@@ -80,7 +62,7 @@ inline double HoldPerComHeight(const SelfForce& self) {
 
 // About both axes, N m.
 template <typename T>
-Eigen::Matrix<T, 2, 1> StandingTorque(const SelfForce& self, const StandingParameters<T>& p,
+Eigen::Matrix<T, 2, 1> StandingTorque(const SelfForce& self, const ParameterSet<T>& p,
                                       const Angles<T>& angles, const Vector4<T>& qd) {
   const auto& [s_th, c_th, s_ph, c_ph] = angles;
   const Vector3<double>& u0 = self.rest_direction;
@@ -89,16 +71,41 @@ Eigen::Matrix<T, 2, 1> StandingTorque(const SelfForce& self, const StandingParam
                             {T(0.0), -c_th * c_ph, -c_th * s_ph}};
   const T cosine = u[0] * u0[0] + u[1] * u0[1] + u[2] * u0[2];
   const T stretch = self.scale.stiffness * AngleOverSine<T>(1.0 - cosine * cosine);
-  const T gains[] = {stretch * p.Kp[0], stretch * p.Kp[1], stretch * 0.5 * (p.Kp[0] + p.Kp[1])};
-  const T moment = HoldPerComHeight(self) * p.com_height;
+  const T &K_theta = p[kKpTheta], &K_phi = p[kKpPhi];
+  const T gains[] = {stretch * K_theta, stretch * K_phi, stretch * 0.5 * (K_theta + K_phi)};
+  const T moment = HoldPerComHeight(self) * p[kComHeight];
   Eigen::Matrix<T, 2, 1> torque;
   for (int i = 0; i < 2; ++i) {
     torque[i] = -moment * (u0[0] * by[i][0] + u0[1] * by[i][1]);
     for (int k = 0; k < 3; ++k) torque[i] -= gains[k] * (u[k] * cosine - u0[k]) * by[i][k];
   }
-  torque[0] -= self.scale.damping * p.Kd[0] * qd[2];
-  torque[1] -= self.scale.damping * p.Kd[1] * c_th * c_th * qd[3];
+  torque[0] -= self.scale.damping * p[kKdTheta] * qd[2];
+  torque[1] -= self.scale.damping * p[kKdPhi] * c_th * c_th * qd[3];
   return torque;
+}
+
+// The body of a rollout where the table has its masses (ipm.h).
+template <typename T>
+BodyOf<T> TableBody(const Body& body, const ParameterSet<T>& p) {
+  return Distributed<T>(body, {p[kCartMassShare], p[kComHeight], p[kGyrationRadius]});
+}
+
+// What holds the posture of a body with the table's masses, less what holds that of its own.
+template <typename T>
+Eigen::Matrix<T, 2, 1> HoldOfTable(const SelfForce& self, const ParameterSet<T>& p) {
+  const BodyOf<T> body = TableBody(self.body, p);
+  const double own = self.body.point_share * self.body.pendulum_ratio;
+  const T more = body.point_share * body.pendulum_ratio / own - 1.0;
+  return {more * self.hold[0], more * self.hold[1]};
+}
+
+// The body whose equations of motion a step has.
+template <typename T>
+BodyOf<T> DynamicBody(const ModelOptions& options, const Body& body, const ParameterSet<T>& p,
+                      bool holds_fast) {
+  if (holds_fast) return StandingBody<T>(body, p[kComHeight]);
+  if (options.body == BodyModel::kTable) return TableBody(body, p);
+  return BodyNow<T>(body, T(0.0), T(0.0));
 }
 
 }  // namespace pushid

@@ -31,27 +31,21 @@ struct StanceNumbers {
   static constexpr double kSideReach = 0.4;  // m: the longest to the side
 };
 
-// The parameters of stance, which derivatives are taken by.
+// The parameters of stance.
 template <typename T>
 struct StanceParameters {
-  static constexpr Parameter kIds[] = {kKpTheta,      kKpPhi,       kKdTheta,     kKdPhi,
-                                       kSupportFront, kSupportBack, kSupportSide, kFootFront,
-                                       kStepGain,     kStepOnset,   kStepSwing};
-  static constexpr int kCount = sizeof(kIds) / sizeof(kIds[0]);
   T Kp[2], Kd[2], front, back, side, foot_front, gain, onset, swing;
 
-  // value(id): of a parameter.
-  template <typename Value>
-  explicit StanceParameters(const Value& value)
-      : Kp{value(kKpTheta), value(kKpPhi)},
-        Kd{value(kKdTheta), value(kKdPhi)},
-        front(value(kSupportFront)),
-        back(value(kSupportBack)),
-        side(value(kSupportSide)),
-        foot_front(value(kFootFront)),
-        gain(value(kStepGain)),
-        onset(value(kStepOnset)),
-        swing(value(kStepSwing)) {}
+  explicit StanceParameters(const ParameterSet<T>& p)
+      : Kp{p[kKpTheta], p[kKpPhi]},
+        Kd{p[kKdTheta], p[kKdPhi]},
+        front(p[kSupportFront]),
+        back(p[kSupportBack]),
+        side(p[kSupportSide]),
+        foot_front(p[kFootFront]),
+        gain(p[kStepGain]),
+        onset(p[kStepOnset]),
+        swing(p[kStepSwing]) {}
 };
 
 template <typename T>

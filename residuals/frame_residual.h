@@ -29,7 +29,7 @@ namespace pushid {
 
 // Which likelihood of the recordings a fit maximizes.
 enum class Likelihood {
-  kTrajectory,  // of whole rollouts from frame 0 (cost_functions/rollout_problem.h): no process
+  kTrajectory,  // of whole rollouts from frame 0 (rollout_residual.h): no process
                 // noise
   kTransition,  // of every measured state given the one before
   kInnovation   // of every measurement given all before it

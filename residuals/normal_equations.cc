@@ -40,7 +40,7 @@ void NormalEquations::Add(int count, const double* rows, const double* residuals
   const VectorKernels& kernels = BestVectorKernels();
   const Eigen::Index padded = information_.cols();
   kernels.add_gram(count, padded, rows, padded, information_.data(), padded);
-  kernels.narrow_product(1, count, padded, residuals, rows, padded, gradient_.data(), padded, true);
+  kernels.add_rows(count, padded, residuals, rows, padded, gradient_.data());
   squares_ += Eigen::Map<const Eigen::VectorXd>(residuals, count).squaredNorm();
 }
 

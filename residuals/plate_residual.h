@@ -9,7 +9,7 @@
 
 #include "datasets/loading/pendulum_recording.h"
 #include "models/ground.h"
-#include "models/net_force.h"
+#include "models/step.h"
 #include "residuals/frame_residual.h"
 
 namespace pushid {

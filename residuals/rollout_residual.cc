@@ -108,6 +108,18 @@ SensitivityInputs RolloutInputs(const Scene& scene, const ParameterMap& map,
   return inputs;
 }
 
+RolloutStatus RollOut(const RolloutProblem& p, double const* const* blocks,
+                      RolloutPath<double>* path) {
+  const Scene& scene = p.recording->scene;
+  const SensitivityInputs inputs = RolloutInputs(scene, p.map, p.layout, blocks);
+  return Rollout<double>(scene, p.options, inputs.parameters, inputs.initial_velocity, p.horizon,
+                         path, nullptr, inputs.network_weights);
+}
+
+bool RolloutResiduals(const RolloutProblem& p, double const* const* blocks, double* residuals) {
+  return RolloutResidual::At<double>(p, blocks, residuals).ok;
+}
+
 void SensitivityInputs::HoldWeights() {
   if (weight_column < 0) return;
   num_columns = NormalEquations::PaddedSize(weight_column);

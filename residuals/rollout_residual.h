@@ -142,6 +142,13 @@ struct SensitivityInputs {
 SensitivityInputs RolloutInputs(const Scene& scene, const ParameterMap& map,
                                 const BlockLayout& layout, double const* const* blocks);
 
+// The path at the given blocks.
+RolloutStatus RollOut(const RolloutProblem& problem, double const* const* blocks,
+                      RolloutPath<double>* path);
+// The residuals alone, problem.num_residuals() of them; false outside the model's domain.
+bool RolloutResiduals(const RolloutProblem& problem, double const* const* blocks,
+                      double* residuals);
+
 // What a problem is made of.
 
 // The unit of each person, by which pooled parameters differ.

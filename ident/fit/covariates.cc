@@ -11,7 +11,7 @@
 #include "ident/fit/weighted_solve.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/clusters.h"
-#include "residuals/cost_functions/rollout_problem.h"
+#include "residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {

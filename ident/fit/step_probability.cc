@@ -57,7 +57,7 @@ Eigen::Vector2d MostLikelyCoefficients(const std::vector<StepOutcome>& outcomes,
 double MarginOfPath(const ModelOptions& options, const ParameterSet<double>& parameters,
                     const ScenePerson& person, const RolloutPath<double>& path, int index) {
   const SelfForce self(options, person.body, person.start.q, 1.0);
-  const StanceParameters<double> p([&parameters](Parameter id) { return parameters[id]; });
+  const StanceParameters<double> p(parameters);
   double most = 0.0;
   for (int t = 0; t < path.num_frames(); ++t) {
     const PendulumState<double>& state = path.At(t, index);
@@ -76,7 +76,7 @@ bool StepsWith(double factor, int person, const ModelOptions& options,
                RolloutPath<double>* path) {
   ParameterSet<double>& own = parameters[parameters.size() == 1 ? 0 : person];
   for (Parameter id : {kSupportFront, kSupportBack, kSupportSide}) own[id] *= factor;
-  SceneForces<double> forces(scene, options, parameters);
+  ModelStep<double> forces(scene, options, parameters);
   StartPath(scene, InitialVelocities(scene), path);
   for (int t = 0; t + 1 < path->num_frames(); ++t) {
     const RolloutStatus status = StepOn<double>(scene, &forces, t, path);

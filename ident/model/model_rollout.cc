@@ -7,7 +7,7 @@
 #include "ident/problem/own_axes.h"
 #include "models/learned_terms.h"
 #include "models/rollout.h"
-#include "residuals/cost_functions/rollout_problem.h"
+#include "residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {

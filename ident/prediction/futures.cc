@@ -36,7 +36,7 @@ RolloutStatus RollDrawn(const Scene& scene, const ModelOptions& options,
                         std::vector<ParameterSet<double>> now,
                         const std::vector<ParameterSet<double>>& own,
                         const FrameTable<Vector4<double>>* noise, RolloutPath<double>* path) {
-  SceneForces<double> forces(scene, options, now);
+  ModelStep<double> forces(scene, options, now);
   StartPath(scene, InitialVelocities(scene), path);
   for (int t = 0; t + 1 < path->num_frames(); ++t) {
     const RolloutStatus status = StepOn<double>(scene, &forces, t, path, nullptr, noise);

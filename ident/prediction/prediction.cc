@@ -15,7 +15,7 @@
 #include "ident/problem/own_axes.h"
 #include "models/learned_terms.h"
 #include "models/rollout.h"
-#include "models/scene_forces.h"
+#include "models/step.h"
 
 namespace pushid {
 namespace {
@@ -131,7 +131,7 @@ Prediction PredictReanchored(const IdentifiedModel& model, const PendulumRecordi
     }
   }
   const std::vector<ParameterSet<double>> parameters = PeoplesParameters(model, recording);
-  SceneForces<double> forces(recording.scene, model.options, parameters);
+  ModelStep<double> forces(recording.scene, model.options, parameters);
   prediction.status = RollOn<double>(recording.scene, &forces, from, &prediction.path);
   if (!prediction.status.ok) return prediction;
   for (int n = 0; n < people; ++n) {

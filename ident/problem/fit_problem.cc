@@ -366,7 +366,7 @@ void AddLikelihood(const Family&, const Place& at) {
   const int i = at.recording;
   const std::vector<double*> blocks = problem.RecordingBlocks(at.point, i);
   auto residual = std::make_unique<LikelihoodResidual>(
-      problem.LikelihoodOf(i, problem.Weight(i, 0)), blocks.data(), false, problem.fall_of_noise());
+      problem.LikelihoodOf(i, problem.Weight(i, 0)), blocks.data(), problem.fall_of_noise());
   if (!residual->status().ok) {
     at.built->shortened.push_back({i, residual->status()});
     return;

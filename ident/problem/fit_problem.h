@@ -19,7 +19,7 @@
 #include "ident/problem/parallel_evaluation.h"
 #include "models/rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
-#include "residuals/cost_functions/rollout_problem.h"
+#include "residuals/rollout_residual.h"
 
 namespace pushid {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "models/turn.h"
-#include "residuals/cost_functions/rollout_problem.h"
+#include "residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {

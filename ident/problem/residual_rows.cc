@@ -11,6 +11,7 @@
 #include "ident/problem/work.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
+#include "residuals/jets/autodiff_rollout.h"
 #include "residuals/normal_equations.h"
 #include "residuals/plate_residual.h"
 
@@ -18,7 +19,7 @@ namespace pushid {
 namespace {
 
 using Eigen::Index;
-using PersonRows = CondensedRows::PersonRows;
+using PersonRows = CondensedRollout::PersonRows;
 
 // Rows of one cost function by the columns that move it.
 struct RowBlock {
@@ -319,16 +320,12 @@ class RowsOfRecordings {
   RawRows BySensitivities(const RolloutAt& here) const {
     const RolloutProblem& problem = *here.problem;
     RawRows rows;
-    rows.residuals.resize(problem.num_residuals());
-    const Index acting = problem.layout.num_acting();
-    RowMajorMatrix by_acting(rows.residuals.size(), acting);
-    Index row = 0;
-    const auto add = [&](int, int, const auto& residual, const auto* by_column) {
-      rows.residuals.segment(row, residual.size()) = residual;
-      by_acting.middleRows(row, residual.size()) = by_column->leftCols(acting);
-      row += residual.size();
-    };
-    if (!VisitFrames(problem, here.blocks.data(), Derivatives::kAll, add, add).ok) return {};
+    std::vector<double> residuals;
+    RowMajorMatrix by_acting;
+    const SensitivityInputs inputs =
+        RolloutInputs(problem.recording->scene, problem.map, problem.layout, here.blocks.data());
+    if (!RowsByJets(problem, inputs, &residuals, &by_acting).ok) return {};
+    rows.residuals = Mapped(residuals);
     const RowMajorMatrix by_blocks = ActingColumns(problem.layout).Expand(by_acting);
     std::vector<Index> in_blocks;
     for (const auto& [column, in_block] : OwnColumns(here)) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "models/learned_terms.h"
-#include "residuals/adjoint/force_jacobians.h"
+#include "residuals/adjoint/step_adjoint.h"
 
 namespace pushid {
 namespace {
@@ -33,9 +33,9 @@ PackedColumns ColumnsOf(const std::vector<AdjointRecording>& all,
 using Matrix = Eigen::MatrixXd;
 
 // Adds the adjoint of [state of n, state of j].
-void AddToBoth(const Eigen::Matrix<double, 1, 16>& by_states, int n, int j, Matrix* by_state) {
-  by_state->col(n) += by_states.head<8>().transpose();
-  by_state->col(j) += by_states.tail<8>().transpose();
+void AddToBoth(const PairAdjoint& by_states, int n, int j, Matrix* by_state) {
+  by_state->col(n) += by_states.head<8>();
+  by_state->col(j) += by_states.tail<8>();
 }
 
 }  // namespace
@@ -67,7 +67,7 @@ AdjointGradient::Batch::Batch(const std::vector<AdjointRecording>& all,
   }
   const LearnedTerms& network = *options_.learned;
   if (network.shape.any()) network_.emplace(network.shape, kernels, columns_, masses);
-  if (network.rod.moves()) rod_.emplace(network.rod, kernels, columns_);
+  if (network.rod.moves()) rod_.emplace(network.rod, kernels);
   if (options_.interaction.Any()) others_.emplace(options_, scenes, kernels);
   now_.states.resize(walkers_.size());
 }
@@ -128,7 +128,7 @@ void AdjointGradient::Batch::SetForces(int step) {
 
 void AdjointGradient::Batch::SetRodVelocities(int step) {
   const int people = columns_.active(step);
-  rod_velocities_.setZero(people);
+  rod_velocities_.setZero(1, people);
   if (!rod_) return;
   RodLayers<double> layers(options_.learned->rod);
   rod_inputs_.setZero(options_.learned->rod.num_inputs(), people);
@@ -144,7 +144,8 @@ void AdjointGradient::Batch::SetRodVelocities(int step) {
                          state.qd, force, state.rod, walker.body(), &layers);
     rod_inputs_.col(column) = layers.inputs;
   }
-  rod_->Forward(step, rod_inputs_, &rod_velocities_);
+  rod_->Forward(rod_inputs_, &rod_velocities_);
+  rod_velocities_ *= kRodSpeed;
 }
 
 void AdjointGradient::Batch::Step(int step, std::vector<RolloutStatus>* status) {
@@ -161,7 +162,7 @@ void AdjointGradient::Batch::Step(int step, std::vector<RolloutStatus>* status) 
     walker.acceleration[step] = Acceleration(BodyNow(walker.body(), state.rod, 0.0), state, force);
     PendulumState<double>& next = walker.path[step + 1];
     next = pushid::Step(state, walker.acceleration[step], walker.scene().dt);
-    next.rod += walker.scene().dt * rod_velocities_[column];
+    next.rod += walker.scene().dt * rod_velocities_(0, column);
     const std::string_view outside = OutsideDomain(walker.body(), next);
     if (outside.empty()) continue;
     (*status)[walker.index] = {false, step + 1, walker.person, outside};
@@ -266,36 +267,16 @@ void TouchingPeople::AskNetwork(const PeopleNow& now, std::vector<Contact>* cont
 
 void TouchingPeople::Backward(int step, const PeopleNow& now, const Matrix& by_received,
                               Matrix* by_state, ParameterSet<double>* by_parameter) {
-  for (const Contact& contact : contacts_[step]) {
-    if (contact.terms) TermsBack(contact, now, by_received, by_state, by_parameter);
-    if (contact.learned()) GateBack(contact, now, by_received, by_state, by_parameter);
+  for (const Contact& c : contacts_[step]) {
+    const Vector4<double> by_n = by_received.col(c.n), by_j = by_received.col(c.j);
+    const double by_gate = c.learned_n.dot(by_n) + c.learned_j.dot(by_j);
+    const bool gated = c.learned() && !options_.learned->pair.ldp;  // LDP's is a hard switch
+    PairAdjoint by_states = PairAdjoint::Zero();
+    PairBack(options_, c.pair, now.parameters[c.first], now.states[c.n], now.states[c.j], by_n,
+             by_j, gated ? &by_gate : nullptr, &by_states, by_parameter);
+    AddToBoth(by_states, c.n, c.j, by_state);
   }
   if (network_) NetworkBack(step, by_received, by_state);
-}
-
-void TouchingPeople::TermsBack(const Contact& c, const PeopleNow& now, const Matrix& by_received,
-                               Matrix* by_state, ParameterSet<double>* by_parameter) const {
-  const PairJacobian jacobian = ComputePairJacobian(
-      options_.interaction, c.pair, now.parameters[c.first], now.states[c.n], now.states[c.j]);
-  Eigen::Matrix<double, 1, 8> by_forces;
-  by_forces << by_received.col(c.n).transpose(), by_received.col(c.j).transpose();
-  AddToBoth(by_forces * jacobian.by_states, c.n, c.j, by_state);
-  Eigen::Map<Eigen::Matrix<double, 1, kNumPairParameters>>(
-      by_parameter->data() + kFirstPairParameter) += by_forces * jacobian.by_parameter;
-}
-
-void TouchingPeople::GateBack(const Contact& c, const PeopleNow& now, const Matrix& by_received,
-                              Matrix* by_state, ParameterSet<double>* by_parameter) const {
-  if (options_.learned->pair.ldp) return;  // a hard switch
-  const GateJacobian gate =
-      PairGateJacobian(options_.learned->pair, c.pair, now.parameters[c.first], now.states[c.n].q,
-                       now.states[c.j].q);
-  const double by_gate =
-      c.learned_n.dot(by_received.col(c.n)) + c.learned_j.dot(by_received.col(c.j));
-  by_state->col(c.n).head<4>() += by_gate * gate.by_places.head<4>().transpose();
-  by_state->col(c.j).head<4>() += by_gate * gate.by_places.tail<4>().transpose();
-  Eigen::Map<Eigen::Matrix<double, 1, kContactParameters>>(
-      by_parameter->data() + kContactStiffness) += by_gate * gate.by_parameter;
 }
 
 void TouchingPeople::NetworkBack(int step, const Matrix& by_received, Matrix* by_state) {
@@ -312,14 +293,10 @@ void TouchingPeople::NetworkBack(int step, const Matrix& by_received, Matrix* by
   }
   network_->Backward(step, outputs_, &inputs_);
   column = 0;
-  const auto by_states = [this](int of) {
-    const Eigen::Matrix<double, 1, PairShape::kInputs> by_input = inputs_.col(of).transpose();
-    return PairInputsByStates(by_input);
-  };
   for (const Contact& c : contacts) {
     if (!c.learned()) continue;
-    AddToBoth(by_states(column++), c.n, c.j, by_state);
-    AddToBoth(by_states(column++), c.j, c.n, by_state);
+    AddToBoth(PairInputsBack(inputs_.col(column++)), c.n, c.j, by_state);
+    AddToBoth(PairInputsBack(inputs_.col(column++)), c.j, c.n, by_state);
   }
 }
 
@@ -327,79 +304,43 @@ void TouchingPeople::AddWeightGradient(double* gradient) {
   if (network_) network_->AddWeightGradient(gradient + options_.learned->pair_at());
 }
 
-double AdjointGradient::Batch::AddResidual(int column, int frame, Adjoint* adjoint) const {
-  const Walker& walker = walkers_[column];
-  FrameJacobian jacobian;
-  const FrameVector<double> r =
-      FrameResidualWithJacobian(walker.body(), Parameters(column)[kRodLift], walker.path[frame],
-                                walker.Measured(frame, rod_.has_value()), sigmas_, &jacobian);
-  const Eigen::Matrix<double, 10, 1> gradient =
-      walker.weight * walker.weight * (jacobian.transpose() * r);
-  adjoint->state += gradient.head<8>();
-  adjoint->rod += gradient[8];
-  return gradient[9];
-}
-
 AdjointGradient::Batch::ForceAdjoint AdjointGradient::Batch::StepBack(
-    int column, int step, const Eigen::VectorXd* by_rod, Adjoint* adjoint,
+    int column, int step, const Eigen::VectorXd* by_rod, StateAdjoint* adjoint,
     ParameterSet<double>* by_parameter) const {
   const Walker& walker = walkers_[column];
-  const ParameterSet<double>& p = Parameters(column);
-  const double dt = walker.scene().dt;
   const PendulumState<double>& state = walker.path[step];
-  const Vector4<double>& before = walker.VelocityBefore(step);
+  const double dt = walker.scene().dt;
+  const Vector4<double> g = adjoint->state.tail<4>() + dt * adjoint->state.head<4>();
   const Body body = BodyNow(walker.body(), state.rod, 0.0);
-  State& s = adjoint->state;
-  Eigen::Map<Eigen::Matrix<double, kNumParameters, 1>> sum(by_parameter->data());
-
-  const Vector4<double> g = s.tail<4>() + dt * s.head<4>();
   const Vector4<double> f = dt * (InverseMassMatrix(body, state.q) * g);
-  SelfForce::Jacobian jacobian;
-  NetForceJacobian(walker.scene(), options_, walker.self, p, walker.person, step, state, before,
-                   &jacobian);
-  const Matrix4<double> rigid =
-      InverseDynamicsJacobian(body, Angles<double>(state.q), state.qd, walker.acceleration[step]);
-  jacobian.by_state.middleCols<2>(2) -= rigid.leftCols<2>();
-  jacobian.by_state.middleCols<2>(6) -= rigid.rightCols<2>();
-  s.tail<4>() = g;
-  s += jacobian.by_state.transpose() * f;
-  sum += jacobian.by_parameter.transpose() * f;
-  Eigen::Vector2d by_previous = jacobian.by_previous.cwiseProduct(f.head<2>());
+  adjoint->state.tail<4>() = g;
+  // What the step after this one left for the velocity before it.
+  adjoint->state.segment<2>(4) += adjoint->before;
+  adjoint->before.setZero();
+  Vector4<double> seen;
+  if (by_rod != nullptr) {
+    adjoint->rod += (*by_rod)[RodShape::kRodInput] / kNetworkRod;
+    adjoint->state.tail<6>() += by_rod->head<6>().cwiseProduct(MotionInputScales());
+    seen = by_rod->segment<4>(RodShape::kForceInputs) / (kNetworkAcceleration * walker.body().mass);
+  }
+  PersonBack({walker.scene(), options_, walker.self, Parameters(column), walker.person, step, state,
+              walker.VelocityBefore(step)},
+             walker.acceleration[step], f, by_rod != nullptr ? &seen : nullptr, adjoint,
+             by_parameter);
+  if (step == 0) {  // there the velocity before is that of the frame itself
+    adjoint->state.segment<2>(4) += adjoint->before;
+    adjoint->before.setZero();
+  }
   ForceAdjoint by_force;
   if (ForcesAt(walker.scene(), options_.push, walker.person, step) == ActiveForces::kAll) {
     by_force = {f, f};
   }
-
-  if (by_rod != nullptr) {
-    adjoint->rod -= f.dot(InverseDynamicsByBody(body, Angles<double>(state.q), state.qd,
-                                                walker.acceleration[step])
-                              .col(1)) /
-                    body.rod_length;
-    adjoint->rod += (*by_rod)[RodShape::kRodInput] / kNetworkRod;
-    const Vector4<double> seen =
-        by_rod->segment<4>(RodShape::kForceInputs) / (kNetworkAcceleration * walker.body().mass);
-    walker.self.EffortJacobian(p, state, before, &jacobian);
-    s.tail<6>() += by_rod->head<6>().cwiseProduct(MotionInputScales());
-    s += jacobian.by_state.transpose() * seen;
-    sum += jacobian.by_parameter.transpose() * seen;
-    by_previous += jacobian.by_previous.cwiseProduct(seen.head<2>());
-    by_force.network += seen;
-  }
-
-  s.segment<2>(4) += adjoint->owed;
-  adjoint->owed.setZero();
-  if (walker.self.cart_derivative) {
-    if (step > 0) {
-      adjoint->owed = by_previous;
-    } else {
-      s.segment<2>(4) += by_previous;
-    }
-  }
+  if (by_rod != nullptr) by_force.network += seen;
   return by_force;
 }
 
 void AdjointGradient::Batch::Backward(ParameterSet<double>* by_parameter, double* by_weight) {
-  std::vector<Adjoint> adjoints(walkers_.size());  // of the frame after the step
+  std::vector<StateAdjoint> adjoints(walkers_.size());  // of the frame after the step
   for (int step = columns_.num_steps() - 1; step >= 0; --step) {
     RodBack(step, &adjoints, by_parameter);
     const int people = columns_.active(step);
@@ -422,21 +363,23 @@ void AdjointGradient::Batch::Backward(ParameterSet<double>* by_parameter, double
   if (others_) others_->AddWeightGradient(by_weight);
 }
 
-void AdjointGradient::Batch::RodBack(int step, std::vector<Adjoint>* adjoints,
+void AdjointGradient::Batch::RodBack(int step, std::vector<StateAdjoint>* adjoints,
                                      ParameterSet<double>* by_parameter) {
   const int people = columns_.active(step);
-  rod_velocities_.setZero(people);
+  rod_velocities_.setZero(1, people);
   for (int column = 0; column < people; ++column) {
     const Walker& walker = walkers_[column];
     if (!Going(walker, step)) continue;
-    Adjoint& adjoint = (*adjoints)[column];
-    (*by_parameter)[kRodLift] += AddResidual(column, step + 1, &adjoint);
-    rod_velocities_[column] = walker.scene().dt * adjoint.rod;
+    StateAdjoint& adjoint = (*adjoints)[column];
+    (*by_parameter)[kRodLift] +=
+        FrameBack(walker.body(), Parameters(column)[kRodLift], walker.path[step + 1],
+                  walker.Measured(step + 1, rod_.has_value()), sigmas_, walker.weight, &adjoint);
+    rod_velocities_(0, column) = kRodSpeed * walker.scene().dt * adjoint.rod;
   }
   if (rod_) rod_->Backward(step, rod_velocities_, &rod_inputs_);
 }
 
-void AdjointGradient::Batch::ForcesBack(int step, std::vector<Adjoint>* adjoints,
+void AdjointGradient::Batch::ForcesBack(int step, std::vector<StateAdjoint>* adjoints,
                                         ParameterSet<double>* by_parameter) {
   if (network_) {
     network_->Backward(step, forces_, &inputs_);

@@ -8,6 +8,7 @@
 #include "models/neighbours.h"
 #include "models/rollout.h"
 #include "residuals/adjoint/adjoint_gradient.h"
+#include "residuals/adjoint/step_adjoint.h"
 #include "residuals/packed/packed_layers.h"
 #include "residuals/packed/packed_network.h"
 #include "residuals/packed/vector_kernels.h"
@@ -20,7 +21,7 @@ namespace pushid {
 //   L_s <- L_s + (dF_terms/ds)' f + (dg/ds)' (2 M y . f) + (du/ds)' u^,   s: the states of both
 //   L_p <- L_p + (dF_terms/dp)' f + (dg/dp)' (2 M y . f)
 // where u^ comes back through the network from y^ = 2 M g f (packed_layers.h). A person's step so
-// hands parts to the neighbours' states. Derivatives of terms and gate: force_jacobians.h.
+// hands parts to the neighbours' states. Terms and gate: PairBack (step_adjoint.h).
 //
 // Everybody is a column: the people of one recording side by side, one recording after the other.
 
@@ -74,16 +75,12 @@ class TouchingPeople {
   void FindContacts(Group* group, const PeopleNow& now, std::vector<Contact>* contacts,
                     Eigen::MatrixXd* received) const;
   void AskNetwork(const PeopleNow& now, std::vector<Contact>* contacts, Eigen::MatrixXd* received);
-  void TermsBack(const Contact& contact, const PeopleNow& now, const Eigen::MatrixXd& by_received,
-                 Eigen::MatrixXd* by_state, ParameterSet<double>* by_parameter) const;
-  void GateBack(const Contact& contact, const PeopleNow& now, const Eigen::MatrixXd& by_received,
-                Eigen::MatrixXd* by_state, ParameterSet<double>* by_parameter) const;
   void NetworkBack(int step, const Eigen::MatrixXd& by_received, Eigen::MatrixXd* by_state);
 
   const ModelOptions& options_;
   std::vector<Group> groups_;
   std::vector<std::vector<Contact>> contacts_;  // by step
-  std::optional<PackedPairs> network_;          // none: nothing is learned
+  std::optional<PackedLayers> network_;         // none: nothing is learned
   Eigen::MatrixXd inputs_, outputs_;  // two columns for each contact that the network sees
 };
 
@@ -102,14 +99,6 @@ class AdjointGradient::Batch {
   void Backward(ParameterSet<double>* by_parameter, double* by_weight);
 
  private:
-  using State = Eigen::Matrix<double, 8, 1>;
-  // d(cost)/d(one column's state) on the way back.
-  struct Adjoint {
-    State state = State::Zero();  // [q, qd]
-    double rod = 0.0;
-    // What the backward difference of the cart's velocity hands to the frame before.
-    Eigen::Vector2d owed = Eigen::Vector2d::Zero();
-  };
   // d(cost)/d(force) of what a step back does not know itself: of the own network's, and of what
   // others do.
   struct ForceAdjoint {
@@ -143,16 +132,15 @@ class AdjointGradient::Batch {
   void SetRodVelocities(int step);
   void Step(int step, std::vector<RolloutStatus>* status);
   double Cost() const;
-  // Adds the residual of a frame to its adjoint; returns its part of d(cost)/d(lift).
-  double AddResidual(int column, int frame, Adjoint* adjoint) const;
   // A walker's step back but for networks and others. by_rod: the adjoint of what the rod's law
   // saw; null where it is constant.
-  ForceAdjoint StepBack(int column, int step, const Eigen::VectorXd* by_rod, Adjoint* adjoint,
+  ForceAdjoint StepBack(int column, int step, const Eigen::VectorXd* by_rod, StateAdjoint* adjoint,
                         ParameterSet<double>* by_parameter) const;
   // Adds the residuals of the frame after a step, and goes back through the rods' laws.
-  void RodBack(int step, std::vector<Adjoint>* adjoints, ParameterSet<double>* by_parameter);
+  void RodBack(int step, std::vector<StateAdjoint>* adjoints, ParameterSet<double>* by_parameter);
   // From the adjoints of a step's forces, forces_ and received_, to those of its states.
-  void ForcesBack(int step, std::vector<Adjoint>* adjoints, ParameterSet<double>* by_parameter);
+  void ForcesBack(int step, std::vector<StateAdjoint>* adjoints,
+                  ParameterSet<double>* by_parameter);
 
   const ModelOptions options_;
   const ResidualSigmas sigmas_;
@@ -160,12 +148,11 @@ class AdjointGradient::Batch {
   std::vector<int> horizon_, end_;  // by place: frames to roll out, and those that count
   PackedColumns columns_;
   std::optional<PackedNetwork> network_;  // none: no force
-  std::optional<PackedRod> rod_;          // none: constant
+  std::optional<PackedLayers> rod_;       // none: constant
   std::optional<TouchingPeople> others_;  // none: nobody does anything to another
   PeopleNow now_;                         // states: only where people touch
-  Eigen::MatrixXd inputs_, forces_, rod_inputs_;
+  Eigen::MatrixXd inputs_, forces_, rod_inputs_, rod_velocities_;
   Eigen::MatrixXd received_, by_state_;  // from others; backwards the adjoints of both sides
-  Eigen::RowVectorXd rod_velocities_;
 };
 
 }  // namespace pushid

@@ -7,9 +7,9 @@
 // goes back by
 //   f = dt M^-1 g                          d(cost)/dF
 //   L_q <- L_q + J_q' f,  L_qd <- g + J_qd' f,   J = dF/ds - d(M a + C + G)/ds at fixed a
-// and d(cost)/dp += (dF/dp)' f; the network's part of dF/ds: packed_network.h. Where the rod
-// moves, l' = l + dt v(s, F_self, l), its adjoint goes back through v (packed_layers.h) to s,
-// F_self and p:
+// and d(cost)/dp += (dF/dp)' f (step_adjoint.h); the network's part of dF/ds: packed_network.h.
+// Where the rod moves, l' = l + dt v(s, F_self, l), its adjoint goes back through v
+// (packed_layers.h) to s, F_self and p:
 //   L_l <- L_l + dt v_l L_l - (d(M a + C + G)/dl)' f
 // What people do to each other: adjoint_batch.cc.
 // One gradient costs about as much as three rollouts, whatever the number of weights.
@@ -26,8 +26,8 @@
 #include <vector>
 
 #include "datasets/files/error.h"
-#include "residuals/cost_functions/rollout_problem.h"
 #include "residuals/packed/vector_kernels.h"
+#include "residuals/rollout_residual.h"
 
 namespace pushid {
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "models/scene_forces.h"
+#include "models/step.h"
 
 namespace pushid {
 namespace {

@@ -8,10 +8,10 @@
 #include "models/options.h"
 #include "models/parameters.h"
 #include "models/scene.h"
-#include "residuals/cost_functions/rollout_problem.h"
 #include "residuals/lanes/person_lanes.h"
 #include "residuals/normal_equations.h"
 #include "residuals/parameter_map.h"
+#include "residuals/rollout_residual.h"
 
 namespace pushid {
 

@@ -1,22 +1,18 @@
 // residuals: densities by frame and person, and their rows with derivatives.
 #include "residuals/cost_functions/likelihood_residual.h"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <limits>
-#include <type_traits>
 
 #include "residuals/jets/autodiff_rollout.h"
+#include "residuals/jets/vector_jet.h"
 
 namespace pushid {
 namespace {
 
-constexpr int kLanes = 8;
-using LaneJet = ceres::Jet<double, kLanes>;
-
-// Step of a value on the fitted scale: the optimum is off by half of it, far less than any
-// parameter is known to. Ten times smaller steps drown the Hessian of the uncertainty in rounding.
+// Step of a column, where its parameter's value over its derivative is up to one: the optimum is
+// off by half of it, far less than any parameter is known to. Ten times smaller steps drown the
+// Hessian of the uncertainty in rounding.
 constexpr double kDifference = 3e-5;
 
 // Whether a push on the person stands for all that its step shows.
@@ -36,7 +32,7 @@ void Transitions(const LikelihoodProblem& problem, const std::vector<ParameterSe
   const PendulumRecording& r = *problem.recording;
   const Scene& scene = r.scene;
   const T dt = T(scene.dt);
-  SceneForces<T> forces(scene, problem.options, parameters);
+  ModelStep<T> forces(scene, problem.options, parameters);
   std::vector<PendulumState<T>> states(scene.num_people());
   std::vector<int> scratch;
   for (int t = 0; t + 1 < r.num_frames(); ++t) {
@@ -62,18 +58,16 @@ void Transitions(const LikelihoodProblem& problem, const std::vector<ParameterSe
   }
 }
 
-template <typename T>
 RolloutStatus Innovations(const LikelihoodProblem& problem,
-                          const std::vector<ParameterSet<T>>& parameters,
-                          std::vector<GaussianDensity<T>>* densities) {
+                          const std::vector<ParameterSet<double>>& parameters,
+                          std::vector<GaussianDensity<double>>* densities) {
   const PendulumRecording& r = *problem.recording;
-  using Step = std::conditional_t<std::is_same_v<T, double>, JetStep, DualStep<T>>;
-  PendulumFilter<T, Step> filter(r.scene, problem.options, parameters);
+  PendulumFilter<JetStep> filter(r.scene, problem.options, parameters);
   for (int t = 0; t + 1 < r.num_frames(); ++t) {
     const RolloutStatus status = filter.Predict(t);
     if (!status.ok) return status;
     for (int n = 0; n < r.num_people(); ++n) {
-      GaussianDensity<T>& density = (*densities)[t * r.num_people() + n];
+      GaussianDensity<double>& density = (*densities)[t * r.num_people() + n];
       const double weight = r.Weight(n, t + 1);
       if (weight <= 0.0) continue;
       const auto innovation = filter.Update(n, r.states[n][t + 1].q, weight);
@@ -84,25 +78,6 @@ RolloutStatus Innovations(const LikelihoodProblem& problem,
     }
   }
   return {};
-}
-
-// One number of the natural scale that some people share, and the columns it belongs to.
-struct Seed {
-  int fitted = 0;
-  int unit = -1;  // of the layout; negative: everybody
-};
-
-std::vector<Seed> SeedsOf(const LikelihoodProblem& problem) {
-  std::vector<Seed> seeds;
-  const int units = static_cast<int>(problem.layout.units.size());
-  for (int i = 0; i < problem.map.num_shared(); ++i) {
-    if (problem.map.fitted[i].deviation < 0 || problem.layout.num_deviations == 0) {
-      seeds.push_back({i});
-    } else {
-      for (int unit = 0; unit < units; ++unit) seeds.push_back({i, unit});
-    }
-  }
-  return seeds;
 }
 
 }  // namespace
@@ -120,10 +95,9 @@ LikelihoodProblem MakeLikelihoodProblem(Likelihood likelihood, const PendulumRec
   return problem;
 }
 
-template <typename T>
 RolloutStatus Densities(const LikelihoodProblem& problem,
-                        const std::vector<ParameterSet<T>>& parameters,
-                        std::vector<GaussianDensity<T>>* densities) {
+                        const std::vector<ParameterSet<double>>& parameters,
+                        std::vector<GaussianDensity<double>>* densities) {
   densities->assign(problem.num_densities(), {});
   if (problem.likelihood == Likelihood::kInnovation) {
     return Innovations(problem, parameters, densities);
@@ -152,8 +126,8 @@ Deviance DevianceOf(const LikelihoodProblem& problem,
 }
 
 LikelihoodResidual::LikelihoodResidual(LikelihoodProblem problem, double const* const* blocks,
-                                       bool jets, double fall)
-    : problem_(std::move(problem)), jets_(jets) {
+                                       double fall)
+    : problem_(std::move(problem)) {
   for (int size : problem_.layout.BlockSizes()) mutable_parameter_block_sizes()->push_back(size);
   set_num_residuals(kGaussianRows * problem_.num_densities());
   std::vector<GaussianDensity<double>> densities;
@@ -166,10 +140,8 @@ LikelihoodResidual::LikelihoodResidual(LikelihoodProblem problem, double const* 
 }
 
 template <typename T>
-bool LikelihoodResidual::Rows(const std::vector<ParameterSet<T>>& parameters,
-                              std::vector<T>* rows) const {
-  std::vector<GaussianDensity<T>> densities;
-  if (!Densities(problem_, parameters, &densities).ok) return false;
+bool LikelihoodResidual::RowsOf(const std::vector<GaussianDensity<T>>& densities,
+                                std::vector<T>* rows) const {
   rows->assign(num_residuals(), T(0.0));
   for (size_t i = 0; i < densities.size(); ++i) {
     if (!densities[i].measured) continue;
@@ -180,75 +152,59 @@ bool LikelihoodResidual::Rows(const std::vector<ParameterSet<T>>& parameters,
   return true;
 }
 
-namespace {
-
-// Adds a seed's derivatives, by row, to the columns that it belongs to.
-template <typename Derivative>
-void AddSeed(const LikelihoodProblem& problem, const Seed& seed, Derivative derivative,
-             RowMajorMatrix* jacobian) {
-  const ParameterMap& map = problem.map;
-  const int deviation = seed.unit < 0 ? -1
-                                      : map.num_shared() + seed.unit * map.num_deviations +
-                                            map.fitted[seed.fitted].deviation;
-  for (Eigen::Index row = 0; row < jacobian->rows(); ++row) {
-    const double slope = derivative(row);
-    (*jacobian)(row, seed.fitted) += slope;
-    if (deviation >= 0) (*jacobian)(row, deviation) += slope;
-  }
+bool LikelihoodResidual::Rows(const std::vector<ParameterSet<double>>& parameters,
+                              std::vector<double>* rows) const {
+  std::vector<GaussianDensity<double>> densities;
+  return Densities(problem_, parameters, &densities).ok && RowsOf(densities, rows);
 }
 
-bool Moves(const LikelihoodProblem& problem, const Seed& seed, size_t person) {
-  return seed.unit < 0 || seed.unit == problem.layout.unit_of_person[person];
-}
-
-}  // namespace
-
-bool LikelihoodResidual::ByJets(const std::vector<ParameterSet<double>>& values,
-                                RowMajorMatrix* jacobian) const {
-  const std::vector<Seed> seeds = SeedsOf(problem_);
-  for (size_t first = 0; first < seeds.size(); first += kLanes) {
-    const size_t end = std::min(seeds.size(), first + kLanes);
-    std::vector<ParameterSet<LaneJet>> parameters(values.size());
-    for (size_t n = 0; n < values.size(); ++n) {
-      for (int i = 0; i < kNumParameters; ++i) parameters[n][i] = LaneJet(values[n][i]);
-      for (size_t s = first; s < end; ++s) {
-        if (!Moves(problem_, seeds[s], n)) continue;
-        const ParameterMap::Action a =
-            problem_.map.ActionOf(seeds[s].fitted, problem_.layout.CovariatesOf(n));
-        parameters[n][a.parameter].v[s - first] =
-            a.by * TransformSlope(a.transform, values[n][a.parameter]);
+bool LikelihoodResidual::ByJets(const SensitivityInputs& in, RowMajorMatrix* by_acting) const {
+  const size_t people = in.parameters.size();
+  for (int first = 0; first < by_acting->cols(); first += VectorJet::kColumns) {
+    const int count = std::min<int>(VectorJet::kColumns, by_acting->cols() - first);
+    std::vector<ParameterSet<VectorJet>> parameters(people);
+    for (size_t n = 0; n < people; ++n) {
+      for (int i = 0; i < kNumParameters; ++i) parameters[n][i] = VectorJet(in.parameters[n][i]);
+      for (const ColumnEntry& entry : in.entries[n]) {
+        const int k = entry.column - first;
+        if (0 <= k && k < count) parameters[n][entry.parameter].AddSlope(k, entry.derivative);
       }
     }
-    std::vector<LaneJet> rows;
-    if (!Rows(parameters, &rows)) return false;
-    for (size_t s = first; s < end; ++s) {
-      AddSeed(
-          problem_, seeds[s], [&](Eigen::Index row) { return rows[row].v[s - first]; }, jacobian);
+    std::vector<GaussianDensity<VectorJet>> densities(problem_.num_densities());
+    Transitions(problem_, parameters, &densities);
+    std::vector<VectorJet> rows;
+    if (!RowsOf(densities, &rows)) return false;
+    for (Eigen::Index row = 0; row < by_acting->rows(); ++row) {
+      for (int k = 0; k < count; ++k) (*by_acting)(row, first + k) = rows[row].Slope(k);
     }
   }
   return true;
 }
 
-bool LikelihoodResidual::ByDifferences(const std::vector<ParameterSet<double>>& values,
-                                       const std::vector<double>& rows,
-                                       RowMajorMatrix* jacobian) const {
-  for (const Seed& seed : SeedsOf(problem_)) {
-    const ParameterMap::Action of_all = problem_.map.ActionOf(seed.fitted, nullptr);
-    const double size = std::abs(ToFitted(of_all.transform, values[0][of_all.parameter]));
-    const double step = kDifference * std::max(1.0, size);
-    std::vector<ParameterSet<double>> moved = values;
-    for (size_t n = 0; n < values.size(); ++n) {
-      if (!Moves(problem_, seed, n)) continue;
-      const ParameterMap::Action a =
-          problem_.map.ActionOf(seed.fitted, problem_.layout.CovariatesOf(n));
-      double& value = moved[n][a.parameter];
-      value = ToNatural(a.transform, ToFitted(a.transform, value) + step * a.by);
-    }
+bool LikelihoodResidual::ByDifferences(const SensitivityInputs& in, const std::vector<double>& rows,
+                                       RowMajorMatrix* by_acting) const {
+  for (int column = 0; column < by_acting->cols(); ++column) {
+    const auto of_column = [&](const auto& visit) {
+      for (size_t n = 0; n < in.parameters.size(); ++n) {
+        for (const ColumnEntry& entry : in.entries[n]) {
+          if (entry.column == column && entry.derivative != 0.0) visit(n, entry);
+        }
+      }
+    };
+    double size = 1.0;
+    of_column([&](size_t n, const ColumnEntry& entry) {
+      size = std::max(size, std::abs(in.parameters[n][entry.parameter] / entry.derivative));
+    });
+    const double step = kDifference * size;
+    std::vector<ParameterSet<double>> moved = in.parameters;
+    of_column([&](size_t n, const ColumnEntry& entry) {
+      moved[n][entry.parameter] += step * entry.derivative;
+    });
     std::vector<double> beside;
     if (!Rows(moved, &beside)) return false;
-    AddSeed(
-        problem_, seed, [&](Eigen::Index row) { return (beside[row] - rows[row]) / step; },
-        jacobian);
+    for (Eigen::Index row = 0; row < by_acting->rows(); ++row) {
+      (*by_acting)(row, column) = (beside[row] - rows[row]) / step;
+    }
   }
   return true;
 }
@@ -256,20 +212,17 @@ bool LikelihoodResidual::ByDifferences(const std::vector<ParameterSet<double>>& 
 bool LikelihoodResidual::Evaluate(double const* const* blocks, double* residuals,
                                   double** jacobians) const {
   if (!status_.ok) return false;
-  const auto values = problem_.layout.Parameters<double>(problem_.map, blocks);
+  const SensitivityInputs in =
+      RolloutInputs(problem_.recording->scene, problem_.map, problem_.layout, blocks);
   std::vector<double> rows;
-  if (!Rows(values, &rows)) return false;
+  if (!Rows(in.parameters, &rows)) return false;
   std::copy(rows.begin(), rows.end(), residuals);
   if (jacobians == nullptr) return true;
-  RowMajorMatrix jacobian = RowMajorMatrix::Zero(num_residuals(), problem_.layout.num_columns());
-  const bool steps = problem_.likelihood == Likelihood::kInnovation && !jets_;
-  if (!(steps ? ByDifferences(values, rows, &jacobian) : ByJets(values, &jacobian))) return false;
-  ScatterJacobian(jacobian, problem_.layout.BlockSizes(), 0, num_residuals(), jacobians);
+  RowMajorMatrix by_acting = RowMajorMatrix::Zero(num_residuals(), problem_.layout.num_acting());
+  const bool filters = problem_.likelihood == Likelihood::kInnovation;
+  if (!(filters ? ByDifferences(in, rows, &by_acting) : ByJets(in, &by_acting))) return false;
+  ActingColumns(problem_.layout).Scatter(by_acting, 0, num_residuals(), jacobians);
   return true;
 }
-
-template RolloutStatus Densities<double>(const LikelihoodProblem&,
-                                         const std::vector<ParameterSet<double>>&,
-                                         std::vector<GaussianDensity<double>>*);
 
 }  // namespace pushid

@@ -12,10 +12,10 @@
 //
 //   residuals: kGaussianRows for frames 1 .. T - 1; ordered by frame, then person
 //   blocks:    BlockLayout without initial velocities: a filter knows how little it knows of them
-// Jacobian of transitions by Jets over the parameters. A filter's covariance needs the derivatives
-// of the step's own derivatives: by Jets over dual numbers these are exact and cost 55 filters for
-// twelve parameters; by differences of whole filters they cost 12 and are good to 3e-4. The fit
-// takes differences; the tests hold them against Jets.
+// Jacobian of transitions by jets over the acting columns; of innovations by differences of whole
+// filters, good to 3e-4, which cost 12 filters for twelve parameters. Rejected: dual numbers over
+// jets, exact, for a filter's covariance needs the derivatives of the step's own derivatives; they
+// cost 55.
 #pragma once
 
 #include <ceres/cost_function.h>
@@ -26,9 +26,9 @@
 #include "datasets/loading/pendulum_recording.h"
 #include "models/options.h"
 #include "models/pendulum_filter.h"
-#include "residuals/cost_functions/rollout_problem.h"
 #include "residuals/frame_residual.h"
 #include "residuals/parameter_map.h"
+#include "residuals/rollout_residual.h"
 
 namespace pushid {
 
@@ -96,10 +96,9 @@ struct GaussianDensity {
 
 // By frame from frame 1 on, then person; parameters: one entry per person. A filter that leaves the
 // model's domain is a failure.
-template <typename T>
 RolloutStatus Densities(const LikelihoodProblem& problem,
-                        const std::vector<ParameterSet<T>>& parameters,
-                        std::vector<GaussianDensity<T>>* densities);
+                        const std::vector<ParameterSet<double>>& parameters,
+                        std::vector<GaussianDensity<double>>* densities);
 
 // -2 log likelihood, and of how many numbers. Infinite where the filter leaves the domain.
 struct Deviance {
@@ -111,9 +110,9 @@ Deviance DevianceOf(const LikelihoodProblem& problem,
 
 class LikelihoodResidual : public ceres::CostFunction {
  public:
-  // blocks: where the problem is built (GaussianRows). status(): whether it can be, there. jets:
-  // exact derivatives of a filter. fall: by how much log L may fall from there.
-  LikelihoodResidual(LikelihoodProblem problem, double const* const* blocks, bool jets = false,
+  // blocks: where the problem is built (GaussianRows). status(): whether it can be, there. fall: by
+  // how much log L may fall from there.
+  LikelihoodResidual(LikelihoodProblem problem, double const* const* blocks,
                      double fall = kFisherShift);
   bool Evaluate(double const* const* blocks, double* residuals, double** jacobians) const override;
 
@@ -126,15 +125,15 @@ class LikelihoodResidual : public ceres::CostFunction {
 
  private:
   template <typename T>
-  bool Rows(const std::vector<ParameterSet<T>>& parameters, std::vector<T>* rows) const;
+  bool RowsOf(const std::vector<GaussianDensity<T>>& densities, std::vector<T>* rows) const;
+  bool Rows(const std::vector<ParameterSet<double>>& parameters, std::vector<double>* rows) const;
 
-  // By column of the recording; false where the likelihood is not defined.
-  bool ByJets(const std::vector<ParameterSet<double>>& values, RowMajorMatrix* jacobian) const;
-  bool ByDifferences(const std::vector<ParameterSet<double>>& values,
-                     const std::vector<double>& rows, RowMajorMatrix* jacobian) const;
+  // By acting column; false where the likelihood is not defined.
+  bool ByJets(const SensitivityInputs& in, RowMajorMatrix* by_acting) const;
+  bool ByDifferences(const SensitivityInputs& in, const std::vector<double>& rows,
+                     RowMajorMatrix* by_acting) const;
 
   LikelihoodProblem problem_;
-  bool jets_;
   RolloutStatus status_;
   std::vector<double> shift_;  // four per density
   double offset_ = 0.0;

@@ -78,7 +78,7 @@ bool SceneAction::operator()(T const* const* nodes, T* rows) const {
     }
     for (int i = 0; i < kNumParameters; ++i) constants[n][i] = D((*parameters)[n][i]);
   }
-  SceneForces<D> forces(*scene, *options, constants);
+  ModelStep<D> forces(*scene, *options, constants);
   std::vector<int> scratch;
   for (int n = 0; n < people; ++n, rows += kRows) {
     for (int i = 0; i < 4; ++i) duals[n].qd[i].v[i] = T(1.0);

@@ -1,14 +1,13 @@
 // residuals: settling by rollouts with derivatives, and the hinge on the free modes.
 #include "residuals/cost_functions/rest_residual.h"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
 
-#include "residuals/cost_functions/rollout_problem.h"
+#include "residuals/jets/vector_jet.h"
+#include "residuals/rollout_residual.h"
 
 namespace pushid {
 namespace {
@@ -159,9 +158,7 @@ Eigen::Matrix<T, ModalStabilityResidual::kResiduals, 1> ModalStabilityResidual::
 Eigen::Matrix<double, ModalStabilityResidual::kResiduals, kNumParameters>
 ModalStabilityResidual::ByParameter(const ParameterSet<double>& p,
                                     const std::vector<ColumnEntry>& entries) const {
-  // A few at a time: duals of jets of all parameters are a hundred times as long.
-  constexpr size_t kAtATime = 8;
-  using Jet = ceres::Jet<double, kAtATime>;
+  constexpr size_t kAtATime = VectorJet::kColumns;
   std::set<Parameter> moved;
   for (const ColumnEntry& entry : entries) moved.insert(entry.parameter);
   const std::vector<Parameter> parameters(moved.begin(), moved.end());
@@ -169,13 +166,13 @@ ModalStabilityResidual::ByParameter(const ParameterSet<double>& p,
   by_parameter.setZero();
   for (size_t first = 0; first < parameters.size(); first += kAtATime) {
     const size_t count = std::min(kAtATime, parameters.size() - first);
-    ParameterSet<Jet> jets;
-    for (int i = 0; i < kNumParameters; ++i) jets[i] = Jet(p[i]);
-    for (size_t k = 0; k < count; ++k) jets[parameters[first + k]].v[k] = 1.0;
-    const Eigen::Matrix<Jet, kResiduals, 1> hinges = Hinges(jets);
+    ParameterSet<VectorJet> jets;
+    for (int i = 0; i < kNumParameters; ++i) jets[i] = VectorJet(p[i]);
+    for (size_t k = 0; k < count; ++k) jets[parameters[first + k]].AddSlope(k, 1.0);
+    const Eigen::Matrix<VectorJet, kResiduals, 1> hinges = Hinges(jets);
     for (size_t k = 0; k < count; ++k) {
       for (int row = 0; row < kResiduals; ++row) {
-        by_parameter(row, parameters[first + k]) = hinges[row].v[k];
+        by_parameter(row, parameters[first + k]) = hinges[row].Slope(k);
       }
     }
   }

@@ -5,7 +5,7 @@
 // chosen at run time; the bits are those of every other width.
 //
 // Whatever a law is, this differentiates it. What is quicker, and for which models alone, says
-// cost_functions/rollout_problem.h.
+// cost_functions/condensed_rollout.h.
 #pragma once
 
 #include <ceres/cost_function.h>

@@ -103,7 +103,7 @@ class StepByJets final : public StateStep {
   }
 
  private:
-  DualStep<double, VectorJet> step_;
+  DualStep<VectorJet> step_;
 };
 
 StateStep* MakeStep(const Scene& scene, const ModelOptions& options,

@@ -1,7 +1,7 @@
 // residuals: the one jet of the derivatives: a number with its derivatives by eight columns, in the
-// vectors of the processor, a scalar of the models' templates. For the file that includes this,
-// which says
-//   PUSHID_VECTOR_DOUBLES      doubles in a vector
+// vectors of the processor, a scalar of the models' templates. A file that is compiled for wider
+// vectors says, before it includes this,
+//   PUSHID_VECTOR_DOUBLES      doubles in a vector; else 2, which every processor has
 // A type without linkage, so that what is made of it stays in that file too (vector_math.h).
 //
 // It allocates nothing, and every operation is the same sum of products, whatever the width of the
@@ -9,6 +9,10 @@
 #pragma once
 
 #include <Eigen/Core>
+
+#ifndef PUSHID_VECTOR_DOUBLES
+#define PUSHID_VECTOR_DOUBLES 2
+#endif
 
 namespace pushid {
 namespace {
@@ -101,6 +105,7 @@ struct VectorJet {
     const double value = __builtin_exp(x.a);
     return Scaled(value, value, x);
   }
+  friend VectorJet log(const VectorJet& x) { return Scaled(__builtin_log(x.a), 1.0 / x.a, x); }
   friend VectorJet tanh(const VectorJet& x) {
     const double value = __builtin_tanh(x.a);
     return Scaled(value, 1.0 - value * value, x);

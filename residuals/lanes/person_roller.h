@@ -7,6 +7,7 @@
 #include PUSHID_LANE_SCALAR
 
 #include "models/push.h"
+#include "residuals/force_jacobians.h"
 #include "residuals/frame_residual.h"
 #include "residuals/lanes/person_lanes.h"
 
@@ -259,12 +260,13 @@ class Roller {
     constexpr int kOfTails = kTailBase - kTailGain + 1;
     static_assert(kOfTails == 5, "the tails' parameters are neighbours");
     jacobian_.by_parameter.middleCols<kOfTails>(kTailGain).setZero();  // others are written again
-    self_.AddFrictionJacobian(p_, state_.qd, &jacobian_);
+    AddFrictionJacobian(self_, p_, state_.qd, &jacobian_);
     const Eigen::Matrix<Lanes, 2, 2> alone = (slides - acts) * jacobian_.by_state.block<2, 2>(0, 4);
-    self_.AddControlJacobian(p_, state_, previous_, &jacobian_);
+    AddControlJacobian(self_, p_, state_, previous_, &jacobian_);
     for (int k = 0; k < in_.num_tails; ++k) {
       const Lanes* const rate_and_decay = carried_.tails + 2 * k;
-      Tail(k, t).AddJacobian(p_, rate_and_decay[0], rate_and_decay[1], &jacobian_.by_parameter);
+      AddTailJacobian(Tail(k, t), p_, rate_and_decay[0], rate_and_decay[1],
+                      &jacobian_.by_parameter);
     }
     jacobian_.by_previous *= acts;
     Eigen::Matrix<Lanes, 4, 6> by_state = acts * jacobian_.by_state.rightCols<6>();

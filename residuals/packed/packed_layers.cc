@@ -1,131 +1,60 @@
-// residuals: packed laws of the rod, forwards and backwards.
+// residuals: packed layers, forwards and backwards.
 #include "residuals/packed/packed_layers.h"
 
 #include <algorithm>
 
 namespace pushid {
-
-PackedRod::PackedRod(const RodShape& shape, const VectorKernels& kernels,
-                     const PackedColumns& columns)
-    : columns_(columns),
-      kernels_(kernels),
-      biased_(shape.biased()),
-      top_(shape.num_inputs()),
-      right_(kernels, PackedMatrix::kRight) {
-  for (int rows : shape.hidden) {
-    layers_.push_back({PackedLayer(kernels, rows, top_, output_at_), Eigen::VectorXd(rows),
-                       Eigen::VectorXd(rows), Columns(rows, columns_.total()),
-                       Columns(rows, columns_.total())});
-    output_at_ += layers_.back().num_weights();
-    top_ = rows;
-  }
-  inputs_.resize(shape.num_inputs(), columns_.total());
-  outputs_.resize(1, columns_.total());
-}
-
-void PackedRod::Start(const double* weights) {
-  weights_ = weights;
-  for (Layer& layer : layers_) {
-    layer.Pack(weights);
-    layer.rest = Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>>(
-        weights + layer.at + layer.width, layer.rows, 1, Eigen::OuterStride<>(layer.stride()));
-    kernels_.tanh(layer.rest.data(), layer.rows);
-    if (biased_) layer.rest.setZero();
-    layer.bias.setZero();
-  }
-}
-
-void PackedRod::Forward(int step, const Columns& inputs, Eigen::RowVectorXd* velocities) {
-  const int n = columns_.active(step);
-  columns_.At(inputs_, step) = inputs;
-  for (size_t i = 0; i < layers_.size(); ++i) {
-    Layer& layer = layers_[i];
-    auto below = columns_.At(Below(i), step), active = columns_.At(layer.active, step);
-    for (int row = 0; row < layer.rows; ++row) {
-      active.row(row).setConstant(weights_[layer.at + (row + 1) * layer.stride() - 1]);
-    }
-    right_.Pack(below.data(), n, layer.width, layer.width, 1);
-    AddProduct(layer.weights, right_, active.data(), layer.rows);
-    if (biased_) {
-      active = active.cwiseMax(0.0);
-    } else {
-      kernels_.tanh(active.data(), active.size());
-    }
-    columns_.At(layer.hidden, step) = active.colwise() - layer.rest;
-  }
-  *velocities = Output().transpose() * columns_.At(Below(layers_.size()), step);
-  if (biased_) velocities->array() += weights_[output_at_ + top_];
-  *velocities *= kRodSpeed;
-}
-
-void PackedRod::Backward(int step, const Eigen::RowVectorXd& velocities, Columns* inputs) {
-  const int n = columns_.active(step);
-  columns_.At(outputs_, step) = kRodSpeed * velocities;
-  *inputs = Output() * columns_.At(outputs_, step);
-  for (size_t i = layers_.size(); i-- > 0;) {
-    Layer& layer = layers_[i];
-    auto active = columns_.At(layer.active, step), hidden = columns_.At(layer.hidden, step);
-    if (biased_) {
-      active = inputs->array() * (active.array() > 0.0).cast<double>();
-      layer.bias += active.rowwise().sum();
-    } else {
-      layer.bias -= (inputs->array() * hidden.array() * (active.colwise() + layer.rest).array())
-                        .rowwise()
-                        .sum()
-                        .matrix();
-      active = inputs->array() * (1.0 - active.array().square());
-    }
-    inputs->setZero(layer.width, n);
-    right_.Pack(active.data(), n, layer.rows, layer.rows, 1);
-    AddProduct(layer.transposed, right_, inputs->data(), layer.width);
-  }
-}
-
-void PackedRod::AddWeightGradient(double* gradient) {
-  for (size_t i = 0; i < layers_.size(); ++i) {
-    const Layer& layer = layers_[i];
-    PackedMatrix left(kernels_, PackedMatrix::kLeft);
-    left.Pack(Below(i).data(), layer.width, columns_.total(), 1, layer.width);
-    right_.Pack(layer.active.data(), layer.rows, columns_.total(), 1, layer.rows);
-    RowMajor own = RowMajor::Zero(layer.rows, layer.width);
-    AddProduct(left, right_, own.data(), layer.width);
-    Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.stride());
-    by_weight.leftCols(layer.width) += own;
-    by_weight.col(layer.width) += layer.bias;
-  }
-  Eigen::Map<Eigen::VectorXd>(gradient + output_at_, top_) +=
-      Below(layers_.size()) * outputs_.transpose();
-  if (biased_) gradient[output_at_ + top_] += outputs_.sum();
-}
-
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 }  // namespace
 
-PackedPairs::PackedPairs(const PairShape& shape, const VectorKernels& kernels)
+PackedLayers::PackedLayers(const RodShape& shape, const VectorKernels& kernels)
+    : PackedLayers(shape.num_inputs(), shape.hidden, 1, shape.biased(), !shape.biased(),
+                   shape.biased(), kernels) {}
+
+PackedLayers::PackedLayers(const PairShape& shape, const VectorKernels& kernels)
+    : PackedLayers(PairShape::kInputs, shape.hidden, 4, shape.ldp, false, true, kernels) {}
+
+PackedLayers::PackedLayers(int inputs, const std::vector<int>& hidden, int outputs, bool rectified,
+                           bool from_rest, bool output_bias, const VectorKernels& kernels)
     : kernels_(kernels),
-      rectified_(shape.ldp),
+      rectified_(rectified),
+      from_rest_(from_rest),
       right_(kernels, PackedMatrix::kRight),
-      inputs_(PairShape::kInputs, 0) {
-  std::vector<int> sizes = shape.hidden;
-  sizes.push_back(4);
-  int width = PairShape::kInputs, at = 0;
-  for (int rows : sizes) {
-    layers_.push_back({PackedLayer(kernels, rows, width, at), Columns(rows, 0), Columns(rows, 0)});
+      inputs_(inputs, 0) {
+  int width = inputs, at = 0;
+  const auto add = [&](int rows, bool biased) {
+    layers_.push_back({PackedLayer(kernels, rows, width, at, biased), Eigen::VectorXd::Zero(rows),
+                       Eigen::VectorXd::Zero(rows), Columns(rows, 0), Columns(rows, 0)});
     at += layers_.back().num_weights();
     width = rows;
+  };
+  for (int rows : hidden) add(rows, true);
+  add(outputs, output_bias);
+}
+
+Eigen::VectorXd PackedLayers::BiasOf(const Layer& layer) const {
+  if (!layer.biased) return Eigen::VectorXd::Zero(layer.rows);
+  return ConstRows<double>(weights_ + layer.at + layer.width, layer.rows, 1,
+                           Eigen::OuterStride<>(layer.stride()));
+}
+
+void PackedLayers::Start(const double* weights) {
+  weights_ = weights;
+  first_ = {0};
+  for (size_t i = 0; i < layers_.size(); ++i) {
+    Layer& layer = layers_[i];
+    layer.Pack(weights);
+    layer.bias.setZero();
+    if (!from_rest_ || IsOutput(i)) continue;
+    layer.rest = BiasOf(layer);
+    kernels_.tanh(layer.rest.data(), layer.rows);
   }
 }
 
-void PackedPairs::Start(const double* weights) {
-  weights_ = weights;
-  first_ = {0};
-  for (Layer& layer : layers_) layer.Pack(weights);
-}
-
-void PackedPairs::Grow() {
+void PackedLayers::Grow() {
   const Eigen::Index total = first_.back(), had = inputs_.cols();
   if (total <= had) return;
   const Eigen::Index now = std::max(total, 2 * had);  // so that few steps copy what there is
@@ -136,17 +65,17 @@ void PackedPairs::Grow() {
   }
 }
 
-void PackedPairs::Forward(const Columns& inputs, Columns* outputs) {
+void PackedLayers::Forward(const Columns& inputs, Columns* outputs) {
   const int step = static_cast<int>(first_.size()) - 1, n = static_cast<int>(inputs.cols());
   first_.push_back(first_.back() + n);
-  outputs->setZero(4, n);
+  outputs->setZero(layers_.back().rows, n);
   if (n == 0) return;
   Grow();
   At(inputs_, step) = inputs;
   for (size_t i = 0; i < layers_.size(); ++i) {
     Layer& layer = layers_[i];
     auto below = At(Below(i), step), values = At(layer.values, step);
-    values.colwise() = PairLayer(weights_ + layer.at, layer.rows, layer.width).col(layer.width);
+    values.colwise() = BiasOf(layer);
     right_.Pack(below.data(), n, layer.width, layer.width, 1);
     AddProduct(layer.weights, right_, values.data(), layer.rows);
     if (IsOutput(i)) continue;
@@ -154,27 +83,40 @@ void PackedPairs::Forward(const Columns& inputs, Columns* outputs) {
       values = values.cwiseMax(0.0);
     } else {
       kernels_.tanh(values.data(), values.size());
+      values.colwise() -= layer.rest;
     }
   }
   *outputs = At(layers_.back().values, step);
 }
 
-void PackedPairs::Backward(int step, const Columns& outputs, Columns* inputs) {
+void PackedLayers::Backward(int step, const Columns& outputs, Columns* inputs) {
   const int n = first_[step + 1] - first_[step];
   *inputs = outputs;
   if (n == 0) return;
   for (size_t i = layers_.size(); i-- > 0;) {
     Layer& layer = layers_[i];
+    const auto values = At(layer.values, step);
     auto back = At(layer.back, step);
-    back = *inputs;
-    if (!IsOutput(i)) back.array() *= Slopes(At(layer.values, step));
+    if (IsOutput(i)) {
+      back = *inputs;
+    } else if (rectified_) {
+      back = inputs->array() * (values.array() > 0.0).cast<double>();
+    } else {
+      back = inputs->array() * (1.0 - (values.colwise() + layer.rest).array().square());
+    }
+    if (from_rest_ && !IsOutput(i)) {
+      const Columns twice = values.colwise() + 2.0 * layer.rest;
+      layer.bias -= inputs->cwiseProduct(values).cwiseProduct(twice).rowwise().sum();
+    } else {
+      layer.bias += back.rowwise().sum();
+    }
     inputs->setZero(layer.width, n);
     right_.Pack(back.data(), n, layer.rows, layer.rows, 1);
     AddProduct(layer.transposed, right_, inputs->data(), layer.width);
   }
 }
 
-void PackedPairs::AddWeightGradient(double* gradient) {
+void PackedLayers::AddWeightGradient(double* gradient) {
   const int total = first_.back();
   if (total == 0) return;
   PackedMatrix left(kernels_, PackedMatrix::kLeft);
@@ -186,7 +128,7 @@ void PackedPairs::AddWeightGradient(double* gradient) {
     AddProduct(left, right_, own.data(), layer.width);
     Eigen::Map<RowMajor> by_weight(gradient + layer.at, layer.rows, layer.stride());
     by_weight.leftCols(layer.width) += own;
-    by_weight.col(layer.width) += layer.back.leftCols(total).rowwise().sum();
+    if (layer.biased) by_weight.col(layer.width) += layer.bias;
   }
 }
 

@@ -55,16 +55,19 @@ void AddProduct(const PackedMatrix& left, const PackedMatrix& right, double* c,
 struct PackedLayer {
   int rows, width;  // of W
   int at;           // its first weight
+  bool biased;      // whether it has a b
   PackedMatrix weights, transposed;
 
-  PackedLayer(const VectorKernels& kernels, int layer_rows, int layer_width, int first_weight)
+  PackedLayer(const VectorKernels& kernels, int layer_rows, int layer_width, int first_weight,
+              bool has_bias)
       : rows(layer_rows),
         width(layer_width),
         at(first_weight),
+        biased(has_bias),
         weights(kernels, PackedMatrix::kLeft),
         transposed(kernels, PackedMatrix::kLeft) {}
 
-  int stride() const { return width + 1; }
+  int stride() const { return width + (biased ? 1 : 0); }
   int num_weights() const { return rows * stride(); }
 
   // all: the network's weights, row after row of this layer from `at` on, b last in each.

@@ -1,6 +1,6 @@
-// residuals: the inner loops of packed networks (packed_network.h), of derivatives carried
-// from step to step (packed_matrix.h) and of normal equations (normal_equations.h), once for each
-// width of vectors that processors have, and the choice of the widest at run time.
+// residuals: the inner loops of packed networks (packed_network.h) and of normal equations
+// (normal_equations.h), once for each width of vectors that processors have, and the choice of the
+// widest at run time.
 //
 // Releases are built for any x86-64, where Eigen's own products have 128-bit vectors and no fused
 // multiply-add, and its tanh of doubles no vectors at all. For 1024 x 290 times 290 x 32 on one
@@ -24,11 +24,9 @@ struct VectorKernels {
   // c by columns, `stride` apart.
   void (*add_tile)(int depth, const double* left, const double* right, double* c,
                    std::ptrdiff_t stride);
-  // c = a b or, where add, c += a b, all by rows, b's and c's `stride` apart: a few rows of many
-  // columns.
-  void (*narrow_product)(int rows, int depth, std::ptrdiff_t columns, const double* a,
-                         const double* b, std::ptrdiff_t b_stride, double* c,
-                         std::ptrdiff_t c_stride, bool add);
+  // sum += factors' a, a by rows, `stride` apart; columns: a multiple of kGramBlock.
+  void (*add_rows)(int rows, std::ptrdiff_t columns, const double* factors, const double* a,
+                   std::ptrdiff_t a_stride, double* sum);
   // g += a' a by rows, `stride` apart; columns: a multiple of kGramBlock. What lies left of a
   // diagonal block is not touched.
   void (*add_gram)(int rows, std::ptrdiff_t columns, const double* a, std::ptrdiff_t a_stride,

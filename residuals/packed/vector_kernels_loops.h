@@ -40,54 +40,13 @@ void AddTile(int depth, const double* left, const double* right, double* c, std:
   }
 }
 
-inline Vector LoadFirst(const double* from, int count) {
-  if (count == PUSHID_VECTOR_DOUBLES) return Load(from);
-  Vector vector = {};
-  __builtin_memcpy(&vector, from, count * sizeof(double));
-  return vector;
-}
-
-// `width` columns of some rows: one vector, each number of b read once for all rows.
-template <int kRows>
-inline void NarrowBlock(int depth, int width, const double* a, const double* b,
-                        std::ptrdiff_t b_stride, double* c, std::ptrdiff_t c_stride, bool add) {
-  Vector sums[kRows];
-#pragma GCC unroll 8
-  for (int r = 0; r < kRows; ++r) sums[r] = add ? LoadFirst(c + r * c_stride, width) : Vector{};
-  for (int k = 0; k < depth; ++k) {
-    const Vector row = LoadFirst(b + k * b_stride, width);
-#pragma GCC unroll 8
-    for (int r = 0; r < kRows; ++r) sums[r] += row * a[r * depth + k];
+void AddRows(int rows, std::ptrdiff_t columns, const double* factors, const double* a,
+             std::ptrdiff_t a_stride, double* sum) {
+  for (std::ptrdiff_t at = 0; at < columns; at += PUSHID_VECTOR_DOUBLES) {
+    Vector added = Load(sum + at);
+    for (int k = 0; k < rows; ++k) added += Load(a + k * a_stride + at) * factors[k];
+    __builtin_memcpy(sum + at, &added, sizeof(Vector));
   }
-#pragma GCC unroll 8
-  for (int r = 0; r < kRows; ++r) {
-    __builtin_memcpy(c + r * c_stride, &sums[r], width * sizeof(double));
-  }
-}
-
-template <bool kWhole>
-inline void NarrowStrip(int rows, int depth, int width, const double* a, const double* b,
-                        std::ptrdiff_t b_stride, double* c, std::ptrdiff_t c_stride, bool add) {
-  if (kWhole) width = PUSHID_VECTOR_DOUBLES;  // known to the compiler
-  for (; rows >= 8; rows -= 8, a += 8 * depth, c += 8 * c_stride) {
-    NarrowBlock<8>(depth, width, a, b, b_stride, c, c_stride, add);
-  }
-  for (; rows >= 4; rows -= 4, a += 4 * depth, c += 4 * c_stride) {
-    NarrowBlock<4>(depth, width, a, b, b_stride, c, c_stride, add);
-  }
-  for (; rows > 0; --rows, a += depth, c += c_stride) {
-    NarrowBlock<1>(depth, width, a, b, b_stride, c, c_stride, add);
-  }
-}
-
-void NarrowProduct(int rows, int depth, std::ptrdiff_t columns, const double* a, const double* b,
-                   std::ptrdiff_t b_stride, double* c, std::ptrdiff_t c_stride, bool add) {
-  constexpr int kWidth = PUSHID_VECTOR_DOUBLES;
-  for (; columns >= kWidth; columns -= kWidth, b += kWidth, c += kWidth) {
-    NarrowStrip<true>(rows, depth, kWidth, a, b, b_stride, c, c_stride, add);
-  }
-  const int rest = static_cast<int>(columns);
-  if (rest > 0) NarrowStrip<false>(rows, depth, rest, a, b, b_stride, c, c_stride, add);
 }
 
 // kGramBlock rows of g, from its block on the diagonal to the right, a vector at a time.
@@ -134,8 +93,8 @@ void Each(double* values, std::ptrdiff_t count) {
 }
 
 constexpr VectorKernels kKernels = {
-    PUSHID_VECTOR_NAME, kTileRows, PUSHID_TILE_COLUMNS, AddTile,
-    NarrowProduct,      AddGram,   Each<TanhOf>,        Each<LogisticOf>};
+    PUSHID_VECTOR_NAME, kTileRows,       PUSHID_TILE_COLUMNS, AddTile, AddRows, AddGram,
+    Each<TanhOf>,       Each<LogisticOf>};
 
 }  // namespace
 }  // namespace pushid

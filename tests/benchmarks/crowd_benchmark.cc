@@ -12,7 +12,7 @@
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "models/formation.h"
 #include "models/rollout.h"
-#include "models/scene_forces.h"
+#include "models/step.h"
 
 namespace pushid {
 namespace {
@@ -53,7 +53,7 @@ void Second(benchmark::State& state, bool contact, Stance stance = Stance::kSlid
   const std::vector<ParameterSet<double>> parameters = {Identified(stance)};
   for (auto _ : state) {
     state.PauseTiming();
-    SceneForces<double> forces(scene, options, parameters);
+    ModelStep<double> forces(scene, options, parameters);
     std::vector<PendulumState<double>> now;
     for (const ScenePerson& person : scene.people) now.push_back(person.start);
     std::vector<PendulumState<double>> before = now, next = now;

@@ -1,6 +1,6 @@
 // The derivatives of force terms that are written out for lanes (residuals/lanes) against what a
 // formula gives by itself: dual numbers or Jets over the term's own inputs. A hand-written one
-// stays where this shows that it pays; the headers of the terms quote the factors.
+// stays where this shows that it pays; force_jacobians.h quotes the factors.
 //   pushid-benchmarks --benchmark_filter='Jacobian_'
 #include <benchmark/benchmark.h>
 #include <ceres/jet.h>
@@ -8,6 +8,7 @@
 #include "datasets/files/random.h"
 #include "models/push.h"
 #include "models/self_force.h"
+#include "residuals/force_jacobians.h"
 
 namespace pushid {
 namespace {
@@ -34,10 +35,12 @@ struct Walker {
 void Jacobian_OfSelfForce_Written(benchmark::State& state) {
   Walker walker(1);
   const SelfForce self({}, {80.0, 0.95, 0.0}, Vector4<double>::Zero(), kDt);
-  SelfForce::Jacobian jacobian;
+  SelfJacobian<double> jacobian;
   for (auto _ : state) {
     benchmark::DoNotOptimize(walker);
-    self.TotalJacobian(walker.p, walker.state, walker.previous, &jacobian);
+    jacobian.by_state.setZero();
+    AddFrictionJacobian(self, walker.p, walker.state.qd, &jacobian);
+    AddControlJacobian(self, walker.p, walker.state, walker.previous, &jacobian);
     benchmark::DoNotOptimize(jacobian);
   }
 }
@@ -74,7 +77,9 @@ void Jacobian_OfTail_Written(benchmark::State& state) {
   jacobian.setZero();
   for (auto _ : state) {
     benchmark::DoNotOptimize(walker);
-    AddTailJacobian(push, 80.0, walker.p, 12, kDt, &jacobian);
+    const TailOf<double> tail = TailAt(push, 80.0, 12, kDt);
+    const double rate = tail.Rate(walker.p);
+    AddTailJacobian(tail, walker.p, rate, tail.Decay(rate), &jacobian);
     benchmark::DoNotOptimize(jacobian);
   }
 }

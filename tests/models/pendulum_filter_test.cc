@@ -62,7 +62,7 @@ struct Experiment {
     // The posture, and the torque that holds it, stay those of frame 0 as measured.
     RolloutPath<double> path(frames, 1);
     path.At(0, 0) = {moved.people[0].start.q, rates[0]};
-    SceneForces<double> forces(scene, options, parameters);
+    ModelStep<double> forces(scene, options, parameters);
     std::vector<int> scratch;
     VectorXd places(4 * (frames - 1));
     for (int t = 0; t + 1 < frames; ++t) {
@@ -108,7 +108,7 @@ TEST(PendulumFilter, ItsDensitiesMultiplyToTheDenseGaussian) {
   const VectorXd apart = factor * white, measured = mean + apart;
   const double dense = white.squaredNorm() + 2.0 * factor.diagonal().array().log().sum();
 
-  PendulumFilter<double> filter(e.scene, e.options, e.parameters);
+  PendulumFilter<> filter(e.scene, e.options, e.parameters);
   double factored = 0.0;
   for (int t = 0; t + 1 < e.frames; ++t) {
     ASSERT_TRUE(filter.Predict(t).ok);
@@ -145,7 +145,7 @@ TEST(PendulumFilter, InnovationsOfItsOwnMotionsAreStandardNormal) {
       RolloutPath<double> path;
       ASSERT_TRUE(
           Rollout<double>(own, options, p, rates, kFrames, &path, nullptr, nullptr, &noise).ok);
-      PendulumFilter<double> filter(own, options, p);
+      PendulumFilter<> filter(own, options, p);
       std::vector<Vector4<double>> before(people, Vector4<double>::Zero());
       for (int t = 0; t + 1 < kFrames; ++t) {
         ASSERT_TRUE(filter.Predict(t).ok);
@@ -173,7 +173,7 @@ TEST(PendulumFilter, WhatIsNotMeasuredIsKnownLessAndLess) {
   options.process_noise = ProcessNoise::kDiagonal;
   const Scene scene = People(1);
   const std::vector<ParameterSet<double>> p = {Standing()};
-  PendulumFilter<double> filter(scene, options, p);
+  PendulumFilter<> filter(scene, options, p);
   double before = filter.covariance(0).trace();
   for (int t = 0; t < 10; ++t) {
     ASSERT_TRUE(filter.Predict(t).ok);

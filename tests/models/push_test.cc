@@ -1,8 +1,5 @@
-// Pushes: the tail and its hand-derived Jacobian, generalized forces, the push of the settling
-// simulations.
+// Pushes: the tail, generalized forces, the push of the settling simulations.
 #include "models/push.h"
-
-#include <ceres/jet.h>
 
 #include "models/scene.h"
 #include "tests/models/model_samples.h"
@@ -10,9 +7,7 @@
 namespace pushid {
 namespace {
 
-using ParameterJet = ceres::Jet<double, kNumParameters>;
 constexpr double kMass = 80.0;  // kg, of who is pushed
-using TailJacobian = Eigen::Matrix<double, 4, kNumParameters>;
 
 ScenePush RandomPush(Random* random, int rows, PushKind kind, int start_frame = 3) {
   std::vector<Vector4<double>> force;
@@ -47,9 +42,6 @@ TEST(PushTail, ExternalAndEmptyPushesHaveNone) {
   const ParameterSet<double> p = RandomParameters(&random);
   for (const ScenePush& push :
        {RandomPush(&random, 6, PushKind::kExternal), RandomPush(&random, 0, PushKind::kNet)}) {
-    TailJacobian jacobian = TailJacobian::Zero();
-    AddTailJacobian(push, kMass, p, 20, kSampleDt, &jacobian);
-    EXPECT_EQ(jacobian, TailJacobian(TailJacobian::Zero()));
     EXPECT_EQ(TailForce(push, kMass, p, 20, kSampleDt), Vector4<double>(Vector4<double>::Zero()));
   }
 }
@@ -111,28 +103,6 @@ TEST(PushTail, WholeImpulseOfAnExternalPushIsItsOwn) {
       MakeScenePush(0, 0, PushKind::kExternal, {{30, 40, 7, 0}, {30, 40, 0, 0}, {0, 0, 0, 0}});
   EXPECT_NEAR(WholeImpulse(push, kMass, p, 0.1), 10.0, 1e-12);
   EXPECT_EQ(WholeImpulse(MakeScenePush(0, 0, PushKind::kNet, {}), kMass, p, 0.1), 0.0);
-}
-
-TEST(PushTail, JacobianEqualsAutomaticDerivatives) {
-  Random random(3);
-  for (int trial = 0; trial < 50; ++trial) {
-    const int rows = 1 + trial % 30;  // beyond the longest duration that the tail's time grows with
-    const PushKind kind = trial % 2 ? PushKind::kNet : PushKind::kNetWithoutFriction;
-    const ScenePush push = RandomPush(&random, rows, kind);
-    ParameterSet<double> p = RandomParameters(&random);
-    p[kTailTime] = random.Uniform(0.05, 0.5);
-    ParameterSet<ParameterJet> jets;
-    for (int i = 0; i < kNumParameters; ++i) jets[i] = ParameterJet(p[i], i);
-    for (int frame : {0, push.EndFrame() - 1, push.EndFrame(), push.EndFrame() + 17}) {
-      const Vector4<ParameterJet> force = TailForce(push, kMass, jets, frame, kSampleDt);
-      TailJacobian expected;
-      for (int i = 0; i < 4; ++i) expected.row(i) = force[i].v.transpose();
-      // The Jacobian is added to what is there.
-      TailJacobian jacobian = TailJacobian::Constant(7.0);
-      AddTailJacobian(push, kMass, p, frame, kSampleDt, &jacobian);
-      ExpectClose((jacobian - TailJacobian::Constant(7.0)).eval(), expected, 1e-12, 7.0);
-    }
-  }
 }
 
 // Virtual work: Q . dq = f . d(point of contact), with the point at the fraction `height` of the

@@ -89,7 +89,7 @@ TEST(RodLaw, LdpsInputsByHand) {
   now.rod = 0.02;
 
   const std::vector<ParameterSet<double>> parameters = {p};
-  SceneForces<double> forces(scene, options, parameters);
+  ModelStep<double> forces(scene, options, parameters);
   forces.Update(&now);
   forces.PrepareAll();
   forces.Next(0, Vector4<double>::Zero(), {}, {0.4, -0.2, 0.0, 0.0});

@@ -26,7 +26,7 @@ ParameterSet<double> SteppingParameters() {
 }
 
 StanceParameters<double> Stances(const ParameterSet<double>& p) {
-  return StanceParameters<double>([&p](Parameter id) { return p[id]; });
+  return StanceParameters<double>(p);
 }
 
 // One person of 75 kg with the hip 4 cm before the ankles, pushed there for 0.7 s so hard that a

@@ -28,8 +28,7 @@ Vector4<double> Pose(double theta, double phi) { return {0.0, 0.0, theta, phi}; 
 
 Eigen::Vector2d TorqueAt(const SelfForce& self, const ParameterSet<double>& p,
                          const Vector4<double>& q, const Vector4<double>& qd) {
-  return StandingTorque(self, StandingParameters<double>([&p](Parameter id) { return p[id]; }),
-                        Angles<double>(q), qd);
+  return StandingTorque(self, p, Angles<double>(q), qd);
 }
 
 // The reference person leans forwards by 0.1 rad, at 0.2 rad/s: 1250 N m/rad and 300 N m s/rad ask

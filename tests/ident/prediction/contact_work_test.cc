@@ -51,7 +51,7 @@ struct Bounce {
     const auto p = Contact(damping);
     const ModelOptions options = WithContact();
     const std::vector<ParameterSet<double>> parameters = {p};
-    SceneForces<double> forces(scene, options, parameters);
+    ModelStep<double> forces(scene, options, parameters);
     ForceTrace trace(path.num_frames(), 2);
     std::vector<int> scratch;
     for (int t = 0; t < path.num_frames(); ++t) {

@@ -193,7 +193,7 @@ double GrowthOfTheRollout(const ModelOptions& options, const ParameterSet<double
   for (int i = 0; i < 2; ++i) state.q[2 + i] = Jet(0.0, i);
   for (int i = 0; i < 4; ++i) state.qd[i] = Jet(0.0, 2 + i);
   for (int i = 0; i < 2; ++i) previous[i] = Jet(0.0, 6 + i);
-  SceneForces<Jet> forces(scene, options, parameters);
+  ModelStep<Jet> forces(scene, options, parameters);
   std::vector<int> scratch;
   forces.Update(&state);
   forces.Prepare(0, &scratch);

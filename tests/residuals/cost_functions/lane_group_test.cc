@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "residuals/cost_functions/lane_tables.h"
+#include "residuals/jets/autodiff_rollout.h"
 #include "tests/residuals/residual_samples.h"
 
 namespace pushid {
@@ -88,16 +89,21 @@ struct Crowd {
 RolloutSums OfRows(const RolloutProblem& problem, double const* const* blocks) {
   const int columns = problem.layout.num_acting();
   RolloutSums sums{true, 0.0, NormalEquations(columns), NormalEquations(columns), {}};
-  const RolloutStatus status =
-      VisitFrames(problem, blocks, Derivatives::kAll,
-                  [&](int t, int person, const FrameVector<double>& r, FrameRows* rows) {
-                    sums.squares += r.squaredNorm();
-                    sums.plain.Add(kFrameResiduals, rows->data(), r.data());
-                    CorrectForRobustLoss(r, problem.weight * problem.recording->Weight(person, t),
-                                         problem.sigmas.OfFrames(), *rows);
-                    sums.robust.Add(kFrameResiduals, rows->data(), r.data());
-                  });
-  sums.ok = status.ok;
+  std::vector<double> residuals;
+  RowMajorMatrix rows;
+  const SensitivityInputs inputs =
+      RolloutInputs(problem.recording->scene, problem.map, problem.layout, blocks);
+  sums.ok = RowsByJets(problem, inputs, &residuals, &rows).ok;
+  for (int t = 1; sums.ok && t < problem.horizon; ++t) {
+    const int row = (t - 1) * kFrameResiduals;
+    const Eigen::Map<const FrameVector<double>> r(residuals.data() + row);
+    sums.squares += r.squaredNorm();
+    RowMajorMatrix of_frame = rows.middleRows<kFrameResiduals>(row);
+    sums.plain.Add(kFrameResiduals, of_frame.data(), r.data());
+    CorrectForRobustLoss(r, problem.weight * problem.recording->Weight(0, t),
+                         problem.sigmas.OfFrames(), of_frame);
+    sums.robust.Add(kFrameResiduals, of_frame.data(), r.data());
+  }
   return sums;
 }
 

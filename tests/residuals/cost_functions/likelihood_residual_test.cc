@@ -57,7 +57,8 @@ std::ostream& operator<<(std::ostream& out, const LikelihoodRegime& regime) {
 
 class LikelihoodTwins : public testing::TestWithParam<LikelihoodRegime> {};
 
-TEST_P(LikelihoodTwins, JetsEqualNumericDifferentiation) {
+// Those of transitions are exact, those of filters differences.
+TEST_P(LikelihoodTwins, JacobiansEqualNumericDifferentiation) {
   const LikelihoodRegime& regime = GetParam();
   Random random(7);
   const ParameterMap map = LikelihoodMap({kMu, kKpTheta, kSigmaX});
@@ -74,9 +75,10 @@ TEST_P(LikelihoodTwins, JetsEqualNumericDifferentiation) {
                        regime.deviation, 0.0, &random);
       std::vector<const double*> at;
       for (const std::vector<double>& block : blocks) at.push_back(block.data());
-      const LikelihoodResidual residual(problem, at.data(), true);
+      const LikelihoodResidual residual(problem, at.data());
       ASSERT_TRUE(residual.status().ok);
-      ExpectCorrectJacobian(residual, blocks, {2e-7, 2e-8, 1e-13});
+      const bool exact = likelihood == Likelihood::kTransition;
+      ExpectCorrectJacobian(residual, blocks, {exact ? 2e-7 : 5e-4, exact ? 2e-8 : 1e-6, 1e-13});
     }
   }
 }
@@ -87,24 +89,24 @@ INSTANTIATE_TEST_SUITE_P(ThreeRegimes, LikelihoodTwins,
                                          LikelihoodRegime{"large", 120.0, 0.004, 0.3, 0.1}),
                          [](const auto& test) { return test.param.name; });
 
-// Those that the fit takes against those that are exact.
-TEST_P(LikelihoodTwins, DifferencesOfFiltersEqualJets) {
-  const LikelihoodRegime& regime = GetParam();
-  Random random(12);
-  const ParameterMap map = LikelihoodMap({kMu, kKpTheta, kSigmaX});
-  for (int people : {1, 2}) {
-    const ModelOptions options = ModelOf(people > 1);
-    const PendulumRecording recording =
-        Measured(people, options, regime.push, regime.noise, &random);
+// Sideways as forwards: values that follow a fitted one move with it, and so do the rows.
+TEST(LikelihoodResidual, KnowsWhatFollowsAFittedValue) {
+  Random random(13);
+  ParameterMap map = LikelihoodMap({});
+  map.values = NoisyParameters(&random, 0.1);
+  map.fitted = {{kMu, Transform::kIdentity},
+                {kKpTheta, Transform::kLog, -1, kKpPhi},
+                {kSigmaX, Transform::kLog, -1, kSigmaY}};
+  const ModelOptions options = ModelOf(false);
+  const PendulumRecording recording = Measured(1, options, 80.0, 0.003, &random);
+  for (Likelihood likelihood : {Likelihood::kTransition, Likelihood::kInnovation}) {
     const LikelihoodProblem problem =
-        MakeLikelihoodProblem(Likelihood::kInnovation, recording, options, map, 0.7);
-    const ParameterBlocks blocks =
-        RandomBlocks(map, problem.layout, NoisyParameters(&random, regime.spread), regime.deviation,
-                     0.0, &random);
-    std::vector<const double*> at;
-    for (const std::vector<double>& block : blocks) at.push_back(block.data());
-    const LikelihoodResidual differences(problem, at.data()), jets(problem, at.data(), true);
-    ExpectCorrectJacobian(differences, jets, blocks, {5e-4, 1e-6, 1e-13});
+        MakeLikelihoodProblem(likelihood, recording, options, map, 1.0);
+    const ParameterBlocks blocks = {SharedBlock(map, map.values)};
+    const double* const at[] = {blocks[0].data()};
+    const bool exact = likelihood == Likelihood::kTransition;
+    ExpectCorrectJacobian(LikelihoodResidual(problem, at), blocks,
+                          {exact ? 2e-7 : 5e-4, exact ? 2e-8 : 1e-6, 1e-13});
   }
 }
 

@@ -60,7 +60,7 @@ TEST(SceneAction, ItsDivergenceRowIsHalfTheDivergence) {
   ASSERT_TRUE(
       (SceneAction{&frames.scene, &frames.options, &frames.parameters, 6}(at, rows.data())));
   const std::vector<PendulumState<double>> states = StatesAtNode(at, 2, frames.scene.dt);
-  SceneForces<double> forces(frames.scene, frames.options, frames.parameters);
+  ModelStep<double> forces(frames.scene, frames.options, frames.parameters);
   std::vector<int> scratch;
   constexpr double kStep = 1e-5;
   for (int n = 0; n < 2; ++n) {

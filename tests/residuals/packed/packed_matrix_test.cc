@@ -41,32 +41,6 @@ TEST(PackedMatrix, ProductsEqualEigens) {
   }
 }
 
-// By rows, a part of a wider matrix, with and without the vector that is not whole.
-TEST(NarrowProduct, EqualsEigens) {
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  Random random(74);
-  for (const VectorKernels* kernels : SupportedVectorKernels()) {
-    for (int rows : {1, 3, 4, 8, 9, 16, 23}) {
-      for (int columns : {1, 7, 8, 31, 64}) {
-        for (int depth : {1, 8, 14}) {
-          for (bool add : {false, true}) {
-            const Rows a = RandomMatrix(rows, depth, &random);
-            const Rows b = RandomMatrix(depth, columns + 5, &random);
-            const Rows before = RandomMatrix(rows, columns + 3, &random);
-            Rows expected = before, c = before;
-            expected.leftCols(columns) = a * b.leftCols(columns);
-            if (add) expected.leftCols(columns) += before.leftCols(columns);
-            kernels->narrow_product(rows, depth, columns, a.data(), b.data(), columns + 5, c.data(),
-                                    columns + 3, add);
-            EXPECT_LE((c - expected).cwiseAbs().maxCoeff(), 1e-13)
-                << kernels->name << ", " << rows << " x " << depth << " x " << columns;
-          }
-        }
-      }
-    }
-  }
-}
-
 // Of rows of a wider matrix; left of the diagonal's blocks nothing may change.
 TEST(Gram, EqualsEigens) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -78,6 +52,11 @@ TEST(Gram, EqualsEigens) {
         const Rows before = RandomMatrix(columns, columns + 1, &random);
         Rows g = before;
         kernels->add_gram(rows, columns, a.data(), columns + 3, g.data(), columns + 1);
+        const Eigen::VectorXd factors = RandomMatrix(rows, 1, &random);
+        Eigen::VectorXd added = before.row(0).head(columns);
+        const Eigen::VectorXd by_rows = added + a.leftCols(columns).transpose() * factors;
+        kernels->add_rows(rows, columns, factors.data(), a.data(), columns + 3, added.data());
+        EXPECT_LE((added - by_rows).cwiseAbs().maxCoeff(), 1e-13) << kernels->name;
         const Rows sum =
             before.leftCols(columns) + a.leftCols(columns).transpose() * a.leftCols(columns);
         for (int i = 0; i < columns; ++i) {

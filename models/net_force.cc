@@ -1,5 +1,5 @@
-// models: which forces act when; what does not depend on the scalar.
-#include "models/scene_forces.h"
+// models: which forces act when, and what does not depend on the scalar.
+#include "models/net_force.h"
 
 namespace pushid {
 

@@ -1,30 +1,25 @@
-// models: the net force on everybody in a scene, frame by frame (net_force.h), with what people do
-// to each other and what networks answer.
+// models: what a step of the model (step.h) needs besides the states and parameters of the people
+// themselves: who acts on whom, what is learned with its memory, what late control perceives.
+// Allocated once and used again frame by frame.
 #pragma once
 
 #include <vector>
 
-#include "models/interaction.h"
 #include "models/learned_terms.h"
 #include "models/neighbours.h"
 #include "models/net_force.h"
+#include "models/reaction_delay.h"
 
 namespace pushid {
 
-// The self force of everybody in a scene.
-std::vector<SelfForce> SelfForces(const Scene& scene, const ModelOptions& options);
-
-// Everything a step needs besides the states, allocated once. Frame by frame: Update, Prepare for
-// each person (PrepareAll asks every pair once), then On, AccelerationOf and Next, each person in
-// any order and from any thread (each with a scratch of its own).
 template <typename T>
-class SceneForces {
+class StepMemory {
  public:
   // parameters: one entry per person, or a single one for everybody. What two people share (the
   // pair parameters) is taken from the first. All arguments must outlive the object.
   // network_weights: of options.learned, all of them, instead of its own.
-  SceneForces(const Scene& scene, const ModelOptions& options,
-              const std::vector<ParameterSet<T>>& parameters, const T* network_weights = nullptr)
+  StepMemory(const Scene& scene, const ModelOptions& options,
+             const std::vector<ParameterSet<T>>& parameters, const T* network_weights = nullptr)
       : scene_(&scene),
         options_(&options),
         parameters_(&parameters),
@@ -61,7 +56,7 @@ class SceneForces {
     for (int other : *scratch) {
       const bool first = finder_.Rank(person) < finder_.Rank(other);
       const PairForce<T> force = first ? Between(person, other) : Between(other, person);
-      Receive(person, force, first);
+      if (force.acts) received_[person] += first ? force.on_n : force.on_j;
     }
     AskNetwork(person);
   }
@@ -72,52 +67,10 @@ class SceneForces {
     finder_.ForEachPair([this](int n, int j) {
       const PairForce<T> force = Between(n, j);
       if (!force.acts) return;
-      Receive(n, force, true);
-      Receive(j, force, false);
+      received_[n] += force.on_n;
+      received_[j] += force.on_j;
     });
     for (int n = 0; n < scene_->num_people(); ++n) AskNetwork(n);
-  }
-
-  // The parts of the net force; qd_previous: the velocity one frame earlier.
-  NetForce<T> On(int person, int frame, const Vector4<T>& qd_previous) const {
-    return NetForceAt(*scene_, *options_, self_[person], Parameters(person), person, frame,
-                      states_[person], qd_previous, received_[person],
-                      networks_.empty() ? Vector4<T>(Vector4<T>::Zero()) : networks_[person].force,
-                      perceived(person));
-  }
-
-  Vector4<T> AccelerationOf(int person, const NetForce<T>& force) const {
-    const Body& body = self_[person].body;
-    const PendulumState<T>& state = states_[person];
-    if (HoldsFast(force)) {
-      return AccelerationOnGround(StandingBody<T>(body, Parameters(person)[kComHeight]),
-                                  force.angles, state.qd, force.Total(), force.ground,
-                                  force.feet_velocity, scene_->dt);
-    }
-    if (options_->stance == Stance::kSteps) {
-      return AccelerationOnGround(body, force.angles, state.qd, force.Total(), force.ground,
-                                  force.feet_velocity, scene_->dt);
-    }
-    const Vector4<T> total = force.Total();
-    if (options_->body == BodyModel::kTable) {
-      return Acceleration(TableBody(body, Parameters(person)), force.angles, state.qd, total);
-    }
-    if (rods_.empty()) return Acceleration(body, force.angles, state.qd, total);
-    return Acceleration(BodyNow(body, state.rod, T(0.0)), force.angles, state.qd, total);
-  }
-
-  // Whether the person is a body that turns about its ankles in this step (standing.h).
-  bool HoldsFast(const NetForce<T>& force) const {
-    return options_->stance == Stance::kFixed && RealPart(force.ground) > 0.0;
-  }
-
-  // One step on: the pendulum under qdd, the feet and, where the model has a law for it, the rod.
-  PendulumState<T> Next(int person, const Vector4<T>& qdd, const NetForce<T>& force,
-                        const Vector4<T>& qd_previous) {
-    PendulumState<T> next = Step(states_[person], qdd, scene_->dt);
-    if (options_->stance == Stance::kSteps) next.feet = force.next_feet;
-    if (!rods_.empty()) next.rod += scene_->dt * RodVelocityOf(person, qd_previous);
-    return next;
   }
 
   const ParameterSet<T>& Parameters(int person) const {
@@ -130,10 +83,31 @@ class SceneForces {
     return perceived_.empty() ? nullptr : &perceived_[person];
   }
   const SelfForce& self(int person) const { return self_[person]; }
+  // As Prepare left them.
   const Vector4<T>& received(int person) const { return received_[person]; }
-  // As Next left it; only where options have a law for the rod.
+  Vector4<T> network(int person) const {
+    return networks_.empty() ? Vector4<T>(Vector4<T>::Zero()) : networks_[person].force;
+  }
+  bool rod_moves() const { return !rods_.empty(); }
+  // As RodVelocityOf left it.
   const RodLayers<T>& rod(int person) const { return rods_[person]; }
-  const PairFinder& pairs() const { return finder_; }
+
+  // dl/dt of a person whose rod moves, m/s.
+  T RodVelocityOf(int person, const Vector4<T>& qd_previous) {
+    const SelfForce& self = self_[person];
+    const PendulumState<T>& state = states_[person];
+    const LearnedTerms& learned = *options_->learned;
+    Vector4<T> force = self.Effort(Parameters(person), state, qd_previous);
+    if (!networks_.empty()) force += networks_[person].force;
+    for (int i = 0; i < 2; ++i) force[2 + i] -= self.hold[i];
+    SetRodInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd, force,
+                    state.rod, self.body, &rods_[person]);
+    return RodVelocity(learned.rod, network_weights_ + learned.rod_at(), &rods_[person]);
+  }
+
+ protected:
+  const Scene* scene_;
+  const ModelOptions* options_;
 
  private:
   struct Network {
@@ -153,11 +127,6 @@ class SceneForces {
     return force;
   }
 
-  // first: whether the person is the first of the two.
-  void Receive(int person, const PairForce<T>& force, bool first) {
-    if (force.acts) received_[person] += first ? force.on_n : force.on_j;
-  }
-
   void AskNetwork(int person) {
     if (networks_.empty()) return;
     const PendulumState<T>& state = states_[person];
@@ -169,34 +138,19 @@ class SceneForces {
   }
 
   void StartNetworks(const T* weights) {
-    const LearnedTerms& network = *options_->learned;
+    const LearnedTerms& learned = *options_->learned;
     if (weights == nullptr) {
-      for (double weight : network.weights) own_weights_.push_back(T(weight));
+      for (double weight : learned.weights) own_weights_.push_back(T(weight));
     }
     network_weights_ = weights != nullptr ? weights : own_weights_.data();
     for (const SelfForce& self : self_) {
-      if (network.shape.any()) {
-        networks_.push_back({NetworkState<T>(network.shape, self.body), Vector4<T>::Zero()});
+      if (learned.shape.any()) {
+        networks_.push_back({NetworkState<T>(learned.shape, self.body), Vector4<T>::Zero()});
       }
-      if (network.rod.moves()) rods_.emplace_back(network.rod);
+      if (learned.rod.moves()) rods_.emplace_back(learned.rod);
     }
   }
 
-  // dl/dt of a person, m/s.
-  T RodVelocityOf(int person, const Vector4<T>& qd_previous) {
-    const SelfForce& self = self_[person];
-    const PendulumState<T>& state = states_[person];
-    const LearnedTerms& network = *options_->learned;
-    Vector4<T> force = self.Effort(Parameters(person), state, qd_previous);
-    if (!networks_.empty()) force += networks_[person].force;
-    for (int i = 0; i < 2; ++i) force[2 + i] -= self.hold[i];
-    SetRodInputs<T>(state.q[2] - self.posture[0], state.q[3] - self.posture[1], state.qd, force,
-                    state.rod, self.body, &rods_[person]);
-    return RodVelocity(network.rod, network_weights_ + network.rod_at(), &rods_[person]);
-  }
-
-  const Scene* scene_;
-  const ModelOptions* options_;
   const std::vector<ParameterSet<T>>* parameters_;
   std::vector<SelfForce> self_;
   PairFinder finder_;
