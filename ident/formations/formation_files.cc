@@ -72,7 +72,9 @@ ManifestRecording Entry(const FormationRun& run) {
   entry.fps = 1.0 / run.recording.scene.dt;
   entry.frames = run.num_frames();
   entry.pushed_person = run.recording.pushed_person;
-  entry.push_kind = PushKind::kExternal;
+  if (!run.recording.scene.pushes.empty()) {
+    entry.push_kind = run.recording.scene.pushes.front().kind;
+  }
   entry.joints.hip = JointReference{"Hips"};
   entry.joints.left_ankle = JointReference{"LeftAnkle"};
   entry.joints.right_ankle = JointReference{"RightAnkle"};

@@ -150,6 +150,27 @@ TEST_F(SimulateFormationTest, TenRecordedPeopleInALine) {
       Refused(Simulate({"--formation=line", "--recordings=" + Path("none.json")}), {"none.json"}));
 }
 
+// Those of the fit, who stood in its recordings, and pushes as they were there.
+TEST_F(SimulateFormationTest, WithoutRecordingsTheFitsPeopleStandThere) {
+  const nlohmann::ordered_json range = Json(alone_)["push_range"];
+  ASSERT_GE(range["people"].size(), 2u);
+  const AppRun run =
+      Succeeded(RunApp("pushid-formation", {"--model=" + alone_, "--formation=line", "--people=5",
+                                            "--bvh_out=" + Path("fitted")}));
+  const auto made = Json(Path("fitted/manifest.json"))["recordings"][0];
+  for (int n = 0; n < 5; ++n) {
+    EXPECT_EQ(made["subjects"][n]["mass_kg"],
+              range["people"][n % range["people"].size()]["mass_kg"]);
+  }
+  EXPECT_EQ(made["push_kind"], range["usual"]["kind"]);
+  EXPECT_TRUE(Contains(run.out, "of the fit in turn, as they stood"));
+  EXPECT_TRUE(Contains(run.out, "; pushes as the fit's: "));
+  const AppRun alike = Succeeded(RunApp(
+      "pushid-formation", {"--model=" + alone_, "--formation=line", "--people=2", "--mass=200"}));
+  EXPECT_TRUE(Contains(alike.out, "people: upright, 0.95 m from ankles to hip, 200 kg"));
+  EXPECT_TRUE(Contains(alike.err, "the mass of a person of formation is 200 kg"));
+}
+
 TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
   nlohmann::ordered_json json = Json(alone_);
   json["warnings"] = {"ends behind the start", "recording 'a': a.bvh has gaps",
@@ -227,10 +248,10 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--spacing=0"}, {"--spacing is 0"}},
       {{"--formation=line", "--spacing=-1"}, {"--spacing is -1"}},
       {{"--formation=line", "--spacing=nan"}, {"--spacing is nan"}},
-      {{"--formation=line", "--mass=0"}, {"--mass is 0"}},
+      {{"--formation=line", "--mass=-1"}, {"--mass is -1"}},
       {{"--formation=line", "--duration=-1"}, {"--duration is -1"}},
       {{"--formation=line", "--duration=0.01"}, {"--duration", "two frames"}},
-      {{"--formation=line", "--push_duration=0"}, {"--push_duration is 0"}},
+      {{"--formation=line", "--push_duration=-1"}, {"--push_duration is -1"}},
       {{"--formation=line", "--push_duration=nan"}, {"--push_duration is nan"}},
       {{"--formation=line", "--people=10000", "--duration=60"}, {"too many"}},
       {{"--formation=line", "--pushed=4"}, {"--pushed", "person 4", "0 to 3"}},
