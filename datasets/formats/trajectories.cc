@@ -2,6 +2,7 @@
 #include "datasets/formats/trajectories.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -87,26 +88,89 @@ class TrajectoryRows {
   std::int64_t first_ = 0, last_ = -1;
 };
 
-MaybeError ReadRow(const LineReader& reader, std::string_view line, TrajectoryRows* rows) {
+// Which cells of a row are what; -1: none is.
+struct Columns {
+  int id = 0, frame = 1, time = -1, x = 2, y = 3, z = 4;
+};
+
+// Cells are separated by white space, and by commas.
+std::vector<std::string_view> CellsOfRow(std::string_view line, std::string* spaced) {
+  *spaced = line;
+  std::replace(spaced->begin(), spaced->end(), ',', ' ');
+  std::vector<std::string_view> cells;
+  std::string_view rest = *spaced;
+  for (auto cell = NextToken(&rest); !cell.empty(); cell = NextToken(&rest)) cells.push_back(cell);
+  return cells;
+}
+
+// The columns that a header names, whatever unit it gives them ("x/cm"); none where it lacks one.
+std::optional<Columns> NamedColumns(std::string_view line) {
+  std::string spaced;
+  const std::vector<std::string_view> cells = CellsOfRow(line, &spaced);
+  const auto at = [&cells](std::string_view name) {
+    for (size_t i = 0; i < cells.size(); ++i) {
+      std::string cell(cells[i].substr(0, cells[i].find_first_of("/[(")));
+      std::transform(cell.begin(), cell.end(), cell.begin(),
+                     [](unsigned char c) { return std::tolower(c); });
+      if (cell == name) return static_cast<int>(i);
+    }
+    return -1;
+  };
+  const Columns found{at("id"), at("frame"), at("time"), at("x"), at("y"), at("z")};
+  if (std::min({found.id, found.frame, found.x, found.y}) < 0) return std::nullopt;
+  return found;
+}
+
+// The rate that frames and times of rows show.
+struct Clock {
+  std::int64_t first = 0, last = 0;
+  double first_s = 0.0, last_s = 0.0;
+  bool any = false;
+
+  void Add(std::int64_t frame, double time_s) {
+    if (!any || frame < first) first = frame, first_s = time_s;
+    if (!any || frame > last) last = frame, last_s = time_s;
+    any = true;
+  }
+  double Rate() const {
+    return last_s > first_s ? static_cast<double>(last - first) / (last_s - first_s) : 0.0;
+  }
+};
+
+MaybeError ReadRow(const LineReader& reader, std::string_view line, const Columns& columns,
+                   TrajectoryRows* rows, Clock* clock) {
+  std::string spaced;
+  const std::vector<std::string_view> cells = CellsOfRow(line, &spaced);
+  const auto cell = [&cells](int column) {
+    return column < 0 || column >= static_cast<int>(cells.size()) ? std::string_view()
+                                                                  : cells[column];
+  };
   std::int64_t id[2] = {0, 0};
   for (int i = 0; i < 2; ++i) {
-    const std::string_view token = NextToken(&line);
+    const std::string_view token = cell(i == 0 ? columns.id : columns.frame);
     double number = 0.0;
     if (!ParseDouble(token, &number) || number != std::floor(number) || std::fabs(number) > 1e15) {
       return reader.ErrorHere(std::string(i == 0 ? "the id" : "the frame") +
                               " must be a whole number, not " + Quoted(token) +
-                              "; a row is: id frame x y z");
+                              "; a row is: id frame x y z, or what a header names (id,frame,x,y)");
     }
     id[i] = static_cast<std::int64_t>(number);
   }
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
-    const std::string_view token = NextToken(&line);
+    const std::string_view token = cell(axis == 0 ? columns.x : axis == 1 ? columns.y : columns.z);
     if (axis == 2 && token.empty()) break;
     if (token.empty()) return reader.ErrorHere("the row is cut; a row is: id frame x y z");
     if (!ParseDouble(token, &position[axis])) {
       return reader.ErrorHere(std::string(1, "xyz"[axis]) + ": " + NumberProblem(token));
     }
+  }
+  if (columns.time >= 0) {
+    double time_s = 0.0;
+    if (!ParseDouble(cell(columns.time), &time_s)) {
+      return reader.ErrorHere("time: " + NumberProblem(cell(columns.time)));
+    }
+    clock->Add(id[1], time_s);
   }
   if (rows->Add(id[0], id[1], position)) return std::nullopt;
   return reader.ErrorHere("person " + std::to_string(id[0]) + " was in frame " +
@@ -122,12 +186,22 @@ std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names) {
     numbers = numbers && ParseInteger(names[i], &ids[i]) && seen.insert(ids[i]).second;
   }
   for (std::size_t i = 0; i < names.size() && !numbers; ++i) {
-    ids[i] = static_cast<std::int64_t>(i) + 1;
+    ids[i] = static_cast<std::int64_t>(i);
   }
   return ids;
 }
 
 }  // namespace
+
+bool IsCrowdCsv(const std::string& path) {
+  LineReader reader;
+  std::string_view line;
+  if (reader.Open(path)) return false;
+  while (reader.NextNonBlank(&line)) {
+    if (Trimmed(line).front() != '#') return NamedColumns(line).has_value();
+  }
+  return false;
+}
 
 Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadOptions& options) {
   LineReader reader;
@@ -136,21 +210,32 @@ Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadO
   motion.path = path;
   motion.unit = LengthUnit::kMetre;
   TrajectoryRows rows;
+  Clock clock;
+  Columns columns;
+  bool begun = false;
   std::string_view line;
   while (reader.NextNonBlank(&line)) {
     line = Trimmed(line);
     if (line.front() == '#') {
       ReadComment(line.substr(1), &motion);
-    } else if (MaybeError failed = ReadRow(reader, line, &rows)) {
+      continue;
+    }
+    const std::optional<Columns> named = begun ? std::nullopt : NamedColumns(line);
+    begun = true;
+    if (named) {
+      columns = *named;
+      ReadComment(line, &motion);
+    } else if (MaybeError failed = ReadRow(reader, line, columns, &rows, &clock)) {
       return *std::move(failed);
     }
   }
   if (reader.error()) return *reader.error();
+  if (motion.rate_hz == 0.0 && clock.any) motion.rate_hz = WholeFrameRate(clock.Rate());
   const std::string problem = FrameRateProblem(motion.rate_hz);
   if (!problem.empty()) {
     return Error{
         "no comment gives the frames per second as a number; there must be a line such as '# "
-        "framerate: 16'",
+        "framerate: 16' at the top, or a column time (s)",
         path};
   }
   if (MaybeError failed = rows.Fill(options, &motion)) return *std::move(failed);
