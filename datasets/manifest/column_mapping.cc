@@ -33,6 +33,7 @@ void ReadColumns(JsonFields* fields, ColumnMapping* mapping) {
 }
 
 constexpr int kHighestIndex = 1 << 30;
+constexpr char kBase[] = "base";
 
 std::optional<JointReference> ReadOne(const Json& value) {
   JointReference joint;
@@ -130,6 +131,13 @@ JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields) 
   for (int role = 0; role < kBodyJoints; ++role) {
     const std::optional<JointReference> joint = ReadJoint(&joints, RoleName(role).c_str());
     if (joint) mapping.Set(role, *joint);
+  }
+  // A robot's log has its base of support, and no ankles.
+  if (const std::optional<JointReference> base = ReadJoint(&joints, kBase)) {
+    if (mapping.left_ankle || mapping.right_ankle) {
+      joints.Fail(kBase, "is given together with ankles; it stands for both of them");
+    }
+    mapping.left_ankle = mapping.right_ankle = base;
   }
   joints.OnlyAsked();
   fields->Add(joints);
