@@ -219,7 +219,7 @@ std::string ReportText(const FittedModel& model) {
   report.title = (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " +
                  result.options.preset + ": " + CountText(result.recordings.size(), "recording") +
                  (from.setting.empty() ? "" : " (" + from.setting + ")");
-  report.subtitle = ModelVerdictText(result.verdict);
+  report.subtitle = ModelVerdictText(result);
   for (const auto section :
        {SummarySection, ParameterSection, ContrastSection, UnitSection, IdentifiabilitySection,
         ProfileSection, BootstrapSection, HorizonCheckSection, BehaviourSection, LoopSection,
