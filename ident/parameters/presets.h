@@ -2,6 +2,9 @@
 //
 //   tail:  one person: push tail, posture-relative recovery, one cross term; eight free
 //          parameters, the tail's base partially pooled by condition
+//   robot: a machine whose feet hold: PD gains in N m/rad and N m s/rad, the same in all
+//   directions,
+//          without priors; its mass as the manifest states it (com_over_rod, gyration_over_rod)
 //   ldp:   one person: plain PD balance and one friction from upright; five free parameters
 //   group: people who touch: tail with contact. Where feet step contact and tail are partially
 //          pooled by setting (condition), sixteen shared parameters; where they slide there are all
