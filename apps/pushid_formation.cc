@@ -82,13 +82,7 @@ namespace {
 
 using namespace pushid;
 
-UsualPush UsualOf(const IdentifiedModel& model) {
-  return model.push_range ? model.push_range->usual.value_or(UsualPush{}) : UsualPush{};
-}
-
-bool HasPeople(const IdentifiedModel& model) {
-  return model.push_range && !model.push_range->people.empty();
-}
+PushRange FittedTo(const IdentifiedModel& model) { return model.push_range.value_or(PushRange{}); }
 
 struct FormationFlags {
   std::string title;               // "10 people in a line, 0.45 m apart; 80 N s on person 0 at 0 s"
@@ -230,9 +224,8 @@ constexpr double kMassUnknown = 80.0;  // kg, of models that do not tell whom th
 // ones.
 std::vector<Pose> PlaceFlaggedPeople(const IdentifiedModel& model, Scene* scene) {
   if (FLAGS_recordings.empty()) {
-    if (FLAGS_mass == 0.0 && HasPeople(model)) {
-      PlaceFittedPeople(model.push_range->people, scene);
-    }
+    const std::vector<FittedPerson> fitted = FittedTo(model).people;
+    if (FLAGS_mass == 0.0 && !fitted.empty()) PlaceFittedPeople(fitted, scene);
     return std::vector<Pose>();
   }
   LoadOptions options;
@@ -303,7 +296,7 @@ FormationFlags FormationFlagsFromCommandLine(const IdentifiedModel& model) {
   const std::vector<Eigen::Vector2d>& positions = placed.positions;
   const int people = static_cast<int>(positions.size());
   const std::vector<int> pushed = PushedPeople(placed);
-  const std::vector<HipPush> pushes = Pushes(UsualOf(model));
+  const std::vector<HipPush> pushes = Pushes(FittedTo(model).usual.value_or(UsualPush{}));
 
   FormationFlags flags;
   flags.title = RunTitle(people, pushes);
@@ -319,41 +312,30 @@ FormationFlags FormationFlagsFromCommandLine(const IdentifiedModel& model) {
   return flags;
 }
 
-// Horizontal impulse of pushes and their tails on a person, N s.
-double GivenImpulse(const FormationRun& run, int person) {
-  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
-  for (int t = 0; t < run.num_frames(); ++t) {
-    const NetForce<double>& force = run.Force(person, t);
-    sum += (force[ForcePart::kPush] + force[ForcePart::kTail]).head<2>();
-  }
-  return sum.norm() * run.recording.scene.dt;
-}
-
 // "people: the 9 of the fit in turn, as they stood, 57 to 120 kg; pushes as the fit's: external,
 // 0.2 s, at 1.3 of the rod".
 std::string WhoText(const IdentifiedModel& model, const FormationRun& run) {
   const Scene& scene = run.recording.scene;
+  const PushRange fitted = FittedTo(model);
+  const ScenePush& push = scene.pushes.front();
   ValueRange masses;
   for (const ScenePerson& person : scene.people) masses.Add(person.body.mass);
-  std::string text = "people: ";
-  if (!FLAGS_recordings.empty()) {
-    text += "as recorded";
-  } else if (FLAGS_mass == 0.0 && HasPeople(model)) {
-    text += "the " + std::to_string(model.push_range->people.size()) +
-            " of the fit in turn, as they stood";
-  } else {
-    text += "upright, " + Rounded(kReferenceRod, 3) + " m from ankles to hip";
-  }
+  std::string text = "people: the " + std::to_string(fitted.people.size()) + " of the fit in turn";
+  if (FLAGS_mass > 0.0 || fitted.people.empty()) text = "people: upright";
+  if (!FLAGS_recordings.empty()) text = "people: as recorded";
   text += ", " + Rounded(masses.lower, 3);
   if (masses.upper > masses.lower) text += " to " + Rounded(masses.upper, 3);
-  text += " kg; pushes ";
-  if (model.push_range && model.push_range->usual) text += "as the fit's: ";
-  const ScenePush& push = scene.pushes.front();
-  text += NameOf(push.kind) + ", " + Rounded(push.force.size() * scene.dt, 3) + " s, at " +
-          Rounded(UsualOf(model).height, 3) + " of the rod";
+  text += std::string(" kg; pushes ") + (fitted.usual ? "as the fit's: " : "") + NameOf(push.kind) +
+          ", " + Rounded(push.force.size() * scene.dt, 3) + " s, at " +
+          Rounded(fitted.usual.value_or(UsualPush{}).height, 3) + " of the rod";
   if (push.kind == PushKind::kExternal) return text;
-  return text + "; with the tail that the model adds, person " + std::to_string(push.person) +
-         " gets " + Rounded(GivenImpulse(run, push.person), 3) + " N s";
+  Eigen::Vector2d impulse = Eigen::Vector2d::Zero();
+  for (int t = 0; t < run.num_frames(); ++t) {
+    const NetForce<double>& force = run.Force(push.person, t);
+    impulse += scene.dt * (force[ForcePart::kPush] + force[ForcePart::kTail]).head<2>();
+  }
+  return text + "; with the model's tail person " + std::to_string(push.person) + " gets " +
+         Rounded(impulse.norm(), 3) + " N s";
 }
 
 std::string Fixed(double value, int decimals) {

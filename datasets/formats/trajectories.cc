@@ -90,57 +90,37 @@ class TrajectoryRows {
 
 // Which cells of a row are what; -1: none is.
 struct Columns {
-  int id = 0, frame = 1, time = -1, x = 2, y = 3, z = 4;
+  int id = 0, frame = 1, time = -1, axis[3] = {2, 3, 4};
 };
 
-// Cells are separated by white space, and by commas.
-std::vector<std::string_view> CellsOfRow(std::string_view line, std::string* spaced) {
-  *spaced = line;
-  std::replace(spaced->begin(), spaced->end(), ',', ' ');
+// Cells are separated by commas, or by white space.
+std::vector<std::string_view> CellsOfRow(std::string_view line) {
+  if (line.find(',') != std::string_view::npos) return CellsOf(line, ',');
   std::vector<std::string_view> cells;
-  std::string_view rest = *spaced;
-  for (auto cell = NextToken(&rest); !cell.empty(); cell = NextToken(&rest)) cells.push_back(cell);
+  for (auto cell = NextToken(&line); !cell.empty(); cell = NextToken(&line)) cells.push_back(cell);
   return cells;
 }
 
 // The columns that a header names, whatever unit it gives them ("x/cm"); none where it lacks one.
 std::optional<Columns> NamedColumns(std::string_view line) {
-  std::string spaced;
-  const std::vector<std::string_view> cells = CellsOfRow(line, &spaced);
+  if (!std::isalpha(static_cast<unsigned char>(line.front()))) return std::nullopt;
+  const std::vector<std::string_view> cells = CellsOfRow(line);
   const auto at = [&cells](std::string_view name) {
     for (size_t i = 0; i < cells.size(); ++i) {
-      std::string cell(cells[i].substr(0, cells[i].find_first_of("/[(")));
-      std::transform(cell.begin(), cell.end(), cell.begin(),
-                     [](unsigned char c) { return std::tolower(c); });
-      if (cell == name) return static_cast<int>(i);
+      if (cells[i].substr(0, cells[i].find_first_of("/[(")) == name) return static_cast<int>(i);
     }
     return -1;
   };
-  const Columns found{at("id"), at("frame"), at("time"), at("x"), at("y"), at("z")};
-  if (std::min({found.id, found.frame, found.x, found.y}) < 0) return std::nullopt;
+  const Columns found{at("id"), at("frame"), at("time"), {at("x"), at("y"), at("z")}};
+  if (std::min({found.id, found.frame, found.axis[0], found.axis[1]}) < 0) return std::nullopt;
   return found;
 }
 
-// The rate that frames and times of rows show.
-struct Clock {
-  std::int64_t first = 0, last = 0;
-  double first_s = 0.0, last_s = 0.0;
-  bool any = false;
-
-  void Add(std::int64_t frame, double time_s) {
-    if (!any || frame < first) first = frame, first_s = time_s;
-    if (!any || frame > last) last = frame, last_s = time_s;
-    any = true;
-  }
-  double Rate() const {
-    return last_s > first_s ? static_cast<double>(last - first) / (last_s - first_s) : 0.0;
-  }
-};
+using Times = std::map<std::int64_t, double>;  // s, of frames
 
 MaybeError ReadRow(const LineReader& reader, std::string_view line, const Columns& columns,
-                   TrajectoryRows* rows, Clock* clock) {
-  std::string spaced;
-  const std::vector<std::string_view> cells = CellsOfRow(line, &spaced);
+                   TrajectoryRows* rows, Times* times) {
+  const std::vector<std::string_view> cells = CellsOfRow(line);
   const auto cell = [&cells](int column) {
     return column < 0 || column >= static_cast<int>(cells.size()) ? std::string_view()
                                                                   : cells[column];
@@ -158,19 +138,15 @@ MaybeError ReadRow(const LineReader& reader, std::string_view line, const Column
   }
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
-    const std::string_view token = cell(axis == 0 ? columns.x : axis == 1 ? columns.y : columns.z);
+    const std::string_view token = cell(columns.axis[axis]);
     if (axis == 2 && token.empty()) break;
     if (token.empty()) return reader.ErrorHere("the row is cut; a row is: id frame x y z");
     if (!ParseDouble(token, &position[axis])) {
       return reader.ErrorHere(std::string(1, "xyz"[axis]) + ": " + NumberProblem(token));
     }
   }
-  if (columns.time >= 0) {
-    double time_s = 0.0;
-    if (!ParseDouble(cell(columns.time), &time_s)) {
-      return reader.ErrorHere("time: " + NumberProblem(cell(columns.time)));
-    }
-    clock->Add(id[1], time_s);
+  if (columns.time >= 0 && !ParseDouble(cell(columns.time), &(*times)[id[1]])) {
+    return reader.ErrorHere("time: " + NumberProblem(cell(columns.time)));
   }
   if (rows->Add(id[0], id[1], position)) return std::nullopt;
   return reader.ErrorHere("person " + std::to_string(id[0]) + " was in frame " +
@@ -195,12 +171,10 @@ std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names) {
 
 bool IsCrowdCsv(const std::string& path) {
   LineReader reader;
-  std::string_view line;
+  std::string_view line = "#";
   if (reader.Open(path)) return false;
-  while (reader.NextNonBlank(&line)) {
-    if (Trimmed(line).front() != '#') return NamedColumns(line).has_value();
-  }
-  return false;
+  while (Trimmed(line).front() == '#' && reader.NextNonBlank(&line)) continue;
+  return NamedColumns(line).has_value();
 }
 
 Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadOptions& options) {
@@ -210,9 +184,8 @@ Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadO
   motion.path = path;
   motion.unit = LengthUnit::kMetre;
   TrajectoryRows rows;
-  Clock clock;
+  Times times;
   Columns columns;
-  bool begun = false;
   std::string_view line;
   while (reader.NextNonBlank(&line)) {
     line = Trimmed(line);
@@ -220,17 +193,19 @@ Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadO
       ReadComment(line.substr(1), &motion);
       continue;
     }
-    const std::optional<Columns> named = begun ? std::nullopt : NamedColumns(line);
-    begun = true;
-    if (named) {
+    if (const std::optional<Columns> named = NamedColumns(line)) {
       columns = *named;
       ReadComment(line, &motion);
-    } else if (MaybeError failed = ReadRow(reader, line, columns, &rows, &clock)) {
+    } else if (MaybeError failed = ReadRow(reader, line, columns, &rows, &times)) {
       return *std::move(failed);
     }
   }
   if (reader.error()) return *reader.error();
-  if (motion.rate_hz == 0.0 && clock.any) motion.rate_hz = WholeFrameRate(clock.Rate());
+  if (motion.rate_hz == 0.0 && times.size() > 1) {
+    const auto &first = *times.begin(), &last = *times.rbegin();
+    motion.rate_hz = WholeFrameRate(static_cast<double>(last.first - first.first) /
+                                    (last.second - first.second));
+  }
   const std::string problem = FrameRateProblem(motion.rate_hz);
   if (!problem.empty()) {
     return Error{

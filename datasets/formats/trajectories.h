@@ -5,7 +5,6 @@
 //   1 98 4.66 1.25 1.72
 //
 // or as CSV, where a header names the columns, in any order:
-//
 //   id,frame,time,x,y
 //   1,98,6.125,4.66,1.25
 //

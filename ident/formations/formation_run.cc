@@ -158,22 +158,19 @@ std::vector<Pose> SyntheticPoses(Scene* scene) {
   std::vector<Pose> poses;
   for (ScenePerson& person : scene->people) {
     const Vector4<double>& q = person.start.q;
-    const Eigen::Matrix3d lean = (Eigen::AngleAxisd(q[3], Eigen::Vector3d::UnitX()) *
-                                  Eigen::AngleAxisd(q[2], Eigen::Vector3d::UnitY()))
-                                     .toRotationMatrix();
+    const Eigen::Quaterniond lean = Eigen::AngleAxisd(q[3], Eigen::Vector3d::UnitX()) *
+                                    Eigen::AngleAxisd(q[2], Eigen::Vector3d::UnitY());
     Pose pose = SyntheticPose(person.body.rod_length);
-    const double ankles = pose(2, kLeftAnkle);
-    if (person.body.cart_height == 0.0) person.body.cart_height = ankles;
+    const Eigen::Vector3d origin(0.0, 0.0, pose(2, kLeftAnkle));
+    if (person.body.cart_height == 0.0) person.body.cart_height = origin.z();
     const Eigen::Vector3d cart(q[0], q[1], person.body.cart_height);
     for (int j = 0; j < kBodyJoints; ++j) {
-      // Feet stay flat.
-      const Eigen::Vector3d at = pose.col(j) - Eigen::Vector3d(0.0, 0.0, ankles);
-      pose.col(j) = cart + (at.z() > 0.0 ? Eigen::Vector3d(lean * at) : at);
+      const Eigen::Vector3d at = pose.col(j) - origin;
+      pose.col(j) = cart + (at.z() > 0.0 ? lean * at : at);  // feet stay flat
     }
-    const Eigen::Vector3d half(0.5 * person.start.feet.apart.x(), 0.5 * person.start.feet.apart.y(),
-                               0.0);
-    pose.col(kLeftAnkle) = cart + half;
-    pose.col(kRightAnkle) = cart - half;
+    const Eigen::Vector2d half = 0.5 * person.start.feet.apart;
+    pose.col(kLeftAnkle) << cart.head<2>() + half, cart.z();
+    pose.col(kRightAnkle) << cart.head<2>() - half, cart.z();
     poses.push_back(pose);
   }
   return poses;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 
 namespace pushid {
@@ -140,26 +139,6 @@ std::string FailureText(const ModelVerdict& v) {
   return text;
 }
 
-// Recordings of which the model explains less than nothing; empty: there are none.
-std::string WorseThanStaticText(const std::vector<RecordingDiagnostics>& recordings) {
-  std::vector<std::string> ids;
-  const RecordingDiagnostics* worst = nullptr;
-  for (const RecordingDiagnostics& r : recordings) {
-    if (!WorseThanStatic(r)) continue;
-    ids.push_back(r.id);
-    if (worst == nullptr || r.explained < worst->explained) worst = &r;
-  }
-  if (worst == nullptr) return "";
-  const bool most = 2 * ids.size() >= recordings.size();
-  return std::string(most ? "This fit loses to standing still, which" : "Standing still") +
-         " predicts " + std::to_string(ids.size()) + " of " + std::to_string(recordings.size()) +
-         " recordings better (" + ListOfNames(ids, 3, "recordings") +
-         "; the worst is explained to " + Rounded(worst->explained, 3) + " %)" +
-         (most ? ": do not use the gains; try another --stance, and check pushes and axes. "
-               : ". ");
-}
-
-// more: than what was said before.
 std::string CheckText(const ModelVerdict& v, bool more) {
   if (!v.checked()) return "The model was not checked: " + v.not_checked + ".";
   if (v.fails()) {
@@ -184,12 +163,10 @@ std::string CheckText(const ModelVerdict& v, bool more) {
 
 }  // namespace
 
-std::string ModelVerdictText(const FitResult& result) {
-  const ModelVerdict& v = result.verdict;
+std::string ModelVerdictText(const ModelVerdict& v, bool more) {
   const std::string none =
       v.none_identified.empty() ? "" : "Nothing is identified: " + v.none_identified + ". ";
-  const std::string worse = WorseThanStaticText(result.diagnostics.recordings);
-  return worse + none + CheckText(v, !worse.empty());
+  return none + CheckText(v, more);
 }
 
 TextTable AssumptionTable(const FitResult& result) {

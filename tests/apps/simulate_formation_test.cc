@@ -163,11 +163,11 @@ TEST_F(SimulateFormationTest, WithoutRecordingsTheFitsPeopleStandThere) {
               range["people"][n % range["people"].size()]["mass_kg"]);
   }
   EXPECT_EQ(made["push_kind"], range["usual"]["kind"]);
-  EXPECT_TRUE(Contains(run.out, "of the fit in turn, as they stood"));
+  EXPECT_TRUE(Contains(run.out, " of the fit in turn, "));
   EXPECT_TRUE(Contains(run.out, "; pushes as the fit's: "));
   const AppRun alike = Succeeded(RunApp(
       "pushid-formation", {"--model=" + alone_, "--formation=line", "--people=2", "--mass=200"}));
-  EXPECT_TRUE(Contains(alike.out, "people: upright, 0.95 m from ankles to hip, 200 kg"));
+  EXPECT_TRUE(Contains(alike.out, "people: upright, 200 kg"));
   EXPECT_TRUE(Contains(alike.err, "the mass of a person of formation is 200 kg"));
 }
 

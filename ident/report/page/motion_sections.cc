@@ -572,7 +572,7 @@ ReportSection LeadSection(const ReportSource& source) {
   if (const std::optional<ReportFigure> typical = TypicalFigure(source))
     section.figures.push_back(*typical);
   section.figures.push_back(IntervalFigure(source.model));
-  const std::string verdict = ModelVerdictText(source.fit);
+  const std::string verdict = FirstSentences(source.fit);
   if (source.fit.verdict.fails() || !source.fit.verdict.none_identified.empty()) {
     section.alarm = verdict;
   } else {

@@ -62,7 +62,7 @@ TEST(ModelVerdictText, SaysWhichPContradicts) {
   verdict.motion.tests.resize(1);
   verdict.motion.explained = 0.9;
   verdict.p_motion = 0.04;
-  const std::string text = ModelVerdictText(result);
+  const std::string text = FirstSentences(result);
   EXPECT_TRUE(Contains(text, "1 measure of feet and hips (p = 0.04; ")) << text;
   EXPECT_TRUE(Contains(text, "; less than 0.017 contradicts)")) << text;
 }
@@ -81,14 +81,14 @@ TEST(ModelVerdictText, WhatStandingStillPredictsBetterComesFirst) {
   };
   result.diagnostics.recordings = {recording("a", 95.0, true), recording("b", -143.0, true),
                                    recording("quiet", -20.0, false)};
-  EXPECT_EQ(ModelVerdictText(result).rfind("Standing still predicts 1 of 3 recordings better (b; "
-                                           "the worst is explained to -143 %). The model check "
-                                           "found no other contradiction: ",
-                                           0),
+  EXPECT_EQ(FirstSentences(result).rfind("Standing still predicts 1 of 3 recordings better (b; "
+                                         "the worst is explained to -143 %). The model check "
+                                         "found no other contradiction: ",
+                                         0),
             0u)
-      << ModelVerdictText(result);
+      << FirstSentences(result);
   result.diagnostics.recordings[0].explained = -1.0;
-  EXPECT_TRUE(Contains(ModelVerdictText(result), "This fit loses to standing still, which"));
+  EXPECT_TRUE(Contains(FirstSentences(result), "This fit loses to standing still, which"));
 }
 
 TEST(ContrastTable, AnEffectOverNoSpreadHasNoSize) {
