@@ -209,6 +209,17 @@ MaybeError SetUnit(const FileMotionRequest& request, const PointMotion& points,
   return std::nullopt;
 }
 
+// A base of support at the origin of its log: elsewhere 0, 0, 0 is a point that was not seen.
+void PutBaseAtOrigin(const JointMapping& joints, FileMotion* motion) {
+  if (joints.others.count(kBaseRole) == 0) return;
+  for (int base : motion->places.left_ankle) {
+    auto& track = motion->tracks[base];
+    const bool seen = std::any_of(track.begin(), track.end(),
+                                  [](const Eigen::Vector3d& p) { return p.allFinite(); });
+    if (!seen) track.assign(track.size(), Eigen::Vector3d::Zero());
+  }
+}
+
 Result<FileMotion> ReadPoints(const FileMotionRequest& request) {
   FileMotion motion;
   PointReadOptions options;
@@ -230,6 +241,7 @@ Result<FileMotion> ReadPoints(const FileMotionRequest& request) {
   for (auto& track : motion.tracks) {
     for (Eigen::Vector3d& position : track) position *= motion.metres_per_unit;
   }
+  PutBaseAtOrigin(request.joints, &motion);
   const double rate =
       request.mapping.frame_rate > 0.0 ? request.mapping.frame_rate : points.rate_hz;
   motion.frame_time_s = rate > 0.0 ? 1.0 / rate : 0.0;

@@ -252,7 +252,9 @@ std::vector<int> WrittenRoles() {
 Json JointsJson(const JointMapping& joints, const Json& object) {
   Json json = object.contains("joints") ? object.at("joints") : Json::object();
   for (int role : WrittenRoles()) {
-    const std::optional<JointReference> joint = joints.Of(role);
+    const bool by_base = role == kLeftAnkle || role == kRightAnkle;
+    const std::optional<JointReference> joint =
+        by_base && joints.others.count(kBaseRole) > 0 ? std::nullopt : joints.Of(role);
     SetUnless(!joint.has_value(), RoleName(role).c_str(), joint ? JointJson(*joint) : Json(),
               &json);
   }

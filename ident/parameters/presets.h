@@ -36,6 +36,11 @@ inline constexpr char kAutoPreset[] = "auto";
 // What "auto" and "ldp_published" stand for on these recordings; other names as they are.
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings);
 
+// Whether gains are those of the one body that was recorded, whatever its mass and height.
+inline bool IsOneMachine(const ModelOptions& model) {
+  return model.stance == Stance::kFixed && model.gain_scaling == GainScaling::kNone;
+}
+
 // Complete and ready for PrepareFit. Errors: no such preset (auto is none before PresetFor).
 Result<FitOptions> MakePreset(const std::string& name);
 

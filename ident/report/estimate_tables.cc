@@ -291,9 +291,12 @@ std::string PerFrameText(const FitResult& result) {
 
 std::string ConventionText(const FitResult& result) {
   const ParameterTable& specs = result.options.table;
-  const std::string quoted =
-      "Gains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
-      NameOf(result.options.model.gain_scaling) + ").\n" + PerFrameText(result) + TiedText(result);
+  const std::string whose = IsOneMachine(result.options.model)
+                                ? "Gains are those of the recorded body"
+                                : "Gains are for a person of 85 kg with a rod of 0.95 m";
+  const std::string quoted = whose +
+                             " (gain scaling: " + NameOf(result.options.model.gain_scaling) +
+                             ").\n" + PerFrameText(result) + TiedText(result);
   if (!Acts(kMu, result.options.model)) return quoted;
   bool fitted = false;
   std::string held;
@@ -557,7 +560,10 @@ bool Alike(const LoopNumbers& a, const LoopNumbers& b) {
 
 std::vector<NamedLoop> LoopsOf(const FitResult& result) {
   const ModelOptions& options = result.options.model;
-  if (options.stance == Stance::kSlide || !WithoutLinearLoop(options).empty()) return {};
+  if (options.stance == Stance::kSlide || IsOneMachine(options) ||
+      !WithoutLinearLoop(options).empty()) {
+    return {};
+  }
   const Body person;  // 85 kg, 0.95 m
   const LoopNumbers along = LinearLoop(options, person, result.parameters, 0).Numbers();
   const LoopNumbers across = LinearLoop(options, person, result.parameters, 1).Numbers();
