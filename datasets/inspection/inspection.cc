@@ -211,7 +211,7 @@ void InspectCrowd(const PointMotion& motion, Inspection* found) {
                                     " m away (median)"));
   const std::string odd = OddSpacing(places.value());
   if (!odd.empty()) found->Warn(odd);
-  found->Fact("use", "pushid-formation --formation=" + motion.path + " --formation_frame=" +
+  found->Fact("use", "pushid-inspect --wave measures how a push travels; pushid-formation --formation=" + motion.path + " --formation_frame=" +
                          std::to_string(frame) + " places people as they stand there");
 }
 

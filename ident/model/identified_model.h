@@ -35,7 +35,7 @@ struct ValueRange {
   }
 };
 
-// A person of the fitted recordings as the first of them begins, facing x.
+// A person of the fitted recordings, facing x: the body of the first, the usual lean at frame 0.
 struct FittedPerson {
   double mass = 0.0, rod = 0.0, cart_height = 0.0;  // kg, m
   double theta = 0.0, phi = 0.0;                    // rad

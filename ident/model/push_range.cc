@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
+#include <utility>
 
 #include "datasets/files/number_text.h"
 #include "ident/model/identified_model.h"
@@ -86,18 +86,28 @@ double Spacing(const Scene& scene, int person) {
   return nearest;
 }
 
-// Everybody once, by id, in the order of the recordings.
+// Everybody once, by id, in the order of the recordings: the body and feet of the first of them,
+// and the usual posture of all, because somebody may lean in one.
 void AddPeople(const std::vector<PendulumRecording>& recordings, PushRange* range) {
-  std::set<std::string> seen;
+  std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> leans;
+  std::vector<std::string> ids;
   for (const PendulumRecording& recording : recordings) {
     const Scene scene = TurnedScene(recording, recording.facing);
     for (int n = 0; n < scene.num_people(); ++n) {
       if (scene.num_people() > 1) range->spacing.Add(Spacing(scene, n));
-      if (!seen.insert(recording.subject_ids[n]).second) continue;
       const auto& [body, start] = scene.people[n];
+      auto& [theta, phi] = leans[recording.subject_ids[n]];
+      theta.push_back(start.q[2]);
+      phi.push_back(start.q[3]);
+      if (theta.size() > 1) continue;
+      ids.push_back(recording.subject_ids[n]);
       range->people.push_back(
-          {body.mass, body.rod_length, body.cart_height, start.q[2], start.q[3], start.feet.apart});
+          {body.mass, body.rod_length, body.cart_height, 0.0, 0.0, start.feet.apart});
     }
+  }
+  for (size_t i = 0; i < ids.size(); ++i) {
+    range->people[i].theta = Median(leans[ids[i]].first);
+    range->people[i].phi = Median(leans[ids[i]].second);
   }
 }
 
