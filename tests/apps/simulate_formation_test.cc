@@ -68,10 +68,10 @@ TEST_F(SimulateFormationTest, TheShippedModelIsOfSyntheticPeople) {
 }
 
 TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
-  const AppRun run =
-      Succeeded(Simulate({"--formation=line", "--people=4", "--spacing=0.42", "--duration=3",
-                          "--csv_out=" + Path("line.csv"), "--forces_out=" + Path("forces.csv"),
-                          "--bvh_out=" + Path("line"), "--svg_out=" + Path("wave.svg")}));
+  const AppRun run = Succeeded(
+      Simulate({"--formation=line", "--people=4", "--spacing=0.42", "--duration=3", "--push=12",
+                "--csv_out=" + Path("line.csv"), "--forces_out=" + Path("forces.csv"),
+                "--bvh_out=" + Path("line"), "--svg_out=" + Path("wave.svg")}));
   EXPECT_EQ(run.err, "");
   const std::vector<std::string> onsets = Onsets(run.out);
   ASSERT_EQ(onsets.size(), 4u) << run.out;
@@ -85,7 +85,7 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   EXPECT_TRUE(Contains(ReadText(Path("forces.csv")), ",interaction,"));
   const std::string text = ReadText(Path("wave.svg"));
   EXPECT_EQ(text.find("<svg"), 0u);
-  EXPECT_TRUE(Contains(text, "4 people in a line, 0.42 m apart; 80 N s at 0 s on person 0"));
+  EXPECT_TRUE(Contains(text, "4 people in a line, 0.42 m apart; 12 N s at 0 s on person 0"));
   EXPECT_EQ(text.substr(text.size() - 7), "</svg>\n");
   // What was written is a recording that the model predicts exactly.
   const AppRun scores =
@@ -219,8 +219,8 @@ TEST_F(SimulateFormationTest, AModelWithoutInteractionIsWarnedAbout) {
       Succeeded(RunApp("pushid-formation", {"--model=" + alone_, "--formation=line"}));
   EXPECT_TRUE(Contains(run.err, "people will not affect each other"));
   EXPECT_TRUE(Contains(run.out, "1 of 4 people moved"));
-  const AppRun one =
-      RunApp("pushid-formation", {"--model=" + alone_, "--formation=grid", "--people=1"});
+  const AppRun one = RunApp("pushid-formation",
+                            {"--model=" + alone_, "--formation=grid", "--people=1", "--push=12"});
   EXPECT_EQ(one.err, "");
 }
 
