@@ -62,10 +62,11 @@ int Run() {
   ProgressLine line;
   FittedModel model;
   FitResult& result = model.fit;
-  result = Fit(pendulums, options, [&line](const std::string& phase, int iteration, double cost) {
+  const auto show = [&line](const std::string& phase, int iteration, double cost) {
     line.Show("fitting " + phase + ": iteration " + std::to_string(iteration) + ", cost " +
               Rounded(cost, 6));
-  });
+  };
+  result = FitAnyStance(pendulums, options, setup.OtherStances(pendulums, options), show);
   line.Finish();
   if (!result.ok()) return Fail("the fit failed: " + result.message, kFitFailed);
   result.warnings.insert(result.warnings.begin(), file_warnings.begin(), file_warnings.end());

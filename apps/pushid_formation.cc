@@ -59,15 +59,19 @@ DEFINE_string(pushed, "0",
               "who is pushed, comma-separated numbers; people are counted from 0, from "
               "back to front, and in a row from right to left");
 DEFINE_string(push, "80",
-              "pushes at the hip, comma-separated, N s or N s@start in s, as "
-              "in 80@0,80@1,112@2; every push acts on all of --pushed");
-DEFINE_double(push_duration, pushid::HipPush{}.duration, "duration of each push (a half-sine), s");
+              "pushes, comma-separated, N s or N s@start in s, as in 80@0,80@1,112@2; every push "
+              "acts on all of --pushed as the fit's pushes did: of their kind and at their height");
+DEFINE_double(push_duration, 0.0,
+              "duration of each push (a half-sine), s; 0: that of the fit's pushes");
 DEFINE_double(direction, 0.0, "direction of all pushes, degrees from +x to the left");
-DEFINE_double(mass, 80.0, "mass of each person, kg");
+DEFINE_double(
+    mass, 0.0,
+    "mass of each person, kg, of 0.95 m from ankles to hip and upright; 0: the fit's people "
+    "as they stood");
 DEFINE_string(recordings, "",
               "manifest.json of recordings whose people stand in the formation, each once and in "
-              "their order, then from the first again: their masses, and the postures (rod length, "
-              "lean, skeleton) in which their first recordings begin");
+              "their order, then from the first again, instead of the fit's people; bodies get "
+              "their skeletons");
 DEFINE_double(duration, 0.0, "duration, s; 0: until 6 s after the last push");
 DEFINE_string(setting, "",
               "use the parameters of this setting, for models with parameters by "
@@ -76,6 +80,8 @@ DEFINE_string(setting, "",
 namespace {
 
 using namespace pushid;
+
+PushRange FittedTo(const IdentifiedModel& model) { return model.push_range.value_or(PushRange{}); }
 
 struct FormationFlags {
   std::string title;               // "10 people in a line, 0.45 m apart; 80 N s on person 0 at 0 s"
@@ -89,7 +95,7 @@ constexpr double kWatchSeconds = 6.0;      // after the last push
 constexpr int kMostPeople = 10000;
 
 bool FromFile() {
-  const std::optional<MotionFormat> format = MotionFormatOfFile(FLAGS_formation);
+  const std::optional<MotionFormat> format = MotionFormatInFile(FLAGS_formation);
   return format && HoldsCrowd(*format);
 }
 
@@ -168,9 +174,11 @@ std::vector<int> PushedPeople(const Places& places) {
   return people;
 }
 
-HipPush ParsePush(const std::string& word) {
+HipPush ParsePush(const std::string& word, const UsualPush& usual) {
   HipPush push;
-  push.duration = FLAGS_push_duration;
+  push.kind = usual.kind;
+  push.height = usual.height;
+  push.duration = FLAGS_push_duration > 0.0 ? FLAGS_push_duration : usual.duration;
   push.direction = FLAGS_direction * M_PI / 180.0;
   const size_t at = word.find('@');
   const std::string start = at == std::string::npos ? "0" : word.substr(at + 1);
@@ -188,11 +196,10 @@ HipPush ParsePush(const std::string& word) {
   return push;
 }
 
-std::vector<HipPush> Pushes() {
+std::vector<HipPush> Pushes(const UsualPush& usual) {
   std::vector<HipPush> pushes;
   for (const std::string& word : SplitList(FLAGS_push)) {
-    const HipPush push = ParsePush(std::string(Trimmed(word)));
-    pushes.push_back(push);
+    pushes.push_back(ParsePush(std::string(Trimmed(word)), usual));
   }
   if (pushes.empty()) throw Error{"--push is empty; give an impulse in N s, as in 80"};
   return pushes;
@@ -202,17 +209,24 @@ void CheckFormationNumbers() {
   CheckRange("people", FLAGS_people, 1, kMostPeople);
   CheckRange("fps", FLAGS_fps, 10, 10000);
   CheckRange("spacing", FLAGS_spacing, 0.05, 100);
-  CheckRange("push_duration", FLAGS_push_duration, 0.001, 60);
+  if (FLAGS_push_duration != 0.0) CheckRange("push_duration", FLAGS_push_duration, 0.001, 60);
   CheckRange("direction", FLAGS_direction, -360, 360);
-  CheckRange("mass", FLAGS_mass, 1, 400);
+  if (FLAGS_mass != 0.0) CheckRange("mass", FLAGS_mass, 1, 400);
   CheckRange("duration", FLAGS_duration, 0, 3600);
   CheckExcludes({"mass"}, "recordings",
                 "--recordings gives the recorded people's mass and rod length; leave out --{}");
 }
 
-// First poses of the people; empty without the flag.
-std::vector<Pose> PlaceFlaggedPeople(Scene* scene) {
-  if (FLAGS_recordings.empty()) return std::vector<Pose>();
+constexpr double kMassUnknown = 80.0;  // kg, of models that do not tell whom they were fitted to
+
+// Recorded people, those of the fit, or upright ones who are all alike. First poses of recorded
+// ones.
+std::vector<Pose> PlaceFlaggedPeople(const IdentifiedModel& model, Scene* scene) {
+  if (FLAGS_recordings.empty()) {
+    const std::vector<FittedPerson> fitted = FittedTo(model).people;
+    if (FLAGS_mass == 0.0 && !fitted.empty()) PlaceFittedPeople(fitted, scene);
+    return std::vector<Pose>();
+  }
   LoadOptions options;
   options.keep_all_joints = true;
   const std::vector<Recording> recordings = OrFail(LoadRecordings(FLAGS_recordings, options));
@@ -275,26 +289,52 @@ void CheckFrames(int frames, int people, const std::vector<HipPush>& pushes) {
 }
 
 // Errors name the flag.
-FormationFlags FormationFlagsFromCommandLine() {
+FormationFlags FormationFlagsFromCommandLine(const IdentifiedModel& model) {
   Require("formation", FLAGS_formation, "give line, diamond or grid, or a trajectory file");
-  CheckFormationNumbers();
   const Places placed = FormationPlaces();
   const std::vector<Eigen::Vector2d>& positions = placed.positions;
   const int people = static_cast<int>(positions.size());
   const std::vector<int> pushed = PushedPeople(placed);
-  const std::vector<HipPush> pushes = Pushes();
+  const std::vector<HipPush> pushes = Pushes(FittedTo(model).usual.value_or(UsualPush{}));
 
   FormationFlags flags;
   flags.title = RunTitle(people, pushes);
   flags.names = placed.names;
-  flags.scene = FormationScene(positions, {FLAGS_mass, kReferenceRod, 0.0}, 1.0 / FLAGS_fps);
-  flags.first_poses = PlaceFlaggedPeople(&flags.scene);
+  const double mass = FLAGS_mass > 0.0 ? FLAGS_mass : kMassUnknown;
+  flags.scene = FormationScene(positions, {mass, kReferenceRod, 0.0}, 1.0 / FLAGS_fps);
+  flags.first_poses = PlaceFlaggedPeople(model, &flags.scene);
   for (const HipPush& push : pushes) {
     for (int person : pushed) AddHipPush(person, push, &flags.scene);
   }
   flags.frames = NumFrames(flags.scene);
   CheckFrames(flags.frames, people, pushes);
   return flags;
+}
+
+// "people: the 9 of the fit in turn, as they stood, 57 to 120 kg; pushes as the fit's: external,
+// 0.2 s, at 1.3 of the rod".
+std::string WhoText(const IdentifiedModel& model, const FormationRun& run) {
+  const Scene& scene = run.recording.scene;
+  const PushRange fitted = FittedTo(model);
+  const ScenePush& push = scene.pushes.front();
+  ValueRange masses;
+  for (const ScenePerson& person : scene.people) masses.Add(person.body.mass);
+  std::string text = "people: the " + std::to_string(fitted.people.size()) + " of the fit in turn";
+  if (FLAGS_mass > 0.0 || fitted.people.empty()) text = "people: upright";
+  if (!FLAGS_recordings.empty()) text = "people: as recorded";
+  text += ", " + Rounded(masses.lower, 3);
+  if (masses.upper > masses.lower) text += " to " + Rounded(masses.upper, 3);
+  text += std::string(" kg; pushes ") + (fitted.usual ? "as the fit's: " : "") + NameOf(push.kind) +
+          ", " + Rounded(push.force.size() * scene.dt, 3) + " s, at " +
+          Rounded(fitted.usual.value_or(UsualPush{}).height, 3) + " of the rod";
+  if (push.kind == PushKind::kExternal) return text;
+  Eigen::Vector2d impulse = Eigen::Vector2d::Zero();
+  for (int t = 0; t < run.num_frames(); ++t) {
+    const NetForce<double>& force = run.Force(push.person, t);
+    impulse += scene.dt * (force[ForcePart::kPush] + force[ForcePart::kTail]).head<2>();
+  }
+  return text + "; with the model's tail person " + std::to_string(push.person) + " gets " +
+         Rounded(impulse.norm(), 3) + " N s";
 }
 
 std::string Fixed(double value, int decimals) {
@@ -474,20 +514,19 @@ void WriteOutputs(const FormationRun& run, const std::vector<OnsetBand>& onsets,
 
 int Run() {
   RequireModel();
-  FormationFlags flags = FormationFlagsFromCommandLine();
+  CheckFormationNumbers();
+  IdentifiedModel model = LoadFlaggedModel();
+  FormationFlags flags = FormationFlagsFromCommandLine(model);
   Scene& scene = flags.scene;
   const std::string& title = flags.title;
   const RestorationFlags body_flags = RestorationFlagsFromCommandLine();
   CheckOutputFlags(scene.num_people(), body_flags.given());
 
   DrawnFutures();  // refuses what is out of range
-  IdentifiedModel model = LoadFlaggedModel();
   std::unique_ptr<Restoration> restoration;
   if (body_flags.given()) {
     restoration = LoadFlaggedRestoration(body_flags, scene.num_people());
-    if (flags.first_poses.empty()) {
-      flags.first_poses = TakePoses({SyntheticPose(scene.people.front().body.rod_length)}, &scene);
-    }
+    if (flags.first_poses.empty()) flags.first_poses = SyntheticPoses(&scene);
   }
   CheckDraws(model);
   ActAsIn(FLAGS_setting, &model);
@@ -507,7 +546,8 @@ int Run() {
     bodies = FormationBodies(run, flags.first_poses, *restoration, body_flags.postprocess);
   }
   WriteOutputs(run, bands.onsets, std::move(bodies), title);
-  std::printf("%s; %s s\n", title.c_str(), Rounded(run.Seconds(run.num_frames() - 1), 3).c_str());
+  std::printf("%s; %s s\n%s\n", title.c_str(),
+              Rounded(run.Seconds(run.num_frames() - 1), 3).c_str(), WhoText(model, run).c_str());
   PrintPeople(run, !flags.names.empty());
   PrintWave(run, bands, HeldInDraws(fitted, named.set), setting);
   PrintFitWarnings(fitted);

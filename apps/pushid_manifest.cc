@@ -21,7 +21,9 @@ DEFINE_string(pattern, "",
               "{setting}, {subject}, {magnitude}, {condition} and {person} fill the manifest, any "
               "other {name} only tells recordings apart, * matches anything");
 DEFINE_string(push_pattern, "", "paths of the push CSV files, with {names} from --pattern");
-DEFINE_string(masses, "", "masses of the subjects: a CSV file id,mass_kg");
+DEFINE_string(masses, "",
+              "masses of the subjects: a CSV file id,mass_kg; further columns (group, height, ...) "
+              "are kept as what is known of them");
 DEFINE_double(mass, pushid::ManifestOptions{}.mass_kg, "mass of everybody not listed in --masses");
 DEFINE_double(fps, pushid::ManifestOptions{}.fps, "frames per second; 0: from each file");
 DEFINE_string(setting, pushid::ManifestOptions{}.setting,
@@ -61,7 +63,7 @@ void CheckManifestFlags() {
 // The flags that name a choice or a file.
 void ReadNamed(ManifestOptions* options) {
   if (!FLAGS_masses.empty()) {
-    options->masses = OrFail(ReadMasses(FLAGS_masses));
+    options->people = OrFail(ReadPeople(FLAGS_masses));
   }
   OrFail(ParseName("--push_kind", FLAGS_push_kind, &options->push_kind));
   TakeLength(FLAGS_length_unit, FLAGS_length_scale, &options->length_unit, &options->length_scale);

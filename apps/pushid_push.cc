@@ -23,7 +23,7 @@
 #include "ident/push/push_estimation.h"
 #include "ident/push/push_from_sensor.h"
 
-DEFINE_string(id, "", "the recording; or several by --ids");
+DEFINE_string(id, "", "the recording, or several by --ids; default: all that --setting selects");
 DEFINE_int32(person, 0, "number of the pushed person, counted from 0");
 DEFINE_string(out, "", "write the push here (CSV); {id} is replaced by the recording's id");
 DEFINE_bool(update, false, "write the push's entry into the manifest");
@@ -164,9 +164,7 @@ void CheckRecordings(const PushFlags& flags) {
 
 PushFlags PushFlagsFromCommandLine() {
   PushFlags flags;
-  flags.ids = FLAGS_id.empty() ? RecordingFlagsFromCommandLine().ids : std::vector{FLAGS_id};
-  if (flags.ids.empty())
-    throw Error{"--id is missing: name a recording of the manifest, or several by --ids"};
+  flags.ids = FLAGS_id.empty() ? SelectedIds() : std::vector{FLAGS_id};
   Require("out", FLAGS_out, "name the CSV file to write");
   CheckInverseDynamics();
   FlaggedWindow();

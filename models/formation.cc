@@ -92,12 +92,13 @@ void AddHipPush(int person, const HipPush& push, Scene* scene) {
   const int start = static_cast<int>(std::lround(push.start / scene->dt));
   std::vector<Vector4<double>> rows =
       HalfSinePush(scene->people[person].body, push.impulse, frames, scene->dt);
-  const double along = std::cos(push.direction), across = std::sin(push.direction);
-  // At an upright person phi turns towards -y.
+  const ScenePerson& pushed = scene->people[person];
   for (Vector4<double>& row : rows) {
-    row = {along * row[0], across * row[0], along * row[2], -across * row[2]};
+    const Vector3<double> force(row[0] * std::cos(push.direction),
+                                row[0] * std::sin(push.direction), 0.0);
+    row = GeneralizedForce(pushed.body, pushed.start.q, force, push.height);
   }
-  scene->pushes.push_back(MakeScenePush(person, start, PushKind::kExternal, std::move(rows)));
+  scene->pushes.push_back(MakeScenePush(person, start, push.kind, std::move(rows)));
 }
 
 }  // namespace pushid

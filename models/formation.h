@@ -1,5 +1,4 @@
-// models: people standing in a line, a diamond or a grid, all upright and alike, and the pushes
-// that travel through them.
+// models: people standing in a line, a diamond or a grid, and the pushes that travel through them.
 //
 // Pushes go along +x, so people are numbered from the back (smallest x) forwards, and within a row
 // from the right (smallest y) to the left: person 0 is the one, or among the ones, pushed first.
@@ -33,12 +32,14 @@ std::vector<Eigen::Vector2d> FormationPositions(FormationShape shape, int people
 // Everybody upright, at rest, with the same body.
 Scene FormationScene(const std::vector<Eigen::Vector2d>& positions, const Body& body, double dt);
 
-// A half-sine at the hip.
+// A half-sine; of a net push the rows, which the model's tail follows.
 struct HipPush {
   double impulse = 0.0;    // N s
   double start = 0.0;      // s
   double duration = 0.2;   // s
   double direction = 0.0;  // rad from +x, positive to the left
+  double height = 1.0;     // of the rod: the hip
+  PushKind kind = PushKind::kExternal;
 };
 
 // Start and duration are rounded to frames; the impulse is kept.

@@ -85,6 +85,18 @@ const Result<Manifest>& FlaggedManifest() {
   return manifest;
 }
 
+std::vector<std::string> SelectedIds() {
+  Require("recordings", FLAGS_recordings, "give the manifest.json of your recordings");
+  const Manifest manifest = OrFail(FlaggedManifest());
+  const LoadOptions options = LoadOptionsOfFlags();
+  std::vector<std::string> ids;
+  for (int index :
+       OrFail(SelectRecordings(manifest, options.setting, options.ids, options.leave_out))) {
+    ids.push_back(manifest.recordings[index].id);
+  }
+  return ids;
+}
+
 std::vector<Recording> LoadFlaggedRecordings(const std::vector<std::string>& ids,
                                              bool keep_all_joints, Warnings* warnings,
                                              bool plates_alone) {

@@ -26,6 +26,9 @@ RecordingFlags RecordingFlagsFromCommandLine();
 // The manifest of --recordings, merged where there are several; read once in a run.
 const Result<Manifest>& FlaggedManifest();
 
+// Ids of the recordings that --setting, --ids and --leave_out select.
+std::vector<std::string> SelectedIds();
+
 // The recordings of --recordings, --setting, --ids and --leave_out; warnings go to stderr, and to
 // `warnings` too. Other ids than the flags' may be asked for, all joints instead of hip and ankles,
 // and people whom force plates alone measured.

@@ -133,7 +133,9 @@ std::shared_ptr<Model> FitModel(const std::vector<SharedRecording>& recordings,
   Warn(warnings);
   const SolveProgress report = ProgressOf(progress);
   FittedModel fitted;
-  fitted.fit = WithoutGil([&] { return Fit(pendulums, options, report); });
+  fitted.fit = WithoutGil([&] {
+    return FitAnyStance(pendulums, options, setup.OtherStances(pendulums, options), report);
+  });
   FitResult& fit = fitted.fit;
   if (!fit.ok()) Raise(Fault::kFit, Error{"the fit failed: " + fit.message});
   const Warnings of_files = WarningsOf(file_warnings);
@@ -192,21 +194,27 @@ void WriteReport(const Model& model, const std::string& path, const Advised& cal
   Check(WriteFileAtomically(path, ToPage(ReportOf(*fitted, model))), Fault::kData);
 }
 
-py::object EvaluateOn(const Model& model, const std::vector<SharedRecording>& recordings,
-                      int observed, const std::string& forecast) {
+// The scores, and the text of the program that prints them.
+py::tuple WithText(const nlohmann::ordered_json& json, const std::string& text) {
+  return py::make_tuple(FromJson(json), text);
+}
+
+py::tuple EvaluateOn(const Model& model, const std::vector<SharedRecording>& recordings,
+                     int observed, const std::string& forecast) {
   const IdentifiedModel identified = IdentifiedOf(model);
   const auto pendulums = Pendulums(recordings);
   if (observed > 0) Check(CheckObserved(pendulums, observed), Fault::kUsage);
   const ForecastUse use = ForecastFrom(forecast);
-  return FromJson(WithoutGil(
-      [&] { return ToJson(Evaluate(identified, pendulums, observed, UsualGroups(), use)); }));
+  const Evaluation evaluation =
+      WithoutGil([&] { return Evaluate(identified, pendulums, observed, UsualGroups(), use); });
+  return WithText(ToJson(evaluation), EvaluationText(evaluation, false));
 }
 
-py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
-                            const std::vector<std::pair<std::string, GivenOptions>>& candidates,
-                            const std::string& scheme, int num_folds, int repeats, uint64_t seed,
-                            int observed, const std::string& forecast, bool baselines,
-                            int num_threads, const py::object& progress) {
+py::tuple CrossValidateAll(const std::vector<SharedRecording>& recordings,
+                           const std::vector<std::pair<std::string, GivenOptions>>& candidates,
+                           const std::string& scheme, int num_folds, int repeats, uint64_t seed,
+                           int observed, const std::string& forecast, bool baselines,
+                           int num_threads, const py::object& progress) {
   CheckRecordings(recordings);
   FoldScheme how = FoldScheme::kStratified;
   Check(ParseName("scheme", scheme, &how), Fault::kUsage);
@@ -225,13 +233,16 @@ py::object CrossValidateAll(const std::vector<SharedRecording>& recordings,
   }
   const auto folds = Unwrapped(MakeFolds(pendulums, how, num_folds, repeats, seed), Fault::kUsage);
   const JobProgress report = JobsOf(progress);
-  return FromJson(WithoutGil([&] {
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  const auto validated = WithoutGil([&] {
+    std::vector<CrossValidation> all;
     for (const Predictor& predictor : predictors) {
-      json.push_back(ToJson(CrossValidate(pendulums, folds, predictor, num_threads, report)));
+      all.push_back(CrossValidate(pendulums, folds, predictor, num_threads, report));
     }
-    return json;
-  }));
+    return all;
+  });
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const CrossValidation& one : validated) json.push_back(ToJson(one));
+  return WithText(json, CrossValidationText(validated));
 }
 
 // name, help, default: what the keyword arguments are made from.

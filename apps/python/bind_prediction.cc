@@ -234,21 +234,30 @@ Array Restored(const Restoration& restoration, const Model& model, const SharedR
 struct FormationAsked {
   std::string shape;
   int people, pushed;
-  double spacing, push, push_duration, push_direction, mass, rod, duration, fps;
+  double spacing, push, push_direction, duration, fps;
+  std::optional<double> push_duration, mass, rod;  // none: as in the fit
 };
 
-Scene SceneOf(const FormationAsked& asked) {
+Scene SceneOf(const FormationAsked& asked, const std::optional<PushRange>& fitted) {
   const auto shape = Named<FormationShape>("shape", asked.shape);
   if (asked.people < 1 || asked.people > 1000 || asked.pushed < 0 || asked.pushed >= asked.people ||
-      !(asked.spacing > 0.0) || !(asked.mass > 0.0) || !(asked.rod > 0.0) ||
-      !(asked.duration > 0.0) || !(asked.push_duration > 0.0) || !(asked.fps >= 1.0)) {
+      !(asked.spacing > 0.0) || !(asked.mass.value_or(1.0) > 0.0) ||
+      !(asked.rod.value_or(1.0) > 0.0) || !(asked.duration > 0.0) ||
+      !(asked.push_duration.value_or(1.0) > 0.0) || !(asked.fps >= 1.0)) {
     Raise(Fault::kUsage, Error{"a formation has 1 to 1000 people, one of whom is pushed, and "
                                "spacing, mass, rod, durations and fps above 0"});
   }
   Scene scene = FormationScene(FormationPositions(shape, asked.people, asked.spacing),
-                               {asked.mass, asked.rod}, 1.0 / asked.fps);
+                               {asked.mass.value_or(85.0), asked.rod.value_or(kReferenceRod)},
+                               1.0 / asked.fps);
+  if (fitted && !asked.mass && !asked.rod && !fitted->people.empty()) {
+    PlaceFittedPeople(fitted->people, &scene);
+  }
+  const UsualPush usual = fitted ? fitted->usual.value_or(UsualPush{}) : UsualPush{};
   AddHipPush(asked.pushed,
-             {asked.push, 0.0, asked.push_duration, asked.push_direction * M_PI / 180.0}, &scene);
+             {asked.push, 0.0, asked.push_duration.value_or(usual.duration),
+              asked.push_direction * M_PI / 180.0, usual.height, usual.kind},
+             &scene);
   return scene;
 }
 
@@ -284,12 +293,13 @@ void AddSummaries(const FormationRun& run, const WaveBands& waves, py::dict* dic
 }
 
 py::dict OnFormation(const Model& model, const std::string& shape, int people, double spacing,
-                     int pushed, double push, double push_duration, double push_direction,
-                     double mass, double rod, double duration, double fps, const std::string& set,
-                     bool bands) {
-  const Scene scene = SceneOf({shape, people, pushed, spacing, push, push_duration, push_direction,
-                               mass, rod, duration, fps});
+                     int pushed, double push, std::optional<double> push_duration,
+                     double push_direction, std::optional<double> mass, std::optional<double> rod,
+                     double duration, double fps, const std::string& set, bool bands) {
   const IdentifiedModel identified = With(model, set);
+  const Scene scene = SceneOf({shape, people, pushed, spacing, push, push_direction, duration, fps,
+                               push_duration, mass, rod},
+                              identified.push_range);
   const std::shared_ptr<const FittedModel> fitted = model.fitted;
   FormationRun run;
   WaveBands waves;

@@ -304,12 +304,6 @@ void AddPlates(const py::object& given, std::vector<TrackedPerson>* people) {
   }
 }
 
-// The height of a push: a fraction of the way from the ankles to the hip, or metres.
-struct PushHeight {
-  double fraction = 1.0;
-  std::optional<double> metres;
-};
-
 void CheckHeight(const PushHeight& height) {
   if (!height.metres && !(height.fraction >= 0.0 && height.fraction <= 1.0)) {
     Raise(Fault::kUsage, Error{"push_height is " + Rounded(height.fraction) +
@@ -332,26 +326,17 @@ void AddPush(const Array& rows, int person, int start, const PushHeight& height,
                      "(rows,) or (rows, 2 or 3) of forces in N, or (rows, 4) of generalized forces "
                      "in N and N m"));
   }
-  const PendulumRecording seen = MakePendulumRecording(*recording);
   Push push;
   push.person = person;
   push.start_frame = start;
-  const Body& body = seen.scene.people[person].body;
-  const auto& states = seen.states[person];
-  const auto state = [&states](size_t frame) {
-    return states[std::min(frame, states.size() - 1)].q;
-  };
-  const double fraction =
-      height.metres ? HeightFraction(body, state(start), *height.metres) : height.fraction;
+  std::vector<Eigen::Vector3d> forces;
   for (py::ssize_t t = 0; t < rows.shape(0); ++t) {
     Eigen::Vector4d row = Eigen::Vector4d::Zero();
     for (py::ssize_t i = 0; i < columns; ++i) row[i] = rows.at(t, i);
-    if (columns < 4) {
-      row = GeneralizedForce<double>(body, state(start + t), Vector3<double>(row.head<3>()),
-                                     fraction);
-    }
     push.force.push_back(row);
+    forces.push_back(row.head<3>());
   }
+  if (columns < 4) push.force = PushAtHeight(recording->people[person], start, forces, height);
   recording->pushes.push_back(std::move(push));
 }
 

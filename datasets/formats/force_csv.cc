@@ -14,20 +14,24 @@ namespace {
 
 constexpr char kHeader[] = "frame,fx,fy,ftheta,fphi";
 constexpr const char* kPushColumns[] = {"frame", "fx", "fy", "ftheta", "fphi"};
-constexpr std::size_t kNumColumns = 5;
+constexpr std::size_t kNumColumns = 5, kWithoutTorques = 3;
 
-bool IsHeader(std::string_view line) {
+// How many of the columns of a push the header names; 0 where it is another.
+std::size_t ColumnsOf(std::string_view line) {
   const std::vector<std::string_view> cells = CellsOf(line, ',');
-  return std::equal(cells.begin(), cells.end(), std::begin(kPushColumns), std::end(kPushColumns));
+  const bool named = cells.size() <= kNumColumns &&
+                     std::equal(cells.begin(), cells.end(), std::begin(kPushColumns));
+  return named && (cells.size() == kNumColumns || cells.size() == kWithoutTorques) ? cells.size()
+                                                                                   : 0;
 }
 
-MaybeError ParsePushRow(const LineReader& reader, std::string_view line,
+MaybeError ParsePushRow(const LineReader& reader, std::string_view line, std::size_t columns,
                         std::int64_t expected_frame, Eigen::Vector4d* force) {
   const std::vector<std::string_view> cells = CellsOf(line, ',');
-  for (std::size_t i = 0; i < kNumColumns; ++i) {
+  for (std::size_t i = 0; i < columns; ++i) {
     if (i == cells.size()) {
       return reader.ErrorHere("the row has " + std::to_string(i) + " values, not " +
-                              std::to_string(kNumColumns) + " (" + kHeader + ")");
+                              std::to_string(columns) + " (" + kHeader + ")");
     }
     const std::string_view field = cells[i];
     if (i > 0) {
@@ -47,8 +51,8 @@ MaybeError ParsePushRow(const LineReader& reader, std::string_view line,
                               "push is given by start_frame in the manifest)");
     }
   }
-  if (cells.size() > kNumColumns) {
-    return reader.ErrorHere("the row has more than " + std::to_string(kNumColumns) + " values (" +
+  if (cells.size() > columns) {
+    return reader.ErrorHere("the row has more than " + std::to_string(columns) + " values (" +
                             kHeader + ")");
   }
   return std::nullopt;
@@ -97,7 +101,7 @@ MaybeError FindGap(const SensorRecord& record, const std::vector<int>& lines) {
 
 }  // namespace
 
-Result<std::vector<Eigen::Vector4d>> ReadPushCsv(const std::string& path) {
+Result<PushRows> ReadPushCsv(const std::string& path) {
   LineReader reader;
   if (MaybeError failed = reader.Open(path)) return *std::move(failed);
   std::string_view line;
@@ -105,14 +109,18 @@ Result<std::vector<Eigen::Vector4d>> ReadPushCsv(const std::string& path) {
     if (reader.error()) return *reader.error();
     return Error{std::string("the file is empty; a push starts with the line ") + kHeader, path, 0};
   }
-  if (!IsHeader(line)) {
-    return reader.ErrorHere("the header is " + Quoted(line) + ", not " + kHeader);
+  const std::size_t columns = ColumnsOf(line);
+  if (columns == 0) {
+    return reader.ErrorHere("the header is " + Quoted(line) + ", not " + kHeader +
+                            " (or frame,fx,fy of a push at the manifest's push_height_m)");
   }
-  std::vector<Eigen::Vector4d> force;
+  PushRows push;
+  push.has_torques = columns == kNumColumns;
+  std::vector<Eigen::Vector4d>& force = push.force;
   while (reader.NextNonBlank(&line)) {
-    Eigen::Vector4d row;
+    Eigen::Vector4d row = Eigen::Vector4d::Zero();
     if (MaybeError failed =
-            ParsePushRow(reader, line, static_cast<std::int64_t>(force.size()), &row)) {
+            ParsePushRow(reader, line, columns, static_cast<std::int64_t>(force.size()), &row)) {
       return *std::move(failed);
     }
     force.push_back(row);
@@ -122,7 +130,7 @@ Result<std::vector<Eigen::Vector4d>> ReadPushCsv(const std::string& path) {
     return reader.ErrorHere(
         "the push has no rows; leave push_csv out of the manifest for a recording without a push");
   }
-  return force;
+  return push;
 }
 
 MaybeError WritePushCsv(const std::string& path, const std::vector<Eigen::Vector4d>& force) {

@@ -8,7 +8,9 @@
 //
 // Row t is the generalized force [fx N, fy N, ftheta N m, fphi N m], in the project's axes (x
 // forward, y left, z up), that drives the step from the push's frame t to t + 1. Rows count 0, 1,
-// 2, ... without gaps.
+// 2, ... without gaps. ftheta and fphi are the force's torques about the ankles; 0 is a push at the
+// ankles. A file without these two columns has the forces of a push at a height that the manifest
+// gives (push_height_m), or at the hip.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,9 +22,14 @@
 
 namespace pushid {
 
+struct PushRows {
+  std::vector<Eigen::Vector4d> force;
+  bool has_torques = true;  // otherwise the last two are 0
+};
+
 // Errors name the line: wrong header, a row number out of sequence, too few or many fields, a field
 // that is not a finite number, no rows at all.
-Result<std::vector<Eigen::Vector4d>> ReadPushCsv(const std::string& path);
+Result<PushRows> ReadPushCsv(const std::string& path);
 
 // Writes atomically; numbers are the shortest that read back to the same double.
 MaybeError WritePushCsv(const std::string& path, const std::vector<Eigen::Vector4d>& force);

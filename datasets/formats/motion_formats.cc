@@ -20,6 +20,11 @@ std::optional<MotionFormat> MotionFormatOfFile(std::string_view path) {
   return std::nullopt;
 }
 
+std::optional<MotionFormat> MotionFormatInFile(const std::string& path) {
+  const std::optional<MotionFormat> format = MotionFormatOfFile(path);
+  return format == MotionFormat::kCsv && IsCrowdCsv(path) ? MotionFormat::kTrajectoryText : format;
+}
+
 std::string MotionFileEndings() {
   std::vector<std::string> endings;
   for (const MotionFormatRow& row : kMotionFormats) {

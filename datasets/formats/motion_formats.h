@@ -52,15 +52,19 @@ inline bool HasSkeleton(MotionFormat format) { return RowOf(format).read == null
 inline bool HoldsCrowd(MotionFormat format) { return format == MotionFormat::kTrajectoryText; }
 // Why recordings of people cannot be made of such a file.
 inline constexpr char kCrowdIsNoRecording[] =
-    "a file of trajectories holds one point for each person of a group: no recording of one "
-    "person, and nothing can be fitted to it without their ankles; pushid-inspect --wave measures "
-    "how a push travels through the group, pushid-formation --formation places people as they "
-    "stand; a tracker's numbered markers need \"joints\" (in a mapping file or the manifest)";
+    "a file of trajectories holds one point for each person of a group: it shows when each began "
+    "to "
+    "move and how fast a push travelled (pushid-inspect --wave), and where people stand for "
+    "pushid-formation --formation; balance, contact forces and steps it does not show, for which "
+    "a fit needs the ankles of each; a tracker's numbered markers need \"joints\" (in a mapping "
+    "file or the manifest)";
 // The name for people: "BVH", "C3D", ...
 inline std::string Title(MotionFormat format) { return RowOf(format).title; }
 
 // The format by the file's ending: ".c3d" is C3D, ".mot" and ".sto" storage, ...
 std::optional<MotionFormat> MotionFormatOfFile(std::string_view path);
+// The same, and trajectories where a CSV file's header says so.
+std::optional<MotionFormat> MotionFormatInFile(const std::string& path);
 
 // ".bvh, .c3d, .trc, .csv, .sto, .mot" and "bvh, c3d, trc, csv, sto", for messages.
 std::string MotionFileEndings();

@@ -2,6 +2,7 @@
 #include "datasets/formats/trajectories.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -87,26 +88,65 @@ class TrajectoryRows {
   std::int64_t first_ = 0, last_ = -1;
 };
 
-MaybeError ReadRow(const LineReader& reader, std::string_view line, TrajectoryRows* rows) {
+// Which cells of a row are what; -1: none is.
+struct Columns {
+  int id = 0, frame = 1, time = -1, axis[3] = {2, 3, 4};
+};
+
+// Cells are separated by commas, or by white space.
+std::vector<std::string_view> CellsOfRow(std::string_view line) {
+  if (line.find(',') != std::string_view::npos) return CellsOf(line, ',');
+  std::vector<std::string_view> cells;
+  for (auto cell = NextToken(&line); !cell.empty(); cell = NextToken(&line)) cells.push_back(cell);
+  return cells;
+}
+
+// The columns that a header names, whatever unit it gives them ("x/cm"); none where it lacks one.
+std::optional<Columns> NamedColumns(std::string_view line) {
+  if (!std::isalpha(static_cast<unsigned char>(line.front()))) return std::nullopt;
+  const std::vector<std::string_view> cells = CellsOfRow(line);
+  const auto at = [&cells](std::string_view name) {
+    for (size_t i = 0; i < cells.size(); ++i) {
+      if (cells[i].substr(0, cells[i].find_first_of("/[(")) == name) return static_cast<int>(i);
+    }
+    return -1;
+  };
+  const Columns found{at("id"), at("frame"), at("time"), {at("x"), at("y"), at("z")}};
+  if (std::min({found.id, found.frame, found.axis[0], found.axis[1]}) < 0) return std::nullopt;
+  return found;
+}
+
+using Times = std::map<std::int64_t, double>;  // s, of frames
+
+MaybeError ReadRow(const LineReader& reader, std::string_view line, const Columns& columns,
+                   TrajectoryRows* rows, Times* times) {
+  const std::vector<std::string_view> cells = CellsOfRow(line);
+  const auto cell = [&cells](int column) {
+    return column < 0 || column >= static_cast<int>(cells.size()) ? std::string_view()
+                                                                  : cells[column];
+  };
   std::int64_t id[2] = {0, 0};
   for (int i = 0; i < 2; ++i) {
-    const std::string_view token = NextToken(&line);
+    const std::string_view token = cell(i == 0 ? columns.id : columns.frame);
     double number = 0.0;
     if (!ParseDouble(token, &number) || number != std::floor(number) || std::fabs(number) > 1e15) {
       return reader.ErrorHere(std::string(i == 0 ? "the id" : "the frame") +
                               " must be a whole number, not " + Quoted(token) +
-                              "; a row is: id frame x y z");
+                              "; a row is: id frame x y z, or what a header names (id,frame,x,y)");
     }
     id[i] = static_cast<std::int64_t>(number);
   }
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
-    const std::string_view token = NextToken(&line);
+    const std::string_view token = cell(columns.axis[axis]);
     if (axis == 2 && token.empty()) break;
     if (token.empty()) return reader.ErrorHere("the row is cut; a row is: id frame x y z");
     if (!ParseDouble(token, &position[axis])) {
       return reader.ErrorHere(std::string(1, "xyz"[axis]) + ": " + NumberProblem(token));
     }
+  }
+  if (columns.time >= 0 && !ParseDouble(cell(columns.time), &(*times)[id[1]])) {
+    return reader.ErrorHere("time: " + NumberProblem(cell(columns.time)));
   }
   if (rows->Add(id[0], id[1], position)) return std::nullopt;
   return reader.ErrorHere("person " + std::to_string(id[0]) + " was in frame " +
@@ -122,12 +162,20 @@ std::vector<std::int64_t> TrajectoryIds(const std::vector<std::string>& names) {
     numbers = numbers && ParseInteger(names[i], &ids[i]) && seen.insert(ids[i]).second;
   }
   for (std::size_t i = 0; i < names.size() && !numbers; ++i) {
-    ids[i] = static_cast<std::int64_t>(i) + 1;
+    ids[i] = static_cast<std::int64_t>(i);
   }
   return ids;
 }
 
 }  // namespace
+
+bool IsCrowdCsv(const std::string& path) {
+  LineReader reader;
+  std::string_view line = "#";
+  if (reader.Open(path)) return false;
+  while (Trimmed(line).front() == '#' && reader.NextNonBlank(&line)) continue;
+  return NamedColumns(line).has_value();
+}
 
 Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadOptions& options) {
   LineReader reader;
@@ -136,21 +184,33 @@ Result<PointMotion> ReadTrajectoryText(const std::string& path, const PointReadO
   motion.path = path;
   motion.unit = LengthUnit::kMetre;
   TrajectoryRows rows;
+  Times times;
+  Columns columns;
   std::string_view line;
   while (reader.NextNonBlank(&line)) {
     line = Trimmed(line);
     if (line.front() == '#') {
       ReadComment(line.substr(1), &motion);
-    } else if (MaybeError failed = ReadRow(reader, line, &rows)) {
+      continue;
+    }
+    if (const std::optional<Columns> named = NamedColumns(line)) {
+      columns = *named;
+      ReadComment(line, &motion);
+    } else if (MaybeError failed = ReadRow(reader, line, columns, &rows, &times)) {
       return *std::move(failed);
     }
   }
   if (reader.error()) return *reader.error();
+  if (motion.rate_hz == 0.0 && times.size() > 1) {
+    const auto &first = *times.begin(), &last = *times.rbegin();
+    motion.rate_hz = WholeFrameRate(static_cast<double>(last.first - first.first) /
+                                    (last.second - first.second));
+  }
   const std::string problem = FrameRateProblem(motion.rate_hz);
   if (!problem.empty()) {
     return Error{
         "no comment gives the frames per second as a number; there must be a line such as '# "
-        "framerate: 16'",
+        "framerate: 16' at the top, or a column time (s)",
         path};
   }
   if (MaybeError failed = rows.Fill(options, &motion)) return *std::move(failed);

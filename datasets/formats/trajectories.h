@@ -4,9 +4,14 @@
 //   # id frame x/m y/m z/m
 //   1 98 4.66 1.25 1.72
 //
+// or as CSV, where a header names the columns, in any order:
+//   id,frame,time,x,y
+//   1,98,6.125,4.66,1.25
+//
 // A person is a point named by the id. People come and go: frames in which one is lacking are not
 // seen. Frame 0 of what is read is the first frame of the file. Lengths are metres unless the
-// comments say x/cm or "in cm" (mm alike); without a third coordinate z is 0.
+// comments, or the header, say x/cm or "in cm" (mm alike); without a third coordinate z is 0. The
+// rate comes from a comment, or from a column of times in s.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,13 +24,16 @@
 
 namespace pushid {
 
+// Whether a CSV file's header names id, frame, x and y: trajectories, and no table of one person.
+bool IsCrowdCsv(const std::string& path);
+
 // Errors name the line: rows of other than 4 numbers or more (3 without z), ids and frames that are
 // no whole numbers, a person twice in one frame, no framerate, more frames than fit into memory.
 Result<PointMotion> ReadTrajectoryText(const std::string& path,
                                        const PointReadOptions& options = {});
 
 // Atomically; positions in m. Names that are whole numbers are the ids, otherwise people count from
-// 1 and comments of the text give their names. A person has no row for a frame without them.
+// 0 and comments of the text give their names. A person has no row for a frame without them.
 MaybeError WriteTrajectoryText(const std::string& path, const PointMotion& motion);
 
 struct CrowdPlace {

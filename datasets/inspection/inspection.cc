@@ -211,7 +211,7 @@ void InspectCrowd(const PointMotion& motion, Inspection* found) {
                                     " m away (median)"));
   const std::string odd = OddSpacing(places.value());
   if (!odd.empty()) found->Warn(odd);
-  found->Fact("use", "pushid-formation --formation=" + motion.path + " --formation_frame=" +
+  found->Fact("use", "pushid-inspect --wave measures how a push travels; pushid-formation --formation=" + motion.path + " --formation_frame=" +
                          std::to_string(frame) + " places people as they stand there");
 }
 
@@ -358,12 +358,16 @@ MaybeError LookAtCrowd(MotionFormat format, Inspection* found) {
 }
 
 MaybeError LookAtPush(Inspection* found) {
-  const Result<std::vector<Eigen::Vector4d>> force = ReadPushCsv(found->path);
-  if (!force.ok()) return force.error();
+  const Result<PushRows> read = ReadPushCsv(found->path);
+  if (!read.ok()) return read.error();
+  const std::vector<Eigen::Vector4d>& force = read.value().force;
   found->format = "push CSV";
   double peak = 0.0;
-  for (const Eigen::Vector4d& row : force.value()) peak = std::max(peak, row.head<2>().norm());
-  found->Fact("rows", std::to_string(force.value().size()) + ", one per frame of its recording");
+  for (const Eigen::Vector4d& row : force) peak = std::max(peak, row.head<2>().norm());
+  found->Fact("rows", std::to_string(force.size()) + ", one per frame of its recording");
+  if (!read.value().has_torques) {
+    found->Fact("height", "the manifest's push_height_m, or the hip: there are no torques");
+  }
   found->Fact("peak", Rounded(peak, 3) + " N");
   return std::nullopt;
 }
@@ -434,7 +438,7 @@ std::string FirstLine(const std::string& path) {
 
 MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
   const std::string& path = found->path;
-  const std::optional<MotionFormat> format = MotionFormatOfFile(path);
+  const std::optional<MotionFormat> format = MotionFormatInFile(path);
   if (!format) {
     const std::string first = FirstLine(path);
     if (!EndsWith(path, ".json") && (first.empty() || first[0] != '{')) {
@@ -456,7 +460,7 @@ MaybeError Look(const ColumnMapping& mapping, Inspection* found) {
     return std::nullopt;
   }
   const std::string first = *format == MotionFormat::kCsv ? FirstLine(path) : "";
-  if (first.rfind("frame,fx,fy,ftheta", 0) == 0) return LookAtPush(found);
+  if (first.rfind("frame,fx,fy", 0) == 0) return LookAtPush(found);
   if (first == "time,force" || first == "time,fx,fy,fz") return LookAtSensor(found);
   return LookAtTable(RowOf(*format), mapping, found);
 }

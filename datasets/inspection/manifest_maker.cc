@@ -12,7 +12,9 @@
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
 #include "datasets/formats/motion_formats.h"
+#include "datasets/formats/trajectories.h"
 #include "datasets/formats/units.h"
+#include "datasets/loading/load_recordings.h"
 #include "datasets/manifest/column_mapping.h"
 
 namespace pushid {
@@ -61,6 +63,10 @@ class Maker {
     }
     WarnOfNames();
     if (MaybeError failed = Find()) return *std::move(failed);
+    const std::string path = recordings_.begin()->second.front().path;
+    if (format_ == MotionFormat::kCsv && IsCrowdCsv((fs::path(options_.folder) / path).string())) {
+      return Error{path + ": " + kCrowdIsNoRecording};
+    }
     for (auto& [id, files] : recordings_) {
       if (MaybeError failed = AddRecording(id, &files)) return *std::move(failed);
     }
@@ -74,6 +80,7 @@ class Maker {
                    "; list them in a file with the columns id,mass_kg (--masses)"};
     }
     WarnOfUnusedMasses();
+    CheckFirst();
     return std::move(made_);
   }
 
@@ -174,7 +181,7 @@ class Maker {
     for (const FoundFile& file : *files) {
       const std::string subject =
           Value(file.values, "subject", Value(file.values, "person", "person"));
-      recording.subjects.push_back({subject, MassOf(subject)});
+      recording.subjects.push_back(SubjectOf(subject));
       recording.motion.push_back(FromManifest(file.path));
     }
     recording.pushed_person = options_.pushed_person;
@@ -199,11 +206,21 @@ class Maker {
     *recording->json = {{"up", recording->up}, {"forward", recording->forward}};
   }
 
-  double MassOf(const std::string& subject) {
-    const auto found = options_.masses.find(subject);
-    if (found != options_.masses.end()) return found->second;
-    if (options_.mass_kg <= 0.0) massless_.insert(subject);
-    return options_.mass_kg;
+  ManifestSubject SubjectOf(const std::string& id) {
+    const auto found = options_.people.find(id);
+    if (found != options_.people.end()) return found->second;
+    if (options_.mass_kg <= 0.0) massless_.insert(id);
+    return {id, options_.mass_kg};
+  }
+
+  // A rate is read from every file, and the motion of the first: whether its people stand upright
+  // in the axes and units given, and are found by their joints.
+  void CheckFirst() {
+    ManifestRecording first = made_.manifest.recordings.front();
+    first.manifest = options_.manifest_path;
+    first.push_csv.clear();
+    const Result<Recording> read = LoadRecording(made_.manifest, first);
+    if (!read.ok()) made_.warnings.push_back(read.error().ToString());
   }
 
   // Frames per second, whole where they nearly are; 0 where neither file nor option says.
@@ -243,7 +260,7 @@ class Maker {
       for (const ManifestSubject& subject : recording.subjects) used.insert(subject.id);
     }
     std::vector<std::string> unused;
-    for (const auto& [id, mass] : options_.masses) {
+    for (const auto& [id, person] : options_.people) {
       if (used.count(id) == 0) unused.push_back(id);
     }
     if (unused.empty()) return;
@@ -265,20 +282,29 @@ class Maker {
 
 Result<MadeManifest> MakeManifest(const ManifestOptions& options) { return Maker(options).Make(); }
 
-Result<std::map<std::string, double>> ReadMasses(const std::string& path) {
+Result<std::map<std::string, ManifestSubject>> ReadPeople(const std::string& path) {
   LineReader reader;
   if (MaybeError failed = reader.Open(path)) return *std::move(failed);
-  std::map<std::string, double> masses;
+  std::map<std::string, ManifestSubject> people;
   std::string_view line;
   if (!reader.NextNonBlank(&line)) {
     return reader.error() ? *reader.error() : Error{"the file lists no masses", path};
   }
-  if (CellsOf(line, ',') != std::vector<std::string_view>{"id", "mass_kg"}) {
-    return reader.ErrorHere("the first line must be id,mass_kg, not " + Quoted(line));
+  std::vector<std::string> columns;
+  for (const std::string_view cell : CellsOf(line, ',')) columns.emplace_back(cell);
+  if (columns.size() < 2 || columns[0] != "id" || columns[1] != "mass_kg") {
+    return reader.ErrorHere(
+        "the first line must be id,mass_kg, perhaps with further columns of what is known of "
+        "people (group, height, ...), not " +
+        Quoted(line));
   }
   while (reader.NextNonBlank(&line)) {
     std::vector<std::string_view> cells = CellsOf(line, ',');
-    cells.resize(std::max<std::size_t>(cells.size(), 2));
+    if (cells.size() > columns.size()) {
+      return reader.ErrorHere("the row has " + std::to_string(cells.size()) + " values for " +
+                              std::to_string(columns.size()) + " columns");
+    }
+    cells.resize(columns.size());
     const std::string id(cells[0]);
     double value = 0.0;
     if (!ParseDouble(cells[1], &value)) {
@@ -288,13 +314,23 @@ Result<std::map<std::string, double>> ReadMasses(const std::string& path) {
       return reader.ErrorHere("a mass in kg is above 0 and at most " + Rounded(kHeaviestPerson) +
                               ", not " + Rounded(value));
     }
-    if (!masses.emplace(id, value).second) {
+    ManifestSubject person{id, value};
+    for (std::size_t i = 2; i < cells.size(); ++i) {
+      double number = 0.0;
+      if (cells[i].empty()) continue;  // not known
+      if (ParseDouble(cells[i], &number)) {
+        person.known.numbers[columns[i]] = number;
+      } else {
+        person.known.texts[columns[i]] = std::string(cells[i]);
+      }
+    }
+    if (!people.emplace(id, person).second) {
       return reader.ErrorHere("the mass of " + Quoted(id) + " was given before");
     }
   }
   if (reader.error()) return *reader.error();
-  if (masses.empty()) return reader.ErrorHere("the file lists no masses");
-  return masses;
+  if (people.empty()) return reader.ErrorHere("the file lists no masses");
+  return people;
 }
 
 }  // namespace pushid

@@ -4,7 +4,7 @@
 //   options.folder = "data";
 //   options.pattern = "{setting}/{subject}_{magnitude}_{take}.c3d";
 //   options.push_pattern = "push/{subject}_{take}.csv";
-//   options.masses = {{"anna", 62.0}};
+//   options.people["anna"].mass_kg = 62.0;
 //   Result<MadeManifest> made = MakeManifest(options);
 //
 // Names that mean something: subject (the person's id), setting, magnitude, condition, and
@@ -28,9 +28,9 @@ struct ManifestOptions {
   std::string pattern;        // of paths relative to the folder; its ending says the format
   std::string push_pattern;   // of push CSV files, with names of `pattern`; empty: none
   std::string manifest_path;  // where the manifest will stand: its paths are relative to that
-  std::map<std::string, double> masses;  // kg by subject
-  double mass_kg = 0.0;                  // of everybody else; 0: not known, an Error
-  double fps = 0.0;                      // 0: as each file says, whole where it nearly is
+  std::map<std::string, ManifestSubject> people;  // by id: masses, and facts under other keys
+  double mass_kg = 0.0;                           // of everybody else; 0: not known, an Error
+  double fps = 0.0;                               // 0: as each file says, whole where it nearly is
   int pushed_person = 0;
   // The setting of recordings whose pattern does not say.
   std::string setting = "single";
@@ -47,7 +47,7 @@ struct MadeManifest {
   int files = 0;                          // that fitted the pattern
   int others = 0;                         // that did not
   std::vector<std::string> without_push;  // recordings for which push_pattern named no file
-  std::vector<std::string> warnings;      // what looks wrong about the pattern
+  std::vector<std::string> warnings;      // what looks wrong about the pattern, or the axes
   std::vector<Error> unreadable;          // what is wrong with the files of recordings left out
 };
 
@@ -57,7 +57,8 @@ struct MadeManifest {
 // read. A recording with a file that cannot be read is left out.
 Result<MadeManifest> MakeManifest(const ManifestOptions& options);
 
-// Masses from a CSV file with the columns id and mass_kg.
-Result<std::map<std::string, double>> ReadMasses(const std::string& path);
+// People from a CSV file with the columns id and mass_kg, and any others: numbers and texts that
+// are known of people, as group and height (datasets/README.md).
+Result<std::map<std::string, ManifestSubject>> ReadPeople(const std::string& path);
 
 }  // namespace pushid

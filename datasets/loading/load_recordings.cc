@@ -8,6 +8,7 @@
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/force_csv.h"
+#include "datasets/formats/trajectories.h"
 #include "datasets/loading/ground_record.h"
 #include "datasets/loading/plate_record.h"
 #include "datasets/loading/recording_from_tracks.h"
@@ -41,13 +42,47 @@ MaybeError CheckWithin(const Push& push, int num_frames) {
                push.file, 0};
 }
 
-MaybeError LoadPush(const std::string& manifest, const ManifestPush& entry, ContentHash* hash,
-                    Recording* recording) {
+// Rows as generalized forces: files without torques have the height that the manifest gives.
+Result<std::vector<Eigen::Vector4d>> GeneralizedRows(const ManifestRecording& recorded,
+                                                     const Push& push, PushRows rows,
+                                                     const Recording& recording,
+                                                     Warnings* warnings) {
+  if (!rows.has_torques) {
+    std::vector<Eigen::Vector3d> forces;
+    for (const Eigen::Vector4d& row : rows.force) forces.emplace_back(row[0], row[1], 0.0);
+    return PushAtHeight(recording.people[push.person], push.start_frame, forces,
+                        {1.0, recorded.push_height_m});
+  }
+  if (recorded.push_height_m) {
+    return Error{
+        "the manifest gives push_height_m, and the push has the torques ftheta and fphi, "
+        "which say its height as well; leave one of them out",
+        push.file};
+  }
+  const auto at_ankles = [](const Eigen::Vector4d& row) { return row.tail<2>().isZero(0.0); };
+  const auto idle = [](const Eigen::Vector4d& row) { return row.isZero(0.0); };
+  if (warnings != nullptr && recorded.push_kind == PushKind::kExternal &&
+      std::all_of(rows.force.begin(), rows.force.end(), at_ankles) &&
+      !std::all_of(rows.force.begin(), rows.force.end(), idle)) {
+    const std::string what =
+        "has ftheta and fphi of 0 throughout, which is a push at the ankles; leave these columns "
+        "out for one at the hip, or at push_height_m";
+    warnings->emplace_back("recording " + Quoted(recorded.id) + ": the push " + what, recorded.id,
+                           "the push " + what);
+  }
+  return std::move(rows.force);
+}
+
+MaybeError LoadPush(const ManifestRecording& recorded, const ManifestPush& entry, ContentHash* hash,
+                    Recording* recording, Warnings* warnings) {
   Push push;
   push.person = entry.person;
-  push.file = ResolvePath(manifest, entry.csv);
+  push.file = ResolvePath(recorded.manifest, entry.csv);
   push.start_frame = entry.start_frame;
-  Result<std::vector<Eigen::Vector4d>> force = ReadPushCsv(push.file);
+  Result<PushRows> rows = ReadPushCsv(push.file);
+  if (!rows.ok()) return rows.error();
+  Result<std::vector<Eigen::Vector4d>> force =
+      GeneralizedRows(recorded, push, std::move(rows.value()), *recording, warnings);
   if (!force.ok()) return force.error();
   push.force = std::move(force.value());
   if (MaybeError failed = CheckWithin(push, recording->num_frames())) return failed;
@@ -99,7 +134,9 @@ class PersonLoader {
     }
     const JointMapping joints =
         Overlaid(entry_.subjects[index_].joints, Overlaid(entry_.joints, mapping_.joints));
-    if (HoldsCrowd(entry_.motion_format) && !joints.hip) {
+    const bool crowd = HoldsCrowd(entry_.motion_format) ||
+                       (entry_.motion_format == MotionFormat::kCsv && IsCrowdCsv(path_));
+    if (crowd && !joints.hip) {
       return Error{kCrowdIsNoRecording, path_};
     }
     Result<FileMotion> read = ReadFileMotion(
@@ -388,7 +425,7 @@ Result<Recording> LoadRecording(const Manifest& manifest, const ManifestRecordin
     pushes.insert(pushes.begin(), ManifestPush{entry.pushed_person, entry.push_csv, 0});
   }
   for (const ManifestPush& push : pushes) {
-    if (MaybeError failed = LoadPush(entry.manifest, push, &hash, &recording)) {
+    if (MaybeError failed = LoadPush(entry, push, &hash, &recording, warnings)) {
       return OfRecording(entry, *std::move(failed));
     }
   }

@@ -296,6 +296,11 @@ MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const st
 }
 
 MassDistribution MassesOf(const RecordedPerson& person) {
+  const std::map<std::string, double>& known = person.known.numbers;
+  if (const auto com = known.find(kComOverRod); com != known.end()) {
+    const auto gyration = known.find(kGyrationOverRod);
+    return {0.0, com->second, gyration == known.end() ? 0.0 : gyration->second};
+  }
   MassDistribution average = Average();
   if (person.joints.empty()) return average;
   const Eigen::Vector3d ankles = 0.5 * (person.left_ankle[0] + person.right_ankle[0]);

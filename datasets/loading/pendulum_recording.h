@@ -94,7 +94,9 @@ MaybeError CheckLabel(const std::vector<PendulumRecording>& recordings, const st
 // ankles are added up at frame 0, as they stand there. Where only shoulders are seen besides hip
 // and ankles, legs are straight and head, arms and trunk are one segment whose centre is 0.6 of the
 // way from hip to shoulders; where not even those are, the body is an average one
-// (models/standing.h).
+// (models/standing.h). What the manifest says of a person, or of a robot, comes first: how high the
+// centre of mass is, and the radius of gyration about it (0 unless given), over the rod.
+inline constexpr char kComOverRod[] = "com_over_rod", kGyrationOverRod[] = "gyration_over_rod";
 
 // person: its joints where they were asked for (LoadOptions::keep_all_joints).
 MassDistribution MassesOf(const RecordedPerson& person);

@@ -13,6 +13,7 @@
 #include "datasets/loading/plate_record.h"
 #include "datasets/manifest/manifest.h"
 #include "models/enum_names.h"
+#include "models/skeleton_mapping.h"
 
 namespace pushid {
 namespace {
@@ -208,6 +209,17 @@ MaybeError SetUnit(const FileMotionRequest& request, const PointMotion& points,
   return std::nullopt;
 }
 
+// A base of support at the origin of its log: elsewhere 0, 0, 0 is a point that was not seen.
+void PutBaseAtOrigin(const JointMapping& joints, FileMotion* motion) {
+  if (joints.others.count(kBaseRole) == 0) return;
+  for (int base : motion->places.left_ankle) {
+    auto& track = motion->tracks[base];
+    const bool seen = std::any_of(track.begin(), track.end(),
+                                  [](const Eigen::Vector3d& p) { return p.allFinite(); });
+    if (!seen) track.assign(track.size(), Eigen::Vector3d::Zero());
+  }
+}
+
 Result<FileMotion> ReadPoints(const FileMotionRequest& request) {
   FileMotion motion;
   PointReadOptions options;
@@ -229,6 +241,7 @@ Result<FileMotion> ReadPoints(const FileMotionRequest& request) {
   for (auto& track : motion.tracks) {
     for (Eigen::Vector3d& position : track) position *= motion.metres_per_unit;
   }
+  PutBaseAtOrigin(request.joints, &motion);
   const double rate =
       request.mapping.frame_rate > 0.0 ? request.mapping.frame_rate : points.rate_hz;
   motion.frame_time_s = rate > 0.0 ? 1.0 / rate : 0.0;
@@ -286,6 +299,28 @@ Result<Recording> RecordingFromTracks(TrackedRecording tracks,
     return Of(recording.id, failed->message);
   }
   return recording;
+}
+
+double HeightFraction(const Body& body, const Vector4<double>& q, double height) {
+  return (height - body.cart_height) / (body.rod_length * std::cos(q[2]) * std::cos(q[3]));
+}
+
+std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int start,
+                                          const std::vector<Eigen::Vector3d>& forces,
+                                          const PushHeight& height) {
+  const auto pose = [&person](size_t frame) {
+    const size_t t = std::min(frame, person.hip.size() - 1);
+    return MapSkeleton(person.hip[t], person.left_ankle[t], person.right_ankle[t]);
+  };
+  const MappedPose first = pose(0);
+  const Body body{person.mass_kg, first.rod_length, first.cart_height};
+  const double fraction =
+      height.metres ? HeightFraction(body, pose(start).q, *height.metres) : height.fraction;
+  std::vector<Eigen::Vector4d> rows;
+  for (size_t t = 0; t < forces.size(); ++t) {
+    rows.push_back(GeneralizedForce<double>(body, pose(start + t).q, forces[t], fraction));
+  }
+  return rows;
 }
 
 Result<FileMotion> ReadFileMotion(const FileMotionRequest& request) {

@@ -52,6 +52,21 @@ Result<Recording> RecordingFromTracks(TrackedRecording tracks,
                                       const PreparationOptions& preparation = {},
                                       Warnings* warnings = nullptr);
 
+// The height of a push: a fraction of the way from the ankles to the hip, or metres above the
+// ground at its first frame.
+struct PushHeight {
+  double fraction = 1.0;
+  std::optional<double> metres;
+};
+
+// Fraction of the rod at which a horizontal plane `height` metres up crosses it.
+double HeightFraction(const Body& body, const Vector4<double>& q, double height);
+
+// Forces on a person from frame `start` on, as generalized forces at the recorded poses.
+std::vector<Eigen::Vector4d> PushAtHeight(const RecordedPerson& person, int start,
+                                          const std::vector<Eigen::Vector3d>& forces,
+                                          const PushHeight& height);
+
 // The joints or points of one motion file that a person is read from, whatever its
 // format.
 

@@ -33,6 +33,7 @@ void ReadColumns(JsonFields* fields, ColumnMapping* mapping) {
 }
 
 constexpr int kHighestIndex = 1 << 30;
+constexpr char kBase[] = "base";  // kBaseRole
 
 std::optional<JointReference> ReadOne(const Json& value) {
   JointReference joint;
@@ -104,9 +105,10 @@ Result<ColumnMapping> ReadColumnMapping(const std::string& path) {
 
 std::optional<JointReference> JointMapping::Of(int role) const {
   if (role == kBodyHip) return hip;
-  if (role == kLeftAnkle) return left_ankle;
-  if (role == kRightAnkle) return right_ankle;
-  const auto found = others.find(role);
+  if (role == kLeftAnkle && left_ankle) return left_ankle;
+  if (role == kRightAnkle && right_ankle) return right_ankle;
+  const bool of_ankle = role == kLeftAnkle || role == kRightAnkle;
+  const auto found = others.find(of_ankle ? kBaseRole : role);
   return found == others.end() ? std::nullopt : std::optional(found->second);
 }
 
@@ -130,6 +132,13 @@ JointMapping ReadJointMapping(const JsonDocument& document, JsonFields* fields) 
   for (int role = 0; role < kBodyJoints; ++role) {
     const std::optional<JointReference> joint = ReadJoint(&joints, RoleName(role).c_str());
     if (joint) mapping.Set(role, *joint);
+  }
+  // A robot's log has its base of support, and no ankles.
+  if (const std::optional<JointReference> base = ReadJoint(&joints, kBase)) {
+    if (mapping.left_ankle || mapping.right_ankle) {
+      joints.Fail(kBase, "is given together with ankles; it stands for both of them");
+    }
+    mapping.others[kBaseRole] = *base;
   }
   joints.OnlyAsked();
   fields->Add(joints);

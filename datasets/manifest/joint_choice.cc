@@ -7,6 +7,7 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "datasets/manifest/column_mapping.h"
 
 namespace pushid {
 namespace {
@@ -213,7 +214,7 @@ Result<PendulumJoints> ChooseFrom(Source source, const JointMapping& mapping) {
     joints.*place = std::move(chosen.value());
   }
   if (joints.hip == joints.left_ankle || joints.hip == joints.right_ankle ||
-      joints.left_ankle == joints.right_ankle) {
+      (joints.left_ankle == joints.right_ankle && mapping.others.count(kBaseRole) == 0)) {
     return Error{"hip, left_ankle and right_ankle must be three different " + source.noun() +
                      "s, not " + Quoted(source.names[joints.hip[0]]) + ", " +
                      Quoted(source.names[joints.left_ankle[0]]) + " and " +
@@ -480,6 +481,7 @@ JointMapping Overlaid(const JointMapping& first, const JointMapping& second) {
   for (int role = 0; role < kBodyJoints; ++role) {
     if (const auto joint = first.Of(role)) overlaid.Set(role, *joint);
   }
+  if (const auto base = first.Of(kBaseRole)) overlaid.Set(kBaseRole, *base);
   return overlaid;
 }
 

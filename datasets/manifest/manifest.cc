@@ -23,6 +23,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kAnyFrame = 1 << 30;
+constexpr double kHighestPush = 3.0;  // m
 
 // Numbers and texts under keys that no program knows.
 PersonFacts FactsOf(const Json& object, const JsonFields& fields) {
@@ -165,6 +166,13 @@ ManifestRecording ReadRecording(const JsonDocument& document, const Json& object
   recording.mapping = fields.OptionalText("mapping", "");
   recording.push_csv = fields.OptionalText("push_csv", "");
   recording.push_kind = fields.Choice("push_kind", PushKind::kExternal);
+  if (fields.Has("push_height_m")) {
+    recording.push_height_m = fields.Number("push_height_m", "the push's height above the ground");
+    if (!(*recording.push_height_m >= 0.0 && *recording.push_height_m <= kHighestPush)) {
+      fields.Fail("push_height_m", "is " + Rounded(*recording.push_height_m) +
+                                       "; a push is between 0 and 3 m above the ground");
+    }
+  }
   recording.joints = ReadJointMapping(document, &fields);
   recording.up = fields.OptionalText("up", recording.up);
   recording.forward = fields.OptionalText("forward", recording.forward);
@@ -244,7 +252,9 @@ std::vector<int> WrittenRoles() {
 Json JointsJson(const JointMapping& joints, const Json& object) {
   Json json = object.contains("joints") ? object.at("joints") : Json::object();
   for (int role : WrittenRoles()) {
-    const std::optional<JointReference> joint = joints.Of(role);
+    const bool by_base = role == kLeftAnkle || role == kRightAnkle;
+    const std::optional<JointReference> joint =
+        by_base && joints.others.count(kBaseRole) > 0 ? std::nullopt : joints.Of(role);
     SetUnless(!joint.has_value(), RoleName(role).c_str(), joint ? JointJson(*joint) : Json(),
               &json);
   }
@@ -264,6 +274,10 @@ Json RecordingJson(const ManifestRecording& recording) {
   for (std::size_t i = 0; i < recording.subjects.size(); ++i) {
     subjects[i]["id"] = recording.subjects[i].id;
     subjects[i]["mass_kg"] = recording.subjects[i].mass_kg;
+    // Keys that were read stay as they were spelt.
+    const PersonFacts& known = recording.subjects[i].known;
+    for (const auto& [key, number] : known.numbers) subjects[i].emplace(key, number);
+    for (const auto& [key, text] : known.texts) subjects[i].emplace(key, text);
     const Json joints = JointsJson(recording.subjects[i].joints, subjects[i]);
     SetUnless(joints.empty(), "joints", joints, &subjects[i]);
   }
@@ -277,6 +291,8 @@ Json RecordingJson(const ManifestRecording& recording) {
   SetUnless(recording.mapping.empty(), "mapping", recording.mapping, &json);
   SetUnless(recording.push_csv.empty(), "push_csv", recording.push_csv, &json);
   json["push_kind"] = NameOf(recording.push_kind);
+  SetUnless(!recording.push_height_m, "push_height_m", recording.push_height_m.value_or(0.0),
+            &json);
   SetUnless(labels.magnitude().empty(), kMagnitudeLabel, labels.magnitude(), &json);
   // A file that has both keeps both; one that has the old key alone gets the new one.
   if (!json.contains(kConditionLabel)) json.erase(kOldConditionKey);

@@ -80,6 +80,7 @@ struct ManifestRecording {
   std::string mapping;              // relative to the manifest; empty: none
   std::string push_csv;             // relative to the manifest; empty: no push at frame 0
   PushKind push_kind = PushKind::kExternal;
+  std::optional<double> push_height_m;  // of pushes whose files have no torques; unset: the hip
   JointMapping joints;
   std::string up = "z";       // axis of the BVH that points up
   std::string forward = "x";  // axis of the BVH that points forward, in the push direction

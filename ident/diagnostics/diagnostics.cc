@@ -58,13 +58,15 @@ int LagsOf(const PendulumRecording& recording) {
 
 void AddFrames(const PendulumRecording& recording, const std::vector<double>& raw,
                const ResidualSigmas& sigmas, RecordingDiagnostics* d) {
-  double error = 0.0, motion = 0.0;
+  constexpr double kMoved = 0.02;  // m
+  double error = 0.0, motion = 0.0, farthest = 0.0;
   for (int t = 1; t < recording.num_frames(); ++t) {
     for (int n = 0; n < recording.num_people(); ++n) {
       const int row = ((t - 1) * recording.num_people() + n) * kFrameResiduals;
       const Eigen::Map<const FrameVector<double>> r(raw.data() + row);
       // The first two are of the hip, or of the cart (FrameLoss::kLdp), which has a way of its own.
       error += (sigmas.hip * r.head<2>()).squaredNorm();
+      farthest = std::max(farthest, (recording.hip[n][t] - recording.hip[n][0]).head<2>().norm());
       const bool cart = sigmas.loss == FrameLoss::kLdp;
       motion += cart ? (recording.states[n][t].q - recording.states[n][0].q).head<2>().squaredNorm()
                      : (recording.hip[n][t] - recording.hip[n][0]).head<2>().squaredNorm();
@@ -73,6 +75,7 @@ void AddFrames(const PendulumRecording& recording, const std::vector<double>& ra
     }
   }
   d->explained = motion > 0.0 ? 100.0 * (1.0 - error / motion) : 0.0;
+  d->moved = farthest > kMoved;
 }
 
 std::vector<RecordingDiagnostics> DiagnoseRecordings(const FitProblem& problem,

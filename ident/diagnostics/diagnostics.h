@@ -36,12 +36,16 @@ struct Outlier {
 struct RecordingDiagnostics {
   std::string id;
   double explained = 0.0;  // % of the hip's horizontal variation: 100 (1 - |error|^2 / |motion|^2)
+  bool moved = true;       // whether a hip went 2 cm; else a share of its motion says little
   double cost = 0.0;       // in the objective
   double lag1 = 0.0;       // lag-1 autocorrelation of the hip's forward error
   double ljung_box = 0.0;  // of that error over the lags of Whiteness
   double ljung_box_p = 0.0;  // small: the error is no white noise
   std::vector<Outlier> outliers;
 };
+
+// Whether standing still predicts it better.
+inline bool WorseThanStatic(const RecordingDiagnostics& r) { return r.moved && r.explained < 0.0; }
 
 // One residual channel over all recordings: its correlation with itself and with the push, lag by
 // lag. A correlation is the mean over recordings; `error` is the standard error of that mean.

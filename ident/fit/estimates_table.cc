@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "datasets/files/number_text.h"
 #include "ident/problem/behaviour.h"
@@ -202,6 +203,30 @@ void AddMassWarnings(const std::vector<PendulumRecording>& recordings, Warnings*
   }
 }
 
+// Fewer line-ups do not tell how far others would differ.
+constexpr size_t kFewLineUps = 4;
+
+// What people do to each other is seen of each line-up once, however often it was pushed.
+void AddLineUpWarning(const FitProblem& problem, Warnings* warnings) {
+  std::string names;
+  for (const ParameterSpec& spec : problem.options().table.specs) {
+    if (spec.free && IsPairParameter(spec.id)) names += (names.empty() ? "" : ", ") + spec.name;
+  }
+  std::set<std::vector<std::string>> line_ups;
+  for (const PendulumRecording& recording : problem.recordings()) {
+    std::vector<std::string> people = recording.subject_ids;
+    std::sort(people.begin(), people.end());
+    if (people.size() > 1) line_ups.insert(people);
+  }
+  if (names.empty() || line_ups.empty() || line_ups.size() >= kFewLineUps) return;
+  warnings->emplace_back(
+      names +
+      (line_ups.size() == 1
+           ? " come from one line-up of people"
+           : " come from " + std::to_string(line_ups.size()) + " line-ups of people") +
+      ", fewer than four: how far others differ is not known; read the columns of these people");
+}
+
 // What the demand to settle did, if anything.
 void AddSettlingWarning(const Uncertainty& u, const ModelOptions& model, size_t shared,
                         Warnings* warnings) {
@@ -266,6 +291,7 @@ Warnings FitWarnings(const FitProblem& problem, const FitResult& result) {
   }
   AddMassWarnings(problem.recordings(), &warnings);
   AddClusterWarning(result.uncertainty, &warnings);
+  AddLineUpWarning(problem, &warnings);
   AddSettlingWarning(result.uncertainty, model, problem.map().fitted.size(), &warnings);
   for (const Estimate& e : result.estimates) {
     if (e.status == EstimateStatus::kAtBound) warnings.emplace_back(e.name + " is at its bound");

@@ -2,10 +2,12 @@
 #include "ident/fit/fit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "datasets/files/number_text.h"
 #include "ident/fit/covariates.h"
 #include "ident/fit/estimates_table.h"
 #include "ident/fit/step_probability.h"
@@ -217,6 +219,51 @@ FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions
   none.options = options;
   none.message = fit.error().ToString();
   return none;
+}
+
+namespace {
+
+// Whether standing still is the better prediction of half of them.
+bool LosesToStatic(const FitResult& result) {
+  const std::vector<RecordingDiagnostics>& all = result.diagnostics.recordings;
+  const auto worse = std::count_if(all.begin(), all.end(), &WorseThanStatic);
+  return worse > 0 && 2 * worse >= static_cast<std::ptrdiff_t>(all.size());
+}
+
+// %, of the hip's motion in the median recording.
+double Explained(const FitResult& result) {
+  std::vector<double> explained;
+  for (const RecordingDiagnostics& r : result.diagnostics.recordings) {
+    if (r.moved) explained.push_back(r.explained);
+  }
+  if (!result.ok() || explained.empty()) return -INFINITY;
+  const auto middle = explained.begin() + explained.size() / 2;
+  std::nth_element(explained.begin(), middle, explained.end());
+  return *middle;
+}
+
+}  // namespace
+
+FitResult FitAnyStance(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+                       const std::vector<FitOptions>& others, const SolveProgress& progress) {
+  FitResult best = Fit(recordings, options, progress);
+  if (!best.ok() || others.empty() || !LosesToStatic(best)) return best;
+  const auto name = [](const FitResult& result) {
+    return "--stance=" + NameOf(result.options.model.stance) + " explains " +
+           Rounded(Explained(result), 3) + " %";
+  };
+  std::string tried = name(best);
+  for (FitOptions other : others) {
+    if (PrepareFit(recordings, &other)) continue;
+    FitResult result = Fit(recordings, other, progress);
+    if (!result.ok()) continue;
+    tried += ", " + name(result);
+    if (Explained(result) > Explained(best)) best = std::move(result);
+  }
+  best.warnings.insert(best.warnings.begin(),
+                       {"of the hip's motion in the median recording " + tried +
+                        "; this is the fit with --stance=" + NameOf(best.options.model.stance)});
+  return best;
 }
 
 Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings,

@@ -23,6 +23,13 @@ class FitProblem;
 FitResult Fit(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
               const SolveProgress& progress = nullptr);
 
+// Fit, and where standing still predicts half of the recordings or more better, also with `others`
+// (FitSetup::OtherStances, not prepared yet): the result that explains most, whose first warning
+// says so.
+FitResult FitAnyStance(const std::vector<PendulumRecording>& recordings, const FitOptions& options,
+                       const std::vector<FitOptions>& others,
+                       const SolveProgress& progress = nullptr);
+
 // Solves without judging: for folds, whose models only predict. It prepares the options
 // itself. forecasts: whether the model is to predict from first frames, which it learns from folds
 // of its own. Errors: those of PrepareFit; no usable optimum.

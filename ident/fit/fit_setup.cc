@@ -188,6 +188,21 @@ Result<FitOptions> FitSetup::For(const std::vector<PendulumRecording>& recording
   return MakeFitOptions(given_, &recordings, must_act_);
 }
 
+std::vector<FitOptions> FitSetup::OtherStances(const std::vector<PendulumRecording>& recordings,
+                                               const FitOptions& taken) const {
+  const std::string* asked = Find(given_, "stance");
+  std::vector<FitOptions> others;
+  if ((asked != nullptr && *asked != kAutoStance) || !StanceOfMovers(taken.preset)) return others;
+  for (const auto& [name, stance] : Names(Stance{})) {
+    if (stance == taken.model.stance) continue;
+    const Result<FitOptions> made =
+        MakeFitOptions(Merged(given_, {{"preset", taken.preset}, {"stance", std::string(name)}}),
+                       &recordings, must_act_);
+    if (made.ok() && GoesTogether(made.value(), recordings)) others.push_back(made.value());
+  }
+  return others;
+}
+
 std::vector<std::string> OptionWarnings(const GivenOptions& given, const FitOptions& options) {
   std::vector<std::string> warnings;
   const std::string* fixed = Find(given, "fix");

@@ -18,6 +18,11 @@
 namespace pushid {
 namespace {
 
+// What to choose by where two options exclude each other.
+constexpr char kQuestions[] =
+    "rollouts (--likelihood=trajectory, with --delay and platforms) answer how stiff, damped and "
+    "late people balance, likelihoods of single steps how much of their motion is noise";
+
 bool AnyGroup(const std::vector<PendulumRecording>& recordings) {
   return std::any_of(recordings.begin(), recordings.end(),
                      [](const PendulumRecording& recording) { return recording.num_people() > 1; });
@@ -36,8 +41,8 @@ Warnings WarningsBefore(const std::vector<PendulumRecording>& recordings,
     if (std::none_of(recording.masses.begin(), recording.masses.end(), IsAverage)) continue;
     const std::string what =
         "neither segments nor shoulders were read, so that --body=anthropometric takes the body of "
-        "an average person; name them in the manifest (\"joints\"), or enter com_height with "
-        "--body=ldp";
+        "an average person; name them in the manifest (\"joints\"), state com_over_rod and "
+        "gyration_over_rod of the subject, or enter com_height with --body=ldp";
     warnings.emplace_back("recording " + recording.id + ": " + what, recording.id, what);
   }
   return warnings;
@@ -98,7 +103,7 @@ MaybeError CheckLikelihood(const std::vector<PendulumRecording>& recordings,
         what +
         (model.learned != nullptr ? " has weights, which they cannot fit"
                                   : " has internal memory") +
-        ": leave one of them out"};
+        ": leave one of them out; " + kQuestions};
   }
   for (const PendulumRecording& r : recordings) {
     if (r.num_frames() < 3) {
@@ -221,7 +226,8 @@ MaybeError CheckPlates(const PendulumRecording& r, const FitOptions& options) {
   if (options.likelihood != Likelihood::kTrajectory) {
     return Error{where + ", which --likelihood=" + NameOf(options.likelihood) +
                  " does not have: it knows positions alone; set \"use\": \"none\" there, or fit "
-                 "with --likelihood=trajectory"};
+                 "with --likelihood=trajectory; " +
+                 kQuestions};
   }
   if (model.interaction.Any() && r.num_people() > 1) {
     return Error{"recording " + r.id +

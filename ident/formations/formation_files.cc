@@ -22,14 +22,15 @@ namespace pushid {
 namespace {
 
 constexpr LengthUnit kUnit = LengthUnit::kMillimetre;
-constexpr double kHalfStance = 0.1;  // m, from the cart to an ankle
 
 double InUnit(double metres) { return ConvertLength(metres, LengthUnit::kMetre, kUnit); }
 
 double Degrees(double radians) { return radians * 180.0 / M_PI; }
 
-BvhSkeleton PendulumSkeleton(const Body& body) {
-  const double rod = InUnit(body.rod_length), side = InUnit(kHalfStance);
+BvhSkeleton PendulumSkeleton(const ScenePerson& person) {
+  const double rod = InUnit(person.body.rod_length);
+  const Eigen::Vector2d half = 0.5 * person.start.feet.apart;
+  const double x = InUnit(half.x()), y = InUnit(half.y());
   const std::vector<BvhChannel> rotations = {BvhChannel::kXrotation, BvhChannel::kYrotation,
                                              BvhChannel::kZrotation};
   BvhSkeleton skeleton;
@@ -38,8 +39,8 @@ BvhSkeleton PendulumSkeleton(const Body& body) {
       {"Rod", 0, {0, 0, 0}, rotations, {}},
       // A mark above the hip, so that viewers draw more than a point.
       {"Hips", 1, {0, 0, rod}, DefaultBvhChannels(false), {{0, 0, 0.1 * rod}}},
-      {"LeftAnkle", 0, {0, side, 0}, DefaultBvhChannels(false), {{0, 0, 0}}},
-      {"RightAnkle", 0, {0, -side, 0}, DefaultBvhChannels(false), {{0, 0, 0}}},
+      {"LeftAnkle", 0, {x, y, 0}, DefaultBvhChannels(false), {{0, 0, 0}}},
+      {"RightAnkle", 0, {-x, -y, 0}, DefaultBvhChannels(false), {{0, 0, 0}}},
   };
   return skeleton;
 }
@@ -47,7 +48,7 @@ BvhSkeleton PendulumSkeleton(const Body& body) {
 BvhMotion PendulumMotion(const FormationRun& run, int person) {
   const Body& body = run.recording.scene.people[person].body;
   BvhMotion motion;
-  motion.skeleton = PendulumSkeleton(body);
+  motion.skeleton = PendulumSkeleton(run.recording.scene.people[person]);
   motion.length_unit = kUnit;
   motion.frame_time_s = run.recording.scene.dt;
   for (int t = 0; t < run.num_frames(); ++t) {
@@ -71,7 +72,9 @@ ManifestRecording Entry(const FormationRun& run) {
   entry.fps = 1.0 / run.recording.scene.dt;
   entry.frames = run.num_frames();
   entry.pushed_person = run.recording.pushed_person;
-  entry.push_kind = PushKind::kExternal;
+  if (!run.recording.scene.pushes.empty()) {
+    entry.push_kind = run.recording.scene.pushes.front().kind;
+  }
   entry.joints.hip = JointReference{"Hips"};
   entry.joints.left_ankle = JointReference{"LeftAnkle"};
   entry.joints.right_ankle = JointReference{"RightAnkle"};

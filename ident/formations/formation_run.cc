@@ -1,6 +1,7 @@
 // ident: rollout of a formation and what it says about each person.
 #include "ident/formations/formation_run.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -139,6 +140,40 @@ Pose SyntheticPose(double rod_length) {
   Pose pose;
   for (int j = 0; j < kBodyJoints; ++j) pose.col(j) = positions[j];
   return pose;
+}
+
+void PlaceFittedPeople(const std::vector<FittedPerson>& people, Scene* scene) {
+  for (int n = 0; n < scene->num_people(); ++n) {
+    const FittedPerson& fitted = people[n % people.size()];
+    ScenePerson& person = scene->people[n];
+    person.body.mass = fitted.mass;
+    person.body.rod_length = fitted.rod;
+    person.body.cart_height = fitted.cart_height;
+    person.start.q.tail<2>() << fitted.theta, fitted.phi;
+    person.start.feet.apart = fitted.apart;
+  }
+}
+
+std::vector<Pose> SyntheticPoses(Scene* scene) {
+  std::vector<Pose> poses;
+  for (ScenePerson& person : scene->people) {
+    const Vector4<double>& q = person.start.q;
+    const Eigen::Quaterniond lean = Eigen::AngleAxisd(q[3], Eigen::Vector3d::UnitX()) *
+                                    Eigen::AngleAxisd(q[2], Eigen::Vector3d::UnitY());
+    Pose pose = SyntheticPose(person.body.rod_length);
+    const Eigen::Vector3d origin(0.0, 0.0, pose(2, kLeftAnkle));
+    if (person.body.cart_height == 0.0) person.body.cart_height = origin.z();
+    const Eigen::Vector3d cart(q[0], q[1], person.body.cart_height);
+    for (int j = 0; j < kBodyJoints; ++j) {
+      const Eigen::Vector3d at = pose.col(j) - origin;
+      pose.col(j) = cart + (at.z() > 0.0 ? lean * at : at);  // feet stay flat
+    }
+    const Eigen::Vector2d half = 0.5 * person.start.feet.apart;
+    pose.col(kLeftAnkle) << cart.head<2>() + half, cart.z();
+    pose.col(kRightAnkle) << cart.head<2>() - half, cart.z();
+    poses.push_back(pose);
+  }
+  return poses;
 }
 
 std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene) {

@@ -83,6 +83,13 @@ Pose SyntheticPose(double rod_length);
 // lean and places of the feet. Masses and pushes stay. Returns the first pose of each person.
 std::vector<Pose> TakePoses(const std::vector<Pose>& poses, Scene* scene);
 
+// The people of a fit in the places of the scene's, facing +x, from the first again where there are
+// fewer: mass, rod, lean and feet. Before pushes are added.
+void PlaceFittedPeople(const std::vector<FittedPerson>& people, Scene* scene);
+
+// The synthetic skeleton as the pendulum of each person stands; sets heights of carts that are 0.
+std::vector<Pose> SyntheticPoses(Scene* scene);
+
 // Restored and post-processed, one motion per person. first_poses: as TakePoses returned them.
 std::vector<BodyMotion> FormationBodies(const FormationRun& run,
                                         const std::vector<Pose>& first_poses,

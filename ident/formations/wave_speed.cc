@@ -147,8 +147,8 @@ MaybeError CheckOnePointAPerson(const std::string& path, std::optional<MotionFor
     return std::nullopt;
   }
   return Error{
-      "a wave is measured from one point a person: trajectories (.txt), a table with "
-      "three columns for each person (.csv), or a manifest of groups",
+      "a wave is measured from one point a person: trajectories (.txt, or .csv with the header "
+      "id,frame,x,y), a table with three columns for each person (.csv), or a manifest of groups",
       path};
 }
 
@@ -272,7 +272,7 @@ Result<std::vector<MeasuredWave>> MeasureWaves(const std::string& path) {
     if (waves.empty()) return Error{"no recording of several people", path};
     return waves;
   }
-  const std::optional<MotionFormat> format = MotionFormatOfFile(path);
+  const std::optional<MotionFormat> format = MotionFormatInFile(path);
   if (MaybeError error = CheckOnePointAPerson(path, format)) return *error;
   const Result<PointMotion> motion = ReadPointMotion(path, *format);
   if (!motion.ok()) return motion.error();

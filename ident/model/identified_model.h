@@ -35,10 +35,29 @@ struct ValueRange {
   }
 };
 
-// The pushes that a model was fitted to (model/push_range.h).
+// A person of the fitted recordings, facing x: the body of the first, the usual lean at frame 0.
+struct FittedPerson {
+  double mass = 0.0, rod = 0.0, cart_height = 0.0;  // kg, m
+  double theta = 0.0, phi = 0.0;                    // rad
+  Eigen::Vector2d apart = Eigen::Vector2d::Zero();  // the left foot from the right one, m
+};
+
+// A push as they usually were in the fitted recordings: medians over those of the commonest kind.
+struct UsualPush {
+  PushKind kind = PushKind::kExternal;
+  double duration = 0.2;  // of the rows, s
+  double height = 1.0;    // of their torques over the rod: 1 is the hip
+};
+
+// The pushes and people that a model was fitted to (model/push_range.h). Whatever was not there, or
+// was not written by older versions, is empty.
 struct PushRange {
   ValueRange external_s, net_s;  // durations of the rows, s
   ValueRange impulse_per_mass;   // m/s
+  ValueRange height;             // of external pushes, as a fraction of the rod
+  ValueRange spacing;            // from everybody's cart to the nearest other one, m
+  std::vector<FittedPerson> people;
+  std::optional<UsualPush> usual;
   // Angles between pushes and the model's x axis, degrees; empty in files that are older than it.
   ValueRange direction;
 

@@ -242,6 +242,27 @@ void Fields(Archive& a, PushedFeet& f) {
 }
 
 template <class Archive>
+void Fields(Archive& a, FittedPerson& p) {
+  a("mass_kg", p.mass);
+  a("rod_m", p.rod);
+  a("cart_height_m", p.cart_height);
+  a("theta_rad", p.theta);
+  a("phi_rad", p.phi);
+  a("feet_apart_m", p.apart);
+  a.Check(p.mass > 0.0 && p.rod > 0.0 && std::abs(p.theta) < kMaxAngle &&
+              std::abs(p.phi) < kMaxAngle && p.apart.allFinite(),
+          "a fitted person has numbers that cannot be");
+}
+
+template <class Archive>
+void Fields(Archive& a, UsualPush& p) {
+  a("kind", p.kind);
+  a("duration_s", p.duration);
+  a("height_of_rod", p.height);
+  a.Check(p.duration > 0.0 && std::isfinite(p.height), "a usual push has numbers that cannot be");
+}
+
+template <class Archive>
 void Fields(Archive& a, PushRange& p) {
   const auto range = [&a](const char* key, ValueRange& r) {
     if (a.Has(key, !r.empty())) a.Pair(key, r.lower, r.upper);
@@ -250,6 +271,10 @@ void Fields(Archive& a, PushRange& p) {
   range("net_duration_s", p.net_s);
   range("impulse_per_mass_m_s", p.impulse_per_mass);
   range("direction_deg", p.direction);
+  range("height_of_rod", p.height);
+  range("spacing_m", p.spacing);
+  if (a.Has("people", !p.people.empty())) a("people", p.people);
+  a.Optional("usual", p.usual);
 }
 
 template <class Archive>
@@ -311,6 +336,7 @@ template <class Archive>
 void Fields(Archive& a, RecordingDiagnostics& r) {
   a("id", r.id);
   a("explained_percent", r.explained);
+  if (a.Has("moved")) a("moved", r.moved);  // older files have it not
   PUSHID_FIELDS(a, r, cost, lag1, ljung_box, ljung_box_p, outliers);
 }
 

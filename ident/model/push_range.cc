@@ -1,8 +1,11 @@
-// ident: durations and impulses of pushes.
+// ident: durations, impulses and heights of pushes; people.
 #include "ident/model/push_range.h"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "datasets/files/number_text.h"
 #include "ident/model/identified_model.h"
@@ -34,18 +37,100 @@ double Direction(const IdentifiedModel& model, const PendulumRecording& recordin
   return std::abs(std::remainder(angle, 2.0 * M_PI)) * 180.0 / M_PI;
 }
 
-// The pushes of some recordings that lie outside of a range.
+// Where a horizontal force at the body has the push's torque, as a fraction of the rod; at least a
+// hundredth, because a range is one of factors.
+double HeightOfRod(const PendulumRecording& recording, const ScenePush& push) {
+  const ScenePerson& person = recording.scene.people[push.person];
+  const Vector4<double>& f = push.mean;
+  const double lean = std::cos(person.start.q[2]) * std::cos(person.start.q[3]);
+  return std::max(0.01, (f[2] * f[0] - f[3] * f[1]) /
+                            (f.head<2>().squaredNorm() * person.body.rod_length * lean));
+}
+
+bool HasHeight(const ScenePush& push) {
+  return push.kind == PushKind::kExternal && HasDirection(push);
+}
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The medians of the commonest kind.
+std::optional<UsualPush> UsualOf(const std::vector<PendulumRecording>& recordings) {
+  std::map<PushKind, std::vector<double>> durations, heights;
+  for (const PendulumRecording& recording : recordings) {
+    for (const ScenePush& push : recording.scene.pushes) {
+      if (push.force.empty() || !HasDirection(push)) continue;
+      durations[push.kind].push_back(Duration(recording, push));
+      heights[push.kind].push_back(HeightOfRod(recording, push));
+    }
+  }
+  if (durations.empty()) return std::nullopt;
+  const PushKind kind =
+      std::max_element(durations.begin(), durations.end(), [](const auto& a, const auto& b) {
+        return a.second.size() < b.second.size();
+      })->first;
+  return UsualPush{kind, Median(durations[kind]), Median(heights[kind])};
+}
+
+// From a person's cart to the nearest other one, m; infinite for who is alone.
+double Spacing(const Scene& scene, int person) {
+  double nearest = INFINITY;
+  for (int n = 0; n < scene.num_people(); ++n) {
+    if (n == person) continue;
+    const Vector4<double> apart = scene.people[n].start.q - scene.people[person].start.q;
+    nearest = std::min(nearest, apart.head<2>().norm());
+  }
+  return nearest;
+}
+
+// Everybody once, by id, in the order of the recordings: the body and feet of the first of them,
+// and the usual posture of all, because somebody may lean in one.
+void AddPeople(const std::vector<PendulumRecording>& recordings, PushRange* range) {
+  std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> leans;
+  std::vector<std::string> ids;
+  for (const PendulumRecording& recording : recordings) {
+    const Scene scene = TurnedScene(recording, recording.facing);
+    for (int n = 0; n < scene.num_people(); ++n) {
+      if (scene.num_people() > 1) range->spacing.Add(Spacing(scene, n));
+      const auto& [body, start] = scene.people[n];
+      auto& [theta, phi] = leans[recording.subject_ids[n]];
+      theta.push_back(start.q[2]);
+      phi.push_back(start.q[3]);
+      if (theta.size() > 1) continue;
+      ids.push_back(recording.subject_ids[n]);
+      range->people.push_back(
+          {body.mass, body.rod_length, body.cart_height, 0.0, 0.0, start.feet.apart});
+    }
+  }
+  for (size_t i = 0; i < ids.size(); ++i) {
+    range->people[i].theta = Median(leans[ids[i]].first);
+    range->people[i].phi = Median(leans[ids[i]].second);
+  }
+}
+
+// The pushes, or people, of some recordings that lie outside of a range.
 struct Outside {
   int recordings = 0;
   double farthest = 1.0;  // as a factor
   double value = 0.0;     // of the farthest
-  std::string id;         // of its recording
+  std::string id, last;   // of its recording, and of the last one counted
   bool has_tail = false;  // in the model, and it is too much
   ValueRange range;
 
   void Add(double factor, double of, const std::string& recording, const ValueRange& fitted) {
     if (factor <= farthest) return;
     farthest = factor, value = of, id = recording, range = fitted;
+  }
+  // A value that is more than a quarter outside counts.
+  void See(double of, const std::string& recording, const ValueRange& fitted) {
+    const double factor = fitted.Beyond(of);
+    if (factor <= kBeyondFittedRange) return;
+    if (recording != last) ++recordings;
+    last = recording;
+    Add(factor, of, recording, fitted);
   }
   std::string Sentence(const std::string& what, const std::string& unit, int all) const {
     const std::string others = recordings > 1
@@ -100,8 +185,11 @@ PushRange FittedPushRange(const IdentifiedModel& model,
       range.Durations(push.kind).Add(Duration(recording, push));
       range.impulse_per_mass.Add(ImpulsePerMass(model, recording, push));
       if (HasDirection(push)) range.direction.Add(Direction(model, recording, push));
+      if (HasHeight(push)) range.height.Add(HeightOfRod(recording, push));
     }
   }
+  range.usual = UsualOf(recordings);
+  AddPeople(recordings, &range);
   return range;
 }
 
@@ -110,7 +198,9 @@ std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
   if (!model.push_range) return {};
   IdentifiedModel boundless = model;  // tails as they would be without the range
   boundless.push_range.reset();
-  Outside duration, impulse;
+  Outside duration, impulse, height, mass, spacing;
+  ValueRange masses;
+  for (const FittedPerson& person : model.push_range->people) masses.Add(person.mass);
   for (const PendulumRecording& recording : recordings) {
     const auto judge = [&](const auto& value, const auto& range, Outside* outside) {
       bool any = false;
@@ -129,6 +219,17 @@ std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
           [&](const ScenePush& push) { return model.push_range->Durations(push.kind); }, &duration);
     judge([&](const ScenePush& push) { return ImpulsePerMass(boundless, recording, push); },
           [&](const ScenePush&) { return model.push_range->impulse_per_mass; }, &impulse);
+    for (const ScenePush& push : recording.scene.pushes) {
+      if (push.force.empty() || !HasHeight(push)) continue;
+      height.See(HeightOfRod(recording, push), recording.id, model.push_range->height);
+    }
+    const Scene& scene = recording.scene;
+    for (int n = 0; n < scene.num_people(); ++n) {
+      mass.See(scene.people[n].body.mass, recording.id, masses);
+      if (scene.num_people() > 1) {
+        spacing.See(Spacing(scene, n), recording.id, model.push_range->spacing);
+      }
+    }
   }
   const int all = static_cast<int>(recordings.size());
   std::vector<std::string> warnings;
@@ -138,6 +239,13 @@ std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
   if (impulse.recordings > 0) {
     warnings.push_back(impulse.Sentence("the push's impulse over mass", "m/s", all));
     if (impulse.has_tail) warnings.back() += "; its tail is cut to what was seen";
+  }
+  if (height.recordings > 0) {
+    warnings.push_back(height.Sentence("the push's height over the rod", "of it", all));
+  }
+  if (mass.recordings > 0) warnings.push_back(mass.Sentence("the mass of a person", "kg", all));
+  if (spacing.recordings > 0) {
+    warnings.push_back(spacing.Sentence("the distance to the nearest person", "m", all));
   }
   if (const auto turned = TurnedAway(model, recordings)) warnings.push_back(*turned);
   return warnings;

@@ -1,4 +1,4 @@
-// ident: the pushes that a model was fitted to, and predictions beyond them.
+// ident: the pushes and people that a model was fitted to, and predictions beyond them.
 //
 // What a push does to a person is its impulse over the person's mass: of its rows and of the tail
 // that the model gives it, so that a measured push and the part of one compare. How long it lasts
@@ -23,8 +23,9 @@ PushRange FittedPushRange(const IdentifiedModel& model,
 inline constexpr double kBeyondFittedRange = 1.25;
 inline constexpr double kBeyondFittedAngle = 45.0;  // degrees
 
-// What to warn of: one sentence on the durations, one on the impulses and one on the directions
-// that lie outside; none where the model's file is older than the range.
+// What to warn of: one sentence each on the durations, impulses, heights and directions of pushes,
+// and on masses and spacings of people, that lie outside; none on what the model's file, which may
+// be older, does not hold.
 std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
                                                const std::vector<PendulumRecording>& recordings);
 

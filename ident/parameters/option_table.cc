@@ -209,7 +209,9 @@ Row PresetRow() {
       "preset", "/preset", &FitOptions::preset,
       "the model: auto (tail for recordings of one person, group where there are more), tail (push "
       "tail, posture-relative recovery), group (tail with contact, pooled by setting; with feet "
-      "that slide, linear self forces too), ldp (plain PD and friction from upright), or "
+      "that slide, linear self forces too), robot (feet that hold, PD gains in SI without priors, "
+      "the "
+      "mass as the manifest states it), ldp (plain PD and friction from upright), or "
       "ldp_published (LDP with all its networks, of one person or of groups)");
   row.stage = OptionStage::kPreset;
   row.text = [](const FitOptions&) { return std::string(kAutoPreset); };

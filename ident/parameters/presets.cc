@@ -67,6 +67,34 @@ FitOptions GroupPreset() {
   return o;
 }
 
+// Feet that hold: everything is told by the data, so priors are as wide as their centres, but for
+// where the body's mass is: men and women, and where the hip's marker is, differ by some 5 %.
+void SetFixed(FitOptions* options) {
+  options->model.push = PushUse::kAsRecorded;
+  options->model.push_tail = PushTail::kNone;
+  options->model.directions = Directions::kBody;
+  options->settling_weight = options->mode_weight = 0.0;
+  for (const WeakStart& start : {WeakStart{kKpTheta, 1250, 1250}, WeakStart{kKpPhi, 1250, 1250},
+                                 WeakStart{kKdTheta, 300, 300}, WeakStart{kKdPhi, 300, 300},
+                                 WeakStart{kComHeight, 1.09, 0.055}}) {
+    FreeFrom(start, &options->table);
+  }
+}
+
+FitOptions RobotPreset() {
+  FitOptions o;
+  o.preset = "robot";
+  o.table = BaseTable();
+  SetFixed(&o);
+  o.model.stance = Stance::kFixed;
+  o.model.body = BodyModel::kAnthropometric;  // as the manifest states it
+  o.model.gain_scaling = GainScaling::kNone;
+  o.model.directions = Directions::kIsotropic;
+  o.table[kComHeight].free = false;
+  o.preset_priors = false;
+  return o;
+}
+
 // Where people stand and how they are pushed differ between settings, not their bodies: with gains
 // of their own settings do not settle, and are predicted worse.
 constexpr char kPooledWhereFeetStep[] =
@@ -80,6 +108,7 @@ struct NamedPreset {
   const char* pooled_where_feet_step = nullptr;  // null: what the preset pools
 };
 constexpr NamedPreset kPresets[] = {{"tail", TailPreset, Stance::kSlide},
+                                    {"robot", RobotPreset},
                                     {"ldp", LdpPreset},
                                     {kLdpPublished, LdpPublishedPreset},
                                     {kLdpPublishedGroups, LdpPublishedGroupsPreset},
@@ -118,24 +147,6 @@ void SetSelfForce(SelfForceKind self_force, FitOptions* options) {
   options->self_force = self_force;
   options->mode_weight = RowOf(self_force).mode_weight;
 }
-
-namespace {
-
-// Feet that hold: everything is told by the data, so priors are as wide as their centres, but for
-// where the body's mass is: men and women, and where the hip's marker is, differ by some 5 %.
-void SetFixed(FitOptions* options) {
-  options->model.push = PushUse::kAsRecorded;
-  options->model.push_tail = PushTail::kNone;
-  options->model.directions = Directions::kBody;
-  options->settling_weight = options->mode_weight = 0.0;
-  for (const WeakStart& start : {WeakStart{kKpTheta, 1250, 1250}, WeakStart{kKpPhi, 1250, 1250},
-                                 WeakStart{kKdTheta, 300, 300}, WeakStart{kKdPhi, 300, 300},
-                                 WeakStart{kComHeight, 1.09, 0.055}}) {
-    FreeFrom(start, &options->table);
-  }
-}
-
-}  // namespace
 
 void SetStance(Stance stance, FitOptions* options) {
   options->model.stance = stance;

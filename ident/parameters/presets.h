@@ -2,6 +2,9 @@
 //
 //   tail:  one person: push tail, posture-relative recovery, one cross term; eight free
 //          parameters, the tail's base partially pooled by condition
+//   robot: a machine whose feet hold: PD gains in N m/rad and N m s/rad, the same in all
+//   directions,
+//          without priors; its mass as the manifest states it (com_over_rod, gyration_over_rod)
 //   ldp:   one person: plain PD balance and one friction from upright; five free parameters
 //   group: people who touch: tail with contact. Where feet step contact and tail are partially
 //          pooled by setting (condition), sixteen shared parameters; where they slide there are all
@@ -32,6 +35,11 @@ inline constexpr char kAutoPreset[] = "auto";
 
 // What "auto" and "ldp_published" stand for on these recordings; other names as they are.
 std::string PresetFor(const std::string& name, const std::vector<PendulumRecording>& recordings);
+
+// Whether gains are those of the one body that was recorded, whatever its mass and height.
+inline bool IsOneMachine(const ModelOptions& model) {
+  return model.stance == Stance::kFixed && model.gain_scaling == GainScaling::kNone;
+}
 
 // Complete and ready for PrepareFit. Errors: no such preset (auto is none before PresetFor).
 Result<FitOptions> MakePreset(const std::string& name);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "datasets/inspection/findings.h"
+#include "ident/parameters/presets.h"
 #include "ident/problem/own_axes.h"
 #include "ident/problem/residual_rows.h"
 #include "models/decompositions.h"
@@ -128,10 +129,18 @@ ModelOptions FitProblem::ModelAt(const FitPoint& point) const {
 }
 
 Behaviour FitProblem::BehaviourAt(const FitPoint& point) const {
-  const ModelOptions model = ModelAt(point);
+  ModelOptions model = ModelAt(point);
+  GainScale scale;  // of a machine, whose gains are not those of the simulated people
+  if (IsOneMachine(model)) {
+    model.gain_scaling = GainScaling::kBody;
+    scale = GainScale(GainScaling::kBody, recordings().front().scene.people.front().body);
+  }
   Behaviour all;
   for (const std::string& unit : SettlingUnits(point)) {
-    const Behaviour one = ComputeBehaviour(model, Parameters(point, unit));
+    ParameterSet<double> parameters = Parameters(point, unit);
+    for (Parameter id : {kKpTheta, kKpPhi}) parameters[id] /= scale.stiffness;
+    for (Parameter id : {kKdTheta, kKdPhi}) parameters[id] /= scale.damping;
+    const Behaviour one = ComputeBehaviour(model, parameters);
     if (unit.empty()) {
       all = one;
     } else {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "datasets/files/number_text.h"
+#include "datasets/loading/recording_from_tracks.h"
 #include "models/decompositions.h"
 
 namespace pushid {
@@ -79,10 +80,6 @@ MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& 
 }
 
 }  // namespace
-
-double HeightFraction(const Body& body, const Vector4<double>& q, double height) {
-  return (height - body.cart_height) / (body.rod_length * std::cos(q[2]) * std::cos(q[3]));
-}
 
 Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,
                             const SensorPushOptions& options) {

@@ -36,9 +36,6 @@ struct SensorPushOptions {
   double idle_force = 0.0;
 };
 
-// Fraction of the rod at which a horizontal plane `height` metres up crosses it.
-double HeightFraction(const Body& body, const Vector4<double>& q, double height);
-
 // The rows' kind is PushKind::kExternal. Errors: no such person, no direction, a contact height
 // that is not finite, no force at all, or more than 1 % of the impulse outside the recording.
 Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,

@@ -265,9 +265,12 @@ std::string PerFrameText(const FitResult& result) {
 
 std::string ConventionText(const FitResult& result) {
   const ParameterTable& specs = result.options.table;
-  const std::string quoted =
-      "Gains are for a person of 85 kg with a rod of 0.95 m (gain scaling: " +
-      NameOf(result.options.model.gain_scaling) + ").\n" + PerFrameText(result) + TiedText(result);
+  const std::string whose = IsOneMachine(result.options.model)
+                                ? "Gains are those of the recorded body"
+                                : "Gains are for a person of 85 kg with a rod of 0.95 m";
+  const std::string quoted = whose +
+                             " (gain scaling: " + NameOf(result.options.model.gain_scaling) +
+                             ").\n" + PerFrameText(result) + TiedText(result);
   if (!Acts(kMu, result.options.model)) return quoted;
   bool fitted = false;
   std::string held;
@@ -463,14 +466,26 @@ std::string EffectNote(const FitResult& result) {
 
 }  // namespace
 
+namespace {
+
+// The spread between few people may come out near nothing, and an effect over it as anything.
+constexpr double kLargestEffect = 5.0;
+
+std::string EffectText(const ContrastRow& row) {
+  if (!row.effect) return "-";
+  if (std::abs(*row.effect) <= kLargestEffect) return Rounded(*row.effect, 2);
+  return (*row.effect > 0.0 ? "above " : "below -") + Rounded(kLargestEffect, 2);
+}
+
+}  // namespace
+
 TextTable ContrastTable(const Contrast& c) {
   TextTable table({"parameter", ">" + c.first, ">" + c.second, ">difference", "95 % interval",
                    "unit", ">effect, sd", ">p", ">Holm's p", "status"});
   for (const ContrastRow& row : c.rows) {
     table.Add({row.name, Rounded(row.first, 4), Rounded(row.second, 4), Rounded(row.difference, 3),
-               IntervalText(row.difference, row.lower95, row.upper95), row.unit,
-               row.effect ? Rounded(*row.effect, 2) : "-", ProbabilityText(row.p),
-               ProbabilityText(row.p_holm), NameOf(row.status)});
+               IntervalText(row.difference, row.lower95, row.upper95), row.unit, EffectText(row),
+               ProbabilityText(row.p), ProbabilityText(row.p_holm), NameOf(row.status)});
   }
   return table;
 }
@@ -489,7 +504,18 @@ constexpr double kAlike = 1e-6;  // relative
 struct NamedLoop {
   std::string name;
   LoopNumbers numbers;
+  bool seen = true;  // otherwise its stiffness is the prior's, and so is whether it is stable
 };
+
+// Whether the recordings tell a gain.
+bool Seen(const FitResult& result, Parameter id) {
+  const std::string& name = result.options.table[id].name;
+  const auto row = std::find_if(result.estimates.begin(), result.estimates.end(),
+                                [&name](const Estimate& e) { return e.name == name; });
+  return row == result.estimates.end() ||
+         (row->status != EstimateStatus::kPriorHeld && row->status != EstimateStatus::kFixed &&
+          row->status != EstimateStatus::kUnidentifiable);
+}
 
 bool Alike(const LoopNumbers& a, const LoopNumbers& b) {
   const auto same = [](double x, double y) {
@@ -503,12 +529,16 @@ bool Alike(const LoopNumbers& a, const LoopNumbers& b) {
 
 std::vector<NamedLoop> LoopsOf(const FitResult& result) {
   const ModelOptions& options = result.options.model;
-  if (options.stance == Stance::kSlide || !WithoutLinearLoop(options).empty()) return {};
+  if (options.stance == Stance::kSlide || IsOneMachine(options) ||
+      !WithoutLinearLoop(options).empty()) {
+    return {};
+  }
   const Body person;  // 85 kg, 0.95 m
   const LoopNumbers along = LinearLoop(options, person, result.parameters, 0).Numbers();
   const LoopNumbers across = LinearLoop(options, person, result.parameters, 1).Numbers();
   if (Alike(along, across)) return {{"both directions", along}};
-  return {{"forwards (theta)", along}, {"sideways (phi)", across}};
+  return {{"forwards (theta)", along, Seen(result, kKpTheta)},
+          {"sideways (phi)", across, Seen(result, kKpPhi)}};
 }
 
 std::string OrDash(const std::optional<double>& value, int digits, double unit = 1.0) {
@@ -529,7 +559,8 @@ TextTable LoopTable(const FitResult& result) {
   for (const NamedLoop& loop : LoopsOf(result)) {
     const LoopNumbers& n = loop.numbers;
     const auto if_stable = [&n](const std::string& text) { return n.stable ? text : "-"; };
-    table.Add({loop.name + (n.stable ? "" : ": UNSTABLE"), Rounded(n.stiffness_ratio, 3),
+    const char* const note = !loop.seen ? ": not seen" : n.stable ? "" : ": UNSTABLE";
+    table.Add({loop.name + note, Rounded(n.stiffness_ratio, 3),
                if_stable(OrDash(n.damping_ratio, 2)), if_stable(OrDash(n.natural_hz, 2)),
                OrDash(n.phase_margin, 3, kDegrees), OrDash(n.delay_margin, 2), GainRange(n)});
   }

@@ -210,6 +210,34 @@ std::string ResamplingText(const Bootstrap& b) {
   return text;
 }
 
+namespace {
+
+// Recordings of which the model explains less than nothing; empty: there are none.
+std::string WorseThanStaticText(const std::vector<RecordingDiagnostics>& recordings) {
+  std::vector<std::string> ids;
+  const RecordingDiagnostics* worst = nullptr;
+  for (const RecordingDiagnostics& r : recordings) {
+    if (!WorseThanStatic(r)) continue;
+    ids.push_back(r.id);
+    if (worst == nullptr || r.explained < worst->explained) worst = &r;
+  }
+  if (worst == nullptr) return "";
+  const bool most = 2 * ids.size() >= recordings.size();
+  return std::string(most ? "This fit loses to standing still, which" : "Standing still") +
+         " predicts " + std::to_string(ids.size()) + " of " + std::to_string(recordings.size()) +
+         " recordings better (" + ListOfNames(ids, 3, "recordings") +
+         "; the worst is explained to " + Rounded(worst->explained, 3) + " %)" +
+         (most ? ": do not use the gains; try another --stance, and check pushes and axes. "
+               : ". ");
+}
+
+}  // namespace
+
+std::string FirstSentences(const FitResult& result) {
+  const std::string worse = WorseThanStaticText(result.diagnostics.recordings);
+  return worse + ModelVerdictText(result.verdict, !worse.empty());
+}
+
 std::string ReportText(const FittedModel& model) {
   const FitResult& result = model.fit;
   const Provenance& from = model.provenance;  // empty where no program fitted
@@ -217,7 +245,7 @@ std::string ReportText(const FittedModel& model) {
   report.title = (from.version.empty() ? "pushid" : "pushid " + from.version) + ", preset " +
                  result.options.preset + ": " + CountText(result.recordings.size(), "recording") +
                  (from.setting.empty() ? "" : " (" + from.setting + ")");
-  report.subtitle = ModelVerdictText(result.verdict);
+  report.subtitle = FirstSentences(result);
   report.sections = {ShortSection(model)};
   for (const auto section :
        {SummarySection, ParameterSection, ContrastSection, UnitSection, IdentifiabilitySection,

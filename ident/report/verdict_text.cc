@@ -58,6 +58,7 @@ std::string ValueText(const AssumptionTest& test) {
 // "+- 3 %", "factor 2".
 std::string StatedText(const AssumptionTest& test) {
   if (!(test.stated > 0.0)) return "-";
+  if (IsLogarithm(test) && test.stated > std::log(kLargestFactor)) return "any factor";
   if (IsLogarithm(test)) return "factor " + Rounded(std::exp(test.stated), 2);
   return test.unit.empty() ? "+- " + Rounded(100.0 * test.stated, 2) + " %"
                            : "+- " + Rounded(test.stated, 2) + " " + test.unit;
@@ -138,13 +139,14 @@ std::string FailureText(const ModelVerdict& v) {
   return text;
 }
 
-std::string CheckText(const ModelVerdict& v) {
+std::string CheckText(const ModelVerdict& v, bool more) {
   if (!v.checked()) return "The model was not checked: " + v.not_checked + ".";
   if (v.fails()) {
     return "The model does not fit these recordings: " + FailureText(v) +
            ". Nothing is called identified.";
   }
-  return "The model check found no contradiction: " + std::to_string(v.NumTested()) +
+  return std::string("The model check found no ") + (more ? "other " : "") +
+         "contradiction: " + std::to_string(v.NumTested()) +
          " quantities that are taken as known (p = " + Rounded(v.p_assumptions, 2) + "), " +
          CountText(v.parts.size(), "score") +
          " of parts of the data (p = " + Rounded(v.p_parts, 2) + ") and " +
@@ -161,10 +163,10 @@ std::string CheckText(const ModelVerdict& v) {
 
 }  // namespace
 
-std::string ModelVerdictText(const ModelVerdict& v) {
+std::string ModelVerdictText(const ModelVerdict& v, bool more) {
   const std::string none =
       v.none_identified.empty() ? "" : "Nothing is identified: " + v.none_identified + ". ";
-  return none + CheckText(v);
+  return none + CheckText(v, more);
 }
 
 TextTable AssumptionTable(const FitResult& result) {
@@ -178,7 +180,12 @@ TextTable AssumptionTable(const FitResult& result) {
       const Estimate& e = result.uncertainty.estimates[i];
       if (e.standard_error <= 0.0 || std::abs(test.moves[i]) < most * e.standard_error) continue;
       most = std::abs(test.moves[i]) / e.standard_error;
-      moves = e.name + " by " + Rounded(test.moves[i], 2) + (e.unit == "1" ? "" : " " + e.unit);
+      // One Newton step is linear: a move beyond the value itself is no more than a direction.
+      const ParameterSpec* const spec = result.options.table.Find(e.name);
+      const double far = std::max(std::abs(e.value), spec != nullptr ? spec->scale : 0.0);
+      moves = e.name + (std::abs(test.moves[i]) > far ? std::string(" by more than its size")
+                                                      : " by " + Rounded(test.moves[i], 2) +
+                                                            (e.unit == "1" ? "" : " " + e.unit));
     }
     const bool tells = test.error > 0.0;
     table.Add({test.name, StatedText(test), tells ? ValueText(test) : "-",

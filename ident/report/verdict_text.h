@@ -9,8 +9,8 @@
 namespace pushid {
 
 // "The model check found no contradiction: ...", or "The model does not fit these recordings: ..."
-// with what to check or to try, or why nothing was checked.
-std::string ModelVerdictText(const ModelVerdict& verdict);
+// with what to check or to try, or why nothing was checked. more: than was said before it.
+std::string ModelVerdictText(const ModelVerdict& verdict, bool more = false);
 
 // What was taken as known, what is stated about it, what the recordings want, and the test.
 TextTable AssumptionTable(const FitResult& result);

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "datasets/files/number_text.h"
+#include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/uncertainty/assumptions.h"
@@ -508,6 +509,7 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
 }
 
 std::vector<CombinationSpec> DerivedCombinations(const ModelOptions& model) {
+  if (IsOneMachine(model)) return {};  // gains of the reference person would not be its own
   const bool slides = Acts(kMu, model);
   const bool at_hip = model.stance != Stance::kFixed;  // where the mass is
   const double m = (at_hip ? 1.0 - kCartShare : 1.0) * kReferenceMass, l = kReferenceRod;

@@ -33,7 +33,7 @@ TEST_F(BadUsageTest, FitFlags) {
       {{"--prior=mu:100:0"}, {"--prior", "sigma > 0"}},
       {{"--pool=Kp_x"}, {"--pool", "Kp_x", "fixed"}},
       {{"--fix=" + all_free}, {"every parameter is fixed"}},
-      {{"--preset=best"}, {"--preset", "'best'", "tail, ldp, ldp_published"}},
+      {{"--preset=best"}, {"--preset", "'best'", "tail, robot, ldp, ldp_published"}},
       {{"--self_force=rnn"}, {"--self_force", "'rnn'"}},
       {{"--self_force=mlp:0"}, {"--self_force", "'mlp:0'"}},
       {{"--self_force=mlp:4,gru:4"}, {"--self_force", "more than one network"}},

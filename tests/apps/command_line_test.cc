@@ -131,14 +131,14 @@ TEST_F(CommandLineTest, AValueThatIsNoneIsAnOrdinaryError) {
 TEST_F(CommandLineTest, WhatIsMissingIsNamed) {
   EXPECT_TRUE(Refused(RunApp("pushid-fit", {}), {"--recordings", "manifest.json"}));
   EXPECT_TRUE(Refused(RunApp("pushid-crossvalidate", {}), {"--recordings", "manifest.json"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-push", {}), {"--id", "manifest"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-push", {}), {"--recordings", "manifest.json"}));
   EXPECT_TRUE(Refused(RunApp("pushid-simulate", {}), {"--out"}));
   for (const char* app : {"pushid-report", "pushid-evaluate", "pushid-predict"}) {
     EXPECT_TRUE(Refused(RunApp(app, {}), {"--model", "pushid-fit --model_out"}));
   }
   const std::string model = "--model=" + FitModel();
   EXPECT_TRUE(Refused(RunApp("pushid-evaluate", {model}), {"--recordings"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-push", {Recordings()}), {"--id"}));
+  EXPECT_TRUE(Refused(RunApp("pushid-push", {Recordings()}), {"--out"}));
   EXPECT_TRUE(Refused(RunApp("pushid-predict", {model, Recordings()}), {"--id"}));
   EXPECT_TRUE(Refused(RunApp("pushid-predict", {model, Recordings(), "--id=" + id_}), {"--out"}));
 }

@@ -70,7 +70,7 @@ TEST_F(SimulateFormationTest, TheShippedModelIsOfSyntheticPeople) {
 TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   const AppRun run =
       Succeeded(Simulate({"--formation=line", "--people=4", "--spacing=0.42", "--duration=3",
-                          "--csv_out=" + Path("line.csv"), "--bvh_out=" + Path("line"),
+                          "--push=12", "--csv_out=" + Path("line.csv"), "--bvh_out=" + Path("line"),
                           "--svg_out=" + Path("wave.svg")}));
   EXPECT_EQ(run.err, "");
   const std::vector<std::string> onsets = Onsets(run.out);
@@ -85,7 +85,7 @@ TEST_F(SimulateFormationTest, ALineMovesOneAfterAnotherAndEverythingIsWritten) {
   EXPECT_TRUE(Contains(csv, ",interaction_x_N,"));
   const std::string text = ReadText(Path("wave.svg"));
   EXPECT_EQ(text.find("<svg"), 0u);
-  EXPECT_TRUE(Contains(text, "4 people in a line, 0.42 m apart; 80 N s at 0 s on person 0"));
+  EXPECT_TRUE(Contains(text, "4 people in a line, 0.42 m apart; 12 N s at 0 s on person 0"));
   EXPECT_EQ(text.substr(text.size() - 7), "</svg>\n");
   // What was written is a recording that the model predicts exactly.
   const AppRun scores =
@@ -150,6 +150,27 @@ TEST_F(SimulateFormationTest, TenRecordedPeopleInALine) {
       Refused(Simulate({"--formation=line", "--recordings=" + Path("none.json")}), {"none.json"}));
 }
 
+// Those of the fit, who stood in its recordings, and pushes as they were there.
+TEST_F(SimulateFormationTest, WithoutRecordingsTheFitsPeopleStandThere) {
+  const nlohmann::ordered_json range = Json(alone_)["push_range"];
+  ASSERT_GE(range["people"].size(), 2u);
+  const AppRun run =
+      Succeeded(RunApp("pushid-formation", {"--model=" + alone_, "--formation=line", "--people=5",
+                                            "--bvh_out=" + Path("fitted")}));
+  const auto made = Json(Path("fitted/manifest.json"))["recordings"][0];
+  for (int n = 0; n < 5; ++n) {
+    EXPECT_EQ(made["subjects"][n]["mass_kg"],
+              range["people"][n % range["people"].size()]["mass_kg"]);
+  }
+  EXPECT_EQ(made["push_kind"], range["usual"]["kind"]);
+  EXPECT_TRUE(Contains(run.out, " of the fit in turn, "));
+  EXPECT_TRUE(Contains(run.out, "; pushes as the fit's: "));
+  const AppRun alike = Succeeded(RunApp(
+      "pushid-formation", {"--model=" + alone_, "--formation=line", "--people=2", "--mass=200"}));
+  EXPECT_TRUE(Contains(alike.out, "people: upright, 200 kg"));
+  EXPECT_TRUE(Contains(alike.err, "the mass of a person of formation is 200 kg"));
+}
+
 TEST_F(SimulateFormationTest, WhatTheFitWarnedOfStandsUnderTheTable) {
   nlohmann::ordered_json json = Json(alone_);
   json["warnings"] = {"ends behind the start", "recording 'a': a.bvh has gaps",
@@ -198,8 +219,8 @@ TEST_F(SimulateFormationTest, AModelWithoutInteractionIsWarnedAbout) {
       Succeeded(RunApp("pushid-formation", {"--model=" + alone_, "--formation=line"}));
   EXPECT_TRUE(Contains(run.err, "people will not affect each other"));
   EXPECT_TRUE(Contains(run.out, "1 of 4 people moved"));
-  const AppRun one =
-      RunApp("pushid-formation", {"--model=" + alone_, "--formation=grid", "--people=1"});
+  const AppRun one = RunApp("pushid-formation",
+                            {"--model=" + alone_, "--formation=grid", "--people=1", "--push=12"});
   EXPECT_EQ(one.err, "");
 }
 
@@ -227,10 +248,10 @@ TEST_F(SimulateFormationTest, BadUsage) {
       {{"--formation=line", "--spacing=0"}, {"--spacing is 0"}},
       {{"--formation=line", "--spacing=-1"}, {"--spacing is -1"}},
       {{"--formation=line", "--spacing=nan"}, {"--spacing is nan"}},
-      {{"--formation=line", "--mass=0"}, {"--mass is 0"}},
+      {{"--formation=line", "--mass=-1"}, {"--mass is -1"}},
       {{"--formation=line", "--duration=-1"}, {"--duration is -1"}},
       {{"--formation=line", "--duration=0.01"}, {"--duration", "two frames"}},
-      {{"--formation=line", "--push_duration=0"}, {"--push_duration is 0"}},
+      {{"--formation=line", "--push_duration=-1"}, {"--push_duration is -1"}},
       {{"--formation=line", "--push_duration=nan"}, {"--push_duration is nan"}},
       {{"--formation=line", "--people=10000", "--duration=60"}, {"too many"}},
       {{"--formation=line", "--pushed=4"}, {"--pushed", "person 4", "0 to 3"}},

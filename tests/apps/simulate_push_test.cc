@@ -224,6 +224,13 @@ TEST_F(PushAppTest, EntriesOfSeveralRecordings) {
     EXPECT_EQ(after[i]["pushes"][0]["csv"], "made/" + after[i]["id"].get<std::string>() + ".csv");
   }
   EXPECT_EQ(after[2], before[2]);
+  // Without ids all recordings of the manifest are meant.
+  const AppRun all = Succeeded(
+      RunApp("pushid-push", {Recordings(), "--overwrite", "--out=" + Path("all/{id}.csv")}));
+  for (const auto& entry : before) {
+    const std::string id = entry["id"].get<std::string>();
+    EXPECT_TRUE(std::filesystem::exists(Path("all/" + id + ".csv"))) << all.out;
+  }
   Succeeded(RunApp("pushid-fit", {Recordings()}));
   EXPECT_TRUE(
       Refused(RunApp("pushid-push", {Recordings(), "--ids=" + ids, "--out=" + Path("x.csv")}),

@@ -11,10 +11,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const CpuLimit limit;
   const std::string& path = file.Fill(data, size);
   const auto push = ReadPushCsv(path);
-  if (push.ok()) Demand(!push.value().empty());
+  if (push.ok()) Demand(!push.value().force.empty());
   const Result<SensorRecord> sensor = ReadSensorCsv(path);
   if (sensor.ok()) Demand(sensor.value().time_s.size() == sensor.value().force.size());
-  (void)ReadMasses(path);
+  (void)ReadPeople(path);
   const Result<NumericTable> table = ReadNumericTable(path, TableFormat::kCsv);
   if (table.ok()) Demand(table.value().num_rows() >= 1);
   const Result<PointMotion> motion = ReadPointMotion(path, MotionFormat::kCsv);

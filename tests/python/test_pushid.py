@@ -353,6 +353,8 @@ def test_predictions(made, result):
         result.predict(recording, samples=-5)
     scores = result.evaluate(made[0])
     assert 0 < scores["mean"]["hipADE_m"] < 0.05
+    assert "static" in repr(scores) and len(repr(scores)) < 4000  # a table, and no dump
+    assert str(pickle.loads(pickle.dumps(scores))) == str(scores)
 
 
 def test_online(made, result):

@@ -57,6 +57,29 @@ class Table(list):
                                         if row.get("status") != "fixed" or name not in held}) for row in self])
 
 
+class Scores(dict):
+    """Scores as pushid-evaluate writes them; print() shows its table, without the single recordings."""
+
+    def __init__(self, found, text=""):
+        super().__init__(found)
+        self.text = text
+
+    def __str__(self):
+        return self.text
+
+    __repr__ = __str__
+
+
+class CrossValidation(list):
+    """The scores of each predictor, as pushid-crossvalidate writes them; print() shows its table."""
+
+    def __init__(self, found, text=""):
+        super().__init__(found)
+        self.text = text
+
+    __str__ = __repr__ = Scores.__str__
+
+
 class Result:
     """The result of a fit. result["mu"] is a Parameter, and so is what is derived of several, as result["c_x"]; `json`
     holds everything, as the programs write it."""
@@ -192,8 +215,8 @@ class Result:
         return _pushid.path_between(self._model, text_of("start", start), text_of("end", end), frames, fps, mass, rod)
 
     def evaluate(self, recordings, *, observed=0, forecast="both"):
-        """Errors of the predictions and of two baselines, as pushid-evaluate writes them."""
-        return self._model.evaluate(checked(recordings), observed, forecast)
+        """Errors of the predictions and of two baselines; see Scores."""
+        return Scores(*self._model.evaluate(checked(recordings), observed, forecast))
 
     def loop(self, *, mass=85.0, rod=0.95):
         """The linearized loop of a person at rest, as a control engineer quotes it: {"theta": {...}, "phi": {...}}.
@@ -285,14 +308,14 @@ def crossvalidate(recordings, candidates=None, *, scheme="stratified", folds=4, 
                   forecast="both", baselines=True, num_threads=1, progress=None, **asked):
     """Errors on recordings that were not fitted, for the options given and each of `candidates`.
 
-    candidates: {name: {option: value}}, in addition to the options given. Returns a list with the scores that
-    pushid-crossvalidate writes for each predictor.
+    candidates: {name: {option: value}}, in addition to the options given. Returns the scores of each predictor; see
+    CrossValidation.
     """
     all_of_them = [("model", given(asked))]
     for name, more in (candidates or {}).items():
         all_of_them.append((name, given({**asked, **more})))
-    return _pushid.crossvalidate(checked(recordings), all_of_them, scheme, folds, repeats, seed, observed,
-                                 forecast, baselines, num_threads, progress)
+    return CrossValidation(*_pushid.crossvalidate(checked(recordings), all_of_them, scheme, folds, repeats, seed, observed,
+                                                  forecast, baselines, num_threads, progress))
 
 
 class Design(dict):

@@ -463,7 +463,7 @@ ReportSection LeadSection(const ReportSource& source) {
   if (const std::optional<ReportFigure> typical = TypicalFigure(source))
     section.figures.push_back(*typical);
   section.figures.push_back(IntervalFigure(source.model));
-  const std::string verdict = ModelVerdictText(source.fit.verdict);
+  const std::string verdict = FirstSentences(source.fit);
   section.verdict_first = !source.fit.verdict.fails() && source.fit.verdict.none_identified.empty();
   if (section.verdict_first) {
     section.paragraphs.insert(section.paragraphs.begin(), verdict);

@@ -16,11 +16,20 @@ TEST_F(PushCsvTest, Reads) {
        {"frame,fx,fy,ftheta,fphi\n0,1,-2.5,3e1,4\n1,0,0,0,-0.25\n",
         "\xEF\xBB\xBF"
         "frame, fx, fy, ftheta, fphi\r\n0, 1, -2.5, 30, +4\r\n\r\n1,0,0,0,-.25"}) {
-    const auto read = Unwrapped(ReadPushCsv(WriteText("push.csv", text)));
+    const auto read = Unwrapped(ReadPushCsv(WriteText("push.csv", text))).force;
     ASSERT_EQ(read.size(), 2u);
     EXPECT_EQ(read[0], Eigen::Vector4d(1, -2.5, 30, 4));
     EXPECT_EQ(read[1], Eigen::Vector4d(0, 0, 0, -0.25));
   }
+}
+
+TEST_F(PushCsvTest, TorquesMayBeLeftOut) {
+  const PushRows read = Unwrapped(ReadPushCsv(WriteText("push.csv", "frame,fx,fy\n0,1,-2.5\n")));
+  EXPECT_FALSE(read.has_torques);
+  EXPECT_EQ(read.force, std::vector<Eigen::Vector4d>{Eigen::Vector4d(1, -2.5, 0, 0)});
+  EXPECT_TRUE(Contains(ProblemOf(ReadPushCsv(WriteText("push.csv", "frame,fx,fy\n0,1,2,3\n"))),
+                       "more than 3 values"));
+  EXPECT_FALSE(ReadPushCsv(WriteText("push.csv", "frame,fx,fy,ftheta\n0,1,2,3\n")).ok());
 }
 
 TEST_F(PushCsvTest, WrittenPushReadsBackBitForBit) {
@@ -32,7 +41,7 @@ TEST_F(PushCsvTest, WrittenPushReadsBackBitForBit) {
       row[i] = normal(random) * std::pow(10.0, 30 * normal(random) / 100.0);
   }
   ASSERT_FALSE(WritePushCsv(Path("push.csv"), force));
-  const auto read = Unwrapped(ReadPushCsv(Path("push.csv")));
+  const auto read = Unwrapped(ReadPushCsv(Path("push.csv"))).force;
   EXPECT_EQ(read, force);
 }
 

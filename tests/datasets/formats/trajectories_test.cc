@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "datasets/formats/motion_formats.h"
 #include "tests/test_support.h"
 
 namespace pushid {
@@ -36,6 +37,24 @@ TEST_F(TrajectoriesTest, Text) {
   const Result<PointMotion> one = ReadTrajectoryText(path, options);
   ASSERT_EQ(one.value().positions.size(), 1u);
   EXPECT_EQ(one.value().positions[0].size(), 2u);
+}
+
+// As spreadsheets and scripts write them, whatever the order of the columns.
+TEST_F(TrajectoriesTest, AsCsv) {
+  const std::string path = WriteText("heads.csv",
+                                     "time,id,frame,x/cm,y/cm\n4.00,7,100,10,20\n4.04,7,101,11,20\n"
+                                     "4.04,12,101,0,-5\n");
+  EXPECT_TRUE(IsCrowdCsv(path));
+  EXPECT_EQ(MotionFormatInFile(path), MotionFormat::kTrajectoryText);
+  const PointMotion motion = Unwrapped(ReadTrajectoryText(path));
+  EXPECT_EQ(motion.names, (std::vector<std::string>{"7", "12"}));
+  EXPECT_EQ(motion.rate_hz, 25.0);
+  EXPECT_EQ(motion.unit, LengthUnit::kCentimetre);
+  EXPECT_EQ(motion.positions[0][1], Eigen::Vector3d(11, 20, 0));
+  const std::string commented = "# framerate: 16\nid,frame,x,y\n1,0,0,0\n1,1,0.5,0\n";
+  EXPECT_EQ(Unwrapped(ReadTrajectoryText(WriteText("a.csv", commented))).rate_hz, 16.0);
+  EXPECT_TRUE(Contains(TextMessage("id,frame,x,y\n1,0,0,0\n"), "or a column time (s)"));
+  EXPECT_FALSE(IsCrowdCsv(WriteText("b.csv", "time,hip_x,hip_y,hip_z\n0,0,0,0\n")));
 }
 
 // Of vertical tabs and form feeds too; such a line once ended the program.
@@ -111,10 +130,10 @@ TEST_F(TrajectoriesTest, PeopleWithNamesGetNumbers) {
     EXPECT_FALSE(WriteTrajectoryText(Path("a.txt"), Crowd(names)));
     return Unwrapped(ReadTrajectoryText(Path("a.txt"))).names;
   };
-  EXPECT_EQ(ids({"5", "5"}), (std::vector<std::string>{"1", "2"}));
+  EXPECT_EQ(ids({"5", "5"}), (std::vector<std::string>{"0", "1"}));
   EXPECT_EQ(ids({"-2", "5"}), (std::vector<std::string>{"-2", "5"}));
-  EXPECT_EQ(ids({"anna", "2"}), (std::vector<std::string>{"1", "2"}));
-  EXPECT_TRUE(Contains(ReadText(Path("a.txt")), "# person 1: anna\n# id\tframe\tx/m\ty/m\tz/m\n"));
+  EXPECT_EQ(ids({"anna", "2"}), (std::vector<std::string>{"0", "1"}));
+  EXPECT_TRUE(Contains(ReadText(Path("a.txt")), "# person 0: anna\n# id\tframe\tx/m\ty/m\tz/m\n"));
 }
 
 class CrowdPlacesTest : public TempDirTest {

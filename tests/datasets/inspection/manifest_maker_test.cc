@@ -64,7 +64,7 @@ class ManifestMakerTest : public RecordingFolderTest {
     options_.pattern = "{subject}_{magnitude}_{take}.bvh";
     options_.push_pattern = "push/{subject}_{take}.csv";
     options_.manifest_path = Path("m/manifest.json");
-    options_.masses = {{"anna", 62.0}};
+    options_.people["anna"] = {"anna", 62.0};
     options_.mass_kg = 80.0;
     std::filesystem::create_directories(folder_ / "m");
   }
@@ -113,7 +113,7 @@ TEST_F(ManifestMakerTest, WritesTheRatesThatLoadingTakes) {
 
 TEST_F(ManifestMakerTest, FilesThatCannotBeReadAreLeftOut) {
   WriteText("data/anna_weak_2.bvh", "no motion");
-  options_.masses.clear();  // no mass is asked for of a person left out
+  options_.people.clear();  // no mass is asked for of a person left out
   const MadeManifest made = Unwrapped(MakeManifest(options_));
   EXPECT_EQ(made.manifest.recordings.size(), 2u);
   ASSERT_EQ(made.unreadable.size(), 1u);
@@ -143,7 +143,7 @@ TEST_F(ManifestMakerTest, MisspeltNamesAreToldOf) {
 
 TEST_F(ManifestMakerTest, PushesThatAreNoneAndMassesOfNobodyAreToldOf) {
   WriteText("data/push/ben_1.csv", "time,force\n0,1\n0.1,90\n");
-  options_.masses["bem"] = 81.0;
+  options_.people["bem"] = {"bem", 81.0};
   const MadeManifest made = Unwrapped(MakeManifest(options_));
   ASSERT_EQ(made.warnings.size(), 2u);
   EXPECT_TRUE(Contains(made.warnings[0], "push/ben_1.csv:1"));
@@ -227,7 +227,7 @@ TEST_F(ManifestMakerTest, RateOfC3d) {
 }
 
 TEST_F(ManifestMakerTest, WhatCannotBeMade) {
-  options_.masses = {};
+  options_.people = {};
   options_.mass_kg = 0.0;
   EXPECT_TRUE(Contains(MakingMessage(), "no mass is given for anna, ben"));
   EXPECT_TRUE(Contains(MakingMessage(), "(--masses)"));
@@ -249,17 +249,42 @@ TEST_F(ManifestMakerTest, WhatCannotBeMade) {
   EXPECT_TRUE(Contains(MakingMessage(), "lie along the same axis"));
 }
 
+// What a laboratory knows of people stays with them, and is there for --contrast and --covariate.
+TEST_F(ManifestMakerTest, FurtherColumnsAreKnownOfPeople) {
+  options_.people = Unwrapped(ReadPeople(
+      WriteText("m.csv", "id,mass_kg,group,height\nanna,62,patients,1.7\nben,80.5,controls,\n")));
+  ASSERT_FALSE(WriteManifest(options_.manifest_path, Unwrapped(MakeManifest(options_)).manifest));
+  const auto loaded = Unwrapped(LoadRecordings(options_.manifest_path));
+  const PersonFacts &anna = loaded[1].people[0].known, &ben = loaded[2].people[0].known;
+  EXPECT_EQ(anna.texts.at("group"), "patients");
+  EXPECT_EQ(anna.numbers.at("height"), 1.7);
+  EXPECT_EQ(ben.texts.at("group"), "controls");
+  EXPECT_TRUE(ben.numbers.empty()) << "an empty cell is nothing known";
+  EXPECT_TRUE(Contains(ProblemOf(ReadPeople(WriteText("m.csv", "id,mass_kg,group\na,60,b,c\n"))),
+                       ":2: the row has 4 values for 3 columns"));
+}
+
+// Files whose y points up, and nobody said so.
+TEST_F(ManifestMakerTest, AxesInWhichNobodyStandsAreToldOf) {
+  options_.up = "y";
+  options_.forward = "x";
+  const MadeManifest made = Unwrapped(MakeManifest(options_));
+  ASSERT_FALSE(made.warnings.empty());
+  EXPECT_TRUE(Contains(made.warnings.back(), "recording 'anna_weak_10'")) << made.warnings.back();
+  EXPECT_TRUE(Contains(made.warnings.back(), "up")) << made.warnings.back();
+}
+
 TEST_F(ManifestMakerTest, Masses) {
   const auto masses =
-      Unwrapped(ReadMasses(WriteText("m.csv", "id,mass_kg\nanna,62\n ben , 80.5\n")));
-  EXPECT_EQ(masses.at("ben"), 80.5);
+      Unwrapped(ReadPeople(WriteText("m.csv", "id,mass_kg\nanna,62\n ben , 80.5\n")));
+  EXPECT_EQ(masses.at("ben").mass_kg, 80.5);
   for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{
            {"anna,62\n", ":1: the first line must be id,mass_kg"},
            {"id,mass_kg\nanna\n", ":2: mass_kg: a number is missing"},
            {"id,mass_kg\nanna,-1\n", ":2: a mass in kg is above 0"},
            {"id,mass_kg\nanna,60\nanna,61\n", ":3: the mass of 'anna' was given before"},
            {"id,mass_kg\n", "lists no masses"}}) {
-    EXPECT_TRUE(Contains(ReadMasses(WriteText("m.csv", text)).error().ToString(), says));
+    EXPECT_TRUE(Contains(ReadPeople(WriteText("m.csv", text)).error().ToString(), says));
   }
 }
 

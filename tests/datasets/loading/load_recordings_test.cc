@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "datasets/loading/pendulum_recording.h"
 #include "tests/datasets/recording_folder.h"
 #include "tests/test_support.h"
 
@@ -301,6 +302,50 @@ TEST_F(LoadRecordingsTest, PushesAndTheMotion) {
   entry().pushes.clear();
   entry().push_csv.clear();
   EXPECT_TRUE(Load().value()[0].pushes.empty());
+}
+
+// Without torques a push is at the hip, or where the manifest says; torques of 0 are at the ankles.
+TEST_F(LoadRecordingsTest, TheHeightOfAPush) {
+  WriteText("forces.csv", "frame,fx,fy\n0,100,0\n1,100,0\n");
+  entry().push_csv = "forces.csv";
+  const double rod = 0.95 - 0.08;
+  Eigen::Vector4d row = Unwrapped(Load())[0].pushes[0].force[0];
+  EXPECT_NEAR(row[2], 100.0 * rod, 1e-9);
+  EXPECT_TRUE(warnings_.empty());
+  entry().push_height_m = 1.3;
+  row = Unwrapped(Load())[0].pushes[0].force[0];
+  EXPECT_NEAR(row[2], 100.0 * (1.3 - 0.08), 1e-9);
+  entry().push_csv = "a.csv";  // with torques
+  EXPECT_TRUE(Contains(Message(), "say its height as well"));
+  entry().push_height_m.reset();
+  WriteText("a.csv", "frame,fx,fy,ftheta,fphi\n0,100,0,0,0\n");
+  Unwrapped(Load());
+  ASSERT_EQ(warnings_.size(), 1u);
+  EXPECT_TRUE(Contains(warnings_[0].text, "which is a push at the ankles"));
+  entry().push_height_m = 4.0;
+  EXPECT_TRUE(Contains(Message(), "a push is between 0 and 3 m above the ground"));
+}
+
+// A log of a machine: a centre of mass over a base of support, and no ankles.
+TEST_F(LoadRecordingsTest, AMassOverABase) {
+  WriteText("log.csv",
+            "time,com_x,com_y,com_z,base_x,base_y,base_z\n0,0,0,0.7,0,0,0\n0.01,0.01,0,0.7,0,0,0\n"
+            "0.02,0.02,0,0.7,0,0,0\n0.03,0.03,0,0.7,0,0,0\n");
+  WriteText("map.json", R"({"joints": {"hip": "com", "base": "base"}, "length_unit": "m"})");
+  entry().motion_format = MotionFormat::kCsv;
+  entry().motion = {"log.csv"};
+  entry().mapping = "map.json";
+  entry().fps = 0.0;
+  entry().push_csv.clear();
+  entry().subjects[0].known.numbers = {{kComOverRod, 1.0}, {kGyrationOverRod, 0.3}};
+  const PendulumRecording log = MakePendulumRecording(Unwrapped(Load())[0]);
+  EXPECT_NEAR(log.scene.people[0].body.rod_length, 0.7, 1e-12);
+  EXPECT_EQ(log.facing, 0.0);
+  EXPECT_EQ(log.masses[0].cart_share, 0.0);
+  EXPECT_EQ(log.masses[0].com, 1.0);
+  EXPECT_EQ(log.masses[0].gyration, 0.3);
+  WriteText("map.json", R"({"joints": {"hip": "com", "base": "base", "left_ankle": "base"}})");
+  EXPECT_TRUE(Contains(Message(), "it stands for both of them"));
 }
 
 TEST_F(LoadRecordingsTest, BadFilesAreNamed) {

@@ -11,6 +11,7 @@
 #include "ident/model/identified_model.h"
 #include "ident/prediction/evaluation.h"
 #include "tests/ident/fit_samples.h"
+#include "tests/test_support.h"
 
 namespace pushid {
 namespace {
@@ -138,6 +139,31 @@ TEST(StanceFit, ExactStandingGivesTheTruthFromAnotherStart) {
     EXPECT_NEAR(fit.parameters[id], study.parameters[id], 1e-4 * study.parameters[id])
         << options.table[id].name;
   }
+}
+
+// Nobody asked for a stance, and the one that the feet suggest loses to standing still.
+TEST(StanceFit, AFitThatLosesToStaticTriesTheOtherStances) {
+  const std::vector<PendulumRecording> recordings =
+      MakePendulums(StandingStudy(PushKind::kExternal, 0.0005));
+  const FitSetup setup = Unwrapped(FitSetup::Make({{"preset", "tail"}, {"pool", "none"}}));
+  // On ice: the feet of the model run from under who is pushed.
+  FitOptions ice = MakePreset("tail").value();
+  for (ParameterSpec& spec : ice.table.specs) spec.free = spec.pooled = false;
+  ice.table[kMu].nominal = 5.0;
+  ice.table[kKpTheta].nominal = 3000.0;
+  ice.table[kAx].nominal = 0.0;
+  ice.table[kKdTheta].free = true;
+  ASSERT_FALSE(PrepareFit(recordings, &ice));
+  const std::vector<FitOptions> others = setup.OtherStances(recordings, ice);
+  ASSERT_FALSE(others.empty());
+  const FitResult fit = FitAnyStance(recordings, ice, others);
+  ASSERT_TRUE(fit.ok()) << fit.message;
+  EXPECT_EQ(fit.options.model.stance, Stance::kSteps);
+  ASSERT_FALSE(fit.warnings.empty());
+  EXPECT_TRUE(Contains(fit.warnings[0].text, "this is the fit with --stance=steps"))
+      << fit.warnings[0].text;
+  const FitSetup asked = Unwrapped(FitSetup::Make({{"preset", "tail"}, {"stance", "slide"}}));
+  EXPECT_TRUE(asked.OtherStances(recordings, ice).empty()) << "who asks for one has it";
 }
 
 TEST(StanceFit, TellsWhoSteps) {

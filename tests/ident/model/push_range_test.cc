@@ -110,6 +110,52 @@ TEST(PushRange, WarnsOfPushesFromWhereNoneCame) {
       << reverse[0];
 }
 
+// What a formation takes of a fit, and what it is warned of.
+TEST(PushRange, HoldsThePeopleAndTheUsualPush) {
+  IdentifiedModel model = Model();
+  std::vector<PendulumRecording> fitted = {PushedPerson("a", PushKind::kExternal, 20, 60.0),
+                                           PushedPerson("b", PushKind::kExternal, 30, 60.0),
+                                           PushedPerson("c", PushKind::kNet, 6, 200.0)};
+  for (PendulumRecording& recording : fitted) {
+    // Facing left, and leaning that way.
+    recording.facing = M_PI / 2.0;
+    recording.scene.people[0].start.q[3] = -0.05;
+    ScenePush& push = recording.scene.pushes[0];
+    for (Vector4<double>& row : push.force) row[2] = 1.3 * 0.95 * std::cos(0.05) * row[0];
+    push = MakeScenePush(0, 0, push.kind, push.force);
+  }
+  ScenePerson other = fitted[0].scene.people[0];
+  other.body.mass = 60.0;
+  other.start.q[1] = 0.5;
+  fitted[0].scene.people.push_back(other);
+  fitted[0].subject_ids = {"a", "b"};
+  model.push_range = FittedPushRange(model, fitted);
+  const PushRange& range = *model.push_range;
+  ASSERT_EQ(range.people.size(), 2u) << "everybody once";
+  EXPECT_EQ(range.people[1].mass, 60.0);
+  EXPECT_NEAR(range.people[0].theta, 0.05, 1e-6) << "forwards is x now";
+  EXPECT_NEAR(range.people[0].phi, 0.0, 1e-6);
+  EXPECT_NEAR(range.spacing.lower, 0.5, 1e-12);
+  EXPECT_NEAR(range.height.upper, 1.3, 1e-9);
+  ASSERT_TRUE(range.usual);
+  EXPECT_EQ(range.usual->kind, PushKind::kExternal);
+  EXPECT_DOUBLE_EQ(range.usual->duration, 0.5);
+  EXPECT_NEAR(range.usual->height, 1.3, 1e-9);
+  EXPECT_TRUE(ExtrapolationWarnings(model, fitted).empty());
+  PendulumRecording far = fitted[0];
+  far.id = "far";
+  far.scene.people[1].start.q[1] = 1.0;
+  far.scene.people[1].body.mass = 120.0;
+  const auto warnings = ExtrapolationWarnings(model, {far});
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0],
+            "the mass of a person of far is 120 kg; the model was fitted to 60 to 80 kg: an "
+            "extrapolation");
+  EXPECT_EQ(warnings[1],
+            "the distance to the nearest person of far is 1 m; the model was fitted to 0.5 to 0.5 "
+            "m: an extrapolation");
+}
+
 TEST(PushRange, AUnitsOwnTailCounts) {
   IdentifiedModel model = Model();
   model.pool_by = kConditionLabel;

@@ -41,7 +41,7 @@ TEST(Presets, FreeWhatTheyPromise) {
   EXPECT_EQ(ldp.table[kKpX].nominal, 30.0);
   EXPECT_GT(tail.settling_weight, 0.0);
   EXPECT_TRUE(Contains(ProblemOf(MakePreset("tial")),
-                       "--preset is 'tial'; it must be auto, tail, ldp, "
+                       "--preset is 'tial'; it must be auto, tail, robot, ldp, "
                        "ldp_published, ldp_published_groups or group"));
 }
 

@@ -56,14 +56,49 @@ TEST(ValueText, GainsAreSaidInWords) {
 
 // A p of 0.04 contradicts nothing, and the sentence says so.
 TEST(ModelVerdictText, SaysWhichPContradicts) {
-  ModelVerdict verdict;
+  FitResult result;
+  ModelVerdict& verdict = result.verdict;
   verdict.not_checked.clear();
   verdict.motion.tests.resize(1);
   verdict.motion.explained = 0.9;
   verdict.p_motion = 0.04;
-  const std::string text = ModelVerdictText(verdict);
+  const std::string text = FirstSentences(result);
   EXPECT_TRUE(Contains(text, "1 measure of feet and hips (p = 0.04; ")) << text;
   EXPECT_TRUE(Contains(text, "; less than 0.017 contradicts)")) << text;
+}
+
+// A median of 90 % does not hide a recording in which the person falls.
+TEST(ModelVerdictText, WhatStandingStillPredictsBetterComesFirst) {
+  FitResult result;
+  result.verdict.not_checked.clear();
+  result.verdict.motion.explained = 0.9;
+  const auto recording = [](const std::string& id, double explained, bool moved) {
+    RecordingDiagnostics r;
+    r.id = id;
+    r.explained = explained;
+    r.moved = moved;
+    return r;
+  };
+  result.diagnostics.recordings = {recording("a", 95.0, true), recording("b", -143.0, true),
+                                   recording("quiet", -20.0, false)};
+  EXPECT_EQ(FirstSentences(result).rfind("Standing still predicts 1 of 3 recordings better (b; "
+                                         "the worst is explained to -143 %). The model check "
+                                         "found no other contradiction: ",
+                                         0),
+            0u)
+      << FirstSentences(result);
+  result.diagnostics.recordings[0].explained = -1.0;
+  EXPECT_TRUE(Contains(FirstSentences(result), "This fit loses to standing still, which"));
+}
+
+TEST(ContrastTable, AnEffectOverNoSpreadHasNoSize) {
+  Contrast contrast;
+  contrast.rows.resize(2);
+  contrast.rows[0].effect = -13.0;
+  contrast.rows[1].effect = 0.8;
+  const std::string text = ContrastTable(contrast).ToString();
+  EXPECT_TRUE(Contains(text, "below -5")) << text;
+  EXPECT_TRUE(Contains(text, "0.8")) << text;
 }
 
 }  // namespace
