@@ -34,7 +34,7 @@ FEATURES = [
     ("restoration", 3500, 4723, r"models/restoration|ident/(training|bodies/restoration_files)|apps/(pushid_train_restoration|flags/(.*restoration|postprocess|body))"),
     ("bodies, animation", 2000, 2026, r"ident/bodies|apps/pushid_animate|ident/figures/moving"),
     ("first frames", 1300, 1782, r"ident/(observed|forecasts|prediction/(online|futures)|report/page/forecast)|apps/flags/(futures|observed)"),
-    ("formations", 1600, 1637, r"ident/formations|models/crowd|apps/(formation|pushid_formation|flags/formation)"),
+    ("formations", 1600, 1722, r"ident/formations|models/crowd|apps/(formation|pushid_formation|flags/formation)"),
     ("pushes", 2000, 2405, r"models/push|ident/(push/|model/push_range)|datasets/(sensors|formats/(push_csv|force_csv))|apps/(pushid_push|flags/push)"),
     ("design", 260, 306, r"ident/(validation/(experiment_design|study_plan|laboratory_plan|design)|report/design)"),
     ("prediction, evaluation, cross-validation", 2700, 4431, r"ident/(prediction|validation)|apps/pushid_(predict|evaluate|crossvalidate)|apps/flags/scheme"),
