@@ -41,7 +41,9 @@ double Direction(const IdentifiedModel& model, const PendulumRecording& recordin
 // hundredth, because a range is one of factors.
 double HeightOfRod(const PendulumRecording& recording, const ScenePush& push) {
   const ScenePerson& person = recording.scene.people[push.person];
-  const Vector4<double>& f = push.mean;
+  Vector4<double> f = push.mean;
+  // The rows of a net push hold the posture as well.
+  if (push.kind != PushKind::kExternal) f -= Gravity<double>(person.body, person.start.q);
   const double lean = std::cos(person.start.q[2]) * std::cos(person.start.q[3]);
   return std::max(0.01, (f[2] * f[0] - f[3] * f[1]) /
                             (f.head<2>().squaredNorm() * person.body.rod_length * lean));

@@ -133,7 +133,8 @@ TEST_F(TrajectoriesTest, PeopleWithNamesGetNumbers) {
   EXPECT_EQ(ids({"5", "5"}), (std::vector<std::string>{"0", "1"}));
   EXPECT_EQ(ids({"-2", "5"}), (std::vector<std::string>{"-2", "5"}));
   EXPECT_EQ(ids({"anna", "2"}), (std::vector<std::string>{"0", "1"}));
-  EXPECT_TRUE(Contains(ReadText(Path("a.txt")), "# person 0: anna\n# id\tframe\tx/m\ty/m\tz/m\n"));
+  EXPECT_TRUE(Contains(ReadText(Path("a.txt")),
+                       "# person 0: anna\n# person 1: 2\n# id\tframe\tx/m\ty/m\tz/m\n"));
 }
 
 class CrowdPlacesTest : public TempDirTest {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/model/identified_model.h"
+#include "models/formation.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 
@@ -154,6 +155,21 @@ TEST(PushRange, HoldsThePeopleAndTheUsualPush) {
   EXPECT_EQ(warnings[1],
             "the distance to the nearest person of far is 1 m; the model was fitted to 0.5 to 0.5 "
             "m: an extrapolation");
+}
+
+// Rows of a net push are all forces, and so hold a lean; a formation's push does the same.
+TEST(PushRange, ANetPushHoldsThePosture) {
+  PendulumRecording leaning = PushedPerson("n", PushKind::kNet, 6, 0.0);
+  leaning.scene.people[0].start.q[2] = 0.06;
+  leaning.scene.pushes.clear();
+  AddHipPush(0, {1e-6, 0.0, 0.1, 0.0, 0.8, PushKind::kNet}, &leaning.scene);
+  const ScenePush& push = leaning.scene.pushes[0];
+  const ScenePerson& person = leaning.scene.people[0];
+  PendulumState<double> state = person.start;
+  EXPECT_LT(Acceleration<double>(person.body, state, push.force[2]).norm(), 1e-4) << "nobody falls";
+  leaning.scene.pushes.clear();
+  AddHipPush(0, {20.0, 0.0, 0.1, 0.0, 0.8, PushKind::kNet}, &leaning.scene);
+  EXPECT_NEAR(FittedPushRange(Model(), {leaning}).usual->height, 0.8, 1e-6);
 }
 
 TEST(PushRange, AUnitsOwnTailCounts) {
