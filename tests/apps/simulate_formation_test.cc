@@ -293,7 +293,7 @@ TEST_F(SimulateFormationTest, ACrowdIsAFormation) {
                                       "30 1 0.5 0.02\n44 1 1.0 -0.01\n");
   const AppRun run =
       Succeeded(Simulate({"--formation=" + crowd, "--formation_frame=1", "--pushed=1", "--push=20",
-                          "--duration=2", "--out=" + Path("out.txt")}));
+                          "--mass=80", "--duration=2", "--out=" + Path("out.txt")}));
   EXPECT_TRUE(Contains(run.out, "3 people of " + crowd + ", frame 1"));
   const std::string out = ReadText(Path("out.txt"));
   EXPECT_TRUE(Contains(out, "\n30\t0\t0.5\t0.02\t"));

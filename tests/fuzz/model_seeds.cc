@@ -87,7 +87,7 @@ void AddConfidence(FittedModel* model) {
   d.start = {kInfinity, {}, {"t_v"}, {"moved"}, {{FindingKind::kMass, "one", "S0", 62000.0}}};
   d.start.null_directions = {{{"mu", "Kp_x"}, {1.0, -1.0}, result->derived, "cannot be told"}};
   result->uncertainty.null_directions = d.start.null_directions;
-  d.recordings = {{"one", 97.0, 0.2, 0.9, 31.0, 1e-7, {{3, 0, 2.3, 0.1}}}};
+  d.recordings = {{"one", 97.0, true, 0.2, 0.9, 31.0, 1e-7, {{3, 0, 2.3, 0.1}}}};
   d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.0, 0.0}};
   d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
   d.trace = {{8, 0, 5.3, 1.7}, {0, 1, 1.1, 1e-9}};

@@ -72,7 +72,7 @@ FittedModel JudgedModel() {
   d.start = {infinity, {}, {"t_v"}, {"mu moved off its bound"}, {}};
   d.start.findings = {{FindingKind::kMass, "one", "s1", 85000.0}};
   d.start.null_directions.push_back({{"mu", "Kp_x"}, {1.0, -1.0}, {}, "cannot be separated"});
-  d.recordings = {{"one", 97.3, 0.2, 0.9, 31.7, 1e-7, {{3, 0, 2.3, 0.1}}}};
+  d.recordings = {{"one", 97.3, true, 0.2, 0.9, 31.7, 1e-7, {{3, 0, 2.3, 0.1}}}};
   d.whiteness = {{"hip x", {0.9, 0.8}, {0.1, 0.1}, {0.2}, {0.3}, 0.2, 0.04, 99.1, 0.0}};
   d.leverage = {{"one"}, {"mu"}, {"N s/m"}, {{-0.7}}, {{0.1}}};
   d.trace = {{8, 0, 5.3, 1.7}, {0, 1, 1.1, 1e-9}};
@@ -118,7 +118,7 @@ TEST(ResultJson, NumbersThatAreNoneComeBack) {
   Diagnostics& d = result.diagnostics;
   d.start.null_directions[0].coefficients[0] = none;
   d.start.null_directions[0].identified = result.derived;
-  d.recordings = {{"one", none, infinity, none, none, none, {{3, 0, infinity, none}}}};
+  d.recordings = {{"one", none, true, infinity, none, none, none, {{3, 0, infinity, none}}}};
   d.whiteness = {{"hip x", {none}, {none}, {none}, {none}, infinity, infinity, none, none}};
   d.trace[0] = {8, 0, infinity, none};
   result.uncertainty.sigma = result.uncertainty.settling.free_seconds = infinity;
