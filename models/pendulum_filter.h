@@ -11,6 +11,7 @@
 // changes. Rejected: one covariance of all 8 N states, 25 times the work of five people.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "models/dual.h"
@@ -48,10 +49,19 @@ Eigen::Matrix<T, N, kColumns> SolveLower(const Eigen::Matrix<T, N, N>& lower,
   return columns;
 }
 
-// A step of everybody with its derivatives by each person's own state, by a scalar D that holds a
-// value and eight derivatives.
-template <typename D = Dual<double, 8>>
-class DualStep {
+// A step of everybody from known states, and its derivatives by each person's own state.
+class StateStep {
+ public:
+  virtual ~StateStep();
+  // states: of everybody at the frame that the next steps start from.
+  virtual void Begin(const std::vector<PendulumState<double>>& states) = 0;
+  // A person's velocity one step on, 4 numbers, and by [q, qd], 4 x 8 by rows.
+  virtual void Velocity(int frame, int person, double* next, double* by_state) = 0;
+};
+
+// By a scalar D that holds a value and eight derivatives.
+template <typename D>
+class DualStep final : public StateStep {
  public:
   // All arguments must outlive the object.
   DualStep(const Scene& scene, const ModelOptions& options,
@@ -60,8 +70,7 @@ class DualStep {
   DualStep(const DualStep&) = delete;
   DualStep& operator=(const DualStep&) = delete;
 
-  // states: of everybody at the frame that the next steps start from.
-  void Begin(const std::vector<PendulumState<double>>& states) {
+  void Begin(const std::vector<PendulumState<double>>& states) override {
     states_.resize(states.size());
     for (size_t n = 0; n < states.size(); ++n) {
       for (int i = 0; i < 4; ++i) {
@@ -71,16 +80,7 @@ class DualStep {
     }
   }
 
-  // The person's velocity one step on, and its derivatives by [q, qd].
-  Vector4<double> Velocity(int frame, int person, Eigen::Matrix<double, 4, 8>* by_state) {
-    Vector4<double> next;
-    Eigen::Matrix<double, 4, 8, Eigen::RowMajor> rows;
-    Velocity(frame, person, next.data(), rows.data());
-    *by_state = rows;
-    return next;
-  }
-  // As above, into 4 numbers and 4 x 8, by rows.
-  void Velocity(int frame, int person, double* next, double* by_state) {
+  void Velocity(int frame, int person, double* next, double* by_state) override {
     const PendulumState<D> kept = states_[person];
     for (int i = 0; i < 4; ++i) {
       states_[person].q[i] = D::Input(kept.q[i].a, i);
@@ -114,8 +114,6 @@ class DualStep {
   std::vector<int> scratch_;
 };
 
-// Step: as DualStep is one.
-template <typename Step = DualStep<>>
 class PendulumFilter {
  public:
   using Covariance = Eigen::Matrix<double, 8, 8>;
@@ -126,93 +124,29 @@ class PendulumFilter {
   };
 
   // parameters: one entry per person. Starts at the scene's own start, whose place is a measurement
-  // as well. Scene and options must outlive the filter.
+  // as well. step: of the same; null for one by dual numbers. Scene and options must outlive the
+  // filter.
   PendulumFilter(const Scene& scene, const ModelOptions& options,
-                 const std::vector<ParameterSet<double>>& parameters)
-      : scene_(scene),
-        options_(options),
-        parameters_(parameters),
-        step_(scene_, options_, parameters_) {
-    for (int n = 0; n < scene.num_people(); ++n) {
-      PendulumState<double>& state = states_.emplace_back();
-      state.q = scene.people[n].start.q;
-      state.qd = scene.people[n].start.qd;
-      Covariance start = Covariance::Zero();
-      start.topLeftCorner<4, 4>() =
-          MeasurementCovariance<double>(scene.people[n].body, parameters[n]);
-      for (int i = 4; i < 8; ++i) start(i, i) = kStartRate * kStartRate;
-      covariances_.push_back(start);
-    }
-  }
+                 const std::vector<ParameterSet<double>>& parameters,
+                 std::unique_ptr<StateStep> step = nullptr);
 
   // From `frame` to the next.
-  RolloutStatus Predict(int frame) {
-    std::vector<Vector4<double>> velocities;
-    Eigen::Matrix<double, 4, 8> by_state;
-    step_.Begin(states_);
-    for (int n = 0; n < scene_.num_people(); ++n) {
-      velocities.push_back(step_.Velocity(frame, n, &by_state));
-      Spread(n, by_state);
-    }
-    for (int n = 0; n < scene_.num_people(); ++n) {
-      states_[n].qd = velocities[n];
-      states_[n].q += scene_.dt * velocities[n];
-      const std::string_view outside = OutsideDomain(scene_.people[n].body, states_[n]);
-      if (!outside.empty()) return {false, frame + 1, n, outside};
-    }
-    return {};
-  }
+  RolloutStatus Predict(int frame);
 
   // weight: of the measurement, in (0, 1]; its errors are as much larger as that is less.
-  Innovation Update(int person, const Vector4<double>& q, double weight) {
-    Covariance& P = covariances_[person];
-    PendulumState<double>& state = states_[person];
-    const Matrix4<double> expected =
-        P.topLeftCorner<4, 4>() +
-        MeasurementCovariance<double>(scene_.people[person].body, parameters_[person]) /
-            (weight * weight);
-    const Innovation innovation{q - state.q, CholeskyFactor<double, 4>(expected)};
-    const Eigen::Matrix<double, 4, 8> rows =
-        SolveLower<double, 4, 8>(innovation.lower, P.topRows<4>());
-    const Vector4<double> white = SolveLower<double, 4, 1>(innovation.lower, innovation.v);
-    const Eigen::Matrix<double, 8, 1> moved = rows.transpose() * white;
-    state.q += moved.head<4>();
-    state.qd += moved.tail<4>();
-    P -= rows.transpose().lazyProduct(rows);  // of such sizes Eigen would call its large kernel
-    return innovation;
-  }
+  Innovation Update(int person, const Vector4<double>& q, double weight);
 
   const PendulumState<double>& state(int person) const { return states_[person]; }
   const Covariance& covariance(int person) const { return covariances_[person]; }
 
  private:
+  using ByState = Eigen::Matrix<double, 4, 8, Eigen::RowMajor>;
   // P one step on. With V = d qd' / ds and q' = q + dt qd', the new blocks follow from V P and Q.
-  void Spread(int n, const Eigen::Matrix<double, 4, 8>& by_state) {
-    const Body& body = scene_.people[n].body;
-    const PendulumState<double>& state = states_[n];
-    const double dt = scene_.dt;
-    const Matrix4<double> gain =
-        InverseMassMatrix<double>(body, Angles<double>(state.q), body.mass) *
-        NoiseFactor<double>(body, parameters_[n]);
-    Covariance& P = covariances_[n];
-    const Eigen::Matrix<double, 4, 8> moved = by_state.lazyProduct(P);
-    const Matrix4<double> rates =
-        moved.lazyProduct(by_state.transpose()) + dt * (gain * gain.transpose());
-    const Matrix4<double> places_rates = moved.leftCols<4>().transpose();  // cov(q, qd')
-    const Matrix4<double> mixed = places_rates + dt * rates;
-    const Matrix4<double> places = P.topLeftCorner<4, 4>() +
-                                   dt * (places_rates + places_rates.transpose()) +
-                                   (dt * dt) * rates;
-    P.topLeftCorner<4, 4>() = places;
-    P.topRightCorner<4, 4>() = mixed;
-    P.bottomLeftCorner<4, 4>() = mixed.transpose();
-    P.bottomRightCorner<4, 4>() = rates;
-  }
+  void Spread(int n, const ByState& by_state);
 
   const Scene& scene_;
-  const ModelOptions& options_;
   std::vector<ParameterSet<double>> parameters_;
-  Step step_;
+  std::unique_ptr<StateStep> step_;
   std::vector<PendulumState<double>> states_;
   std::vector<Covariance> covariances_;
 };

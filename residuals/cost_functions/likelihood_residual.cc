@@ -62,7 +62,8 @@ RolloutStatus Innovations(const LikelihoodProblem& problem,
                           const std::vector<ParameterSet<double>>& parameters,
                           std::vector<GaussianDensity<double>>* densities) {
   const PendulumRecording& r = *problem.recording;
-  PendulumFilter<JetStep> filter(r.scene, problem.options, parameters);
+  PendulumFilter filter(r.scene, problem.options, parameters,
+                        StepByJets(r.scene, problem.options, parameters));
   for (int t = 0; t + 1 < r.num_frames(); ++t) {
     const RolloutStatus status = filter.Predict(t);
     if (!status.ok) return status;

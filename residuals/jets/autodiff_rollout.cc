@@ -13,8 +13,6 @@ constexpr int kPass = kGramBlock;  // columns of a pass, of which all columns ar
 
 }  // namespace
 
-StateStep::~StateStep() = default;
-
 void StateColumns::Resize(int num_frames, int num_people, int num_columns) {
   num_people_ = num_people;
   num_columns_ = num_columns;
@@ -64,6 +62,12 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
                                                    columns);
   }
   return status;
+}
+
+std::unique_ptr<StateStep> StepByJets(const Scene& scene, const ModelOptions& options,
+                                      const std::vector<ParameterSet<double>>& parameters) {
+  const RolloutJets& jets = *SupportedRolloutJets().back();
+  return std::unique_ptr<StateStep>(jets.step(scene, options, parameters));
 }
 
 AutoDiffRollout::AutoDiffRollout(std::shared_ptr<const RolloutProblem> problem)

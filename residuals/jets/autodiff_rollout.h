@@ -14,6 +14,7 @@
 #include <memory>
 #include <vector>
 
+#include "models/pendulum_filter.h"
 #include "residuals/rollout_residual.h"
 
 namespace pushid {
@@ -36,16 +37,6 @@ class StateColumns {
   }
   int num_people_ = 0, num_columns_ = 0;
   std::vector<double> storage_;  // never shrinks
-};
-
-// One step of everybody from known states, and its derivatives by each person's own state, as a
-// filter asks for them (models/pendulum_filter.h).
-class StateStep {
- public:
-  virtual ~StateStep();
-  virtual void Begin(const std::vector<PendulumState<double>>& states) = 0;
-  // next: 4; by_state: 4 x 8, by rows.
-  virtual void Velocity(int frame, int person, double* next, double* by_state) = 0;
 };
 
 // What one width of vectors offers: eight columns of the inputs, from `first` on.
@@ -75,25 +66,9 @@ RolloutStatus RolloutWithSensitivities(const Scene& scene, const ModelOptions& o
                                        const SensitivityInputs& inputs, int num_frames,
                                        RolloutPath<double>* path, StateColumns* columns);
 
-// The step of a PendulumFilter of doubles. All arguments must outlive the object.
-class JetStep {
- public:
-  JetStep(const Scene& scene, const ModelOptions& options,
-          const std::vector<ParameterSet<double>>& parameters)
-      : step_(SupportedRolloutJets().back()->step(scene, options, parameters)) {}
-
-  void Begin(const std::vector<PendulumState<double>>& states) { step_->Begin(states); }
-  Vector4<double> Velocity(int frame, int person, Eigen::Matrix<double, 4, 8>* by_state) {
-    Vector4<double> next;
-    Eigen::Matrix<double, 4, 8, Eigen::RowMajor> rows;
-    step_->Velocity(frame, person, next.data(), rows.data());
-    *by_state = rows;
-    return next;
-  }
-
- private:
-  std::unique_ptr<StateStep> step_;
-};
+// The step of a PendulumFilter. All arguments must outlive it.
+std::unique_ptr<StateStep> StepByJets(const Scene& scene, const ModelOptions& options,
+                                      const std::vector<ParameterSet<double>>& parameters);
 
 // All rows of a recording as a Ceres cost function.
 class AutoDiffRollout : public ceres::CostFunction {

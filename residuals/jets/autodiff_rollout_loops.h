@@ -4,7 +4,6 @@
 // that have linkage use no vectors (tests/residuals/shared_code.sh looks into the objects).
 #pragma once
 
-#include "models/pendulum_filter.h"
 #include "residuals/jets/autodiff_rollout.h"
 #include "residuals/jets/vector_jet.h"
 
@@ -91,24 +90,9 @@ RolloutStatus PassOfStates(const Scene& scene, const ModelOptions& options,
   return status;
 }
 
-class StepByJets final : public StateStep {
- public:
-  StepByJets(const Scene& scene, const ModelOptions& options,
-             const std::vector<ParameterSet<double>>& parameters)
-      : step_(scene, options, parameters) {}
-
-  void Begin(const std::vector<PendulumState<double>>& states) override { step_.Begin(states); }
-  void Velocity(int frame, int person, double* next, double* by_state) override {
-    step_.Velocity(frame, person, next, by_state);
-  }
-
- private:
-  DualStep<VectorJet> step_;
-};
-
 StateStep* MakeStep(const Scene& scene, const ModelOptions& options,
                     const std::vector<ParameterSet<double>>& parameters) {
-  return new StepByJets(scene, options, parameters);
+  return new DualStep<VectorJet>(scene, options, parameters);
 }
 
 constexpr RolloutJets OfWidth(const char* name) {

@@ -108,7 +108,7 @@ TEST(PendulumFilter, ItsDensitiesMultiplyToTheDenseGaussian) {
   const VectorXd apart = factor * white, measured = mean + apart;
   const double dense = white.squaredNorm() + 2.0 * factor.diagonal().array().log().sum();
 
-  PendulumFilter<> filter(e.scene, e.options, e.parameters);
+  PendulumFilter filter(e.scene, e.options, e.parameters);
   double factored = 0.0;
   for (int t = 0; t + 1 < e.frames; ++t) {
     ASSERT_TRUE(filter.Predict(t).ok);
@@ -145,7 +145,7 @@ TEST(PendulumFilter, InnovationsOfItsOwnMotionsAreStandardNormal) {
       RolloutPath<double> path;
       ASSERT_TRUE(
           Rollout<double>(own, options, p, rates, kFrames, &path, nullptr, nullptr, &noise).ok);
-      PendulumFilter<> filter(own, options, p);
+      PendulumFilter filter(own, options, p);
       std::vector<Vector4<double>> before(people, Vector4<double>::Zero());
       for (int t = 0; t + 1 < kFrames; ++t) {
         ASSERT_TRUE(filter.Predict(t).ok);
@@ -173,7 +173,7 @@ TEST(PendulumFilter, WhatIsNotMeasuredIsKnownLessAndLess) {
   options.process_noise = ProcessNoise::kDiagonal;
   const Scene scene = People(1);
   const std::vector<ParameterSet<double>> p = {Standing()};
-  PendulumFilter<> filter(scene, options, p);
+  PendulumFilter filter(scene, options, p);
   double before = filter.covariance(0).trace();
   for (int t = 0; t < 10; ++t) {
     ASSERT_TRUE(filter.Predict(t).ok);
