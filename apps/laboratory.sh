@@ -15,6 +15,7 @@ say "Pushes from the load cell, whose reading at rest is subtracted"
 say "Who stands: feet that hold and a reaction delay, from markers and platforms"
 "$bin/pushid-fit" --recordings="$manifest" --setting=standing --stance=fixed --delay=one --model_out="$out/standing.json" \
   --quiet >"$out/standing.txt"
+"$bin/pushid-report" --model="$out/standing.json" --details >>"$out/standing.txt"
 "$bin/pushid-report" --model="$out/standing.json" --truth="$out/truth.json" >"$out/compared.txt"
 "$bin/pushid-report" --model="$out/standing.json" --recordings="$manifest" --html_out="$out/report.html" 2>/dev/null
 echo "  $(realpath "$out")/report.html"
@@ -27,14 +28,14 @@ tail -n 1 "$out/stepping.txt"
 say "Result"
 awk -F '  +' '
   FILENAME ~ /standing.txt$/ {
-    if ($1 == "parameter" || !($1 in total) && $5 ~ /^\[/) { total[$1] = $5; status[$1] = $9 }
+    if (!($1 in status) && $4 ~ /^\[/) status[$1] = $6
     if (/^The model (fits|does not fit)/) verdict = $0
     if ($1 == "lag of the pushes") lag = $3
     next
   }
-  $1 == "parameter" { printf "%-18s %7s %9s  %-18s %s\n", $1, $2, $3, "total 95 %", "status"; next }
+  $1 == "parameter" { printf "%-18s %7s %9s  %-18s %s\n", $1, $2, $3, "95 % interval", "status"; next }
   NF >= 6 {
-    printf "%-18s %7s %9s  %-18s %s\n", $1, $2, $3, total[$1], status[$1]
+    printf "%-18s %7s %9s  %-18s %s\n", $1, $2, $3, $5, status[$1]
     off = $3 / $2 - 1; if (off < 0) off = -off
     text = $1 sprintf(" (%.0f %% off)", 100 * off)
     if (off <= 0.1 && status[$1] != "prior-held") found = found (found ? ", " : "") text

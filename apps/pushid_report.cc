@@ -17,7 +17,7 @@
 DEFINE_string(model, "", "model that pushid-fit --model_out wrote");
 DEFINE_string(truth, "", "manifest.json of pushid-simulate: only compare with its true values");
 DEFINE_string(html_out, "", "write the whole report here: one self-contained page (HTML)");
-DEFINE_bool(text, false, "print the whole report, not only the parameters");
+DEFINE_bool(details, false, "print the whole report, and what the intervals are made of");
 DEFINE_int32(num_threads, 1, "threads");
 
 DEFINE_string(
@@ -73,7 +73,7 @@ int WriteWhole(const FittedModel& model) {
   const BuildReportOptions options{FLAGS_num_threads, line.OfJobs("recording")};
   const Report report = BuildReport(model, recordings, options);
   line.Finish();
-  if (FLAGS_text) std::printf("%s", ToText(report).c_str());
+  if (FLAGS_details) std::printf("%s", ToText(report).c_str());
   if (FiguresAsked()) WriteFigures(report);
   if (FLAGS_html_out.empty()) return kDone;
   OrFail(WriteFileAtomically(FLAGS_html_out, ToPage(report)));
@@ -95,7 +95,7 @@ int Run() {
     std::printf("%s", TruthTable(model.fit, truth).c_str());
     return kDone;
   }
-  if (FLAGS_text || !FLAGS_html_out.empty() || FiguresAsked()) return WriteWhole(model);
+  if (FLAGS_details || !FLAGS_html_out.empty() || FiguresAsked()) return WriteWhole(model);
   std::printf("%s", ReportText(model).c_str());
   return kDone;
 }

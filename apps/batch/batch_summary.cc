@@ -67,8 +67,9 @@ JobCell Nothing() { return {}; }
 
 // A value with its error and, unless the data identify it, its status.
 std::string EstimateText(const Estimate& e) {
-  const std::string text = Rounded(e.value, 4), error = Rounded(e.standard_error, 3);
-  return (std::isfinite(e.standard_error) ? text + " +- " + error : text) +
+  const double of = e.interval().standard_error;
+  const std::string text = Rounded(e.value, 4), error = Rounded(of, 3);
+  return (std::isfinite(of) ? text + " +- " + error : text) +
          (e.status == EstimateStatus::kIdentified ? "" : " (" + NameOf(e.status) + ")");
 }
 

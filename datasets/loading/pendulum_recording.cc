@@ -74,6 +74,20 @@ RecordedPerson SeenFromGround(const Recording& recording, RecordedPerson person)
   return person;
 }
 
+// The first frame at which ground may move: it is seen to have left its place later, and
+// accelerates most before that. As far back from there as from there to half of its way.
+int FirstAcceleration(const std::vector<GroundPose>& poses) {
+  const int left = FirstMotion(poses);
+  double farthest = 0.0;
+  for (const GroundPose& pose : poses) farthest = std::max(farthest, (pose - poses[0]).norm());
+  int half = left;
+  while (half < static_cast<int>(poses.size()) &&
+         (poses[half] - poses[0]).norm() < 0.5 * farthest) {
+    ++half;
+  }
+  return std::max(0, left - (half - left));
+}
+
 // The first frame at which anything happens: a push, or ground that leaves its place.
 size_t FirstDisturbance(const Recording& recording) {
   size_t first = static_cast<size_t>(recording.num_frames());
@@ -81,7 +95,7 @@ size_t FirstDisturbance(const Recording& recording) {
     first = std::min(first, static_cast<size_t>(push.start_frame));
   }
   if (recording.ground.empty()) return first;
-  return std::min(first, static_cast<size_t>(FirstMotion(recording.ground)));
+  return std::min(first, static_cast<size_t>(FirstAcceleration(recording.ground)));
 }
 
 // The mean centre of pressure over the frames before `end`; none: nobody pressed.
@@ -111,6 +125,20 @@ std::vector<PlateFrame> PlateFrames(const Recording& recording, const RecordedPe
     frames.push_back({sample.force.head<2>(), centre, sample.weight});
   }
   return frames;
+}
+
+// Who stands quietly at first starts from where they stand on average: the noise of one frame would
+// be in all frames, and the centre of pressure counts from an average too.
+Vector4<double> MeanOfQuiet(const std::vector<PendulumState<double>>& states, size_t end,
+                            const std::vector<double>& weight) {
+  Vector4<double> mean = states[0].q;
+  double frames = 1.0;
+  for (size_t t = 1; t < end && end < states.size(); ++t) {
+    if (!weight.empty() && weight[t] <= 0.0) continue;
+    frames += 1.0;
+    mean += (states[t].q - mean) / frames;
+  }
+  return mean;
 }
 
 // A share of the body's mass, its centre on the way from one joint to another, and its radius of
@@ -177,7 +205,9 @@ PendulumRecording MakePendulumRecording(const Recording& recording) {
       lengths[t] = pose.rod_length;
       if (t == 0) in_scene.body = {person.mass_kg, pose.rod_length, pose.cart_height};
     }
-    in_scene.start.q = states[0].q;
+    in_scene.start.q = recording.initial_velocity == InitialVelocity::kZero
+                           ? MeanOfQuiet(states, FirstDisturbance(recording), person.weight)
+                           : states[0].q;
     in_scene.start.feet.apart = (person.left_ankle[0] - person.right_ankle[0]).head<2>();
     if (recording.initial_velocity != InitialVelocity::kZero && states.size() > 1) {
       in_scene.start.qd = states[1].qd;

@@ -31,23 +31,6 @@ void TextTable::Add(std::initializer_list<TableCell> row) {
 
 void TextTable::AddGap() { rows_.emplace_back(); }
 
-void TextTable::DropIfEmpty(const std::vector<std::string>& columns) {
-  for (const std::string& name : columns) {
-    const auto found = std::find(rows_[0].begin(), rows_[0].end(), name);
-    if (found == rows_[0].end()) continue;
-    const size_t column = static_cast<size_t>(found - rows_[0].begin());
-    const bool used = std::any_of(rows_.begin() + 1, rows_.end(), [column](const auto& row) {
-      return column < row.size() && !row[column].empty();
-    });
-    if (used) continue;
-    const auto erase = [column](auto* of) {
-      if (column < of->size()) of->erase(of->begin() + static_cast<std::ptrdiff_t>(column));
-    };
-    for (std::vector<std::string>& row : rows_) erase(&row);
-    erase(&left_);
-  }
-}
-
 std::string TextTable::ToString() const {
   std::vector<size_t> width(left_.size(), 0);
   for (const auto& row : rows_) {

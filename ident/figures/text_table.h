@@ -43,8 +43,6 @@ class TextTable {
   void Add(std::initializer_list<TableCell> row);
   // A blank line between groups.
   void AddGap();
-  // Takes these columns out if all their cells are empty.
-  void DropIfEmpty(const std::vector<std::string>& columns);
   // Whether there is only a header.
   bool empty() const { return rows_.size() < 2; }
   std::string ToString() const;

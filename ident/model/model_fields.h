@@ -34,11 +34,19 @@ void QuantileField(Archive& a, double* quantile) {
   }
 }
 
+// The interval that decides; the others beside it are what it is made of.
+template <class Archive>
+void WriteInterval(Archive& a, const Interval& i) {
+  a.Written("interval", [&i] { return std::vector<double>{i.lower, i.upper}; });
+}
+
 template <class Archive>
 void Fields(Archive& a, Estimate& e) {
   // Models written before shares were computed say nothing of them, nor of degrees of freedom.
   const bool shares = a.Has("shares");
-  PUSHID_FIELDS(a, e, name, value, standard_error, standard_error_naive);
+  PUSHID_FIELDS(a, e, name, value);
+  WriteInterval(a, e.interval());
+  PUSHID_FIELDS(a, e, standard_error, standard_error_naive);
   a.Pair("interval_95", e.lower95, e.upper95);
   if (shares) {
     a("freedom", e.freedom);
@@ -60,9 +68,12 @@ void Fields(Archive& a, Estimate& e) {
 
 template <class Archive>
 void Fields(Archive& a, Combination& c) {
-  PUSHID_FIELDS(a, c, name, value, standard_error);
+  PUSHID_FIELDS(a, c, name, value);
+  WriteInterval(a, c.interval());
+  a("standard_error", c.standard_error);
   a.Pair("interval_95", c.lower95, c.upper95);
   QuantileField(a, &c.quantile);
+  a.Optional("total", c.total);
   a.Optional("these_people", c.these);
   a("unit", c.unit);
 }

@@ -120,4 +120,36 @@ double Crps(std::vector<double> draws, double value) {
   return to_value / n - apart / (n * (n - 1.0));
 }
 
+std::vector<double> MovingMean(const std::vector<double>& path, int half) {
+  const int frames = static_cast<int>(path.size());
+  std::vector<double> smooth;
+  for (int t = 0; t < frames; ++t) {
+    const int from = std::max(0, t - half), to = std::min(frames - 1, t + half);
+    double sum = 0.0;
+    for (int k = from; k <= to; ++k) sum += path[k];
+    smooth.push_back(sum / (to - from + 1));
+  }
+  return smooth;
+}
+
+std::vector<int> TurnsOf(const std::vector<double>& path, double drop) {
+  std::vector<int> turns;
+  if (path.empty()) return turns;
+  int most = 0, least = 0, heading = 0;  // 0: neither way yet
+  for (int t = 1; t < static_cast<int>(path.size()); ++t) {
+    if (path[t] > path[most]) most = t;
+    if (path[t] < path[least]) least = t;
+    if (heading >= 0 && path[most] - path[t] >= drop) {
+      if (heading > 0) turns.push_back(most);
+      heading = -1;
+      least = t;
+    } else if (heading <= 0 && path[t] - path[least] >= drop) {
+      if (heading < 0) turns.push_back(least);
+      heading = 1;
+      most = t;
+    }
+  }
+  return turns;
+}
+
 }  // namespace pushid

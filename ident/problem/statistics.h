@@ -59,4 +59,9 @@ double StudentQuantile95(double degrees_of_freedom);
 // Probability that |T| exceeds |t|.
 double StudentTail(double t, double degrees_of_freedom);
 
+// The mean over so many values to both sides, fewer at the ends.
+std::vector<double> MovingMean(const std::vector<double>& path, int half);
+// Frames at which a path turns: extremes from which it goes back by at least `drop`.
+std::vector<int> TurnsOf(const std::vector<double>& path, double drop);
+
 }  // namespace pushid

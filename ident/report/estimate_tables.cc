@@ -12,6 +12,7 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/linear_loop.h"
 #include "ident/problem/statistics.h"
+#include "ident/report/verdict_text.h"
 #include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/clusters.h"
 #include "models/self_terms.h"
@@ -90,21 +91,6 @@ std::string GainsText(const FitResult& result) {
 
 namespace {
 
-// Columns about these people, where their errors differ (uncertainty/covariance.h).
-const std::vector<std::string> kTheseColumns = {"these people", "their 95 %"};
-
-// The column of errors that hold what is taken as known as well (model_verdict.h).
-constexpr char kTotalColumn[] = "total 95 %";
-
-std::string TheirError(const std::optional<Interval>& these) {
-  return !these ? "" : these->standard_error > 0.0 ? Rounded(these->standard_error, 3) : "-";
-}
-
-std::string TheirInterval(double value, const std::optional<Interval>& these) {
-  if (!these) return "";
-  return these->standard_error > 0.0 ? IntervalText(value, these->lower, these->upper) : "-";
-}
-
 // "97/3/0"
 std::string SharesText(const Shares& s) {
   const auto percent = [](double share) { return Rounded(std::round(100.0 * share), 3); };
@@ -121,13 +107,12 @@ std::string PullText(const Estimate& e) {
 }  // namespace
 
 TextTable EstimateTable(const FitResult& result) {
-  TextTable table({"parameter", ">value", ">std error", "95 % interval", kTotalColumn,
-                   ">" + kTheseColumns[0], kTheseColumns[1], "unit", "status",
+  TextTable table({"parameter", ">value", ">std error", "95 % interval", "unit", "status",
                    "data/prior/settling, %", ">prior shift, std errors", "prior"});
   for (const Estimate& e : result.estimates) {
     const ParameterSpec* spec = result.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed) {
-      table.Add({e.name, Rounded(e.value, 4), "-", "-", "", "", "", e.unit, "fixed", "-", "-", ""});
+      table.Add({e.name, Rounded(e.value, 4), "-", "-", e.unit, "fixed", "-", "-", ""});
       continue;
     }
     const std::string prior =
@@ -137,22 +122,124 @@ TextTable EstimateTable(const FitResult& result) {
     const bool unknown = e.status == EstimateStatus::kUnidentifiable;
     const bool no_shares = unknown || e.status == EstimateStatus::kAtBound;
     const bool no_error = no_shares && e.standard_error <= 0.0;
-    const std::string error = no_error ? "-" : Rounded(e.standard_error, 3);
-    table.Add({e.name, Rounded(e.value, 4), unknown ? "infinite" : error,
-               unknown || no_error ? "-" : IntervalText(e.value, e.lower95, e.upper95),
-               e.total && !no_shares ? IntervalText(e.value, e.total->lower, e.total->upper) : "",
-               TheirError(e.these), TheirInterval(e.value, e.these), e.unit, NameOf(e.status),
-               no_shares ? "-" : SharesText(e.shares), no_shares ? "-" : PullText(e), prior});
+    const Interval shown = e.interval();
+    table.Add({e.name, Rounded(e.value, 4),
+               unknown    ? "infinite"
+               : no_error ? "-"
+                          : Rounded(shown.standard_error, 3),
+               unknown || no_error ? "-" : IntervalText(e.value, shown.lower, shown.upper), e.unit,
+               NameOf(e.status), no_shares ? "-" : SharesText(e.shares),
+               no_shares ? "-" : PullText(e), prior});
   }
-  table.DropIfEmpty({kTotalColumn});
-  table.DropIfEmpty(kTheseColumns);
+  return table;
+}
+
+namespace {
+
+size_t ColumnOf(const FitResult& result, const std::string& name) {
+  const std::vector<Estimate>& fitted = result.uncertainty.estimates;
+  const auto at = std::find_if(fitted.begin(), fitted.end(),
+                               [&name](const Estimate& e) { return e.name == name; });
+  return static_cast<size_t>(at - fitted.begin());
+}
+
+// The assumption that makes up most of a squared total error; null: none does.
+const AssumptionTest* WidensMost(const ModelVerdict& verdict, size_t column, bool measured) {
+  const AssumptionTest* most = nullptr;
+  double widest = 0.0;
+  for (const AssumptionTest& test : verdict.assumptions) {
+    if (measured && StatedErrorKey(test).empty()) continue;
+    const double widens = test.Widens(column, test.stated);
+    if (widens > widest) most = &test, widest = widens;
+  }
+  return most;
+}
+
+// "height of the pushes (63 %)"
+std::string WidenedBy(const FitResult& result, const std::string& name, double error) {
+  const size_t column = ColumnOf(result, name);
+  const AssumptionTest* const most = WidensMost(result.verdict, column, false);
+  if (most == nullptr) return "-";
+  const double share = std::min(1.0, most->Widens(column, most->stated) / (error * error));
+  return most->name + " (" + Rounded(100.0 * share, 2) + " %)";
+}
+
+// The largest of a half, a fifth and a tenth of what is stated by which a weak estimate would be
+// identified; 0: none.
+double SharpEnough(const ParameterSpec& spec, const Estimate& e, const AssumptionTest& test,
+                   size_t column) {
+  const Interval total = e.interval();
+  const double variance = total.standard_error * total.standard_error;
+  const double fitted = ToFitted(spec.transform, e.value);
+  const double width = spec.prior ? spec.prior->sigma : spec.scale;
+  for (double share : {0.5, 0.2, 0.1}) {
+    const double stated = share * test.stated;
+    const double left = variance - test.Widens(column, test.stated) + test.Widens(column, stated);
+    const auto end = [&](double natural) {
+      const double half = ToFitted(spec.transform, natural) - fitted;
+      return ToNatural(spec.transform, fitted + std::sqrt(std::max(0.0, left / variance)) * half);
+    };
+    if (IsNarrow(spec.transform, width, end(total.lower), end(total.upper))) return stated;
+  }
+  return 0.0;
+}
+
+// What is weak for what is taken as known alone.
+bool WeakInTotal(const FitResult& result, const Estimate& e, const ParameterSpec& spec) {
+  const Uncertainty& u = result.uncertainty;
+  const bool few = u.about_people_like_them && u.num_people < kFewestPeople;
+  const double width = spec.prior ? spec.prior->sigma : spec.scale;
+  return e.status == EstimateStatus::kWeak && !few && Leads(e) &&
+         IsNarrow(spec.transform, width, e.lower95, e.upper95);
+}
+
+}  // namespace
+
+std::string SharperText(const FitResult& result) {
+  const ModelVerdict& verdict = result.verdict;
+  if (verdict.fails() || !verdict.none_identified.empty()) return "";
+  std::string text;
+  for (const Estimate& e : result.estimates) {
+    const ParameterSpec* const spec = result.options.table.Find(e.name);
+    const size_t column = ColumnOf(result, e.name);
+    const AssumptionTest* const most = WidensMost(verdict, column, true);
+    if (spec == nullptr || most == nullptr || !WeakInTotal(result, e, *spec)) continue;
+    const double stated = SharpEnough(*spec, e, *most, column);
+    if (stated <= 0.0) continue;
+    text += (text.empty() ? "" : "; ") + e.name + " becomes identified where the " + most->name +
+            " is known to " + Rounded(stated, 2) + (most->unit.empty() ? "" : " " + most->unit) +
+            " (stated_errors: " + StatedErrorKey(*most) + ")";
+  }
+  return text.empty() ? "" : "Measure better and state it in the manifest: " + text + ".";
+}
+
+TextTable PartsTable(const FitResult& result) {
+  TextTable table({"parameter", ">value", ">std error", "95 % interval", ">by the data alone",
+                   "95 %", ">of these people alone", "95 %", "unit", "widened most by"});
+  const auto add = [&](const auto& row) {
+    if (!row.total && !row.these) return;
+    const auto cells =
+        [&row](const std::optional<Interval>& i) -> std::pair<std::string, std::string> {
+      if (!i || !(i->standard_error > 0.0)) return {"-", "-"};
+      return {Rounded(i->standard_error, 3), IntervalText(row.value, i->lower, i->upper)};
+    };
+    const auto all = cells(row.interval()), these = cells(row.these);
+    const auto own = cells(Interval{row.standard_error, row.lower95, row.upper95});
+    table.Add({row.name, Rounded(row.value, 4), all.first, all.second, own.first, own.second,
+               these.first, these.second, row.unit,
+               WidenedBy(result, row.name, row.interval().standard_error)});
+  };
+  for (const Estimate& e : result.estimates) {
+    if (e.status != EstimateStatus::kFixed) add(e);
+  }
+  for (const Combination& c : result.derived) add(c);
   return table;
 }
 
 std::string SharesNote() {
   return "Shares: fractions of a value's variance due to the data, its prior and the settling "
          "constraint. Prior shift: how far prior and constraint together move the value, in "
-         "standard errors. Prior-held: the data account for less than half.";
+         "standard errors of the data alone. Prior-held: the data account for less than half.";
 }
 
 namespace {
@@ -168,14 +255,8 @@ std::string TargetText(const FitResult& result) {
                : "errors and status are about these " + std::to_string(u.num_people) +
                      " people, not about people like them: recordings are the units\n";
   }
-  const bool told_apart = std::any_of(result.estimates.begin(), result.estimates.end(),
-                                      [](const Estimate& e) { return e.these.has_value(); });
   return "errors and status are about people like these " + std::to_string(u.num_people) +
-         ": people are the units" +
-         (told_apart
-              ? "; the columns of these people are about their mean: recordings are the units"
-              : "") +
-         "\n";
+         ": people are the units\n";
 }
 
 std::string Freedom(double least, double most) {
@@ -215,15 +296,13 @@ std::string FeetOfFit(const FitResult& result) {
 }
 
 TextTable DerivedTable(const FitResult& result) {
-  TextTable table({"derived", ">value", ">std error", "95 % interval", ">" + kTheseColumns[0],
-                   kTheseColumns[1], "unit"});
+  TextTable table({"derived", ">value", ">std error", "95 % interval", "unit"});
   for (const Combination& c : result.derived) {
+    const Interval shown = c.interval();
     const bool fixed = c.standard_error == 0.0;
-    table.Add({c.name, Rounded(c.value, 4), fixed ? "-" : Rounded(c.standard_error, 3),
-               fixed ? "-" : IntervalText(c.value, c.lower95, c.upper95), TheirError(c.these),
-               TheirInterval(c.value, c.these), c.unit});
+    table.Add({c.name, Rounded(c.value, 4), fixed ? "-" : Rounded(shown.standard_error, 3),
+               fixed ? "-" : IntervalText(c.value, shown.lower, shown.upper), c.unit});
   }
-  table.DropIfEmpty(kTheseColumns);
   return table;
 }
 

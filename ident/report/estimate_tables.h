@@ -26,6 +26,11 @@ std::string FeetOfFit(const FitResult& result);
 
 // c_x, c_y and gains per mass.
 TextTable DerivedTable(const FitResult& result);
+// Beside the interval that decides: that of the data alone, and that of these people alone.
+TextTable PartsTable(const FitResult& result);
+// "Measure better ...: a_x becomes identified where the height of the pushes is known to 0.01 m".
+// Empty: nothing that could be stated better would do.
+std::string SharperText(const FitResult& result);
 // The convention that separates mu from Kp, the quoted person, and which gains are tied.
 std::string ConventionText(const FitResult& result);
 // "Ankle stiffness 1.6 times m g l (1 is just enough to hold a pendulum upright), ..."

@@ -25,9 +25,9 @@ constexpr size_t kNamed = 4;  // parameters of a sentence; the table below has a
 std::string ValueText(const Estimate& e) {
   std::string text = e.name + " = " + Rounded(e.value, 3) + (e.unit == "1" ? "" : " " + e.unit);
   if (e.lower95 < e.upper95) {
-    const double lower = e.total ? e.total->lower : e.lower95;
-    const double upper = e.total ? e.total->upper : e.upper95;
-    const double from = ShownEnd(e.value, lower, upper), to = ShownEnd(e.value, upper, lower);
+    const Interval i = e.interval();
+    const double from = ShownEnd(e.value, i.lower, i.upper);
+    const double to = ShownEnd(e.value, i.upper, i.lower);
     text += std::isfinite(from) && std::isfinite(to)
                 ? " (" + Rounded(from, 3) + " to " + Rounded(to, 3) + ")"
             : std::isfinite(from) ? " (above " + Rounded(from, 3) + ")"
@@ -67,10 +67,7 @@ std::string Known(const FitResult& result) {
 // Which intervals ValueText shows, where it shows any.
 std::string Brackets(const FitResult& result) {
   if (With(result, EstimateStatus::kIdentified).empty()) return "";
-  const bool total = std::any_of(result.estimates.begin(), result.estimates.end(),
-                                 [](const Estimate& e) { return e.total.has_value(); });
-  return total ? " In brackets: 95 % intervals, with the errors of what is taken as known."
-               : " In brackets: 95 % intervals.";
+  return " In brackets: 95 % intervals.";
 }
 
 std::string NotKnown(const FitResult& result) {

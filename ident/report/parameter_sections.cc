@@ -10,8 +10,6 @@
 namespace pushid {
 namespace {
 
-constexpr char kTotalLook[] = "fill:none;stroke-width:3;stroke:#9ca3af";
-constexpr char kTheseLook[] = "fill:none;stroke-width:3;stroke:#93c5fd";
 constexpr char kProfileLook[] = "fill:none;stroke-width:3;stroke:#009e73";
 constexpr char kBootstrapLook[] = "fill:none;stroke-width:3;stroke:#cc79a7";
 constexpr double kStripHeight = 50, kIntervalHeight = 6;  // pixels
@@ -104,11 +102,9 @@ ReportFigure SharesFigure(const FitResult& result) {
 
 ReportFigure IntervalFigure(const FittedModel& model) {
   Figure figure;
-  bool told_apart = false, with_total = false;
-  TextTable numbers({"parameter", "unit", "value", "nominal", "clustered_lower95",
-                     "clustered_upper95", "total_lower95", "total_upper95", "these_people_lower95",
-                     "these_people_upper95", "profile_lower95", "profile_upper95",
-                     "bootstrap_lower95", "bootstrap_upper95"});
+  TextTable numbers({"parameter", "unit", "value", "nominal", "lower95", "upper95",
+                     "profile_lower95", "profile_upper95", "bootstrap_lower95",
+                     "bootstrap_upper95"});
   for (const Estimate& e : model.fit.estimates) {
     const ParameterSpec* spec = model.fit.options.table.Find(e.name);
     if (e.status == EstimateStatus::kFixed || spec == nullptr) continue;
@@ -120,19 +116,13 @@ ReportFigure IntervalFigure(const FittedModel& model) {
       cells.push_back(interval ? DoubleText(interval->lower) : "");
       cells.push_back(interval ? DoubleText(interval->upper) : "");
     };
-    add(Interval{e.standard_error, e.lower95, e.upper95}, kIntervalLook);
-    add(e.total, kTotalLook);
-    with_total = with_total || e.total;
-    add(e.these, kTheseLook);
-    told_apart = told_apart || e.these;
+    add(e.interval(), kIntervalLook);
     add(ProfileInterval(model, e.name), kProfileLook);
     add(BootstrapInterval(model, e.name), kBootstrapLook);
     figure.panels.push_back(IntervalStrip(row));
     numbers.Add(cells);
   }
-  figure.legend = {{told_apart ? "people like them, 95 %" : "clustered 95 %", kIntervalLook}};
-  if (with_total) figure.legend.push_back({"total 95 %", kTotalLook});
-  if (told_apart) figure.legend.push_back({"these people", kTheseLook});
+  figure.legend = {{"95 % interval", kIntervalLook}};
   if (!model.profiles.empty()) figure.legend.push_back({"profile", kProfileLook});
   if (model.bootstrap) figure.legend.push_back({"bootstrap", kBootstrapLook});
   figure.legend.push_back({"nominal", kMarkLook});
@@ -145,8 +135,10 @@ ReportFigure IntervalFigure(const FittedModel& model) {
 ReportSection ParameterSection(const FittedModel& model) {
   ReportSection section{"parameters", "Parameters"};
   section.paragraphs = {SharesNote(), ErrorsText(model.fit), ConventionText(model.fit)};
+  section.Say(SharperText(model.fit));
   section.Show("", EstimateTable(model.fit));
   section.Show("", DerivedTable(model.fit));
+  section.Show("what the intervals are made of", PartsTable(model.fit));
   if (model.fit.verdict.checked()) {
     section.Show("taken as known, and what the recordings say of it", AssumptionTable(model.fit));
   }

@@ -18,7 +18,7 @@ namespace pushid {
 std::string FirstSentences(const FitResult& result);
 
 // The first sentences, then the sections of fit_sections.h and parameter_sections.h without figures
-// and without the tables that the page folds (pushid-report --text prints those too).
+// and without the tables that the page folds (pushid-report --details prints those too).
 std::string ReportText(const FittedModel& model);
 
 // The learned terms: "rod mlp:2 (26 weights, prior 1)"; empty where nothing is learned.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "datasets/files/number_text.h"
+#include "ident/uncertainty/assumptions.h"
 
 namespace pushid {
 namespace {
@@ -16,16 +17,20 @@ constexpr size_t kNamedSuspects = 3;
 
 struct Remedy {
   const char* name;  // of an assumption
+  const char* key;   // among stated_errors
   const char* text;
 };
 constexpr Remedy kRemedies[] = {
-    {"scale of the pushes", "check the unit and the calibration of the force, and the masses"},
-    {"lag of the pushes", "check the clocks of forces and cameras"},
-    {"height of the pushes", "check at which height the pushes act"},
-    {"zero of the pushes", "check what the sensor reads before the push"},
-    {"masses", "check the masses, and the unit of the force"},
-    {"frame rate", "check the frame rate"},
-    {"drift of the cameras", "check whether positions drift, or people walk before the push"}};
+    {"scale of the pushes", "push_scale",
+     "check the unit and the calibration of the force, and the masses"},
+    {"lag of the pushes", "push_lag_frames", "check the clocks of forces and cameras"},
+    {"height of the pushes", "push_height_m", "check at which height the pushes act"},
+    {"zero of the pushes", "push_zero_N", "check what the sensor reads before the push"},
+    {"masses", "mass", "check the masses, and the unit of the force"},
+    {"frame rate", "frame_rate", "check the frame rate"},
+    {"drift of the cameras", "drift_m",
+     "check whether positions drift, or people walk before the push"},
+    {kReactionDelayName, "reaction_delay_s", "try --delay=one"}};
 
 // The remedy for a quantity of the laboratory; null where the model has it as a parameter.
 const Remedy* FindRemedy(const AssumptionTest& test) {
@@ -167,6 +172,11 @@ std::string ModelVerdictText(const ModelVerdict& v, bool more) {
   const std::string none =
       v.none_identified.empty() ? "" : "Nothing is identified: " + v.none_identified + ". ";
   return none + CheckText(v, more);
+}
+
+std::string StatedErrorKey(const AssumptionTest& test) {
+  const Remedy* const remedy = FindRemedy(test);
+  return remedy == nullptr ? "" : remedy->key;
 }
 
 TextTable AssumptionTable(const FitResult& result) {

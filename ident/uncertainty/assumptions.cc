@@ -131,12 +131,12 @@ Assumption Held(const ParameterSpec& spec) {
           }};
 }
 
-constexpr double kStatedDelay = 0.1, kTriedDelay = 0.12;  // s
+constexpr double kTriedDelay = 0.12;  // s
 
-// People who stand react late: what is fitted as damping is less by the delay times the stiffness.
-Assumption Delayed(const FitProblem& problem, const FitPoint& point) {
+// People react late: what is fitted as damping is less by the delay times the stiffness.
+Assumption Delayed(const FitProblem& problem, const FitPoint& point, double stated) {
   const ParameterSet<double> values = problem.Parameters(point, "");
-  Assumption delay{kReactionDelayName, "s", kStatedDelay, kTriedDelay, nullptr};
+  Assumption delay{kReactionDelayName, "s", stated, kTriedDelay, nullptr};
   for (const auto& [damping, stiffness] :
        {std::pair(kKdTheta, kKpTheta), std::pair(kKdPhi, kKpPhi)}) {
     const size_t i = problem.FittedIndex(damping);
@@ -187,8 +187,11 @@ std::vector<Assumption> AssumptionsOf(const FitProblem& problem, const FitPoint&
   all.push_back({"frame rate", "", stated.frame_rate, 1e-4, ScaleFrameRate, nullptr, {}, true});
   all.push_back({"drift of the cameras", "m", stated.drift_m, 1e-4, DriftAlong});
   const FitOptions& options = problem.options();
-  if (options.model.stance == Stance::kFixed && options.model.delay == Delay::kNone) {
-    all.push_back(Delayed(problem, point));
+  const ModelOptions& model = options.model;
+  // Robots and rigs have clocks of their own, and a late difference of velocities has no meaning.
+  if (model.delay == Delay::kNone && model.body != BodyModel::kTable &&
+      model.cart_derivative == CartDerivative::kNone) {
+    all.push_back(Delayed(problem, point, stated.reaction_delay_s));
   }
   for (const ParameterSpec& spec : options.table.specs) {
     const bool of_tail = spec.id >= kTailGain && spec.id <= kTailBase;

@@ -12,10 +12,10 @@ namespace pushid {
 // What is stated of measured pushes is the largest of the recordings'
 // (datasets/manifest/laboratory_keys.h). Pushes by inverse dynamics have neither a clock, a height
 // nor a zero of their own, and follow the masses. A held gain is stated to a factor of two, a term
-// left out not at all. People who stand react late, by some 0.1 s: a torque Kp e(t - tau) is Kp e -
-// tau Kp e' at first order, so that the damping that is fitted is Kd - tau Kp. What is beyond the
-// first order tells whether they do: the problem with a delay of 0.12 s, and Kd greater by it,
-// against the problem as it is.
+// left out not at all. People react late, whether their feet hold or not: a torque Kp e(t - tau) is
+// Kp e - tau Kp e' at first order, so that the damping that is fitted is Kd - tau Kp. What is
+// beyond the first order tells whether they do: the problem with a delay of 0.12 s, and Kd greater
+// by it, against the problem as it is.
 inline constexpr char kReactionDelayName[] = "reaction delay";
 
 // The largest of the recordings.

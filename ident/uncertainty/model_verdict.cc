@@ -73,10 +73,9 @@ std::vector<std::string> OfMostPushes(const std::vector<PendulumRecording>& reco
 // The smallest p-value after `num` tests of a family.
 template <typename Test>
 double Least(const std::vector<Test>& tests, size_t num) {
-  if (num == 0) return 1.0;  // nothing could be tested
   double least = 1.0;
   for (const Test& test : tests) least = std::min(least, test.p);
-  return std::min(1.0, least * static_cast<double>(num));
+  return std::min(1.0, least * static_cast<double>(std::max<size_t>(1, num)));
 }
 
 // The error of a sum over clusters.
@@ -214,6 +213,7 @@ class ModelJudge {
     verdict_.p_motion = Least(verdict_.motion.tests, verdict_.motion.tests.size());
   }
 
+  // With what is stated free as well.
   void AddTotals() {
     const int n = static_cast<int>(num_estimates());
     std::vector<int> joint;
@@ -231,21 +231,26 @@ class ModelJudge {
     clustering_.recordings = {};  // nobody asks for the errors of these people
     const Covariance c = ComputeCovariance(
         rows, Eigen::Map<const Eigen::VectorXd>(unit.data(), unit.size()), clustering_);
-    const Eigen::VectorXd moves = -c.inverse_hessian * (rows.jacobian.transpose() * rows.residuals);
+    if (c.scatter.empty()) return;
+    Scatter& total = uncertainty_->total = {};
+    for (const Scatter::Part& part : c.scatter.parts) {
+      total.parts.push_back({part.covariance.topLeftCorner(n, n), part.freedom.head(n)});
+    }
+    // What moves and pulls an estimate is known no better than how the recordings scatter.
+    const Eigen::VectorXd freedom = total.parts[0].freedom;
+    const Eigen::VectorXd moves =
+        (c.inverse_hessian * (rows.jacobian.transpose() * rows.residuals)).head(n);
+    Eigen::VectorXd pulls = Eigen::VectorXd::Zero(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Shares& shares = uncertainty_->estimates[i].shares;
+      if (Slope(i) > 0.0) pulls[i] = (shares.prior_pull + shares.settling_pull) / Slope(i);
+    }
+    total.parts.push_back({moves * moves.transpose(), freedom});
+    total.parts.push_back({pulls * pulls.transpose(), freedom});
     for (Eigen::Index i = 0; i < problem_.map().num_shared(); ++i) {
-      const FittedColumn& column = columns_[i];
-      const ScatterOf of = c.scatter.OfColumn(i);
       Estimate& e = uncertainty_->estimates[i];
-      const double slope = Slope(i);
-      const double pull =
-          slope > 0.0 ? (e.shares.prior_pull + e.shares.settling_pull) / slope : 0.0;
-      const double error = std::hypot(std::hypot(of.standard_error, moves[i]), pull);
-      const double width = of.quantile * error;
-      Interval& total = e.total.emplace();
-      total.standard_error = Slope(i) * error;
-      // Never less than that of the data alone, which may have fewer degrees of freedom.
-      total.lower = std::min(e.lower95, ToNatural(column.transform, column.fitted - width));
-      total.upper = std::max(e.upper95, ToNatural(column.transform, column.fitted + width));
+      e.total = WidenedTo({e.standard_error, e.lower95, e.upper95},
+                          IntervalOf(columns_[i], total.OfColumn(i)));
     }
   }
 
@@ -300,10 +305,10 @@ ModelVerdict JudgeModel(const FitProblem& problem, const FitPoint& point,
   for (size_t i = 0; i < columns.size(); ++i) {
     Estimate& e = uncertainty->estimates[i];
     if (e.status != EstimateStatus::kIdentified) continue;
-    const bool damping = e.name == "Kd_theta" || e.name == "Kd_phi";
-    if (e.total && !IsNarrow(columns[i], e.total->lower, e.total->upper)) {
+    const Interval shown = e.interval();
+    if (!IsNarrow(columns[i].transform, columns[i].width, shown.lower, shown.upper)) {
       e.status = EstimateStatus::kWeak;
-    } else if (doubtful || (late && damping)) {
+    } else if (doubtful || (late && (e.name == "Kd_theta" || e.name == "Kd_phi"))) {
       e.status = EstimateStatus::kModelDependent;
     }
   }
@@ -331,9 +336,8 @@ Compared MotionOf(const PendulumRecording& r, const std::vector<double>& raw,
   const Eigen::Vector2d along = PushDirection(r);
   const int n = r.pushed_person;
   Compared c;
-  double feet = 0.0;  // predicted less recorded
-  double noise =
-      0.0;  // half the squared changes from frame to frame of errors: what is white of them
+  double feet = 0.0;   // predicted less recorded
+  double noise = 0.0;  // half the squared changes of errors from frame to frame: what is white
   Eigen::Vector2d before = Eigen::Vector2d::Zero();
   for (int t = 0; t < r.num_frames(); ++t) {
     const Eigen::Vector2d hip = (r.hip[n][t] - r.hip[n][0]).head<2>();
@@ -356,22 +360,10 @@ Compared MotionOf(const PendulumRecording& r, const std::vector<double>& raw,
     if (t > 1 && seen > 0.0) noise += 0.5 * (error - before).squaredNorm();
     before = error;
   }
-  c.error = std::max(0.0, c.error - noise);
-  c.way -= noise;
+  // The noise of the first frame, where paths begin, is in every frame as well.
+  c.error = std::max(0.0, c.error - 2.0 * noise);
+  c.way -= 2.0 * noise;
   return c;
-}
-
-std::vector<double> Smoothed(const std::vector<double>& path, double dt) {
-  const int half = static_cast<int>(std::lround(0.5 * kSmoothed / dt));
-  const int frames = static_cast<int>(path.size());
-  std::vector<double> smooth;
-  for (int t = 0; t < frames; ++t) {
-    const int from = std::max(0, t - half), to = std::min(frames - 1, t + half);
-    double sum = 0.0;
-    for (int k = from; k <= to; ++k) sum += path[k];
-    smooth.push_back(sum / (to - from + 1));
-  }
-  return smooth;
 }
 
 // The means of the clusters.
@@ -382,16 +374,22 @@ class Differences {
     count_[cluster] += 1;
   }
 
-  // stated: an error that all have in common.
-  std::optional<MotionTest> Test(const char* quantity, const char* unit, double stated) const {
+  // stated: an error that all have in common. step: of what is counted, in whole ones of which all
+  // may differ alike.
+  std::optional<MotionTest> Test(const char* quantity, const char* unit, double stated,
+                                 double step) const {
     const double n = static_cast<double>(sum_.size());
     if (n < 3.0) return std::nullopt;
+    double recordings = 0.0;
+    for (const auto& [cluster, count] : count_) recordings += count;
     std::vector<double> means;
     for (const auto& [cluster, sum] : sum_) means.push_back(sum / count_.at(cluster));
     const double mean = std::accumulate(means.begin(), means.end(), 0.0) / n;
     double squares = 0.0;
     for (double one : means) squares += (one - mean) * (one - mean);
-    MotionTest test{quantity, unit, mean, std::sqrt(squares / (n * (n - 1.0)))};
+    MotionTest test{
+        quantity, unit, mean,
+        std::max(std::sqrt(squares / (n * (n - 1.0))), step / std::sqrt(12.0 * recordings))};
     if (test.error <= 0.0) return std::nullopt;  // alike in all: nobody knows how much they scatter
     test.t = mean / std::hypot(test.error, stated);
     test.p = StudentTail(test.t, n - 1.0);
@@ -404,26 +402,6 @@ class Differences {
 };
 
 }  // namespace
-
-std::vector<int> TurnsOf(const std::vector<double>& path, double drop) {
-  std::vector<int> turns;
-  if (path.empty()) return turns;
-  int most = 0, least = 0, heading = 0;  // 0: neither way yet
-  for (int t = 1; t < static_cast<int>(path.size()); ++t) {
-    if (path[t] > path[most]) most = t;
-    if (path[t] < path[least]) least = t;
-    if (heading >= 0 && path[most] - path[t] >= drop) {
-      if (heading > 0) turns.push_back(most);
-      heading = -1;
-      least = t;
-    } else if (heading <= 0 && path[t] - path[least] >= drop) {
-      if (heading < 0) turns.push_back(least);
-      heading = 1;
-      most = t;
-    }
-  }
-  return turns;
-}
 
 MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
                                const Clusters& clusters) {
@@ -440,8 +418,9 @@ MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
     if (!c.whole) continue;
     const int cluster = clusters.of[i][r.pushed_person];
     feet.Add(cluster, c.recorded.feet.back() - c.predicted.feet.back());
-    const std::vector<int> recorded = TurnsOf(Smoothed(c.recorded.hip, r.scene.dt), kDrop);
-    const std::vector<int> predicted = TurnsOf(Smoothed(c.predicted.hip, r.scene.dt), kDrop);
+    const int half = static_cast<int>(std::lround(0.5 * kSmoothed / r.scene.dt));
+    const std::vector<int> recorded = TurnsOf(MovingMean(c.recorded.hip, half), kDrop);
+    const std::vector<int> predicted = TurnsOf(MovingMean(c.predicted.hip, half), kDrop);
     turns.Add(cluster,
               static_cast<double>(recorded.size()) - static_cast<double>(predicted.size()));
     if (!recorded.empty() && !predicted.empty()) {
@@ -450,9 +429,9 @@ MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
   }
   MotionComparison found;
   for (const std::optional<MotionTest>& test :
-       {feet.Test("travel of the feet", "m", Stated(problem.recordings()).drift_m),
-        time.Test("first turn of the hip", "s", 0.0),
-        turns.Test("number of turns of the hip", "", 0.0)}) {
+       {feet.Test("travel of the feet", "m", Stated(problem.recordings()).drift_m, 0.0),
+        time.Test("first turn of the hip", "s", 0.0, problem.recordings()[0].scene.dt),
+        turns.Test("number of turns of the hip", "", 0.0, 1.0)}) {
     if (test) found.tests.push_back(*test);
   }
   found.explained =

@@ -26,6 +26,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,6 @@
 #include "ident/uncertainty/uncertainty.h"
 
 namespace pushid {
-
-// Does the fitted motion look like the recorded one? Where the feet ended, when the hip
-// turned back, and how often: what a sum of squares over frames hardly sees.
 
 // Recorded less predicted motion of pushed people along the push. The mean of a cluster's
 // recordings is one number; t has as many degrees of freedom as there are clusters, less one.
@@ -55,9 +53,6 @@ struct MotionComparison {
 MotionComparison CompareMotion(const FitProblem& problem, const FitPoint& point,
                                const Clusters& clusters);
 
-// Frames at which a path turns: extremes from which it goes back by at least `drop`.
-std::vector<int> TurnsOf(const std::vector<double>& path, double drop);
-
 inline constexpr double kVerdictLevel = 0.05 / 3.0;  // of each family
 inline constexpr double kLeastExplained = 0.5;       // of the hips' way
 
@@ -66,6 +61,14 @@ struct AssumptionTest {
   double stated = 0.0;  // sigma; 0: of a term left out
   double wanted = 0.0, error = 0.0, t = 0.0, p = 1.0;
   std::vector<double> moves;  // of the shared estimates by one sigma, natural units; empty without
+
+  // How much of the squared total error of an estimate is due to it, if so much were stated of it.
+  double Widens(size_t estimate, double if_stated) const {
+    if (estimate >= moves.size() || stated <= 0.0) return 0.0;
+    const double by = moves[estimate] * if_stated / stated;
+    const double told = error > 0.0 ? 1.0 / (1.0 + std::pow(if_stated / error, 2)) : 1.0;
+    return by * by * told;
+  }
 };
 
 inline constexpr char kFromTheSide[] = "pushes from the side";

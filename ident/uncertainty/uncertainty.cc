@@ -93,8 +93,8 @@ NullDirection Inseparable(const FitProblem& problem, const FitPoint& point,
   joint.identified = IdentifiedPairs(problem, point, group, null_space, uncertainty);
   joint.sentence = JoinNames(joint.parameters) + " cannot be separated";
   for (const Combination& c : joint.identified) {
-    const double half = 0.5 * (c.upper95 - c.lower95);
-    const bool known = half < 0.5 * std::abs(c.value) || c.lower95 > 0.0 || c.upper95 < 0.0;
+    const double width = problem.Spec(largest).scale;
+    const bool known = IsNarrow(Transform::kIdentity, width, c.lower95, c.upper95);
     joint.sentence += "; " + c.name + " = " + Format(c.value) + " +- " + Format(c.standard_error) +
                       " " + c.unit + (known ? " is identified" : " is only weakly identified");
   }
@@ -265,11 +265,29 @@ constexpr double kMostHalfWidth = 0.5;
 
 }  // namespace
 
-bool IsNarrow(const FittedColumn& c, double lower95, double upper95) {
-  if (c.transform == Transform::kLog) {
+bool IsNarrow(Transform transform, double width, double lower95, double upper95) {
+  if (transform == Transform::kLog) {
     return 0.5 * std::log(upper95 / lower95) < std::asinh(kMostHalfWidth);
   }
-  return 0.5 * (upper95 - lower95) < kMostHalfWidth * c.width;
+  return 0.5 * (upper95 - lower95) < kMostHalfWidth * width;
+}
+
+bool Leads(const Estimate& e) {
+  const double pull = std::abs(e.shares.prior_pull + e.shares.settling_pull);
+  return e.shares.data > kIdentifiedShare && pull < kMostPull * e.standard_error;
+}
+
+Interval IntervalOf(const FittedColumn& c, const ScatterOf& of) {
+  const double error = c.at_bound ? 0.0 : of.standard_error;
+  return {TransformSlope(c.transform, c.natural) * error,
+          ToNatural(c.transform, c.fitted - of.quantile * error),
+          ToNatural(c.transform, c.fitted + of.quantile * error)};
+}
+
+Interval WidenedTo(const Interval& least, Interval interval) {
+  interval.lower = std::min(interval.lower, least.lower);
+  interval.upper = std::max(interval.upper, least.upper);
+  return interval;
 }
 
 namespace {
@@ -279,18 +297,9 @@ EstimateStatus Judge(const FittedColumn& c, const Estimate& e, bool touched, boo
   if (c.at_bound) return EstimateStatus::kAtBound;
   if (touched) return EstimateStatus::kUnidentifiable;
   if (e.shares.data < kHeldShare) return EstimateStatus::kPriorHeld;
-  const double pull = std::abs(e.shares.prior_pull + e.shares.settling_pull);
-  const bool leads = e.shares.data > kIdentifiedShare && pull < kMostPull * e.standard_error;
-  return !few && leads && IsNarrow(c, e.lower95, e.upper95) ? EstimateStatus::kIdentified
-                                                            : EstimateStatus::kWeak;
-}
-
-// About one fitted number, natural unit.
-Interval IntervalOf(const FittedColumn& c, const ScatterOf& of) {
-  const double error = c.at_bound ? 0.0 : of.standard_error;
-  return {TransformSlope(c.transform, c.natural) * error,
-          ToNatural(c.transform, c.fitted - of.quantile * error),
-          ToNatural(c.transform, c.fitted + of.quantile * error)};
+  return !few && Leads(e) && IsNarrow(c.transform, c.width, e.lower95, e.upper95)
+             ? EstimateStatus::kIdentified
+             : EstimateStatus::kWeak;
 }
 
 Estimate MakeEstimate(const FittedColumn& c, ScatterOf of, double naive_variance,
@@ -484,27 +493,31 @@ Combination Combine(const FitProblem& problem, const FitPoint& point,
     gradient[static_cast<Eigen::Index>(i)] +=
         term.coefficient * TransformSlope(problem.Spec(i).transform, values[term.parameter]);
   }
-  const ScatterOf of = uncertainty.scatter.Of(gradient);
-  result.standard_error = of.standard_error;
-  result.quantile = of.quantile;
-  result.lower95 = result.value - of.HalfWidth();
-  result.upper95 = result.value + of.HalfWidth();
-  if (!uncertainty.these.empty()) {
-    const ScatterOf these = uncertainty.these.Of(gradient);
-    result.these = Interval{these.standard_error, result.value - these.HalfWidth(),
-                            result.value + these.HalfWidth()};
-  }
-  // A multiple of one parameter has that parameter's interval, asymmetric where it is fitted as a
+  result.quantile = uncertainty.scatter.Of(gradient).quantile;
+  const auto by_scatter = [&](const Scatter& scatter) {
+    const ScatterOf of = scatter.Of(gradient);
+    return Interval{of.standard_error, result.value - of.HalfWidth(),
+                    result.value + of.HalfWidth()};
+  };
+  // A multiple of one parameter has that parameter's intervals, asymmetric where it is fitted as a
   // log.
   const size_t one = terms.size() == 1 ? problem.FittedIndex(terms[0].parameter) : fitted;
-  if (one == fitted) return result;
-  const double by = terms[0].coefficient;
-  const Estimate& e = uncertainty.estimates[one];
-  result.lower95 = by * e.lower95;
-  result.upper95 = by * e.upper95;
-  if (e.these) {
-    result.these = Interval{by * e.these->standard_error, by * e.these->lower, by * e.these->upper};
+  const auto times = [by = terms[0].coefficient](const Interval& i) {
+    return Interval{by * i.standard_error, by * i.lower, by * i.upper};
+  };
+  Interval own = by_scatter(uncertainty.scatter);
+  if (one != fitted) {
+    const Estimate& e = uncertainty.estimates[one];
+    own = times({e.standard_error, e.lower95, e.upper95});
+    if (e.these) result.these = times(*e.these);
+    if (e.total) result.total = times(*e.total);
+  } else {
+    if (!uncertainty.these.empty()) result.these = by_scatter(uncertainty.these);
+    if (!uncertainty.total.empty()) result.total = WidenedTo(own, by_scatter(uncertainty.total));
   }
+  result.standard_error = own.standard_error;
+  result.lower95 = own.lower;
+  result.upper95 = own.upper;
   return result;
 }
 

@@ -75,23 +75,37 @@ struct Estimate {
   std::optional<Interval> these;
   // With what it owes to what the fit takes as known (model_verdict.h); shared parameters alone.
   std::optional<Interval> total;
+  // The one that decides, and that readers are shown.
+  Interval interval() const { return total.value_or(Interval{standard_error, lower95, upper95}); }
   Shares shares;
   EstimateStatus status = EstimateStatus::kIdentified;
 };
 
+// Whether the data, rather than priors and settling, say what an estimate is.
+bool Leads(const Estimate& e);
+
 // Whether an interval is narrow, on a scale that does not depend on the estimate: of a parameter
 // that is fitted as a logarithm the half-width is below asinh(1/2), half of any value; of others
-// below half the prior's standard deviation, or half the typical size where there is no prior.
-// Compared with the estimate itself, those that came out too large would pass most often.
-bool IsNarrow(const FittedColumn& column, double lower95, double upper95);
+// below half the prior's standard deviation, or half the typical size where there is no prior
+// (`width`). Compared with the estimate itself, those that came out too large would pass most
+// often.
+bool IsNarrow(Transform transform, double width, double lower95, double upper95);
+
+// About one fitted number, natural unit.
+Interval IntervalOf(const FittedColumn& column, const ScatterOf& of);
+// A total interval is never less than that of the data alone, which may have fewer degrees of
+// freedom.
+Interval WidenedTo(const Interval& least, Interval interval);
 
 // A sum of parameters, by natural values.
 struct Combination {
   std::string name;  // "mu + Kp_x"
   std::string unit;
   double value = 0.0, standard_error = 0.0, lower95 = 0.0, upper95 = 0.0;
-  double quantile = 0.0;               // half-width over standard error
-  std::optional<Interval> these = {};  // as that of Estimate
+  double quantile = 0.0;                           // half-width over standard error
+  std::optional<Interval> these = {}, total = {};  // as those of Estimate
+
+  Interval interval() const { return total.value_or(Interval{standard_error, lower95, upper95}); }
 };
 
 struct NullDirection {
@@ -132,6 +146,7 @@ struct Uncertainty {
   Eigen::MatrixXd covariance;       // clustered (or the posterior's), fitted scale, same order
   Scatter scatter;                  // its parts, of a fresh fit alone
   Scatter these;                    // about these people; empty where `scatter` is
+  Scatter total;                    // with what is taken as known; empty until JudgeModel
   Eigen::MatrixXd correlation;      // of that covariance
   // One column for each of the recordings `left_out`: what leaving it out would move.
   Eigen::MatrixXd moves;

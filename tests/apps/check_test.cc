@@ -103,7 +103,7 @@ TEST_F(CheckTest, OtherRecordingsThanThoseOfTheFitAreNamed) {
       ChangedManifest([](nlohmann::ordered_json& json) { json["recordings"].erase(0); });
   EXPECT_TRUE(Refused(RunApp("pushid-check", {"--model=" + whole, fewer, "--profile=mu"}),
                       {id_, "give the manifest of the fit", "--ids"}));
-  EXPECT_TRUE(Refused(RunApp("pushid-report", {"--model=" + whole, fewer, "--text"}),
+  EXPECT_TRUE(Refused(RunApp("pushid-report", {"--model=" + whole, fewer, "--details"}),
                       {id_, "give the manifest of the fit", "--ids"}));
 }
 

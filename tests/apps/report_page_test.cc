@@ -83,7 +83,7 @@ TEST_F(ReportPage, LeadsWithPictures) {
 
 TEST_F(ReportPage, FiguresAndTablesAsFiles) {
   const std::string model = CheckedModel({"--profile=mu"});
-  const std::vector<std::string> flags = {"--model=" + model, Recordings(), "--text",
+  const std::vector<std::string> flags = {"--model=" + model, Recordings(), "--details",
                                           "--figures_out=" + Path("figures")};
   const AppRun run = Succeeded(RunApp("pushid-report", flags));
   for (const char* heading : {"What was fitted\n===============", "Profile likelihood",
@@ -148,7 +148,7 @@ TEST_F(ReportPage, RecordingsThatChangedAreNamed) {
   const std::string push = Json(manifest_)["recordings"][0]["push_csv"];
   WriteText(push, ReadText(Path(push)) + "\n");
   const AppRun run =
-      Succeeded(RunApp("pushid-report", {"--model=" + model, Recordings(), "--text"}));
+      Succeeded(RunApp("pushid-report", {"--model=" + model, Recordings(), "--details"}));
   EXPECT_TRUE(Contains(run.out, id_));
   EXPECT_TRUE(Contains(run.out, "changed since the fit"));
 }

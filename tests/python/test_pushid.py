@@ -224,9 +224,9 @@ def test_a_height_in_metres(made):
 
 def test_the_verdict_is_data(result):
     assert result.verdict["fails"] in (True, False)
-    low, high = result["mu"].interval
-    if result["mu"].total:
-        assert result["mu"].total[0] <= low and high <= result["mu"].total[1]
+    row = next(row for row in result.table if row["name"] == "mu")
+    assert result["mu"].interval == tuple(row["interval"]) == tuple(row.get("total", row)["interval_95"])
+    assert row["interval"][0] <= row["interval_95"][0] and row["interval_95"][1] <= row["interval"][1]
 
 
 def test_fixed_and_derived_values(result):
@@ -245,10 +245,10 @@ def test_a_frame_is_flat(result, monkeypatch):
     monkeypatch.setitem(sys.modules, "pandas", types.SimpleNamespace(DataFrame=list))
     rows = {row["name"]: row for row in result.table.to_frame()}
     mu = rows["mu"]
-    assert (mu["interval_95_lower"], mu["interval_95_upper"]) == result["mu"].interval
+    assert (mu["interval_lower"], mu["interval_upper"]) == result["mu"].interval
     assert mu["shares_data"] == result["mu"].shares["data"]
     assert not any(isinstance(cell, (dict, list)) for row in rows.values() for cell in row.values())
-    assert "interval_95_lower" not in rows["Kp_x"]
+    assert "interval_lower" not in rows["Kp_x"]
     designs = result.design("mu")["pushes"].to_frame()
     assert "error_ratio_mu" in designs[0]
 

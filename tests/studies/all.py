@@ -21,7 +21,7 @@ def people():
         cells = []
         for name, _ in GAINS:
             p = found[name]
-            lower, upper = p["interval_95"]
+            lower, upper = p["interval"]
             cells.append(f"{with_error(p['value'], p['standard_error'])} ({number(lower)} to {number(upper)})")
         rows.append([title, len(model["subjects"]), len(model["data"]["recordings"]), *cells,
                      "yes" if model["behaviour"]["settles"] else "no"])

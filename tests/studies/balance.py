@@ -147,7 +147,7 @@ def all_fitted(each, sets, *flags):
 
 
 def holds(estimate, truth, total=True):
-    low, high = map(float, (estimate["total"] if total and "total" in estimate else estimate)["interval_95"])  # or "infinity"
+    low, high = map(float, estimate["interval" if total else "interval_95"])  # or "infinity"
     return low <= truth <= high
 
 

@@ -2,7 +2,7 @@
 equations of motion, and files as a laboratory writes them (points in CSV, one push CSV a recording).
 
 Sliding: an inverted pendulum on a cart with a drag, a lean term that steps after the lean, and stiffness and damping of the lean.
-Standing: feet that never move; one link, or two with a hip, and ankle torques on the state `delay` seconds ago. Planar, along the push.
+Standing: feet that never move; one link, or two with a hip. All but the drag act on the state `delay` seconds ago. Planar, along the push.
 """
 import csv
 import math
@@ -19,20 +19,29 @@ def half_sine(impulse, duration):
     return lambda t: peak * math.sin(math.pi * t / duration) if 0.0 <= t < duration else 0.0
 
 
+def late(history, at):
+    """What (lean, rate) was at step `at`, between steps by straight lines; before the first one rest."""
+    if at <= 0.0:
+        return 0.0, 0.0
+    i, f = int(at), at - int(at)
+    a, b = history[i], history[min(i + 1, len(history) - 1)]
+    return a[0] + f * (b[0] - a[0]), a[1] + f * (b[1] - a[1])
+
+
 class Slider:
     """An inverted pendulum on a cart that is pushed from rest, in the plane of its push: x of the cart and the lean. gains, the same
     in all directions: c, a (per mass, 1/s and m/s^2/rad), k (of m g l), d (of m l^2, 1/s)."""
 
-    def __init__(self, mass, rod, gains):
-        self.mass, self.rod, self.gains = mass, rod, gains
+    def __init__(self, mass, rod, gains, delay=0.0):
+        self.mass, self.rod, self.gains, self.delay = mass, rod, gains, delay
         self.point = 0.9 * mass
 
-    def acceleration(self, lean, speed, rate, force):
+    def acceleration(self, lean, speed, rate, seen, force):
         """(cart, lean) of a horizontal force at the hip, N; by Lagrange's equations, the mass matrix inverted by Cramer's rule."""
         m, l, gains = self.point, self.rod, self.gains
         sine, cosine = math.sin(lean), math.cos(lean)
-        along = self.mass * (-gains["c"] * speed + gains["a"] * lean) + force + m * l * sine * rate * rate
-        about = m * G * l * (sine - gains["k"] * lean) - m * l * l * gains["d"] * rate + force * l * cosine
+        along = self.mass * (-gains["c"] * speed + gains["a"] * seen[0]) + force + m * l * sine * rate * rate
+        about = m * G * l * (sine - gains["k"] * seen[0]) - m * l * l * gains["d"] * seen[1] + force * l * cosine
         across = m * l * cosine
         det = self.mass * m * l * l - across * across
         return (m * l * l * along - across * about) / det, (self.mass * about - across * along) / det
@@ -42,18 +51,23 @@ class Slider:
         frames, substeps = int(seconds * fps) + 1, max(1, round(1.0 / (fps * STEP)))
         h = 1.0 / (fps * substeps)
         x = lean = speed = rate = t = 0.0
-        out = []
+        out, history = [], []
         for _ in range(frames):
             out.append((x, lean))
             for _ in range(substeps):
                 f0, f1, f2 = force(t), force(t + h / 2), force(t + h)
-                a1, b1 = self.acceleration(lean, speed, rate, f0)
+                history.append((lean, rate))
+
+                def seen(ahead, *now):
+                    return late(history, len(history) - 1 + ahead - self.delay / h) if self.delay > 2 * h else now
+
+                a1, b1 = self.acceleration(lean, speed, rate, seen(0.0, lean, rate), f0)
                 s2, r2 = speed + h / 2 * a1, rate + h / 2 * b1
-                a2, b2 = self.acceleration(lean + h / 2 * rate, s2, r2, f1)
+                a2, b2 = self.acceleration(lean + h / 2 * rate, s2, r2, seen(0.5, lean + h / 2 * rate, r2), f1)
                 s3, r3 = speed + h / 2 * a2, rate + h / 2 * b2
-                a3, b3 = self.acceleration(lean + h / 2 * r2, s3, r3, f1)
+                a3, b3 = self.acceleration(lean + h / 2 * r2, s3, r3, seen(0.5, lean + h / 2 * r2, r3), f1)
                 s4, r4 = speed + h * a3, rate + h * b3
-                a4, b4 = self.acceleration(lean + h * r3, s4, r4, f2)
+                a4, b4 = self.acceleration(lean + h * r3, s4, r4, seen(1.0, lean + h * r3, r4), f2)
                 x += h / 6 * (speed + 2 * s2 + 2 * s3 + s4)
                 lean += h / 6 * (rate + 2 * r2 + 2 * r3 + r4)
                 speed += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
@@ -103,14 +117,7 @@ class Stander:
 
         def seen(steps, q, v):
             """Lean and rate `delay` before `steps` (of h, may be a half)."""
-            if lag < 1.0:
-                return q[0], v[0]
-            at = steps - lag
-            if at <= 0.0:
-                return 0.0, 0.0
-            i, f = int(at), at - int(at)
-            a, b = history[i], history[min(i + 1, len(history) - 1)]
-            return a[0] + f * (b[0] - a[0]), a[1] + f * (b[1] - a[1])
+            return (q[0], v[0]) if lag < 1.0 else late(history, steps - lag)
 
         step = 0
         for frame in range(frames):

@@ -43,7 +43,7 @@ def summary():
     told = estimates(fit().json)
     free = estimates(fit(*FREE).json)
     return (f"On the 32 published recordings of four people the drag of the stepping feet, c_x = mu + Kp_x, is "
-            f"{estimate(told['c_x'])} N s/m for 85 kg (95 %: {interval(told['c_x']['interval_95'])}); without priors "
+            f"{with_error(told['c_x']['value'], told['c_x']['total']['standard_error'])} N s/m for 85 kg (95 %: {interval(told['c_x']['interval'])}); without priors "
             f"and settling simulations the same data give {estimate(free['c_x'])}: a net push holds all forces "
             f"while it lasts, and little is recorded after it.")
 

@@ -10,11 +10,10 @@ from . import _pushid
 from ._options import as_call, given, text_of
 from ._recordings import checked
 
-Parameter = namedtuple("Parameter", "name value standard_error interval total unit status shares fixed")
-Parameter.__doc__ = """A parameter of a result: value, standard error and 95 % interval (low, high) in `unit`; status
-("identified", "model-dependent", "weak", "prior-held", "fixed", "derived", ...); total: the interval with the errors of what is
-taken as known, by which the status is judged, None where there is none; shares: fractions due to data, priors and settling. What is
-fixed, or derived from fixed values alone, has neither error nor interval: both are None."""
+Parameter = namedtuple("Parameter", "name value standard_error interval unit status shares fixed")
+Parameter.__doc__ = """A parameter of a result: value, standard error and 95 % interval (low, high) in `unit`, with the errors of
+what is taken as known; status ("identified", "model-dependent", "weak", "prior-held", "fixed", "derived", ...); shares: fractions due
+to data, priors and settling. What is fixed, or derived from fixed values alone, has neither error nor interval: both are None."""
 
 
 def _numbers(found):
@@ -27,12 +26,10 @@ def _numbers(found):
 
 
 def _parameter(row, status):
-    interval = row.get("interval_95")
+    interval = row.get("interval")
     known = status != "fixed" and interval is not None and interval[0] < interval[1]
-    return Parameter(row["name"], row["value"], row.get("standard_error") if known else None,
-                     tuple(interval) if known else None,
-                     tuple(row["total"]["interval_95"]) if known and "total" in row else None, row.get("unit", ""), status, row.get("shares", {}),
-                     status == "fixed")
+    return Parameter(row["name"], row["value"], row.get("total", row).get("standard_error") if known else None,
+                     tuple(interval) if known else None, row.get("unit", ""), status, row.get("shares", {}), status == "fixed")
 
 
 def _flat(row, prefix=""):
@@ -49,10 +46,10 @@ class Table(list):
     """A row (dict) for every parameter."""
 
     def to_frame(self):
-        """As a pandas DataFrame with one column for each number: interval_95_lower, shares_data, ..., without those of
+        """As a pandas DataFrame with one column for each number: interval_lower, shares_data, ..., without those of
         fixed parameters. Raises ImportError without pandas."""
         import pandas
-        held = ("standard_error", "interval_95", "shares")
+        held = ("standard_error", "interval", "interval_95", "shares")
         return pandas.DataFrame([_flat({name: item for name, item in row.items()
                                         if row.get("status") != "fixed" or name not in held}) for row in self])
 

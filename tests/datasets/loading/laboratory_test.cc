@@ -72,6 +72,26 @@ TEST_F(LaboratoryTest, WhatWasRolledOutComesBack) {
   EXPECT_LT(std::abs(seen.states[0].back().q[0] - seen.states[0][0].q[0]), 1e-5);
 }
 
+// One frame's noise would be in every frame of a rollout.
+TEST_F(LaboratoryTest, WhoStandsQuietlyStartsFromTheMean) {
+  SyntheticOptions options = OnPlatform(GroundKind::kStep);
+  options.joint_noise_m = 0.005;
+  const PendulumRecording seen = MakePendulumRecording(Unwrapped(Load(options))[0]);
+  const std::vector<GroundPose>& poses = seen.scene.ground.poses;
+  int quiet = 0;
+  while ((poses[quiet] - poses[0]).norm() < 1e-9) ++quiet;
+  ASSERT_GT(quiet, 5);
+  // The mean of at least half of the frames at rest, and of none in which the ground moves.
+  double error = 1.0;
+  Vector4<double> mean = Vector4<double>::Zero();
+  for (int t = 0; t < quiet; ++t) {
+    mean += (seen.states[0][t].q - mean) / (t + 1);
+    if (t >= quiet / 2) error = std::min(error, (seen.scene.people[0].start.q - mean).norm());
+  }
+  EXPECT_LT(error, 1e-12);
+  EXPECT_GT((seen.states[0][0].q - mean).norm(), 1e-4);
+}
+
 // Who steps onto the platform when it moves already has no rest there: centres count from their
 // mean.
 TEST_F(LaboratoryTest, CentresOfWhoPressedNothingBeforeCountFromTheirMean) {

@@ -228,14 +228,12 @@ TEST(Uncertainty, CombineAddsByTheDeltaMethod) {
 
 // A lean term of typical size 10 with a prior of +- 10: what makes it narrow is its interval alone.
 TEST(Uncertainty, TheEstimateDoesNotMakeItsOwnIntervalNarrow) {
-  FittedColumn a_x{"a_x", "m/s^2/rad"};
-  a_x.width = 10.0;
-  EXPECT_TRUE(IsNarrow(a_x, -9.0, 0.9));
-  EXPECT_FALSE(IsNarrow(a_x, -35.0, -24.9)) << "half of 5.05 is more than half of the prior's 10";
-  FittedColumn stiffness{"Kp_theta", "N m/rad", Transform::kLog};
-  EXPECT_TRUE(IsNarrow(stiffness, 1000.0, 2600.0));
-  EXPECT_TRUE(IsNarrow(stiffness, 10.0, 26.0)) << "a ratio does not depend on the estimate";
-  EXPECT_FALSE(IsNarrow(stiffness, 1000.0, 2640.0));
+  EXPECT_TRUE(IsNarrow(Transform::kIdentity, 10.0, -9.0, 0.9));
+  EXPECT_FALSE(IsNarrow(Transform::kIdentity, 10.0, -35.0, -24.9))
+      << "half of 10.1 is more than half of the prior's 10";
+  EXPECT_TRUE(IsNarrow(Transform::kLog, 1.0, 1000.0, 2600.0));
+  EXPECT_TRUE(IsNarrow(Transform::kLog, 1.0, 10.0, 26.0)) << "a ratio does not depend on the size";
+  EXPECT_FALSE(IsNarrow(Transform::kLog, 1.0, 1000.0, 2640.0));
 }
 
 TEST(Uncertainty, ASingleRecordingIsNotClustered) {
