@@ -211,8 +211,10 @@ void InspectCrowd(const PointMotion& motion, Inspection* found) {
                                     " m away (median)"));
   const std::string odd = OddSpacing(places.value());
   if (!odd.empty()) found->Warn(odd);
-  found->Fact("use", "pushid-inspect --wave measures how a push travels; pushid-formation --formation=" + motion.path + " --formation_frame=" +
-                         std::to_string(frame) + " places people as they stand there");
+  found->Fact("use",
+              "pushid-inspect --wave measures how a push travels; pushid-formation --formation=" +
+                  motion.path + " --formation_frame=" + std::to_string(frame) +
+                  " places people as they stand there");
 }
 
 // Facts about the manifest, and a warning for every recording that cannot be read and everything

@@ -50,8 +50,7 @@ Vector4<double> SpreadOfTransitions(const FitProblem& problem, const FitPoint& p
     const LikelihoodProblem one = MakeLikelihoodProblem(
         Likelihood::kTransition, recording, problem.options().model, problem.map(), 1.0);
     std::vector<GaussianDensity<double>> densities;
-    Densities(one, std::vector<ParameterSet<double>>(recording.num_people(), p),
-                      &densities);
+    Densities(one, std::vector<ParameterSet<double>>(recording.num_people(), p), &densities);
     for (const GaussianDensity<double>& density : densities) {
       if (!density.measured) continue;
       sum += density.v.cwiseQuotient(density.lower.diagonal()).cwiseAbs2();
