@@ -227,8 +227,8 @@ Result<std::string> DesignText(const Result<ExperimentDesign>& result,
                            table.value().ToString();
   const size_t index = IndexOf(design, parameter);
   if (index == design.parameters.size()) return text;
-  return text + "now: " + parameter + " +- " + Rounded(design.standard_error[index], 3) + " " +
-         design.units[index] + "\n";
+  return text + "now, by the data alone: " + parameter + " +- " +
+         Rounded(design.standard_error[index], 3) + " " + design.units[index] + "\n";
 }
 
 }  // namespace pushid

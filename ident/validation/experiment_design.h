@@ -38,7 +38,7 @@ struct DesignRow {
 
 struct ExperimentDesign {
   std::vector<std::string> parameters, units;
-  std::vector<double> standard_error;  // now
+  std::vector<double> standard_error;  // now, by the data alone
   std::vector<DesignRow> rows;         // candidates that fall are left out
 };
 

@@ -39,7 +39,8 @@ def test_designs(made, result):
     design = result.design("mu")
     ratios = [row["error_ratio"]["mu"] for row in design["pushes"]]
     assert ratios == sorted(ratios) and ratios[0] < 1.0
-    assert design["standard_error"]["mu"] == pytest.approx(result["mu"].standard_error)
+    # By the data alone: more recordings leave the errors of what is taken as known as they are.
+    assert 0.0 < design["standard_error"]["mu"] < result["mu"].standard_error
     assert "error of mu" in str(design) and any(row["sensor"] for row in design["pushes"])
     with pytest.raises(pushid.UsageError, match="choose from all, mu"):
         result.design("nu")

@@ -110,8 +110,8 @@ TEST_F(Design, TheTableSaysWhatIsBestForTheParameterAsked) {
   EXPECT_EQ(table.rows()[1][0], "to the left");
   const std::string text = DesignText(d, "mu_y").value();
   EXPECT_TRUE(Contains(text, "the least useful of 3 candidates"));
-  EXPECT_TRUE(Contains(text, "now: mu_y +- "));
-  EXPECT_FALSE(Contains(DesignText(d, "all").value(), "now:"));
+  EXPECT_TRUE(Contains(text, "now, by the data alone: mu_y +- "));
+  EXPECT_FALSE(Contains(DesignText(d, "all").value(), "now,"));
   EXPECT_TRUE(Contains(ProblemOf(DesignText(d, "nu")), "all, mu"));
   EXPECT_EQ(DesignText(Error{"too few"}, "all").value(), "no further push is proposed: too few\n");
 }
