@@ -287,6 +287,7 @@ Interval IntervalOf(const FittedColumn& c, const ScatterOf& of) {
 Interval WidenedTo(const Interval& least, Interval interval) {
   interval.lower = std::min(interval.lower, least.lower);
   interval.upper = std::max(interval.upper, least.upper);
+  interval.standard_error = std::max(interval.standard_error, least.standard_error);
   return interval;
 }
 

@@ -22,7 +22,7 @@ def fit(*flags):
 
 
 def transcript():
-    text = fit().text.split("\n\ntaken as known")[0]  # the diagnostics name recordings
+    text = fit().text.split("\n\nRecording by recording")[0]
     return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single", text)
 
 
@@ -36,7 +36,8 @@ def estimates(model):
 
 
 def estimate(p):
-    return with_error(p["value"], p["standard_error"]) if "standard_error" in p else number(p["value"])
+    error = p.get("total", p).get("standard_error")
+    return number(p["value"]) if error is None else with_error(p["value"], error)
 
 
 def summary():
@@ -88,7 +89,7 @@ def intervals():
 
 def coupled():
     lines = fit("--free=Kp_x,Kp_y").text.splitlines()
-    told = [line for line in lines if line.startswith("unidentifiable")]
+    told = [line for line in lines if line.startswith("Unidentifiable")]
     return studies.transcript("pushid-fit --recordings=M/manifest.json --setting=single --free=Kp_x,Kp_y",
                               "...\n" + "\n".join(told))
 

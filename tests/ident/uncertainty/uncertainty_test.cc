@@ -236,6 +236,13 @@ TEST(Uncertainty, TheEstimateDoesNotMakeItsOwnIntervalNarrow) {
   EXPECT_FALSE(IsNarrow(Transform::kLog, 1.0, 1000.0, 2640.0));
 }
 
+TEST(Uncertainty, ATotalErrorIsNeverLessThanThatOfTheData) {
+  const Interval total = WidenedTo({0.2, -1.0, 1.0}, {0.1, -0.5, 2.0});
+  EXPECT_EQ(total.standard_error, 0.2);
+  EXPECT_EQ(total.lower, -1.0);
+  EXPECT_EQ(total.upper, 2.0);
+}
+
 TEST(Uncertainty, ASingleRecordingIsNotClustered) {
   const auto s = SolveSmall(1, 0.0);
   EXPECT_FALSE(s->uncertainty.clustered);
