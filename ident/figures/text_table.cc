@@ -5,9 +5,7 @@
 
 namespace pushid {
 
-// A head that begins with ">" is that of a column of numbers as well.
-TextTable::TextTable(std::vector<std::string> header, std::vector<bool> left)
-    : left_(std::move(left)) {
+TextTable::TextTable(std::vector<std::string> header) : left_(header.size(), true) {
   for (size_t i = 0; i < header.size(); ++i) {
     if (header[i].empty() || header[i][0] != '>') continue;
     header[i].erase(0, 1);
@@ -17,9 +15,8 @@ TextTable::TextTable(std::vector<std::string> header, std::vector<bool> left)
 }
 
 TextTable TextTable::OfNumbers(std::vector<std::string> header) {
-  std::vector<bool> left(header.size(), false);
-  left[0] = true;
-  return TextTable(std::move(header), std::move(left));
+  for (size_t i = 1; i < header.size(); ++i) header[i].insert(0, ">");
+  return TextTable(std::move(header));
 }
 
 void TextTable::Add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }

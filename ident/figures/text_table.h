@@ -32,10 +32,8 @@ struct TableCell {
 
 class TextTable {
  public:
-  // left: which columns are words; all of them where not given.
-  explicit TextTable(std::vector<std::string> header)
-      : TextTable(header, std::vector<bool>(header.size(), true)) {}
-  TextTable(std::vector<std::string> header, std::vector<bool> left);
+  // A head that begins with ">" is that of a column of numbers, without the ">".
+  explicit TextTable(std::vector<std::string> header);
   // A table whose first column is words and whose others are numbers.
   static TextTable OfNumbers(std::vector<std::string> header);
 

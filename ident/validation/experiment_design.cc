@@ -7,10 +7,10 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
+#include "ident/figures/text_table.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
-#include "ident/uncertainty/assumptions.h"
 #include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
@@ -189,8 +189,11 @@ Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
   return rows;
 }
 
-Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
-                              size_t count) {
+Result<std::string> DesignText(const Result<ExperimentDesign>& result,
+                               const std::string& parameter) {
+  constexpr size_t kBest = 10;
+  if (!result.ok()) return "no further push is proposed: " + result.error().message + "\n";
+  const ExperimentDesign& design = result.value();
   const Result<std::vector<DesignRow>> ranked = RankedRows(design, parameter);
   if (!ranked.ok()) return ranked.error();
   const size_t index = IndexOf(design, parameter), all = design.parameters.size();
@@ -199,9 +202,8 @@ Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string&
   header.push_back("mean of all errors");
   TextTable table = TextTable::OfNumbers(header);
   const std::vector<DesignRow>& rows = ranked.value();
-  for (size_t i = 0; i < rows.size();
-       i = i + 1 < count ? i + 1 : std::max(i + 1, rows.size() - 1)) {
-    if (i >= count) table.AddGap();
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (i == kBest) table.AddGap(), i = rows.size() - 1;  // and the last
     const CandidatePush& push = rows[i].push;
     const auto direction =
         std::find(std::begin(kDirections), std::end(kDirections), push.direction_deg) - kDirections;
@@ -213,20 +215,10 @@ Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string&
     cells.push_back(change(rows[i].error_ratio[all]));
     table.Add(cells);
   }
-  return table;
-}
-
-Result<std::string> DesignText(const Result<ExperimentDesign>& result,
-                               const std::string& parameter) {
-  if (!result.ok()) return "no further push is proposed: " + result.error().message + "\n";
-  const ExperimentDesign& design = result.value();
-  const Result<TextTable> table = DesignTable(design, parameter, 10);
-  if (!table.ok()) return table.error();
-  const std::string text = "effect of one more recording, best first; last row: the least useful " +
-                           ("of " + std::to_string(design.rows.size())) + " candidates\n" +
-                           table.value().ToString();
-  const size_t index = IndexOf(design, parameter);
-  if (index == design.parameters.size()) return text;
+  const std::string text =
+      "effect of one more recording, best first; last row: the least useful of " +
+      std::to_string(rows.size()) + " candidates\n" + table.ToString();
+  if (index == all) return text;
   return text + "now, by the data alone: " + parameter + " +- " +
          Rounded(design.standard_error[index], 3) + " " + design.units[index] + "\n";
 }

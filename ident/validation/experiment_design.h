@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "ident/figures/text_table.h"
 #include "ident/model/fitted_model.h"
 
 namespace pushid {
@@ -63,10 +62,8 @@ Result<ExperimentDesign> DesignExperiments(const std::vector<PendulumRecording>&
 // By what they bring to a parameter, or to all together ("all"), best first.
 Result<std::vector<DesignRow>> RankedRows(const ExperimentDesign& design,
                                           const std::string& parameter);
-// The best `count` of them, and after a gap the least useful one.
-Result<TextTable> DesignTable(const ExperimentDesign& design, const std::string& parameter,
-                              size_t count);
-// The best ten, with a heading and the present error; or why there is no design.
+// A table of the best ten and, after a gap, the least useful one, with the present error; or why
+// there is no design.
 Result<std::string> DesignText(const Result<ExperimentDesign>& design,
                                const std::string& parameter);
 

@@ -52,7 +52,7 @@ TEST_F(ReportPage, WorksInABrowser) {
   EXPECT_FALSE(Contains(seen.err, "CONSOLE")) << seen.err;
   for (const char* section :
        {"summary", "parameters", "identifiability", "profiles", "bootstrap", "behaviour", "figure",
-        "motion", "recordings", "leverage", "residuals", "solve", "design", "provenance"}) {
+        "motion", "recordings", "leverage", "residuals", "solve", "provenance"}) {
     EXPECT_TRUE(Contains(seen.out, "<section id=\"" + std::string(section) + "\">"));
   }
   const size_t probe = seen.out.find("<pre id=\"probe\">");
@@ -87,7 +87,7 @@ TEST_F(ReportPage, FiguresAndTablesAsFiles) {
                                           "--figures_out=" + Path("figures")};
   const AppRun run = Succeeded(RunApp("pushid-report", flags));
   for (const char* heading : {"What was fitted\n===============", "Profile likelihood",
-                              "What to record next", "Measured and predicted motion"}) {
+                              "What to try next", "Measured and predicted motion"}) {
     EXPECT_TRUE(Contains(run.out, heading));
   }
   const std::string captions = ReadText(Path("figures/captions.md"));

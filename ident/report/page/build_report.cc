@@ -109,7 +109,6 @@ constexpr RenderSection* kSections[] = {LeadSection,
                                         OfModel<LeverageSection>,
                                         OfModel<ResidualSection>,
                                         OfModel<SolveSection>,
-                                        DesignSection,
                                         OfModel<AdviceSection>,
                                         OfModel<ProvenanceSection>};
 

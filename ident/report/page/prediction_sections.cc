@@ -8,7 +8,6 @@
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/prediction/evaluation.h"
-#include "ident/validation/experiment_design.h"
 #include "ident/validation/scores_report.h"
 #include "ident/validation/steps_report.h"
 
@@ -183,39 +182,6 @@ ReportSection FrequencySection(const ReportSource& source) {
     section.figures.push_back({"frequency_" + response.Key(), CaptionOf(response),
                                BodeFigure(response), FrequencyTable({response})});
   }
-  return section;
-}
-
-// A design needs all recordings of the fit, unchanged.
-ReportSection DesignSection(const ReportSource& source) {
-  constexpr int kBestPushes = 8;
-  std::vector<PendulumRecording> recordings;
-  for (const RecordingView& view : source.views) {
-    const PendulumRecording& seen = view.run.recording;
-    const bool same = std::any_of(source.fit.recordings.begin(), source.fit.recordings.end(),
-                                  [&](const FittedRecording& r) {
-                                    return r.id == seen.id && r.content_hash == seen.content_hash;
-                                  });
-    if (same && seen.num_people() == 1) recordings.push_back(seen);
-  }
-  ReportSection section{"design", "What to record next"};
-  if (recordings.empty() || recordings.size() != source.fit.recordings.size()) {
-    section.paragraphs = {
-        "Left out: it needs all recordings that were fitted, as they were then, each of one "
-        "person."};
-    return section;
-  }
-  const Result<ExperimentDesign> design = DesignExperiments(recordings, source.fit);
-  if (!design.ok()) {
-    section.paragraphs = {"Left out: " + design.error().message + "."};
-    return section;
-  }
-  section.paragraphs = {
-      "Effect of one more recording of each kind on the standard errors, from the sensitivities at "
-      "the estimate, for all parameters together (D-optimal); a design for one parameter ranks "
-      "them "
-      "for that alone (c-optimal)."};
-  section.Show("", DesignTable(design.value(), "all", kBestPushes).value());
   return section;
 }
 

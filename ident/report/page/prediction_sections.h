@@ -1,4 +1,4 @@
-// ident: sections of a report that score predictions: steps, groups, frequency response, design.
+// ident: sections of a report that score predictions: steps, groups, frequency response.
 #pragma once
 
 #include "ident/report/page/build_report.h"
@@ -8,6 +8,5 @@ namespace pushid {
 ReportSection StepSection(const ReportSource& source);
 ReportSection GroupSection(const ReportSource& source);
 ReportSection FrequencySection(const ReportSource& source);
-ReportSection DesignSection(const ReportSource& source);
 
 }  // namespace pushid

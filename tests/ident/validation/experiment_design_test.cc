@@ -106,9 +106,8 @@ TEST_F(Design, ASensorTellsMoreOfDragThanAPushWithATail) {
 
 TEST_F(Design, TheTableSaysWhatIsBestForTheParameterAsked) {
   const ExperimentDesign d = Of({{0, 3, 1, 0.1, 80}, {90, 3, 1, 0.1, 80}, {180, 1, 1, 0.1, 80}});
-  const TextTable table = DesignTable(d, "mu_y", 1).value();
-  EXPECT_EQ(table.rows()[1][0], "to the left");
   const std::string text = DesignText(d, "mu_y").value();
+  EXPECT_LT(text.find("to the left"), text.find("forwards"));
   EXPECT_TRUE(Contains(text, "the least useful of 3 candidates"));
   EXPECT_TRUE(Contains(text, "now, by the data alone: mu_y +- "));
   EXPECT_FALSE(Contains(DesignText(d, "all").value(), "now,"));
