@@ -11,6 +11,7 @@
 #include "ident/model/identified_model.h"
 #include "ident/model/model_rollout.h"
 #include "ident/problem/own_axes.h"
+#include "ident/problem/statistics.h"
 
 namespace pushid {
 namespace {
@@ -51,12 +52,6 @@ double HeightOfRod(const PendulumRecording& recording, const ScenePush& push) {
 
 bool HasHeight(const ScenePush& push) {
   return push.kind == PushKind::kExternal && HasDirection(push);
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The medians of the commonest kind.
