@@ -140,7 +140,7 @@ TEST(PushRange, HoldsThePeopleAndTheUsualPush) {
   EXPECT_NEAR(range.height.upper, 1.3, 1e-9);
   ASSERT_TRUE(range.usual);
   EXPECT_EQ(range.usual->kind, PushKind::kExternal);
-  EXPECT_DOUBLE_EQ(range.usual->duration, 0.5);
+  EXPECT_DOUBLE_EQ(range.usual->duration, 25.0 / 60.0) << "between both";
   EXPECT_NEAR(range.usual->height, 1.3, 1e-9);
   EXPECT_TRUE(ExtrapolationWarnings(model, fitted).empty());
   PendulumRecording far = fitted[0];
