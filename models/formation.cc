@@ -97,7 +97,7 @@ void AddHipPush(int person, const HipPush& push, Scene* scene) {
     const Vector3<double> force(row[0] * std::cos(push.direction),
                                 row[0] * std::sin(push.direction), 0.0);
     row = GeneralizedForce(pushed.body, pushed.start.q, force, push.height);
-    // Of a net push the rows are all forces while it lasts, and hold the posture as well.
+    // The rows of a net push are all forces while it lasts, and hold the posture as well.
     if (push.kind != PushKind::kExternal) row += Gravity<double>(pushed.body, pushed.start.q);
   }
   scene->pushes.push_back(MakeScenePush(person, start, push.kind, std::move(rows)));

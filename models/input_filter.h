@@ -61,7 +61,7 @@ class InputFilter {
   RolloutStatus Observe(const std::vector<PendulumState<double>>& measured,
                         const std::vector<bool>& seen);
   int observed() const { return observed_; }  // with frame 0
-  // At the last frame.
+  // The state at the last frame.
   const PendulumState<double>& state(int person) const { return path_.At(observed_ - 1, person); }
   const RolloutStatus& status() const { return status_; }
   // All frames: those observed as filtered, the rest with the force dying out.

@@ -13,7 +13,7 @@
 
 namespace pushid {
 
-// Which forces act on a person during one step.
+// The forces that act on a person during one step.
 enum class ActiveForces { kAll, kPushAndFriction, kPushOnly };
 
 ActiveForces ForcesAt(const Scene& scene, PushUse use, int person, int frame);

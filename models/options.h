@@ -105,7 +105,7 @@ constexpr EnumNames<Posture, 2> Names(Posture) {
   return {{{"upright", Posture::kUpright}, {"initial", Posture::kInitial}}};
 }
 
-// In which axes a fit sees people, and whether they answer alike in all directions.
+// The axes in which a fit sees people, and whether they answer alike in all directions.
 enum class Directions {
   kIsotropic,  // along the push on one person, what several face; sideways is as forwards
   kBody,       // along what people face; sideways parameters are their own

@@ -102,7 +102,7 @@ struct Perceived {
       : ankle(now), step(now) {}
 };
 
-// Which delay steps have.
+// The delay that steps have.
 constexpr Parameter StepDelayOf(Delay delay) {
   return delay == Delay::kAnkleAndStep ? kStepDelay : kReactionDelay;
 }

@@ -71,7 +71,7 @@ struct CartDamping {
   }
 };
 
-// Which parameter is the friction along y.
+// The parameter that is the friction along y.
 constexpr Parameter FrictionAlongY(FrictionKind kind) {
   constexpr Parameter kAlongY[] = {
 #define PUSHID_FRICTION(id, name, along_y, ...) along_y,

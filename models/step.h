@@ -33,7 +33,7 @@ void AddSliding(const SelfForce& self, const ParameterSet<T>& p, ActiveForces ac
   linear.template tail<2>() = self.Linear(p, late->ankle).template tail<2>();
 }
 
-// Of feet that hold and step (stance.h): nothing slides, the ankles balance.
+// Balance of feet that hold and step (stance.h): nothing slides, the ankles balance.
 template <typename T>
 void AddStepping(const SelfForce& self, const ParameterSet<T>& p, ActiveForces active,
                  const PosedPendulum<T>& state, const Perceived<T>* late, NetForce<T>* force) {
@@ -49,7 +49,7 @@ void AddStepping(const SelfForce& self, const ParameterSet<T>& p, ActiveForces a
   (*force)[ForcePart::kBalance].template tail<2>() = feet.torque;
 }
 
-// Of feet that never move (standing.h).
+// Balance of feet that never move (standing.h).
 template <typename T>
 void AddStanding(const SelfForce& self, const ParameterSet<T>& p, const PendulumState<T>& felt,
                  NetForce<T>* force) {

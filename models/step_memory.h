@@ -76,20 +76,20 @@ class StepMemory {
   const ParameterSet<T>& Parameters(int person) const {
     return (*parameters_)[parameters_->size() == 1 ? 0 : person];
   }
-  // As Update left it.
+  // The state that Update posed.
   const PosedPendulum<T>& state(int person) const { return states_[person]; }
   // Null without a delay.
   const Perceived<T>* perceived(int person) const {
     return perceived_.empty() ? nullptr : &perceived_[person];
   }
   const SelfForce& self(int person) const { return self_[person]; }
-  // As Prepare left them.
+  // The forces that Prepare found.
   const Vector4<T>& received(int person) const { return received_[person]; }
   Vector4<T> network(int person) const {
     return networks_.empty() ? Vector4<T>(Vector4<T>::Zero()) : networks_[person].force;
   }
   bool rod_moves() const { return !rods_.empty(); }
-  // As RodVelocityOf left it.
+  // The layers of the rod's network, which RodVelocityOf filled.
   const RodLayers<T>& rod(int person) const { return rods_[person]; }
 
   // dl/dt of a person whose rod moves, m/s.

@@ -24,9 +24,9 @@ struct SelfJacobian {
   Eigen::Matrix<T, 4, kNumParameters> by_parameter = Eigen::Matrix<T, 4, kNumParameters>::Zero();
 };
 
-// Of friction: by dual numbers over its own few inputs, so that a law of friction is its formula
-// and its row; flattened, so that they stay in registers. p: by Parameter, of friction's own at
-// least.
+// Derivatives of friction, by dual numbers over its own few inputs, so that a law of friction is
+// its formula and its row; flattened, so that they stay in registers. p: by Parameter, of
+// friction's own at least.
 template <typename L, typename Set, typename T>
 [[gnu::flatten]] void AddFrictionJacobian(const SelfTerms<L>& self, const Set& p,
                                           const Vector4<T>& qd, SelfJacobian<T>* jacobian) {
@@ -51,7 +51,7 @@ template <typename L, typename Set, typename T>
   }
 }
 
-// Of balance and the linear terms.
+// Derivatives of balance and the linear terms.
 template <typename L, typename Set, typename T>
 void AddControlJacobian(const SelfTerms<L>& self, const Set& p, const PendulumState<T>& state,
                         const Vector4<T>& qd_previous, SelfJacobian<T>* jacobian) {

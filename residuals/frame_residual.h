@@ -27,7 +27,7 @@
 
 namespace pushid {
 
-// Which likelihood of the recordings a fit maximizes.
+// The likelihood of the recordings that a fit maximizes.
 enum class Likelihood {
   kTrajectory,  // of whole rollouts from frame 0 (rollout_residual.h): no process
                 // noise

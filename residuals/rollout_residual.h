@@ -138,7 +138,7 @@ struct SensitivityInputs {
   void HoldWeights();
 };
 
-// At the given blocks, by the acting columns of a layout (parameter_map.h).
+// The inputs at the given blocks, by the acting columns of a layout (parameter_map.h).
 SensitivityInputs RolloutInputs(const Scene& scene, const ParameterMap& map,
                                 const BlockLayout& layout, double const* const* blocks);
 

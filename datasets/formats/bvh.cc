@@ -138,7 +138,7 @@ class HierarchyWriter {
   std::string text_;
 };
 
-// Which joint and channel the value at `index` of a row belongs to, for messages.
+// The joint and channel that the value at `index` of a row belongs to, for messages.
 std::string ChannelName(const BvhSkeleton& skeleton, int index) {
   for (const BvhJoint& joint : skeleton.joints) {
     const int count = static_cast<int>(joint.channels.size());

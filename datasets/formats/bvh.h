@@ -146,7 +146,7 @@ class BvhKinematics {
   // joint, metres. Not const: the work space belongs to the object.
   void Positions(const double* row, Eigen::Vector3d* positions);
 
-  // Which values of a row they depend on.
+  // The values of a row that they depend on.
   std::vector<bool> UsedValues() const;
 
  private:

@@ -88,7 +88,7 @@ class TrajectoryRows {
   std::int64_t first_ = 0, last_ = -1;
 };
 
-// Which cells of a row are what; -1: none is.
+// The cells of a row by what they hold; -1: none does.
 struct Columns {
   int id = 0, frame = 1, time = -1, axis[3] = {2, 3, 4};
 };

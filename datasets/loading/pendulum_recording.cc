@@ -127,8 +127,8 @@ std::vector<PlateFrame> PlateFrames(const Recording& recording, const RecordedPe
   return frames;
 }
 
-// Who stands quietly at first starts from where they stand on average: the noise of one frame would
-// be in all frames, and the centre of pressure counts from an average too.
+// The mean pose of a person who stands quietly at first, from which they start: the noise of one
+// frame would be in all frames, and the centre of pressure counts from an average too.
 Vector4<double> MeanOfQuiet(const std::vector<PendulumState<double>>& states, size_t end,
                             const std::vector<double>& weight) {
   Vector4<double> mean = states[0].q;

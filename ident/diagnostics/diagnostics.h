@@ -16,7 +16,7 @@ namespace pushid {
 
 class FitProblem;
 
-// At the start of the solve.
+// Diagnostics of the start of the solve.
 struct StartDiagnostics {
   double condition_number = 0.0;               // of the scaled Jacobian, without null directions
   std::vector<NullDirection> null_directions;  // of the recordings alone, without priors

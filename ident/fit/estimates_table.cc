@@ -83,7 +83,7 @@ std::vector<Combination> TableOfCombinations(const FitProblem& problem, const Fi
   };
   const auto not_its_own = [&](const Term& term) { return tied(term) || term.parameter == kMu; };
   for (const CombinationSpec& spec : DerivedCombinations(problem.options().model)) {
-    // As another one is.
+    // A combination of tied parameters alone says what another one says already.
     if (std::any_of(spec.terms.begin(), spec.terms.end(), tied) &&
         std::all_of(spec.terms.begin(), spec.terms.end(), not_its_own)) {
       continue;

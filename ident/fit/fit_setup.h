@@ -40,8 +40,8 @@ class FitSetup {
   // What does not depend on the recordings: how they are loaded, whether bodies are fitted.
   const FitOptions& roughly() const { return roughly_; }
   Result<FitOptions> For(const std::vector<PendulumRecording>& recordings) const;
-  // The same with the other stances that go together with what was given; none where a stance was,
-  // or the preset has its own.
+  // These options with each other stance that goes with what was given; none where a stance was
+  // given, or the preset has its own.
   std::vector<FitOptions> OtherStances(const std::vector<PendulumRecording>& recordings,
                                        const FitOptions& taken) const;
 

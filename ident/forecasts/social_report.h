@@ -51,7 +51,7 @@ GroupMotion RecordedGroup(const BodyRecording& recording, const SocialCues& cues
 std::vector<RecordedStates> StatesInUse(const std::vector<BodyRecording>& recordings,
                                         const SocialCues& cues);
 
-// At each frame from the first that counts on.
+// Values by frame, from the first that counts on.
 using ByFrame = std::vector<std::optional<double>>;
 
 struct SocialRow {

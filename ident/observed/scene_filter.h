@@ -40,12 +40,12 @@ class SceneFilter {
   SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
               const InputNoise& noise, const PendulumRecording& recording, int frames);
 
-  // As InputFilter has them.
+  // These do what those of InputFilter do.
   RolloutStatus Observe(const std::vector<PendulumState<double>>& measured,
                         const std::vector<bool>& seen);
   const RolloutStatus& status() const { return filter_.status(); }
   RolloutStatus Forecast(RolloutPath<double>* path) const;
-  // At the last frame.
+  // The state at the last frame.
   PendulumState<double> State(int person) const { return TurnedBack(filter_.state(person)); }
 
  private:

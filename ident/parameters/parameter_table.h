@@ -41,7 +41,7 @@ struct ParameterSpec {
   std::optional<Prior> prior;
   // The parameter whose value it takes; none where a flag names the parameter itself.
   std::optional<Parameter> tied_to;
-  // Which parameter a slope moves, and by what (residuals/parameter_map.h).
+  // The parameter that a slope moves, and by what (residuals/parameter_map.h).
   struct SlopeOf {
     Parameter target;
     Covariate covariate;

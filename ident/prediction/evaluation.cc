@@ -30,7 +30,7 @@ struct Motion {
   Vector3<double> place, velocity, acceleration;
 };
 
-// At the last frame that was seen.
+// The motion at the last frame that was seen.
 Motion FittedMotion(const SeenPath& path, int last, double dt) {
   const int window = std::max(3, static_cast<int>(std::lround(kWindow / dt)));
   std::vector<int> frames;

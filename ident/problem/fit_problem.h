@@ -183,7 +183,7 @@ class FitProblem {
     std::map<int, std::shared_ptr<const LaidOut>> by_horizon;
   };
   std::shared_ptr<const LaidOut> LayOut(int horizon) const;
-  // At a point.
+  // The laid out rollouts at a point.
   std::vector<RolloutAt> Rollouts(const LaidOut& laid_out, FitPoint* point) const;
   std::vector<double*> BlocksOf(FitPoint* point, int recording, const BlockLayout& layout) const;
 

@@ -20,7 +20,7 @@ class ParallelEvaluation::Prepared : public ceres::CostFunction {
     jacobians_.resize(blocks_.size());
   }
 
-  // At the blocks' present values; constant blocks get no derivatives.
+  // Evaluates at the blocks' present values; constant blocks get no derivatives.
   void Prepare(bool with_jacobians, const ceres::Problem& problem) {
     if (IsPrepared(with_jacobians)) return;
     std::vector<double*> jacobians(blocks_.size(), nullptr);

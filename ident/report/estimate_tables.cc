@@ -184,7 +184,8 @@ double SharpEnough(const ParameterSpec& spec, const Estimate& e, const Assumptio
   return 0.0;
 }
 
-// What is weak for what is taken as known alone.
+// Whether an estimate is weak only because of what is taken as known: by the data alone it would
+// be identified.
 bool WeakInTotal(const FitResult& result, const Estimate& e, const ParameterSpec& spec) {
   const Uncertainty& u = result.uncertainty;
   const bool few = u.about_people_like_them && u.num_people < kFewestPeople;

@@ -61,13 +61,8 @@ std::string Known(const FitResult& result) {
          (known.empty() ? "these recordings alone identify no parameter"
                         : "these recordings identify " + Listed(known)) +
          "; " + VerdictSentence(verdict, result.behaviour, result.options.model) + "." +
-         (result.behaviour.self_propelling ? " Do not use the gains." : "");
-}
-
-// Which intervals ValueText shows, where it shows any.
-std::string Brackets(const FitResult& result) {
-  if (With(result, EstimateStatus::kIdentified).empty()) return "";
-  return " In brackets: 95 % intervals.";
+         (result.behaviour.self_propelling ? " Do not use the gains." : "") +
+         (known.empty() ? "" : " In brackets: 95 % intervals.");
 }
 
 std::string NotKnown(const FitResult& result) {
@@ -128,7 +123,7 @@ double MeanExplained(const FitResult& result) {
 
 ReportSection ShortSection(const FittedModel& model, const std::string& more) {
   ReportSection section{"short", "In short"};
-  section.Say(Known(model.fit) + Brackets(model.fit));
+  section.Say(Known(model.fit));
   section.Say(NotKnown(model.fit));
   section.Say(GainsText(model.fit));
   section.Say(more);

@@ -244,7 +244,7 @@ std::string ReportText(const FittedModel& model) {
   }
   for (ReportSection& shown : report.sections) {
     shown.figures.clear();
-    // What the page folds is left out.
+    // Tables that the page folds are left out.
     shown.tables.erase(std::remove_if(shown.tables.begin(), shown.tables.end(),
                                       [](const auto& table) { return !table.caption.empty(); }),
                        shown.tables.end());

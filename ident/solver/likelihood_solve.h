@@ -22,7 +22,7 @@ struct LikelihoodSolution {
 // problem: on return with the start of the noise and the units' spread.
 LikelihoodSolution SolveByLikelihood(FitProblem* problem, const SolveProgress& progress = nullptr);
 
-// At a point of a problem.
+// The likelihood's score at a point of a problem.
 LikelihoodScore ScoreByLikelihood(const FitProblem& problem, const FitPoint& point);
 
 // BFGS on the exact cost of a likelihood, in coordinates that the Fisher information makes

@@ -26,7 +26,7 @@ PosedPendulum<Jet> Inputs(const PendulumState<double>& state, int first) {
   return inputs;
 }
 
-// Of SelfForce::Effort.
+// Derivatives of SelfForce::Effort.
 SelfJacobian<double> EffortJacobian(const PersonStep& s) {
   SelfJacobian<double> jacobian;
   AddControlJacobian(s.self, s.p, s.state, s.before, &jacobian);
@@ -45,7 +45,7 @@ SelfJacobian<double> EffortJacobian(const PersonStep& s) {
   return jacobian;
 }
 
-// Of NetForceAt.
+// Derivatives of NetForceAt (models/step.h).
 SelfJacobian<double> ForceJacobian(const PersonStep& s) {
   SelfJacobian<double> jacobian;
   const ActiveForces active = ForcesAt(s.scene, s.options.push, s.person, s.frame);

@@ -13,7 +13,7 @@
 
 namespace pushid {
 
-// Of one person's state at a frame.
+// Derivatives of the cost by one person's state at a frame.
 struct StateAdjoint {
   Eigen::Matrix<double, 8, 1> state = Eigen::Matrix<double, 8, 1>::Zero();  // [q, qd]
   double rod = 0.0;

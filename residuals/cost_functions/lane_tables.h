@@ -93,7 +93,7 @@ class LaneGroup {
   explicit LaneGroup(std::vector<const RolloutProblem*> problems,
                      const PersonLanes& lanes = BestPersonLanes());
 
-  // At the given blocks of each, by LaneSums.
+  // The sums of each rollout at its blocks, those that LaneSums asks for.
   std::vector<RolloutSums> Evaluate(const std::vector<double const* const*>& blocks,
                                     LaneSums sums) const;
   const std::vector<const RolloutProblem*>& problems() const { return problems_; }

@@ -20,7 +20,7 @@ namespace {
 struct VectorJet {
   static constexpr int kColumns = 8;
   static constexpr int kVectors = kColumns / PUSHID_VECTOR_DOUBLES;
-  // As loose in memory as doubles: containers know of no wider alignment.
+  // Aligned as doubles are: containers know of no wider alignment.
   using Part = double __attribute__((vector_size(8 * PUSHID_VECTOR_DOUBLES), aligned(8)));
 
   double a;          // the value
@@ -30,7 +30,7 @@ struct VectorJet {
   VectorJet(double constant) : a(constant) {  // NOLINT: has no derivatives
     for (Part& part : v) part = Part{};
   }
-  // As models/dual.h has them.
+  // The names are those of models/dual.h.
   static VectorJet Constant(double value) { return {value}; }
   static VectorJet Input(double value, int column) {
     VectorJet input(value);

@@ -214,7 +214,7 @@ class Roller {
     }
   }
 
-  // As OutsideDomain (models/rollout.h).
+  // OutsideDomain (models/rollout.h), in lanes.
   static Bits Outside(const PendulumState<Lanes>& state) {
     const Lanes sum = (state.q + state.qd).sum();
     return (abs(state.q[2]) > Lanes(kMaxAngle)) | (abs(state.q[3]) > Lanes(kMaxAngle)) |
