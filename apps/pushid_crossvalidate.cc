@@ -20,7 +20,7 @@
 #include "ident/bodies/body_recording.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/prediction/evaluation.h"
-#include "ident/prediction/predictive_bands.h"
+#include "ident/prediction/futures.h"
 #include "ident/problem/folds.h"
 #include "ident/validation/crossvalidation.h"
 #include "ident/validation/scores_report.h"

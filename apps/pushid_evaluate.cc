@@ -16,9 +16,9 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/evaluation.h"
+#include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
 #include "ident/validation/scores_report.h"
-#include "ident/validation/steps_report.h"
 
 DEFINE_string(group_by, pushid::LabelKeysText(pushid::UsualGroups()),
               "labels that scores are grouped by: subject, or any label of the manifest");

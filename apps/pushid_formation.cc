@@ -25,7 +25,7 @@
 #include "datasets/formats/trajectories.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/bodies/animation.h"
-#include "ident/bodies/body_files.h"
+#include "ident/bodies/body_recording.h"
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_files.h"
 #include "ident/formations/formation_run.h"

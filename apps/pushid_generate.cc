@@ -22,7 +22,7 @@
 #include "datasets/loading/mocap_folder.h"
 #include "ident/bodies/animation.h"
 #include "ident/bodies/body_evaluation.h"
-#include "ident/bodies/body_files.h"
+#include "ident/bodies/body_recording.h"
 #include "ident/forecasts/forecast_scene.h"
 #include "ident/forecasts/forecast_spread.h"
 #include "ident/forecasts/social_report.h"

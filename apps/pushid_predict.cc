@@ -14,7 +14,6 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/bodies/body_evaluation.h"
-#include "ident/bodies/body_files.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/model/model_rollout.h"
 #include "ident/parameters/presets.h"

@@ -21,7 +21,6 @@
 #include "datasets/manifest/manifest.h"
 #include "datasets/manifest/recording.h"
 #include "ident/push/push_estimation.h"
-#include "ident/push/push_from_sensor.h"
 
 DEFINE_string(id, "", "the recording, or several by --ids; default: all that --setting selects");
 DEFINE_int32(person, 0, "number of the pushed person, counted from 0");

@@ -15,8 +15,8 @@
 #include "datasets/synthetic/laboratory.h"
 #include "datasets/synthetic/synthetic_clips.h"
 #include "ident/figures/text_table.h"
-#include "ident/model/push_range.h"
-#include "ident/validation/synthetic_truth.h"
+#include "ident/fit/fit_setup.h"
+#include "ident/model/model_rollout.h"
 
 DEFINE_string(out, "", "folder to write: manifest.json, bvh/ and push/");
 DEFINE_int32(people, pushid::SyntheticOptions{}.subjects,

@@ -19,7 +19,7 @@
 #include "ident/bodies/body_evaluation.h"
 #include "ident/model/model_json.h"
 #include "ident/problem/folds.h"
-#include "ident/training/generator_crossvalidation.h"
+#include "ident/training/generator_training.h"
 #include "ident/training/restoration_training.h"
 #include "ident/training/training_run.h"
 #include "ident/validation/scores_report.h"

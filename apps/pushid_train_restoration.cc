@@ -20,7 +20,7 @@
 #include "ident/bodies/restoration_files.h"
 #include "ident/model/model_json.h"
 #include "ident/problem/folds.h"
-#include "ident/training/restoration_chain.h"
+#include "ident/training/restoration_training.h"
 #include "ident/training/training_run.h"
 #include "ident/validation/scores_report.h"
 

@@ -16,7 +16,7 @@ namespace pushid {
 // and those here.
 
 // What people do to each other: terms that add up (interaction.h), and one for a learned force
-// (learned_terms.h), which has a size besides its name (ident/parameters/learned_terms_io.h).
+// (learned_terms.h), which has a size besides its name (ident/parameters/fit_options.h).
 struct InteractionTerms {
 #define PUSHID_TERM(id, Law) bool id = false;
   PUSHID_PAIR_TERMS(PUSHID_TERM, PUSHID_TERM)

@@ -13,7 +13,6 @@
 #include "ident/prediction/futures.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"
-#include "ident/prediction/predictive_bands.h"
 #include "models/formation.h"
 #include "models/rollout.h"
 

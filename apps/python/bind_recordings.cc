@@ -9,10 +9,9 @@
 #include "datasets/loading/recording_from_tracks.h"
 #include "datasets/manifest/recording.h"
 #include "datasets/sensors/force_platform.h"
+#include "ident/fit/fit_setup.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/push/push_estimation.h"
-#include "ident/push/push_from_sensor.h"
-#include "ident/validation/synthetic_truth.h"
 
 namespace pushid {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "ident/bodies/body_files.h"
+#include "ident/bodies/body_recording.h"
 #include "ident/figures/svg.h"
-#include "ident/prediction/force_story.h"
 #include "ident/prediction/predicted_steps.h"
+#include "ident/prediction/propagation.h"
 
 namespace pushid {
 
@@ -36,7 +36,7 @@ struct AnimatedPush {
   std::vector<Vector4<double>> force;
 };
 
-// One person's forces in words (prediction/force_story.h), beside the motion.
+// One person's forces in words (prediction/propagation.h), beside the motion.
 struct AnimatedStory {
   std::string person;
   ForceStory story;

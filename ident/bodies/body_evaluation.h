@@ -115,7 +115,7 @@ BodyEvaluation SummarizeAll(const std::vector<BodyRecording>& recordings,
 // Adds the body's keys (MPJPE_m, MBLE_m, ...) to an evaluation's JSON (model_json.h): to the
 // means, groups and recordings at the top (of the restoration, or of the generator), to
 // baselines.static and baselines.constant_velocity, and as new entries baselines.rigid (and
-// peers'), true_pendulum, recorded and restoration_drawn (ident/training/restoration_chain.h).
+// peers'), true_pendulum, recorded and restoration_drawn (ident/training/restoration_training.h).
 void AddBodyJson(const BodyEvaluation& evaluation, nlohmann::ordered_json* json);
 
 nlohmann::ordered_json ToJson(const BodySummary& summary, bool with_recordings);

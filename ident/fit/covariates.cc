@@ -8,9 +8,9 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/fit/weighted_solve.h"
+#include "ident/fit/fit.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/uncertainty/clusters.h"
+#include "ident/uncertainty/covariance.h"
 #include "residuals/rollout_residual.h"
 
 namespace pushid {

@@ -10,7 +10,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/uncertainty/clusters.h"
+#include "ident/uncertainty/covariance.h"
 #include "models/self_terms.h"
 
 namespace pushid {
@@ -182,7 +182,7 @@ void AddClusterWarning(const Uncertainty& u, Warnings* warnings) {
   }
 }
 
-// An id is one person (clusters.h), who weighs nearly the same in all recordings.
+// An id is one person (covariance.h), who weighs nearly the same in all recordings.
 void AddMassWarnings(const std::vector<PendulumRecording>& recordings, Warnings* warnings) {
   std::map<std::string, std::pair<double, double>> masses;  // least and largest, kg
   for (const PendulumRecording& recording : recordings) {

@@ -6,7 +6,7 @@
 
 #include "datasets/files/error.h"
 #include "datasets/formats/bvh.h"
-#include "ident/bodies/body_files.h"
+#include "ident/bodies/body_recording.h"
 #include "models/generators/motion_generator.h"
 
 namespace pushid {

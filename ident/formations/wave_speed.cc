@@ -9,7 +9,7 @@
 #include "datasets/formats/motion_formats.h"
 #include "datasets/loading/load_recordings.h"
 #include "ident/figures/text_table.h"
-#include "ident/prediction/predictive_bands.h"
+#include "ident/prediction/futures.h"
 #include "ident/prediction/propagation.h"
 #include "ident/problem/statistics.h"
 #include "models/self_terms.h"

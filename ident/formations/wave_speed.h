@@ -27,7 +27,7 @@ std::optional<WaveSpeed> SpeedOfWave(const FormationRun& run);
 // The uncertainty of a formation's wave.
 //
 // The formation is rolled out with parameters drawn anew, from the bootstrap's replicas where the
-// model has them and else from its covariance (prediction/predictive_bands.h); bands are the
+// model has them and else from its covariance (prediction/futures.h); bands are the
 // central 90 %. They hold what the parameters leave open, not how people with the same parameters
 // differ.
 

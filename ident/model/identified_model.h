@@ -49,8 +49,8 @@ struct UsualPush {
   double height = 1.0;    // of their torques over the rod: 1 is the hip
 };
 
-// The pushes and people that a model was fitted to (model/push_range.h). Whatever was not there, or
-// was not written by older versions, is empty.
+// The pushes and people that a model was fitted to (model/model_rollout.h). Whatever was not there,
+// or was not written by older versions, is empty.
 struct PushRange {
   ValueRange external_s, net_s;  // durations of the rows, s
   ValueRange impulse_per_mass;   // m/s

@@ -12,7 +12,6 @@
 #include "ident/model/model_json.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/parameters/json_archive.h"
-#include "ident/parameters/learned_terms_io.h"
 
 namespace pushid {
 

@@ -3,8 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
 
+#include "datasets/files/number_text.h"
+#include "ident/model/identified_model.h"
 #include "ident/problem/own_axes.h"
+#include "ident/problem/statistics.h"
 #include "models/learned_terms.h"
 #include "models/rollout.h"
 #include "residuals/rollout_residual.h"
@@ -68,6 +74,240 @@ HipPaths HipsOfRollout(const IdentifiedModel& model, const PendulumRecording& re
 std::string OutsideText(const RolloutStatus& status) {
   return std::string(status.quantity) + " of person " + std::to_string(status.person) +
          " leaves the model's domain at frame " + std::to_string(status.frame);
+}
+
+namespace {
+
+double Duration(const PendulumRecording& recording, const ScenePush& push) {
+  return static_cast<double>(push.force.size()) * recording.scene.dt;
+}
+
+double ImpulsePerMass(const IdentifiedModel& model, const PendulumRecording& recording,
+                      const ScenePush& push) {
+  ParameterSet<double> p = PeoplesParameters(model, recording)[push.person];
+  if (model.options.push_tail == PushTail::kNone) p[kTailGain] = p[kTailBase] = 0.0;
+  const double mass = recording.scene.people[push.person].body.mass;
+  return WholeImpulse(push, mass, p, recording.scene.dt) / mass;
+}
+
+bool HasDirection(const ScenePush& push) { return !push.mean.head<2>().isZero(0.0); }
+
+// From the model's x axis, in degrees; to the left and to the right alike.
+double Direction(const IdentifiedModel& model, const PendulumRecording& recording,
+                 const ScenePush& push) {
+  const double angle =
+      std::atan2(push.mean[1], push.mean[0]) - OwnAxes(recording, model.options.directions);
+  return std::abs(std::remainder(angle, 2.0 * M_PI)) * 180.0 / M_PI;
+}
+
+// Where a horizontal force at the body has the push's torque, as a fraction of the rod; at least a
+// hundredth, because a range is one of factors.
+double HeightOfRod(const PendulumRecording& recording, const ScenePush& push) {
+  const ScenePerson& person = recording.scene.people[push.person];
+  Vector4<double> f = push.mean;
+  // The rows of a net push hold the posture as well.
+  if (push.kind != PushKind::kExternal) f -= Gravity<double>(person.body, person.start.q);
+  const double lean = std::cos(person.start.q[2]) * std::cos(person.start.q[3]);
+  return std::max(0.01, (f[2] * f[0] - f[3] * f[1]) /
+                            (f.head<2>().squaredNorm() * person.body.rod_length * lean));
+}
+
+bool HasHeight(const ScenePush& push) {
+  return push.kind == PushKind::kExternal && HasDirection(push);
+}
+
+// The medians of the commonest kind.
+std::optional<UsualPush> UsualOf(const std::vector<PendulumRecording>& recordings) {
+  std::map<PushKind, std::vector<double>> durations, heights;
+  for (const PendulumRecording& recording : recordings) {
+    for (const ScenePush& push : recording.scene.pushes) {
+      if (push.force.empty() || !HasDirection(push)) continue;
+      durations[push.kind].push_back(Duration(recording, push));
+      heights[push.kind].push_back(HeightOfRod(recording, push));
+    }
+  }
+  if (durations.empty()) return std::nullopt;
+  const PushKind kind =
+      std::max_element(durations.begin(), durations.end(), [](const auto& a, const auto& b) {
+        return a.second.size() < b.second.size();
+      })->first;
+  return UsualPush{kind, Median(durations[kind]), Median(heights[kind])};
+}
+
+// From a person's cart to the nearest other one, m; infinite for who is alone.
+double Spacing(const Scene& scene, int person) {
+  double nearest = INFINITY;
+  for (int n = 0; n < scene.num_people(); ++n) {
+    if (n == person) continue;
+    const Vector4<double> apart = scene.people[n].start.q - scene.people[person].start.q;
+    nearest = std::min(nearest, apart.head<2>().norm());
+  }
+  return nearest;
+}
+
+// Everybody once, by id, in the order of the recordings: the body and feet of the first of them,
+// and the usual posture of all, because somebody may lean in one.
+void AddPeople(const std::vector<PendulumRecording>& recordings, PushRange* range) {
+  std::map<std::string, std::pair<std::vector<double>, std::vector<double>>> leans;
+  std::vector<std::string> ids;
+  for (const PendulumRecording& recording : recordings) {
+    const Scene scene = TurnedScene(recording, recording.facing);
+    for (int n = 0; n < scene.num_people(); ++n) {
+      if (scene.num_people() > 1) range->spacing.Add(Spacing(scene, n));
+      const auto& [body, start] = scene.people[n];
+      auto& [theta, phi] = leans[recording.subject_ids[n]];
+      theta.push_back(start.q[2]);
+      phi.push_back(start.q[3]);
+      if (theta.size() > 1) continue;
+      ids.push_back(recording.subject_ids[n]);
+      range->people.push_back(
+          {body.mass, body.rod_length, body.cart_height, 0.0, 0.0, start.feet.apart});
+    }
+  }
+  for (size_t i = 0; i < ids.size(); ++i) {
+    range->people[i].theta = Median(leans[ids[i]].first);
+    range->people[i].phi = Median(leans[ids[i]].second);
+  }
+}
+
+// The pushes, or people, of some recordings that lie outside of a range.
+struct Outside {
+  int recordings = 0;
+  double farthest = 1.0;  // as a factor
+  double value = 0.0;     // of the farthest
+  std::string id, last;   // of its recording, and of the last one counted
+  bool has_tail = false;  // in the model, and it is too much
+  ValueRange range;
+
+  void Add(double factor, double of, const std::string& recording, const ValueRange& fitted) {
+    if (factor <= farthest) return;
+    farthest = factor, value = of, id = recording, range = fitted;
+  }
+  // A value that is more than a quarter outside counts.
+  void See(double of, const std::string& recording, const ValueRange& fitted) {
+    const double factor = fitted.Beyond(of);
+    if (factor <= kBeyondFittedRange) return;
+    if (recording != last) ++recordings;
+    last = recording;
+    Add(factor, of, recording, fitted);
+  }
+  std::string Sentence(const std::string& what, const std::string& unit, int all) const {
+    const std::string others = recordings > 1
+                                   ? " (the farthest of " + std::to_string(recordings) +
+                                         " such among " + std::to_string(all) + " recordings)"
+                                   : "";
+    return what + " of " + id + " is " + Rounded(value, 3) + " " + unit + others +
+           "; the model was fitted to " + Rounded(range.lower, 3) + " to " +
+           Rounded(range.upper, 3) + " " + unit + ": an extrapolation";
+  }
+};
+
+// What to say of pushes from where none was fitted.
+std::optional<std::string> TurnedAway(const IdentifiedModel& model,
+                                      const std::vector<PendulumRecording>& recordings) {
+  const ValueRange& fitted = model.push_range->direction;
+  if (fitted.empty()) return std::nullopt;
+  for (const PendulumRecording& recording : recordings) {
+    for (const ScenePush& push : recording.scene.pushes) {
+      if (push.force.empty() || !HasDirection(push)) continue;
+      const double angle = Direction(model, recording, push);
+      if (angle <= fitted.upper + kBeyondFittedAngle &&
+          angle >= fitted.lower - kBeyondFittedAngle) {
+        continue;
+      }
+      return "the push of " + recording.id + " points " + Rounded(angle, 3) +
+             " degrees off forwards; the model was fitted to " + Rounded(fitted.lower, 3) + " to " +
+             Rounded(fitted.upper, 3) +
+             " degrees: what people do then is an assumption, not an estimate";
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+double PushSpeed(const PendulumRecording& recording) {
+  double speed = 0.0;
+  for (const ScenePush& push : recording.scene.pushes) {
+    speed += push.mean.head<2>().norm() * static_cast<double>(push.force.size()) *
+             recording.scene.dt / recording.scene.people[push.person].body.mass;
+  }
+  return speed;
+}
+
+PushRange FittedPushRange(const IdentifiedModel& model,
+                          const std::vector<PendulumRecording>& recordings) {
+  PushRange range;
+  for (const PendulumRecording& recording : recordings) {
+    for (const ScenePush& push : recording.scene.pushes) {
+      if (push.force.empty()) continue;
+      range.Durations(push.kind).Add(Duration(recording, push));
+      range.impulse_per_mass.Add(ImpulsePerMass(model, recording, push));
+      if (HasDirection(push)) range.direction.Add(Direction(model, recording, push));
+      if (HasHeight(push)) range.height.Add(HeightOfRod(recording, push));
+    }
+  }
+  range.usual = UsualOf(recordings);
+  AddPeople(recordings, &range);
+  return range;
+}
+
+std::vector<std::string> ExtrapolationWarnings(const IdentifiedModel& model,
+                                               const std::vector<PendulumRecording>& recordings) {
+  if (!model.push_range) return {};
+  IdentifiedModel boundless = model;  // tails as they would be without the range
+  boundless.push_range.reset();
+  Outside duration, impulse, height, mass, spacing;
+  ValueRange masses;
+  for (const FittedPerson& person : model.push_range->people) masses.Add(person.mass);
+  for (const PendulumRecording& recording : recordings) {
+    const auto judge = [&](const auto& value, const auto& range, Outside* outside) {
+      bool any = false;
+      for (const ScenePush& push : recording.scene.pushes) {
+        if (push.force.empty()) continue;
+        const double factor = range(push).Beyond(value(push));
+        if (factor <= kBeyondFittedRange) continue;
+        any = true;
+        outside->Add(factor, value(push), recording.id, range(push));
+        outside->has_tail |= model.options.push_tail != PushTail::kNone &&
+                             push.kind != PushKind::kExternal && value(push) > range(push).upper;
+      }
+      outside->recordings += any;
+    };
+    judge([&](const ScenePush& push) { return Duration(recording, push); },
+          [&](const ScenePush& push) { return model.push_range->Durations(push.kind); }, &duration);
+    judge([&](const ScenePush& push) { return ImpulsePerMass(boundless, recording, push); },
+          [&](const ScenePush&) { return model.push_range->impulse_per_mass; }, &impulse);
+    for (const ScenePush& push : recording.scene.pushes) {
+      if (push.force.empty() || !HasHeight(push)) continue;
+      height.See(HeightOfRod(recording, push), recording.id, model.push_range->height);
+    }
+    const Scene& scene = recording.scene;
+    for (int n = 0; n < scene.num_people(); ++n) {
+      mass.See(scene.people[n].body.mass, recording.id, masses);
+      if (scene.num_people() > 1) {
+        spacing.See(Spacing(scene, n), recording.id, model.push_range->spacing);
+      }
+    }
+  }
+  const int all = static_cast<int>(recordings.size());
+  std::vector<std::string> warnings;
+  if (duration.recordings > 0) {
+    warnings.push_back(duration.Sentence("the push's duration", "s", all));
+  }
+  if (impulse.recordings > 0) {
+    warnings.push_back(impulse.Sentence("the push's impulse over mass", "m/s", all));
+    if (impulse.has_tail) warnings.back() += "; its tail is cut to what was seen";
+  }
+  if (height.recordings > 0) {
+    warnings.push_back(height.Sentence("the push's height over the rod", "of it", all));
+  }
+  if (mass.recordings > 0) warnings.push_back(mass.Sentence("the mass of a person", "kg", all));
+  if (spacing.recordings > 0) {
+    warnings.push_back(spacing.Sentence("the distance to the nearest person", "m", all));
+  }
+  if (const auto turned = TurnedAway(model, recordings)) warnings.push_back(*turned);
+  return warnings;
 }
 
 }  // namespace pushid

@@ -1,11 +1,78 @@
-// ident: a motion that was seen to begin, and what comes of it.
+// ident: a motion that was seen to begin, what comes of it, and how that is learned: first what was
+// seen of a recording, and the filter of unknown forces on its scene.
+#pragma once
+
+#include <array>
+#include <iterator>
+#include <optional>
+#include <vector>
+
+#include "datasets/loading/pendulum_recording.h"
+#include "ident/model/identified_model.h"
+#include "ident/model/model_rollout.h"
+#include "models/input_filter.h"
+#include "models/turn.h"
+
+namespace pushid {
+
+// Columns: along the push, across, upwards.
+Eigen::Matrix3d PushAxes(const PendulumRecording& recording);
+
+// Where people's hips are at one frame.
+struct SeenHips {
+  std::vector<Vector3<double>> hip;  // m
+  std::vector<bool> seen = {};       // by person; empty: all of them
+  bool Sees(int person) const { return seen.empty() || seen[person]; }
+};
+SeenHips HipsAt(const PendulumRecording& recording, int frame);
+
+// The filter of unknown forces (models/input_filter.h) on a recording's scene, in the axes
+// and with the bodies that the model sees (problem/own_axes.h); what goes in and comes out is in
+// the axes of the file.
+//
+// The filter that forecasts has other gains than the fit. Those of whole rollouts say where a push
+// takes a person who was at rest; from a person who moves they lead away (hips of people left out
+// erred by 0.23 m, a second after frame 12). Forecasts want a lean that hardly changes and a cart
+// without drag: the gains in first_frames.cc, chosen once on the 32 published recordings of single
+// people. They are used for people whose feet move; where feet stand, the model's own gains are.
+// How much stronger and longer its tail is than the model's is learned (LearnForecasts).
+
+class SceneFilter {
+ public:
+  // Only people, pushes and frame 0 of the recording are read. parameters: one set for each
+  // person. The model must outlive the filter. frames: how far to look, in all.
+  SceneFilter(const IdentifiedModel& model, std::vector<ParameterSet<double>> parameters,
+              const InputNoise& noise, const PendulumRecording& recording, int frames);
+
+  // These do what those of InputFilter do.
+  RolloutStatus Observe(const std::vector<PendulumState<double>>& measured,
+                        const std::vector<bool>& seen);
+  const RolloutStatus& status() const { return filter_.status(); }
+  RolloutStatus Forecast(RolloutPath<double>* path) const;
+  // The state at the last frame.
+  PendulumState<double> State(int person) const { return TurnedBack(filter_.state(person)); }
+
+ private:
+  PendulumState<double> TurnedBack(PendulumState<double> state) const;
+
+  double angle_;
+  TurnedAxes to_, back_;
+  InputFilter filter_;
+};
+
+// The filter that forecasts, its tail so much stronger and longer than the model's; none of models
+// with networks, whose memory no measurement corrects.
+std::optional<SceneFilter> ForecastFilter(const IdentifiedModel& model, double tail,
+                                          const PendulumRecording& recording, int frames);
+
+// A motion that was seen to begin, and what comes of it.
 //
 // Two forecast:
 //   physics    the rollout from frame 0, moved to where the hip was seen last and on by what is
 //              left of its error of velocity v, of the last 0.05 s:
 //                0.3 s (1 - exp(-h / 0.3 s)) v,   h the time ahead
 //   input      the pendulum from the state that a filter with an unknown force finds
-//              (scene_filter.h), the force dying out; push and tail act as known
+//              (SceneFilter), the force dying out; push and tail act as known
 // One rule says who has the word: until a quarter of a second was seen physics, from then on
 // (1 - w) physics + w input with
 //   w = min(1, sqrt(T / s)),   s the time seen, T = ForecastRule::input_time.
@@ -18,16 +85,6 @@
 // s and h the time seen and ahead, v the mean speed to which the forecast takes the hip, and over
 // that scale the quantiles of what was found, alike on both sides: the middle of every distribution
 // is the forecast itself.
-#pragma once
-
-#include <array>
-#include <optional>
-#include <vector>
-
-#include "ident/model/model_rollout.h"
-#include "ident/observed/scene_filter.h"
-
-namespace pushid {
 
 inline constexpr double kErrorTime = 0.3;  // s, in which an error of velocity dies out
 
@@ -111,5 +168,48 @@ class HipDistribution {
   std::array<std::vector<double>, 3> quantiles_;  // on the world's axes
   HipPaths centre_, scale_;
 };
+
+// What forecasts are put together by, learned from forecasts of recordings that the
+// forecasting model was not fitted to.
+//
+// A model flatters itself on the recordings it was fitted to, the more so the later, and what is
+// learned there is wrong. So models fitted without a fold of the recordings forecast it, some
+// twelve times. From these forecasts come
+//   - the tail of the filter and T of the rule: of a few values those of the least mean distance of
+//     the hip where both have a word;
+//   - the scales and quantiles of errors: of every fold with numbers learned on the others.
+
+// Fitted to all recordings but those held out (indices).
+struct FoldModel {
+  IdentifiedModel model;
+  std::vector<int> held_out;
+};
+
+// folds: none where there is no model but that one, which would flatter itself: only error scales
+// are then learned. Nothing where no recording stays in the model's domain.
+std::optional<ForecastRule> LearnForecasts(const IdentifiedModel& model,
+                                           const std::vector<PendulumRecording>& recordings,
+                                           const std::vector<FoldModel>& folds, int num_threads);
+
+// Tails of the filter over the model's that are tried.
+inline constexpr double kTails[] = {1.0, 1.5, 2.2};
+
+// One recording after its first frames, by [person][frame after them].
+struct ForecastTrial {
+  int fold = 0, recording = 0;
+  double seconds = 0.0, dt = 0.0;
+  Eigen::Matrix3d axes;
+  HipPaths physics, measured;
+  std::array<HipPaths, std::size(kTails)> input;  // by each tail
+  std::vector<std::vector<bool>> seen;
+  std::vector<Vector3<double>> from;  // hips where they were seen last
+};
+
+// The rule's tail and time of the least mean distance over trials of every fold but one (-1: of
+// all).
+ForecastRule LearnRule(const std::vector<ForecastTrial>& trials, int left_out = -1);
+// centre: of each trial.
+std::array<ErrorScale, 3> LearnErrorScales(const std::vector<ForecastTrial>& trials,
+                                           const std::vector<HipPaths>& centre);
 
 }  // namespace pushid

@@ -1,18 +1,333 @@
-// ident: whether options can be used.
+// ident: what is learned by name, by seed and by file.
 #include "ident/parameters/fit_options.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "datasets/files/names.h"
+#include "datasets/files/random.h"
 #include "ident/parameters/json_archive.h"
-#include "ident/parameters/learned_terms_io.h"
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/parameter_table.h"
 #include "models/learned_terms.h"
 
 namespace pushid {
+namespace {
+
+// Empty for an unknown name.
+std::vector<bool InteractionTerms::*> TermsOf(const std::string& name) {
+  if (name == "contact") return {&InteractionTerms::spring, &InteractionTerms::damping};
+  for (const InteractionTermName& term : kInteractionTerms) {
+    if (name == term.name) return {term.member};
+  }
+  return {};
+}
+
+std::string TermsText(const InteractionTerms& terms) {
+  std::string text;
+  for (const InteractionTermName& row : kInteractionTerms) {
+    if (terms.*row.member) text += (text.empty() ? "" : ",") + std::string(row.name);
+  }
+  return text.empty() ? "none" : text;
+}
+
+MaybeError ParseTerms(const std::string& flag, const std::string& text, InteractionTerms* terms) {
+  *terms = {};
+  if (text == "none") return std::nullopt;
+  for (const std::string& part : SplitList(text)) {
+    const std::vector<bool InteractionTerms::*> members = TermsOf(part);
+    if (part == "none") return Error{flag + ": none stands alone; leave it or the others out"};
+    if (members.empty()) {
+      std::string known = "contact (spring,damping)";
+      for (const auto& term : kInteractionTerms) known += ", " + std::string(term.name);
+      return Error{flag + " names '" + part + "'; it must be none, or some of " + known};
+    }
+    for (bool InteractionTerms::*member : members) {
+      if (terms->*member) {
+        return Error{flag + " names '" + part + "' twice (contact is spring,damping)"};
+      }
+      terms->*member = true;
+    }
+  }
+  return std::nullopt;
+}
+
+constexpr int kDefaultHidden = 4;
+constexpr double kOpenForgetGate = 1.0;
+// So that none repeats the weights of another.
+constexpr uint64_t kRodSeed = 7919, kPairSeed = 104729;
+
+// Before the sizes; the second is LDP's.
+constexpr std::string_view kNetworkTerm = "network:", kLdpNetworkTerm = "ldp_network:";
+constexpr int kLdpHidden = 256, kLdpEmbedding = 32;
+constexpr char kLdpRod[] = "128-128";
+
+// A size between 1 and kLargestSize, or 0.
+int Size(const std::string& text) {
+  if (text.empty() || text.size() > 4 ||
+      text.find_first_not_of("0123456789") != std::string::npos) {
+    return 0;
+  }
+  const int size = std::stoi(text);
+  return size <= kLargestSize ? size : 0;
+}
+
+// "128-128"; empty where it is no list of sizes.
+std::vector<int> HiddenSizes(const std::string& text) {
+  std::vector<int> hidden;
+  for (const std::string& size : SplitList(text, '-')) hidden.push_back(Size(size));
+  const bool sound = !hidden.empty() && hidden.size() <= kMostLayers && text.back() != '-' &&
+                     *std::min_element(hidden.begin(), hidden.end()) > 0;
+  return sound ? hidden : std::vector<int>();
+}
+
+Result<NetworkShape> ParseNetwork(const std::string& flag, const std::string& text) {
+  const std::vector<std::string> parts = SplitList(text, ':');
+  NetworkShape shape;
+  shape.kind = parts.empty() ? NetworkKind::kNone
+                             : FromName<NetworkKind>(parts[0]).value_or(NetworkKind::kNone);
+  shape.hidden = shape.biased() ? kLdpHidden : kDefaultHidden;
+  const bool known =
+      shape.any() && text.back() != ':' && parts.size() <= (shape.recurrent() ? 3 : 2);
+  if (shape.biased()) shape.embedding = kLdpEmbedding;  // which takes the mass
+  if (parts.size() > 1) shape.hidden = Size(parts[1]);
+  if (parts.size() > 2) shape.embedding = Size(parts[2]);
+  if (known && shape.hidden > 0 && (parts.size() < 3 || shape.embedding > 0)) return shape;
+  std::vector<std::string> words = AllNames<SelfForceKind>();
+  for (const std::string& example : NetworkExamples()) words.push_back(example);
+  return Error{flag + " is '" + text + "'; it must be " + Listed(words, "or") +
+               " (hidden size, embedding; 1 to " + std::to_string(kLargestSize) +
+               "), or linear and a network, as linear,gru:4"};
+}
+
+}  // namespace
+
+std::vector<std::string> NetworkExamples() {
+  std::vector<std::string> examples;
+  std::string recurrent, ldp;
+  for (const NetworkKindRow& row : kNetworkKinds) {
+    if (row.value == NetworkKind::kNone) continue;
+    (row.biased ? ldp : recurrent) = row.name;
+    if (!row.biased) examples.push_back(row.name + std::string(":4"));
+  }
+  examples.push_back(ldp + ":256:32");
+  examples.push_back(recurrent + ":256:32");
+  return examples;
+}
+
+Result<SelfForceChoice> ParseSelfForce(const std::string& flag, const std::string& text) {
+  SelfForceChoice choice;
+  for (const std::string& part : SplitList(text, ',')) {
+    if (const auto law = FromName<SelfForceKind>(part)) {
+      if (*law == SelfForceKind::kNone || *law == choice.kind) continue;
+      if (choice.kind != SelfForceKind::kNone) return Error{flag + " names more than one law"};
+      choice.kind = *law;
+      continue;
+    }
+    if (choice.network.any()) return Error{flag + " names more than one network"};
+    const Result<NetworkShape> shape = ParseNetwork(flag, part);
+    if (!shape.ok()) return shape.error();
+    choice.network = shape.value();
+  }
+  return choice;
+}
+
+std::string SelfForceText(SelfForceKind kind, const LearnedTerms* network) {
+  if (network == nullptr || !network->shape.any()) return NameOf(kind);
+  return (kind == SelfForceKind::kNone ? "" : NameOf(kind) + ",") + NetworkName(network->shape);
+}
+
+Result<RodShape> ParseRod(const std::string& flag, const std::string& text) {
+  if (text == "constant") return RodShape{};
+  if (text == "linear") return RodShape{RodKind::kLinear, {}};
+  const size_t colon = text.find(':');
+  RodShape shape{FromName<RodKind>(text.substr(0, colon)).value_or(RodKind::kConstant)};
+  const std::string usual = shape.biased() ? kLdpRod : std::to_string(kDefaultHidden);
+  shape.hidden = HiddenSizes(colon == std::string::npos ? usual : text.substr(colon + 1));
+  if (shape.layered() && !shape.hidden.empty()) return shape;
+  return Error{flag + " is '" + text +
+               "'; it must be constant, linear, mlp:4 or, as LDP's, ldp:128-128 (hidden sizes "
+               "of 1 to " +
+               std::to_string(kLargestSize) + ", at most " + std::to_string(kMostLayers) +
+               " layers)"};
+}
+
+Result<InteractionChoice> ParseInteraction(const std::string& flag, const std::string& text) {
+  InteractionChoice choice;
+  std::string others;
+  for (const std::string& part : SplitList(text, ',')) {
+    const bool ldp = (part + ":").rfind(kLdpNetworkTerm, 0) == 0;
+    if (!ldp && (part + ":").rfind(kNetworkTerm, 0) != 0) {
+      others += (others.empty() ? "" : ",") + part;
+      continue;
+    }
+    if (choice.pair.any()) return Error{flag + " names more than one network"};
+    const size_t sizes_at = ldp ? kLdpNetworkTerm.size() : kNetworkTerm.size();
+    choice.pair = {HiddenSizes(part.substr(std::min(sizes_at, part.size()))), ldp};
+    if (choice.pair.any()) continue;
+    return Error{flag + " names '" + part +
+                 "'; a network is network:4 or, as LDP's, ldp_network:512-512 (hidden sizes of 1 "
+                 "to " +
+                 std::to_string(kLargestSize) + ", at most " + std::to_string(kMostLayers) +
+                 " layers)"};
+  }
+  if (others == "none" && choice.pair.any()) {
+    return Error{flag + ": none stands alone; leave it or the others out"};
+  }
+  if (!others.empty() || !choice.pair.any()) {
+    if (MaybeError error = ParseTerms(flag, others, &choice.terms)) return *error;
+  }
+  choice.terms.learned = choice.pair.any();
+  choice.terms.learned_in_range = choice.pair.ldp;
+  return choice;
+}
+
+std::string InteractionText(const ModelOptions& options) {
+  const std::string others = TermsText(options.interaction);
+  if (!options.interaction.learned || options.learned == nullptr) return others;
+  return (others == "none" ? "" : others + ",") + PairName(options.learned->pair);
+}
+
+std::string LearnedName(const LearnedTerms& learned) {
+  std::string name = NetworkName(learned.shape);
+  if (!learned.shape.any()) name.clear();
+  const auto add = [&name](const std::string& more) {
+    name += (name.empty() ? "" : " and ") + more;
+  };
+  if (learned.rod.moves()) add("rod " + RodName(learned.rod));
+  if (learned.pair.any()) add("interaction " + PairName(learned.pair));
+  return name;
+}
+
+std::vector<double> InitialWeights(const NetworkShape& shape, uint64_t seed) {
+  Random random(seed);
+  std::vector<double> weights(shape.num_weights(), 0.0);
+  const auto fill = [&](int first, int last, int fan_in) {
+    for (int i = first; i < last; ++i) weights[i] = random.Normal() / std::sqrt(fan_in);
+  };
+  fill(0, shape.gates_at(), shape.embed_width());
+  fill(shape.gates_at(), shape.candidates_at(), shape.gate_width());
+  fill(shape.candidates_at(), shape.output_at(), std::max(1, shape.candidate_width()));
+  if (shape.cells() > 0) {
+    for (int row = shape.hidden; row < 2 * shape.hidden; ++row) {
+      weights[shape.gates_at() + (row + 1) * shape.gate_width() - 1] += kOpenForgetGate;
+    }
+  }
+  return weights;
+}
+
+namespace {
+
+// Rows [W b] of hidden layers.
+void AddHiddenWeights(const std::vector<int>& hidden, int inputs, uint64_t seed,
+                      std::vector<double>* weights) {
+  Random random(seed);
+  int width = inputs + 1;
+  for (int size : hidden) {
+    for (int i = 0; i < size * width; ++i) {
+      weights->push_back(random.Normal() / std::sqrt(width));
+    }
+    width = size + 1;
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const LearnedTerms> InitialNetwork(const NetworkShape& shape, uint64_t seed,
+                                                   const RodShape& rod, const PairShape& pair) {
+  LearnedTerms network{shape, InitialWeights(shape, seed), rod, pair};
+  AddHiddenWeights(rod.hidden, rod.num_inputs(), seed + kRodSeed, &network.weights);
+  network.weights.resize(network.pair_at(), 0.0);
+  AddHiddenWeights(pair.hidden, PairShape::kInputs, seed + kPairSeed, &network.weights);
+  network.weights.resize(network.num_weights(), 0.0);
+  return std::make_shared<const LearnedTerms>(std::move(network));
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void CheckSizes(const std::string& what, const std::vector<int>& hidden) {
+  for (int size : hidden) {
+    if (size >= 1 && size <= kLargestSize) continue;
+    throw std::runtime_error(what + ": sizes must lie between 1 and " +
+                             std::to_string(kLargestSize));
+  }
+}
+
+void CheckRod(const RodShape& rod) {
+  const bool layers_fit =
+      rod.layered() ? !rod.hidden.empty() && rod.hidden.size() <= kMostLayers : rod.hidden.empty();
+  if (!layers_fit) throw std::runtime_error("rod: no " + NameOf(rod.kind) + " has so many layers");
+  CheckSizes("rod", rod.hidden);
+}
+
+void CheckPair(const PairShape& pair) {
+  if (!pair.any() || pair.hidden.size() > kMostLayers) {
+    throw std::runtime_error("interaction: a network has one to " + std::to_string(kMostLayers) +
+                             " hidden layers");
+  }
+  CheckSizes("interaction", pair.hidden);
+}
+
+}  // namespace
+
+template <class Archive>
+void Fields(Archive& a, RodShape& rod) {
+  PUSHID_FIELDS(a, rod, kind, hidden);
+}
+
+template <class Archive>
+void Fields(Archive& a, PairShape& pair) {
+  a("hidden", pair.hidden);
+  if (a.Has("ldp")) a("ldp", pair.ldp);
+}
+
+template <class Archive>
+void Fields(Archive& a, LearnedTerms& network) {
+  PUSHID_FIELDS(a, network.shape, kind, hidden, embedding);
+  if (a.Has("rod")) a("rod", network.rod);
+  a("weights", network.weights);
+  if (a.Has("interaction", network.pair.any())) a("interaction", network.pair);
+}
+
+Json ToJson(const LearnedTerms& network) { return JsonOf(network); }
+
+std::shared_ptr<const LearnedTerms> LearnedFromJson(const Json& json) {
+  for (const char* size : {"hidden", "embedding"}) {
+    if (!json.at(size).is_number_integer()) {
+      throw std::runtime_error(std::string("network: ") + size + " must be a whole number");
+    }
+  }
+  if (json.value("rod_input", false)) {
+    throw std::runtime_error("network: rod_input, an option of earlier versions, is gone");
+  }
+  const auto network = std::make_shared<const LearnedTerms>(FromJson<LearnedTerms>(json));
+  const NetworkShape& s = network->shape;
+  if (!network->any()) throw std::runtime_error("network: nothing is learned");
+  CheckRod(network->rod);
+  if (json.contains("interaction")) CheckPair(network->pair);
+  if (s.hidden < (s.any() ? 1 : 0) || s.hidden > kLargestSize || s.embedding < s.biased() ||
+      s.embedding > kLargestSize) {
+    throw std::runtime_error("network: sizes must lie between 1 and " +
+                             std::to_string(kLargestSize));
+  }
+  if (static_cast<int>(network->weights.size()) != network->num_weights()) {
+    throw std::runtime_error("network: " + LearnedName(*network) + " has " +
+                             std::to_string(network->num_weights()) + " weights, not " +
+                             std::to_string(network->weights.size()));
+  }
+  for (double weight : network->weights) {
+    if (!std::isfinite(weight)) throw std::runtime_error("network: a weight is not finite");
+  }
+  return network;
+}
+
 namespace {
 
 // What options of networks ask for that there is not; empty: nothing.

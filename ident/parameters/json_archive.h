@@ -15,7 +15,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <exception>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -69,9 +71,24 @@ auto ReadAt(const std::string& path, Read read) -> decltype(read()) {
 
 // JSON knows neither infinity nor NaN, and would have a null that no reader takes: they are written
 // as the texts "infinity", "-infinity" and "nan". NumberFrom throws on any other text.
-nlohmann::ordered_json NumberJson(double value);
-double NumberFrom(const nlohmann::ordered_json& json);
-nlohmann::ordered_json NumberOrNull(const std::optional<double>& value);
+inline nlohmann::ordered_json NumberJson(double value) {
+  if (std::isfinite(value)) return value;
+  if (std::isnan(value)) return "nan";
+  return value > 0 ? "infinity" : "-infinity";
+}
+
+inline double NumberFrom(const nlohmann::ordered_json& json) {
+  if (json.is_number()) return json.get<double>();
+  const std::string text = json.get<std::string>();
+  if (text == "infinity") return std::numeric_limits<double>::infinity();
+  if (text == "-infinity") return -std::numeric_limits<double>::infinity();
+  if (text == "nan") return std::numeric_limits<double>::quiet_NaN();
+  throw std::runtime_error("'" + text + "' is not a number");
+}
+
+inline nlohmann::ordered_json NumberOrNull(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
 
 // The value of an option by its name in names.h.
 template <typename E>

@@ -11,7 +11,7 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/presets.h"
 
 namespace pushid {

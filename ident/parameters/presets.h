@@ -28,6 +28,7 @@
 #include "datasets/files/error.h"
 #include "datasets/loading/pendulum_recording.h"
 #include "ident/parameters/fit_options.h"
+#include "models/options.h"
 
 namespace pushid {
 
@@ -60,7 +61,7 @@ MaybeError PoolParameters(FitOptions* options);
 // (a `net` push holds the feet's reaction), and the balance gains are the ankles'. Where they hold
 // whatever happens, pushes have no tail, people are not held to settle, and both gains of both
 // directions are free.
-// Unless told which, a preset takes the stance from what the feet did (pushed_feet.h), and has one
+// Unless told which, a preset takes the stance from what the feet did (PushedFeet), and has one
 // for people who nearly all move: of people alone feet slide, of people who touch they step, each
 // the one that predicts them better (models/README.md). Presets that stand for something published
 // have none (nullopt) and slide.
@@ -121,5 +122,33 @@ FitOptions LdpPreset();
 // as one.
 FitOptions LdpPublishedPreset();
 FitOptions LdpPublishedGroupsPreset();
+
+// What the feet of pushed people did, and which stance a fit takes from that.
+//
+//   PushedFeet feet = FeetOf(recordings);
+//   StanceOf(feet, Stance::kSlide)  // kFixed: nobody's feet moved
+//   FeetText(feet, stance)    // "feet hold (--stance=fixed; they moved in 0 of 24 pushes)"
+
+// Pushed people whose feet were recorded; who is pushed in two recordings counts twice.
+struct PushedFeet {
+  int seen = 0;
+  int moved = 0;    // stepped, or were elsewhere at the end (PersonSteps::Moved)
+  int stepped = 0;  // a foot left the ground (foot_steps.h) while the other did not
+};
+
+// 1/s: in longer frames a foot is in the air for less than ten (models/stance.h).
+inline constexpr double kLeastSteppingRate = 29.0;
+
+PushedFeet FeetOf(const std::vector<PendulumRecording>& recordings);
+
+// Nobody moved: fixed. Fewer than half of who moved lifted a foot, or nobody's feet were recorded:
+// slide. Three in four moved: of_movers. Else: steps.
+Stance StanceOf(const PushedFeet& feet, Stance of_movers);
+
+// What the feet of a model do and what those of the recordings did; empty: none were recorded.
+std::string FeetText(const PushedFeet& feet, Stance stance);
+
+// What to warn of where the two contradict each other; empty: nothing.
+std::string FeetWarning(const PushedFeet& feet, Stance stance);
 
 }  // namespace pushid

@@ -12,7 +12,7 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "ident/prediction/predicted_steps.h"
-#include "ident/uncertainty/clusters.h"
+#include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
 
 namespace pushid {

@@ -94,7 +94,7 @@ std::string MetricsText(const MetricList& metrics, const Metrics& values, int di
 // the pushed people, otherwise the recordings; within one person they are recordings, which says
 // nothing about anybody else. With G clusters and scores of weights w that sum to 1,
 //   error = sqrt(G / (G - 1) * sum over clusters of (sum of w (score - mean))^2)
-// with Student's t of G - 1 degrees of freedom (CR1; clusters.h has the fit's).
+// with Student's t of G - 1 degrees of freedom (CR1; covariance.h has the fit's).
 
 struct ScoreClusters {
   ClusterBy by = ClusterBy::kRecording;  // or kSubject

@@ -1,4 +1,6 @@
-// ident: independent jobs over a few threads. Which thread does which job makes no difference to a
+// ident: independent jobs over a few threads, and what they spend.
+//
+// Which thread does which job makes no difference to a
 // result: every job writes to its own place.
 //
 // What a job or its progress throws (a user who interrupts, no memory) ends the jobs that have not
@@ -12,6 +14,7 @@
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -50,5 +53,38 @@ inline void ParallelFor(int total, int num_threads, const std::function<void(int
   for (std::thread& thread : threads) thread.join();
   if (thrown) std::rethrow_exception(thrown);
 }
+
+// What a fit spends, and on what: evaluations of its problem, and time.
+
+// Evaluations of all residual blocks of a problem.
+struct Evaluations {
+  int jacobians = 0;  // residuals and their Jacobian
+  int costs = 0;      // residuals alone
+};
+
+// Counts evaluations that are about to be made, in any thread.
+void CountEvaluations(const Evaluations& more);
+// The sum over all threads of the process so far.
+Evaluations EvaluationsSoFar();
+
+struct Work {
+  std::string purpose;  // "start", "horizons", "weights", ...
+  Evaluations evaluations;
+  double seconds = 0.0;
+};
+
+// Splits the time from its construction on by purpose. Where several fits run at a time their
+// evaluations are counted together.
+class WorkLog {
+ public:
+  // Adds what was spent since the last call, or since construction, to a purpose.
+  void Add(const std::string& purpose);
+  const std::vector<Work>& parts() const { return parts_; }  // in order of their first mention
+
+ private:
+  std::vector<Work> parts_;
+  Evaluations from_ = EvaluationsSoFar();
+  double since_ = Now();
+};
 
 }  // namespace pushid

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "ident/problem/parallel.h"
-#include "ident/problem/work.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 
 namespace pushid {

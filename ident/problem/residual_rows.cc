@@ -8,7 +8,6 @@
 #include <set>
 
 #include "ident/problem/parallel.h"
-#include "ident/problem/work.h"
 #include "residuals/cost_functions/condensed_rollout.h"
 #include "residuals/cost_functions/likelihood_residual.h"
 #include "residuals/jets/autodiff_rollout.h"

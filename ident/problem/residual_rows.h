@@ -72,7 +72,7 @@ struct ResidualRows {
 ResidualRows EvaluateRows(const BuiltProblem& built, bool robust = false);
 ResidualRows EvaluateRows(const FitProblem& problem, FitPoint point, bool robust = false);
 
-// A number eta that a fit takes as known, 0 as it was taken (uncertainty/assumptions.h).
+// A number eta that a fit takes as known, 0 as it was taken (uncertainty/model_verdict.h).
 struct Assumption {
   std::string name;    // "scale of the pushes"; "Kd_theta"
   std::string unit;    // of eta; empty: a share, or a logarithm of a factor

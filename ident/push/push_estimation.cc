@@ -1,9 +1,15 @@
 // ident: pushes by inverse dynamics, and where in a recording they are.
 #include "ident/push/push_estimation.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "datasets/files/number_text.h"
+#include "datasets/loading/recording_from_tracks.h"
+#include "models/decompositions.h"
 #include "models/rollout.h"
 #include "models/skeleton_mapping.h"
 
@@ -140,6 +146,535 @@ Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const Pus
     result.push.force.push_back(force);
     result.impulse += dt * force;
     result.peak_force = std::max(result.peak_force, force.head<2>().norm());
+  }
+  return result;
+}
+
+namespace {
+
+constexpr double kNoise = 0.01;        // of the largest row: what no push ends with
+constexpr double kLostImpulse = 0.01;  // of the whole, tolerated outside the recording
+
+// Integral of the samples' broken line from `from` to `to` (s), by the trapezoids in between.
+Vector3<double> Impulse(const SensorRecord& record, double from, double to) {
+  Vector3<double> sum = Vector3<double>::Zero();
+  const std::vector<double>& time = record.time_s;
+  // First sample interval that reaches beyond `from`.
+  size_t i = std::upper_bound(time.begin(), time.end(), from) - time.begin();
+  for (i = std::max<size_t>(i, 1); i < time.size() && time[i - 1] < to; ++i) {
+    const double begin = std::max(from, time[i - 1]), end = std::min(to, time[i]);
+    const double middle = 0.5 * (begin + end);
+    const double share = (middle - time[i - 1]) / (time[i] - time[i - 1]);
+    sum += (end - begin) * ((1.0 - share) * record.force[i - 1] + share * record.force[i]);
+  }
+  return sum;
+}
+
+Error Wrong(const PendulumRecording& recording, const std::string& what) {
+  return Error{"recording " + recording.id + ": " + what};
+}
+
+MaybeError CheckSensorOptions(const SensorRecord& record, const PendulumRecording& recording,
+                              const SensorPushOptions& options) {
+  if (options.person < 0 || options.person >= recording.num_people()) {
+    return Wrong(recording, "there is no person " + std::to_string(options.person));
+  }
+  const double length = options.direction.norm();
+  if (!record.is_vector && !(std::isfinite(length) && length > 0.0)) {
+    return Error{"the push direction must be a finite vector other than zero"};
+  }
+  if (!std::isfinite(options.height_fraction) || !std::isfinite(options.height_m.value_or(0.0)) ||
+      !std::isfinite(options.frame_zero_time_s)) {
+    return Error{"contact height and the time of frame 0 must be finite numbers"};
+  }
+  if (record.num_samples() < 2) return Error{"the record has no force samples", record.file};
+  return std::nullopt;
+}
+
+// A push that lies outside the recording, or is no greater than the idling. `empty`: no row holds
+// more than that.
+MaybeError CheckPushInside(const SensorRecord& record, const PendulumRecording& recording,
+                           const SensorPushOptions& options, bool empty) {
+  const double zero = options.frame_zero_time_s, margin = options.clock_error_s;
+  const double end = zero + (recording.num_frames() - 1) * recording.scene.dt;
+  const Vector3<double> before = Impulse(record, record.time_s.front(), zero - margin);
+  const Vector3<double> after = Impulse(record, end + margin, record.time_s.back());
+  const Vector3<double> inside = Impulse(record, zero, end);
+  // An idling sensor adds up outside the recording; only what exceeds it is a lost push.
+  const double span = record.time_s.back() - record.time_s.front();
+  const double lost = before.norm() + after.norm() - options.idle_force * span;
+  if (lost > kLostImpulse * inside.norm() || (empty && lost > 0.0)) {
+    return Error{
+        Rounded(lost) + " N s of the push lie outside recording " + recording.id + " (" +
+            Rounded(inside.norm()) + " N s inside), whose frame 0 is at " + Rounded(zero) +
+            " s of the sensor's clock; check that time, and what it reads at rest (zero, in a "
+            "list of sensors)",
+        record.file};
+  }
+  if (!empty) return std::nullopt;
+  return Error{"no force greater than " + Rounded(options.idle_force) + " N within recording " +
+                   recording.id,
+               record.file};
+}
+
+}  // namespace
+
+Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,
+                            const SensorPushOptions& options) {
+  if (MaybeError error = CheckSensorOptions(record, recording, options)) return *error;
+  // Row by row, then without the idle rows at both ends.
+  const double dt = recording.scene.dt, zero = options.frame_zero_time_s;
+  std::vector<Vector3<double>> rows;
+  for (int t = 0; t + 1 < recording.num_frames(); ++t) {
+    rows.push_back(Impulse(record, zero + (t - 0.5) * dt, zero + (t + 0.5) * dt) / dt);
+  }
+  double largest = 0.0;
+  for (const Vector3<double>& row : rows) largest = std::max(largest, row.norm());
+  const bool by_noise = options.idle_force < kNoise * largest;
+  const double resting = by_noise ? kNoise * largest : options.idle_force;
+  const auto idle = [resting](const Vector3<double>& row) { return !(row.norm() > resting); };
+  auto first = std::find_if_not(rows.begin(), rows.end(), idle);
+  auto last = std::find_if_not(rows.rbegin(), rows.rend(), idle).base();
+  // A push may begin or end within a row, of which little is left.
+  const auto some = [](const Vector3<double>& row) { return row.norm() > 0.0; };
+  if (by_noise && first != rows.begin() && some(first[-1])) --first;
+  if (by_noise && last != rows.end() && some(*last)) ++last;
+  if (MaybeError error = CheckPushInside(record, recording, options, first == rows.end())) {
+    return *error;
+  }
+  Push push;
+  push.person = options.person;
+  push.start_frame = static_cast<int>(first - rows.begin());
+  push.file = record.file;
+  const Body& body = recording.scene.people[options.person].body;
+  const std::vector<PendulumState<double>>& states = recording.states[options.person];
+  const double fraction = options.height_m
+                              ? HeightFraction(body, states[push.start_frame].q, *options.height_m)
+                              : options.height_fraction;
+  const double length = options.direction.norm();
+  for (auto row = first; row != last; ++row) {
+    const Vector4<double>& q = states[row - rows.begin()].q;
+    const Vector3<double> force =
+        record.is_vector ? *row : Vector3<double>(row->x() / length * options.direction);
+    push.force.push_back(GeneralizedForce(body, q, force, fraction));
+  }
+  return push;
+}
+
+namespace {
+
+constexpr double kCutShort = 0.2;    // of the peak
+constexpr double kOddGain = 3.0;     // beyond what friction and recovery blur
+constexpr double kNoisePeaks = 4.0;  // standard deviations
+
+// Rows of several pushes on one person, added frame by frame.
+void AddPush(const Push& more, Push* sum) {
+  if (sum->force.empty()) {
+    *sum = more;
+    return;
+  }
+  const int start = std::min(sum->start_frame, more.start_frame);
+  const int end = std::max(sum->EndFrame(), more.EndFrame());
+  std::vector<Eigen::Vector4d> force(end - start, Eigen::Vector4d::Zero());
+  for (const Push* push : {static_cast<const Push*>(sum), &more}) {
+    for (std::size_t i = 0; i < push->force.size(); ++i) {
+      force[push->start_frame - start + i] += push->force[i];
+    }
+  }
+  sum->force = std::move(force);
+  sum->start_frame = start;
+}
+
+// The record as PushFromSensor takes it, but for the offset: vectors along the direction.
+TimedRecord AsVectors(const SensorRecord& record, const SensorChoice& sensor) {
+  TimedRecord timed{record, sensor.start_s.value_or(0.0)};
+  if (record.is_vector) return timed;
+  const Eigen::Vector3d along = sensor.direction.normalized();
+  for (Eigen::Vector3d& force : timed.record.force) force = force.x() * along;
+  return timed;
+}
+
+// A warning for a record that begins or ends while it measures a push: the rest of it is lost.
+std::string CutShort(const SensorRecord& record) {
+  double peak = 0.0;
+  for (const Eigen::Vector3d& force : record.force) peak = std::max(peak, force.norm());
+  for (const bool first : {true, false}) {
+    const double force = (first ? record.force.front() : record.force.back()).norm();
+    if (!(force > kCutShort * peak)) continue;
+    return record.file + ": the record " + (first ? "begins" : "ends") + " with " +
+           Rounded(force, 3) + " N, with a maximum of " + Rounded(peak, 3) +
+           " N: part of the push is missing, or the sensor has an offset (zero, "
+           "in a list of sensors)";
+  }
+  return "";
+}
+
+struct ReadSensors {
+  std::vector<SensorChoice> choices;  // with what the motion's file says of them
+  std::vector<SensorRecord> records;
+  std::string how;
+};
+
+// The clock at frame 0 of a sensor in a file of its own, when nothing is said of it: the motion's,
+// where the record holds at least half of the recording by it; otherwise both began at once. So a
+// motion that is cut (first_frame) keeps its push.
+double ClockBeside(const SensorRecord& record, const RecordedPerson& person, double seconds) {
+  const double begin = person.file_clock_s, end = begin + seconds;
+  const double shared =
+      std::min(end, record.time_s.back()) - std::max(begin, record.time_s.front());
+  return shared >= 0.5 * seconds ? begin : record.time_s.front() + person.skipped_s;
+}
+
+Result<ReadSensors> ReadAll(const SensorSetup& setup, const Recording& recorded, int person) {
+  ReadSensors read;
+  const std::size_t count = setup.sensors.size();
+  read.how = count == 1
+                 ? "from the sensor, averaged over the frames"
+                 : "from " + std::to_string(count) + " sensors together, averaged over the frames";
+  for (SensorChoice sensor : setup.sensors) {
+    const bool said = sensor.start_s.has_value();
+    for (const RecordedPerson& one : recorded.people) FillFromMotion(one, &sensor);
+    Result<SensorRecord> record = ReadSensor(sensor);
+    if (!record.ok()) return record.error();
+    const bool together = sensor.start_s.has_value();
+    if (!together) {
+      sensor.start_s = ClockBeside(record.value(), recorded.people[person],
+                                   (recorded.num_frames() - 1) / recorded.fps);
+    }
+    if (!said && (together || *sensor.start_s != 0.0)) {
+      read.how += std::string(together ? "; recorded with the motion, its clock"
+                                       : "; by the motion's times, its clock") +
+                  " at frame 0 is " + Rounded(*sensor.start_s, 4) + " s" +
+                  (together ? "" : " (--sensor_start changes it)");
+    }
+    const Vector3<double>& rest = record.value().subtracted;
+    if (rest.norm() > 0.0) {
+      const double size = record.value().is_vector ? rest.norm() : rest.x();
+      read.how += "; " + Rounded(size, 3) +
+                  " N before the pull subtracted (zero: 0, "
+                  "in a list of sensors, keeps them)";
+    }
+    read.choices.push_back(sensor);
+    read.records.push_back(std::move(record.value()));
+  }
+  return read;
+}
+
+// The mean over a frame that a sensor's noise at rest makes, N.
+double IdleForce(const SensorRecord& record, double dt) {
+  const double step = (record.time_s.back() - record.time_s.front()) / (record.num_samples() - 1);
+  return kNoisePeaks * record.noise * std::sqrt(std::min(1.0, step / dt));
+}
+
+// The error of an estimated offset: that of noise, and half a frame, which its fit cannot tell.
+double ClockError(const SensorOffset& offset, const PendulumRecording& recording) {
+  return 0.5 * recording.scene.dt + 2.0 * offset.standard_error_s;
+}
+
+// Offset of the sensors' clocks by the motion; zero unless it is asked for and the motion does not
+// contradict it.
+Result<SensorOffset> Offset(const SensorSetup& setup, const ReadSensors& read,
+                            const PendulumRecording& recording, int person, SensorPush* result) {
+  if (!setup.estimate_offset) return SensorOffset();
+  std::vector<TimedRecord> timed;
+  for (std::size_t i = 0; i < read.records.size(); ++i) {
+    timed.push_back(AsVectors(read.records[i], read.choices[i]));
+  }
+  Result<SensorOffset> offset = EstimateSensorOffset(timed, recording, person, setup.max_offset_s);
+  if (!offset.ok()) return offset;
+  const double gain = offset.value().gain;
+  if (gain < 1.0 / kOddGain || gain > kOddGain) {
+    result->warnings.push_back("the motion fits best with " + Rounded(gain, 2) +
+                               " times the force: check its unit and gain, and the mass");
+  }
+  const std::string estimate = Rounded(offset.value().offset_s, 4) + " +- " +
+                               Rounded(offset.value().standard_error_s, 2) + " s";
+  if (std::abs(offset.value().offset_s) <= ClockError(offset.value(), recording)) {
+    result->how += "; the clocks agree (offset by the motion " + estimate + "): not moved";
+    offset.value().offset_s = 0.0;
+  } else {
+    result->how += "; clock at frame 0 moved by " + estimate + " (estimated)";
+  }
+  return offset;
+}
+
+}  // namespace
+
+Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& recorded,
+                                   const PendulumRecording& recording, int person) {
+  if (person < 0 || person >= recording.num_people()) {
+    return Error{"recording " + recording.id + ": there is no person " + std::to_string(person)};
+  }
+  const Result<ReadSensors> read = ReadAll(setup, recorded, person);
+  if (!read.ok()) return read.error();
+  SensorPush result;
+  result.how = read.value().how;
+  const Result<SensorOffset> offset = Offset(setup, read.value(), recording, person, &result);
+  if (!offset.ok()) return offset.error();
+  SensorPushOptions options;
+  options.person = person;
+  if (setup.estimate_offset) {
+    options.clock_error_s = ClockError(offset.value(), recording);
+  }
+  for (std::size_t i = 0; i < read.value().records.size(); ++i) {
+    const SensorChoice& sensor = read.value().choices[i];
+    const SensorRecord& record = read.value().records[i];
+    options.direction = sensor.direction;
+    options.height_fraction = sensor.height_fraction;
+    options.height_m = sensor.height_m ? sensor.height_m : record.height_m;
+    options.frame_zero_time_s = sensor.start_s.value_or(0.0) + offset.value().offset_s;
+    options.idle_force =
+        sensor.idle_force > 0.0 ? sensor.idle_force : IdleForce(record, recording.scene.dt);
+    if (!options.height_m && options.height_fraction == SensorChoice{}.height_fraction) {
+      result.how += "; contact at the hip's height (--height changes it)";
+    }
+    const Result<Push> push = PushFromSensor(record, recording, options);
+    if (!push.ok()) return push.error();
+    const std::string cut_short = CutShort(record);
+    if (!cut_short.empty()) result.warnings.push_back(cut_short);
+    if (record.height_m && *record.height_m < 0.1) {
+      result.warnings.push_back(sensor.file + ": " + sensor.column +
+                                " lies on the floor: it measures the ground reaction force of the "
+                                "person standing there, not a push");
+    }
+    AddPush(push.value(), &result.push);
+  }
+  return result;
+}
+
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double kAfterPush = 0.4;  // s of motion behind the push's end that take part
+constexpr int kFewestFrames = 12;
+constexpr int kRefinements = 20;
+
+// One sensor's force along the direction, integrated once and twice: exact for the broken line.
+class Integrals {
+ public:
+  Integrals(const TimedRecord& force, const Eigen::Vector2d& direction)
+      : zero_(force.frame_zero_time_s), time_(force.record.time_s) {
+    for (const Eigen::Vector3d& f : force.record.force) {
+      force_.push_back(f.head<2>().dot(direction));
+    }
+    once_.push_back(0.0);
+    twice_.push_back(0.0);
+    for (std::size_t i = 1; i < time_.size(); ++i) {
+      double once = 0.0, twice = 0.0;
+      Within(i - 1, time_[i] - time_[i - 1], &once, &twice);
+      once_.push_back(once);
+      twice_.push_back(twice);
+    }
+  }
+
+  // Integrals at a time of the cameras plus the offset.
+  void At(double t, double* once, double* twice) const {
+    t += zero_;
+    if (t <= time_.front()) {
+      *once = *twice = 0.0;
+      return;
+    }
+    if (t >= time_.back()) {
+      *once = once_.back();
+      *twice = twice_.back() + once_.back() * (t - time_.back());
+      return;
+    }
+    const std::size_t i = std::upper_bound(time_.begin(), time_.end(), t) - time_.begin() - 1;
+    Within(i, t - time_[i], once, twice);
+  }
+
+ private:
+  // h behind sample i, within its interval.
+  void Within(std::size_t i, double h, double* once, double* twice) const {
+    const double slope = (force_[i + 1] - force_[i]) / (time_[i + 1] - time_[i]);
+    *once = once_[i] + h * (force_[i] + 0.5 * h * slope);
+    *twice = twice_[i] + h * (once_[i] + h * (0.5 * force_[i] + h * slope / 6.0));
+  }
+
+  double zero_;
+  const std::vector<double>& time_;
+  std::vector<double> force_, once_, twice_;
+};
+
+class OffsetFit {
+ public:
+  OffsetFit(const std::vector<TimedRecord>& forces, const PendulumRecording& recording, int person,
+            const Eigen::Vector2d& direction, int frames)
+      : dt_(recording.scene.dt), mass_(recording.scene.people[person].body.mass) {
+    for (const TimedRecord& force : forces) integrals_.emplace_back(force, direction);
+    Eigen::MatrixXd regressors(frames, 4);
+    target_.resize(frames);
+    weight_.resize(frames);
+    double lean_once = 0.0, lean_twice = 0.0, way = 0.0, lean_before = 0.0, x_before = 0.0;
+    double lean_zero = 0.0, x_zero = 0.0;
+    for (int t = 0; t < frames; ++t) {
+      const double x = recording.states[person][t].q.head<2>().dot(direction);
+      const double hip = recording.hip[person][t].head<2>().dot(direction);
+      if (t == 0) lean_zero = hip - x, x_zero = x;
+      const double lean = hip - x - lean_zero, moved = x - x_zero;
+      if (t > 0) {  // trapezoids
+        const double once = lean_once + 0.5 * dt_ * (lean + lean_before);
+        lean_twice += 0.5 * dt_ * (once + lean_once);
+        lean_once = once;
+        way += 0.5 * dt_ * (moved + x_before);
+      }
+      lean_before = lean;
+      x_before = moved;
+      weight_[t] = recording.Weight(person, t);
+      regressors.row(t) << 1.0, t * dt_, lean_twice, way;
+      target_[t] = 0.9 * hip + 0.1 * x;
+    }
+    pseudo_inverse_ = PseudoInverse(weight_.asDiagonal() * regressors);
+    regressors_ = regressors;
+  }
+
+  // Residuals after the linear parameters; the derivative is by tau, with them following.
+  VectorXd Residual(double tau, VectorXd* derivative = nullptr) const {
+    VectorXd way(target_.size()), velocity(target_.size());
+    ByTheForce(tau, &way, &velocity);
+    if (derivative != nullptr) *derivative = Projected(-velocity);
+    return Projected(target_ - way);
+  }
+
+  // The multiple of the force that would leave least.
+  double Gain(double tau) const {
+    VectorXd way(target_.size()), velocity(target_.size());
+    ByTheForce(tau, &way, &velocity);
+    const VectorXd along = Projected(way);
+    return along.dot(Projected(target_)) / along.squaredNorm();
+  }
+
+  double Count() const { return weight_.squaredNorm(); }
+
+ private:
+  // Way and velocity that the force alone would have given the person.
+  void ByTheForce(double tau, VectorXd* way, VectorXd* velocity) const {
+    for (int t = 0; t < target_.size(); ++t) {
+      double once = 0.0, twice = 0.0, sum_once = 0.0, sum_twice = 0.0;
+      for (const Integrals& integral : integrals_) {
+        integral.At(t * dt_ + tau, &once, &twice);
+        sum_once += once;
+        sum_twice += twice;
+      }
+      (*way)[t] = sum_twice / mass_;
+      (*velocity)[t] = sum_once / mass_;
+    }
+  }
+
+  VectorXd Projected(const VectorXd& value) const {
+    const VectorXd weighted = weight_.cwiseProduct(value);
+    return weighted - weight_.asDiagonal() * (regressors_ * (pseudo_inverse_ * weighted));
+  }
+
+  double dt_, mass_;
+  std::vector<Integrals> integrals_;
+  VectorXd target_, weight_;
+  Eigen::MatrixXd regressors_, pseudo_inverse_;
+};
+
+// The time at which 99 % of the force's impulse has passed, on the cameras' clock; the net
+// direction.
+double PushEnd(const std::vector<TimedRecord>& forces, Eigen::Vector2d* direction) {
+  double end = 0.0;
+  Eigen::Vector2d impulse = Eigen::Vector2d::Zero();
+  for (const TimedRecord& force : forces) {
+    const SensorRecord& r = force.record;
+    double total = 0.0, sum = 0.0;
+    const auto size = [&r](std::size_t i) {
+      return (r.time_s[i] - r.time_s[i - 1]) * r.force[i].head<2>().norm();
+    };
+    for (std::size_t i = 1; i < r.time_s.size(); ++i) {
+      total += size(i);
+      impulse += (r.time_s[i] - r.time_s[i - 1]) * r.force[i].head<2>();
+    }
+    for (std::size_t i = 1; i < r.time_s.size() && sum < 0.99 * total; ++i) {
+      sum += size(i);
+      if (sum >= 0.99 * total) end = std::max(end, r.time_s[i] - force.frame_zero_time_s);
+    }
+  }
+  *direction = impulse.normalized();
+  return impulse.norm() > 0.0 ? end : -1.0;
+}
+
+// The way back after a push would otherwise do for a push the other way.
+bool MovesAgainst(const std::vector<Vector3<double>>& hip, int frames,
+                  const Eigen::Vector2d& direction) {
+  double forth = 0.0, back = 0.0;
+  for (int t = 0; t < frames; ++t) {
+    const double way = (hip[t] - hip[0]).head<2>().dot(direction);
+    forth = std::max(forth, way);
+    back = std::max(back, -way);
+  }
+  return back > forth;
+}
+
+}  // namespace
+
+Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces,
+                                          const PendulumRecording& recording, int person,
+                                          double max_offset_s) {
+  if (person < 0 || person >= recording.num_people()) {
+    return Error{"recording " + recording.id + ": there is no person " + std::to_string(person)};
+  }
+  if (!(max_offset_s > 0.0 && max_offset_s <= 60.0)) {
+    return Error{"the largest offset must be above 0 and at most 60 s"};
+  }
+  Eigen::Vector2d direction;
+  const double end = PushEnd(forces, &direction);
+  if (forces.empty() || end < -0.5)
+    return Error{"there is no horizontal force whose time could be found"};
+  const double dt = recording.scene.dt;
+  const int frames = std::min(recording.num_frames(),
+                              static_cast<int>(std::ceil((end + max_offset_s + kAfterPush) / dt)));
+  if (frames < kFewestFrames) {
+    return Error{"recording " + recording.id + ": the push ends too early to find its time"};
+  }
+  if (recording.StepsKnown() && !recording.steps[person].Moved()) {
+    return Error{
+        "recording " + recording.id +
+        ": the feet do not move, and how a person who stands gives way does not tell the "
+        "sensor's time; give it (--sensor_start), or leave --estimate_offset out where the "
+        "clocks agree"};
+  }
+  if (MovesAgainst(recording.hip[person], frames, direction)) {
+    return Error{"recording " + recording.id +
+                 ": the person moves against the force; its sign or its direction is wrong"};
+  }
+  const OffsetFit fit(forces, recording, person, direction, frames);
+  const int steps = std::max(4, static_cast<int>(std::ceil(4.0 * max_offset_s / dt)));
+  int best = 0;
+  double least = 0.0;
+  for (int i = -steps; i <= steps; ++i) {
+    const double cost = fit.Residual(i * max_offset_s / steps).squaredNorm();
+    if (i == -steps || cost < least) least = cost, best = i;
+  }
+  if (best == -steps || best == steps) {
+    return Error{"recording " + recording.id + ": force and motion do not fit together within " +
+                 Rounded(max_offset_s) + " s; give the sensor's time at frame 0"};
+  }
+  SensorOffset result;
+  result.offset_s = best * max_offset_s / steps;
+  VectorXd slope, residual;
+  for (int i = 0; i < kRefinements; ++i) {
+    residual = fit.Residual(result.offset_s, &slope);
+    const double step = -slope.dot(residual) / slope.squaredNorm();
+    if (!std::isfinite(step)) return Error{"the force does not move the person"};
+    result.offset_s += std::clamp(step, -dt, dt);
+    if (std::fabs(step) < 1e-9) break;
+  }
+  residual = fit.Residual(result.offset_s, &slope);
+  const double n = fit.Count(), variance = residual.squaredNorm() / std::max(1.0, n - 5.0);
+  const double after = residual.head(frames - 1).dot(residual.tail(frames - 1));
+  const double r = std::clamp(after / std::max(residual.squaredNorm(), 1e-300), 0.0, 0.99);
+  result.standard_error_s = std::sqrt(variance / slope.squaredNorm() * (1.0 + r) / (1.0 - r));
+  result.rms_m = std::sqrt(residual.squaredNorm() / n);
+  result.gain = fit.Gain(result.offset_s);
+  if (!(result.standard_error_s <= 0.25 * max_offset_s)) {
+    return Error{"recording " + recording.id +
+                 ": the sensor's time cannot be found from the motion (" +
+                 Rounded(result.offset_s, 3) + " +- " + Rounded(result.standard_error_s, 2) +
+                 " s); is the force in N?"};
   }
   return result;
 }

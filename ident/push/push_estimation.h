@@ -1,4 +1,6 @@
-// ident: the push of a recording that has none, by inverse dynamics over a window of frames:
+// ident: the push of a recording that has none: by inverse dynamics, or from force sensors.
+//
+// By inverse dynamics over a window of frames it is
 //   F_t = M(q_t) (qd_{t+1} - qd_t) / dt + C(q_t, qd_t) + G(q_t),   t in [start, end).
 // This is the exact inverse of the semi-implicit Euler step: a rollout from (q_start, qd_start) in
 // which F is the whole generalized force (PushKind::kNet, PushUse::kAsRecorded) passes through the
@@ -18,7 +20,9 @@
 #include <vector>
 
 #include "datasets/files/error.h"
+#include "datasets/formats/force_csv.h"
 #include "datasets/loading/pendulum_recording.h"
+#include "datasets/sensors/sensor_choice.h"
 
 namespace pushid {
 
@@ -70,5 +74,91 @@ MaybeError ParseInitialVelocity(const std::string& what, const std::string& name
 // window, angles outside the model's domain (|angle| > 1.4 rad).
 Result<EstimatedPush> EstimatePush(const PendulumRecording& recording, const PushWindow& window,
                                    const PushEstimationOptions& options);
+
+// An external push from a measured force: the samples are averaged over the recording's
+// frames, so that the impulse is kept, and turned into a generalized force at the contact point.
+//
+// Between samples the force is taken as linear, outside them as zero. Row t is the mean over
+// [(t - 1/2) dt, (t + 1/2) dt): a step changes the rates, which are those between two frames, from
+// half a frame before frame t to half a frame after it (models/reaction_delay.h). Positions are
+// then of second order. Rejected: the mean over [t dt, (t + 1) dt), which pushes half a frame
+// early; sampling the force at the frames, which loses part of a short push.
+
+struct SensorPushOptions {
+  int person = 0;
+  // Direction of a force given along the sensor's axis: where it pushes the person, in the
+  // project's axes; of any length. A record with fx, fy, fz has its own.
+  Vector3<double> direction = {1.0, 0.0, 0.0};
+  // Height of the push: fraction of the rod from cart to hip (above 1: above the hip), or, where
+  // given, metres above the recording's zero height, judged at the push's first frame.
+  double height_fraction = 1.0;
+  std::optional<double> height_m;
+  double frame_zero_time_s = 0.0;  // on the sensor's clock
+  double clock_error_s = 0.0;      // of that: so far outside the recording a force is not lost
+  // Forces up to this size (N) before and after the push are the sensor's idling: rows whose mean
+  // is no greater, or (but one row) below a hundredth of the largest row's, are cut off at both
+  // ends: a push that goes on in noise would have no end.
+  double idle_force = 0.0;
+};
+
+// The rows' kind is PushKind::kExternal. Errors: no such person, no direction, a contact height
+// that is not finite, no force at all, or more than 1 % of the impulse outside the recording.
+Result<Push> PushFromSensor(const SensorRecord& record, const PendulumRecording& recording,
+                            const SensorPushOptions& options);
+
+// The push of a person from one force sensor, or from several that push together.
+
+struct SensorSetup {
+  std::vector<SensorChoice> sensors;  // which push together
+  bool estimate_offset = false;       // of their clocks from the motion's
+  double max_offset_s = 0.5;          // how far estimate_offset looks on either side
+};
+
+struct SensorPush {
+  Push push;
+  std::string how;                    // for people
+  std::vector<std::string> warnings;  // for stderr
+};
+
+// The sum of the sensors' pushes on a person; `recorded` is the recording as it was read.
+Result<SensorPush> PushFromSensors(const SensorSetup& setup, const Recording& recorded,
+                                   const PendulumRecording& recording, int person);
+
+// The offset between the clocks of a force sensor and of the cameras, as a parameter of a small
+// fit.
+//
+// Along the push's direction the momentum of the pendulum changes by the push, the ground's
+// friction and the person's own recovery (ipm.h, self_force.h). Integrated twice,
+//   s(t) = s_0 + v_0 t + G(t + tau) / M + a iint e + b int (x - x_0),
+// s = 0.9 hip + 0.1 cart, G the measured force integrated twice, e the lean, x the cart. tau is the
+// only parameter that enters nonlinearly: for each value the others follow by linear least squares
+// (variable projection); a grid over the range, then Gauss-Newton. Positions rather than
+// accelerations, because their noise is white and is not differentiated. The standard error is that
+// of least squares times sqrt((1 + r) / (1 - r)), r the residuals' correlation from frame to frame.
+// No bias on motion simulated at 960 Hz and seen at 60 Hz but half a step of the simulation, which
+// holds a force for a step (tests/studies/sensors.py; of simulations at 60 Hz half a frame is 8
+// ms). People whose feet do not move are refused: their recovery is that of the ankles, and on
+// clocks that agree this fit found 0.1 to 0.35 s. Rejected: cross-correlation with the
+// inverse-dynamics force, which takes the person's reaction for a later push.
+
+// A sensor's forces as vectors in the project's axes, with its clock's reading at frame 0.
+struct TimedRecord {
+  SensorRecord record;
+  double frame_zero_time_s = 0.0;
+};
+
+struct SensorOffset {
+  double offset_s = 0.0;  // to be added to every frame_zero_time_s
+  double standard_error_s = 0.0;
+  double rms_m = 0.0;  // of what the fit leaves
+  double gain = 1.0;   // the multiple of the force that would fit the motion best
+};
+
+// max_offset_s: how far to look on either side. Errors: no such person, no force, too short a
+// recording, a best offset at the end of the range, a motion that does not tell the time (a
+// standard error of a quarter of the range) or goes against the force.
+Result<SensorOffset> EstimateSensorOffset(const std::vector<TimedRecord>& forces,
+                                          const PendulumRecording& recording, int person,
+                                          double max_offset_s);
 
 }  // namespace pushid

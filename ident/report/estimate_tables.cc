@@ -12,9 +12,9 @@
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/linear_loop.h"
 #include "ident/problem/statistics.h"
-#include "ident/report/verdict_text.h"
-#include "ident/uncertainty/assumptions.h"
-#include "ident/uncertainty/clusters.h"
+#include "ident/report/report_text.h"
+#include "ident/uncertainty/covariance.h"
+#include "ident/uncertainty/model_verdict.h"
 #include "models/self_terms.h"
 
 namespace pushid {

@@ -8,13 +8,13 @@
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
 #include "datasets/loading/warning.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/fit_options.h"
+#include "ident/prediction/predicted_steps.h"
 #include "ident/problem/behaviour.h"
 #include "ident/report/advice.h"
 #include "ident/report/parameter_sections.h"
 #include "ident/report/report_text.h"
-#include "ident/uncertainty/clusters.h"
-#include "ident/validation/steps_report.h"
+#include "ident/uncertainty/covariance.h"
 
 namespace pushid {
 namespace {

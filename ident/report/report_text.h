@@ -10,7 +10,6 @@
 #include "ident/model/fitted_model.h"
 #include "ident/model/identified_model.h"
 #include "ident/report/estimate_tables.h"
-#include "ident/report/verdict_text.h"
 
 namespace pushid {
 
@@ -48,5 +47,17 @@ TextTable IntervalTable(const FittedModel& model);
 
 // "resampling 4 people: 199 of 199 replicas, seed 1", and a warning where so few can be resampled.
 std::string ResamplingText(const Bootstrap& bootstrap);
+
+// The verdict on a model in words (uncertainty/model_verdict.h).
+
+// "The model check found no contradiction: ...", or "The model does not fit these recordings: ..."
+// with what to check or to try, or why nothing was checked. more: than was said before it.
+std::string ModelVerdictText(const ModelVerdict& verdict, bool more = false);
+
+// Its name among a manifest's stated_errors; empty of what the laboratory does not measure.
+std::string StatedErrorKey(const AssumptionTest& test);
+
+// What was taken as known, what is stated about it, what the recordings want, and the test.
+TextTable AssumptionTable(const FitResult& result);
 
 }  // namespace pushid

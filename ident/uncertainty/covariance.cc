@@ -1,10 +1,13 @@
-// ident: covariance on the identified subspace, by singular values of the scaled Jacobian.
+// ident: people, recordings and line-ups as clusters.
 #include "ident/uncertainty/covariance.h"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "ident/problem/fit_problem.h"
@@ -12,8 +15,338 @@
 #include "ident/problem/statistics.h"
 #include "ident/solver/structured_secants.h"
 #include "models/decompositions.h"
+#include "residuals/plate_residual.h"
 
 namespace pushid {
+namespace {
+
+// The scatter of fewer line-ups cannot be estimated, and recordings stand for them.
+constexpr size_t kFewestLineUps = 4;
+
+// Equal for the same people in the same order.
+std::string LineUpKey(const PendulumRecording& recording) {
+  std::string key;
+  for (const std::string& person : recording.subject_ids) key += person + "\n";
+  return key;
+}
+
+}  // namespace
+
+Clusters MakeClusters(const std::vector<PendulumRecording>& recordings, ClusterBy by,
+                      const std::vector<int>& counts) {
+  std::map<std::string, int> times, index, line_ups;
+  bool repeated = false, shared = false;
+  const auto counted = [&counts](size_t i) { return counts.empty() || counts[i] > 0; };
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const PendulumRecording& r = recordings[i];
+    if (!counted(i)) continue;
+    shared = shared || r.num_people() > 1;
+    for (const std::string& id : r.subject_ids) repeated = ++times[id] > 1 || repeated;
+  }
+  Clusters clusters;
+  clusters.by = by;
+  if (by == ClusterBy::kAuto) {
+    clusters.by = repeated && times.size() > 1 ? ClusterBy::kSubject : ClusterBy::kRecording;
+  }
+  const bool people = clusters.by == ClusterBy::kSubject;
+  clusters.two_way = people && shared;
+  clusters.people = static_cast<int>(times.size());
+  clusters.draws_people = times.size() > 1 && (people || (!repeated && !shared));
+  for (size_t i = 0; i < recordings.size(); ++i) {
+    const PendulumRecording& r = recordings[i];
+    std::vector<int> of;
+    for (int n = 0; counted(i) && n < r.num_people(); ++n) {
+      const std::string key = people ? r.subject_ids[n] : std::to_string(i);
+      const auto [found, added] = index.emplace(key, clusters.count());
+      if (added) clusters.names.push_back(people ? key : r.id);
+      of.push_back(found->second);
+    }
+    clusters.of.push_back(std::move(of));
+    const int next = static_cast<int>(line_ups.size());
+    clusters.line_up.push_back(line_ups.emplace(LineUpKey(r), next).first->second);
+  }
+  if (line_ups.size() < kFewestLineUps) {
+    std::iota(clusters.line_up.begin(), clusters.line_up.end(), 0);
+  }
+  return clusters;
+}
+
+Clustering ClusterRows(const FitProblem& problem, const Clusters& clusters,
+                       const ResidualRows& score) {
+  Clustering rows;
+  rows.priors_scatter = true;
+  rows.pooled_units =
+      problem.map().num_deviations > 0 ? static_cast<int>(problem.NominalPoint().unit.size()) : 0;
+  rows.first.count = clusters.count();
+  for (size_t row = 0; row < score.cluster_of_row.size(); ++row) {
+    const int recording = score.cluster_of_row[row];
+    if (recording < 0 || clusters.of[recording].empty()) {
+      rows.first.of_row.push_back(-1);
+      continue;
+    }
+    rows.first.of_row.push_back(clusters.of[recording][score.person_of_row[row]]);
+  }
+  if (clusters.two_way) {
+    for (size_t row = 0; row < score.cluster_of_row.size(); ++row) {
+      const int line_up =
+          rows.first.of_row[row] < 0 ? -1 : clusters.line_up[score.cluster_of_row[row]];
+      rows.line_ups.of_row.push_back(line_up);
+      rows.line_ups.count = std::max(rows.line_ups.count, line_up + 1);
+    }
+  }
+  if (clusters.by == ClusterBy::kSubject) rows.recordings = ClusterByRecording(score);
+  return rows;
+}
+
+namespace {
+
+constexpr double kLeastKept = 0.01;
+constexpr double kNoLeverage = 1e-13;  // moves a score by half as much
+
+Eigen::MatrixXd Centred(const Eigen::MatrixXd& columns) {
+  return columns.colwise() - columns.rowwise().mean().eval();
+}
+
+// What leaving a cluster out would leave of a direction, by the eigenvalues of M_g. A direction
+// that one cluster alone determines is counted as ten times what its score says, no more: with
+// second derivatives in H leverages may pass one.
+Eigen::ArrayXd Kept(const Eigen::ArrayXd& leverage) { return (1.0 - leverage).max(kLeastKept); }
+
+// F of J base, with F'F that of all its rows.
+Eigen::MatrixXd FewRows(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& base) {
+  std::vector<Eigen::Index> used, filled;
+  for (Eigen::Index column = 0; column < jacobian.cols(); ++column) {
+    if (!jacobian.col(column).isZero(0.0)) used.push_back(column);
+  }
+  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
+    if (!jacobian.row(row).isZero(0.0)) filled.push_back(row);
+  }
+  const Eigen::MatrixXd packed = jacobian(filled, used), own = base(used, Eigen::all);
+  if (filled.size() <= used.size()) return packed * own;  // condensed already
+  const SymmetricEigen squares = DecomposeSymmetric(packed.transpose() * packed);
+  return squares.values.cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+         (squares.vectors.transpose() * own);
+}
+
+// The directions of M_g = W'W that it is not zero in, and its eigenvalues there.
+struct Leverage {
+  Eigen::ArrayXd m;
+  Eigen::MatrixXd v;  // a column each
+
+  explicit Leverage(const Eigen::MatrixXd& w) : m(0), v(w.cols(), 0) {
+    if (w.rows() == 0) return;
+    const SymmetricEigen eigen = DecomposeSymmetric(w * w.transpose());
+    const Eigen::ArrayXd values = eigen.values.array();
+    const Eigen::Index some = (values > kNoLeverage).count();  // they ascend
+    m = values.tail(some);
+    v = w.transpose() * eigen.vectors.rightCols(some) * m.rsqrt().matrix().asDiagonal();
+  }
+};
+
+}  // namespace
+
+RowClusters ClusterByRecording(const ResidualRows& score) {
+  RowClusters clusters;
+  for (int cluster : score.cluster_of_row) {
+    clusters.of_row.push_back(std::max(-1, cluster));
+    clusters.count = std::max(clusters.count, cluster + 1);
+  }
+  return clusters;
+}
+
+ClusterScores GatherScores(const ResidualRows& score, const RowClusters& clusters,
+                           const Eigen::MatrixXd& base) {
+  std::vector<std::vector<int>> rows(clusters.count);
+  for (int row = 0; row < static_cast<int>(clusters.of_row.size()); ++row) {
+    if (clusters.of_row[row] >= 0) rows[clusters.of_row[row]].push_back(row);
+  }
+  ClusterScores gathered;
+  gathered.scores.resize(base.cols(), 0);
+  for (const std::vector<int>& of_cluster : rows) {
+    if (of_cluster.empty()) continue;
+    const Eigen::MatrixXd plain = score.jacobian(of_cluster, Eigen::all);
+    const Eigen::VectorXd residuals = score.residuals(of_cluster);
+    const bool robust = score.robust_jacobian.size() > 0;
+    gathered.factors.push_back(robust ? FewRows(score.robust_jacobian(of_cluster, Eigen::all), base)
+                                      : FewRows(plain, base));
+    gathered.scores.conservativeResize(Eigen::NoChange, gathered.scores.cols() + 1);
+    gathered.scores.rightCols(1) = base.transpose() * (plain.transpose() * residuals);
+  }
+  return gathered;
+}
+
+ClusteredCovariance Cr2(const ClusterScores& scores, const Eigen::MatrixXd& hessian,
+                        const Eigen::MatrixXd& coefficients) {
+  const Eigen::MatrixXd root = DecomposeSymmetric(hessian).InverseSqrt();
+  const Eigen::MatrixXd b = root * coefficients.transpose();  // H^-1/2 c
+  const Eigen::Index groups = scores.scores.cols(), size = b.cols();
+  Eigen::MatrixXd moves(hessian.rows(), groups);
+  Eigen::MatrixXd own(size, groups);  // |p_g|^2
+  std::vector<Eigen::MatrixXd> u;     // J_g' p_g over H^1/2, a column a coefficient
+  for (Eigen::Index g = 0; g < groups; ++g) {
+    const auto [m, v] = Leverage(scores.factors[static_cast<size_t>(g)] * root);
+    const Eigen::ArrayXd kept = Kept(m);
+    const Eigen::VectorXd score = root * scores.scores.col(g);
+    const Eigen::ArrayXd along_v = (v.transpose() * score).array();
+    moves.col(g) = root * (score + v * (along_v * (kept.rsqrt() - 1.0)).matrix());
+    const Eigen::MatrixXd along = v.transpose() * b;
+    own.col(g) = along.cwiseAbs2().transpose() * (m / kept).matrix();
+    u.push_back((m / kept.sqrt()).matrix().asDiagonal() * along);
+    u.back() = v * u.back();
+  }
+  ClusteredCovariance result;
+  const double most = std::max(1.0, static_cast<double>(groups) - 1.0);
+  const Eigen::MatrixXd centred = Centred(moves);
+  result.covariance = centred * centred.transpose();
+  result.freedom.resize(size);
+  for (Eigen::Index c = 0; c < size; ++c) {
+    Eigen::MatrixXd at(hessian.rows(), groups);
+    for (Eigen::Index g = 0; g < groups; ++g) at.col(g) = u[static_cast<size_t>(g)].col(c);
+    Eigen::MatrixXd w = -at.transpose() * at;
+    w.diagonal() += own.row(c).transpose();
+    const double squares = w.squaredNorm();
+    result.freedom[c] =
+        squares > 0.0 ? std::clamp(w.trace() * w.trace() / squares, 1.0, most) : 1.0;
+  }
+  return result;
+}
+
+namespace {
+
+// Kinds of residuals in a frame (frame_residual.h): first component, how many, the median of
+// chi-squared with so many degrees of freedom, and the kind's weight in the composite likelihood.
+struct Kind {
+  int first, size;
+  double median, weight;
+};
+constexpr Kind kKinds[] = {{0, 3, 2.3660, 1.0},
+                           {3, 2, 1.3863, kRateWeight},
+                           {5, 2, 1.3863, kRateWeight},
+                           {7, 2, 1.3863, kRateWeight}};
+
+// Platforms (plate_residual.h): shear and the centre of pressure, counted as the hip is.
+constexpr double kPlateMedian = 1.3863;
+constexpr double kLeastShear = 0.5, kLeastCentre = 2e-4;  // N, m: no platform is more exact
+
+constexpr double kNullEigenvalue = kNullSingularValue * kNullSingularValue;
+
+double Median(std::vector<double>* values) {
+  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
+}
+
+// What the markers' noise makes of a residual of each kind: a velocity is the difference of two
+// positions, one frame apart, of the mean of two ankles; an angle is that of a rod. Where rates
+// differ, the slowest has the least noise: one floor for all must not lie above it.
+std::array<double, 4> Floors(const FitProblem& problem) {
+  const double noise = problem.options().marker_noise;
+  double dt = problem.recordings()[0].scene.dt;
+  for (const PendulumRecording& r : problem.recordings()) dt = std::max(dt, r.scene.dt);
+  return {noise, noise / dt, noise / kReferenceRod, noise / dt / kReferenceRod};
+}
+
+// lambda of covariance.h; 0 where it cannot be told. recordings: what they sum to there; empty
+// where one is cut short.
+double CompositeInflation(const FitProblem& problem, const FitPoint& point,
+                          RecordingSums* recordings) {
+  FitPoint copy = point;
+  const FitProblem::Built built = problem.Build(&copy, 0);
+  const ResidualRows score = EvaluateRows(built, true);
+  const bool whole = built.shortened.empty() && score.jacobian.cols() <= kDenseColumns;
+  *recordings = whole ? SumRows(score, point, score.RowsOfData()) : RecordingSums();
+  const Eigen::MatrixXd unit = Units(FittedColumns(problem, point)).asDiagonal();
+  const ClusterScores own = GatherScores(score, ClusterByRecording(score), unit);
+  if (own.scores.cols() < 2) return 0.0;
+  Eigen::MatrixXd data = Eigen::MatrixXd::Zero(unit.rows(), unit.cols());
+  for (const Eigen::MatrixXd& factor : own.factors) data += factor.transpose() * factor;
+  const Eigen::MatrixXd all = data + unit * score.InformationBeside() * unit;
+  // On the subspace that the rows determine, by normal equations: exact enough for a trace.
+  const SymmetricEigen eigen = DecomposeSymmetric(all);
+  const Eigen::ArrayXd values = eigen.values;
+  const Eigen::Index rank = (values > kNullEigenvalue * values.maxCoeff()).count();
+  const Eigen::MatrixXd base =
+      eigen.vectors.rightCols(rank) * values.tail(rank).sqrt().inverse().matrix().asDiagonal();
+  ClusterScores inside{{}, base.transpose() * own.scores};
+  for (const Eigen::MatrixXd& factor : own.factors) inside.factors.push_back(factor * base);
+  // In this base H is the identity, and tr(H^-1 V_s) that of the covariance.
+  const ClusteredCovariance v =
+      Cr2(inside, Eigen::MatrixXd::Identity(rank, rank), Eigen::MatrixXd(0, rank));
+  return v.covariance.trace() / (base.transpose() * data * base).trace();
+}
+
+}  // namespace
+
+ResidualSigmas EstimateSigmas(const FitProblem& problem, const FitPoint& point) {
+  ResidualSigmas sigmas = problem.options().sigmas;
+  const std::array<double, 4> floors = Floors(problem);
+  double* const scales[] = {&sigmas.hip, &sigmas.velocity, &sigmas.angle, &sigmas.rate};
+  std::array<std::vector<double>, 4> squares;
+  std::array<std::vector<double>, 2> of_plates;
+  const ResidualsByRecording all = RawResiduals(problem, point, true);
+  for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
+    const std::vector<double>& residuals = all[i];
+    const size_t motion = problem.NumMotionRows(i);
+    for (size_t row = motion; row < residuals.size(); row += kPlateResiduals) {
+      const Eigen::Map<const PlateVector<double>> r(residuals.data() + row);
+      if (r.isZero(0.0)) continue;
+      for (int k = 0; k < 2; ++k) of_plates[k].push_back(r.segment<2>(2 * k).squaredNorm());
+    }
+    for (size_t row = 0; row < std::min(motion, residuals.size()); row += kFrameResiduals) {
+      const Eigen::Map<const FrameVector<double>> r(residuals.data() + row);
+      if (r.isZero(0.0)) continue;  // nothing was measured
+      for (size_t k = 0; k < squares.size(); ++k) {
+        squares[k].push_back(r.segment(kKinds[k].first, kKinds[k].size).squaredNorm());
+      }
+    }
+  }
+  for (size_t k = 0; k < squares.size(); ++k) {
+    if (squares[k].empty()) continue;
+    *scales[k] *= std::sqrt(Median(&squares[k]) / kKinds[k].median) / kKinds[k].weight;
+    *scales[k] = std::max(*scales[k], floors[k] / kKinds[k].weight);
+  }
+  double* const plate_scales[] = {&sigmas.shear, &sigmas.centre};
+  constexpr double kLeast[] = {kLeastShear, kLeastCentre};
+  for (int k = 0; k < 2; ++k) {
+    if (of_plates[k].empty()) continue;
+    *plate_scales[k] *= std::sqrt(Median(&of_plates[k]) / kPlateMedian);
+    *plate_scales[k] = std::max(*plate_scales[k], kLeast[k]);
+  }
+  return sigmas;
+}
+
+double EstimateEffectiveWeight(const FitProblem& problem, const FitPoint& point,
+                               RecordingSums* recordings) {
+  int frames = 0, counted = 0;
+  double now = 0.0;
+  for (int i = 0; i < static_cast<int>(problem.recordings().size()); ++i) {
+    if (problem.Count(i) == 0) continue;
+    const int own = std::max(1, problem.recordings()[i].num_frames() - 1);
+    frames += own;
+    now += own * problem.Weight(i, 0) * problem.Weight(i, 0);
+    ++counted;
+  }
+  const double one_each = static_cast<double>(counted) / frames;
+  if (counted < 2) return one_each;
+  const double lambda = CompositeInflation(problem, point, recordings);
+  if (!(lambda > 0.0)) {
+    *recordings = {};
+    return one_each;
+  }
+  // By its own sigmas no frame is worth more than one: that would undo the markers' noise.
+  const bool own = EstimatesSigmas(problem.options());
+  const double weight = own ? std::min(1.0, now / frames / lambda) : now / frames / lambda;
+  const double before = problem.options().effective_weight;
+  if (!(before > 0.0)) {  // recordings did not weigh alike
+    *recordings = {};
+    return weight;
+  }
+  recordings->squares *= weight / before;
+  recordings->sums.information *= weight / before;
+  recordings->sums.gradient *= weight / before;
+  return weight;
+}
+
 namespace {
 
 // The difference of two-way clustering need not be positive: negative eigenvalues become zero.

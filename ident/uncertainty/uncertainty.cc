@@ -11,9 +11,8 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
-#include "ident/uncertainty/assumptions.h"
-#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
+#include "ident/uncertainty/model_verdict.h"
 #include "models/decompositions.h"
 #include "models/self_terms.h"
 

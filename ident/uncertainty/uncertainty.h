@@ -12,7 +12,7 @@
 // binds holds a fit on its edge, where its gradient says little: what it moved is the difference to
 // the optimum without it, and its information grows with its weight and says nothing of errors:
 // standard errors are those of the optimum without it. All assume that the data weigh as much as
-// they know (clusters.h).
+// they know (covariance.h).
 #pragma once
 
 #include <Eigen/Core>

@@ -9,7 +9,7 @@
 
 #include "ident/fit/fit.h"
 #include "ident/fit/step_probability.h"
-#include "ident/observed/scene_filter.h"
+#include "ident/observed/first_frames.h"
 #include "models/decompositions.h"
 
 namespace pushid {

@@ -11,9 +11,8 @@
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
-#include "ident/uncertainty/assumptions.h"
-#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
+#include "ident/uncertainty/model_verdict.h"
 #include "models/decompositions.h"
 
 namespace pushid {

@@ -10,7 +10,7 @@
 #include "datasets/files/number_text.h"
 #include "ident/model/model_json.h"
 #include "ident/parameters/json_archive.h"
-#include "ident/validation/steps_report.h"
+#include "ident/prediction/predicted_steps.h"
 
 namespace pushid {
 namespace {

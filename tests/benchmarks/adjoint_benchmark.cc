@@ -11,7 +11,7 @@
 #include "datasets/files/random.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/large_networks/large_network_fit.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/fit_options.h"
 #include "tests/benchmarks/benchmark_recordings.h"
 
 namespace pushid {

@@ -7,7 +7,6 @@
 
 #include "ident/fit/fit.h"
 #include "ident/fit/fit_setup.h"
-#include "ident/fit/weighted_solve.h"
 #include "ident/model/fitted_model.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "datasets/files/random.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/presets.h"
 #include "ident/solver/solver.h"
 #include "residuals/jets/autodiff_rollout.h"

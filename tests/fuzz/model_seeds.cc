@@ -7,7 +7,7 @@
 
 #include "datasets/files/json_file.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/presets.h"
 
 namespace pushid {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/files/random.h"
-#include "ident/model/push_range.h"
+#include "ident/model/model_rollout.h"
 #include "ident/prediction/online_predictor.h"
 #include "tests/ident/fit_samples.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ident/fit/fit.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/prediction/evaluation.h"
 #include "tests/ident/fit_samples.h"
 

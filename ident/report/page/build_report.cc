@@ -1,12 +1,20 @@
+
 #include "ident/report/page/build_report.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
+#include "datasets/files/names.h"
+#include "datasets/files/number_text.h"
+#include "ident/bodies/body_recording.h"
+#include "ident/prediction/evaluation.h"
+#include "ident/prediction/predicted_steps.h"
 #include "ident/prediction/prediction.h"
 #include "ident/report/fit_sections.h"
 #include "ident/report/page/motion_sections.h"
-#include "ident/report/page/prediction_sections.h"
 #include "ident/report/parameter_sections.h"
+#include "ident/validation/scores_report.h"
 
 namespace pushid {
 namespace {
@@ -129,6 +137,179 @@ Report BuildReport(const FittedModel& model, const std::vector<Recording>& recor
   source.propagation = PropagationOf(result, source.views);
   for (RenderSection* const render : kSections) report.sections.push_back(render(source));
   return report;
+}
+
+namespace {
+
+StepScore ScoreOf(const std::vector<RecordingView>& views) {
+  std::vector<StepPrediction> predictions;
+  for (const RecordingView& view : views) {
+    const auto steps = StepPredictions(view.run.recording, view.run.prediction);
+    predictions.insert(predictions.end(), steps.begin(), steps.end());
+  }
+  return ScoreSteps(predictions);
+}
+
+ReportFigure ReliabilityFigure(const StepScore& score) {
+  TextTable numbers({">tracks", ">predicted", ">observed"});
+  for (const StepFifth& fifth : score.fifths) {
+    numbers.Add(
+        {std::to_string(fifth.tracks), DoubleText(fifth.predicted), DoubleText(fifth.observed)});
+  }
+  return {"step_reliability",
+          "Share of people who stepped, by fifths of the predicted probability.",
+          {{}, {ReliabilityChart(score)}},
+          numbers};
+}
+
+}  // namespace
+
+ReportSection StepSection(const ReportSource& source) {
+  ReportSection section{"steps", "Who steps"};
+  if (!source.fit.step_probability) return section;
+  const StepScore score = ScoreOf(source.views);
+  if (!score.known()) return section;
+  section.tables.push_back(
+      {"who steps in the recordings shown here, which were fitted; pushid-crossvalidate scores "
+       "others",
+       StepScoresTable({{"predicted", &score}})});
+  section.figures.push_back(ReliabilityFigure(score));
+  return section;
+}
+
+namespace {
+
+// Recordings of several people that the model predicts, with hips by the model and by a baseline
+// that sees the recording until the last push ends.
+struct ShownGroups {
+  std::vector<PendulumRecording> recordings;
+  std::vector<Recording> with_bodies;
+  std::vector<PredictedGroup> by_model, by_velocity;
+};
+
+ShownGroups GroupsOf(const std::vector<RecordingView>& views) {
+  ShownGroups groups;
+  for (const RecordingView& view : views) {
+    const PendulumRecording& recording = view.run.recording;
+    if (recording.num_people() < 2 || !view.run.prediction.status.ok) continue;
+    const int index = static_cast<int>(groups.recordings.size());
+    groups.recordings.push_back(recording);
+    groups.with_bodies.push_back(*view.recording);
+    groups.by_model.push_back({index, view.run.prediction.hip});
+    groups.by_velocity.push_back({index, ConstantVelocityBaseline(recording)});
+  }
+  return groups;
+}
+
+}  // namespace
+
+ReportSection GroupSection(const ReportSource& source) {
+  ReportSection section{"groups", "Groups"};
+  const ShownGroups groups = GroupsOf(source.views);
+  const RecordedBodies bodies = BodiesOfGroups(groups.with_bodies);
+  const auto model = CompareHips(groups.recordings, bodies, groups.by_model);
+  if (!model) return section;
+  const auto velocity = CompareHips(groups.recordings, bodies, groups.by_velocity);
+  section.paragraphs = {bodies.empty()
+                            ? "The recordings have no whole bodies, so only onsets are scored."
+                            : "For these scores whole bodies are the first poses, carried by the "
+                              "predicted hips; steps that the model predicts do "
+                              "not move them.",
+                        GroupMetricsLegend()};
+  section.tables.push_back(
+      {"the recordings shown here; pushid-crossvalidate scores recordings that were not fitted",
+       GroupMetricsTable({{"predicted", &*model}, {"constant velocity", &*velocity}})});
+  section.tables.push_back(
+      {"how the push travels through them, +- a standard error over recordings",
+       PropagationTable({{"predicted and measured", &source.propagation}})});
+  return section;
+}
+
+namespace {
+
+constexpr double kDegrees = 180.0 / M_PI;
+constexpr char kErrorLook[] = "fill:none;stroke:#8a8f98;stroke-width:1.2";
+
+// Measured points with their errors over the model's line, over a logarithmic frequency. Phases go
+// on without jumps: of the model from its lowest frequency on, of each point as near to the model
+// as may be, or to the point before where there is no model.
+Figure BodeFigure(const FrequencyResponse& response) {
+  Chart gain{"gain, " + response.OutputUnit() + "/" + response.InputUnit(), "frequency, Hz"};
+  gain.logarithmic_x = true;
+  Chart phase = gain, coherence = gain;
+  phase.title = "phase, degrees";
+  coherence.title = "coherence";
+  gain.logarithmic_y = true;
+  coherence.y_from = 0.0, coherence.y_to = 1.05;
+  double lowest = INFINITY, highest = -INFINITY;
+  const auto add = [](double x, double value, double error, Chart* chart) {
+    if (error > 0.0) chart->lines.push_back({{{x, value - error}, {x, value + error}}, kErrorLook});
+    chart->lines.push_back({{{x, value}}, kMeasuredLook, true});
+  };
+  ChartLine gains{{}, kPredictedLook}, phases{{}, kPredictedLook};
+  std::optional<double> beside;
+  // The multiple of 360 degrees away that is nearest to what stands beside it.
+  const auto nearest = [&beside](double angle) {
+    return beside ? *beside + std::remainder(kDegrees * angle - *beside, 360.0) : kDegrees * angle;
+  };
+  for (const FrequencyBin& bin : response.bins) {
+    const double x = std::log10(bin.hz), log = bin.log_gain / M_LN10;
+    const double model = (response.has_model ? bin.model_log_gain : bin.log_gain) / M_LN10;
+    const double error = bin.log_gain_error / M_LN10;
+    if (response.has_model) {
+      beside = nearest(bin.model_phase);
+      gains.points.emplace_back(x, model);
+      phases.points.emplace_back(x, *beside);
+    }
+    const double measured = nearest(bin.phase);
+    if (!response.has_model) beside = measured;
+    add(x, log, error, &gain);
+    add(x, measured, kDegrees * bin.phase_error, &phase);
+    add(x, bin.coherence, 0.0, &coherence);
+    lowest = std::min({lowest, log - error, model}),
+    highest = std::max({highest, log + error, model});
+  }
+  Figure figure;
+  figure.legend = {{"measured, one standard error", kErrorLook}};
+  if (response.has_model) {
+    gain.lines.insert(gain.lines.begin(), gains), phase.lines.insert(phase.lines.begin(), phases);
+    figure.legend.push_back({"model", kPredictedLook});
+  }
+  gain.y_from = std::floor(lowest);  // a power of ten at both ends
+  gain.y_to = std::max(std::ceil(highest), *gain.y_from + 1.0);
+  figure.panels = {gain, phase, coherence};
+  return figure;
+}
+
+std::string CaptionOf(const FrequencyResponse& response) {
+  const size_t people = response.people.size();
+  const std::string seconds = Rounded(response.segment_s, 3) + " s";
+  return response.Name() + ": " + CountText(response.recordings, "recording") + " of " +
+         CountText(people, "person", "people") +
+         (response.periodic ? "; the excited frequencies, in periods of " + seconds
+                            : "; Welch's method, segments of " + seconds) +
+         (response.output == LoopOutput::kAngle ? "" : "; torque by force platforms") +
+         (people == 1 ? "; errors by the coherence." : "; errors from person to person.");
+}
+
+}  // namespace
+
+ReportSection FrequencySection(const ReportSource& source) {
+  ReportSection section{"frequency", "Frequency response"};
+  if (source.frequency.empty()) return section;
+  section.Say(
+      "How people answer what disturbs them on and on, frequency by frequency: the cross spectrum "
+      "of the answer and the disturbance over the spectrum of the disturbance, of each person "
+      "first, then the mean of log gain and phase over people. Frequencies whose coherence could "
+      "be chance are left out. The model's curve is the closed form of its linearized loop, with "
+      "the same people's parameters.");
+  const std::string without = WithoutLinearLoop(source.fit.options.model);
+  section.Say(without.empty() ? "" : "There is no curve: " + without + ".");
+  for (const FrequencyResponse& response : source.frequency) {
+    section.figures.push_back({"frequency_" + response.Key(), CaptionOf(response),
+                               BodeFigure(response), FrequencyTable({response})});
+  }
+  return section;
 }
 
 }  // namespace pushid

@@ -14,7 +14,7 @@
 #include "ident/formations/formation_run.h"
 #include "ident/model/fitted_model.h"
 #include "ident/prediction/frequency_response.h"
-#include "ident/prediction/predictive_bands.h"
+#include "ident/prediction/futures.h"
 #include "ident/prediction/propagation.h"
 #include "ident/problem/parallel.h"
 #include "ident/report/document.h"
@@ -48,5 +48,11 @@ struct ReportSource {
   PropagationSummary propagation = {};    // through them
   std::vector<FrequencyResponse> frequency = {};
 };
+
+// Sections of a report that score predictions: steps, groups, frequency response.
+
+ReportSection StepSection(const ReportSource& source);
+ReportSection GroupSection(const ReportSource& source);
+ReportSection FrequencySection(const ReportSource& source);
 
 }  // namespace pushid

@@ -159,7 +159,7 @@ TEST(ResampleTest, PushesKeepTheirImpulse) {
     for (const Eigen::Vector4d& row : other.force) sum += row / rate;
     EXPECT_LT((sum - impulse).norm(), 1e-12) << rate;
     EXPECT_NEAR(other.start_frame / rate, 0.07, 0.5 / 100.0 + 1.0 / rate);
-    // And their middle: a row acts at its frame (push_from_sensor.h).
+    // And their middle: a row acts at its frame (push_estimation.h).
     double before = 0.0, after = 0.0;
     for (size_t i = 0; i < push.force.size(); ++i) {
       before += (push.start_frame + static_cast<double>(i)) / 100.0 * push.force[i][0] / 100.0;

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "datasets/loading/load_recordings.h"
-#include "ident/bodies/body_files.h"
 #include "ident/bodies/body_recording.h"
 #include "ident/prediction/prediction.h"
 #include "models/restoration/restoration.h"

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ident/bodies/body_files.h"
+#include "ident/bodies/body_recording.h"
 #include "models/restoration/body.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"

@@ -1,7 +1,7 @@
 // What of a laboratory does not go together is refused, with what to leave out.
 #include <gtest/gtest.h>
 
-#include "ident/fit/prepare_fit.h"
+#include "ident/fit/fit_setup.h"
 #include "models/learned_terms.h"
 #include "tests/ident/laboratory_samples.h"
 #include "tests/test_support.h"

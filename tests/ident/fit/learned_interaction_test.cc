@@ -9,7 +9,7 @@
 #include "ident/fit/fit.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/model/model_json.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/presets.h"
 #include "ident/prediction/evaluation.h"
 #include "ident/problem/fit_problem.h"

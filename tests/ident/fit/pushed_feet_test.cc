@@ -1,11 +1,10 @@
 // What recorded feet did, and the stance that a fit takes from it.
-#include "ident/parameters/pushed_feet.h"
-
 #include <gtest/gtest.h>
 
 #include "ident/fit/fit_setup.h"
 #include "ident/parameters/fit_options.h"
 #include "ident/parameters/option_table.h"
+#include "ident/parameters/presets.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

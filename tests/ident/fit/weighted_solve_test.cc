@@ -1,5 +1,4 @@
 // The demand to settle is tested against the data.
-#include "ident/fit/weighted_solve.h"
 
 #include "ident/fit/fit.h"
 #include "tests/ident/fit_samples.h"

@@ -1,9 +1,8 @@
 // The pushes that a model was fitted to, and warnings of predictions beyond them.
-#include "ident/model/push_range.h"
-
 #include <gtest/gtest.h>
 
 #include "ident/model/identified_model.h"
+#include "ident/model/model_rollout.h"
 #include "models/formation.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

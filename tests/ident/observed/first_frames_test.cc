@@ -1,10 +1,11 @@
 // Who speaks after first frames, distributions, and what they learn from.
+#include "ident/observed/first_frames.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "datasets/files/random.h"
-#include "ident/observed/learn_forecasts.h"
 
 namespace pushid {
 namespace {

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "datasets/files/names.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/folds.h"
 #include "ident/uncertainty/uncertainty.h"

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "ident/prediction/force_story.h"
 #include "ident/prediction/propagation.h"
 #include "models/rollout.h"
 

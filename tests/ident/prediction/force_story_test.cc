@@ -1,11 +1,10 @@
 // What happens to a bystander, in words.
-#include "ident/prediction/force_story.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "ident/formations/formation_run.h"
+#include "ident/prediction/propagation.h"
 #include "tests/ident/formation_samples.h"
 #include "tests/test_support.h"
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "ident/observed/learn_forecasts.h"
+#include "ident/observed/first_frames.h"
 #include "ident/prediction/evaluation.h"
 #include "tests/ident/effect_samples.h"
 #include "tests/test_support.h"

@@ -1,10 +1,9 @@
 // Bands of hip paths: their order, where they come from, and whether they hold new recordings.
-#include "ident/prediction/predictive_bands.h"
-
 #include <gtest/gtest.h>
 
 #include "ident/checks/model_checks.h"
 #include "ident/fit/fit.h"
+#include "ident/prediction/futures.h"
 #include "ident/validation/crossvalidation.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

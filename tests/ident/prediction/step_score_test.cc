@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "ident/prediction/predicted_steps.h"
-#include "ident/validation/steps_report.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 
 #include "ident/fit/fit.h"
-#include "ident/fit/weighted_solve.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
 #include "models/decompositions.h"

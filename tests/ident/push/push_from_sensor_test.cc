@@ -1,11 +1,10 @@
 // External pushes from force sensors: impulse kept, direction and contact height honoured.
-#include "ident/push/push_from_sensor.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "datasets/synthetic/synthetic_recordings.h"
+#include "ident/push/push_estimation.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -5,7 +5,7 @@
 
 #include "datasets/files/random.h"
 #include "datasets/synthetic/synthetic_recordings.h"
-#include "ident/push/push_from_sensor.h"
+#include "ident/push/push_estimation.h"
 #include "tests/test_support.h"
 
 namespace pushid {

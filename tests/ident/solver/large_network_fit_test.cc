@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "ident/fit/fit.h"
-#include "ident/parameters/learned_terms_io.h"
+#include "ident/parameters/fit_options.h"
 #include "ident/parameters/presets.h"
 #include "ident/solver/solver.h"
 #include "tests/ident/fit_samples.h"

@@ -6,7 +6,6 @@
 
 #include "datasets/loading/load_recordings.h"
 #include "ident/fit/fit.h"
-#include "ident/fit/weighted_solve.h"
 #include "ident/model/fitted_model.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"

@@ -1,5 +1,4 @@
 // Whose errors are independent, and how well the scatter over them is known.
-#include "ident/uncertainty/clusters.h"
 
 #include <Eigen/Core>
 

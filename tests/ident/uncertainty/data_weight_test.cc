@@ -1,9 +1,8 @@
 // What the data weigh comes from the data.
 #include "ident/fit/fit.h"
-#include "ident/fit/weighted_solve.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/solver/solver.h"
-#include "ident/uncertainty/clusters.h"
+#include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "tests/ident/fit_samples.h"
 

@@ -1,7 +1,5 @@
 // Estimates from fewer frames: what means something keeps its value, what stands for something that
 // the model leaves out drifts.
-#include "ident/uncertainty/horizon_check.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -9,6 +7,7 @@
 #include "ident/fit/fit.h"
 #include "ident/fit/fit_setup.h"
 #include "ident/problem/fit_problem.h"
+#include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/uncertainty.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"

@@ -8,9 +8,8 @@
 
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/solver.h"
-#include "ident/uncertainty/assumptions.h"
-#include "ident/uncertainty/clusters.h"
 #include "ident/uncertainty/covariance.h"
+#include "ident/uncertainty/model_verdict.h"
 #include "tests/ident/fit_samples.h"
 #include "tests/test_support.h"
 

@@ -1,10 +1,9 @@
 // Steps of recordings in words and as JSON, against a case worked by hand.
-#include "ident/validation/steps_report.h"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "ident/prediction/predicted_steps.h"
 #include "tests/test_support.h"
 
 namespace pushid {

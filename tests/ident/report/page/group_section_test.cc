@@ -1,8 +1,8 @@
 // What the report says of groups: of whom there are any, by whole bodies where these were read.
 #include <gtest/gtest.h>
 
-#include "ident/bodies/body_files.h"
-#include "ident/report/page/prediction_sections.h"
+#include "ident/bodies/body_recording.h"
+#include "ident/report/page/build_report.h"
 #include "tests/models/body_samples.h"
 #include "tests/test_support.h"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "ident/report/fit_sections.h"
-#include "ident/report/page/prediction_sections.h"
+#include "ident/report/page/build_report.h"
 #include "ident/report/report_text.h"
 #include "tests/ident/laboratory_samples.h"
 #include "tests/test_support.h"

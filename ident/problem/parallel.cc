@@ -1,5 +1,5 @@
 // ident: counts of evaluations.
-#include "ident/problem/work.h"
+#include "ident/problem/parallel.h"
 
 #include <algorithm>
 #include <atomic>
