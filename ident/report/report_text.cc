@@ -1,4 +1,3 @@
-
 #include "ident/report/report_text.h"
 
 #include <algorithm>

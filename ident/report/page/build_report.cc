@@ -1,4 +1,3 @@
-
 #include "ident/report/page/build_report.h"
 
 #include <algorithm>
