@@ -8,9 +8,7 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/formats/bvh.h"
 #include "ident/prediction/predicted_steps.h"
-#include "models/rollout.h"
 
 namespace pushid {
 namespace {

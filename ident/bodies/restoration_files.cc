@@ -1,7 +1,6 @@
 // ident: restorations written and read.
 #include "ident/bodies/restoration_files.h"
 
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -11,7 +10,6 @@
 #include "datasets/files/input_file.h"
 #include "datasets/files/json_fields.h"
 #include "datasets/files/names.h"
-#include "datasets/files/number_text.h"
 #include "datasets/files/random.h"
 #include "models/restoration/window_restoration.h"
 

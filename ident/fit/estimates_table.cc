@@ -8,18 +8,13 @@
 #include <set>
 
 #include "datasets/files/number_text.h"
+#include "ident/model/model_rollout.h"
 #include "ident/problem/behaviour.h"
-#include "ident/problem/fit_problem.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/self_terms.h"
 
 namespace pushid {
 namespace {
-
-std::string Describe(const RolloutStatus& status) {
-  return std::string(status.quantity) + " of person " + std::to_string(status.person) +
-         " leaves the model's domain at frame " + std::to_string(status.frame);
-}
 
 std::map<std::string, Estimate>& PooledOf(const std::string& unit, const FitProblem& problem,
                                           FitResult* result) {
@@ -141,7 +136,7 @@ std::vector<FittedRecording> FittedRecordings(const FitProblem& problem, const S
     fitted.push_back(one);
   }
   for (const FailedRollout& failed : best.failed) {
-    fitted[failed.recording].failure = Describe(failed.status);
+    fitted[failed.recording].failure = OutsideText(failed.status);
   }
   return fitted;
 }

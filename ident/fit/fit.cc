@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "datasets/files/number_text.h"
@@ -13,11 +12,8 @@
 #include "ident/fit/step_probability.h"
 #include "ident/model/model_rollout.h"
 #include "ident/problem/behaviour.h"
-#include "ident/problem/fit_problem.h"
 #include "ident/problem/folds.h"
-#include "ident/problem/parallel.h"
 #include "ident/problem/statistics.h"
-#include "ident/solver/solver.h"
 #include "ident/uncertainty/bootstrap.h"
 #include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/model_verdict.h"
@@ -486,8 +482,9 @@ Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings
                                  : RefitWithout(solved.problem, optimum, model, fold));
   }
   if (!forecasts) return models;
-  model.forecasts =
-      CrossFitForecasts(solved.problem, optimum, model, recordings, options.num_threads);
+  model.forecasts = LearnForecasts(model, recordings,
+                                   CrossFit(solved.problem, optimum, model, options.num_threads),
+                                   options.num_threads);
   return models;
 }
 
@@ -513,14 +510,6 @@ std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optim
     if (fold) folds.push_back(*std::move(fold));
   }
   return folds;
-}
-
-std::optional<ForecastRule> CrossFitForecasts(const FitProblem& problem, const FitPoint& optimum,
-                                              const IdentifiedModel& model,
-                                              const std::vector<PendulumRecording>& recordings,
-                                              int num_threads) {
-  return LearnForecasts(model, recordings, CrossFit(problem, optimum, model, num_threads),
-                        num_threads);
 }
 
 }  // namespace pushid

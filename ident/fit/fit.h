@@ -86,12 +86,4 @@ Result<FoldedModels> SolveFolds(const std::vector<PendulumRecording>& recordings
 std::vector<FoldModel> CrossFit(const FitProblem& problem, const FitPoint& optimum,
                                 const IdentifiedModel& model, int num_threads);
 
-// What forecasts from first frames are put together by, learned on recordings left out in turn;
-// none where no recording stays in the model's domain. recordings: the problem's, in the axes of
-// their files.
-std::optional<ForecastRule> CrossFitForecasts(const FitProblem& problem, const FitPoint& optimum,
-                                              const IdentifiedModel& model,
-                                              const std::vector<PendulumRecording>& recordings,
-                                              int num_threads);
-
 }  // namespace pushid

@@ -8,10 +8,8 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "datasets/loading/pendulum_recording.h"
 #include "ident/diagnostics/diagnostics.h"
 #include "ident/fit/covariates.h"
-#include "ident/parameters/fit_options.h"
 #include "ident/parameters/option_table.h"
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"

@@ -8,7 +8,6 @@
 
 #include "ident/model/model_rollout.h"
 #include "ident/problem/own_axes.h"
-#include "ident/uncertainty/covariance.h"
 #include "models/rollout.h"
 #include "models/stance.h"
 

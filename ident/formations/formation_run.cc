@@ -11,7 +11,6 @@
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/bodies/body_evaluation.h"
 #include "ident/prediction/propagation.h"
-#include "ident/uncertainty/covariance.h"
 #include "models/skeleton_mapping.h"
 
 namespace pushid {

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "datasets/files/random.h"
-#include "datasets/manifest/recording.h"
 #include "ident/bodies/restoration_files.h"
 #include "ident/parameters/json_archive.h"
 

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "datasets/files/random.h"
-#include "ident/parameters/fit_options.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/solver.h"
 

@@ -19,7 +19,6 @@
 
 #include <functional>
 #include <limits>
-#include <string>
 #include <vector>
 
 #include "ident/parameters/fit_options.h"

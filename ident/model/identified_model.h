@@ -6,7 +6,6 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

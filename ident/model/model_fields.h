@@ -95,10 +95,7 @@ void Fields(Archive& a, Contrast& c) {
   a("rows", c.rows);
 }
 
-template <class Archive>
-void Fields(Archive& a, NullDirection& n) {
-  PUSHID_FIELDS(a, n, parameters, coefficients, identified, sentence);
-}
+PUSHID_FIELDS_OF(NullDirection, parameters, coefficients, identified, sentence)
 
 template <class Archive>
 void Fields(Archive& a, SettlingDemand& s) {
@@ -136,10 +133,7 @@ void Fields(Archive& a, Uncertainty& u) {
   if (a.Has("settling")) a("settling", u.settling);
 }
 
-template <class Archive>
-void Fields(Archive& a, SubjectParameters& s) {
-  PUSHID_FIELDS(a, s, mass_kg, pooled);
-}
+PUSHID_FIELDS_OF(SubjectParameters, mass_kg, pooled)
 
 // The solve.
 
@@ -179,10 +173,7 @@ void WarningFields(Archive& a, const std::string& key, Warnings& warnings) {
   });
 }
 
-template <class Archive>
-void Fields(Archive& a, SolveStage& s) {
-  PUSHID_FIELDS(a, s, horizon, iterations, initial_cost, final_cost, converged);
-}
+PUSHID_FIELDS_OF(SolveStage, horizon, iterations, initial_cost, final_cost, converged)
 
 template <class Archive>
 void Fields(Archive& a, SolveStart& s) {
@@ -326,10 +317,7 @@ void Fields(Archive& a, LikelihoodScore& s) {
   a.Written("bic", [&] { return s.Bic(); });
 }
 
-template <class Archive>
-void Fields(Archive& a, Finding& f) {
-  PUSHID_FIELDS(a, f, kind, recording, about, value);
-}
+PUSHID_FIELDS_OF(Finding, kind, recording, about, value)
 
 template <class Archive>
 void Fields(Archive& a, StartDiagnostics& s) {
@@ -337,10 +325,7 @@ void Fields(Archive& a, StartDiagnostics& s) {
   if (a.Has("findings")) a("findings", s.findings);  // older files have none
 }
 
-template <class Archive>
-void Fields(Archive& a, Outlier& o) {
-  PUSHID_FIELDS(a, o, frame, person, error, weight);
-}
+PUSHID_FIELDS_OF(Outlier, frame, person, error, weight)
 
 template <class Archive>
 void Fields(Archive& a, RecordingDiagnostics& r) {
@@ -350,11 +335,8 @@ void Fields(Archive& a, RecordingDiagnostics& r) {
   PUSHID_FIELDS(a, r, cost, lag1, ljung_box, ljung_box_p, outliers);
 }
 
-template <class Archive>
-void Fields(Archive& a, Whiteness& w) {
-  PUSHID_FIELDS(a, w, channel, autocorrelation, error, push, push_error, band, mean_band, ljung_box,
-                ljung_box_p);
-}
+PUSHID_FIELDS_OF(Whiteness, channel, autocorrelation, error, push, push_error, band, mean_band,
+                 ljung_box, ljung_box_p)
 
 template <class Archive>
 void Fields(Archive& a, Leverage& l) {
@@ -369,25 +351,10 @@ void Fields(Archive& a, Leverage& l) {
           "rows of the leverage have wrong lengths");
 }
 
-template <class Archive>
-void Fields(Archive& a, TracePoint& t) {
-  PUSHID_FIELDS(a, t, horizon, iteration, cost, gradient);
-}
-
-template <class Archive>
-void Fields(Archive& a, AssumptionTest& t) {
-  PUSHID_FIELDS(a, t, name, unit, stated, wanted, error, t, p, moves);
-}
-
-template <class Archive>
-void Fields(Archive& a, PartTest& t) {
-  PUSHID_FIELDS(a, t, parameter, part, t, p);
-}
-
-template <class Archive>
-void Fields(Archive& a, MotionTest& t) {
-  PUSHID_FIELDS(a, t, quantity, unit, difference, error, t, p);
-}
+PUSHID_FIELDS_OF(TracePoint, horizon, iteration, cost, gradient)
+PUSHID_FIELDS_OF(AssumptionTest, name, unit, stated, wanted, error, t, p, moves)
+PUSHID_FIELDS_OF(PartTest, parameter, part, t, p)
+PUSHID_FIELDS_OF(MotionTest, quantity, unit, difference, error, t, p)
 
 template <class Archive>
 void Fields(Archive& a, ModelVerdict& v) {
@@ -401,20 +368,9 @@ void Fields(Archive& a, ModelVerdict& v) {
   }
 }
 
-template <class Archive>
-void Fields(Archive& a, Diagnostics& d) {
-  PUSHID_FIELDS(a, d, start, recordings, whiteness, leverage, trace);
-}
-
-template <class Archive>
-void Fields(Archive& a, Advice& advice) {
-  PUSHID_FIELDS(a, advice, sentence, command);
-}
-
-template <class Archive>
-void Fields(Archive& a, ProfilePoint& p) {
-  PUSHID_FIELDS(a, p, value, cost, others);
-}
+PUSHID_FIELDS_OF(Diagnostics, start, recordings, whiteness, leverage, trace)
+PUSHID_FIELDS_OF(Advice, sentence, command)
+PUSHID_FIELDS_OF(ProfilePoint, value, cost, others)
 
 template <class Archive>
 void Fields(Archive& a, Profile& p) {

@@ -8,11 +8,9 @@
 #include <utility>
 
 #include "datasets/files/number_text.h"
-#include "ident/model/identified_model.h"
 #include "ident/problem/own_axes.h"
 #include "ident/problem/statistics.h"
 #include "models/learned_terms.h"
-#include "models/rollout.h"
 #include "residuals/rollout_residual.h"
 
 namespace pushid {

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numeric>
 #include <set>
 #include <utility>
 
-#include "ident/model/model_rollout.h"
 #include "ident/problem/own_axes.h"
 #include "ident/problem/parallel.h"
 #include "models/decompositions.h"

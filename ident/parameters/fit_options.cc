@@ -6,15 +6,10 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
-#include "datasets/files/names.h"
 #include "datasets/files/random.h"
 #include "ident/parameters/json_archive.h"
 #include "ident/parameters/option_table.h"
-#include "ident/parameters/parameter_table.h"
-#include "models/learned_terms.h"
 
 namespace pushid {
 namespace {
@@ -277,10 +272,7 @@ void CheckPair(const PairShape& pair) {
 
 }  // namespace
 
-template <class Archive>
-void Fields(Archive& a, RodShape& rod) {
-  PUSHID_FIELDS(a, rod, kind, hidden);
-}
+PUSHID_FIELDS_OF(RodShape, kind, hidden)
 
 template <class Archive>
 void Fields(Archive& a, PairShape& pair) {
@@ -380,10 +372,7 @@ bool IsLarge(const FitOptions& options) {
   return network != nullptr && static_cast<int>(network->weights.size()) > kMostGaussNewtonWeights;
 }
 
-template <class Archive>
-void Fields(Archive& a, Prior& prior) {
-  PUSHID_FIELDS(a, prior, mean, sigma);
-}
+PUSHID_FIELDS_OF(Prior, mean, sigma)
 
 namespace {
 

@@ -38,6 +38,12 @@
     NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(PUSHID_FIELD, __VA_ARGS__)) \
   } while (false)
 #define PUSHID_FIELD(name) fields_of(#name, has_fields.name);
+// The whole list of a type whose keys are its members' names.
+#define PUSHID_FIELDS_OF(Type, ...)       \
+  template <class Archive>                \
+  void Fields(Archive& a, Type& value) {  \
+    PUSHID_FIELDS(a, value, __VA_ARGS__); \
+  }
 
 namespace pushid {
 

@@ -11,7 +11,6 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/parameters/fit_options.h"
 #include "ident/parameters/presets.h"
 
 namespace pushid {

@@ -8,7 +8,6 @@
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "models/parameters.h"
 
 namespace pushid {
 

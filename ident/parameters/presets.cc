@@ -7,7 +7,6 @@
 #include <set>
 
 #include "datasets/manifest/recording.h"
-#include "ident/parameters/fit_options.h"
 #include "models/learned_terms.h"
 #include "models/parameters.h"
 #include "models/self_terms.h"

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <set>
 #include <sstream>
 
 #include "datasets/files/names.h"
 #include "datasets/files/number_text.h"
-#include "ident/prediction/predicted_steps.h"
 #include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
 

@@ -13,7 +13,6 @@
 #include "ident/prediction/predicted_steps.h"
 #include "ident/problem/own_axes.h"
 #include "ident/problem/statistics.h"
-#include "ident/uncertainty/bootstrap.h"
 #include "models/decompositions.h"
 #include "models/rollout.h"
 

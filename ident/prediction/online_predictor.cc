@@ -3,8 +3,6 @@
 
 #include <cmath>
 
-#include "models/rollout.h"
-
 namespace pushid {
 namespace {
 

@@ -14,7 +14,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "datasets/files/error.h"
 #include "ident/observed/first_frames.h"

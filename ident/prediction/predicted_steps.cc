@@ -11,7 +11,6 @@
 #include "datasets/files/number_text.h"
 #include "ident/fit/step_probability.h"
 #include "ident/problem/statistics.h"
-#include "models/rollout.h"
 
 namespace pushid {
 

@@ -9,7 +9,6 @@
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/number_text.h"
 #include "ident/fit/step_probability.h"
-#include "ident/model/model_rollout.h"
 #include "ident/prediction/futures.h"
 #include "ident/prediction/predicted_steps.h"
 #include "ident/problem/own_axes.h"

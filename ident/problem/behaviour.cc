@@ -11,6 +11,7 @@
 
 #include "datasets/files/number_text.h"
 #include "models/decompositions.h"
+#include "models/enum_names.h"
 #include "models/learned_terms.h"
 #include "models/modal_stability.h"
 #include "models/reaction_delay.h"
@@ -301,14 +302,9 @@ namespace {
 
 // "4, 25 and 80"
 std::string ListText(const std::set<double>& values) {
-  std::string text;
-  std::size_t left = values.size();
-  for (double value : values) {
-    text += Rounded(value, 4);
-    --left;
-    if (left > 0) text += left > 1 ? ", " : " and ";
-  }
-  return text;
+  std::vector<std::string> texts;
+  for (double value : values) texts.push_back(Rounded(value, 4));
+  return Listed(texts, "and");
 }
 
 struct Simulated {

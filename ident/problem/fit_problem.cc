@@ -1,10 +1,7 @@
 // ident: what a problem knows of a point.
 #include "ident/problem/fit_problem.h"
 
-#include <ceres/problem.h>
-
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 
 #include "datasets/inspection/findings.h"

@@ -4,7 +4,6 @@
 
 #include <ceres/problem.h>
 
-#include <algorithm>
 #include <map>
 #include <memory>
 #include <mutex>

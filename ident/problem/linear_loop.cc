@@ -7,7 +7,6 @@
 
 #include "models/decompositions.h"
 #include "models/modal_stability.h"
-#include "models/net_force.h"
 
 namespace pushid {
 namespace {

@@ -1,9 +1,6 @@
 // ident: counts of evaluations.
 #include "ident/problem/parallel.h"
 
-#include <algorithm>
-#include <atomic>
-
 namespace pushid {
 namespace {
 

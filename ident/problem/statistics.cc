@@ -2,7 +2,6 @@
 #include "ident/problem/statistics.h"
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cmath>
 #include <unsupported/Eigen/SpecialFunctions>
 

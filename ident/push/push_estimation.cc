@@ -4,8 +4,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include "datasets/files/number_text.h"
 #include "datasets/loading/recording_from_tracks.h"

@@ -11,11 +11,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "datasets/files/number_text.h"
-#include "ident/parameters/presets.h"
-#include "ident/problem/fit_problem.h"
 #include "ident/problem/parallel.h"
 #include "ident/problem/residual_rows.h"
 #include "ident/solver/summed_cost.h"

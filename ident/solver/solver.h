@@ -3,8 +3,6 @@
 
 #include <ceres/solver.h>
 
-#include <cstddef>
-#include <functional>
 #include <string>
 #include <vector>
 

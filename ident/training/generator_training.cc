@@ -6,14 +6,8 @@
 #include <set>
 
 #include "datasets/files/input_file.h"
-#include "datasets/loading/mocap_folder.h"
-#include "ident/bodies/body_evaluation.h"
 #include "ident/generators/generator_files.h"
-#include "ident/generators/push_particles.h"
-#include "ident/model/model_rollout.h"
 #include "ident/problem/parallel.h"
-#include "ident/training/restoration_training.h"
-#include "ident/validation/crossvalidation.h"
 
 namespace pushid {
 namespace {

@@ -6,15 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "datasets/files/input_file.h"
-#include "ident/bodies/body_recording.h"
-#include "ident/bodies/restoration_files.h"
 #include "ident/fit/fit.h"
 #include "ident/prediction/online_predictor.h"
 #include "ident/prediction/prediction.h"
 #include "ident/problem/parallel.h"
-#include "ident/validation/crossvalidation.h"
 #include "models/learned_terms.h"
-#include "models/restoration/cvae_trainer.h"
 #include "models/restoration/window_restoration.h"
 
 namespace pushid {

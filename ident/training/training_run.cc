@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "datasets/files/atomic_file.h"
 #include "datasets/files/input_file.h"

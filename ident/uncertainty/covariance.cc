@@ -1,7 +1,6 @@
 // ident: people, recordings and line-ups as clusters.
 #include "ident/uncertainty/covariance.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,8 +1,6 @@
 // ident: score tests of what is taken as known and of parts of the data, and total errors.
 #include "ident/uncertainty/model_verdict.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -10,11 +8,8 @@
 #include <set>
 
 #include "datasets/inspection/findings.h"
-#include "ident/problem/behaviour.h"
 #include "ident/problem/fit_problem.h"
-#include "ident/problem/residual_rows.h"
 #include "ident/problem/statistics.h"
-#include "ident/uncertainty/covariance.h"
 #include "models/decompositions.h"
 #include "models/self_terms.h"
 #include "residuals/frame_residual.h"

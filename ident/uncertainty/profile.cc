@@ -3,7 +3,6 @@
 #include "ident/uncertainty/profile.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "ident/problem/fit_problem.h"
 #include "ident/solver/solver.h"

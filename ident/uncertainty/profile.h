@@ -18,7 +18,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstddef>
 #include <functional>
 #include <limits>
 #include <map>

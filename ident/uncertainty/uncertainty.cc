@@ -1,7 +1,6 @@
 // ident: standard errors, intervals and null directions of a fit.
 #include "ident/uncertainty/uncertainty.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,9 +10,9 @@
 #include "ident/parameters/presets.h"
 #include "ident/problem/fit_problem.h"
 #include "ident/problem/residual_rows.h"
-#include "ident/uncertainty/covariance.h"
 #include "ident/uncertainty/model_verdict.h"
 #include "models/decompositions.h"
+#include "models/enum_names.h"
 #include "models/self_terms.h"
 
 namespace pushid {
@@ -21,15 +20,6 @@ namespace {
 
 constexpr double kTouched = 1e-4;   // share of a null direction that counts
 constexpr double kHeldShare = 0.5;  // of the data; with less, what was put in decides
-
-std::string JoinNames(const std::vector<std::string>& names) {
-  std::string text;
-  for (size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
-    text += names[i];
-  }
-  return text;
-}
 
 std::string Format(double value) {
   char text[32];
@@ -90,7 +80,7 @@ NullDirection Inseparable(const FitProblem& problem, const FitPoint& point,
     joint.coefficients.push_back(projector(i, largest) / projector(largest, largest));
   }
   joint.identified = IdentifiedPairs(problem, point, group, null_space, uncertainty);
-  joint.sentence = JoinNames(joint.parameters) + " cannot be separated";
+  joint.sentence = Listed(joint.parameters, "and") + " cannot be separated";
   for (const Combination& c : joint.identified) {
     const double width = problem.Spec(largest).scale;
     const bool known = IsNarrow(Transform::kIdentity, width, c.lower95, c.upper95);
@@ -172,14 +162,9 @@ std::string Sentence(const std::vector<const ParameterSpec*>& specs, const Eigen
            " better than either parameter; their split comes from priors or constraints (data: " +
            percent + ")";
   }
-  std::string names;
-  for (size_t k = 0; k < order.size(); ++k) {
-    names += (k == 0                  ? ""
-              : k + 1 == order.size() ? " and "
-                                      : ", ") +
-             specs[static_cast<size_t>(order[k])]->name;
-  }
-  return "the data alone hardly separate " + names +
+  std::vector<std::string> names;
+  for (Eigen::Index i : order) names.push_back(specs[static_cast<size_t>(i)]->name);
+  return "the data alone hardly separate " + Listed(names, "and") +
          "; their split comes from priors or constraints (data: " + percent + ")";
 }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
-#include <vector>
 
 #include "ident/fit/fit.h"
 #include "ident/fit/step_probability.h"

@@ -10,7 +10,6 @@
 
 #include "ident/parameters/json_archive.h"
 #include "models/restoration/cvae_restoration.h"
-#include "models/restoration/group_motion.h"
 
 namespace pushid {
 namespace {
