@@ -29,7 +29,6 @@
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_files.h"
 #include "ident/formations/formation_run.h"
-#include "ident/formations/wave_speed.h"
 #include "ident/model/model_json.h"
 #include "ident/prediction/predicted_steps.h"
 #include "models/formation.h"

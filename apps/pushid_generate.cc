@@ -27,7 +27,6 @@
 #include "ident/forecasts/forecast_spread.h"
 #include "ident/forecasts/social_report.h"
 #include "ident/generators/generator_files.h"
-#include "ident/generators/push_particles.h"
 #include "ident/model/identified_model.h"
 #include "ident/model/model_json.h"
 #include "ident/model/model_rollout.h"

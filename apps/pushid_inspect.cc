@@ -13,7 +13,7 @@
 #include "datasets/inspection/inspection.h"
 #include "datasets/manifest/column_mapping.h"
 #include "ident/figures/chart.h"
-#include "ident/formations/wave_speed.h"
+#include "ident/formations/formation_run.h"
 
 DEFINE_string(mapping, "", "mapping file: which columns or joints are hip and ankles, time, rate");
 DEFINE_string(svg_out, "", "draw hip, gaps and forces here (SVG); for one file");

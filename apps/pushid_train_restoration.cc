@@ -21,7 +21,6 @@
 #include "ident/model/model_json.h"
 #include "ident/problem/folds.h"
 #include "ident/training/restoration_training.h"
-#include "ident/training/training_run.h"
 #include "ident/validation/scores_report.h"
 
 namespace {

@@ -8,7 +8,6 @@
 #include "ident/bodies/restoration_files.h"
 #include "ident/forecasts/most_probable_path.h"
 #include "ident/formations/formation_run.h"
-#include "ident/formations/wave_speed.h"
 #include "ident/prediction/frequency_response.h"
 #include "ident/prediction/futures.h"
 #include "ident/prediction/online_predictor.h"

@@ -189,9 +189,9 @@ MaybeError AddForecasts(const std::vector<PendulumRecording>& recordings, int nu
   FitResult& fit = model->fit;
   const FitProblem problem(recordings, fit.options);
   const FitPoint& optimum = fit.Best().to;
-  const IdentifiedModel model = ModelOf(fit);
-  fit.forecasts = LearnForecasts(model, recordings, CrossFit(problem, optimum, model, num_threads),
-                                 num_threads);
+  const IdentifiedModel fitted = ModelOf(fit);
+  fit.forecasts = LearnForecasts(fitted, recordings,
+                                 CrossFit(problem, optimum, fitted, num_threads), num_threads);
   if (fit.forecasts) return std::nullopt;
   return Error{"no recording stays in the model's domain"};
 }

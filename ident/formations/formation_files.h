@@ -9,7 +9,6 @@
 #include "ident/figures/chart.h"
 #include "ident/figures/text_table.h"
 #include "ident/formations/formation_run.h"
-#include "ident/formations/wave_speed.h"
 
 namespace pushid {
 

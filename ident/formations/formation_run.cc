@@ -4,13 +4,20 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "datasets/files/number_text.h"
 #include "datasets/formats/bvh.h"
+#include "datasets/formats/motion_formats.h"
+#include "datasets/loading/load_recordings.h"
 #include "datasets/synthetic/synthetic_recordings.h"
 #include "ident/bodies/body_evaluation.h"
+#include "ident/figures/text_table.h"
+#include "ident/prediction/futures.h"
 #include "ident/prediction/propagation.h"
+#include "ident/problem/statistics.h"
+#include "models/self_terms.h"
 #include "models/skeleton_mapping.h"
 
 namespace pushid {
@@ -222,6 +229,306 @@ std::vector<Pose> PlacePeople(const FormationPeople& people, Scene* scene) {
     scene->people[n].body.mass = people.masses[n % people.count()];
   }
   return TakePoses(people.poses, scene);
+}
+
+namespace {
+
+constexpr int kDraws = 60;
+constexpr double kLower = 0.05, kUpper = 0.95;
+
+// One for each draw: the onset frame of everybody, or nobody where the rollout left the model's
+// domain.
+std::vector<std::vector<int>> DrawnOnsets(const FittedModel& model, const std::string& set,
+                                          const FormationRun& run) {
+  const bool replicas = model.bootstrap && !model.bootstrap->values.empty();
+  if (!replicas && model.fit.uncertainty.covariance.size() == 0) return {};
+  BandOptions options;
+  options.samples = kDraws;
+  if (replicas) options.bootstrap = &*model.bootstrap;
+  const auto draws = SampleParameters(model.fit, options);
+  if (!draws.ok()) return {};
+  IdentifiedModel fitted = ModelOf(model.fit);
+  fitted.by_unit.clear();  // no person of a formation is one of the fit
+  std::vector<std::vector<int>> onsets;
+  for (const ParameterSet<double>& draw : draws.value()) {
+    IdentifiedModel drawn = WithShared(fitted, draw);
+    if (SetValues(set, &drawn)) return {};
+    const Prediction prediction = Predict(drawn, run.recording, run.num_frames());
+    onsets.emplace_back();
+    if (!prediction.status.ok) continue;
+    for (const auto& hip : prediction.hip) onsets.back().push_back(OnsetFrame(hip));
+  }
+  return onsets;
+}
+
+OnsetBand BandOf(const std::vector<std::vector<int>>& draws, int person, double dt) {
+  std::vector<double> seconds;
+  for (const std::vector<int>& onsets : draws) {
+    if (!onsets.empty() && onsets[person] >= 0) seconds.push_back(onsets[person] * dt);
+  }
+  if (seconds.empty()) return {};
+  return {Quantile(seconds, kLower), Quantile(seconds, kUpper),
+          static_cast<double>(seconds.size()) / static_cast<double>(draws.size())};
+}
+
+SpeedBand BandOfSpeed(const std::vector<std::vector<int>>& draws, const Scene& scene) {
+  std::vector<double> speeds;
+  for (const std::vector<int>& onsets : draws) {
+    if (onsets.empty()) continue;
+    if (const auto wave = SpeedOfWave(scene, onsets)) speeds.push_back(wave->MetresPerSecond());
+  }
+  SpeedBand band{0.0, 0.0, static_cast<int>(speeds.size()), static_cast<int>(draws.size())};
+  if (band.known()) band.from = Quantile(speeds, kLower), band.to = Quantile(speeds, kUpper);
+  return band;
+}
+
+constexpr int kSpeedFrames = 6;
+
+// Horizontal, m, from the first that was seen; frames without the person are left out.
+struct Track {
+  std::vector<int> frames;
+  std::vector<Eigen::Vector2d> places;
+};
+
+Track TrackOf(const std::vector<Eigen::Vector3d>& positions, double metres) {
+  Track track;
+  for (size_t frame = 0; frame < positions.size(); ++frame) {
+    if (!positions[frame].head<2>().allFinite()) continue;
+    track.frames.push_back(static_cast<int>(frame));
+    track.places.push_back(metres * positions[frame].head<2>());
+  }
+  return track;
+}
+
+int OnsetOf(const Track& track) {
+  for (size_t i = 0; i < track.places.size(); ++i) {
+    if ((track.places[i] - track.places[0]).norm() >= kOnsetDistance) return track.frames[i];
+  }
+  return -1;
+}
+
+// The way from the first place to the farthest.
+Eigen::Vector2d WayOf(const Track& track) {
+  Eigen::Vector2d farthest = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& place : track.places) {
+    if ((place - track.places[0]).norm() > farthest.norm()) farthest = place - track.places[0];
+  }
+  return farthest.normalized();
+}
+
+double PeakSpeedOf(const Track& track, const Eigen::Vector2d& way, double rate) {
+  double peak = 0.0;
+  for (size_t i = kSpeedFrames; i < track.places.size(); ++i) {
+    const double seconds = (track.frames[i] - track.frames[i - kSpeedFrames]) / rate;
+    peak = std::max(peak, way.dot(track.places[i] - track.places[i - kSpeedFrames]) / seconds);
+  }
+  return peak;
+}
+
+void AddSlowness(MeasuredWave* wave) {
+  std::vector<double> distance, onset;
+  for (const PersonInWave& person : wave->people) {
+    if (!person.onset_s) continue;
+    distance.push_back(person.distance);
+    onset.push_back(*person.onset_s);
+  }
+  wave->slowness = Slowness(distance, onset);
+  if (!wave->slowness) return;
+  const double s_mean = MeanOf(distance).mean, t_mean = MeanOf(onset).mean;
+  double squares = 0.0, left = 0.0;
+  for (size_t i = 0; i < distance.size(); ++i) {
+    const double s = distance[i] - s_mean;
+    squares += s * s;
+    left += std::pow(onset[i] - t_mean - *wave->slowness * s, 2);
+  }
+  const double freedom = static_cast<double>(distance.size()) - 2.0;
+  wave->error = std::sqrt(left / freedom / squares);
+  wave->quantile = StudentQuantile95(freedom);
+}
+
+// "0.75 m/s (95 %: 0.5 to 1.3, ...)"; or why the onsets give no speed.
+std::string SpeedOf(double slowness, double half_width, const std::string& from) {
+  const double slowest = slowness + half_width, fastest = slowness - half_width;
+  if (!(slowest > 0.0)) return "none: people farther away start earlier";
+  const std::string interval = fastest > 0.0
+                                   ? Rounded(1.0 / slowest, 3) + " to " + Rounded(1.0 / fastest, 3)
+                                   : "above " + Rounded(1.0 / slowest, 3);
+  const std::string ending = "95 %: " + interval + ", from " + from;
+  return slowness > 0.0 ? Rounded(1.0 / slowness, 3) + " m/s (" + ending + ")"
+                        : "it cannot be determined (" + ending + ")";
+}
+
+MaybeError CheckOnePointAPerson(const std::string& path, std::optional<MotionFormat> format) {
+  if (format && !HasSkeleton(*format) && (HoldsCrowd(*format) || *format == MotionFormat::kCsv)) {
+    return std::nullopt;
+  }
+  return Error{
+      "a wave is measured from one point a person: trajectories (.txt, or .csv with the header "
+      "id,frame,x,y), a table with three columns for each person (.csv), or a manifest of groups",
+      path};
+}
+
+// Hips in m under the subjects' names; frames that do not count are not seen.
+PointMotion HipTrajectories(const Recording& recording) {
+  PointMotion motion;
+  motion.rate_hz = recording.fps;
+  for (const RecordedPerson& person : recording.people) {
+    motion.names.push_back(person.subject_id);
+    motion.positions.push_back(person.hip);
+    for (size_t frame = 0; frame < person.weight.size(); ++frame) {
+      if (person.weight[frame] > 0.0) continue;
+      motion.positions.back()[frame].setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  ChoosePoints({}, &motion);
+  return motion;
+}
+
+}  // namespace
+
+std::optional<WaveSpeed> SpeedOfWave(const Scene& scene, const std::vector<int>& onsets) {
+  if (scene.pushes.size() != 1) return std::nullopt;
+  int first = -1, foremost = -1;
+  for (int n = 0; n < scene.num_people(); ++n) {
+    if (onsets[n] < 0) continue;
+    if (first < 0 || onsets[n] < onsets[first]) first = n;
+    foremost = n;
+  }
+  if (first < 0) return std::nullopt;
+  const WaveSpeed wave{first, foremost,
+                       scene.people[foremost].start.q[0] - scene.people[first].start.q[0],
+                       (onsets[foremost] - onsets[first]) * scene.dt};
+  if (!(wave.metres > 0.0) || !(wave.seconds > 0.0)) return std::nullopt;
+  return wave;
+}
+
+std::optional<WaveSpeed> SpeedOfWave(const FormationRun& run) {
+  std::vector<int> onsets;
+  for (const PersonSummary& person : run.summaries) onsets.push_back(person.onset_frame);
+  return SpeedOfWave(run.recording.scene, onsets);
+}
+
+std::string HeldInDraws(const FittedModel& model, const std::string& set) {
+  std::string held;
+  const auto add = [&held](const std::string& text) { held += (held.empty() ? "" : ", ") + text; };
+  const Result<std::vector<NamedValue>> values = ParseAssignments(set, "--set");
+  const std::vector<NamedValue> replaced = values.ok() ? values.value() : std::vector<NamedValue>();
+  for (const Estimate& e : model.fit.estimates) {
+    const ParameterSpec* spec = model.fit.options.table.Find(e.name);
+    const bool again = std::any_of(replaced.begin(), replaced.end(),
+                                   [&e](const NamedValue& one) { return one.name == e.name; });
+    const bool convention = spec != nullptr && HeldByConvention(spec->id);
+    if (e.status != EstimateStatus::kFixed || again || convention) continue;
+    add(e.name + " = " + Rounded(e.value, 4));
+  }
+  for (const NamedValue& one : replaced) add(one.name + " = " + Rounded(one.value, 4) + " (--set)");
+  return held;
+}
+
+WaveBands BandsOfWave(const FittedModel& model, const std::string& set, const FormationRun& run) {
+  const std::vector<std::vector<int>> draws = DrawnOnsets(model, set, run);
+  WaveBands bands;
+  if (draws.empty()) return bands;
+  bands.failed = static_cast<int>(std::count_if(
+      draws.begin(), draws.end(), [](const std::vector<int>& onsets) { return onsets.empty(); }));
+  const Scene& scene = run.recording.scene;
+  for (int n = 0; n < run.num_people(); ++n) bands.onsets.push_back(BandOf(draws, n, scene.dt));
+  bands.speed = BandOfSpeed(draws, scene);
+  return bands;
+}
+
+MeasuredWave MeasureWave(const std::string& name, const PointMotion& motion) {
+  MeasuredWave wave;
+  wave.name = name;
+  const double metres = MetresPer(motion.unit.value_or(LengthUnit::kMetre));
+  std::vector<Track> tracks;
+  std::vector<int> onsets;
+  int first = -1;
+  for (size_t i = 0; i < motion.positions.size(); ++i) {
+    tracks.push_back(TrackOf(motion.positions[i], metres));
+    onsets.push_back(OnsetOf(tracks.back()));
+    const bool moves = onsets.back() >= 0;
+    if (moves && (first < 0 || onsets.back() < onsets[static_cast<size_t>(first)])) {
+      first = static_cast<int>(i);
+    }
+  }
+  if (first < 0) return wave;
+  const Track& origin = tracks[static_cast<size_t>(first)];
+  const Eigen::Vector2d way = WayOf(origin);
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    const Track& track = tracks[i];
+    if (track.places.empty()) continue;
+    PersonInWave person;
+    person.name = motion.names[static_cast<size_t>(motion.chosen[i])];
+    person.distance = (track.places[0] - origin.places[0]).norm();
+    if (onsets[i] >= 0) person.onset_s = onsets[i] / motion.rate_hz;
+    person.peak_speed = PeakSpeedOf(track, way, motion.rate_hz);
+    person.displaced = way.dot(track.places.back() - track.places[0]);
+    wave.people.push_back(person);
+  }
+  std::stable_sort(
+      wave.people.begin(), wave.people.end(),
+      [](const PersonInWave& a, const PersonInWave& b) { return a.distance < b.distance; });
+  AddSlowness(&wave);
+  return wave;
+}
+
+Result<std::vector<MeasuredWave>> MeasureWaves(const std::string& path) {
+  std::vector<MeasuredWave> waves;
+  const std::string ending = path.substr(path.find_last_of('.') + 1);
+  if (ending == "json") {
+    LoadOptions options;
+    options.setting = "all";
+    const Result<std::vector<Recording>> recordings = LoadRecordings(path, options);
+    if (!recordings.ok()) return recordings.error();
+    for (const Recording& recording : recordings.value()) {
+      if (recording.people.size() < 2) continue;
+      waves.push_back(MeasureWave(recording.id, HipTrajectories(recording)));
+    }
+    if (waves.empty()) return Error{"no recording of several people", path};
+    return waves;
+  }
+  const std::optional<MotionFormat> format = MotionFormatInFile(path);
+  if (MaybeError error = CheckOnePointAPerson(path, format)) return *error;
+  const Result<PointMotion> motion = ReadPointMotion(path, *format);
+  if (!motion.ok()) return motion.error();
+  if (!(motion.value().rate_hz > 0.0)) return Error{"it does not give its frame rate", path};
+  return std::vector<MeasuredWave>{MeasureWave(path, motion.value())};
+}
+
+std::string WaveText(const MeasuredWave& wave) {
+  if (wave.people.empty()) return wave.name + ": nobody moves by 2 cm\n";
+  const auto movers =
+      std::count_if(wave.people.begin(), wave.people.end(),
+                    [](const PersonInWave& person) { return person.onset_s.has_value(); });
+  std::string text = wave.name + ": " + std::to_string(movers) + " of " +
+                     std::to_string(wave.people.size()) + " people move by 2 cm or more, " +
+                     wave.people[0].name + " first\n";
+  TextTable table =
+      TextTable::OfNumbers({"person", "distance m", "onset s", "peak m/s", "displaced m"});
+  for (const PersonInWave& person : wave.people) {
+    table.Add({person.name, Rounded(person.distance, 3),
+               person.onset_s ? Rounded(*person.onset_s, 3) : "-", Rounded(person.peak_speed, 2),
+               Rounded(person.displaced, 2)});
+  }
+  text += table.ToString() + "speed of the onset: ";
+  if (!wave.slowness) return text + "none: fewer than three people move\n";
+  return text +
+         SpeedOf(*wave.slowness, wave.quantile * wave.error,
+                 "the scatter of " + std::to_string(movers) + " onsets about a line") +
+         "\n";
+}
+
+std::string WavesText(const std::vector<MeasuredWave>& waves) {
+  std::vector<double> slowness;
+  for (const MeasuredWave& wave : waves) {
+    if (wave.slowness) slowness.push_back(*wave.slowness);
+  }
+  if (slowness.size() < 2) return "";
+  const MeanAndError mean = MeanOf(slowness);
+  const double quantile = StudentQuantile95(static_cast<double>(slowness.size()) - 1.0);
+  return "speed of the onset, " + std::to_string(slowness.size()) +
+         " recordings: " + SpeedOf(mean.mean, quantile * mean.error, "their scatter") + "\n";
 }
 
 }  // namespace pushid

@@ -8,10 +8,9 @@
 
 #include "datasets/loading/mocap_folder.h"
 #include "ident/bodies/body_evaluation.h"
-#include "ident/generators/push_particles.h"
+#include "ident/generators/generator_files.h"
 #include "ident/problem/folds.h"
 #include "ident/training/restoration_training.h"
-#include "ident/training/training_run.h"
 
 namespace pushid {
 

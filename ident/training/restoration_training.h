@@ -1,30 +1,71 @@
-// ident: training of restorations: what they learn from, and the kinds' trainings, with
+// ident: training of restorations, from recordings on, and its cross-validation. First what all
+// trainings share: a run to its end, its state in a file, which is good for the very same training
+// alone, and its course as JSON and as a picture.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "datasets/files/error.h"
+#include "ident/bodies/body_evaluation.h"
+#include "ident/bodies/body_recording.h"
+#include "ident/bodies/restoration_files.h"
+#include "ident/model/identified_model.h"
+#include "ident/problem/folds.h"
+#include "models/restoration/cvae_trainer.h"
+#include "models/restoration/restoration.h"
+#include "models/restoration/trainer.h"
+
+namespace pushid {
+
+struct CheckpointOptions {
+  std::string checkpoint;      // file; empty: none
+  bool keep_finished = false;  // one more at the end: where further trainings follow
+};
+
+// How a training went.
+struct TrainingCourse {
+  std::vector<TrainingPoint> curve;
+  bool resumed = false;
+};
+
+// Until the trainer is done, from a checkpoint of this key on if there is one; the last stays until
+// it is removed. A finished training needs none, so that one that cannot be written does not lose
+// its result. key: what the training depends on, data included. told: about every new point,
+// whose stage it may name. The points are added to the course. Errors: a checkpoint that cannot be
+// written.
+MaybeError RunToEnd(Trainer* trainer, const std::string& key, const CheckpointOptions& options,
+                    const std::function<void(TrainingPoint* point)>& told, TrainingCourse* course);
+
+void RemoveCheckpoint(const std::string& file);
+
+// In the file of what was trained.
+inline nlohmann::ordered_json CurveJson(const std::vector<TrainingPoint>& curve) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const TrainingPoint& p : curve) {
+    nlohmann::ordered_json point = {{"epoch", p.epoch},
+                                    {"training_loss", p.training_loss},
+                                    {"held_out_loss", p.validation_loss}};
+    if (!p.stage.empty()) point["stage"] = p.stage;
+    json.push_back(point);
+  }
+  return json;
+}
+
+// Loss against epoch, training and held-out; stages one after the other.
+std::string TrainingCurveSvg(const std::vector<TrainingPoint>& curve, const std::string& title);
+
+// Training of restorations: what they learn from, and the kinds' trainings, with
 // checkpoints. Needs LibTorch (behind models/).
 //
 // They learn from recorded bodies with their true pendulums and with pendulums that a model
 // predicts without having seen the recording. A network in use gets predicted pendulums, which have
 // errors; so it is trained on both. The predictions are out of fold: a model fitted to the very
 // recording would err too little.
-#pragma once
-
-#include <cstdint>
-#include <functional>
-#include <memory>
-#include <nlohmann/json_fwd.hpp>
-#include <string>
-#include <vector>
-
-#include "ident/bodies/body_evaluation.h"
-#include "ident/bodies/body_recording.h"
-#include "ident/bodies/restoration_files.h"
-#include "ident/model/identified_model.h"
-#include "ident/problem/folds.h"
-#include "ident/training/training_run.h"
-#include "models/restoration/cvae_trainer.h"
-#include "models/restoration/restoration.h"
-#include "models/restoration/trainer.h"
-
-namespace pushid {
 
 // The model of `options` fitted to some recordings, without the uncertainty; and for every one of
 // them what a model predicts which was fitted without its fold (ident/fit/fit.h), without forces

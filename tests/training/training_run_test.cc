@@ -1,10 +1,9 @@
 // A training run to its end, its checkpoints, and its curve: stages apart, the best point marked.
-#include "ident/training/training_run.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "ident/training/restoration_training.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "datasets/files/random.h"
-#include "ident/formations/wave_speed.h"
+#include "ident/formations/formation_run.h"
 #include "tests/test_support.h"
 
 namespace pushid {

@@ -1,8 +1,7 @@
 // People who are pushed, as particles and back.
-#include "ident/generators/push_particles.h"
-
 #include <gtest/gtest.h>
 
+#include "ident/generators/generator_files.h"
 #include "tests/models/body_samples.h"
 #include "tests/models/generators/generator_samples.h"
 #include "tests/test_support.h"
